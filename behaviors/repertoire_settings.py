@@ -9,7 +9,7 @@ from hal.settings import Settings
 Speed = Annotated[float, Field(ge=-1.0, le=1.0)]
 PositiveSpeed = Annotated[float, Field(gt=0, le=1.0)]
 RESERVED = "ask"
-"""Placeholder of a withdrawn action (kurt2rt.rla.rla.ASK)."""
+"""Placeholder of a withdrawn action (kurt2rt.core.rla.rla.ASK)."""
 
 
 def _require_free(name: str) -> str:

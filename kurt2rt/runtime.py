@@ -5,42 +5,42 @@ from dataclasses import dataclass, replace
 
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
-from kurt2rt.critic.agreement import Agreement
-from kurt2rt.critic.critic import Critic
-from kurt2rt.critic.settings import CriticSettings, load_critic
-from kurt2rt.expectations.expecting import Expecting
-from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.layers.basic_level import BasicLevel
-from kurt2rt.layers.level import Level
-from kurt2rt.layers.mid_level import MidLevel
-from kurt2rt.layers.stack import LayerStack
-from kurt2rt.layers.wanted import Wanted
-from kurt2rt.mid.settings import MidSettings, load_mid
-from kurt2rt.perception.circumstances import CircumstancesPerception
-from kurt2rt.perception.definition import SituationDefinition, load_situation
-from kurt2rt.perception.perception import Perception
-from kurt2rt.perception.weights import weights_of
-from kurt2rt.planning.navigator import Navigator
-from kurt2rt.reinforcement.reinforcement import Reinforcement
-from kurt2rt.reinforcement.self_teaching import SelfTeaching
-from kurt2rt.repertoire.of_task import repertoire_of
-from kurt2rt.rla.rla import CRITIC, MID, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem
-from kurt2rt.rla.space import Space
-from kurt2rt.rla.statistics import StatisticsCounter
-from kurt2rt.tasks.settings import TaskSettings
-from kurt2rt.teaching.authority import Authority
-from kurt2rt.teaching.errands import Errands
-from kurt2rt.teaching.happenings import SetDown
-from kurt2rt.teaching.inbox import TeacherInbox
-from kurt2rt.teaching.mid_lessons import MidLessons
-from kurt2rt.teaching.progress_meter import ProgressMeter
-from kurt2rt.teaching.recent import RecentDecisions
-from kurt2rt.teaching.school import School
-from kurt2rt.tick import LessonKeeper, Tick, TickRecord
-from kurt2rt.timing.clock import Clock
-from kurt2rt.timing.ledger import Ledger
-from kurt2rt.timing.scheduler import Scheduler
+from kurt2rt.core.basic.basic_level import BasicLevel
+from kurt2rt.core.critic.agreement import Agreement
+from kurt2rt.core.critic.appraisal_features import CircumstancesPerception
+from kurt2rt.core.critic.critic import Critic
+from kurt2rt.core.critic.settings import CriticSettings, load_critic
+from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.level import Level
+from kurt2rt.core.expectations.tracker import Expecting
+from kurt2rt.core.layer_stack import LayerStack
+from kurt2rt.core.mid.mid_level import MidLevel
+from kurt2rt.core.mid.settings import MidSettings, load_mid
+from kurt2rt.core.perception.definition import SituationDefinition, load_situation
+from kurt2rt.core.perception.perception import Perception
+from kurt2rt.core.perception.weights import weights_of
+from kurt2rt.core.planning.navigator import Navigator
+from kurt2rt.core.progress_meter import ProgressMeter
+from kurt2rt.core.reinforcement.decision_history import RecentDecisions
+from kurt2rt.core.reinforcement.reinforcement import Reinforcement
+from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
+from kurt2rt.core.rla.rla import CRITIC, MID, TeachingEvent
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.space import Space
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.teaching.authority import Authority
+from kurt2rt.core.teaching.command_handler import School
+from kurt2rt.core.teaching.goal_commands import Errands
+from kurt2rt.core.teaching.inbox import TeacherInbox
+from kurt2rt.core.teaching.mid_lessons import MidLessons
+from kurt2rt.core.teaching.system_events import SetDown
+from kurt2rt.core.tick import LessonKeeper, Tick, TickRecord
+from kurt2rt.knowledge.task_repertoire import repertoire_of
+from kurt2rt.platform.clock import Clock
+from kurt2rt.platform.ledger import Ledger
+from kurt2rt.platform.scheduler import Scheduler
 
 
 @dataclass(frozen=True, slots=True)

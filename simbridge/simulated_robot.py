@@ -6,17 +6,17 @@ import struct
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
-from simbridge.body import Body
-from simbridge.bumpers import Bumpers, CollisionCounter
-from simbridge.controller_bus import ControllerBus
-from simbridge.infrared import InfraredSensors
-from simbridge.instruments import Instruments
-from simbridge.laps import WallProgress
-from simbridge.microcontroller import MicroController
-from simbridge.noise import Noise
-from simbridge.wheels import Wheels
-from simbridge.world import World
-from simbridge.world_settings import WorldSettings
+from simbridge.controller.controller_bus import ControllerBus
+from simbridge.controller.microcontroller import MicroController
+from simbridge.robot.body import Body
+from simbridge.robot.bumpers import Bumpers, CollisionCounter
+from simbridge.robot.infrared import InfraredSensors
+from simbridge.robot.instruments import Instruments
+from simbridge.robot.noise import Noise
+from simbridge.robot.wheels import Wheels
+from simbridge.robot.world import World
+from simbridge.survey.laps import WallProgress
+from simbridge.worlds.world_settings import WorldSettings
 
 _LAPS_EVERY_CYCLES = 10
 

@@ -8,10 +8,10 @@ from typing import Self
 from hal.bus import CONTROL_ID, BusError, CanBus
 from hal.codec import load_codec
 from hal.robot_settings import RobotSettings
+from simbridge.controller.reconnecting_bus import ReconnectingBus
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
-from simbridge.steady_bus import ReconnectingBus
-from simbridge.world_settings import WorldSettings
+from simbridge.worlds.world_settings import WorldSettings
 
 _LISTEN_S = 0.1
 """Ten times a robot's longest silence."""

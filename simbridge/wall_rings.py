@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
-from simbridge.geometry import Point, polygons_of
-from simbridge.world_settings import WorldSettings
+from simbridge.worlds.geometry import Point, polygons_of
+from simbridge.worlds.world_settings import WorldSettings
 
 _ROBOT_M = 0.15
 """Distance from the robot's centre to its side less 15 mm, a lower bound of its distance to a wall."""

@@ -15,7 +15,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, Self
 
-from tests.nursery import ADDRESS, NUMBER
+from tests.fork_server import ADDRESS, NUMBER
 
 _ROOT = Path(__file__).parents[1]
 
@@ -31,7 +31,7 @@ def nursery() -> Iterator[None]:
     address = f"kurt2rt-nursery-{uuid.uuid4().hex}"
     theirs, ours = os.pipe()
     with subprocess.Popen(
-        [sys.executable, "-m", "tests.nursery", address, str(theirs)],
+        [sys.executable, "-m", "tests.fork_server", address, str(theirs)],
         cwd=_ROOT,
         env={**os.environ, "PYTHONUNBUFFERED": "1"},
         stdin=subprocess.DEVNULL,

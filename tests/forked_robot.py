@@ -8,7 +8,7 @@ from typing import IO, cast
 
 import pytest
 
-from kurt2rt.teaching import robot_process
+from kurt2rt.teacher.client import robot_process
 from tests.forked_program import ForkedProcess, there_is_a_nursery
 
 

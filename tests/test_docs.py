@@ -20,15 +20,15 @@ from behaviors.repertoire_settings import RepertoireSettings
 from config import CONFIG_DIR
 from hal.robot_settings import RobotSettings
 from hal.settings import Settings, load_settings
-from kurt2rt.experiments.curriculum import WorldResult, run_exams
-from kurt2rt.perception.definition import SituationDefinition
-from kurt2rt.service_settings import ServiceSettings
-from kurt2rt.tasks.settings import TaskSettings, load_task
-from simbridge.world_settings import WorldSettings
+from kurt2rt.core.perception.definition import SituationDefinition
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams
+from kurt2rt.service.settings import ServiceSettings
+from simbridge.worlds.world_settings import WorldSettings
 from tests.cli.helpers import CommandLine, started
 from tests.experiments.helpers import ROBOT, STAGE, short_task, teach
-from tests.replay.stored_runs import STORED
-from tests.replay.stories import slim
+from tests.runs.replay.stored_runs import STORED
+from tests.runs.replay.stories import slim
 
 ROOT = Path(__file__).parents[1]
 ROOMS = ("config", "hal", "behaviors", "simbridge", "kurt2rt", "tests")

@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 from matplotlib import pyplot as plt
 
-import kurt2rt.teaching
-from kurt2rt.channel.credentials import local_pairing
-from kurt2rt.teaching import Teacher
+import kurt2rt.teacher
+from kurt2rt.channel.security.pairing import local_pairing
+from kurt2rt.teacher import Teacher
 from tests.forked_robot import fork_robots
 
 EXAMPLES = Path(__file__).parents[1] / "docs" / "examples"
@@ -69,7 +69,7 @@ def test_the_script_teaches_and_ends(monkeypatch: pytest.MonkeyPatch, capsys: py
 
 
 def test_the_script_without_a_robot_says_so_in_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(kurt2rt.teaching, "Teacher", partial(Teacher, connect_s=0.1), raising=False)
+    monkeypatch.setattr(kurt2rt.teacher, "Teacher", partial(Teacher, connect_s=0.1), raising=False)
     device = local_pairing(tmp_path / "teachers", tmp_path / "devices", port=1).device.folder
     with pytest.raises(SystemExit, match=r"no robot answers for .* s.*; start one: kurt2rt run$") as end:
         run_script(monkeypatch, str(device))

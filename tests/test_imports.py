@@ -1,77 +1,213 @@
-"""Packages import in one direction: config <- hal <- behaviors <- kurt2rt, and config, hal <- simbridge."""
+"""Rooms import in one direction: the table below says which room may import which; no circle between their folders."""
 
 import ast
 import sys
 from collections.abc import Iterator
+from functools import lru_cache
 from pathlib import Path
 
+import networkx as nx
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = {"config", "hal", "behaviors", "kurt2rt", "simbridge"}
-MAY_IMPORT = {
-    "config": set[str](),
-    "hal": {"config"},
-    "behaviors": {"config", "hal"},
-    "simbridge": {"config", "hal"},
-    "kurt2rt": {"config", "hal", "behaviors"},
+PACKAGES = ("config", "hal", "behaviors", "simbridge", "kurt2rt")
+ROOMS: dict[str, frozenset[str]] = {
+    room: frozenset(allowed.split())
+    for room, allowed in {
+        "config": "",
+        "hal": "config",
+        "behaviors": "hal",
+        "simbridge": "config hal",
+        "kurt2rt": "",
+        "kurt2rt.platform": "",
+        "kurt2rt.core": "hal behaviors kurt2rt.platform",
+        "kurt2rt.knowledge": "hal behaviors kurt2rt.platform kurt2rt.core",
+        "kurt2rt.runtime": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge",
+        "kurt2rt.runs": "hal kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime",
+        "kurt2rt.channel": "hal kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime kurt2rt.runs.explain",
+        "kurt2rt.channel.protocol": "hal kurt2rt.core kurt2rt.platform kurt2rt.runs.explain.facts",
+        "kurt2rt.teacher": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.runs.explain"
+        " kurt2rt.channel.protocol kurt2rt.channel.security",
+        "kurt2rt.service": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime kurt2rt.runs"
+        " kurt2rt.channel",
+        "kurt2rt.service.open_robot": "* kurt2rt.service simbridge",
+        "kurt2rt.experiments": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime"
+        " kurt2rt.teacher.scripted",
+        "kurt2rt.checks": "hal behaviors kurt2rt.platform kurt2rt.core kurt2rt.knowledge kurt2rt.runtime kurt2rt.runs"
+        " kurt2rt.channel kurt2rt.teacher kurt2rt.service kurt2rt.experiments",
+        "kurt2rt.checks.doctor": "hal kurt2rt.platform",
+        "kurt2rt.checks.commission": "hal kurt2rt.platform",
+        "kurt2rt.cli": "config hal behaviors simbridge kurt2rt",
+    }.items()
 }
+"""Allowed imports of each room besides its own modules; a folder within a room may have a row of its own.
+
+`*` stands for what the room around it may import.
+"""
+CORE_NEVER_IMPORTS = {"time", "asyncio", "anyio", "threading", "socket", "sqlite3", "os"}
+LAYERS_OF_CORE = (
+    {"rla", "perception", "numerics"},
+    {"decision"},
+    {"basic", "mid"},
+    {"planning", "expectations", "critic"},
+    {"reinforcement"},
+    {"task_settings", "phase_settings"},
+    {"teaching"},
+    {"layer_stack"},
+    {"tick", "progress_meter"},
+)
+"""Folders and files of core, low to high: each imports only lower ones and itself."""
 GUARDS = ("hal/guard.py", "hal/watchdog.py")
 
 
+def is_below(name: str, room: str) -> bool:
+    return name == room or name.startswith(room + ".")
+
+
 def modules_imported(source: str, package: str) -> Iterator[str]:
-    """Full names of the modules that code imports, wherever in the file; `package` is where relative ones start."""
+    """Full names of imported modules and members, wherever they stand; `package` is where relative imports start."""
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
             start = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
-            yield ".".join([*start, *([node.module] if node.module else [])])
+            module = ".".join([*start, *([node.module] if node.module else [])])
+            yield from (f"{module}.{alias.name}" for alias in node.names)
 
 
-def roots_imported(path: Path) -> set[str]:
-    package = ".".join(path.relative_to(ROOT).parent.parts)
-    return {name.split(".")[0] for name in modules_imported(path.read_text(encoding="utf-8"), package)}
+def module_name(path: Path) -> str:
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
 
 
-def may_know_the_simulator(path: Path) -> bool:
-    """The composition root and the command line alone know both the runtime and the simulator."""
-    parts = path.relative_to(ROOT).parts
-    roots = ("app.py", "simulated.py", "simulated_ground.py")
-    return (parts[0] == "kurt2rt" and parts[1:] in [(root,) for root in roots]) or parts[:2] == ("kurt2rt", "cli")
+@lru_cache(maxsize=1)
+def modules() -> dict[str, Path]:
+    return {module_name(path): path for package in PACKAGES for path in sorted((ROOT / package).rglob("*.py"))}
 
 
-@pytest.mark.parametrize("package", sorted(PACKAGES))
-def test_a_package_imports_only_what_stands_below_it(package: str) -> None:
-    for path in sorted((ROOT / package).rglob("*.py")):
-        allowed = {package} | MAY_IMPORT[package] | ({"simbridge"} if may_know_the_simulator(path) else set())
-        others = (PACKAGES | {"tests"}) - allowed
-        if not any(name in path.read_text(encoding="utf-8") for name in others):
-            continue  # what a file does not mention it does not import; the others are worth the parsing
-        forbidden = roots_imported(path) & others
-        assert not forbidden, f"{path.relative_to(ROOT)} imports {sorted(forbidden)}, allowed are {sorted(allowed)}"
+def module_of(name: str) -> str:
+    """Return the module that an imported name is, or stands in."""
+    while name not in modules() and "." in name:
+        name = name.rpartition(".")[0]
+    return name
 
 
-def test_config_needs_nothing_but_the_standard_library() -> None:
-    for path in (ROOT / "config").rglob("*.py"):
-        foreign = roots_imported(path) - sys.stdlib_module_names - {"config"}
-        assert not foreign, f"{path.relative_to(ROOT)} imports {sorted(foreign)}"
+@lru_cache(maxsize=1)
+def arrows() -> tuple[tuple[str, str], ...]:
+    """Return (importing module, imported module) for all imports between modules of this project."""
+    found = set()
+    for name, path in modules().items():
+        package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+        for imported in modules_imported(path.read_text(encoding="utf-8"), package):
+            if imported.split(".")[0] in (*PACKAGES, "tests"):
+                found.add((name, module_of(imported)))
+    return tuple(sorted(found))
+
+
+def room_of(name: str) -> str:
+    """Return the innermost row of the table that holds a module."""
+    return max((room for room in ROOMS if is_below(name, room) and room != "kurt2rt"), key=len, default="kurt2rt")
+
+
+def allowed_in(room: str) -> frozenset[str]:
+    allowed = ROOMS[room]
+    return allowed | allowed_in(room_of(room.rpartition(".")[0])) if "*" in allowed else allowed
+
+
+def test_rooms_each_package_of_kurt2rt_is_listed() -> None:
+    found = {name for name in modules() if name.count(".") == 1 and name.startswith("kurt2rt.")}
+    assert found == {room for room in ROOMS if room.count(".") == 1}
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_rooms_imports_stay_within_the_table(room: str) -> None:
+    allowed = allowed_in(room)
+    wrong = [
+        f"{name} imports {imported}"
+        for name, imported in arrows()
+        if room_of(name) == room
+        and not is_below(imported, room)
+        and not any(is_below(imported, each) for each in allowed)
+        and not (imported in ("kurt2rt", room.rpartition(".")[0]) and imported != room)
+    ]
+    assert not wrong, "; ".join(wrong)
+
+
+def unit_of(name: str) -> str:
+    """Return the sub-folder of a room that holds a module, or the module itself where it lies loose in the room."""
+    depth = 3 if name.startswith("kurt2rt.") else 2
+    return ".".join(name.split(".")[:depth])
+
+
+def test_rooms_no_circle_between_folders() -> None:
+    graph: nx.DiGraph[str] = nx.DiGraph()
+    for name, imported in arrows():
+        if unit_of(name) != unit_of(imported) and not is_below(name, imported):
+            graph.add_edge(unit_of(name), unit_of(imported))
+    circles = [sorted(each) for each in nx.strongly_connected_components(graph) if len(each) > 1]
+    assert not circles
+
+
+def test_core_imports_nothing_that_waits_or_writes() -> None:
+    wrong = [
+        f"{name} imports {imported}"
+        for name, path in modules().items()
+        if is_below(name, "kurt2rt.core")
+        for imported in modules_imported(path.read_text(encoding="utf-8"), name)
+        if imported.split(".")[0] in CORE_NEVER_IMPORTS
+    ]
+    assert not wrong, "; ".join(wrong)
+
+
+def test_core_folders_import_lower_folders() -> None:
+    height = {part: level for level, parts in enumerate(LAYERS_OF_CORE) for part in parts}
+    inside = [
+        (name, name.split(".")[2], imported.split(".")[2])
+        for name, imported in arrows()
+        if is_below(name, "kurt2rt.core") and imported.startswith("kurt2rt.core.") and name != "kurt2rt.core"
+    ]
+    wrong = [f"{name} imports {there}" for name, here, there in inside if height[here] < height[there]]
+    assert not wrong, "; ".join(wrong)
+
+
+def test_config_imports_only_the_standard_library() -> None:
+    for name, path in modules().items():
+        if is_below(name, "config"):
+            roots = {each.split(".")[0] for each in modules_imported(path.read_text(encoding="utf-8"), name)}
+            assert not roots - sys.stdlib_module_names - {"config"}
 
 
 @pytest.mark.parametrize("guard", GUARDS)
-def test_the_guards_need_nothing_but_hal_and_the_standard_library(guard: str) -> None:
-    foreign = roots_imported(ROOT / guard) - sys.stdlib_module_names - {"hal"}
-    assert not foreign, f"{guard} imports {sorted(foreign)}"
+def test_guards_import_hal_and_the_standard_library_alone(guard: str) -> None:
+    roots = {each.split(".")[0] for each in modules_imported((ROOT / guard).read_text(encoding="utf-8"), "hal")}
+    assert not roots - sys.stdlib_module_names - {"hal"}
+
+
+def imported_at_the_top(name: str) -> Iterator[str]:
+    for node in ast.parse(modules()[name].read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            yield from modules_imported(ast.unparse(node), name)
+
+
+def test_robot_program_loads_no_matplotlib() -> None:
+    reached, waiting = set[str](), ["kurt2rt.service.serve", "kurt2rt.service.open_robot"]
+    while waiting:
+        name = waiting.pop()
+        reached.add(name)
+        for imported in imported_at_the_top(name):
+            assert not is_below(imported, "matplotlib"), name
+            if module_of(imported) in modules() and module_of(imported) not in reached:
+                waiting.append(module_of(imported))
+    assert "kurt2rt.core.tick" in reached
 
 
 @pytest.mark.parametrize(
     ("source", "found"),
     [
         ("import kurt2rt.clock", "kurt2rt.clock"),
-        ("def late():\n    from simbridge import world", "simbridge"),
-        ("from . import bus", "hal.inner"),
-        ("from ..guard import Guard", "hal.guard"),
+        ("def late():\n    from simbridge import world", "simbridge.world"),
+        ("from . import bus", "hal.inner.bus"),
+        ("from ..guard import Guard", "hal.guard.Guard"),
     ],
 )
-def test_the_search_would_find_it(source: str, found: str) -> None:
+def test_modules_imported_finds_each_form(source: str, found: str) -> None:
     assert list(modules_imported(source, "hal.inner")) == [found]

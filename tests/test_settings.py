@@ -17,15 +17,15 @@ from config import CONFIG_DIR
 from hal.robot_settings import RobotSettings, SpeedMode, load_robot
 from hal.settings import Settings, SettingsError, content_of, find_config, load_settings
 from hal.settings_by_kind import find_kind
-from kurt2rt.critic.settings import CriticSettings
-from kurt2rt.faults.table import FaultTable
-from kurt2rt.mid.settings import MidSettings, load_mid
-from kurt2rt.perception.definition import SituationDefinition, load_situation
-from kurt2rt.rla.rla import ASK
-from kurt2rt.tasks.settings import TaskSettings, load_task
+from kurt2rt.checks.faults.table import FaultTable
+from kurt2rt.core.critic.settings import CriticSettings
+from kurt2rt.core.mid.settings import MidSettings, load_mid
+from kurt2rt.core.perception.definition import SituationDefinition, load_situation
+from kurt2rt.core.rla.rla import ASK
+from kurt2rt.core.task_settings import TaskSettings, load_task
 from simbridge.wire.settings import WireSettings
-from simbridge.world_loading import load_world
-from simbridge.world_settings import WorldSettings
+from simbridge.worlds.world_loading import load_world
+from simbridge.worlds.world_settings import WorldSettings
 
 SCHEMAS: dict[str, type[Settings]] = {
     "robots": RobotSettings,

@@ -1,7 +1,7 @@
 """Judge of fleeing with collision avoidance."""
 
+from behaviors.judges.common_faults import CommonFaults, Speed, TurnRate, has_fault
 from behaviors.judges.judge import AppraisalFeatures, Judge, JudgeSettings
-from behaviors.judges.trouble import CommonFaults, Speed, TurnRate, has_fault
 from behaviors.policies.distances import Distance
 
 

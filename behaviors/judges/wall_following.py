@@ -4,8 +4,8 @@ from typing import Annotated
 
 from pydantic import Field
 
+from behaviors.judges.common_faults import CommonFaults, Speed, TurnRate, has_fault
 from behaviors.judges.judge import AppraisalFeatures, Judge, JudgeSettings
-from behaviors.judges.trouble import CommonFaults, Speed, TurnRate, has_fault
 from behaviors.policies.distances import Distance
 
 Error = Annotated[float, Field(gt=0, le=0.6)]

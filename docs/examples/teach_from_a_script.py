@@ -15,11 +15,11 @@ import sys
 from contextlib import ExitStack
 
 from hal.robot_settings import load_robot
-from kurt2rt.channel.port import ChannelError
-from kurt2rt.channel.state import State
-from kurt2rt.tasks.settings import load_task
-from kurt2rt.teaching import RobotProcess, Teacher
-from kurt2rt.teaching.answer import NoAnswerError
+from kurt2rt.channel.protocol.state import State
+from kurt2rt.channel.server.udp_port import ChannelError
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.teacher import RobotProcess, Teacher
+from kurt2rt.teacher.client.answer import NoAnswerError
 
 PATIENCE = 4
 """States in a row, 20 a second, in which the robot does something else before it is corrected."""

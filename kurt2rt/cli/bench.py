@@ -10,12 +10,12 @@ from rich.console import Console
 from rich.progress import Progress
 
 from hal.robot_settings import load_robot
-from kurt2rt.bench.report import as_json, look_at_machine, print_report
-from kurt2rt.bench.subject import SEED, OnProgress, Subject
-from kurt2rt.bench.suite import FULL, QUICK, Bench, run_suite
+from kurt2rt.checks.bench.report import as_json, look_at_machine, print_report
+from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, Subject
+from kurt2rt.checks.bench.suite import FULL, QUICK, Bench, run_suite
 from kurt2rt.cli.json_output import AsJson, JsonFile, require_json_file
-from kurt2rt.cli.printed import console_of
-from kurt2rt.tasks.settings import load_task
+from kurt2rt.cli.tables import console_of
+from kurt2rt.core.task_settings import load_task
 
 
 def bench(
@@ -52,7 +52,7 @@ def bench(
         kurt2rt bench --only match,lesson --json
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from kurt2rt.simulated import Kurt2SimulationFactory
+    from simbridge.simulation import Kurt2SimulationFactory
 
     benches = _chosen(only)
     require_json_file(file, as_json=json)

@@ -18,20 +18,20 @@ from hal.codec import load_codec
 from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings, load_robot
 from hal.settings import SettingsError
+from kurt2rt.checks.commission.checklist import STEPS, Checklist, barring, open_steps, step_named, steps_to_take
+from kurt2rt.checks.commission.console_operator import TypingPerson
+from kurt2rt.checks.commission.findings import Findings
+from kurt2rt.checks.commission.listener import Listener
+from kurt2rt.checks.commission.operator import LeftError
+from kurt2rt.checks.commission.progress import Progress, load_progress
+from kurt2rt.checks.commission.report import as_text, print_report
+from kurt2rt.checks.commission.robot_file import write_robot_file
+from kurt2rt.checks.commission.step import Outcome, Step
+from kurt2rt.checks.commission.test_stand import Bench
 from kurt2rt.cli.options import RobotName
-from kurt2rt.commission.bench import Bench
-from kurt2rt.commission.checklist import STEPS, Checklist, barring, open_steps, step_named, steps_to_take
-from kurt2rt.commission.findings import Findings
-from kurt2rt.commission.listener import Listener
-from kurt2rt.commission.person import LeftError
-from kurt2rt.commission.progress import Progress, load_progress
-from kurt2rt.commission.report import as_text, print_report
-from kurt2rt.commission.robot_file import write_robot_file
-from kurt2rt.commission.step import Outcome, Step
-from kurt2rt.commission.typing_person import TypingPerson
-from kurt2rt.durable import write_durably
-from kurt2rt.ending import ENDING
-from kurt2rt.timing.timerfd import TimerfdClock
+from kurt2rt.platform.durable_files import write_durably
+from kurt2rt.platform.timerfd_clock import TimerfdClock
+from kurt2rt.service.shutdown import ENDING
 
 _NAMES = ", ".join(step.name for step in STEPS)
 

@@ -8,14 +8,14 @@ import anyio
 from hal.robot_settings import load_robot
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import Changes, OutFolder, Plain, RobotName, Seed, WireName, changes_of, task_option
-from kurt2rt.cli.printed import console_of
 from kurt2rt.cli.progress import job_bars
-from kurt2rt.experiments.curriculum import CurriculumResult, Report, run_exams, run_lesson
-from kurt2rt.experiments.fitting import require_course
-from kurt2rt.experiments.report import curriculum_as_data, render_curriculum
-from kurt2rt.knowledge.set_aside import set_aside
-from kurt2rt.tasks.settings import load_task
-from kurt2rt.text_table import print_whole
+from kurt2rt.cli.tables import console_of
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_exams, run_lesson
+from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum
+from kurt2rt.knowledge.files.archive_existing import set_aside
+from kurt2rt.platform.text_table import print_whole
 
 
 def demo(
@@ -45,8 +45,8 @@ def demo(
         kurt2rt demo --task circle --seed 7
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from kurt2rt.experiments.drawing import draw_curriculum
-    from kurt2rt.simulated import Kurt2SimulationFactory
+    from kurt2rt.experiments.lockstep.drawing import draw_curriculum
+    from simbridge.simulation import Kurt2SimulationFactory
 
     settings = load_robot(robot_settings)
     taught = load_task(task, plain=plain, changes=changes_of(changes))

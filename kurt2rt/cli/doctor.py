@@ -6,10 +6,10 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from kurt2rt.checks.doctor.checks import examine
+from kurt2rt.checks.doctor.report import as_json, print_report
 from kurt2rt.cli.json_output import AsJson
-from kurt2rt.cli.printed import console_of
-from kurt2rt.doctor.examination import examine
-from kurt2rt.doctor.report import as_json, print_report
+from kurt2rt.cli.tables import console_of
 
 
 def doctor(

@@ -6,20 +6,20 @@ from typing import Annotated
 import anyio
 import typer
 
+from behaviors.metrics.route import RouteSettings
 from hal.robot_settings import load_robot
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import Changes, Plain, RobotName, Seed, TaskOfTheFile, WireName, changes_of, world_option
-from kurt2rt.cli.printed import console_of
 from kurt2rt.cli.progress import job_bars
-from kurt2rt.experiments.courses.route import RouteSettings
-from kurt2rt.experiments.curriculum import Report, WorldResult, run_exams
-from kurt2rt.experiments.fitting import require_course
-from kurt2rt.experiments.report import exams_as_data, render_exams
-from kurt2rt.experiments.route.teaching import with_route
-from kurt2rt.knowledge.opening import read_lessons
-from kurt2rt.knowledge.task_of_file import task_of_file
-from kurt2rt.tasks.settings import load_task
-from kurt2rt.text_table import print_whole
+from kurt2rt.cli.tables import console_of
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.curriculum import Report, WorldResult, run_exams
+from kurt2rt.experiments.lockstep.report import exams_as_data, render_exams
+from kurt2rt.experiments.route.lesson import with_route
+from kurt2rt.knowledge.files.task_of_file import task_of_file
+from kurt2rt.knowledge.journal.loading import read_lessons
+from kurt2rt.platform.text_table import print_whole
 
 
 def exam(
@@ -50,7 +50,7 @@ def exam(
         kurt2rt exam mine.knowledge --world b --world rooms-200
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from kurt2rt.simulated import Kurt2SimulationFactory
+    from simbridge.simulation import Kurt2SimulationFactory
 
     settings = load_robot(robot_settings)
     other = changes_of(changes)

@@ -1,6 +1,6 @@
 """Process of a live exam: `python -m kurt2rt.cli.exam_process KNOWLEDGE PICTURE ROBOT TASK SEED`.
 
-Prints the exam's standing as lines of JSON (kurt2rt.channel.exam_standing), the verdict last.
+Prints the exam's standing as lines of JSON (kurt2rt.channel.protocol.exam_status), the verdict last.
 """
 
 import json
@@ -11,19 +11,19 @@ from pathlib import Path
 
 import anyio
 
+from behaviors.metrics.route import RouteSettings
 from hal.robot_settings import load_robot
 from hal.settings import SettingsError
-from kurt2rt.channel.exam_standing import EXAM, ExamStanding, WorldVerdict
-from kurt2rt.experiments.courses.route import RouteSettings
-from kurt2rt.experiments.curriculum import WorldResult, run_exams
-from kurt2rt.experiments.drawing import draw_exams
-from kurt2rt.experiments.fitting import require_course
-from kurt2rt.experiments.report import label_of, not_judged, verdict_of
-from kurt2rt.experiments.route.teaching import with_route
+from kurt2rt.channel.protocol.exam_status import EXAM, ExamStanding, WorldVerdict
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams
+from kurt2rt.experiments.lockstep.drawing import draw_exams
+from kurt2rt.experiments.lockstep.report import label_of, not_judged, verdict_of
+from kurt2rt.experiments.route.lesson import with_route
+from kurt2rt.knowledge.journal.loading import read_lessons
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.opening import read_lessons
-from kurt2rt.simulated import Kurt2SimulationFactory
-from kurt2rt.tasks.settings import load_task
+from simbridge.simulation import Kurt2SimulationFactory
 
 NICENESS = 10
 """The robot's loop, and the page, come first."""

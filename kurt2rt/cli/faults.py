@@ -8,13 +8,13 @@ from rich.console import Console
 from rich.progress import Progress
 
 from hal.robot_settings import load_robot
+from kurt2rt.checks.faults.table import KINDS, TARGETS, Kind, Target, cases_of, load_faults
 from kurt2rt.cli.json_output import AsJson, JsonFile, require_json_file
-from kurt2rt.cli.printed import console_of
-from kurt2rt.faults.table import KINDS, TARGETS, Kind, Target, cases_of, load_faults
-from kurt2rt.tasks.settings import load_task
+from kurt2rt.cli.tables import console_of
+from kurt2rt.core.task_settings import load_task
 
 if TYPE_CHECKING:
-    from kurt2rt.faults.suite import Trial
+    from kurt2rt.checks.faults.suite import Trial
 
 
 def faults(
@@ -54,10 +54,10 @@ def faults(
         kurt2rt faults --target tick --kind stuck --seeds 5
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it, and without the drills.
-    from kurt2rt.faults.report import as_json, print_report
-    from kurt2rt.faults.stop_times import stop_times
-    from kurt2rt.faults.suite import try_cases
-    from simbridge.faults.place import FaultRigFactory
+    from kurt2rt.checks.faults.report import as_json, print_report
+    from kurt2rt.checks.faults.stop_times import stop_times
+    from kurt2rt.checks.faults.suite import try_cases
+    from simbridge.faults.fault_rig import FaultRigFactory
 
     require_json_file(file, as_json=json)
     targets, kinds = _targets(target), _kinds(kind)

@@ -30,19 +30,19 @@ from kurt2rt.cli.options import (
     changes_of,
     task_option,
 )
-from kurt2rt.cli.printed import console_of
 from kurt2rt.cli.progress import job_bars
-from kurt2rt.experiments.curriculum import CurriculumResult, Report, run_lesson
-from kurt2rt.experiments.fitting import require_course
-from kurt2rt.experiments.report import curriculum_as_data, render_curriculum, render_seeds
-from kurt2rt.experiments.seeds import SeedJob, run_seeds
-from kurt2rt.knowledge.set_aside import set_aside
-from kurt2rt.knowledge.task_of_file import task_of_file
-from kurt2rt.tasks.settings import TaskSettings, load_task
-from kurt2rt.text_table import print_whole
+from kurt2rt.cli.tables import console_of
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_lesson
+from kurt2rt.experiments.lockstep.many_seeds import SeedJob, run_seeds
+from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum, render_seeds
+from kurt2rt.knowledge.files.archive_existing import set_aside
+from kurt2rt.knowledge.files.task_of_file import task_of_file
+from kurt2rt.platform.text_table import print_whole
 
 if TYPE_CHECKING:
-    from kurt2rt.simulated import Kurt2SimulationFactory
+    from simbridge.simulation import Kurt2SimulationFactory
 
 _TASK = "wall_following"
 _FOLDER = Path("results/lesson")
@@ -121,7 +121,7 @@ def lesson(
         kurt2rt lesson --task errands --seeds 0-9 --controls
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from kurt2rt.simulated import Kurt2SimulationFactory
+    from simbridge.simulation import Kurt2SimulationFactory
 
     name = _one_of(task, task_word)
     if knowledge is not None and knowledge.exists():

@@ -3,20 +3,20 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from behaviors.metrics.errands import ErrandsSettings
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.cli.json_output import print_json
-from kurt2rt.cli.printed import console_of, tables_of
 from kurt2rt.cli.progress import one_bar
-from kurt2rt.experiments.courses.errands import ErrandsSettings
-from kurt2rt.experiments.errands.lesson import errands_of
-from kurt2rt.experiments.errands.programme import conduct, plan, read_outcomes, robot_time_s
-from kurt2rt.experiments.errands.tables import sheets
-from kurt2rt.experiments.kept.results import Results
-from kurt2rt.experiments.route.programme import basic_task_of
-from kurt2rt.experiments.shown.sheet import as_rich
-from kurt2rt.tasks.settings import TaskSettings
-from kurt2rt.text_table import print_whole
+from kurt2rt.cli.tables import console_of, tables_of
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.navigation.lesson import errands_of
+from kurt2rt.experiments.navigation.plan import conduct, plan, read_outcomes, robot_time_s
+from kurt2rt.experiments.navigation.tables import sheets
+from kurt2rt.experiments.route.plan import basic_task_of
+from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.table import as_rich
+from kurt2rt.platform.text_table import print_whole
 
 ERRANDS = Path("results/errands")
 """Where what is made goes, unless said otherwise."""
@@ -41,7 +41,7 @@ def errands(
 ) -> None:
     """Lead robots about and send them to goals; what is done already is kept. Prints tables and draws each robot."""
     # Not at the top: drawing is an extra, and every command is loaded where --help is said.
-    from kurt2rt.experiments.errands.figures import draw_errands
+    from kurt2rt.experiments.navigation.figures import draw_errands
 
     results = Results(out)
     programme = plan(task, basic_task_of(task), seeds, stage, robot, results, basic_folder=basic, controls=controls)

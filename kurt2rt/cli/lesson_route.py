@@ -7,25 +7,25 @@ from pathlib import Path
 import anyio
 import typer
 
+from behaviors.metrics.route import RouteSettings
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.cli.json_output import print_json
-from kurt2rt.cli.printed import console_of, print_study, tables_of
 from kurt2rt.cli.progress import job_bars, one_bar
-from kurt2rt.experiments.courses.route import RouteSettings
-from kurt2rt.experiments.curriculum import Report, run_lesson
-from kurt2rt.experiments.fitting import require_course
-from kurt2rt.experiments.kept.results import Results
-from kurt2rt.experiments.route.programme import basic_file, basic_task_of, decisions_of, plan
-from kurt2rt.experiments.route.study import conduct, read_study, robot_time_s
+from kurt2rt.cli.tables import console_of, print_study, tables_of
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
+from kurt2rt.experiments.route.lesson import TaughtRoute, copy_knowledge, teach_route, with_route
+from kurt2rt.experiments.route.plan import basic_file, basic_task_of, decisions_of, plan
+from kurt2rt.experiments.route.summary import conduct, read_study, robot_time_s
 from kurt2rt.experiments.route.tables import robot_sheet, sheets
-from kurt2rt.experiments.route.teaching import TaughtRoute, copy_knowledge, teach_route, with_route
 from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT
-from kurt2rt.experiments.shown.judging import reasons_of_robots
-from kurt2rt.experiments.shown.sheet import as_rich
-from kurt2rt.knowledge.set_aside import set_aside
-from kurt2rt.tasks.settings import TaskSettings
-from kurt2rt.text_table import print_whole
+from kurt2rt.experiments.study.eligibility import reasons_of_robots
+from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.table import as_rich
+from kurt2rt.knowledge.files.archive_existing import set_aside
+from kurt2rt.platform.text_table import print_whole
 
 ROUTES = Path("results/route")
 """Where what is made goes, unless said otherwise."""

@@ -6,9 +6,9 @@ from rich.console import Console, Group
 from rich.live import Live
 from rich.text import Text
 
-from kurt2rt.channel.credentials import OF_THIS_MACHINE
+from kurt2rt.channel.security.pairing import OF_THIS_MACHINE
 from kurt2rt.cli.qr_code import qr_code
-from kurt2rt.page.served_pages import NO_PAGES, ServedPages
+from kurt2rt.teacher.page.served_pages import NO_PAGES, ServedPages
 
 PAIR_A_PHONE = "for a phone: kurt2rt pair phone, in another terminal"
 _WRONG = "yellow"

@@ -1,6 +1,6 @@
 """The line for a command that found no robot to talk to."""
 
-from kurt2rt.teaching.answer import NoAnswerError
+from kurt2rt.teacher.client.answer import NoAnswerError
 
 
 def no_robot(host: str, port: int, name: str) -> NoAnswerError:

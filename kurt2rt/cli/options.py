@@ -45,7 +45,7 @@ def _named(option: str, kind: str, told: str) -> Any:
 
 TASK_OF_THE_FILE = "Default: the task that the knowledge file was taught for."
 TaskOfTheFile = Annotated[str | None, task_option(TASK_OF_THE_FILE)]
-"""Goes to kurt2rt.knowledge.task_of_file."""
+"""Goes to kurt2rt.knowledge.files.task_of_file."""
 Plain = Annotated[
     bool,
     typer.Option(

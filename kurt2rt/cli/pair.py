@@ -9,13 +9,13 @@ import typer
 from rich.console import Console
 from rich.text import Text
 
-from kurt2rt.channel import credentials
-from kurt2rt.channel.credentials import OF_THIS_MACHINE, Pairing, paired
+from kurt2rt.channel.security import pairing
+from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, Pairing, paired
 from kurt2rt.cli.json_output import plain, print_json
-from kurt2rt.cli.printed import console_of
-from kurt2rt.page.hosts import own_address
-from kurt2rt.service_settings import load_service
-from kurt2rt.text_table import TextTable, print_whole
+from kurt2rt.cli.tables import console_of
+from kurt2rt.platform.text_table import TextTable, print_whole
+from kurt2rt.service.settings import load_service
+from kurt2rt.teacher.page.host_names import own_address
 
 _TIME = "%Y-%m-%d %H:%M"
 
@@ -84,17 +84,17 @@ def pair(
     if name is None:
         raise typer.BadParameter("whose device? Give it a name, such as anna-phone", param_hint="NAME")
     if revoke:
-        credentials.revoke(teachers, devices, name)
+        pairing.revoke(teachers, devices, name)
         _say(console, f"{name} is paired no longer")
         return
-    change = credentials.renew if renew else credentials.pair
-    pairing = change(teachers, devices, name, port=service.port)
-    address = page_address(pairing, host or own_address(), service.page_port)
+    change = pairing.renew if renew else pairing.pair
+    paired_now = change(teachers, devices, name, port=service.port)
+    address = page_address(paired_now, host or own_address(), service.page_port)
     _say(
         console,
         f"{name} is paired",
-        f"robot's side   {pairing.teacher}",
-        f"device's side  {pairing.device.folder}",
+        f"robot's side   {paired_now.teacher}",
+        f"device's side  {paired_now.device.folder}",
         "next           kurt2rt run --phone, unless it runs already; then scan the code that it shows",
         f"its page       {address}",
     )

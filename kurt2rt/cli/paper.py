@@ -9,8 +9,8 @@ from hal.robot_settings import load_robot
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.lesson import parse_seeds
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, results_option, seeds_option, task_option
-from kurt2rt.cli.printed import print_study
 from kurt2rt.cli.progress import one_bar
+from kurt2rt.cli.tables import print_study
 
 if TYPE_CHECKING:
     from kurt2rt.experiments.paper.outcome import Reading
@@ -57,16 +57,16 @@ def paper(
         kurt2rt paper --task circle --task eight
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from kurt2rt.experiments.kept.results import Results
     from kurt2rt.experiments.paper.extent import QUICK, WHOLE
+    from kurt2rt.experiments.paper.figure_files import draw_pictures
     from kurt2rt.experiments.paper.judging import reasons_not_to_judge
-    from kurt2rt.experiments.paper.pictures import draw_pictures
-    from kurt2rt.experiments.paper.programme import plan
+    from kurt2rt.experiments.paper.plan import plan
     from kurt2rt.experiments.paper.report import write_report
     from kurt2rt.experiments.paper.settings import load_paper
     from kurt2rt.experiments.paper.study import conduct, read_study
     from kurt2rt.experiments.paper.tables import sheets
-    from kurt2rt.simulated import Kurt2SimulationFactory
+    from kurt2rt.experiments.study.results import Results
+    from simbridge.simulation import Kurt2SimulationFactory
 
     typed_seeds = seeds or (_QUICK_SEEDS if quick else _SEEDS)
     robot = load_robot()

@@ -9,8 +9,8 @@ from hal.robot_settings import load_robot
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.lesson import parse_seeds
 from kurt2rt.cli.options import ALL_PROCESSORS, Changes, Jobs, changes_of, results_option, seeds_option, task_option
-from kurt2rt.cli.printed import print_study
 from kurt2rt.cli.progress import one_bar
+from kurt2rt.cli.tables import print_study
 
 _SEEDS, _QUICK_SEEDS = "100-119", "0-1"
 _FOLDER = Path("results/phases")
@@ -49,14 +49,14 @@ def phases(
         kurt2rt phases --task wall_following --seeds 100-119
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from kurt2rt.experiments.kept.results import Results
+    from kurt2rt.core.task_settings import load_task
     from kurt2rt.experiments.phases.figures import draw_pictures
-    from kurt2rt.experiments.phases.programme import plan
+    from kurt2rt.experiments.phases.plan import plan
     from kurt2rt.experiments.phases.report import reasons_not_to_judge, write_report
     from kurt2rt.experiments.phases.study import conduct, read_study
-    from kurt2rt.experiments.phases.tables import sheets
-    from kurt2rt.simulated import Kurt2SimulationFactory
-    from kurt2rt.tasks.settings import load_task
+    from kurt2rt.experiments.phases.table_rows import sheets
+    from kurt2rt.experiments.study.results import Results
+    from simbridge.simulation import Kurt2SimulationFactory
 
     typed_seeds = seeds or (_QUICK_SEEDS if quick else _SEEDS)
     robot, settings = load_robot(), load_task(task, changes=changes_of(changes))

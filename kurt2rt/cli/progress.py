@@ -14,8 +14,8 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from kurt2rt.experiments.curriculum import Report
-from kurt2rt.experiments.pool import Standing
+from kurt2rt.experiments.lockstep.curriculum import Report
+from kurt2rt.experiments.study.pool import Standing
 
 
 @contextmanager

@@ -5,9 +5,9 @@ from typing import Annotated
 
 import typer
 
-from kurt2rt.recording.run_folder import find_run, segments_in
-from kurt2rt.recording.whole_copy import NothingWholeError, copy_whole
-from kurt2rt.service_settings import load_service
+from kurt2rt.runs.recording.recover import NothingWholeError, copy_whole
+from kurt2rt.runs.recording.run_folder import find_run, segments_in
+from kurt2rt.service.settings import load_service
 
 
 def recover(

@@ -10,18 +10,18 @@ import typer
 from rich.console import Console
 
 from kurt2rt.cli.json_output import AsJson
-from kurt2rt.cli.printed import console_of
 from kurt2rt.cli.progress import job_bars
-from kurt2rt.recording.run_folder import find_run
-from kurt2rt.replay.counterfactual import Counterfactual, Stretch, counterfactual
-from kurt2rt.replay.reading import read_run
-from kurt2rt.replay.replay import ReplayedTick
-from kurt2rt.replay.run import Run
-from kurt2rt.replay.shadow import Answer, shadow_of
-from kurt2rt.replay.verdict import Verdict, verify
-from kurt2rt.rla.rla import BASIC
-from kurt2rt.service_settings import load_service
-from kurt2rt.text_table import TextTable, print_whole
+from kurt2rt.cli.tables import console_of
+from kurt2rt.core.rla.rla import BASIC
+from kurt2rt.platform.text_table import TextTable, print_whole
+from kurt2rt.runs.recording.run_folder import find_run
+from kurt2rt.runs.replay.counterfactual import Counterfactual, Stretch, counterfactual
+from kurt2rt.runs.replay.counterfactual_policy import Answer, shadow_of
+from kurt2rt.runs.replay.reader import read_run
+from kurt2rt.runs.replay.replay import ReplayedTick
+from kurt2rt.runs.replay.run import Run
+from kurt2rt.runs.replay.verify import Verdict, verify
+from kurt2rt.service.settings import load_service
 
 _TELL_EVERY_TICKS = 100
 _DIFFERENCES = 10

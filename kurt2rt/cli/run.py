@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from kurt2rt.bus_names import NO_WIRE, SIMULATED
 from kurt2rt.cli.interrupt import end_at_interrupt
 from kurt2rt.cli.options import WireName, task_option, world_option
+from kurt2rt.service.bus_names import NO_WIRE, SIMULATED
 
 if TYPE_CHECKING:
-    from kurt2rt.service_settings import ServiceSettings
+    from kurt2rt.service.settings import ServiceSettings
 
 
 def run(
@@ -166,16 +166,16 @@ def run(
         from rich.console import Console
 
         from hal.robot_settings import load_robot
-        from kurt2rt.cli.robot_program import Orders, RobotProgram
         from kurt2rt.cli.scripted_file import own_file, require_agreement
         from kurt2rt.cli.terminal_screen import TerminalScreen
-        from kurt2rt.layers.wanted import Wanted
-        from kurt2rt.outcome import CommandRefusedError
-        from kurt2rt.outcome_text import text_of
-        from kurt2rt.recording.live_view import parse_address
-        from kurt2rt.service_settings import load_service
-        from kurt2rt.tasks.settings import load_task
-        from kurt2rt.teaching.scripted_lesson import two_levels
+        from kurt2rt.core.decision.active_behaviour import Wanted
+        from kurt2rt.core.rla.outcome import CommandRefusedError
+        from kurt2rt.core.rla.outcome_text import text_of
+        from kurt2rt.core.task_settings import load_task
+        from kurt2rt.runs.recording.live_view import parse_address
+        from kurt2rt.service.program import Orders, RobotProgram
+        from kurt2rt.service.settings import load_service
+        from kurt2rt.teacher.scripted.channel_teacher import two_levels
 
     if seconds is not None and not math.isfinite(seconds):
         raise typer.BadParameter("a number of seconds has an end", param_hint="--seconds")
@@ -240,8 +240,8 @@ def run(
 
 def _task_of(knowledge: Path, given: str | None, usual: str) -> str | None:
     """Return --task: as given, or the task of the knowledge file where it is another than the `usual` one."""
-    from kurt2rt.knowledge.task_of_file import task_of_file
-    from kurt2rt.tasks.settings import load_task
+    from kurt2rt.core.task_settings import load_task
+    from kurt2rt.knowledge.files.task_of_file import task_of_file
 
     if given is None and task_of_file(knowledge) == load_task(usual).system_name:
         return None
@@ -256,7 +256,7 @@ def _changed(
     port: int | None,
     record: Path | None,
 ) -> "ServiceSettings":
-    from kurt2rt.tasks.settings import load_task
+    from kurt2rt.core.task_settings import load_task
 
     if task is not None:
         taught = load_task(task)

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import typer
 
+from kurt2rt.cli.knowledge.people import people_in
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.people import people_in
 
 _SUFFIX = ".auto"
 

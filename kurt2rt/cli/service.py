@@ -8,14 +8,14 @@ from rich.console import Console
 
 from hal.settings import find_config
 from kurt2rt.cli.json_output import AsJson, print_json
-from kurt2rt.service_settings import load_service
-from kurt2rt.systemd.access import Wanted, closed_to_others, to_hand_over
-from kurt2rt.systemd.examination import MOST_EXPOSURE, examine
-from kurt2rt.systemd.installation import program
-from kurt2rt.systemd.installing import install as install_unit
-from kurt2rt.systemd.installing import require_free
-from kurt2rt.systemd.installing import uninstall as uninstall_unit
-from kurt2rt.systemd.unit import STATE, Unit, UnitError, require_name, unit_of
+from kurt2rt.service.settings import load_service
+from kurt2rt.service.systemd.access import Wanted, closed_to_others, to_hand_over
+from kurt2rt.service.systemd.install import install as install_unit
+from kurt2rt.service.systemd.install import require_free
+from kurt2rt.service.systemd.install import uninstall as uninstall_unit
+from kurt2rt.service.systemd.installation import program
+from kurt2rt.service.systemd.unit import STATE, Unit, UnitError, require_name, unit_of
+from kurt2rt.service.systemd.verify import MOST_EXPOSURE, examine
 
 service = typer.Typer(
     help="Run the robot's program as a unit of systemd, which starts it with the machine and again whenever it fell.",

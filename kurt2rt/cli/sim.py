@@ -15,9 +15,9 @@ from hal.bus import open_bus
 from hal.robot_settings import load_robot
 from hal.settings import SettingsError
 from kurt2rt.cli.options import RobotName, world_option
-from kurt2rt.cli.printer import Printer
-from kurt2rt.signals import Hearing
-from kurt2rt.timing.short_turns import short_turns
+from kurt2rt.platform.signal_handlers import Hearing
+from kurt2rt.platform.switch_interval import short_turns
+from kurt2rt.service.console_thread import Printer
 
 _ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 _LOOK_S = 0.05
@@ -77,10 +77,10 @@ def sim(
             "nobody outside this program hears a virtual bus; give shared:NAME", param_hint="--bus"
         )
     # Here, because a robot carries no simulator: the packages it needs are an extra.
-    from kurt2rt.cli.sim_desk import Desk, News, StatusLine, TypedLines
-    from kurt2rt.simulated_ground import Kurt2World
+    from simbridge.sim_console import Desk, News, StatusLine, TypedLines
+    from simbridge.simulated_world import Kurt2World
     from simbridge.standalone import StandaloneRobot
-    from simbridge.world_loading import load_world
+    from simbridge.worlds.world_loading import load_world
 
     settings = load_robot(robot)
     ground_plan = load_world(world, settings)

@@ -13,16 +13,16 @@ from rich.console import Console
 from rich.progress import Progress, TimeElapsedColumn, TimeRemainingColumn
 
 from hal.robot_settings import load_robot
+from kurt2rt.checks.faults.table import load_faults
+from kurt2rt.checks.soak.settings import load_soak
 from kurt2rt.cli.json_output import AsJson
-from kurt2rt.cli.printed import console_of
-from kurt2rt.faults.table import load_faults
-from kurt2rt.memory import give_back_large_pieces
-from kurt2rt.recording.recording import Recording
-from kurt2rt.recording.run_files import budget_of
-from kurt2rt.service_settings import load_service
-from kurt2rt.signals import Hearing
-from kurt2rt.soak.settings import load_soak
-from kurt2rt.tasks.settings import load_task
+from kurt2rt.cli.tables import console_of
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.platform.malloc import give_back_large_pieces
+from kurt2rt.platform.signal_handlers import Hearing
+from kurt2rt.runs.recording.recording import Recording
+from kurt2rt.runs.recording.run_files import budget_of
+from kurt2rt.service.settings import load_service
 
 _KNOWLEDGE, _RUNS = "soak.knowledge", "runs"
 
@@ -73,11 +73,11 @@ def soak(
         kurt2rt soak --hours 24 --out var/soak
     """
     # Not at the top: simulator and plots are extras, and `kurt2rt run` on the robot does without them.
-    from kurt2rt.soak.day import Day
-    from kurt2rt.soak.picture import draw_soak
-    from kurt2rt.soak.report import as_json as soak_as_json
-    from kurt2rt.soak.report import print_report
-    from simbridge.faults.lasting_place import LongRunRig
+    from kurt2rt.checks.soak.picture import draw_soak
+    from kurt2rt.checks.soak.report import as_json as soak_as_json
+    from kurt2rt.checks.soak.report import print_report
+    from kurt2rt.checks.soak.soak_run import Day
+    from simbridge.faults.long_run_rig import LongRunRig
 
     give_back_large_pieces()  # as the robot's program does
     settings = load_soak(day)

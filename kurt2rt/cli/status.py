@@ -13,17 +13,17 @@ from rich.console import Console, Group
 from rich.live import Live
 from rich.text import Text
 
-from kurt2rt.channel.credentials import Device, read_device
+from kurt2rt.channel.protocol.health import HealthReport
+from kurt2rt.channel.protocol.health_codec import plain_of
+from kurt2rt.channel.protocol.health_text import URGENT, WARNS, headline, rows_of, trouble_in
+from kurt2rt.channel.security.pairing import Device, read_device
 from kurt2rt.cli.options import task_option
-from kurt2rt.health.plain import plain_of
-from kurt2rt.health.report import HealthReport
-from kurt2rt.health.status_socket import StatusError, reports_at, socket_of
-from kurt2rt.health.words import URGENT, WARNS, headline, rows_of, trouble_in
-from kurt2rt.service_settings import load_service
-from kurt2rt.tasks.settings import load_task
-from kurt2rt.teaching.answer import NoAnswerError
-from kurt2rt.teaching.client import TeacherClient
-from kurt2rt.text_table import TextTable, print_whole
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.platform.text_table import TextTable, print_whole
+from kurt2rt.service.health.status_socket import StatusError, reports_at, socket_of
+from kurt2rt.service.settings import load_service
+from kurt2rt.teacher.client.answer import NoAnswerError
+from kurt2rt.teacher.client.client import TeacherClient
 
 _PATIENCE_S = 5.0
 _STYLES = {WARNS: "yellow", URGENT: "bold red"}

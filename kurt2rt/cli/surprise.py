@@ -11,12 +11,12 @@ from hal.robot_settings import load_robot
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.lesson import parse_seeds
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, task_option
-from kurt2rt.cli.printed import console_of, tables_of
-from kurt2rt.experiments.pool import run_jobs
-from kurt2rt.experiments.shown.sheet import as_rich
-from kurt2rt.experiments.surprise.study import DIFFERENT_S, LEARNS_S, SurpriseJob, sheet_of
-from kurt2rt.tasks.settings import load_task
-from kurt2rt.text_table import print_whole
+from kurt2rt.cli.tables import console_of, tables_of
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.experiments.study.pool import run_jobs
+from kurt2rt.experiments.study.table import as_rich
+from kurt2rt.experiments.surprise.jobs import DIFFERENT_S, LEARNS_S, SurpriseJob, sheet_of
+from kurt2rt.platform.text_table import print_whole
 
 
 def surprise(
@@ -48,7 +48,7 @@ def surprise(
         kurt2rt surprise results/lesson
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from kurt2rt.simulated import Kurt2SimulationFactory
+    from simbridge.simulation import Kurt2SimulationFactory
 
     settings = load_robot(robot_settings)
     what = load_task(task)

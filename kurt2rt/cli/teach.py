@@ -11,25 +11,18 @@ import typer
 from rich.console import Console
 
 from hal.robot_settings import load_robot
-from kurt2rt.channel.credentials import (
-    LOCAL,
-    OF_THIS_MACHINE,
-    TERMINAL,
-    Device,
-    local_pairing,
-    read_device,
-)
-from kurt2rt.cli.end_of_teaching import end_of_teaching
+from kurt2rt.channel.security.pairing import LOCAL, OF_THIS_MACHINE, TERMINAL, Device, local_pairing, read_device
 from kurt2rt.cli.no_robot import no_robot
 from kurt2rt.cli.options import task_option
 from kurt2rt.cli.scripted_file import people_agree
-from kurt2rt.cli.terminal import TerminalTeacher
-from kurt2rt.rla.programs import AUTO, PROGRAMS
-from kurt2rt.service_settings import ServiceSettings, load_service
-from kurt2rt.tasks.settings import load_task
-from kurt2rt.teaching.answer import NoAnswerError
-from kurt2rt.teaching.client import TeacherClient
-from kurt2rt.teaching.scripted_lesson import teach_by_script
+from kurt2rt.cli.teach_shutdown import end_of_teaching
+from kurt2rt.core.rla.programs import AUTO, PROGRAMS
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.service.settings import ServiceSettings, load_service
+from kurt2rt.teacher.client.answer import NoAnswerError
+from kurt2rt.teacher.client.client import TeacherClient
+from kurt2rt.teacher.scripted.channel_teacher import teach_by_script
+from kurt2rt.teacher.terminal.terminal import TerminalTeacher
 
 _NEWEST_LESSONS = 20
 

@@ -6,19 +6,19 @@ from pathlib import Path
 import anyio
 from rich.console import Console
 
-from kurt2rt.channel.credentials import OF_THIS_MACHINE, Device, local_pairing
-from kurt2rt.cli.end_of_teaching import end_of_teaching, told_to_end
+from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, Device, local_pairing
 from kurt2rt.cli.live_screen import PAIR_A_PHONE
 from kurt2rt.cli.qr_code import qr_code
-from kurt2rt.page.access import Access
-from kurt2rt.page.device_server import Pairings, link_of, run_device_pages
-from kurt2rt.page.hosts import own_address, own_names
-from kurt2rt.page.public_address import PageError
-from kurt2rt.page.public_address import public_address as read_public_address
-from kurt2rt.page.served_pages import PageAddress, ServedPages, to_line
-from kurt2rt.page.server import listen, run_page
-from kurt2rt.service_settings import ServiceSettings
-from kurt2rt.teaching.client import TeacherClient
+from kurt2rt.cli.teach_shutdown import end_of_teaching, told_to_end
+from kurt2rt.service.settings import ServiceSettings
+from kurt2rt.teacher.client.client import TeacherClient
+from kurt2rt.teacher.page.access import Access
+from kurt2rt.teacher.page.device_server import Pairings, link_of, run_device_pages
+from kurt2rt.teacher.page.host_names import own_address, own_names
+from kurt2rt.teacher.page.public_address import PageError
+from kurt2rt.teacher.page.public_address import public_address as read_public_address
+from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages, to_line
+from kurt2rt.teacher.page.server import listen, run_page
 
 FURTHER_PORTS = 9
 """Number of ports above that of the settings to try if another page has it."""
@@ -39,7 +39,7 @@ def serve_page(
 ) -> None:
     """Serve the page of a device until it is told to end; `host` and `port` are the robot's.
 
-    `further`: as `kurt2rt.page.server.listen` has it.
+    `further`: as `kurt2rt.teacher.page.server.listen` has it.
     `public_address` is where a TLS proxy serves it, such as https://robot.example.
     `as_json`: tell the address in a line of JSON, for `kurt2rt run`. Raises PageError.
     """
@@ -84,8 +84,8 @@ def serve_pages(
 ) -> None:
     """Serve this machine and, while a device is paired, the network, until told to end. Raises PageError.
 
-    `port` is the robot's, on this machine; `further` as `kurt2rt.page.server.listen` has it. `as_json`: tell what is
-    served in lines of JSON, for `kurt2rt run`.
+    `port` is the robot's, on this machine; `further` as `kurt2rt.teacher.page.server.listen` has it.
+    `as_json`: tell what is served in lines of JSON, for `kurt2rt run`.
     """
     pairings = Pairings(Path(service.teachers), Path(service.devices))
     local_pairing(pairings.teachers, pairings.devices, port=service.port)

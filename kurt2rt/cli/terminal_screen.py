@@ -9,16 +9,16 @@ from rich.console import Console
 from hal.health import Health
 from kurt2rt.cli.browser import has_desktop, open_link
 from kurt2rt.cli.live_screen import LiveScreen
-from kurt2rt.cli.status_line import alarms, doing, guarded, numbers, status_line, timed_doing, troubles
-from kurt2rt.page.served_pages import NO_PAGES, PageAddress, ServedPages, of_line
-from kurt2rt.rounds import Status
+from kurt2rt.service.post_tick import Status
+from kurt2rt.service.status_line import alarms, doing, guarded, numbers, status_line, timed_doing, troubles
+from kurt2rt.teacher.page.served_pages import NO_PAGES, PageAddress, ServedPages, of_line
 
 _LEVELS = {"red": "<3>", "yellow": "<5>"}
 """Levels of systemd's journal, by the style of a line."""
 
 
 class TerminalScreen:
-    """Screen of the robot program (kurt2rt.cli.robot_program.ProgramScreen)."""
+    """Screen of the robot program (kurt2rt.service.program.ProgramScreen)."""
 
     def __init__(
         self, console: Console, devices: Path, *, as_service: bool = False, phones: bool = False, browser: bool = False

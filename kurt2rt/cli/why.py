@@ -11,25 +11,25 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from hal.robot_settings import RobotSettings, load_robot
 from hal.settings import SettingsError
-from kurt2rt.channel.credentials import OF_THIS_MACHINE, ONLOOKER, Device, local_pairing, read_device
+from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, ONLOOKER, Device, local_pairing, read_device
 from kurt2rt.cli.json_output import AsJson, print_json
-from kurt2rt.cli.printed import console_of
+from kurt2rt.cli.tables import console_of
 from kurt2rt.cli.why_live import ask_why
-from kurt2rt.explain.facts import DecisionFacts
-from kurt2rt.explain.from_run import Explained, explain_run
-from kurt2rt.explain.render import render_timeline, render_why
-from kurt2rt.explain.timeline import timeline_of
-from kurt2rt.explain.tipping import Tip
-from kurt2rt.perception.sensor_words import words_for
-from kurt2rt.recording.entries import TickEntry
-from kurt2rt.recording.run_folder import find_run
-from kurt2rt.replay.reading import read_run
-from kurt2rt.replay.run import Run
-from kurt2rt.service_settings import ServiceSettings, load_service
-from kurt2rt.text_table import print_whole
+from kurt2rt.core.perception.sensor_words import words_for
+from kurt2rt.platform.text_table import print_whole
+from kurt2rt.runs.explain.counterfactual import Tip
+from kurt2rt.runs.explain.facts import DecisionFacts
+from kurt2rt.runs.explain.from_run import Explained, explain_run
+from kurt2rt.runs.explain.terminal import render_timeline, render_why
+from kurt2rt.runs.explain.timeline import timeline_of
+from kurt2rt.runs.recording.entries import TickEntry
+from kurt2rt.runs.recording.run_folder import find_run
+from kurt2rt.runs.replay.reader import read_run
+from kurt2rt.runs.replay.run import Run
+from kurt2rt.service.settings import ServiceSettings, load_service
 
 _FORMATS = (".png", ".svg", ".pdf")
-"""As kurt2rt.explain.saving has them, which draws in matplotlib, an extra."""
+"""As kurt2rt.runs.explain.save_figure has them, which draws in matplotlib, an extra."""
 _STRETCHES = 40
 _REPORT_EVERY = 1000
 _DONE = TextColumn("{task.completed:.0f} s of the run")
@@ -145,7 +145,7 @@ def _show_timeline(
         print_whole(console, render_timeline(timeline, _of(run), limit))
     if picture is not None:
         # Not at the top: matplotlib is an extra, and a robot does without it.
-        from kurt2rt.explain.timeline_picture import draw_timeline
+        from kurt2rt.runs.explain.timeline_picture import draw_timeline
 
         draw_timeline(timeline, _of(run), picture)
         _say_where(picture, as_json=as_json)
@@ -224,7 +224,7 @@ def _draw(
     facts: DecisionFacts, found: tuple[Tip, ...], robot: RobotSettings, where: str, picture: Path, *, as_json: bool
 ) -> None:
     # Not at the top: matplotlib is an extra, and a robot does without it.
-    from kurt2rt.explain.picture import draw_why
+    from kurt2rt.runs.explain.picture import draw_why
 
     draw_why(facts, found, robot, where, picture)
     _say_where(picture, as_json=as_json)

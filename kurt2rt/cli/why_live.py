@@ -6,14 +6,14 @@ import anyio
 
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
-from kurt2rt.channel.credentials import Device
+from kurt2rt.channel.security.pairing import Device
 from kurt2rt.cli.no_robot import no_robot
-from kurt2rt.explain.facts import DecisionFacts
-from kurt2rt.explain.tipping import Tip, tips
-from kurt2rt.perception.definition import load_situation
-from kurt2rt.tasks.settings import load_task
-from kurt2rt.teaching.answer import NoAnswerError
-from kurt2rt.teaching.client import ANSWER_WITHIN_S, TeacherClient
+from kurt2rt.core.perception.definition import load_situation
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.runs.explain.counterfactual import Tip, tips
+from kurt2rt.runs.explain.facts import DecisionFacts
+from kurt2rt.teacher.client.answer import NoAnswerError
+from kurt2rt.teacher.client.client import ANSWER_WITHIN_S, TeacherClient
 
 _FIRST_TICK_S = 0.1
 

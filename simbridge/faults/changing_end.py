@@ -8,7 +8,7 @@ import can
 from hal.bus import CONTROL_ID
 from hal.can_interface import CanInterface
 from hal.frame import Frame
-from simbridge.faults.way import FrameLink
+from simbridge.faults.frame_link import FrameLink
 
 
 class NumberedFrame(Frame):

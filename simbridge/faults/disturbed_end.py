@@ -8,7 +8,7 @@ import can
 
 from hal.can_interface import CanInterface
 from simbridge.faults.event_time import EventScheduler
-from simbridge.faults.way import FrameLink
+from simbridge.faults.frame_link import FrameLink
 
 
 class FaultyInterface:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from hal.robot_settings import RobotSettings
 from simbridge.faults.disturbance import TimedFault
 from simbridge.faults.event_time import EventScheduler
-from simbridge.wheels import Wheels
+from simbridge.robot.wheels import Wheels
 
 _FASTEST_M_S = 0.9
 _TARGET_CYCLES = 40

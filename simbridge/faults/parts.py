@@ -11,8 +11,8 @@ from hal.codec import Codec
 from hal.frame import Frame
 from simbridge.faults.disturbance import TimedFault
 from simbridge.faults.event_time import EventScheduler
-from simbridge.faults.way import FaultyLink, FrameLink
-from simbridge.faults.way_out import FaultyTxLink
+from simbridge.faults.frame_link import FaultyLink, FrameLink
+from simbridge.faults.tx_link import FaultyTxLink
 
 Part = Literal["sensor_board_1", "sensor_board_2", "encoders", "left_motor", "right_motor", "bus_in", "bus_out"]
 """Part on the robot's side of the driver."""

@@ -4,7 +4,7 @@ import math
 
 import can
 
-from simbridge.noise import Noise
+from simbridge.robot.noise import Noise
 from simbridge.wire.settings import LossSettings, NoiseSettings
 
 _NS_PER_S = 1_000_000_000

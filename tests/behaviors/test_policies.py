@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from behaviors.repertoire import load_repertoire
 from config import CONFIG_DIR
-from kurt2rt.tasks.settings import load_task
+from kurt2rt.core.task_settings import load_task
 from tests.behaviors.helpers import ROBOT, SENSORS, counts
 from tests.examples import examples
 

@@ -8,13 +8,9 @@ from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, SensorReadings
 from hal.robot_settings import load_robot
 from hal.simulation import SimulatedWorld
-from kurt2rt.channel.channel import Channel, describe
-from kurt2rt.channel.endpoint import Endpoint
-from kurt2rt.channel.exam_standing import NO_EXAM
-from kurt2rt.channel.off_tick_requests import Copies
-from kurt2rt.channel.reception import LONGEST_WAIT_S, Reception, Sender
-from kurt2rt.channel.reply import Reply
-from kurt2rt.channel.requests import (
+from kurt2rt.channel.protocol.exam_status import NO_EXAM
+from kurt2rt.channel.protocol.health import HealthReport
+from kurt2rt.channel.protocol.requests import (
     AnswerRequest,
     CommandRequest,
     DriveRequest,
@@ -23,24 +19,28 @@ from kurt2rt.channel.requests import (
     StreamRequest,
     WatchRequest,
 )
-from kurt2rt.channel.requests.limits import FASTEST
-from kurt2rt.channel.simulation import TeacherNow
-from kurt2rt.channel.simulation_view import SimulationView, TaskName
-from kurt2rt.channel.site import Keys, RobotSite
-from kurt2rt.channel.telling import Safekeeping, Telling
-from kurt2rt.explain.live import Explaining
-from kurt2rt.file_part import FilePart
-from kurt2rt.health.report import HealthReport
+from kurt2rt.channel.protocol.requests.limits import FASTEST
+from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
+from kurt2rt.channel.server.channel import Channel, describe
+from kurt2rt.channel.server.endpoint import Endpoint
+from kurt2rt.channel.server.off_tick_requests import Copies
+from kurt2rt.channel.server.reply import Reply
+from kurt2rt.channel.server.request_handler import LONGEST_WAIT_S, Reception, Sender
+from kurt2rt.channel.server.resources import Keys, RobotSite
+from kurt2rt.channel.server.simulation import TeacherNow
+from kurt2rt.channel.server.state_builder import Safekeeping, Telling
+from kurt2rt.core.rla.outcome import Outcome, outcome_in
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.tick import InMemoryEventStore, LessonKeeper, TickRecord
+from kurt2rt.knowledge.files.atomic_write import SavedCopy
+from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.saved_copy import SavedCopy
-from kurt2rt.knowledge.writer import Acknowledgement
-from kurt2rt.outcome import Outcome, outcome_in
+from kurt2rt.platform.clock import LockstepClock
+from kurt2rt.platform.file_part import FilePart
+from kurt2rt.platform.simulated_clock import HeldWorld, SimulatedClock
+from kurt2rt.runs.explain.live import Explaining
 from kurt2rt.runtime import Runtime, build_runtime
-from kurt2rt.tasks.settings import load_task
-from kurt2rt.tick import InMemoryEventStore, LessonKeeper, TickRecord
-from kurt2rt.timing.clock import LockstepClock
-from kurt2rt.timing.simulated_clock import HeldWorld, SimulatedClock
-from tests.test_tick import CorridorRobot
+from tests.core.test_tick import CorridorRobot
 
 ROBOT = load_robot()
 TASK = load_task("wall_following")
@@ -66,7 +66,7 @@ class WideRobot(CorridorRobot):
 
 
 class Shelf:
-    """Copies of the knowledge that are made when the test says so (kurt2rt.channel.off_tick_requests.Copies)."""
+    """Copies of the knowledge that are made when the test says so (kurt2rt.channel.server.off_tick_requests.Copies)."""
 
     def __init__(self) -> None:
         self.labels: list[str | None] = []
@@ -110,7 +110,7 @@ class Shelf:
 
 
 class Runs:
-    """Runs of a simulated robot that are only noted (kurt2rt.channel.simulation.RunControl)."""
+    """Runs of a simulated robot that are only noted (kurt2rt.channel.server.simulation.RunControl)."""
 
     def __init__(self) -> None:
         self.prepared: list[tuple[object, ...]] = []

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import anyio
 
-from kurt2rt.teaching import TeacherClient
+from kurt2rt.teacher import TeacherClient
 
 
 async def drive(folder: Path, port: int) -> None:

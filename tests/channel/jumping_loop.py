@@ -14,8 +14,8 @@ from typing import Any, Self, TypeVar, cast
 
 import pytest
 
-from kurt2rt.channel.endpoint import open_endpoint
-from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter
+from kurt2rt.channel.server.endpoint import open_endpoint
+from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
 
 _Told = TypeVar("_Told")
 _DISK_S = 30.0
@@ -62,7 +62,7 @@ class JumpingLoop(asyncio.SelectorEventLoop):
 
 
 class LoopClock:
-    """The runtime's clock on the time of the running loop (kurt2rt.timing.clock.Clock)."""
+    """The runtime's clock on the time of the running loop (kurt2rt.platform.clock.Clock)."""
 
     def __enter__(self) -> Self:
         self._loop = asyncio.get_running_loop()
@@ -96,10 +96,10 @@ async def _in_place(work: Callable[..., _Told], *args: Any, **_: Any) -> _Told:
 @contextmanager
 def _no_other_time() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("kurt2rt.service.TimerfdClock", LoopClock)
-        patch.setattr("kurt2rt.service.JournalWriter", _PromptWriter)
+        patch.setattr("kurt2rt.service.serve.TimerfdClock", LoopClock)
+        patch.setattr("kurt2rt.service.serve.JournalWriter", _PromptWriter)
         now = lambda: asyncio.get_running_loop().time()  # noqa: E731
-        patch.setattr("kurt2rt.channel.channel.open_endpoint", functools.partial(open_endpoint, now=now))
+        patch.setattr("kurt2rt.channel.server.channel.open_endpoint", functools.partial(open_endpoint, now=now))
         patch.setattr("anyio.to_thread.run_sync", _in_place)
         yield
 

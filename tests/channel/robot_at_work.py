@@ -11,17 +11,17 @@ import anyio
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings, WheelSpeeds
 from hal.robot_settings import load_robot
-from kurt2rt.channel.channel import Channel
-from kurt2rt.channel.credentials import LOCAL, Pairing, local_pairing
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.rla.programs import AUTO
-from kurt2rt.rla.rla import TeachingEvent
-from kurt2rt.rounds import Screen
+from kurt2rt.channel.security.pairing import LOCAL, Pairing, local_pairing
+from kurt2rt.channel.server.channel import Channel
+from kurt2rt.core.rla.programs import AUTO
+from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.runtime import Runtime
-from kurt2rt.service import Openness, serve
-from kurt2rt.service_settings import ServiceSettings, load_service
-from kurt2rt.tasks.settings import load_task
-from kurt2rt.tick import TickRecord
+from kurt2rt.service.post_tick import Screen
+from kurt2rt.service.serve import Openness, serve
+from kurt2rt.service.settings import ServiceSettings, load_service
 
 SETTINGS = load_robot()
 PERIOD_S = SETTINGS.can.cycle_s

@@ -14,11 +14,11 @@ import anyio
 import pytest
 
 from hal.robot import Robot
-from kurt2rt.channel.channel import Channel
-from kurt2rt.rounds import Screen, Status
-from kurt2rt.service import Openness, serve
-from kurt2rt.tasks.settings import load_task
-from kurt2rt.timing.quiet_gc import sweep
+from kurt2rt.channel.server.channel import Channel
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.platform.gc_control import sweep
+from kurt2rt.service.post_tick import Screen, Status
+from kurt2rt.service.serve import Openness, serve
 from tests.channel.robot_at_work import SETTINGS, CheapRobot, service_settings
 
 
@@ -75,5 +75,5 @@ async def work(folder: Path, sweeper: _Sweeper) -> None:
 if __name__ == "__main__":
     with pytest.MonkeyPatch.context() as patch:
         sweeper = _Sweeper(sweep if sys.argv[2] == "sweep" else lambda: None)
-        patch.setattr("kurt2rt.rounds.sweep", sweeper)
+        patch.setattr("kurt2rt.service.post_tick.sweep", sweeper)
         anyio.run(work, Path(sys.argv[1]), sweeper)

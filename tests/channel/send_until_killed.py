@@ -7,7 +7,7 @@ import os
 import sys
 from pathlib import Path
 
-from kurt2rt.channel.oscore_context import OscoreContext
+from kurt2rt.channel.security.oscore_context import OscoreContext
 
 
 def send(folder: Path, chunk: int) -> None:

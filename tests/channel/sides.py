@@ -7,7 +7,7 @@ import aiocoap
 from aiocoap import oscore
 from aiocoap.message import Direction
 
-from kurt2rt.channel.oscore_context import OscoreContext
+from kurt2rt.channel.security.oscore_context import OscoreContext
 
 
 def carried(message: Any) -> Any:

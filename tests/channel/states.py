@@ -4,8 +4,8 @@ from dataclasses import replace
 from typing import Any
 
 from hal.simulation import SimulatedPlace
-from kurt2rt.channel.state import MidState, State, SurpriseState
-from kurt2rt.teaching.question import FeatureDifference
+from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
+from kurt2rt.core.teaching.question import FeatureDifference
 
 ASKING = State(
     boot=b"boot",

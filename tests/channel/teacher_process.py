@@ -14,8 +14,8 @@ from pathlib import Path
 
 import anyio
 
-from kurt2rt.teaching import TeacherClient
-from kurt2rt.teaching.answer import NoAnswerError
+from kurt2rt.teacher import TeacherClient
+from kurt2rt.teacher.client.answer import NoAnswerError
 
 _EVERY_S = 0.05
 _REWARD_EACH = 20

@@ -11,8 +11,8 @@ import pytest
 
 from tests.channel.jumping_loop import run_jumping
 from tests.channel.mischief import Mischief
+from tests.channel.protocol.test_fuzz import _AllMayPass
 from tests.channel.robot_at_work import RobotAtWork, robot_at_work
-from tests.channel.test_fuzz import _AllMayPass
 
 _AT_MOST = 3
 _RETRIES_S = 4.0

@@ -8,7 +8,7 @@ import pytest
 import yaml
 
 from config import CONFIG_DIR
-from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.journal.journal import Journal
 from tests.cli.helpers import CommandLine
 
 NOT_OURS = "to whom it may concern\n"

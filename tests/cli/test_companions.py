@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.cli.companions import Companions
+from kurt2rt.service.child_processes import Companions
 
 LONGEST_S = 60.0
 LOOK_S = 0.01

@@ -165,7 +165,7 @@ HEAVY = (
     "starlette",
 )
 """What they import in turn takes most of the time."""
-OUR_PACKAGES = ("hal.settings", "hal.bus", "behaviors", "simbridge", "kurt2rt.runtime", "kurt2rt.service_settings")
+OUR_PACKAGES = ("hal.settings", "hal.bus", "behaviors", "simbridge", "kurt2rt.runtime", "kurt2rt.service.settings")
 
 
 @pytest.mark.parametrize("words", [["--help"], ["run", "--help"]], ids=" ".join)

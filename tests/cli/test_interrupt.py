@@ -33,7 +33,7 @@ main()
     [
         ("typer", ["--help"]),
         ("kurt2rt.cli.run", ["run"]),
-        ("kurt2rt.cli.robot_program", ["run"]),
+        ("kurt2rt.service.program", ["run"]),
         ("kurt2rt.cli.teach", ["teach"]),
     ],
 )

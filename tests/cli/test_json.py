@@ -9,7 +9,7 @@ import pytest
 from kurt2rt.cli.json_output import plain
 from tests.cli.helpers import CommandLine
 from tests.cli.test_help import commands
-from tests.replay.stored_runs import STORED
+from tests.runs.replay.stored_runs import STORED
 
 WALLS = str(STORED / "walls.mcap")
 SHORT = ("--set", "teaching.supervised_s=2", "--set", "teaching.corrections_s=1", "--set", "exam.duration_s=1")

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.knowledge.entry import JournalEntry
-from kurt2rt.knowledge.fold import fold_journal
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.writer import utc_now
-from kurt2rt.rla.credit import Credit
-from kurt2rt.rla.rla import CRITIC, ActionReplaced, ActionWithdrawn, Origin, Phase, RlaRewarded, SessionBegun
-from kurt2rt.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.credit import Credit
+from kurt2rt.core.rla.rla import CRITIC, ActionReplaced, ActionWithdrawn, Origin, Phase, RlaRewarded, SessionBegun
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.knowledge.journal.entry import JournalEntry
+from kurt2rt.knowledge.journal.fold import fold_journal
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.writer import utc_now
 from tests.cli.helpers import CommandLine
 
 

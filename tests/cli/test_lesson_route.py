@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.tasks.settings import load_task
+from kurt2rt.core.task_settings import load_task
 from tests.cli.helpers import CommandLine
 from tests.experiments.helpers import teach
-from tests.experiments.route.test_study import short
+from tests.experiments.route.test_summary import short
 
 SHORT = ("--set", "teaching.corrections_s=3", "--set", "exam.duration_s=2", "--set", "course.starts=1")
 

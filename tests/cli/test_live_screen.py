@@ -12,13 +12,13 @@ import pytest
 from rich.console import Console
 from websockets.sync.client import connect
 
-from kurt2rt.channel.credentials import pair
+from kurt2rt.channel.security.pairing import pair
 from kurt2rt.cli.browser import has_desktop, open_link
 from kurt2rt.cli.live_screen import LiveScreen
-from kurt2rt.page.served_pages import PageAddress, ServedPages
+from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages
 from tests.cli.helpers import running
 from tests.cli.pseudo_terminal import ProgramInTerminal, Terminal
-from tests.page.test_teach_command import cookie_of
+from tests.teacher.page.test_teach_command import cookie_of
 
 LOCAL = PageAddress("local", "http://127.0.0.1:8642/pair?token=" + 32 * "a")
 PHONE = PageAddress("phone", "http://192.168.100.100:8642/pair?token=" + 32 * "b")

@@ -8,28 +8,29 @@ import pytest
 from rich.cells import cell_len
 from rich.console import Console, RenderableType
 
-from kurt2rt.bench.report import print_report as print_bench
+from kurt2rt.checks.bench.report import print_report as print_bench
+from kurt2rt.checks.commission.checklist import STEPS
+from kurt2rt.checks.commission.progress import Progress
+from kurt2rt.checks.commission.report import print_report as print_commissioning
+from kurt2rt.checks.doctor.check_result import Finding, FindingCode, Status
+from kurt2rt.checks.doctor.report import print_report as print_doctor
+from kurt2rt.checks.soak.report import print_report as print_soak
 from kurt2rt.cli.status import as_rich as health_as_rich
-from kurt2rt.commission.checklist import STEPS
-from kurt2rt.commission.progress import Progress
-from kurt2rt.commission.report import print_report as print_commissioning
-from kurt2rt.doctor.finding import Finding, FindingCode, Status
-from kurt2rt.doctor.report import print_report as print_doctor
-from kurt2rt.experiments.errands.tables import sheets as errand_sheets
+from kurt2rt.experiments.lockstep.report import render_curriculum, render_seeds
+from kurt2rt.experiments.navigation.tables import sheets as errand_sheets
 from kurt2rt.experiments.paper.tables import asked_sheet, drive_sheet, exam_sheet, knowledge_sheet
-from kurt2rt.experiments.phases.tables import sheets as phases_sheets
-from kurt2rt.experiments.report import render_curriculum, render_seeds
+from kurt2rt.experiments.phases.table_rows import sheets as phases_sheets
 from kurt2rt.experiments.route.tables import sheets as route_sheets
-from kurt2rt.experiments.shown.sheet import as_rich
-from kurt2rt.experiments.surprise.study import sheet_of
-from kurt2rt.soak.report import print_report as print_soak
-from kurt2rt.text_table import print_whole
-from tests.bench.test_report import MACHINE, RESULTS
+from kurt2rt.experiments.study.table import as_rich
+from kurt2rt.experiments.surprise.jobs import sheet_of
+from kurt2rt.platform.text_table import print_whole
+from tests.checks.bench.test_report import MACHINE, RESULTS
+from tests.checks.soak.test_checks import RESULT as SOAKED
 from tests.cli.helpers import CommandLine
-from tests.experiments.errands.test_goals import settings
-from tests.experiments.errands.test_tables import GOOD
-from tests.experiments.errands.test_tables import robot as errands_robot
 from tests.experiments.helpers import short_task
+from tests.experiments.navigation.test_goals import settings
+from tests.experiments.navigation.test_tables import GOOD
+from tests.experiments.navigation.test_tables import robot as errands_robot
 from tests.experiments.paper import outcomes as paper
 from tests.experiments.phases.outcomes import study as phases_study
 from tests.experiments.results import curriculum_result, exam_result
@@ -37,9 +38,8 @@ from tests.experiments.route.outcomes import drive as route_drive
 from tests.experiments.route.outcomes import outcome as route_outcome
 from tests.experiments.route.test_tables import study as route_study
 from tests.experiments.surprise.test_surprise import QUIET
-from tests.health.reports import ILL
-from tests.replay.stored_runs import STORED
-from tests.soak.test_checks import RESULT as SOAKED
+from tests.runs.replay.stored_runs import STORED
+from tests.service.health.reports import ILL
 
 WALLS = str(STORED / "walls.mcap")
 DRIVES = [paper.robot(seed, 92, paper.drive("rooms-9007"), paper.drive("manhattan")) for seed in (100, 101)]

@@ -10,19 +10,19 @@ import pytest
 
 from hal.robot import STANDSTILL
 from hal.robot_settings import load_robot
-from kurt2rt.channel.simulation import TeacherNow
-from kurt2rt.channel.state import State
-from kurt2rt.cli.simulated_runs import SimulatedRun, SimulatedRuns
-from kurt2rt.exchange.given import export_knowledge
-from kurt2rt.knowledge.entry import JournalEntry
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.opening import open_knowledge
-from kurt2rt.rla.rla import Phase
-from kurt2rt.simulated import Kurt2SimulationFactory
-from kurt2rt.tasks.settings import load_task
-from kurt2rt.teaching import TeacherClient
-from kurt2rt.teaching.active_stop import NEXT_RUN
-from kurt2rt.teaching.commands import BeginSession, SetPhase, Take
+from kurt2rt.channel.protocol.state import State
+from kurt2rt.channel.server.simulation import TeacherNow
+from kurt2rt.core.decision.active_stop import NEXT_RUN
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.teaching.commands import BeginSession, SetPhase, Take
+from kurt2rt.knowledge.exchange.package import export_knowledge
+from kurt2rt.knowledge.journal.entry import JournalEntry
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.loading import open_knowledge
+from kurt2rt.service.simulated_runs import SimulatedRun, SimulatedRuns
+from kurt2rt.teacher import TeacherClient
+from simbridge.simulation import Kurt2SimulationFactory
 from tests.channel.desk import Desk
 from tests.cli.helpers import Running, running
 from tests.knowledge.lessons import created

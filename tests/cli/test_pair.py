@@ -6,10 +6,10 @@ import segno
 import yaml
 
 from config import CONFIG_DIR
-from kurt2rt.channel.credentials import Device, local_pairing, read_device
-from kurt2rt.channel.teachers import Teachers
+from kurt2rt.channel.security.paired_devices import Teachers
+from kurt2rt.channel.security.pairing import Device, local_pairing, read_device
 from kurt2rt.cli.pair import page_address
-from kurt2rt.page.hosts import own_address
+from kurt2rt.teacher.page.host_names import own_address
 from tests.cli.helpers import CommandLine
 
 TEACHERS, DEVICES = Path("var/teachers"), Path("var/devices")

@@ -5,7 +5,7 @@ from pathlib import Path
 from mcap.reader import make_reader
 
 from tests.cli.helpers import CommandLine
-from tests.replay.stored_runs import STORED
+from tests.runs.replay.stored_runs import STORED
 
 
 def test_a_torn_run_is_copied_and_the_copy_has_its_index(kurt2rt: CommandLine, tmp_path: Path) -> None:

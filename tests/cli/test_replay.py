@@ -5,14 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.knowledge.entry import JournalEntry
-from kurt2rt.knowledge.opening import open_knowledge
-from kurt2rt.outcome import Outcome, ResultCode
-from kurt2rt.replay.reading import read_run
-from kurt2rt.teaching.taught import Taught
+from kurt2rt.core.rla.outcome import Outcome, ResultCode
+from kurt2rt.core.teaching.taught import Taught
+from kurt2rt.knowledge.journal.entry import JournalEntry
+from kurt2rt.knowledge.journal.loading import open_knowledge
+from kurt2rt.runs.replay.reader import read_run
 from tests.cli.helpers import CommandLine
-from tests.replay.stored_runs import STORED
-from tests.replay.stories import slim
+from tests.runs.replay.stored_runs import STORED
+from tests.runs.replay.stories import slim
 
 WALLS = STORED / "walls.mcap"
 
@@ -60,7 +60,7 @@ def test_settings_of_today_change_nothing(
 def test_what_comes_out_otherwise_is_named_and_ends_with_one(
     kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, short: Path
 ) -> None:
-    monkeypatch.setattr("kurt2rt.teaching.tuition.Tuition.event_of", _teaches_nothing)
+    monkeypatch.setattr("kurt2rt.core.teaching.lesson_builder.Tuition.event_of", _teaches_nothing)
     said = kurt2rt("replay", short)
     assert said.exit_code == 1
     assert "not the same: " in said.out

@@ -12,10 +12,10 @@ import pytest
 
 from hal.bus import CONTROL_ID
 from hal.codec import load_codec
-from kurt2rt.knowledge.fold import check_knowledge
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.journal_file import log_of
-from kurt2rt.rla.rla import RlaCreated
+from kurt2rt.core.rla.rla import RlaCreated
+from kurt2rt.knowledge.journal.fold import check_knowledge
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.journal_file import log_of
 from tests.cli.helpers import CommandLine, Running, running
 from tests.cli.three_programs import brakes
 

@@ -11,7 +11,7 @@ import yaml
 
 from config import CONFIG_DIR
 from tests.cli.helpers import CommandLine, Running, running
-from tests.systemd.manager import Manager, manager
+from tests.service.systemd.manager import Manager, manager
 
 
 @pytest.fixture

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.recording.entries import TickEntry
-from kurt2rt.recording.entry_code import decode_tick
-from kurt2rt.recording.run_folder import runs_in, segments_in
-from kurt2rt.recording.segment_reader import SegmentReader
-from kurt2rt.recording.topics import GROUND, SCENE, TICK, TRUTH
-from kurt2rt.replay.reading import read_run
+from kurt2rt.runs.recording.entries import TickEntry
+from kurt2rt.runs.recording.run_folder import runs_in, segments_in
+from kurt2rt.runs.recording.segment_reader import SegmentReader
+from kurt2rt.runs.recording.tick_json import decode_tick
+from kurt2rt.runs.recording.topics import GROUND, SCENE, TICK, TRUTH
+from kurt2rt.runs.replay.reader import read_run
 from tests.cli.helpers import CommandLine, running
 
 WORDS = ("run", "--seconds", "0.5", "--teacher", "none", "--knowledge", "mine.knowledge")

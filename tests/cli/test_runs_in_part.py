@@ -3,10 +3,10 @@
 from pathlib import Path
 
 from hal.robot_settings import load_robot
-from kurt2rt.knowledge.opening import open_knowledge
-from kurt2rt.tasks.settings import load_task
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.knowledge.journal.loading import open_knowledge
 from tests.cli.helpers import CommandLine
-from tests.recording.desk_recording import NAME, empty_run, late_run
+from tests.runs.recording.desk_recording import NAME, empty_run, late_run
 
 
 def test_why_tells_what_a_robot_did_that_was_never_switched_off_and_says_since_when(

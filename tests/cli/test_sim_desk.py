@@ -9,10 +9,10 @@ import pytest
 
 from hal.bus import CanBus, open_bus
 from hal.control import Mode, SpeedControl, SystemControl, control_frame
-from kurt2rt.cli.sim_desk import HELP, Desk, News, StatusLine, TypedLines
-from kurt2rt.simulated_ground import Kurt2World
+from simbridge.sim_console import HELP, Desk, News, StatusLine, TypedLines
+from simbridge.simulated_world import Kurt2World
 from simbridge.standalone import StandaloneRobot
-from simbridge.world_loading import load_world
+from simbridge.worlds.world_loading import load_world
 from tests.simbridge.rig import ROBOT
 
 WORLD = load_world("a")

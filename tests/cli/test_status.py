@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.health.plain import report_of
+from kurt2rt.channel.protocol.health_codec import report_of
 from tests.cli.helpers import CommandLine, running
 
 

@@ -7,10 +7,10 @@ import pytest
 from hal.bus_state import ControllerState
 from hal.guard_reason import GuardReason
 from hal.health import Health
-from kurt2rt.cli.status_line import status_line
-from kurt2rt.rounds import Status
-from kurt2rt.teaching.active_stop import STARTED
-from kurt2rt.teaching.commands import Teach
+from kurt2rt.core.decision.active_stop import STARTED
+from kurt2rt.core.teaching.commands import Teach
+from kurt2rt.service.post_tick import Status
+from kurt2rt.service.status_line import status_line
 from tests.channel.desk import Desk
 
 WELL = Health(

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.opening import binding_of
-from kurt2rt.tasks.settings import load_task
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.loading import binding_of
 from tests.cli.helpers import CommandLine
 from tests.cli.test_bad_input import changed
 from tests.experiments.helpers import ROBOT

@@ -11,9 +11,10 @@ import anyio
 import pytest
 
 from hal.robot_settings import load_robot
-from kurt2rt.channel.credentials import Pairing, pair
-from kurt2rt.channel.reply import Reply, Verdict, done
-from kurt2rt.channel.requests import (
+from kurt2rt.channel.protocol.health_codec import plain_of
+from kurt2rt.channel.protocol.hello import AppraisalName
+from kurt2rt.channel.protocol.lesson_list import LessonLine
+from kurt2rt.channel.protocol.requests import (
     AnswerRequest,
     AppraiseRequest,
     BeAtRequest,
@@ -34,21 +35,20 @@ from kurt2rt.channel.requests import (
     StopRequest,
     TakeRequest,
 )
-from kurt2rt.cli.terminal import TerminalTeacher
-from kurt2rt.cli.terminal_words import change_in, is_worth_saying, opinion_in, question_in, sentence_of
-from kurt2rt.health.plain import plain_of
-from kurt2rt.outcome import Outcome, ResultCode
-from kurt2rt.perception.sensor_words import law_of
-from kurt2rt.rla.rla import Phase
-from kurt2rt.standing import Standing, StandReason
-from kurt2rt.teaching import TeacherClient
-from kurt2rt.teaching.hello import AppraisalName
-from kurt2rt.teaching.lesson_line import LessonLine
-from kurt2rt.teaching.question import FeatureDifference
+from kurt2rt.channel.security.pairing import Pairing, pair
+from kurt2rt.channel.server.reply import Reply, Verdict, done
+from kurt2rt.core.decision.standing import Standing, StandReason
+from kurt2rt.core.perception.sensor_words import law_of
+from kurt2rt.core.rla.outcome import Outcome, ResultCode
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.teaching.question import FeatureDifference
+from kurt2rt.teacher import TeacherClient
+from kurt2rt.teacher.terminal.terminal import TerminalTeacher
+from kurt2rt.teacher.terminal.terminal_text import change_in, is_worth_saying, opinion_in, question_in, sentence_of
 from tests.channel.states import COMMANDS, SURPRISED, state
-from tests.health.reports import ILL
-from tests.teaching.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
-from tests.teaching.test_client import HELLO, Clock, seen
+from tests.service.health.reports import ILL
+from tests.teacher.client.test_client import HELLO, Clock, seen
+from tests.teacher.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
 
 
 @dataclass

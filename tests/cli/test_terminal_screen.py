@@ -8,9 +8,9 @@ import pytest
 from rich.console import Console
 
 from kurt2rt.cli.terminal_screen import TerminalScreen
-from kurt2rt.page.served_pages import PageAddress, ServedPages, to_line
-from kurt2rt.rounds import Status
-from kurt2rt.teaching.active_stop import STARTED
+from kurt2rt.core.decision.active_stop import STARTED
+from kurt2rt.service.post_tick import Status
+from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages, to_line
 from tests.channel.desk import Desk
 from tests.cli.test_status_line import PASSIVE, WELL
 

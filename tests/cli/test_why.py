@@ -6,12 +6,12 @@ from pathlib import Path
 import pytest
 
 from hal.robot_settings import load_robot
-from kurt2rt.channel.credentials import ONLOOKER, local_pairing
+from kurt2rt.channel.security.pairing import ONLOOKER, local_pairing
 from kurt2rt.cli.why_live import ask_why
-from kurt2rt.teaching.answer import NoAnswerError
+from kurt2rt.teacher.client.answer import NoAnswerError
 from tests.cli.helpers import CommandLine, running
-from tests.replay.stored_runs import STORED
-from tests.replay.stories import slim
+from tests.runs.replay.stored_runs import STORED
+from tests.runs.replay.stories import slim
 
 WALLS = STORED / "walls.mcap"
 ERRAND = STORED / "errand.mcap"

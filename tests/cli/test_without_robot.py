@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.helpers import CommandLine, running
-from tests.page.test_teach_command import free_udp_port
+from tests.teacher.page.test_teach_command import free_udp_port
 
 
 @pytest.mark.deep  # waits as long as the one below

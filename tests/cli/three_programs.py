@@ -14,10 +14,10 @@ from hal.bus import CONTROL_ID, CanBus, open_bus
 from hal.codec import load_codec
 from hal.control import RawControl, decode_control
 from hal.robot_settings import load_robot
-from kurt2rt.channel.state import State
-from kurt2rt.teaching import TeacherClient
-from kurt2rt.teaching.active_stop import STARTED
-from kurt2rt.teaching.answer import NoAnswerError
+from kurt2rt.channel.protocol.state import State
+from kurt2rt.core.decision.active_stop import STARTED
+from kurt2rt.teacher import TeacherClient
+from kurt2rt.teacher.client.answer import NoAnswerError
 from tests.cli.helpers import Running, running
 
 ROBOT = load_robot()

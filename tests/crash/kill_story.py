@@ -20,7 +20,7 @@ import can
 
 from hal.bus import CanBus, open_bus
 from hal.robot_settings import load_robot
-from kurt2rt.channel.requests import (
+from kurt2rt.channel.protocol.requests import (
     COMMAND_ID_BYTES,
     AnswerRequest,
     CorrectRequest,
@@ -28,14 +28,14 @@ from kurt2rt.channel.requests import (
     RewardRequest,
     UndoRequest,
 )
-from kurt2rt.channel.state import State
-from kurt2rt.knowledge.entry import StoredEntry
-from kurt2rt.knowledge.fold import check_knowledge
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.rla.rla import Phase
-from kurt2rt.teaching.active_stop import STARTED
-from kurt2rt.teaching.answer import NoAnswerError
-from kurt2rt.teaching.client import TeacherClient
+from kurt2rt.channel.protocol.state import State
+from kurt2rt.core.decision.active_stop import STARTED
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.knowledge.journal.entry import StoredEntry
+from kurt2rt.knowledge.journal.fold import check_knowledge
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.teacher.client.answer import NoAnswerError
+from kurt2rt.teacher.client.client import TeacherClient
 from tests.cli.three_programs import BRAKING_CYCLES, WATCHDOG_CYCLES, drives, is_control, stands, turns
 from tests.crash.killed_recording import KilledRecordings
 from tests.crash.programs import Program

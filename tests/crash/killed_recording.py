@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from kurt2rt.recording.checked import RecordingError
-from kurt2rt.recording.run_folder import runs_in, segments_in
-from kurt2rt.replay.comparing import compare
-from kurt2rt.replay.reading import read_run
-from kurt2rt.replay.replay import Replay
-from kurt2rt.replay.run import Run
+from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.runs.recording.run_folder import runs_in, segments_in
+from kurt2rt.runs.replay.comparison import compare
+from kurt2rt.runs.replay.reader import read_run
+from kurt2rt.runs.replay.replay import Replay
+from kurt2rt.runs.replay.run import Run
 
 
 @dataclass(frozen=True, slots=True)

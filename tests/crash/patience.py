@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter, RetryDelays
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter, RetryDelays
 from tests.crash.operations import Told
 from tests.crash.taught import taught
 from tests.crash.watched_disk import WatchedDisk

@@ -12,9 +12,9 @@ import can
 
 from hal.bus import CanBus, open_bus
 from hal.robot_settings import load_robot
-from kurt2rt.channel.state import State
-from kurt2rt.teaching.answer import NoAnswerError
-from kurt2rt.teaching.client import TeacherClient
+from kurt2rt.channel.protocol.state import State
+from kurt2rt.teacher.client.answer import NoAnswerError
+from kurt2rt.teacher.client.client import TeacherClient
 from tests.cli.three_programs import BRAKING_CYCLES, WATCHDOG_CYCLES, drives, is_control, stands, state_where, turns
 from tests.crash.programs import Program
 

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.statistics import Statistics
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.knowledge.journal.journal import Journal
 from tests.crash.operations import Told
 from tests.crash.watched_disk import WatchedDisk
 from tests.knowledge.lessons import BINDING, created, entry

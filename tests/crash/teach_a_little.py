@@ -7,10 +7,10 @@ import os
 import sys
 from pathlib import Path
 
-from kurt2rt.knowledge.journal import Journal
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.writer import JournalWriter, RetryDelays, utc_now
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.knowledge.writer import JournalWriter, RetryDelays, utc_now
 from tests.knowledge.lessons import BINDING, created
 
 LESSONS = 4

@@ -9,14 +9,14 @@ from pathlib import Path
 import anyio
 import anyio.to_thread
 
-from kurt2rt.knowledge.fold import check_knowledge
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.recording.run_folder import find_run, segments_in
-from kurt2rt.recording.segment_reader import SegmentReader
-from kurt2rt.replay.comparing import compare
-from kurt2rt.replay.reading import read_run
-from kurt2rt.replay.replay import Replay
-from kurt2rt.teaching.client import TeacherClient
+from kurt2rt.knowledge.journal.fold import check_knowledge
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.runs.recording.run_folder import find_run, segments_in
+from kurt2rt.runs.recording.segment_reader import SegmentReader
+from kurt2rt.runs.replay.comparison import compare
+from kurt2rt.runs.replay.reader import read_run
+from kurt2rt.runs.replay.replay import Replay
+from kurt2rt.teacher.client.client import TeacherClient
 from tests.cli.helpers import Running, running
 from tests.cli.three_programs import LONG_ENOUGH_S, state_where, teacher_of, until_it_drives
 from tests.crash.wall_clock import HOUR_S, WallClock

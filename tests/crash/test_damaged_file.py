@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.knowledge.entry import JournalEntry
+from kurt2rt.core.rla.rla import Rla, RlaCreated
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.knowledge.journal.entry import JournalEntry
+from kurt2rt.knowledge.journal.loading import go_on_teaching, open_knowledge
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.opening import go_on_teaching, open_knowledge
-from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.rla.rla import Rla, RlaCreated
 from tests.crash.power_cut import SECTOR_BYTES
 from tests.experiments.helpers import ROBOT, short_task
 from tests.knowledge.lessons import STAMP, origin

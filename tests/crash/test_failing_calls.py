@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.journal.journal import Journal
 from tests.crash import teach_a_little
 from tests.crash.failing_kernel import FailingCall, calls_made, require_strace, run_failing, run_sound
 from tests.knowledge.lessons import BINDING, created

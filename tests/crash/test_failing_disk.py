@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.knowledge.entry import JournalEntry, Receipt
-from kurt2rt.knowledge.journal import Journal
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
 from kurt2rt.knowledge.knowledge_error import KnowledgeError, ReconnectRequiredError
-from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.knowledge.writer import Acknowledgement, JournalWriter
 from tests.crash.patience import LESSONS, LONGEST_S, SOON, a_lesson_at_a_time, with_patience
 from tests.crash.taught import require_kept
 from tests.crash.watched_disk import Call, Failure, Fault, WatchedDisk, watched

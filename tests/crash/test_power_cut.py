@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.knowledge import journal_file
-from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.journal import journal_file
+from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.crash.operations import Operation
 from tests.crash.patience import a_lesson_at_a_time, with_patience

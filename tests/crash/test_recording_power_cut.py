@@ -4,15 +4,15 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.recording.entry_code import decode_tick
-from kurt2rt.recording.run_files import Budget
-from kurt2rt.recording.run_folder import segments_in
-from kurt2rt.recording.segment_reader import SegmentReader
-from kurt2rt.recording.topics import TICK
+from kurt2rt.runs.recording.run_files import Budget
+from kurt2rt.runs.recording.run_folder import segments_in
+from kurt2rt.runs.recording.segment_reader import SegmentReader
+from kurt2rt.runs.recording.tick_json import decode_tick
+from kurt2rt.runs.recording.topics import TICK
 from tests.crash.operations import Told
 from tests.crash.power_cut import Disk, PowerCut, power_cuts
 from tests.crash.traced_disk import TracedDisk
-from tests.recording.desk_recording import RecordedDesk
+from tests.runs.recording.desk_recording import RecordedDesk
 
 SMALL = Budget(10_000_000, segment_bytes=20_000, reserve_bytes=0)
 

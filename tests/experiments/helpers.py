@@ -6,13 +6,13 @@ from pathlib import Path
 import anyio
 
 from hal.robot_settings import load_robot
-from kurt2rt.experiments.curriculum import run_lesson
-from kurt2rt.experiments.exam import ExamResult, examine
-from kurt2rt.experiments.lesson import LessonResult
-from kurt2rt.knowledge.writer import Acknowledgement
-from kurt2rt.rla.rla import TeachingEvent
-from kurt2rt.simulated import Kurt2SimulationFactory
-from kurt2rt.tasks.settings import TaskSettings, load_task
+from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.experiments.lockstep.curriculum import run_lesson
+from kurt2rt.experiments.lockstep.exam import ExamResult, examine
+from kurt2rt.experiments.lockstep.lesson import LessonResult
+from kurt2rt.knowledge.journal.writer import Acknowledgement
+from simbridge.simulation import Kurt2SimulationFactory
 
 ROBOT = load_robot()
 STAGE = Kurt2SimulationFactory(ROBOT)

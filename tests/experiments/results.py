@@ -1,13 +1,13 @@
 """Results as a lesson and its exams leave them, written by hand."""
 
 from hal.simulation import Position
-from kurt2rt.experiments.curriculum import CurriculumResult, WorldResult
-from kurt2rt.experiments.exam import ExamResult
-from kurt2rt.experiments.lesson import LessonResult
-from kurt2rt.rla.rla import Origin, Phase, Rla
-from kurt2rt.rla.statistics import StatisticsCounter
-from kurt2rt.tasks.settings import SuccessSettings
-from kurt2rt.timing.ledger import Ledger
+from kurt2rt.core.rla.rla import Origin, Phase, Rla
+from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.task_settings import SuccessSettings
+from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, WorldResult
+from kurt2rt.experiments.lockstep.exam import ExamResult
+from kurt2rt.experiments.lockstep.lesson import LessonResult
+from kurt2rt.platform.ledger import Ledger
 
 TRAIL = (Position(0.5, 0.5), Position(0.6, 0.5), Position(0.7, 0.6))
 

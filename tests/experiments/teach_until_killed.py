@@ -10,9 +10,9 @@ from pathlib import Path
 
 import anyio
 
-from kurt2rt.experiments.curriculum import run_lesson
-from kurt2rt.knowledge.writer import Acknowledgement
-from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.curriculum import run_lesson
+from kurt2rt.knowledge.journal.writer import Acknowledgement
 from tests.experiments.helpers import ROBOT, STAGE, short_task
 
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.knowledge.fold import check_knowledge
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.opening import read_lessons
+from kurt2rt.knowledge.journal.fold import check_knowledge
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.loading import read_lessons
 from tests.experiments.helpers import ROBOT
 from tests.experiments.teach_until_killed import eager_task
 

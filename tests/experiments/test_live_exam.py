@@ -9,12 +9,12 @@ import yaml
 
 from config import CONFIG_DIR
 from hal.robot_settings import load_robot
-from kurt2rt.channel.exam_standing import EXAM, ExamStanding
+from kurt2rt.channel.protocol.exam_status import EXAM, ExamStanding
 from kurt2rt.cli import exam_process
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.opening import open_knowledge
-from kurt2rt.live_exam import LiveExam
-from kurt2rt.tasks.settings import load_task
+from kurt2rt.service.live_exam import LiveExam
 
 OVER = ExamStanding(False, 1.0, "Passed in 0 of 1 worlds.")
 

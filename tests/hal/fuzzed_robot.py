@@ -13,15 +13,15 @@ from hal.can_interface import CanInterface
 from hal.in_process_bus import InProcessBus
 from hal.kurt2 import Kurt2
 from hal.shared_bus import SharedBus
-from kurt2rt.experiments.exam import NothingIsTaught
-from kurt2rt.layers.policy_level import PolicyLevel
-from kurt2rt.layers.wanted import Wanted
+from kurt2rt.core.basic.policy_level import PolicyLevel
+from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.experiments.lockstep.exam import NothingIsTaught
+from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
-from kurt2rt.tasks.settings import load_task
-from kurt2rt.tick import TickRecord
-from kurt2rt.timing.clock import LockstepClock
 from simbridge.simulated_robot import SimulatedRobot
-from simbridge.world_loading import load_world
+from simbridge.worlds.world_loading import load_world
 from tests.hal.fuzz_frames import FuzzFrames
 from tests.hal.helpers import ROBOT, TICK_S
 from tests.hal.onlooker import Onlooker

@@ -10,9 +10,9 @@ import pytest
 
 from hal.bus import CONTROL_ID, open_bus
 from hal.in_process_bus import InProcessBus
-from simbridge.microcontroller import CRASH_STEP_M_S, MicroController
+from simbridge.controller.microcontroller import CRASH_STEP_M_S, MicroController
 from simbridge.simulated_robot import SimulatedRobot
-from simbridge.world_loading import load_world
+from simbridge.worlds.world_loading import load_world
 from tests.hal.fuzz_frames import CONTROL_MODES, FuzzFrames
 from tests.hal.fuzzed_robot import FuzzedRobot
 from tests.hal.helpers import ROBOT

@@ -11,7 +11,7 @@ import pytest
 
 from hal.guard_reason import GuardReason
 from hal.robot_settings import SpeedMode
-from kurt2rt.timing.quiet_gc import quiet_gc
+from kurt2rt.platform.gc_control import quiet_gc
 from tests.hal.careless_guards import CARELESS
 from tests.hal.envelope import APPROACHES_FOR, STANDS_FOR, violations
 from tests.hal.playing import SIGNAL, Played, play

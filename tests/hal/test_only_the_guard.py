@@ -23,7 +23,7 @@ WAYS_OUT = {
     "SharedBus": {"hal/bus.py"},
     "SocketCanBus": {"hal/bus.py"},
     "SocketcanBus": {"hal/socketcan_bus.py"},
-    "CAN_RAW": {"kurt2rt/doctor/can_bus.py"},  # which closes it at once
+    "CAN_RAW": {"kurt2rt/checks/doctor/can_bus.py"},  # which closes it at once
     "CAN_BCM": set(),
 }
 INSIDES = {"_can_interface", "_open_can_interface"}

@@ -11,7 +11,7 @@ from hal.control import set_point
 from hal.robot import STANDSTILL, WheelSpeeds
 from hal.robot_settings import RobotSettings, SpeedMode
 from hal.wheel_watch import WheelWatch
-from simbridge.wheels import Wheels
+from simbridge.robot.wheels import Wheels
 from tests.examples import examples
 from tests.hal.helpers import ROBOT, TICK_S, robot_with
 

@@ -10,8 +10,8 @@ from hal.health import Health
 from hal.kurt2 import Kurt2
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_settings import load_robot
+from simbridge.controller.reconnecting_bus import ReconnectingBus
 from simbridge.simulated_robot import SimulatedRobot
-from simbridge.steady_bus import ReconnectingBus
 from tests.simbridge.rig import room
 
 FORWARD = WheelSpeeds(0.3, 0.3)

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.commission.typed import commission_the_rest, live, typing
-from tests.commission.workshop import Workshop
+from tests.checks.commission.typed import commission_the_rest, live, typing
+from tests.checks.commission.workshop import Workshop
 
 pytestmark = pytest.mark.hil
 

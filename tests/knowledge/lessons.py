@@ -6,12 +6,8 @@ from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
-from kurt2rt.knowledge.binding import KnowledgeBinding
-from kurt2rt.knowledge.entry import JournalEntry
-from kurt2rt.knowledge.events import encode_event
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.rla.feature_set import LevelFeatures
-from kurt2rt.rla.rla import (
+from kurt2rt.core.rla.feature_set import LevelFeatures
+from kurt2rt.core.rla.rla import (
     CRITIC,
     ActionReplaced,
     ActionWithdrawn,
@@ -26,6 +22,10 @@ from kurt2rt.rla.rla import (
     SessionEnded,
     TeachingEvent,
 )
+from kurt2rt.knowledge.journal.binding import KnowledgeBinding
+from kurt2rt.knowledge.journal.entry import JournalEntry
+from kurt2rt.knowledge.journal.event_codec import encode_event
+from kurt2rt.knowledge.journal.journal import Journal
 
 BINDING = KnowledgeBinding(
     feature_hash="0123456789abcdef",

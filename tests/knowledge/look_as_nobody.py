@@ -7,7 +7,7 @@ import os
 import sys
 from pathlib import Path
 
-from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.journal.journal import Journal
 
 _NOBODY = 65534
 

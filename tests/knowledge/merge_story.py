@@ -10,16 +10,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
-from kurt2rt.knowledge.entry import StoredEntry
-from kurt2rt.knowledge.fold import fold_entries
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.kinship import Taught
-from kurt2rt.knowledge.merging import Merge, Merging, Side
-from kurt2rt.knowledge.nearness import Borders
-from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.rla.credit import Credit
-from kurt2rt.rla.lesson_book import pile_of
-from kurt2rt.rla.rla import (
+from kurt2rt.core.rla.credit import Credit
+from kurt2rt.core.rla.lesson_history import pile_of
+from kurt2rt.core.rla.rla import (
     BASIC,
     ActionReplaced,
     ActionWithdrawn,
@@ -36,8 +29,15 @@ from kurt2rt.rla.rla import (
     SituationNamed,
     TeachingEvent,
 )
-from kurt2rt.rla.rla_system import RlaSystem
-from kurt2rt.rla.space import Space
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.space import Space
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.knowledge.journal.entry import StoredEntry
+from kurt2rt.knowledge.journal.fold import fold_entries
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.versions.contradictions import Borders
+from kurt2rt.knowledge.versions.lesson_identity import Taught
+from kurt2rt.knowledge.versions.merge import Merge, Merging, Side
 from tests.knowledge.lessons import STAMP
 
 BORDERS = Borders({BASIC: Space(4, 10.0)}, {BASIC: 0.2})

@@ -8,9 +8,9 @@ import sys
 from itertools import count
 from pathlib import Path
 
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.knowledge.writer import JournalWriter, utc_now
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.writer import JournalWriter, utc_now
 from tests.knowledge.lessons import BINDING, created
 
 

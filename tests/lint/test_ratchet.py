@@ -16,8 +16,8 @@ PROPERTY = '"""Module."""\n\n\nclass X:\n    """Thing."""\n\n    @property\n    
         ("README.md", "."),
         ("docs/handbook.md", "docs"),
         ("hal/can/bus.py", "hal"),
-        ("kurt2rt/tick.py", "kurt2rt"),
-        ("kurt2rt/rla/rows/row.py", "kurt2rt/rla"),
+        ("kurt2rt/core/tick.py", "kurt2rt/core"),
+        ("kurt2rt/core/rla/rows/row.py", "kurt2rt/core"),
         ("tests/rla/test_row.py", "tests/rla"),
     ],
 )
@@ -36,7 +36,7 @@ def test_differences_name_more_and_fewer_findings() -> None:
 
 
 def test_table_that_was_written_is_read_again(tmp_path: Path) -> None:
-    numbers = {("hal", "unit"): 2, (".", "banned-word"): 1, ("kurt2rt/rla", "D401"): 3}
+    numbers = {("hal", "unit"): 2, (".", "banned-word"): 1, ("kurt2rt/core/rla", "D401"): 3}
     write_allowed(numbers, tmp_path / "allowed.toml")
     assert load_allowed(tmp_path / "allowed.toml") == numbers
     assert load_allowed(tmp_path / "missing.toml") == {}

@@ -4,14 +4,14 @@ import sys
 import threading
 from typing import Any, Never
 
-from kurt2rt.channel.endpoint import Endpoint
-from kurt2rt.channel.teachers import Teachers
-from kurt2rt.cli import robot_program
+from kurt2rt.channel.security.paired_devices import Teachers
+from kurt2rt.channel.server.endpoint import Endpoint
 from kurt2rt.cli.main import main
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.recording.run_files import RunFiles
-from kurt2rt.rounds import Rounds
-from kurt2rt.tick import TickRecord
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.runs.recording.run_files import RunFiles
+from kurt2rt.service import program
+from kurt2rt.service.post_tick import Rounds
 
 _ROUND = Rounds.__call__
 _DRIVES_M_S = 0.1
@@ -34,7 +34,7 @@ async def _hang_in_the_loop(*_: Any) -> None:
 
 def _let_hang(thing: str) -> None:
     hangs: dict[str, tuple[object, str, object]] = {
-        "start": (robot_program, "go_on_teaching", _hang),
+        "start": (program, "go_on_teaching", _hang),
         "disk": (Journal, "checkpoint", _hang),
         "recorder": (RunFiles, "tend", _hang),
         "keys": (Teachers, "close", _hang),

@@ -12,19 +12,19 @@ from behaviors.repertoire import load_repertoire
 from hal.bus import CONTROL_ID, CanBus, open_bus
 from hal.kurt2 import Kurt2
 from hal.robot_settings import load_robot
-from kurt2rt.knowledge.writer import Acknowledgement
-from kurt2rt.rla.rla import Phase
-from kurt2rt.rounds import Screen, Status
-from kurt2rt.service import serve
-from kurt2rt.service_settings import ServiceSettings, load_service
-from kurt2rt.tasks.settings import TaskSettings, load_task
-from kurt2rt.teaching.commands import Command
-from kurt2rt.teaching.question import Question, WayQuestion
-from kurt2rt.teaching.scripted_teacher import picture_of, teacher_of
-from kurt2rt.tick import TickRecord
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.core.teaching.commands import Command
+from kurt2rt.core.teaching.question import Question, WayQuestion
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.knowledge.journal.writer import Acknowledgement
+from kurt2rt.service.post_tick import Screen, Status
+from kurt2rt.service.serve import serve
+from kurt2rt.service.settings import ServiceSettings, load_service
+from kurt2rt.teacher.scripted.teacher import picture_of, teacher_of
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
-from simbridge.world_loading import load_world
+from simbridge.worlds.world_loading import load_world
 
 SETTINGS = load_robot()
 LONGEST_S = 60.0

@@ -8,7 +8,7 @@ import anyio.to_thread
 import can
 import pytest
 
-from kurt2rt.ending import ShutdownStage, last_word
+from kurt2rt.service.shutdown import ShutdownStage, last_word
 from tests.cli.helpers import started
 from tests.cli.three_programs import brakes, is_control, onlooker
 

@@ -11,10 +11,10 @@ import yaml
 
 from config import CONFIG_DIR
 from hal.settings import SettingsError
-from kurt2rt.reloading import Reloading
-from kurt2rt.service_settings import ServiceSettings, for_a_unit, load_service, while_running
-from kurt2rt.systemd.notifier import Notifier
-from tests.systemd.manager import manager
+from kurt2rt.service.config_reload import Reloading
+from kurt2rt.service.settings import ServiceSettings, for_a_unit, load_service, while_running
+from kurt2rt.service.systemd.notifier import Notifier
+from tests.service.systemd.manager import manager
 
 SHIPPED = CONFIG_DIR / "runtime" / "default.yaml"
 

@@ -5,12 +5,12 @@ import pytest
 
 from hal.control import encode_brake
 from hal.robot import STANDSTILL
-from kurt2rt.knowledge.fold import check_knowledge, fold_journal
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.layers.decision import Cause
-from kurt2rt.outcome import ResultCode
-from kurt2rt.teaching.commands import Command
-from kurt2rt.tick import TickRecord
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.rla.outcome import ResultCode
+from kurt2rt.core.teaching.commands import Command
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
+from kurt2rt.knowledge.journal.journal import Journal
 from tests.service.rig import Rig, eager_task, end_service, rig, scripted
 
 

@@ -19,18 +19,18 @@ from hal.control import SystemControl, decode_control, encode_brake
 from hal.robot import STANDSTILL
 from hal.robot_settings import RobotSettings
 from hal.tap import Tap
-from kurt2rt.app import OpenedRobot
-from kurt2rt.channel.credentials import LOCAL, local_pairing
-from kurt2rt.cli.robot_program import Orders, RobotProgram
+from kurt2rt.channel.security.pairing import LOCAL, local_pairing
 from kurt2rt.cli.terminal_screen import TerminalScreen
-from kurt2rt.health.status_socket import StatusError, reports_at, socket_of
-from kurt2rt.service_settings import ServiceSettings, load_service
-from kurt2rt.tasks.settings import load_task
-from kurt2rt.teaching import TeacherClient
-from kurt2rt.teaching.commands import Command, Teach
-from kurt2rt.tick import TickRecord
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.teaching.commands import Command, Teach
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.service.health.status_socket import StatusError, reports_at, socket_of
+from kurt2rt.service.open_robot import OpenedRobot
+from kurt2rt.service.program import Orders, RobotProgram
+from kurt2rt.service.settings import ServiceSettings, load_service
+from kurt2rt.teacher import TeacherClient
 from tests.service.rig import SETTINGS, Rig, end_service, rig
-from tests.systemd.manager import manager
+from tests.service.systemd.manager import manager
 
 TASK = load_task("wall_following")
 BRAKE = bytes(encode_brake().data)

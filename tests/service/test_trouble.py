@@ -5,12 +5,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 from hal.robot import STANDSTILL
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.journal_file import log_of
-from kurt2rt.layers.decision import Cause
-from kurt2rt.outcome import ResultCode
-from kurt2rt.teaching.commands import Command, Resume, Stop
-from kurt2rt.tick import TickRecord
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.rla.outcome import ResultCode
+from kurt2rt.core.teaching.commands import Command, Resume, Stop
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.journal_file import log_of
 from tests.service.rig import end_service, rig, scripted
 
 Step = Callable[[TickRecord], bool]

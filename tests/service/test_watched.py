@@ -12,8 +12,8 @@ import anyio
 import anyio.to_thread
 import pytest
 
-from kurt2rt.teaching import TeacherClient
-from kurt2rt.teaching.active_stop import STARTED
+from kurt2rt.core.decision.active_stop import STARTED
+from kurt2rt.teacher import TeacherClient
 from tests.cli.helpers import Running, running, started
 from tests.cli.three_programs import (
     Onlooker,
@@ -27,7 +27,7 @@ from tests.cli.three_programs import (
     until_it_drives,
 )
 from tests.forked_program import ForkedProgram
-from tests.systemd.manager import Manager, manager
+from tests.service.systemd.manager import Manager, manager
 
 WATCHDOG_S = 1.0
 LOOKED_ON_TICKS = 50

@@ -13,13 +13,13 @@ from hal.control import Control, Mode, RawControl, RawSide, SpeedControl, contro
 from hal.robot_settings import RobotSettings, load_robot
 from hal.settings import SettingsError
 from hal.simulation import Pose
-from simbridge.geometry import Point
-from simbridge.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
-from simbridge.sight import RayCaster
+from simbridge.robot.ray_caster import RayCaster
+from simbridge.robot.world import World
 from simbridge.simulated_robot import SimulatedRobot
-from simbridge.world import World
-from simbridge.world_loading import load_world
-from simbridge.world_settings import StartPoseSettings, WorldSettings
+from simbridge.worlds.geometry import Point
+from simbridge.worlds.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
+from simbridge.worlds.world_loading import load_world
+from simbridge.worlds.world_settings import StartPoseSettings, WorldSettings
 
 CODEC: Codec = load_codec()
 ROBOT: RobotSettings = load_robot()

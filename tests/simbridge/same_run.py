@@ -1,6 +1,6 @@
 """A run to be compared: `python -m tests.simbridge.same_run` prints its hashes."""
 
-from simbridge.world_loading import load_world
+from simbridge.worlds.world_loading import load_world
 from tests.simbridge.rig import Rig
 
 SEED = 7

@@ -12,7 +12,7 @@ from hal.identity import SIMULATED_HARDWARE_ID
 from hal.kurt2 import Kurt2
 from hal.robot import WheelSpeeds
 from simbridge.standalone import StandaloneRobot
-from simbridge.world_loading import load_world
+from simbridge.worlds.world_loading import load_world
 from tests.simbridge.rig import CODEC, ROBOT
 
 WORLD = load_world("a")

@@ -10,9 +10,9 @@ import pytest
 from hal.bus_state import ControllerState
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
-from kurt2rt.experiments.exam import examine
-from kurt2rt.simulated import Kurt2Simulation
-from kurt2rt.tasks.settings import load_task
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.experiments.lockstep.exam import examine
+from simbridge.simulation import Kurt2Simulation
 from tests.simbridge.rig import ROBOT
 from tests.simbridge.wires import changed
 

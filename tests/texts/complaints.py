@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
-from kurt2rt.faults.complaint import ComplaintCode, complaint, text_of
-from kurt2rt.soak.check_text import found_of, what_of
-from kurt2rt.soak.result import Check, CheckCode
+from kurt2rt.checks.faults.complaint import ComplaintCode, complaint, text_of
+from kurt2rt.checks.soak.check_text import found_of, what_of
+from kurt2rt.checks.soak.result import Check, CheckCode
 
 _VALUES: dict[str, float | str] = {
     "stood_s": 0.25,

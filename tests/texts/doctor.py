@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from kurt2rt.doctor.finding import Finding, FindingCode, Status
-from kurt2rt.doctor.finding_text import text_of
+from kurt2rt.checks.doctor.check_result import Finding, FindingCode, Status
+from kurt2rt.checks.doctor.finding_text import text_of
 
 _VALUES: dict[str, float | str] = {
     "version": "3.11.7",

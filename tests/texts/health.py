@@ -1,9 +1,9 @@
-"""Listing of the texts of `kurt2rt.health.trouble_text`."""
+"""Listing of the texts of `kurt2rt.channel.protocol.trouble_text`."""
 
 from collections.abc import Iterator
 
-from kurt2rt.health.trouble_code import TroubleCode
-from kurt2rt.health.trouble_text import trouble_text
+from kurt2rt.channel.protocol.trouble_code import TroubleCode
+from kurt2rt.channel.protocol.trouble_text import trouble_text
 
 _NUMBERS = {
     TroubleCode.SENSORS_SILENT: (0.64,),

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from kurt2rt.cli.knowledge.merge import reason_of
-from kurt2rt.knowledge.merging import Conflict, ConflictCode
+from kurt2rt.knowledge.versions.merge import Conflict, ConflictCode
 
 
 def conflicts() -> Iterator[tuple[str, str]]:

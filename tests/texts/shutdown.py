@@ -1,8 +1,8 @@
-"""Listing of the last words of `kurt2rt.ending`."""
+"""Listing of the last words of `kurt2rt.service.shutdown`."""
 
 from collections.abc import Iterator
 
-from kurt2rt.ending import ShutdownStage, last_word
+from kurt2rt.service.shutdown import ShutdownStage, last_word
 
 
 def stages() -> Iterator[tuple[str, str]]:

@@ -1,10 +1,10 @@
-"""Listing of the texts of `kurt2rt.standing_text`."""
+"""Listing of the texts of `kurt2rt.core.decision.standing_text`."""
 
 from collections.abc import Callable, Iterator
 
-from kurt2rt.standing import Standing, StandReason
-from kurt2rt.standing_text import GO_IN_TERMINAL, GO_ON_PAGE, headline_of, in_short, stop_text
-from kurt2rt.teaching.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.standing import Standing, StandReason
+from kurt2rt.core.decision.standing_text import GO_IN_TERMINAL, GO_ON_PAGE, headline_of, in_short, stop_text
 
 
 def on_page() -> Iterator[tuple[str, str]]:

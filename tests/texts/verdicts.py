@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
-from kurt2rt.experiments.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
-from kurt2rt.experiments.shown.verdict import Result, Target, Verdict
-from kurt2rt.experiments.shown.verdict_text import RESULT_TEXTS, cells_of
+from kurt2rt.experiments.lockstep.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
+from kurt2rt.experiments.study.verdict import Result, Target, Verdict
+from kurt2rt.experiments.study.verdict_text import RESULT_TEXTS, cells_of
 
 _VALUES: dict[str, float | str] = {
     "limit": 91,

@@ -6,8 +6,8 @@ from typing import Annotated
 import typer
 
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
-from kurt2rt.knowledge.branching import branch as make_branch
-from kurt2rt.knowledge.writer import utc_now
+from kurt2rt.knowledge.journal.writer import utc_now
+from kurt2rt.knowledge.versions.branch import branch as make_branch
 
 
 def branch(

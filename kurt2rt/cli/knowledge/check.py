@@ -4,8 +4,8 @@ import typer
 
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import KnowledgeFile
-from kurt2rt.knowledge.fold import check_knowledge
-from kurt2rt.knowledge.journal import Journal
+from kurt2rt.knowledge.journal.fold import check_knowledge
+from kurt2rt.knowledge.journal.journal import Journal
 
 
 def check(file: KnowledgeFile, as_json: AsJson = False) -> None:

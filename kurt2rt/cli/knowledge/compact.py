@@ -5,11 +5,11 @@ from typing import Annotated
 
 import typer
 
-from kurt2rt.care.compacting import TEACHER
-from kurt2rt.care.compacting import compact as delete_unneeded
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, Recordings, replaying, say
-from kurt2rt.knowledge.show import TICK_S
-from kurt2rt.knowledge.writer import utc_now
+from kurt2rt.knowledge.journal.writer import utc_now
+from kurt2rt.knowledge.show.knowledge import TICK_S
+from kurt2rt.runs.replay.compaction import TEACHER
+from kurt2rt.runs.replay.compaction import compact as delete_unneeded
 
 
 def compact(

@@ -9,12 +9,12 @@ import typer
 
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
-from kurt2rt.knowledge.binding import require_same
-from kurt2rt.knowledge.difference import Difference, difference
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.kinship import read_taught
-from kurt2rt.rla.lesson_book import LessonRecord
-from kurt2rt.rla.rla import Rla
+from kurt2rt.core.rla.lesson_history import LessonRecord
+from kurt2rt.core.rla.rla import Rla
+from kurt2rt.knowledge.journal.binding import require_same
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.versions.diff import Difference, difference
+from kurt2rt.knowledge.versions.lesson_identity import read_taught
 
 
 def diff(

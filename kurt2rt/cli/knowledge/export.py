@@ -8,11 +8,11 @@ import typer
 from hal.robot_settings import load_robot
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
 from kurt2rt.cli.options import RobotName, TaskOfTheFile, task_option
-from kurt2rt.exchange.given import export_knowledge, import_knowledge, read_given
-from kurt2rt.exchange.signing import fingerprint, make_key, read_private_key, read_public_key
-from kurt2rt.knowledge.task_of_file import task_of_file
-from kurt2rt.knowledge.writer import utc_now
-from kurt2rt.tasks.settings import load_task
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.knowledge.exchange.package import export_knowledge, import_knowledge, read_given
+from kurt2rt.knowledge.exchange.signing import fingerprint, make_key, read_private_key, read_public_key
+from kurt2rt.knowledge.files.task_of_file import task_of_file
+from kurt2rt.knowledge.journal.writer import utc_now
 
 
 def export(

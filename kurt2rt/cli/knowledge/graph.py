@@ -6,11 +6,11 @@ from typing import Annotated
 import typer
 
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.shown import plain
-from kurt2rt.network.file import FORMATS, write_network
-from kurt2rt.network.network import read_network, without_rare
-from kurt2rt.rla.rla import BASIC
+from kurt2rt.core.rla.rla import BASIC
+from kurt2rt.knowledge.graph.file import FORMATS, write_network
+from kurt2rt.knowledge.graph.graph import read_network, without_rare
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.show.table_cells import plain
 
 
 def graph(

@@ -6,10 +6,10 @@ import typer
 
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import KnowledgeFile
-from kurt2rt.cli.printed import console_of
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.show import lessons_as_data, render_lessons
-from kurt2rt.text_table import print_whole
+from kurt2rt.cli.tables import console_of
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.show.knowledge import lessons_as_data, render_lessons
+from kurt2rt.platform.text_table import print_whole
 
 
 def lessons(

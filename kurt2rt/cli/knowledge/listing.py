@@ -7,14 +7,14 @@ import typer
 
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import say
-from kurt2rt.cli.printed import console_of
-from kurt2rt.exchange.given import COME_FROM
-from kurt2rt.knowledge.branching import whence_of
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.kinship import read_taught
+from kurt2rt.cli.tables import console_of
+from kurt2rt.knowledge.exchange.package import COME_FROM
+from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.shown import plain
-from kurt2rt.text_table import TextTable, print_whole
+from kurt2rt.knowledge.show.table_cells import plain
+from kurt2rt.knowledge.versions.branch import whence_of
+from kurt2rt.knowledge.versions.lesson_identity import read_taught
+from kurt2rt.platform.text_table import TextTable, print_whole
 
 
 def list_files(

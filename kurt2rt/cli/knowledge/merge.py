@@ -8,12 +8,12 @@ import typer
 from hal.robot_settings import load_robot
 from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, say
 from kurt2rt.cli.options import RobotName, TaskOfTheFile
-from kurt2rt.knowledge.merging import Conflict, ConflictCode, Merge, Side
-from kurt2rt.knowledge.merging import merge as bring_in
-from kurt2rt.knowledge.nearness import borders_of
-from kurt2rt.knowledge.task_of_file import task_of_file
-from kurt2rt.knowledge.writer import utc_now
-from kurt2rt.tasks.settings import load_task
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.knowledge.files.task_of_file import task_of_file
+from kurt2rt.knowledge.journal.writer import utc_now
+from kurt2rt.knowledge.versions.contradictions import borders_of
+from kurt2rt.knowledge.versions.merge import Conflict, ConflictCode, Merge, Side
+from kurt2rt.knowledge.versions.merge import merge as bring_in
 
 
 def merge(

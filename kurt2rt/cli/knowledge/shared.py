@@ -9,7 +9,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from kurt2rt.care.trial import Report
+from kurt2rt.runs.replay.trial import Report
 
 WIDE = 140
 TEACHER = "command line"

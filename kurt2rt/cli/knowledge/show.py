@@ -6,11 +6,11 @@ import typer
 
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import WIDE, KnowledgeFile
-from kurt2rt.cli.printed import console_of
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.show import knowledge_as_data, render_knowledge
-from kurt2rt.knowledge.show_rla import expectation_as_data, render_rla
-from kurt2rt.text_table import print_whole
+from kurt2rt.cli.tables import console_of
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.show.knowledge import knowledge_as_data, render_knowledge
+from kurt2rt.knowledge.show.rla import expectation_as_data, render_rla
+from kurt2rt.platform.text_table import print_whole
 
 
 def show(

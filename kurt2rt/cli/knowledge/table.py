@@ -7,9 +7,9 @@ import typer
 
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
-from kurt2rt.knowledge import journal_file
-from kurt2rt.knowledge.table import export_table
-from kurt2rt.knowledge.writer import utc_now
+from kurt2rt.knowledge.files.table import export_table
+from kurt2rt.knowledge.journal import journal_file
+from kurt2rt.knowledge.journal.writer import utc_now
 
 
 def table(

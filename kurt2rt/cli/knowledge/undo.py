@@ -4,10 +4,10 @@ from typing import Annotated
 
 import typer
 
-from kurt2rt.cli.knowledge.agreeing import DryRun, NoPreview, Runs, Yes, agreed, told
+from kurt2rt.cli.knowledge.confirm import DryRun, NoPreview, Runs, Yes, agreed, told
 from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, say
-from kurt2rt.knowledge.undo import carry_out, plan_redo, plan_undo
-from kurt2rt.knowledge.writer import utc_now
+from kurt2rt.knowledge.journal.writer import utc_now
+from kurt2rt.knowledge.versions.undo import carry_out, plan_redo, plan_undo
 
 
 def undo(

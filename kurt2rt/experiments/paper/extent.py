@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
+from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.paper.settings import GrowthSettings, PaperSettings, UnseenSettings
-from kurt2rt.tasks.settings import TaskSettings
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,12 +6,12 @@ import anyio
 
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
-from kurt2rt.experiments.curriculum import run_lesson
-from kurt2rt.experiments.kept.made_of import MadeOf
-from kurt2rt.experiments.kept.results import Results
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.curriculum import run_lesson
 from kurt2rt.experiments.paper.outcome import GrowthOutcome, Reading
-from kurt2rt.experiments.pool import Tell
-from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.experiments.study.pool import Tell
+from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.study.results import Results
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from kurt2rt.experiments.paper.programme import Programme
-from kurt2rt.experiments.shown.judging import ROBOTS, reasons_of_robots
+from kurt2rt.experiments.paper.plan import Programme
+from kurt2rt.experiments.study.eligibility import ROBOTS, reasons_of_robots
 
 CHOSEN_ON_ROOMS = range(60)
 """The same of generated rooms."""

@@ -3,8 +3,8 @@
 from typing import Literal
 
 from hal.settings import Settings
-from kurt2rt.experiments.exam_verdict import ExamVerdict
-from kurt2rt.experiments.kept.made_of import MadeOf
+from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
+from kurt2rt.experiments.study.provenance import MadeOf
 
 Reading = Literal["shipped", "plain"]
 """Of the paper's scheme: with the settings of this project, or plainly as the paper says it."""

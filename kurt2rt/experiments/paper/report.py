@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from kurt2rt.experiments.paper.judging import reasons_not_to_judge
-from kurt2rt.experiments.paper.settings_sheets import SUCCESS, exams_sheet, learning_sheet
+from kurt2rt.experiments.paper.settings_tables import SUCCESS, exams_sheet, learning_sheet
 from kurt2rt.experiments.paper.study import Study
 from kurt2rt.experiments.paper.tables import sheets, unseen_sheet
-from kurt2rt.experiments.shown.judging import ROBOTS
-from kurt2rt.experiments.shown.page import spans, write_page
-from kurt2rt.experiments.shown.picture import Picture
+from kurt2rt.experiments.study.eligibility import ROBOTS
+from kurt2rt.experiments.study.figure import Picture
+from kurt2rt.experiments.study.html_report import spans, write_page
 
 _TITLE = "KURT2: the paper's basic-level tasks, taught and examined"
 

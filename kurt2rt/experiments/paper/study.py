@@ -3,12 +3,12 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from kurt2rt.experiments.kept.doing import do_jobs
-from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.paper.outcome import GrowthOutcome, Reading, TaughtOutcome
-from kurt2rt.experiments.paper.programme import Programme
+from kurt2rt.experiments.paper.plan import Programme
 from kurt2rt.experiments.paper.summary import Summary, summarize
-from kurt2rt.experiments.pool import Standing
+from kurt2rt.experiments.study.pool import Standing
+from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.run_jobs import do_jobs
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,14 +4,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT
-from kurt2rt.experiments.exam_verdict import ExamVerdict
+from behaviors.metrics.task_metric import JUNCTIONS, RIGHT
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
+from kurt2rt.experiments.lockstep.report import label_of, quartiles, wilson_interval
 from kurt2rt.experiments.paper.outcome import DriveOutcome, Reading, TaughtOutcome
-from kurt2rt.experiments.paper.programme import Experiment
+from kurt2rt.experiments.paper.plan import Experiment
 from kurt2rt.experiments.paper.settings import ExperimentSettings
-from kurt2rt.experiments.report import label_of, quartiles, wilson_interval
-from kurt2rt.experiments.shown.intervals import Rate, rate_of
-from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.experiments.study.intervals import Rate, rate_of
 
 _TEN_MIN_S = 600.0
 

@@ -2,17 +2,17 @@
 
 from collections.abc import Iterator, Sequence
 
-from kurt2rt.experiments.courses.course import JUNCTIONS, RIGHT
-from kurt2rt.experiments.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
+from behaviors.metrics.task_metric import JUNCTIONS, RIGHT
+from kurt2rt.experiments.lockstep.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
+from kurt2rt.experiments.lockstep.report import quartiles
 from kurt2rt.experiments.paper.judging import reasons_not_to_judge
 from kurt2rt.experiments.paper.outcome import DriveOutcome
-from kurt2rt.experiments.paper.settings_sheets import SUCCESS
+from kurt2rt.experiments.paper.settings_tables import SUCCESS
 from kurt2rt.experiments.paper.study import GrowthStudy, Study
 from kurt2rt.experiments.paper.summary import Quartiles, Summary, WorldSummary, success_text
 from kurt2rt.experiments.paper.verdict import verdicts
-from kurt2rt.experiments.report import quartiles
-from kurt2rt.experiments.shown.sheet import Sheet
-from kurt2rt.experiments.shown.verdict_text import cells_of, result_text
+from kurt2rt.experiments.study.table import Sheet
+from kurt2rt.experiments.study.verdict_text import cells_of, result_text
 
 _SUCCESS_WORDS = {**EXAM_VERDICT_TEXTS, ExamVerdict.PASSED: "yes", ExamVerdict.FAILED: "NO"}
 _GROWTH_AT_S = (60, 120, 200, 345, 600)

@@ -8,14 +8,14 @@ import anyio
 
 from hal.robot_settings import RobotSettings
 from hal.simulation import Position, SimulationFactory
-from kurt2rt.experiments.curriculum import WorldResult, run_exams, run_lesson
-from kurt2rt.experiments.kept.made_of import MadeOf
-from kurt2rt.experiments.kept.results import Results
-from kurt2rt.experiments.lesson import LessonResult
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams, run_lesson
+from kurt2rt.experiments.lockstep.lesson import LessonResult
 from kurt2rt.experiments.paper.outcome import DriveOutcome, Place, Reading, TaughtOutcome
-from kurt2rt.experiments.pool import Tell
-from kurt2rt.experiments.robot_time import RobotTime
-from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.experiments.study.pool import Tell
+from kurt2rt.experiments.study.progress_sum import RobotTime
+from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.study.results import Results
 
 _PLACE_STRIDE = 2
 """Points of a drive's trail from one that is kept to the next: 0.2 s."""

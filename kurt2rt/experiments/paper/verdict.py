@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from kurt2rt.experiments.paper.settings import AskedSettings
 from kurt2rt.experiments.paper.summary import Summary, WorldSummary, success_text
-from kurt2rt.experiments.shown.verdict import Target, Values, Verdict
+from kurt2rt.experiments.study.verdict import Target, Values, Verdict
 
 
 def verdicts(summary: Summary) -> Iterator[Verdict]:

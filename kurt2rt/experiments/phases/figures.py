@@ -8,8 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from kurt2rt.critic.settings import load_critic
-from kurt2rt.experiments.load import SAID
+from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.experiments.lockstep.report import label_of
+from kurt2rt.experiments.lockstep.teacher_workload import SAID
 from kurt2rt.experiments.phases.outcome import StageOutcome
 from kurt2rt.experiments.phases.steps import (
     BRANCHES,
@@ -23,9 +24,8 @@ from kurt2rt.experiments.phases.steps import (
 )
 from kurt2rt.experiments.phases.study import Study
 from kurt2rt.experiments.phases.summary import MEASURES, Measure, worlds_of
-from kurt2rt.experiments.report import label_of
-from kurt2rt.experiments.shown.picture import Picture
-from kurt2rt.experiments.shown.style import save
+from kurt2rt.experiments.study.figure import Picture
+from kurt2rt.experiments.study.figure_style import save
 
 _LOAD_COLOURS = {"lessons": "#1f6fb2", "corrections": "#d1495b", "rewards": "#2e8540", "appraisals": "#b8860b"}
 _TEACHING = (PHASE_2, PHASE_3, PHASE_4, PHASE_5)

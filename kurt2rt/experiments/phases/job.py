@@ -10,28 +10,28 @@ import anyio
 
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
-from kurt2rt.critic.settings import load_critic
-from kurt2rt.experiments.curriculum import run_lesson
-from kurt2rt.experiments.kept.made_of import MadeOf
-from kurt2rt.experiments.kept.results import Results, StudyError
-from kurt2rt.experiments.lesson_keeping import LessonLostError
-from kurt2rt.experiments.lesson_plan import LessonPlan
-from kurt2rt.experiments.phases.corrupting import corrupt, critics_lessons, shuffled
-from kurt2rt.experiments.phases.examining import Examiner
-from kurt2rt.experiments.phases.folding import folded
+from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.core.rla.rla import CRITIC, Phase, TeachingEvent
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.curriculum import run_lesson
+from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
+from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
+from kurt2rt.experiments.lockstep.primitives import primitives
+from kurt2rt.experiments.phases.corruption import corrupt, critics_lessons, shuffled
+from kurt2rt.experiments.phases.event_replay import folded
+from kurt2rt.experiments.phases.exams import Examiner
+from kurt2rt.experiments.phases.lesson_summary import told
 from kurt2rt.experiments.phases.outcome import ExamOutcome, JobOutcome, Judgement, StageOutcome, TeachingOutcome
 from kurt2rt.experiments.phases.steps import PHASE_1, PHASE_2, PHASE_4, TITLES, UNTAUGHT, Step
-from kurt2rt.experiments.phases.told import told
-from kurt2rt.experiments.pool import Tell
-from kurt2rt.experiments.primitives import primitives
-from kurt2rt.experiments.robot_time import RobotTime
-from kurt2rt.knowledge.fold import fold_journal
-from kurt2rt.knowledge.journal import Journal
-from kurt2rt.knowledge.opening import go_on_teaching, read_lessons
-from kurt2rt.knowledge.writer import JournalWriter, utc_now
-from kurt2rt.rla.rla import CRITIC, Phase, TeachingEvent
-from kurt2rt.rla.rla_system import RlaSystem
-from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.experiments.study.pool import Tell
+from kurt2rt.experiments.study.progress_sum import RobotTime
+from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.study.results import Results, StudyError
+from kurt2rt.knowledge.journal.fold import fold_journal
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.loading import go_on_teaching, read_lessons
+from kurt2rt.knowledge.journal.writer import JournalWriter, utc_now
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,8 +1,8 @@
 """What the steps of one robot come to, as they are kept in their files."""
 
 from hal.settings import Settings
-from kurt2rt.experiments.kept.made_of import MadeOf
-from kurt2rt.experiments.load import Minute
+from kurt2rt.experiments.lockstep.teacher_workload import Minute
+from kurt2rt.experiments.study.provenance import MadeOf
 
 
 class ExamOutcome(Settings):

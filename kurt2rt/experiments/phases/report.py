@@ -3,13 +3,13 @@
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from kurt2rt.experiments.phases.programme import Programme
-from kurt2rt.experiments.phases.settings_sheet import settings_sheet
+from kurt2rt.experiments.phases.plan import Programme
+from kurt2rt.experiments.phases.settings_table import settings_sheet
 from kurt2rt.experiments.phases.study import Study
-from kurt2rt.experiments.phases.tables import sheets
-from kurt2rt.experiments.shown.judging import reasons_of_robots
-from kurt2rt.experiments.shown.page import spans, write_page
-from kurt2rt.experiments.shown.picture import Picture
+from kurt2rt.experiments.phases.table_rows import sheets
+from kurt2rt.experiments.study.eligibility import reasons_of_robots
+from kurt2rt.experiments.study.figure import Picture
+from kurt2rt.experiments.study.html_report import spans, write_page
 
 
 def reasons_not_to_judge(programme: Programme) -> Iterator[str]:

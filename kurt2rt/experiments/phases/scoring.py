@@ -4,8 +4,8 @@ from collections import Counter
 from collections.abc import Iterator
 
 from behaviors.judges.judge import Judge
+from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.phases.outcome import Judgement
-from kurt2rt.tick import TickRecord
 
 
 class Scoring:

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 from hal.settings import SettingsError
-from kurt2rt.experiments.lesson_plan import LessonPlan, SignalTimes
-from kurt2rt.experiments.phases.settings import PhasesSettings
-from kurt2rt.rla.rla import Phase
-from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.core.phase_settings import PhasesSettings
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, SignalTimes
 
 Critic = Literal["own", "taught", "shuffled"]
 """What the set has before the step: appraisals of its own, those of this robot's phase 4, or those in disorder."""

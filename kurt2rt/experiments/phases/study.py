@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from kurt2rt.experiments.kept.doing import do_waves
-from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.phases.outcome import ExamOutcome, JobOutcome, StageOutcome
-from kurt2rt.experiments.phases.programme import Programme
-from kurt2rt.experiments.pool import Standing
+from kurt2rt.experiments.phases.plan import Programme
+from kurt2rt.experiments.study.pool import Standing
+from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.run_jobs import do_waves
 
 
 @dataclass(frozen=True, slots=True)

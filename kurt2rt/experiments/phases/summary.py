@@ -4,10 +4,10 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from kurt2rt.experiments.courses.course import DISTANCE_ERROR
+from behaviors.metrics.task_metric import DISTANCE_ERROR
+from kurt2rt.experiments.lockstep.report import label_of, quartiles, wilson_interval
 from kurt2rt.experiments.phases.outcome import ExamOutcome, Judgement, StageOutcome
-from kurt2rt.experiments.report import label_of, quartiles, wilson_interval
-from kurt2rt.experiments.shown.intervals import Difference, Rate, difference_of, rate_of
+from kurt2rt.experiments.study.intervals import Difference, Rate, difference_of, rate_of
 
 TEN_MIN_S = 600.0
 

@@ -3,14 +3,14 @@
 import math
 from collections.abc import Iterator
 
+from kurt2rt.core.phase_settings import AskedShare
+from kurt2rt.experiments.lockstep.report import label_of
 from kurt2rt.experiments.phases.outcome import ExamOutcome, StageOutcome
-from kurt2rt.experiments.phases.settings import AskedShare
 from kurt2rt.experiments.phases.steps import CORRUPTED, CRITIC_ALONE, INTACT, LONG_RUN, PHASE_2, REWARDS, phases_of
 from kurt2rt.experiments.phases.study import Study
 from kurt2rt.experiments.phases.summary import Paired, collisions_of, paired, worlds_of
-from kurt2rt.experiments.report import label_of
-from kurt2rt.experiments.shown.intervals import Rate, fall_of, rate_of
-from kurt2rt.experiments.shown.verdict import Target, Values, Verdict
+from kurt2rt.experiments.study.intervals import Rate, fall_of, rate_of
+from kurt2rt.experiments.study.verdict import Target, Values, Verdict
 
 _HOUR_S = 3600.0
 

@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from hal.simulation import SimulationFactory
+from kurt2rt.experiments.lockstep.trails import ASKED, columns, draw_trail
 from kurt2rt.experiments.route.outcome import LAYERS, Place, RouteOutcome
-from kurt2rt.experiments.shown.style import COLLIDED, START, legend_below, save
-from kurt2rt.experiments.trails import ASKED, columns, draw_trail
+from kurt2rt.experiments.study.figure_style import COLLIDED, START, legend_below, save
 
 _ROUTE = "#e8a33d"
 _MARKS = {"symbols": "v", "mid": "s", "basic": "o"}

@@ -7,16 +7,16 @@ import anyio
 
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
-from kurt2rt.experiments.curriculum import Report, run_lesson
-from kurt2rt.experiments.kept.by_stem import KeptByStem
-from kurt2rt.experiments.kept.made_of import MadeOf
-from kurt2rt.experiments.kept.results import Results
-from kurt2rt.experiments.pool import Tell
-from kurt2rt.experiments.robot_time import RobotTime
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
+from kurt2rt.experiments.route.lesson import copy_knowledge, route_of_task, teach_route
 from kurt2rt.experiments.route.outcome import BasicOutcome, RouteOutcome
-from kurt2rt.experiments.route.teaching import copy_knowledge, route_of_task, teach_route
 from kurt2rt.experiments.route.variants import Variant
-from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.experiments.study.pool import Tell
+from kurt2rt.experiments.study.progress_sum import RobotTime
+from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.stored_paths import KeptByStem
 
 _BASIC = "basic"
 

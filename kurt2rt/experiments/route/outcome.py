@@ -3,7 +3,7 @@
 from typing import Literal
 
 from hal.settings import Settings
-from kurt2rt.experiments.kept.made_of import MadeOf
+from kurt2rt.experiments.study.provenance import MadeOf
 
 Place = tuple[float, float]
 """x and y in m, to the millimetre."""

@@ -5,11 +5,11 @@ from pathlib import Path
 
 from hal.simulation import SimulationFactory
 from kurt2rt.experiments.route.figures import draw_routes
-from kurt2rt.experiments.route.study import Study
+from kurt2rt.experiments.route.summary import Study
 from kurt2rt.experiments.route.tables import sheets
-from kurt2rt.experiments.shown.judging import reasons_of_robots
-from kurt2rt.experiments.shown.page import spans, write_page
-from kurt2rt.experiments.shown.picture import Picture
+from kurt2rt.experiments.study.eligibility import reasons_of_robots
+from kurt2rt.experiments.study.figure import Picture
+from kurt2rt.experiments.study.html_report import spans, write_page
 
 _TITLE = "KURT2: routes that its mid level was taught"
 

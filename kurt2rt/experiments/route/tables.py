@@ -2,15 +2,15 @@
 
 from collections.abc import Iterator, Sequence
 
-from kurt2rt.experiments.report import wilson_interval
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.report import wilson_interval
 from kurt2rt.experiments.route.outcome import RouteOutcome
-from kurt2rt.experiments.route.study import Study, Summary
+from kurt2rt.experiments.route.summary import Study, Summary
 from kurt2rt.experiments.route.verdict import verdicts
-from kurt2rt.experiments.shown.judging import reasons_of_robots
-from kurt2rt.experiments.shown.sheet import Sheet
-from kurt2rt.experiments.shown.verdict import Result, Verdict
-from kurt2rt.experiments.shown.verdict_text import cells_of, result_text
-from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.experiments.study.eligibility import reasons_of_robots
+from kurt2rt.experiments.study.table import Sheet
+from kurt2rt.experiments.study.verdict import Result, Verdict
+from kurt2rt.experiments.study.verdict_text import cells_of, result_text
 
 _LAYERS = (
     "Which layer failed: symbols: what the robot had noticed of junctions was not what it had done there; mid: it had "

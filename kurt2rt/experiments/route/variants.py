@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from kurt2rt.experiments.lesson_plan import LessonPlan, plan_of
-from kurt2rt.mid.settings import load_mid
-from kurt2rt.rla.rla import Phase
-from kurt2rt.tasks.settings import TaskSettings
+from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 
 Phases = tuple[tuple[Phase, float], ...]
 

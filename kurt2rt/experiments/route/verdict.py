@@ -3,10 +3,10 @@
 import math
 from collections.abc import Iterator
 
-from kurt2rt.experiments.route.study import Summary
+from kurt2rt.core.task_settings import PaperResult
+from kurt2rt.experiments.route.summary import Summary
 from kurt2rt.experiments.route.variants import TAUGHT
-from kurt2rt.experiments.shown.verdict import Target, Verdict
-from kurt2rt.tasks.settings import PaperResult
+from kurt2rt.experiments.study.verdict import Target, Verdict
 
 WITHOUT_ERROR = {8: 18 / 20, 12: 18 / 20, 16: 15 / 20}
 """Share of the robots that are to drive to the end without an error, by decisions of the route."""

@@ -7,17 +7,17 @@ from typing import Literal
 
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
-from kurt2rt.experiments.drive import Drive
-from kurt2rt.experiments.exam import NothingIsTaught
+from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.teaching.commands import Pursue, Resume
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.experiments.lockstep.drive import Drive
+from kurt2rt.experiments.lockstep.exam import NothingIsTaught
 from kurt2rt.experiments.surprise.stuck_sensor import StuckSensor
-from kurt2rt.knowledge.statistics import Statistics
-from kurt2rt.rla.rla import TeachingEvent
-from kurt2rt.rla.statistics import StatisticsCounter
+from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
-from kurt2rt.tasks.settings import TaskSettings
-from kurt2rt.teaching.commands import Pursue, Resume
-from kurt2rt.tick import TickRecord
-from kurt2rt.timing.clock import LockstepClock
 
 Different = Literal["nothing", "stuck sensor", "set down elsewhere", "another world"]
 """What is different from the drive that expectations were learned on."""

@@ -5,14 +5,14 @@ from collections import Counter
 import pytest
 
 from behaviors.repertoire import load_repertoire
-from kurt2rt.experiments.exam import NothingIsTaught
-from kurt2rt.layers.policy_level import PolicyLevel
-from kurt2rt.layers.wanted import Wanted
+from kurt2rt.core.basic.policy_level import PolicyLevel
+from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.experiments.lockstep.exam import NothingIsTaught
+from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
-from kurt2rt.simulated import Kurt2Simulation
-from kurt2rt.tasks.settings import load_task
-from kurt2rt.tick import TickRecord
-from kurt2rt.timing.clock import LockstepClock
+from simbridge.simulation import Kurt2Simulation
 from tests.behaviors.helpers import ROBOT
 
 

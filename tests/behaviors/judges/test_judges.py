@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from behaviors.judges.judge import AppraisalFeatures, Judge
-from kurt2rt.tasks.settings import load_task
+from kurt2rt.core.task_settings import load_task
 from tests.examples import examples
 
 TASKS = ("wall_following", "fleeing", "eight")

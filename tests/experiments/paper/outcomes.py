@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 
-from kurt2rt.experiments.kept.made_of import MadeOf
+from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.paper.outcome import DriveOutcome, Reading, TaughtOutcome
-from kurt2rt.experiments.paper.programme import Experiment
+from kurt2rt.experiments.paper.plan import Experiment
 from kurt2rt.experiments.paper.settings import ExperimentSettings, load_paper
 from kurt2rt.experiments.paper.summary import Summary, summarize
-from kurt2rt.tasks.settings import load_task
+from kurt2rt.experiments.study.provenance import MadeOf
 
 MADE_OF = MadeOf(task="t", robot="r", worlds="w", source="s", versions="Python 3")
 

@@ -5,13 +5,13 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.kept.results import Results
+from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.paper.extent import QUICK, WHOLE
 from kurt2rt.experiments.paper.judging import reasons_not_to_judge
-from kurt2rt.experiments.paper.programme import Experiment, Programme, unseen_of
+from kurt2rt.experiments.paper.plan import Experiment, Programme, unseen_of
 from kurt2rt.experiments.paper.settings import ExperimentSettings, load_paper
 from kurt2rt.experiments.paper.taught_job import TaughtJob
-from kurt2rt.tasks.settings import load_task
+from kurt2rt.experiments.study.results import Results
 from tests.experiments.helpers import ROBOT, STAGE
 from tests.experiments.paper.outcomes import MADE_OF, settings_of
 

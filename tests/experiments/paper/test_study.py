@@ -9,16 +9,16 @@ from pathlib import Path
 import pytest
 from matplotlib.image import imread
 
-from kurt2rt.experiments.kept.results import Results
+from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.paper.report import write_report
-from kurt2rt.experiments.paper.settings_sheets import SUCCESS, exams_sheet, learning_sheet
+from kurt2rt.experiments.paper.settings_tables import SUCCESS, exams_sheet, learning_sheet
 from kurt2rt.experiments.paper.study import conduct
 from kurt2rt.experiments.paper.tables import sheets
-from kurt2rt.knowledge.opening import read_lessons
-from kurt2rt.tasks.settings import load_task
+from kurt2rt.experiments.study.results import Results
+from kurt2rt.knowledge.journal.loading import read_lessons
 from tests.experiments.helpers import ROBOT
 from tests.experiments.paper.tiny import COMMAND, Tiny, tiny_programme
-from tests.experiments.shown.page import Page
+from tests.experiments.study.page import Page
 
 pytestmark = pytest.mark.deep  # what all look at takes seconds; tests/cli/test_paper.py is the quick story
 

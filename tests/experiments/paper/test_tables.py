@@ -14,7 +14,7 @@ from kurt2rt.experiments.paper.tables import (
     knowledge_sheet,
     unseen_sheet,
 )
-from kurt2rt.experiments.shown.sheet import Sheet, as_rich
+from kurt2rt.experiments.study.table import Sheet, as_rich
 from tests.experiments.paper.outcomes import MADE_OF, drive, robot, summary_of
 
 

@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from kurt2rt.experiments.kept.results import Results
 from kurt2rt.experiments.paper.extent import Extent
-from kurt2rt.experiments.paper.pictures import draw_pictures
-from kurt2rt.experiments.paper.programme import Programme, plan
+from kurt2rt.experiments.paper.figure_files import draw_pictures
+from kurt2rt.experiments.paper.plan import Programme, plan
 from kurt2rt.experiments.paper.report import write_report
 from kurt2rt.experiments.paper.settings import load_paper
 from kurt2rt.experiments.paper.study import Study, conduct, read_study
-from kurt2rt.experiments.shown.picture import Picture
+from kurt2rt.experiments.study.figure import Picture
+from kurt2rt.experiments.study.results import Results
 from tests.experiments.helpers import ROBOT, STAGE
 
 EXTENT = Extent(most_teaching_s=4.0, most_exam_s=1.0, most_unseen=1, most_radii=1, most_robots=1, most_growth_s=4.0)

@@ -2,9 +2,10 @@
 
 from collections.abc import Sequence
 
-from kurt2rt.experiments.load import Minute
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.experiments.lockstep.teacher_workload import Minute
 from kurt2rt.experiments.phases.outcome import ExamOutcome, StageOutcome, TeachingOutcome
-from kurt2rt.experiments.phases.programme import Programme
+from kurt2rt.experiments.phases.plan import Programme
 from kurt2rt.experiments.phases.steps import (
     ASKS,
     BLAME_BY_CHANCE,
@@ -24,7 +25,6 @@ from kurt2rt.experiments.phases.steps import (
     UNTAUGHT,
 )
 from kurt2rt.experiments.phases.study import Study
-from kurt2rt.tasks.settings import TaskSettings, load_task
 
 TASK = load_task("wall_following")
 ALL = (

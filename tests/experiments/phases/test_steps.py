@@ -3,6 +3,8 @@
 import pytest
 
 from hal.settings import SettingsError
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.phases.steps import (
     ASKS,
     BLAME_BY_CHANCE,
@@ -22,8 +24,6 @@ from kurt2rt.experiments.phases.steps import (
     UNKNOWN_BAD,
     steps_of,
 )
-from kurt2rt.rla.rla import Phase
-from kurt2rt.tasks.settings import load_task
 
 TASK = load_task("wall_following")
 STEPS = {step.name: step for step in steps_of(TASK)}

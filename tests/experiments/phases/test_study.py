@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from matplotlib.image import imread
 
-from kurt2rt.experiments.kept.results import Results, StudyError
+from kurt2rt.core.rla.rla import CRITIC, ActionReplaced, Appraised, RlaCreated, TeachingEvent
 from kurt2rt.experiments.phases.steps import (
     CORRUPTED,
     CRITIC_ALONE,
@@ -19,14 +19,14 @@ from kurt2rt.experiments.phases.steps import (
     SHUFFLED,
 )
 from kurt2rt.experiments.phases.study import conduct, read_study
-from kurt2rt.experiments.phases.tables import sheets
-from kurt2rt.experiments.pool import Standing
-from kurt2rt.knowledge.opening import read_lessons
-from kurt2rt.rla.rla import CRITIC, ActionReplaced, Appraised, RlaCreated, TeachingEvent
+from kurt2rt.experiments.phases.table_rows import sheets
+from kurt2rt.experiments.study.pool import Standing
+from kurt2rt.experiments.study.results import Results, StudyError
+from kurt2rt.knowledge.journal.loading import read_lessons
 from tests.experiments.helpers import ROBOT
 from tests.experiments.phases.outcomes import ALL
 from tests.experiments.phases.tiny import COMMAND, Tiny, tiny_programme, tiny_task
-from tests.experiments.shown.page import Page
+from tests.experiments.study.page import Page
 
 
 def lessons(tiny: Tiny, step: str) -> list[TeachingEvent]:

@@ -5,7 +5,7 @@ import pytest
 from kurt2rt.experiments.phases.outcome import ExamOutcome
 from kurt2rt.experiments.phases.steps import CORRUPTED, CRITIC_ALONE, INTACT, LONG_RUN, PHASE_2, REWARDS
 from kurt2rt.experiments.phases.verdict import interventions, verdicts
-from kurt2rt.experiments.shown.verdict import Result, Target, Verdict
+from kurt2rt.experiments.study.verdict import Result, Target, Verdict
 from tests.experiments.phases.outcomes import TASK, exam, stage, study, teaching
 
 

@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from kurt2rt.experiments.kept.results import Results
+from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.phases.figures import draw_pictures
-from kurt2rt.experiments.phases.programme import Programme, plan
+from kurt2rt.experiments.phases.plan import Programme, plan
 from kurt2rt.experiments.phases.report import reasons_not_to_judge, write_report
 from kurt2rt.experiments.phases.study import Study, conduct, read_study
-from kurt2rt.experiments.shown.picture import Picture
-from kurt2rt.tasks.settings import TaskSettings, load_task
+from kurt2rt.experiments.study.figure import Picture
+from kurt2rt.experiments.study.results import Results
 from tests.experiments.helpers import ROBOT, STAGE
 
 COMMAND = "kurt2rt phases --task wall_following --seeds 100"

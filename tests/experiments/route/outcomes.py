@@ -1,7 +1,7 @@
 """What jobs leave, written by hand."""
 
-from kurt2rt.experiments.kept.made_of import MadeOf
 from kurt2rt.experiments.route.outcome import Layer, RouteDrive, RouteOutcome, Wrong
+from kurt2rt.experiments.study.provenance import MadeOf
 
 MADE_OF = MadeOf(task="t", robot="r", worlds="w", source="s", versions="v")
 SQUARE = ((2.2, 2.2), (2.2, 4.0), (4.0, 4.0), (4.0, 2.2))

@@ -1,14 +1,14 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from kurt2rt.experiments.kept.results import Results
+from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.route.outcome import RouteOutcome
-from kurt2rt.experiments.route.programme import Experiment, Programme, plan
-from kurt2rt.experiments.route.study import Study, Summary
+from kurt2rt.experiments.route.plan import Experiment, Programme, plan
+from kurt2rt.experiments.route.summary import Study, Summary
 from kurt2rt.experiments.route.tables import errors_of, sheets
 from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT, Variant
-from kurt2rt.experiments.shown.sheet import Sheet
-from kurt2rt.tasks.settings import load_task
+from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.table import Sheet
 from tests.experiments.helpers import ROBOT, STAGE
 from tests.experiments.route.outcomes import drive, outcome
 

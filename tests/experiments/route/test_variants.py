@@ -1,9 +1,9 @@
 import pytest
 
+from kurt2rt.core.mid.settings import MidSettings
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT, Variant
-from kurt2rt.mid.settings import MidSettings
-from kurt2rt.rla.rla import Phase
-from kurt2rt.tasks.settings import TaskSettings, load_task
 from tests.experiments.helpers import ROBOT
 
 

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.shown.sheet import Sheet
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.experiments.study.table import Sheet
 from kurt2rt.experiments.surprise.drive import Surprises
-from kurt2rt.experiments.surprise.study import SurpriseJob, sheet_of
-from kurt2rt.tasks.settings import TaskSettings, load_task
+from kurt2rt.experiments.surprise.jobs import SurpriseJob, sheet_of
 from tests.experiments.helpers import ROBOT, STAGE, teach
 
 QUIET = Surprises("nothing", 200, 4, 10, 0, 0, 0.0)
@@ -47,7 +47,7 @@ def test_on_known_ground_little_is_surprising_and_more_where_something_is_differ
     assert set_down.surprising_first_ends > 0.5 * set_down.first_ends > 0
 
 
-@pytest.mark.deep  # the same lesson twice, in tests/experiments/test_phases_of_a_lesson.py, is not
+@pytest.mark.deep  # the same lesson twice, in tests/experiments/lockstep/test_phases_of_a_lesson.py, is not
 def test_the_same_seed_gives_the_same_surprises(taught_shortly: SurpriseJob) -> None:
     assert taught_shortly.run(lambda _: None) == taught_shortly.run(lambda _: None)
 

@@ -19,9 +19,9 @@ from config import CONFIG_DIR
 from hal.bus import CONTROL_ID, open_bus
 from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
-from kurt2rt.channel.state import State
-from kurt2rt.teaching import TeacherClient
-from kurt2rt.teaching.active_stop import ActiveStop, StopReason
+from kurt2rt.channel.protocol.state import State
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.teacher import TeacherClient
 from tests.cli.helpers import Running, running
 from tests.cli.three_programs import (
     CODEC,

@@ -12,7 +12,7 @@ from hal.bus import CanBus, FramePort, open_bus
 from hal.robot_settings import load_robot
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
-from simbridge.world_loading import load_world
+from simbridge.worlds.world_loading import load_world
 from tests.hal.helpers import CODEC, INFRARED_FRAMES
 
 

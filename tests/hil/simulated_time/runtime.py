@@ -15,15 +15,15 @@ from hal.bus import open_bus
 from hal.kurt2 import Kurt2
 from hal.robot import SensorReadings
 from hal.robot_settings import load_robot
-from kurt2rt.experiments.exam import NothingIsTaught
-from kurt2rt.layers.decision import Cause, Decision
-from kurt2rt.layers.policy_level import PolicyLevel
-from kurt2rt.layers.wanted import Wanted
-from kurt2rt.perception.perception import Situation
+from kurt2rt.core.basic.policy_level import PolicyLevel
+from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.perception.perception import Situation
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.experiments.lockstep.exam import NothingIsTaught
+from kurt2rt.platform.timerfd_clock import TimerfdClock
 from kurt2rt.runtime import build_runtime
-from kurt2rt.tasks.settings import load_task
-from kurt2rt.tick import TickRecord
-from kurt2rt.timing.timerfd import TimerfdClock
 
 HANG_S = 1.0
 

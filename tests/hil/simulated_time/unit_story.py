@@ -15,10 +15,10 @@ import pytest
 import yaml
 
 from config import CONFIG_DIR
-from kurt2rt.standing_text import stop_text
-from kurt2rt.teaching import TeacherClient
-from kurt2rt.teaching.active_stop import STARTED
-from kurt2rt.timing.priority import UNIT_PRIORITY
+from kurt2rt.core.decision.active_stop import STARTED
+from kurt2rt.core.decision.standing_text import stop_text
+from kurt2rt.platform.realtime_priority import UNIT_PRIORITY
+from kurt2rt.teacher import TeacherClient
 from tests.cli.helpers import Running, running
 from tests.cli.test_run_as_service import priorities_of
 from tests.cli.three_programs import brakes, is_control, onlooker, stands, state_where, turns, until_it_drives

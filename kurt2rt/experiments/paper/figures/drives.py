@@ -9,11 +9,11 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from hal.simulation import SimulationFactory
-from kurt2rt.experiments.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
+from kurt2rt.experiments.lockstep.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
+from kurt2rt.experiments.lockstep.report import label_of
+from kurt2rt.experiments.lockstep.trails import ASKED, columns, draw_trail
 from kurt2rt.experiments.paper.outcome import DriveOutcome
-from kurt2rt.experiments.report import label_of
-from kurt2rt.experiments.shown.style import COLLIDED, START, legend_below, save
-from kurt2rt.experiments.trails import ASKED, columns, draw_trail
+from kurt2rt.experiments.study.figure_style import COLLIDED, START, legend_below, save
 
 _LIFTED_M = 0.5
 """A robot that is so far from where it was a moment ago was set down elsewhere."""

@@ -7,9 +7,9 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from kurt2rt.core.task_settings import PaperResult
 from kurt2rt.experiments.paper.study import GrowthStudy
-from kurt2rt.experiments.shown.style import save
-from kurt2rt.tasks.settings import PaperResult
+from kurt2rt.experiments.study.figure_style import save
 
 _TITLES = {"shipped": "With the shipped settings", "plain": "Plain reading of the paper"}
 

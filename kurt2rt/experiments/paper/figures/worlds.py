@@ -7,8 +7,8 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from hal.simulation import SimulationFactory
-from kurt2rt.experiments.report import label_of
-from kurt2rt.experiments.shown.style import save
+from kurt2rt.experiments.lockstep.report import label_of
+from kurt2rt.experiments.study.figure_style import save
 
 
 def draw_testing_ground(stage: SimulationFactory, world: str, path: Path) -> None:

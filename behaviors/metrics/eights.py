@@ -1,0 +1,92 @@
+"""Eights about the two posts of a world: round the western one counter-clockwise, round the eastern one clockwise."""
+
+import random
+from typing import Annotated
+
+from pydantic import Field
+
+from behaviors.metrics.angle_about import AngleAbout
+from behaviors.metrics.mean import MEASURE_EVERY, Mean
+from behaviors.metrics.task_metric import DISTANCE_ERROR, Course, CourseSettings, Findings
+from hal.settings import SettingsError
+from hal.simulation import Pose, Post, Simulation, WorldPlan
+
+_WHOLE = 5 / 6
+"""Of a round from the middle back to the middle; what is missing was driven on the other post's side."""
+
+
+class EightsSettings(CourseSettings):
+    """Eights."""
+
+    wanted_m: Annotated[float, Field(gt=0, le=5)]
+    """Distance from the robot's centre to the face of the nearer post."""
+
+    def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:  # noqa: ARG002
+        """Two posts."""
+        if len(plan.posts) != 2:
+            raise SettingsError(
+                f"course eights: world {plan.name} has {len(plan.posts)} round obstacles", do="choose one with two"
+            )
+
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+        """The course."""
+        plan = simulation.plan
+        self.require(plan, behaviours)
+        west, east = sorted(plan.posts, key=lambda post: post.x_m)
+        return Eights(self, west, east, behaviours[0])
+
+
+class Eights:
+    """Counts half an eight for each round about the one post that follows a round about the other.
+
+    A round is what the robot does between coming to a post's side of the floor and leaving it; it must be whole, in the
+    wanted direction. Further rounds about the same post count for nothing.
+    """
+
+    unit = "eights"
+    stranded = False
+
+    def __init__(self, settings: EightsSettings, west: Post, east: Post, behaviour: str) -> None:
+        self.behaviour = behaviour
+        self.progress = 0.0
+        self._wanted_m = settings.wanted_m
+        self._posts = (west, east)
+        self._sides = (AngleAbout(west.x_m, west.y_m), AngleAbout(east.x_m, east.y_m))
+        self._side: int | None = None
+        self._rounded: int | None = None
+        self._error_m = Mean()
+        self._ticks = 0
+
+    @property
+    def findings(self) -> Findings:
+        """The distance error."""
+        return self._error_m.named(DISTANCE_ERROR)
+
+    def put(self, pose: Pose) -> None:
+        """To be set down elsewhere breaks off the round, and the eight."""
+        self._side = self._rounded = None
+        self.follow(pose)
+
+    def follow(self, pose: Pose) -> None:
+        """A step further."""
+        away_m = [swept.away_m(pose) - post.radius_m for swept, post in zip(self._sides, self._posts, strict=True)]
+        side = 0 if away_m[0] <= away_m[1] else 1
+        if self._ticks % MEASURE_EVERY == 0:
+            self._error_m.add(abs(away_m[side] - self._wanted_m))
+        self._ticks += 1
+        if side != self._side:
+            if self._side is not None:
+                self._leave(self._side)
+            self._side = side
+            self._sides[side].lose()
+            self._sides[side].rounds = 0.0
+        self._sides[side].follow(pose)
+
+    def end_early(self) -> None:
+        """What was made counts, and nothing else is."""
+
+    def _leave(self, side: int) -> None:
+        rounds = self._sides[side].rounds
+        if (rounds if side == 0 else -rounds) >= _WHOLE and self._rounded != side:
+            self._rounded = side
+            self.progress += 0.5

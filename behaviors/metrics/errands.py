@@ -1,0 +1,85 @@
+"""Errands in a town: the robot is led about and told names of places, and is sent to them later."""
+
+import random
+from typing import Annotated
+
+from pydantic import Field
+
+from behaviors.metrics.junctions import QUARTERS
+from behaviors.metrics.streets import StreetMap
+from behaviors.metrics.task_metric import JUNCTIONS, Course, CourseSettings, Findings
+from behaviors.metrics.town import Street, Town
+from hal.settings import SettingsError
+from hal.simulation import Pose, Simulation, WorldPlan
+
+
+class ErrandsSettings(CourseSettings):
+    """Errands."""
+
+    names: Annotated[int, Field(ge=1, le=1000)]
+    """So many places get a name, home left out; the robot is sent to them."""
+    goals: Annotated[int, Field(ge=1, le=1000)]
+    """How often it is sent."""
+    junctions_at_least: Annotated[int, Field(ge=1, le=100)]
+    """On the shortest way to a goal."""
+    detour_at_most: Annotated[float, Field(ge=1, le=10)]
+    """A goal counts as reached by a way of at most so many times the shortest; and no way that it was led from there
+    to there in one piece may be that short, else the goal was demonstrated."""
+
+    def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
+        """Streets that meet, and behaviours that mean a way through."""
+        if not set(behaviours) <= set(QUARTERS):
+            raise SettingsError(f"course errands: the task's behaviours must be among {', '.join(QUARTERS)}")
+        if not plan.junctions:
+            raise SettingsError(
+                f"course errands: world {plan.name} has no streets that meet", do="choose one with streets"
+            )
+
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+        """The course."""
+        return self.walk_in(simulation.plan, behaviours)
+
+    def walk_in(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> "Errands":
+        """The same, for those who need to know where the robot is. Raises hal.settings.SettingsError."""
+        self.require(plan, behaviours)
+        return Errands(Town(StreetMap(plan), {each: QUARTERS[each] for each in behaviours}), behaviours[0])
+
+
+class Errands:
+    """Follows the robot from street to street."""
+
+    unit = "junctions"
+    stranded = False
+
+    def __init__(self, town: Town, behaviour: str) -> None:
+        self.town = town
+        self.behaviour = behaviour
+        self.progress = 0.0
+        self.street: Street | None = None
+        """Where it is; None within a junction, and off the streets."""
+        self.streets: list[Street | None] = []
+        """All that it came to, one after the other; None where it was set down elsewhere."""
+
+    @property
+    def findings(self) -> Findings:
+        """Junctions that it left."""
+        return {JUNCTIONS: self.progress}
+
+    def put(self, pose: Pose) -> None:
+        """Set down here."""
+        self.street = self.town.street_at(pose)
+        self.streets += [None, self.street]
+
+    def follow(self, pose: Pose) -> None:
+        """A step further."""
+        # From the edge of the junction on: a robot may know that it is in the next street a hand's breadth behind it.
+        here = self.town.street_at(pose)
+        if here is None:
+            self.street = None
+        elif self.street is None:
+            self.street = here
+            self.streets.append(here)
+            self.progress += 1
+
+    def end_early(self) -> None:
+        """What it came to counts."""

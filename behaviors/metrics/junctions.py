@@ -1,0 +1,155 @@
+"""Junctions on a way through streets: a dispatcher says which way to take, and sees which way was taken."""
+
+import math
+import random
+from collections import Counter
+
+from behaviors.metrics.mean import MEASURE_EVERY, Mean
+from behaviors.metrics.streets import Junction, Side, StreetMap, side_towards
+from behaviors.metrics.task_metric import JUNCTIONS, LATERAL_DEVIATION, RIGHT, Course, CourseSettings, Findings
+from hal.settings import SettingsError
+from hal.simulation import Pose, Simulation, WorldPlan
+
+QUARTERS = {"straight_on": 0, "turn_left": 1, "turn_right": -1}
+"""What each behaviour means: quarter turns to the left."""
+_LOOK_EVERY = 5
+"""Ticks from one look to the next; the robot goes some centimetres meanwhile."""
+_LEFT_BEHIND_M = 0.1
+
+
+class JunctionsSettings(CourseSettings):
+    """Junctions."""
+
+    def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
+        """Streets that meet, and behaviours that mean a way through."""
+        if not set(behaviours) <= set(QUARTERS):
+            raise SettingsError(f"course junctions: the task's behaviours must be among {', '.join(QUARTERS)}")
+        if not plan.junctions:
+            raise SettingsError(
+                f"course junctions: world {plan.name} has no streets that meet", do="choose one with streets"
+            )
+
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:
+        """The course."""
+        plan = simulation.plan
+        self.require(plan, behaviours)
+        return Junctions(StreetMap(plan), behaviours, chance)
+
+
+class Junctions:
+    """Asks at random for what is possible at the next junction, and counts how often it is done.
+
+    The next command comes as soon as the robot has left a junction behind. What was asked for at a junction that the
+    robot did not get to, or not out of, was not done: who turns back, or ends early, does it wrong. A robot that can do
+    none of its behaviours at the junction that it comes to is stranded.
+    """
+
+    unit = "junctions"
+
+    def __init__(self, streets: StreetMap, behaviours: tuple[str, ...], chance: random.Random) -> None:
+        self.behaviour = behaviours[0]
+        self.stranded = False
+        self._streets = streets
+        self._behaviours = behaviours
+        self._chance = chance
+        self._inside: Junction | None = None
+        self._asked: Side | None = None
+        """The side of that junction that the command means; None when nothing is asked for there."""
+        self._ahead: Junction | None = None
+        """The junction that the command is about while the robot is on the way there; None when about none."""
+        self._passed: Counter[str] = Counter()
+        self._right: Counter[str] = Counter()
+        self._deviation2_m2 = Mean()
+        self._looks = 0
+        self._ticks = 0
+
+    @property
+    def progress(self) -> float:
+        """Junctions left through the right side."""
+        return float(self._right.total())
+
+    @property
+    def findings(self) -> Findings:
+        """Junctions asked and right, in all and for each behaviour, and the lateral deviation in the streets."""
+        found = {JUNCTIONS: float(self._passed.total()), RIGHT: float(self._right.total())}
+        if len(self._behaviours) > 1:
+            for each in self._behaviours:
+                found[f"{JUNCTIONS}, {each}"] = float(self._passed[each])
+                found[f"{RIGHT}, {each}"] = float(self._right[each])
+        deviation_m = {name: math.sqrt(mean) for name, mean in self._deviation2_m2.named(LATERAL_DEVIATION).items()}
+        return found | deviation_m
+
+    def put(self, pose: Pose) -> None:
+        """Set down here: the next junction is the one that the robot looks towards."""
+        self.stranded = False
+        way = side_towards(math.cos(pose.heading_rad), math.sin(pose.heading_rad))
+        self._asked = self._ahead = None
+        self._inside = self._streets.junction_at(pose)
+        if self._inside is None:
+            self._ahead = self._command(self._streets.next_junction(pose, way), way)
+        else:
+            self._command(self._inside, way)  # not judged: nobody can say where it came from
+
+    def follow(self, pose: Pose) -> None:
+        """A step further."""
+        due = self._ticks % _LOOK_EVERY == 0
+        self._ticks += 1
+        if not due:
+            return
+        if self._looks % (MEASURE_EVERY // _LOOK_EVERY) == 0:
+            deviation_m = self._streets.deviation_m(pose)
+            if deviation_m is not None:
+                self._deviation2_m2.add(deviation_m**2)
+        self._looks += 1
+        if self._inside is None:
+            junction = self._streets.junction_at(pose)
+            if junction is not None:
+                self._enter(junction, junction.side_of(pose).turned(2))
+        elif not self._inside.holds(pose, _LEFT_BEHIND_M):
+            self._leave(self._inside, pose)
+
+    def end_early(self) -> None:
+        """Stuck, or stopped for good: it will not get through the junction that it was asked for."""
+        if self._asked is not None or self._ahead is not None:
+            self._judge(right=False)
+        self._asked = self._ahead = None
+
+    def _enter(self, junction: Junction, way: Side) -> None:
+        if self._ahead is not None and self._ahead != junction:
+            self._judge(right=False)  # it turned back on the way
+        self._ahead = None
+        self._inside = junction
+        if self._side_meant(junction, way, self.behaviour) is None:
+            # It came to another junction than the command is about, or its only behaviour leads nowhere here.
+            self._command(junction, way)
+        self._asked = self._side_meant(junction, way, self.behaviour)
+        self.stranded = self._asked is None
+
+    def _leave(self, junction: Junction, pose: Pose) -> None:
+        way = junction.side_of(pose)
+        if self._asked is not None:
+            self._judge(right=way is self._asked)
+        self._inside = self._asked = None
+        self._ahead = self._command(self._streets.next_junction(pose, way), way)
+
+    def _judge(self, *, right: bool) -> None:
+        self._passed[self.behaviour] += 1
+        self._right[self.behaviour] += right
+
+    def _command(self, junction: Junction | None, way: Side) -> Junction | None:
+        """Ask for something that is possible at this junction for a robot that comes this way.
+
+        Returns the junction, or None where nothing can be asked for.
+        """
+        if junction is None:
+            return None
+        possible = [each for each in self._behaviours if self._side_meant(junction, way, each) is not None]
+        if not possible:
+            return None
+        self.behaviour = self._chance.choice(possible)
+        return junction
+
+    @staticmethod
+    def _side_meant(junction: Junction, way: Side, behaviour: str) -> Side | None:
+        side = way.turned(QUARTERS[behaviour])
+        return side if side in junction.arms else None

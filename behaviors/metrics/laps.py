@@ -1,0 +1,61 @@
+"""Way along the walls in laps, with the wall on the left."""
+
+import random
+from typing import Annotated
+
+from pydantic import Field
+
+from behaviors.metrics.mean import MEASURE_EVERY, Mean
+from behaviors.metrics.task_metric import DISTANCE_ERROR, LEAST_SPEED_M_S, Course, CourseSettings, Findings
+from hal.simulation import Pose, Simulation
+
+
+class LapsSettings(CourseSettings):
+    """Laps."""
+
+    wanted_m: Annotated[float, Field(gt=0, le=5)]
+    """Distance that is wanted from the robot's centre to the nearest wall."""
+
+    def least_progress(self, simulation: Simulation, duration_s: float) -> float:
+        """Return the laps of a drive that makes 0.1 m/s along walls."""
+        return LEAST_SPEED_M_S * duration_s / simulation.lap_m
+
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+        """The course."""
+        return Laps(self, simulation, behaviours[0])
+
+
+class Laps:
+    """Counts laps, and how far from the wanted distance the robot is on the mean."""
+
+    unit = "laps"
+    stranded = False
+
+    def __init__(self, settings: LapsSettings, simulation: Simulation, behaviour: str) -> None:
+        self.behaviour = behaviour
+        self._wanted_m = settings.wanted_m
+        self._simulation = simulation
+        self._error_m = Mean()
+        self._ticks = 0
+
+    @property
+    def progress(self) -> float:
+        """Laps made."""
+        return self._simulation.laps
+
+    @property
+    def findings(self) -> Findings:
+        """The distance error."""
+        return self._error_m.named(DISTANCE_ERROR)
+
+    def put(self, pose: Pose) -> None:
+        """The simulation knows itself that this is no way made."""
+
+    def follow(self, pose: Pose) -> None:  # noqa: ARG002 - the simulation looks itself
+        """Measure the distance now and then."""
+        if self._ticks % MEASURE_EVERY == 0:
+            self._error_m.add(abs(self._simulation.nearest_m - self._wanted_m))
+        self._ticks += 1
+
+    def end_early(self) -> None:
+        """What was made counts, and nothing else is."""

@@ -1,0 +1,23 @@
+"""Courses by name: `laps` is in the file `laps.py` of this folder."""
+
+from typing import Annotated
+
+from pydantic import PlainValidator, SerializeAsAny
+
+from behaviors.metrics.task_metric import CourseSettings
+from hal.settings_by_kind import as_its_kind, find_kind
+
+_PACKAGE = "behaviors.metrics"
+
+
+def course_settings(kind: str) -> type[CourseSettings]:
+    """Settings of a kind of course. Raises ValueError that lists the kinds there are."""
+    return find_kind(_PACKAGE, kind, CourseSettings)  # type: ignore[type-abstract]
+
+
+def _checked(given: object) -> CourseSettings:
+    return as_its_kind(given, _PACKAGE, CourseSettings)  # type: ignore[type-abstract]
+
+
+AnyCourseSettings = Annotated[SerializeAsAny[CourseSettings], PlainValidator(_checked)]
+"""In a schema: settings of whatever course the file names."""

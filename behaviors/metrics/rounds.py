@@ -1,0 +1,83 @@
+"""Rounds about the single post of a world."""
+
+import random
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from behaviors.metrics.angle_about import AngleAbout
+from behaviors.metrics.mean import MEASURE_EVERY, Mean
+from behaviors.metrics.task_metric import DISTANCE_ERROR, Course, CourseSettings, Findings
+from hal.settings import SettingsError
+from hal.simulation import Pose, Post, Simulation, WorldPlan
+
+Distance = Annotated[float, Field(gt=0, le=5)]
+
+
+class RoundsSettings(CourseSettings):
+    """Rounds; distances from the robot's centre to the face of the post."""
+
+    wanted_m: Distance
+    within_m: Distance
+    """Farther off the robot is not at the post, and what it does counts for nothing."""
+    turning: Literal["left", "right"]
+    """Left: counter-clockwise, with the post on the left."""
+
+    def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:  # noqa: ARG002
+        """One post."""
+        if len(plan.posts) != 1:
+            raise SettingsError(
+                f"course rounds: world {plan.name} has {len(plan.posts)} round obstacles",
+                do="choose one with a single one",
+            )
+
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+        """The course."""
+        plan = simulation.plan
+        self.require(plan, behaviours)
+        return Rounds(self, plan.posts[0], behaviours[0])
+
+
+class Rounds:
+    """Counts rounds near the post, back turns against, and how far from the wanted distance they lead on the mean."""
+
+    unit = "rounds"
+    stranded = False
+
+    def __init__(self, settings: RoundsSettings, post: Post, behaviour: str) -> None:
+        self.behaviour = behaviour
+        self._settings = settings
+        self._radius_m = post.radius_m
+        self._swept = AngleAbout(post.x_m, post.y_m)
+        self._sign = 1.0 if settings.turning == "left" else -1.0
+        self._error_m = Mean()
+        self._ticks = 0
+
+    @property
+    def progress(self) -> float:
+        """Rounds made in the wanted direction."""
+        return self._sign * self._swept.rounds
+
+    @property
+    def findings(self) -> Findings:
+        """The distance error, also from where the robot is not at the post."""
+        return self._error_m.named(DISTANCE_ERROR)
+
+    def put(self, pose: Pose) -> None:
+        """To be set down elsewhere makes no round."""
+        self._swept.lose()
+        self.follow(pose)
+
+    def follow(self, pose: Pose) -> None:
+        """A step further."""
+        away_m = self._swept.away_m(pose) - self._radius_m
+        if self._ticks % MEASURE_EVERY == 0:
+            self._error_m.add(abs(away_m - self._settings.wanted_m))
+        self._ticks += 1
+        if away_m > self._settings.within_m:
+            self._swept.lose()
+        else:
+            self._swept.follow(pose)
+
+    def end_early(self) -> None:
+        """What was made counts, and nothing else is."""

@@ -1,0 +1,189 @@
+"""A fixed route through streets: a closed loop, the same in the lesson and in every exam."""
+
+import math
+import random
+from collections import Counter
+from dataclasses import dataclass
+from typing import Annotated
+
+from pydantic import Field
+
+from behaviors.metrics.junctions import QUARTERS
+from behaviors.metrics.mean import MEASURE_EVERY, Mean
+from behaviors.metrics.routes import Leg, Route, random_route
+from behaviors.metrics.streets import Junction, StreetMap
+from behaviors.metrics.task_metric import (
+    JUNCTIONS,
+    LATERAL_DEVIATION,
+    RIGHT,
+    Course,
+    CourseSettings,
+    Findings,
+    WayAhead,
+)
+from hal.settings import SettingsError
+from hal.simulation import Pose, Simulation, WorldPlan
+
+_LOOK_EVERY = 5
+"""Ticks from one look to the next; the robot goes some centimetres meanwhile."""
+_LEFT_BEHIND_M = 0.1
+
+
+class RouteSettings(CourseSettings):
+    """Route."""
+
+    decisions: Annotated[int, Field(ge=4, le=64)] = 8
+    """Junctions of the loop; at each of them one way on is right."""
+    seed: Annotated[int, Field(ge=0)] | None = None
+    """Which loop of all that there are; None: the one of the robot's seed, where a robot is taught it."""
+    starts: Annotated[int, Field(ge=1, le=100)] = 1
+    """So often in its lesson it is switched on anew at the start: what it decides there, before it has a history, is
+    corrected only where it comes there again."""
+
+    def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
+        """Streets with such a loop, and behaviours that mean a way through."""
+        if not set(behaviours) <= set(QUARTERS):
+            raise SettingsError(f"course route: the task's behaviours must be among {', '.join(QUARTERS)}")
+        if not plan.junctions:
+            raise SettingsError(
+                f"course route: world {plan.name} has no streets that meet", do="choose one with streets"
+            )
+        self.route_in(plan, behaviours)
+
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+        """The course; chance decides nothing of it, or another route would be examined than was taught."""
+        plan = simulation.plan
+        self.require(plan, behaviours)
+        return FixedRoute(StreetMap(plan), self.route_in(plan, behaviours), behaviours)
+
+    def route_in(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> Route:
+        """The loop in a world. Raises hal.settings.SettingsError where there is none."""
+        chance = random.Random(f"route of {self.decisions} decisions, seed {self.seed or 0}")
+        return random_route(StreetMap(plan), self.decisions, [QUARTERS[each] for each in behaviours], chance)
+
+
+@dataclass(frozen=True, slots=True)
+class Passage:
+    """What the robot did at one junction of the route."""
+
+    leg: int
+    """Which one of the route it came by."""
+    right: int
+    """Quarter turns to the left that were right."""
+    taken: int | None
+    """Those that it made; None where it did not come to that junction, or not out of it."""
+    x_m: float
+    y_m: float
+    """Where that was judged."""
+
+
+class FixedRoute:
+    """Counts what is right at the junctions of the route.
+
+    A robot that left it counts as wrong, is stranded, and is to be set down on the street that it should have taken:
+    what comes next is judged as if nothing had been. One that is stuck on its way to a junction is to try that once
+    more, one that is stuck within it is to go on behind it.
+    """
+
+    unit = "junctions"
+
+    def __init__(self, streets: StreetMap, route: Route, behaviours: tuple[str, ...]) -> None:
+        self.route = route
+        self.stranded = False
+        self.passages: list[Passage] = []
+        """What was done at each junction so far."""
+        self._streets = streets
+        self._behaviours = behaviours
+        self._meaning = {QUARTERS[each]: each for each in behaviours}
+        self._leg = 0
+        """Of the street that it drives in, or of the junction that it is in."""
+        self._passed = 0
+        self._inside = False
+        self._pose = self._at(0).middle
+        self._deviation2_m2 = Mean()
+        self._looks = 0
+        self._ticks = 0
+
+    @property
+    def behaviour(self) -> str:
+        """Right at the junction that it is in or comes to next."""
+        return self._meaning[self._at(0).quarters]
+
+    @property
+    def ahead(self) -> WayAhead:
+        """Where it is on the route."""
+        return WayAhead(self._passed, self._inside, self.behaviour, self._meaning[self._at(1).quarters])
+
+    @property
+    def set_down_at(self) -> Pose:
+        """In the middle of the street that it should be in."""
+        return self._at(1 if self._inside else 0).middle
+
+    @property
+    def progress(self) -> float:
+        """Junctions at which it did what is right."""
+        return float(sum(each.taken == each.right for each in self.passages))
+
+    @property
+    def findings(self) -> Findings:
+        """Junctions and those where it did right, in all and by what was right, and the lateral deviation."""
+        asked = Counter(each.right for each in self.passages)
+        right = Counter(each.right for each in self.passages if each.taken == each.right)
+        found = {JUNCTIONS: float(asked.total()), RIGHT: float(right.total())}
+        for each in self._behaviours:
+            found[f"{JUNCTIONS}, {each}"] = float(asked[QUARTERS[each]])
+            found[f"{RIGHT}, {each}"] = float(right[QUARTERS[each]])
+        deviation_m = {name: math.sqrt(mean) for name, mean in self._deviation2_m2.named(LATERAL_DEVIATION).items()}
+        return found | deviation_m
+
+    def put(self, pose: Pose) -> None:
+        """Set down: behind the junction that it was in, else on the way to the same one as before."""
+        self.stranded = False
+        if self._inside:
+            self._judge(None)
+            self._go_on()
+        self._pose = pose
+
+    def follow(self, pose: Pose) -> None:
+        """A step further."""
+        due = self._ticks % _LOOK_EVERY == 0
+        self._ticks += 1
+        if not due or self.stranded:
+            return
+        self._pose = pose
+        if self._looks % (MEASURE_EVERY // _LOOK_EVERY) == 0:
+            deviation_m = self._streets.deviation_m(pose)
+            if deviation_m is not None:
+                self._deviation2_m2.add(deviation_m**2)
+        self._looks += 1
+        junction = self._at(0).junction
+        if self._inside:
+            if not junction.holds(pose, _LEFT_BEHIND_M):
+                self._leave(junction, pose)
+        elif junction.holds(pose):
+            self._inside = True
+        elif self._streets.junction_at(pose) is not None:  # it turned back on the way
+            self._judge(None)
+            self.stranded = True
+
+    def end_early(self) -> None:
+        """Stuck, or stopped for good: it will not get through the junction ahead."""
+        self._judge(None)
+
+    def _leave(self, junction: Junction, pose: Pose) -> None:
+        leg = self._at(0)
+        taken = (junction.side_of(pose) - leg.way + 1) % 4 - 1
+        self._judge(taken)
+        self.stranded = taken != leg.quarters
+        self._go_on()
+
+    def _go_on(self) -> None:
+        self._leg = (self._leg + 1) % len(self.route.legs)
+        self._passed += 1
+        self._inside = False
+
+    def _judge(self, taken: int | None) -> None:
+        self.passages.append(Passage(self._leg, self._at(0).quarters, taken, self._pose.x_m, self._pose.y_m))
+
+    def _at(self, further: int) -> Leg:
+        return self.route.legs[(self._leg + further) % len(self.route.legs)]

@@ -1,0 +1,104 @@
+"""Streets as one goes through them: each in either direction, with what leads on from its end, and shortest ways."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import networkx as nx
+
+from behaviors.metrics.streets import ALONG, Junction, Side, StreetMap, side_towards
+from hal.simulation import Pose
+
+
+@dataclass(frozen=True, slots=True)
+class Street:
+    """A street between two junctions, in one direction."""
+
+    way: Side
+    behind: Junction
+    ahead: Junction
+
+    @property
+    def length_m(self) -> float:
+        """From the middle of the one junction to that of the other."""
+        return math.hypot(self.ahead.x_m - self.behind.x_m, self.ahead.y_m - self.behind.y_m)
+
+    @property
+    def middle(self) -> Pose:
+        """Half-way along, looking ahead."""
+        x_m, y_m = (self.ahead.x_m + self.behind.x_m) / 2, (self.ahead.y_m + self.behind.y_m) / 2
+        return Pose(x_m, y_m, self.way.heading_rad)
+
+
+class Town:
+    """All streets of a world."""
+
+    def __init__(self, streets: StreetMap, meaning: Mapping[str, int]) -> None:
+        """`meaning`: quarter turns to the left of each behaviour."""
+        self._map = streets
+        self.streets = tuple(self._all())
+        self._of = {(street.way, street.ahead): street for street in self.streets}
+        self._meaning = dict(meaning)
+        self._graph: nx.DiGraph[Street] = nx.DiGraph()
+        self._graph.add_nodes_from(self.streets)
+        for street in self.streets:
+            for on in self.on_from(street).values():
+                self._graph.add_edge(street, on, length_m=street.length_m)
+
+    def street_at(self, pose: Pose) -> Street | None:
+        """The street that a pose lies in and looks along; None within a junction."""
+        if any(each.holds(pose) for each in self._map.junctions):
+            return None
+        way = side_towards(math.cos(pose.heading_rad), math.sin(pose.heading_rad))
+        ahead = self._map.next_junction(pose, way)
+        return None if ahead is None else self._of.get((way, ahead))
+
+    def on_from(self, street: Street) -> dict[str, Street]:
+        """The behaviours that are possible at the end of a street, and the street that each leads to."""
+        found = {}
+        for behaviour, quarters in self._meaning.items():
+            way = street.way.turned(quarters)
+            if way in street.ahead.arms:
+                on = next((each for each in self.streets if each.behind == street.ahead and each.way is way), None)
+                if on is not None:
+                    found[behaviour] = on
+        return found
+
+    def shortest(self, start: Street, goal: Street) -> tuple[Street, ...] | None:
+        """The streets of the shortest way, both ends among them; None where no way leads there."""
+        try:
+            return tuple(nx.dijkstra_path(self._graph, start, goal, weight="length_m"))
+        except nx.NetworkXNoPath:
+            return None
+
+    def nearest(self, start: Street, goals: Sequence[Street]) -> tuple[Street, ...] | None:
+        """The shortest way to the nearest of several streets."""
+        ways = [way for goal in goals if (way := self.shortest(start, goal)) is not None]
+        return min(ways, key=lambda way: length_m(way), default=None)
+
+    def _all(self) -> list[Street]:
+        found = []
+        for behind in self._map.junctions:
+            for way in sorted(behind.arms):
+                along_x, along_y = ALONG[way]
+                edge = Pose(
+                    behind.x_m + along_x * behind.half_width_m,
+                    behind.y_m + along_y * behind.half_height_m,
+                    way.heading_rad,
+                )
+                ahead = self._map.next_junction(edge, way)
+                if ahead is not None:
+                    found.append(Street(way, behind, ahead))
+        return found
+
+
+def length_m(way: Sequence[Street], start: Pose | None = None, end: Pose | None = None) -> float:
+    """Along the middles of streets, from a pose in the first to one in the last; None: from and to their middles.
+
+    In one and the same street: straight on.
+    """
+    start, end = start or way[0].middle, end or way[-1].middle
+    corners = [(each.ahead.x_m, each.ahead.y_m) for each in way[:-1]]
+    points = [(start.x_m, start.y_m), *corners, (end.x_m, end.y_m)]
+    return sum(math.hypot(bx - ax, by - ay) for (ax, ay), (bx, by) in pairwise(points))

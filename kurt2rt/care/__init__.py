@@ -1,1 +1,0 @@
-"""What a change of knowledge would do, tried on recorded runs before it is made."""

@@ -1,0 +1,1 @@
+"""Wire format of the teacher channel: requests, states, codecs. Used by both ends."""

@@ -1,0 +1,278 @@
+"""The one codec of the teacher's channel: requests, answers and the state as CBOR (docs/the-wire.md)."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any
+
+from hal.simulation import SimulatedPlace
+from kurt2rt.channel.protocol.requests import BOOT_BYTES, LARGEST_NUMBER, LONGEST_TEXT, REQUESTS, Request, checks_of
+from kurt2rt.channel.protocol.schema import (
+    Check,
+    Flag,
+    ManyOf,
+    Octets,
+    OneOf,
+    OneWord,
+    OrNone,
+    Real,
+    Row,
+    Text,
+    Whole,
+    WireError,
+    decode_strictly,
+    encode_plainly,
+)
+from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.standing import Standing, StandReason
+from kurt2rt.core.decision.standing_text import stop_of_text, stop_text
+from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.teaching.progress import NO_PROGRESS, WINDOW_S, Progress
+from kurt2rt.core.teaching.question import FeatureDifference
+
+__all__ = [
+    "CONTENT_FORMAT",
+    "PATHS",
+    "WireError",
+    "decode_answer",
+    "decode_request",
+    "decode_state",
+    "encode_answer",
+    "encode_request",
+    "encode_state",
+]
+
+CONTENT_FORMAT = 60
+"""CoAP's number for application/cbor."""
+
+MOST_REQUEST_BYTES = 1024
+MOST_ANSWER_BYTES = 65_507
+"""The largest UDP datagram: a world may have many walls."""
+
+_STATE_DEPTH = 3
+_ANSWER_DEPTH = 8
+
+PATHS: Mapping[str, type[Request]] = {kind.path: kind for kind in REQUESTS}
+"""What each path takes; its keys are all paths but /state."""
+
+_CHECKS = {kind: checks_of(kind) for kind in REQUESTS}
+
+
+def encode_request(request: Request) -> bytes:
+    """The body of a request. Raises WireError where the robot would: nothing is sent that it cannot take."""
+    return encode_plainly([check(name, getattr(request, name)) for name, check in _CHECKS[type(request)]])
+
+
+def decode_request(path: str, payload: bytes) -> Request:
+    """What was asked of a path (a key of PATHS). Raises WireError."""
+    kind = PATHS.get(path)
+    if kind is None:
+        raise WireError(f"there is no {path} here")
+    body = decode_strictly(payload, most_bytes=MOST_REQUEST_BYTES, most_depth=kind.depth)
+    checks = _CHECKS[kind]
+    if not isinstance(body, list) or not len(checks) - kind.may_lack <= len(body) <= len(checks):
+        names = ", ".join(name for name, _ in checks)
+        raise WireError(f"{path} takes a list of {len(checks)}: [{names}]")
+    return kind(**{name: check(name, each) for (name, check), each in zip(checks, body, strict=False)})
+
+
+def encode_answer(answer: Mapping[str, Any]) -> bytes:
+    """An answer: a map with text keys."""
+    return encode_plainly(dict(answer))
+
+
+def decode_answer(payload: bytes) -> dict[str, Any]:
+    """An answer's map. Raises WireError."""
+    # Keys that are numbers cannot hurt here: an answer comes from the robot, and phases have numbers.
+    answer = decode_strictly(payload, most_bytes=MOST_ANSWER_BYTES, most_depth=_ANSWER_DEPTH, text_keys=False)
+    if not isinstance(answer, dict) or not all(isinstance(key, str) for key in answer):
+        raise WireError("an answer has to be a map with text keys")
+    return answer
+
+
+_MOST_SYMBOLS = 32
+_MOST_STEPS = 32
+"""Of a plan that are told; a longer one is cut."""
+_LINE = Text(512)
+_NAME = Text(LONGEST_TEXT)
+_NUMBER = Whole(0, LARGEST_NUMBER)
+_ANY_REAL = Real(math.inf)
+_FINITE = Real(1e9)
+
+_PLAIN: tuple[tuple[str, str, Check], ...] = (
+    ("b", "boot", Octets(BOOT_BYTES)),
+    ("t", "tick", _NUMBER),
+    ("ph", "phase", Whole(1, 5)),
+    ("ir", "infrared_counts", ManyOf(Whole(0, 65_535), most=64)),
+    ("ia", "infrared_age_s", _ANY_REAL),
+    ("bp", "bumpers", Whole(0, 2**32 - 1)),
+    ("by", "cause", _NAME),
+    ("act", "action", OrNone(_NAME)),
+    ("rla", "rla", OrNone(_NUMBER)),
+    ("n", "nearest", OrNone(_NUMBER)),
+    ("na", "nearest_action", OrNone(_NAME)),
+    ("d", "distance", _ANY_REAL),
+    ("r", "radius", _ANY_REAL),
+    ("tb", "taught_by", _NAME),
+    ("ta", "taught_at", _NAME),
+    ("who", "teacher", OrNone(_NAME)),
+    ("hand", "by_hand", Flag()),
+    ("nr", "rlas", _NUMBER),
+    ("nl", "lessons", _NUMBER),
+    ("un", "unsaved", _NUMBER),
+    ("ses", "session", OrNone(_NAME)),
+    ("clk", "clock_s", _FINITE),
+    ("g", "guard", ManyOf(_LINE, most=16)),
+    ("tr", "trouble", _LINE),
+    ("lp", "late_p99_ms", _ANY_REAL),
+    ("ms", "missed_ticks", _NUMBER),
+    ("w", "behaviour", _NAME),
+    ("v", "value", OrNone(_FINITE)),
+    ("op", "opinion", OrNone(OneOf((-1, 0, 1)))),
+    ("on", "opinion_of", OrNone(_NUMBER)),
+    ("ag", "agreement", OrNone(Real(1.0))),
+    ("tru", "trusted", Flag()),
+    ("cr", "role", _NAME),
+    ("bs", "bad_share", OrNone(Real(1.0))),
+    ("sm", "signals_missing", Row((_NUMBER, _NUMBER))),
+    ("aa", "asks_at", OneWord((BASIC, MID))),
+    ("go", "goal", _NAME),
+    ("pn", "plan", ManyOf(_NAME, most=_MOST_STEPS)),
+    ("ps", "plan_says", _LINE),
+)
+"""Key on the wire, field of State, check."""
+
+_WHEELS = Row((_FINITE, _FINITE))
+_QUESTION = ManyOf(Row((_NAME, _FINITE, _FINITE)), most=32)
+_WORDS = ManyOf(_NAME, most=_MOST_SYMBOLS)
+_MID = (
+    _NAME,
+    OrNone(_NUMBER),
+    OrNone(_NUMBER),
+    OrNone(_NAME),
+    _ANY_REAL,
+    _ANY_REAL,
+    _NAME,
+    _NAME,
+    Flag(),
+    Flag(),
+    _WORDS,
+    _WORDS,
+)
+"""The fields of MidState."""
+_SURPRISE = (_NUMBER, OneWord((BASIC, MID)), _NUMBER, _NUMBER, _ANY_REAL, Flag())
+"""The fields of SurpriseState."""
+_PROGRESS = (Whole(0, WINDOW_S), OrNone(Whole(0, 100)), _NUMBER)
+"""The fields of Progress."""
+_STANDING = (_NAME, Flag(), Flag(), OrNone(_FINITE), _LINE)
+"""The fields of Standing."""
+_STOP = (_NAME, _LINE)
+"""The fields of ActiveStop."""
+_PLACE = OrNone(Row((_FINITE, _FINITE, _FINITE, _FINITE, _NUMBER, _NUMBER)))
+
+
+def encode_state(state: State) -> bytes:
+    """The picture of the robot for /state. Texts are cut and tidied where the other side would refuse them."""
+    picture: dict[str, Any] = {key: _tidied(getattr(state, field), check) for key, field, check in _PLAIN}
+    picture["m"] = [state.left_m_s, state.right_m_s]
+    picture["ask"] = [[each.name, each.here, each.in_condition] for each in state.question]
+    place = state.place
+    picture["pl"] = (
+        None
+        if place is None
+        else [place.x_m, place.y_m, place.heading_rad, place.laps, place.collisions, place.world_version]
+    )
+    picture["mid"] = _row(state.mid, _MID)
+    picture["su"] = _row(state.surprise, _SURPRISE)
+    picture["pg"] = _row(state.progress, _PROGRESS)
+    picture["nv"] = state.nearest_value
+    standing = state.standing
+    # An older device tells the stop by its sentence.
+    picture["st"] = _tidied(stop_text(state.stopped), _LINE)
+    picture["sr"] = _row(state.stopped, _STOP)
+    if standing is not None and standing.stop is not None:
+        standing = standing._replace(says=stop_text(standing.stop))
+    picture["sd"] = None if standing is None else _row(standing[:-1], _STANDING)
+    return encode_plainly(picture)
+
+
+def decode_state(payload: bytes) -> State:
+    """The picture of the robot. Keys that are not known here are left out: a newer robot may tell more.
+
+    Raises WireError.
+    """
+    picture = decode_strictly(payload, most_bytes=MOST_ANSWER_BYTES, most_depth=_STATE_DEPTH)
+    if not isinstance(picture, dict):
+        raise WireError("a state has to be a map")
+    values = {field: check(field, _take(picture, key)) for key, field, check in _PLAIN}
+    left_m_s, right_m_s = _WHEELS("wheel speeds", _take(picture, "m"))
+    question = tuple(FeatureDifference(*each) for each in _QUESTION("question", _take(picture, "ask")))
+    place = _PLACE("place", _take(picture, "pl"))
+    mid = OrNone(Row(_MID))("mid level", _take(picture, "mid"))
+    surprise = OrNone(Row(_SURPRISE))("surprise", _take(picture, "su"))
+    # Younger than the rest of version 4: a robot of before leaves them out.
+    progress = OrNone(Row(_PROGRESS))("progress", picture.get("pg"))
+    nearest_value = OrNone(_FINITE)("worth of the nearest", picture.get("nv"))
+    standing = OrNone(Row(_STANDING))("standing", picture.get("sd"))
+    sentence = _LINE("stop", _take(picture, "st"))
+    stopped = _stop(OrNone(Row(_STOP))("stop", picture.get("sr")), sentence)
+    return State(
+        left_m_s=left_m_s,
+        right_m_s=right_m_s,
+        question=question,
+        place=None if place is None else SimulatedPlace(*place),
+        mid=None if mid is None else MidState(*mid),
+        surprise=None if surprise is None else SurpriseState(*surprise),
+        nearest_value=nearest_value,
+        progress=NO_PROGRESS if progress is None else Progress(*progress),
+        stopped=stopped,
+        standing=None if standing is None else _standing(*standing, stopped=stopped),
+        **values,
+    )
+
+
+def _row(value: MidState | SurpriseState | Progress | tuple[Any, ...] | None, checks: tuple[Check, ...]) -> Any:
+    if value is None:
+        return None
+    values = value if isinstance(value, tuple) else [getattr(value, each.name) for each in fields(value)]
+    return [_tidied(each, check) for each, check in zip(values, checks, strict=True)]
+
+
+def _stop(told: tuple[str, str] | None, sentence: str) -> ActiveStop | None:
+    """Return the stop that was told; by its sentence if the robot is older, or has reasons that are not known here."""
+    if told is not None and told[0] in StopReason.__members__.values():
+        return ActiveStop(StopReason(told[0]), told[1])
+    return stop_of_text(sentence)
+
+
+def _standing(
+    reason: str, needs_go: bool, asks: bool, stall_s: float | None, says: str, *, stopped: ActiveStop | None
+) -> Standing:
+    """Return the standing that was told; a newer robot may have reasons that are not known here."""
+    if reason == StandReason.STOPPED and stopped is not None:
+        return Standing(StandReason.STOPPED, needs_go, asks, stall_s, stop=stopped)
+    if reason in StandReason.__members__.values():
+        return Standing(StandReason(reason), needs_go, asks, stall_s, says)
+    return Standing(StandReason.HALTED, needs_go, asks, stall_s, says or reason)
+
+
+def _take(picture: dict[Any, Any], key: str) -> object:
+    try:
+        value: object = picture[key]
+    except KeyError:
+        raise WireError(f"the state has no {key!r}") from None
+    return value
+
+
+def _tidied(value: Any, check: Check) -> Any:
+    # A line break in the text of some error must not cost the teacher the whole picture.
+    match check:
+        case Text():
+            return check.cut(value)
+        case ManyOf(check=inner, most=most):
+            return [_tidied(each, inner) for each in value[:most]]
+        case OrNone(check=inner) if value is not None:
+            return _tidied(value, inner)
+        case _:
+            return value

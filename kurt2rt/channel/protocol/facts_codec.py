@@ -1,0 +1,111 @@
+"""The facts of a decision as plain values, for CBOR, and back."""
+
+import math
+from typing import Any
+
+from hal.robot import WheelSpeeds
+from kurt2rt.channel.protocol.cbor_schema import COUNT, LINE, NAME, Form, MapOf, MayLack, OrNotFinite
+from kurt2rt.channel.protocol.schema import Flag, ManyOf, OneWord, OrNone, Real, Row, Whole
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.standing_text import stop_of_text
+from kurt2rt.runs.explain.facts import MOST_OTHERS, Act, DecisionFacts, LevelFacts, RlaStory
+
+_MOST_ACTS = 32
+_MOST_FEATURES = 512
+
+_REAL = Real(1e12)
+_DISTANCE = OrNotFinite(_REAL, math.inf)
+_SPEEDS = Row((_REAL, _REAL))
+_VECTOR = ManyOf(OrNotFinite(_REAL, math.nan), most=_MOST_FEATURES)
+_STORY = MapOf(
+    RlaStory,
+    rla_id=COUNT,
+    title=NAME,
+    action=NAME,
+    condition=ManyOf(_REAL, most=_MOST_FEATURES),
+    distance=_DISTANCE,
+    radius=_REAL,
+    acts=ManyOf(
+        MapOf(Act, text=LINE, teacher=NAME, phase=Whole(1, 5), tick=COUNT, stamp=NAME, undone=Flag(), changes=Flag()),
+        most=_MOST_ACTS,
+    ),
+    uses=COUNT,
+    uses_since=OrNone(COUNT),
+    rewards=COUNT,
+    punishments=COUNT,
+    value=OrNone(_REAL),
+    asks=Flag(),
+    leads=Flag(),
+)
+_LEVEL = MapOf(
+    LevelFacts,
+    level=NAME,
+    behaviour=NAME,
+    names=ManyOf(NAME, most=_MOST_FEATURES),
+    vector=_VECTOR,
+    weights=ManyOf(_REAL, most=_MOST_FEATURES),
+    euclidean=Flag(),
+    nearest=OrNone(_STORY),
+    driver=OrNone(_STORY),
+    others=ManyOf(_STORY, most=MOST_OTHERS),
+    count=COUNT,
+    words=ManyOf(NAME, most=_MOST_FEATURES),
+    nearest_words=ManyOf(NAME, most=_MOST_FEATURES),
+)
+
+
+def _stop(reason: str, name: str) -> ActiveStop | None:
+    """Return the stop that was told; None if its reason is one of a newer robot."""
+    return ActiveStop(StopReason(reason), name) if reason in StopReason.__members__.values() else None
+
+
+def _facts(
+    decided: tuple[float, float],
+    granted: tuple[float, float],
+    stopped_because: str,
+    stopped: ActiveStop | None = None,
+    **others: Any,
+) -> DecisionFacts:
+    return DecisionFacts(
+        decided=WheelSpeeds(*decided),
+        granted=WheelSpeeds(*granted),
+        stopped=stopped or stop_of_text(stopped_because),
+        **others,
+    )
+
+
+_FACTS = MapOf(
+    _facts,
+    tick=COUNT,
+    now_s=_REAL,
+    robot=NAME,
+    task=NAME,
+    phase=Whole(1, 5),
+    cause=OneWord(tuple(cause.value for cause in Cause)),
+    action=OrNone(NAME),
+    asks_at=NAME,
+    decided=_SPEEDS,
+    granted=_SPEEDS,
+    reasons=ManyOf(NAME, most=16),
+    latched=Flag(),
+    stopped_because=LINE,
+    stopped=MayLack(OrNone(MapOf(_stop, reason=NAME, name=LINE))),
+    trouble=LINE,
+    teacher=NAME,
+    infrared_counts=ManyOf(COUNT, most=64),
+    infrared_age_s=_DISTANCE,
+    basic=_LEVEL,
+    mid=OrNone(_LEVEL),
+    overridden=Flag(),
+    plan_says=LINE,
+    kept=NAME,
+    history_frozen=Flag(),
+    taught_now=Flag(),
+    hindrances=ManyOf(NAME, most=8),
+)
+
+_FORM = Form[DecisionFacts]("what the robot knows of its decision", _FACTS)
+plain_of_facts = _FORM.plain_of
+"""At most MOST_OTHERS of the RLAs behind the nearest of each level are told."""
+facts_of_plain = _FORM.read

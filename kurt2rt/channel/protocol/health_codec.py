@@ -1,0 +1,102 @@
+"""The report as plain values, for JSON and CBOR, and back."""
+
+from kurt2rt.channel.protocol.cbor_schema import COUNT, LINE, NAME, Form, MapOf, MayLack
+from kurt2rt.channel.protocol.health import (
+    BusHealth,
+    DiskSpace,
+    Drops,
+    HealthReport,
+    Machine,
+    Punctuality,
+    Safety,
+    SensorAges,
+    Trouble,
+)
+from kurt2rt.channel.protocol.schema import Flag, ManyOf, OrNone, Real
+from kurt2rt.channel.protocol.trouble_code import TroubleCode
+from kurt2rt.channel.protocol.trouble_text import numbers_of
+from kurt2rt.core.teaching.progress import Progress
+
+MOST_ROWS = 16
+"""Of troubles, disks and queues; more are not told."""
+
+_TIME = Real(1e12)
+
+
+def _trouble(
+    about: str,
+    what: str,
+    since_s: float,
+    to_do: str,
+    urgent: bool,
+    code: str = "",
+    name: str = "",
+    numbers: tuple[float, ...] = (),
+    line: str = "",
+) -> Trouble:
+    """Return the trouble that was told; by its text if the robot is older, or has codes that are not known here."""
+    if code in TroubleCode.__members__.values() and len(numbers) >= numbers_of(TroubleCode(code)):
+        return Trouble(TroubleCode(code), since_s, urgent, name, numbers, line)
+    return Trouble(TroubleCode.OTHER, since_s, urgent, about, (), f"{what}; {to_do}" if to_do else what)
+
+
+_TROUBLE = MapOf(
+    _trouble,
+    about=NAME,
+    what=LINE,
+    since_s=_TIME,
+    to_do=LINE,
+    urgent=Flag(),
+    code=MayLack(NAME),
+    name=MayLack(NAME),
+    numbers=MayLack(ManyOf(_TIME, most=4)),
+    line=MayLack(LINE),
+)
+
+_MILLISECONDS = dict.fromkeys(("newest_ms", "median_ms", "p99_ms", "worst_ms", "took_p99_ms"), _TIME)
+_REPORT = MapOf(
+    HealthReport,
+    version=NAME,
+    boot=NAME,
+    robot=NAME,
+    task=NAME,
+    knowledge=LINE,
+    started_at=NAME,
+    uptime_s=_TIME,
+    tick=COUNT,
+    doing=LINE,
+    rlas=COUNT,
+    lessons=COUNT,
+    punctuality=MapOf(Punctuality, **_MILLISECONDS, ticks=COUNT, missed=COUNT, missed_lately=COUNT),
+    ages=MapOf(SensorAges, infrared_s=OrNone(_TIME), encoders_s=OrNone(_TIME), bumpers_s=OrNone(_TIME)),
+    bus=OrNone(
+        MapOf(
+            BusHealth,
+            controller=NAME,
+            frames=COUNT,
+            junk=COUNT,
+            error_frames=COUNT,
+            foreign_control=COUNT,
+            send_failures=COUNT,
+            receive_failures=COUNT,
+        )
+    ),
+    disks=ManyOf(MapOf(DiskSpace, of=NAME, free_bytes=OrNone(COUNT)), most=MOST_ROWS),
+    safety=MapOf(Safety, unwritten=COUNT, last_write_ms=OrNone(_TIME)),
+    machine=MapOf(
+        Machine,
+        memory_bytes=COUNT,
+        available_bytes=OrNone(COUNT),
+        processor_share=Real(1e6),
+        threads=COUNT,
+        battery=OrNone(Real(1.0)),
+        discharging=Flag(),
+    ),
+    drops=ManyOf(MapOf(Drops, of=NAME, count=COUNT), most=MOST_ROWS),
+    troubles=ManyOf(_TROUBLE, most=MOST_ROWS),
+    progress=MayLack(MapOf(Progress, seconds=COUNT, driven_percent=OrNone(COUNT), asks=COUNT)),
+)
+
+_FORM = Form[HealthReport]("the health report", _REPORT)
+plain_of = _FORM.plain_of
+report_of = _FORM.read

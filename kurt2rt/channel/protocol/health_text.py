@@ -1,0 +1,160 @@
+"""The health report in words: one row for each subject, and a sentence for each trouble."""
+
+from typing import NamedTuple
+
+from kurt2rt.channel.protocol.health import HealthReport, Punctuality, SensorAges, Trouble
+from kurt2rt.core.teaching.progress import WINDOW_S, Progress
+
+FINE, WARNS, URGENT = "", "warns", "urgent"
+"""How a row is: a trouble is about it, or an urgent one."""
+
+
+class HealthRow(NamedTuple):
+    """One subject."""
+
+    name: str
+    text: str
+    level: str
+    """FINE, WARNS or URGENT."""
+
+
+def rows_of(report: HealthReport) -> tuple[HealthRow, ...]:
+    """All subjects, in the order of a table."""
+    late, bus = report.punctuality, report.bus
+    rows = [
+        ("does", report.doing),
+        (
+            "lateness",
+            f"now {late.newest_ms:.2f} ms; in a minute: median {late.median_ms:.2f}, p99 {late.p99_ms:.2f}, "
+            f"worst {late.worst_ms:.2f} ms",
+        ),
+        ("ticks", f"{late.ticks:,} done, in {late.took_p99_ms:.2f} ms each (p99), {late.missed} missed{_lately(late)}"),
+        ("sensors", _ages(report.ages)),
+    ]
+    if bus is not None:
+        counts = {
+            "junk": bus.junk,
+            "error frames": bus.error_frames,
+            "foreign CONTROL": bus.foreign_control,
+            "send failures": bus.send_failures,
+            "receive failures": bus.receive_failures,
+        }
+        wrong = ", ".join(f"{count} {name}" for name, count in counts.items() if count)
+        rows.append(("bus", f"{bus.controller}, {bus.frames:,} frames, {wrong or 'nothing wrong with them'}"))
+    written = "all durable" if not report.safety.unwritten else f"{report.safety.unwritten} not durable yet"
+    took_ms = report.safety.last_write_ms
+    took = "" if took_ms is None else f"; the disk took {took_ms:.0f} ms for the last"
+    rows.append(("lessons", f"{report.lessons} stand, {report.rlas} RLAs, {written}{took}"))
+    rows.append(("progress", progress_in(report.progress)))
+    rooms = [
+        f"{each.of}: {'no answer' if each.free_bytes is None else f'{size(each.free_bytes)} free'}"
+        for each in report.disks
+    ]
+    rows.append(("disk", ", ".join(rooms)))
+    dropped = ", ".join(f"{each.count} {each.of}" for each in report.drops if each.count)
+    rows.append(("queues", f"thrown away: {dropped}" if dropped else "nothing thrown away"))
+    machine = report.machine
+    parts = [f"{size(machine.memory_bytes)} of memory"]
+    if machine.available_bytes is not None:
+        parts.append(f"{size(machine.available_bytes)} left")
+    parts.append(f"{machine.processor_share:.0%} of a core")
+    if machine.battery is not None:
+        parts.append(f"battery {machine.battery:.0%}{', discharging' if machine.discharging else ''}")
+    rows.append(("machine", ", ".join(parts)))
+    rows.append(("program", f"kurt2rt {report.version}, start {report.boot}, up {lasting(report.uptime_s)}"))
+    rows.append(("robot", f"{report.robot}, task {report.task}, {report.knowledge}"))
+    return tuple(HealthRow(name, text, _level(report, name)) for name, text in rows)
+
+
+def trouble_in(trouble: Trouble) -> str:
+    """What is wrong, since when, what to do."""
+    to_do = f": {trouble.to_do}" if trouble.to_do else ""
+    return f"{trouble.what} (for {lasting(trouble.since_s)}){to_do}"
+
+
+def lines_of(report: HealthReport | None) -> tuple[str, ...]:
+    """Everything as lines of a terminal; None: there is no report in the first second."""
+    if report is None:
+        return ("nothing is known yet, the robot program has just begun",)
+    troubles = (f"{'!!' if each.urgent else '!'} {trouble_in(each)}" for each in report.troubles)
+    return (headline(report), *(f"{row.name:<9} {row.text}" for row in rows_of(report)), *troubles)
+
+
+def progress_in(progress: Progress) -> str:
+    """Return the share driven without help and the questions, over the last minute."""
+    if progress.driven_percent is None:
+        return "nothing was driven yet"
+    asks = "1 question" if progress.asks == 1 else f"{progress.asks} questions"
+    over = "the last minute" if progress.seconds >= WINDOW_S else f"the first {progress.seconds} s"
+    return f"{progress.driven_percent} % driven by itself, {asks} in {over}"
+
+
+_NAMES = {
+    "sensors": "sensors silent",
+    "bus": "CAN bus",
+    "lessons": "saving lessons",
+    "disk": "disk",
+    "ticks": "ticks missed",
+    "lateness": "ticks late",
+    "queues": "queues full",
+    "machine": "this machine",
+    "program": "the program",
+}
+"""Fault in one or two words, by the subject of a trouble."""
+
+
+def name_of(trouble: Trouble) -> str:
+    """Return what is wrong in one or two words, where there is room for no more."""
+    return _NAMES.get(trouble.about, trouble.about)
+
+
+def headline(report: HealthReport) -> str:
+    """Return how the program is in a few words: each trouble by its name, or that it is well."""
+    late = report.punctuality
+    punctual = f"late {late.p99_ms:.2f} ms (p99), missed {late.missed}"
+    urgent = {name_of(each) for each in report.troubles if each.urgent}
+    names = dict.fromkeys(name_of(each) for each in report.troubles)
+    named = ", ".join(f"{name} (urgent)" if name in urgent else name for name in names)
+    return f"{named or 'well'}; {punctual}"
+
+
+def lasting(seconds: float) -> str:
+    """A length of time with two of its units at most."""
+    minutes, rest_s = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    days, hours = divmod(hours, 24)
+    if days:
+        return f"{days} d {hours} h"
+    if hours:
+        return f"{hours} h {minutes} min"
+    return f"{minutes} min {rest_s} s" if minutes else f"{rest_s} s"
+
+
+def size(count: int) -> str:
+    """Bytes in the unit that suits."""
+    for unit, bytes_each in (("GB", 10**9), ("MB", 10**6)):
+        if count >= bytes_each:
+            return f"{count / bytes_each:.{1 if unit == 'GB' else 0}f} {unit}"
+    return f"{count / 1000:.0f} kB"
+
+
+def _lately(late: Punctuality) -> str:
+    return f", {late.missed_lately} of them in the last minute" if late.missed_lately else ""
+
+
+def _ages(ages: SensorAges) -> str:
+    named = (("infra-red", ages.infrared_s), ("encoders", ages.encoders_s), ("bumpers", ages.bumpers_s))
+    return ", ".join(f"{name} {_age(age_s)}" for name, age_s in named)
+
+
+def _age(age_s: float | None) -> str:
+    if age_s is None:
+        return "never heard"
+    return f"{age_s * 1000:.0f} ms old" if age_s < 1 else f"{lasting(age_s)} old"
+
+
+def _level(report: HealthReport, name: str) -> str:
+    about = [each for each in report.troubles if each.about == name]
+    if any(each.urgent for each in about):
+        return URGENT
+    return WARNS if about else FINE

@@ -1,0 +1,54 @@
+"""World, task and speed of a simulated robot, as sent to its teachers."""
+
+from dataclasses import dataclass
+
+from kurt2rt.channel.protocol.cbor_schema import LINE, NAME, Form, MapOf
+from kurt2rt.channel.protocol.requests.limits import FASTEST
+from kurt2rt.channel.protocol.schema import ManyOf, Real, Whole
+
+_MOST_NAMES = 64
+
+
+@dataclass(frozen=True, slots=True)
+class TaskName:
+    """A task that the robot can be taught."""
+
+    name: str
+    what: str
+    """In one sentence, for the teacher."""
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationView:
+    """The simulated world and task, and those to choose from."""
+
+    world: str
+    """As it was chosen: `a`, `rooms-7`, a path."""
+    task: str
+    worlds: tuple[str, ...]
+    """Worlds by name; `rooms-N` and `streets-N` are made for any whole number N."""
+    tasks: tuple[TaskName, ...]
+    speed: int = 1
+    """Robot seconds in one second, as chosen."""
+    reached: float = 1.0
+    """The same as measured over the last second."""
+    progress: float = 0.0
+    """Progress of the robot with its task since the run began, in `unit`."""
+    unit: str = ""
+    """Unit of `progress`: laps, rounds, eights, m; empty if progress is not measured."""
+
+
+SIMULATION = Form[SimulationView](
+    "the simulation",
+    MapOf(
+        SimulationView,
+        world=NAME,
+        task=NAME,
+        worlds=ManyOf(NAME, most=_MOST_NAMES),
+        tasks=ManyOf(MapOf(TaskName, name=NAME, what=LINE), most=_MOST_NAMES),
+        speed=Whole(1, FASTEST),
+        reached=Real(1000.0),
+        progress=Real(1e9),
+        unit=NAME,
+    ),
+)

@@ -1,0 +1,1 @@
+"""Pairing, OSCORE contexts and paired devices. Used by both ends."""

@@ -1,0 +1,199 @@
+"""One side of a pairing in use: keys, sequence numbers, replay window. The event loop does not wait for a disk.
+
+A folder may be an old copy: restored from a backup it knows neither which numbers were used since, nor which requests
+came. So a start takes no number below one per millisecond since the pairing, five times what a device uses at most; and
+each start begins with an unknown replay window, so that the other side has to prove that it is fresh (RFC 8613, B.1.2).
+"""
+
+import json
+import secrets
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from aiocoap import oscore
+
+from kurt2rt.channel.security.context_folder import PAIRED_AT, SEQUENCE, SETTINGS, ContextFolder, CredentialsError
+
+CHUNK = 10_000
+"""Sequence numbers reserved at once: three minutes of pictures and drive commands. A crash wastes at most two chunks of
+the 2^40 that a pairing has."""
+FIRST_CHUNK = 1000
+"""Those of the start, doubled each time up to CHUNK: a program that crashes once a second stays behind its clock."""
+NUMBERS_PER_S = 1000
+LAST_FLOOR = 2**39
+"""Numbers that time alone may take, 17 years of them: a clock that is decades ahead leaves half of all numbers."""
+_FIRST_PAIRING_S = 1_767_225_600
+"""2026-01-01: pairings without a time of their own are not older."""
+
+
+class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # Any
+    """A security context in a folder, as aiocoap's own, with four differences.
+
+    Each start jumps ahead by the time since the pairing, and trusts no replay window. Numbers are reserved ahead in a
+    thread, so `protect` stores in place only when the disk took longer than half a chunk lasts. What is stored is
+    written through a descriptor of the folder, so a renewed pairing in its place stays untouched. It ends with `close`,
+    not when the last reference goes.
+
+    The thread is a plain one, started once per chunk: `protect` is called from code that cannot await and that has no
+    task group at hand. Everything else is called from one thread at a time.
+    """
+
+    sender_sequence_number: int
+    recipient_replay_window: Any
+
+    def __init__(
+        self, folder: Path, name: str | None = None, *, chunk: int = CHUNK, now: Callable[[], float] = time.time
+    ) -> None:
+        """Take the lock, load, and reserve the first chunk: this waits for the disk.
+
+        `name` is the teacher who is authenticated by this context; without it the folder's name. `now` is the wall
+        clock in seconds since 1970; set back it costs nothing, for the stored number counts as well. Raises
+        CredentialsError when the folder is missing, damaged, or in use by another program.
+        """
+        # Not the library's: its lock is bound to the thread that took it, and it stores in the event loop.
+        self.folder = ContextFolder(folder)
+        self.basedir = str(folder)
+        self.lockfile = None
+        self.name = folder.name if name is None else name
+        self.authenticated_claims = [self.name]
+        self.trouble = ""
+        self.echo_recovery = secrets.token_bytes(8)
+        self._now = now
+        self._longest_chunk = chunk
+        self._chunk = min(chunk, FIRST_CHUNK)
+        self._reserve_below = self._chunk // 2
+        self._storing = threading.Lock()
+        self._reserver: threading.Thread | None = None
+        self._closed = False
+        try:
+            self._load_checked()
+            self.sequence_number_persisted = self.sender_sequence_number
+            self.replay_window_persisted = False
+            self._reserve()
+        except OSError as error:
+            self.folder.release()
+            raise CredentialsError(
+                f"cannot be read and written ({error})", where=folder, do="give permission for it, and room on its disk"
+            ) from error
+        except CredentialsError:
+            self.folder.release()
+            raise
+
+    @property
+    def closed(self) -> bool:
+        """Whether `close` or `abandon` was called; nothing is sent with it any more."""
+        return self._closed
+
+    @property
+    def seen(self) -> tuple[int | None, int | None]:
+        """Changes with each request that was authenticated; the same while the other side is silent."""
+        window: Any = self.recipient_replay_window
+        return window._index, window._bitfield
+
+    def new_sequence_number(self) -> int:
+        """A number that was never used before. Raises aiocoap.oscore.ContextUnavailable when there is none."""
+        if self._closed:
+            raise oscore.ContextUnavailable(f"{self.folder.path}: this pairing is closed or revoked")
+        number: int = super().new_sequence_number()
+        return number
+
+    def post_seqnoincrease(self) -> None:
+        """Called by aiocoap for each number that is taken, before it is used."""
+        if self.sender_sequence_number > self.sequence_number_persisted:
+            try:
+                self._reserve()
+            except OSError as error:
+                raise oscore.ContextUnavailable(
+                    f"{self.folder.path}: no sequence number can be reserved ({error})"
+                ) from error
+        elif self.sequence_number_persisted - self.sender_sequence_number < self._reserve_below and (
+            self._reserver is None or not self._reserver.is_alive()
+        ):
+            # A daemon: a disk that hangs must not keep the program from ending; a half-written file is never renamed.
+            self._reserver = threading.Thread(target=self._reserve_aside, name=f"oscore {self.name}", daemon=True)
+            self._reserver.start()
+
+    def close(self) -> None:
+        """Store the exact number and release the lock; waits for the disk. Raises CredentialsError if that fails.
+
+        Then the reservation stands, as after a crash: numbers are wasted, none is used twice.
+        """
+        if self._closed:
+            return
+        self._closed = True
+        if self._reserver is not None:
+            self._reserver.join()
+        try:
+            if self.folder.still_there():
+                self.folder.write_sequence(self.sender_sequence_number)
+        except OSError as error:
+            raise CredentialsError(
+                f"its state cannot be stored ({error})",
+                where=self.folder.path,
+                do="the pairing goes on with other numbers, but look at its disk",
+            ) from error
+        finally:
+            self.folder.release()
+
+    def abandon(self) -> None:
+        """Release the lock and store nothing: the pairing was revoked or renewed."""
+        if self._closed:
+            return
+        self._closed = True
+        if self._reserver is not None:
+            self._reserver.join()
+        self.folder.release()
+
+    def __del__(self) -> None:
+        """Nothing: the library's would store. The lock of a context that nobody closed goes with its process."""
+
+    def _load_checked(self) -> None:
+        what_to_do = f"pair the device anew: kurt2rt pair {self.name} --renew"
+        # The library would begin at 0 again, and a number used twice gives the key away.
+        if not (self.folder.path / SEQUENCE).exists():
+            raise CredentialsError(f"{SEQUENCE} is missing", where=self.folder.path, do=what_to_do)
+        try:
+            self._load()
+            paired_s = self._paired_s()
+            sound = all(number is None or number >= 0 for number in (self.sender_sequence_number, *self.seen))
+        except (KeyError, ValueError, TypeError, AttributeError) as error:
+            raise CredentialsError(
+                f"the pairing is damaged ({error!r})", where=self.folder.path, do=what_to_do
+            ) from error
+        if not sound:
+            raise CredentialsError(f"{SEQUENCE} holds a negative number", where=self.folder.path, do=what_to_do)
+        if not self.folder.still_there():
+            raise CredentialsError("was replaced while it was opened", where=self.folder.path, do="open it again")
+        window = self.recipient_replay_window
+        self.recipient_replay_window = oscore.ReplayWindow(window._size, self._replay_window_changed)
+        by_time = int(min(max(0.0, self._now() - paired_s) * NUMBERS_PER_S, LAST_FLOOR))
+        self.sender_sequence_number = max(self.sender_sequence_number, by_time)
+
+    def _paired_s(self) -> float:
+        """Return the time of the pairing in seconds since 1970. Raises ValueError, OSError."""
+        settings = json.loads((self.folder.path / SETTINGS).read_text(encoding="utf-8"))
+        return float(settings.get(PAIRED_AT, _FIRST_PAIRING_S))
+
+    def _reserve(self) -> None:
+        # Whoever comes second finds that it is done: the thread, or the event loop that could not wait for it.
+        with self._storing:
+            if self.sender_sequence_number + self._chunk // 2 <= self.sequence_number_persisted:
+                return
+            up_to = max(self.sender_sequence_number, self.sequence_number_persisted) + self._chunk
+            self.folder.write_sequence(up_to)
+            self.sequence_number_persisted = up_to
+
+    def _reserve_aside(self) -> None:
+        try:
+            self._reserve()
+        except OSError as error:
+            # Once more when half of the rest is gone; for the very last number the caller is told.
+            self._reserve_below //= 2
+            self.trouble = f"{self.folder.path}: no sequence numbers can be reserved ({error}); look at its disk"
+        else:
+            self._chunk = min(2 * self._chunk, self._longest_chunk)
+            self._reserve_below = self._chunk // 2
+            self.trouble = ""

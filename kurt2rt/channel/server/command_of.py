@@ -1,0 +1,95 @@
+"""From a request on the wire to the command that the tick takes."""
+
+from kurt2rt.channel.protocol.requests import (
+    AnswerRequest,
+    AppraiseRequest,
+    BeAtRequest,
+    BehaviourRequest,
+    CommandRequest,
+    CorrectRequest,
+    DeleteRequest,
+    NameRequest,
+    PhaseRequest,
+    PursueRequest,
+    ReleaseRequest,
+    ReplaceRequest,
+    ResumeRequest,
+    RewardRequest,
+    SeekLikeRequest,
+    SeekRequest,
+    SeekRlaRequest,
+    SessionRequest,
+    TakeRequest,
+    UndoRequest,
+)
+from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
+from kurt2rt.core.teaching.commands import (
+    Appraise,
+    BeAt,
+    BeginSession,
+    Command,
+    Correct,
+    DeleteRla,
+    EndSession,
+    HandOver,
+    NameSituation,
+    Pursue,
+    ReplaceAction,
+    Resume,
+    Reward,
+    RunBehaviour,
+    Seek,
+    SetPhase,
+    StopSeeking,
+    Take,
+    Teach,
+    Undo,
+)
+
+
+def command_of(device: str, command_id: str, request: CommandRequest) -> Command:
+    """The command that a request asks for."""
+    match request:
+        case BehaviourRequest(action=action, ticks=ticks):
+            return RunBehaviour(command_id, device, action, ticks, request.seen)
+        case AnswerRequest(action=action, decision_tick=tick, level=level, beside=beside):
+            return Teach(command_id, device, action, tick, level, beside)
+        case CorrectRequest(action=action, decision_tick=tick, level=level):
+            return Correct(command_id, device, action, tick, level)
+        case RewardRequest(value=value, decision_tick=tick):
+            return Reward(command_id, device, value, tick)
+        case AppraiseRequest(appraisal=appraisal, decision_tick=tick):
+            return Appraise(command_id, device, appraisal, tick)
+        case ReplaceRequest(rla_id=rla_id, action=action):
+            return ReplaceAction(command_id, device, rla_id, action)
+        case DeleteRequest(rla_id=rla_id):
+            return DeleteRla(command_id, device, rla_id)
+        case UndoRequest(lesson=lesson):
+            return Undo(command_id, device, lesson)
+        case PhaseRequest(phase=phase):
+            return SetPhase(command_id, device, phase, request.seen)
+        case PursueRequest(behaviour=behaviour):
+            return Pursue(command_id, device, behaviour, request.seen)
+        case NameRequest(name=name, decision_tick=tick):
+            return NameSituation(command_id, device, name, tick)
+        case SeekRequest(name=None):
+            return StopSeeking(command_id, device, request.seen)
+        case SeekRequest(name=str(name)):
+            return Seek(command_id, device, NamedGoal(name), request.seen)
+        case SeekRlaRequest(rla_id=rla_id):
+            return Seek(command_id, device, RlaGoal(rla_id), request.seen)
+        case SeekLikeRequest(features=features, tolerance=tolerance):
+            return Seek(command_id, device, PartialGoal(features, tolerance), request.seen)
+        case BeAtRequest(name=name):
+            return BeAt(command_id, device, name, request.seen)
+        case SessionRequest(name=None):
+            return EndSession(command_id, device)
+        case SessionRequest(name=str(name)):
+            return BeginSession(command_id, device, name)
+        case ResumeRequest():
+            return Resume(command_id, device, request.seen)
+        case TakeRequest():
+            return Take(command_id, device)
+        case ReleaseRequest(to=to):
+            return HandOver(command_id, device, to)
+    raise AssertionError(f"{request.path} is no command for the tick")

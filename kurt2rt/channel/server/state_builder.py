@@ -1,0 +1,161 @@
+"""Makes the picture of the robot that its teachers get."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from hal.simulation import SimulatedWorld
+from kurt2rt.channel.protocol.health import HealthReport
+from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
+from kurt2rt.channel.protocol.trouble_code import TroubleCode
+from kurt2rt.channel.server.mid_state import mid_state, surprise_state
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.rla.rla import ASK, BASIC, Rla
+from kurt2rt.core.teaching.question import FeatureDifference, ask
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.runtime import Runtime
+
+_SENSORS = (TroubleCode.SENSORS_UNHEARD, TroubleCode.SENSORS_SILENT)
+_LATENESS_EVERY = 20
+"""Pictures; percentiles cost more than a picture."""
+
+
+@dataclass(frozen=True, slots=True)
+class Safekeeping:
+    """How lessons fare on the disk."""
+
+    unsaved: Callable[[], int]
+    trouble: Callable[[], str | None]
+    stamp_of: Callable[[str], str]
+    """When the lesson of a command became durable; empty before it is."""
+
+
+class Telling:
+    """Turns the record of a tick into the picture that teachers see."""
+
+    def __init__(
+        self,
+        runtime: Runtime,
+        boot: bytes,
+        safekeeping: Safekeeping,
+        bus_trouble: Callable[[], str],
+        ground: SimulatedWorld | None,
+        health: Callable[[], HealthReport | None] = lambda: None,
+    ) -> None:
+        """`health`: the newest report, which spares the loop the percentiles; None where nobody makes one."""
+        self._runtime = runtime
+        self._boot = boot
+        self._safekeeping = safekeeping
+        self._bus_trouble = bus_trouble
+        self._ground = ground
+        self._health = health
+        self._pictures = 0
+        self._late_p99_ms = 0.0
+        self._surprise: SurpriseState | None = None
+
+    def follow(self, record: TickRecord) -> None:
+        """Every tick, also of those that become no picture: a surprise is over in one."""
+        self._surprise = surprise_state(record) or self._surprise
+
+    def picture(self, record: TickRecord) -> State:
+        """The robot after a tick."""
+        runtime, decision, match = self._runtime, record.decision, record.decision.match
+        school, system = runtime.school, runtime.level.system
+        if self._pictures % _LATENESS_EVERY == 0:
+            self._late_p99_ms = self._late()
+        self._pictures += 1
+        question: tuple[FeatureDifference, ...] = ()
+        if decision.cause is Cause.UNKNOWN and match is not None and decision.asks_at == BASIC:
+            question = ask(match, record.situation.vector, system.weights, runtime.definition.names).differing
+        nearest = None if match is None else match.rla
+        plan = decision.plan
+        opinion, agreement = record.opinion, school.agreement
+        of = None if opinion is None or not opinion.known else opinion.rla
+        return State(
+            boot=self._boot,
+            tick=record.tick,
+            phase=int(school.phase),
+            infrared_counts=record.senses.infrared_counts,
+            infrared_age_s=record.senses.infrared_age_s,
+            bumpers=record.senses.bumpers,
+            left_m_s=record.grant.wheel_speeds.left_m_s,
+            right_m_s=record.grant.wheel_speeds.right_m_s,
+            cause=decision.cause.value,
+            action=decision.action,
+            rla=decision.rla_id,
+            nearest=None if nearest is None else nearest.rla_id,
+            nearest_action=None if nearest is None else nearest.action,
+            distance=float("inf") if match is None else match.distance,
+            radius=self._radius(decision.asks_at) if match is None else match.radius,
+            taught_by="" if nearest is None else nearest.origin.teacher,
+            taught_at="" if nearest is None else self._safekeeping.stamp_of(nearest.origin.command_id),
+            question=question,
+            teacher=school.authority.teacher,
+            by_hand=school.authority.is_manual(record.tick),
+            stopped=school.stopped or _latched(record),
+            rlas=len(system),
+            lessons=system.standing_lessons,
+            unsaved=self._safekeeping.unsaved(),
+            session=school.session,
+            clock_s=school.teaching_ticks(record.tick) * runtime.robot.can.cycle_s,
+            guard=record.grant.reasons,
+            trouble=self._safekeeping.trouble() or self._bus_trouble() or school.learning.trouble or self._urgent(),
+            late_p99_ms=self._late_p99_ms,
+            missed_ticks=runtime.ledger.missed_ticks,
+            place=None if self._ground is None else self._ground.place(),
+            behaviour=record.behaviour,
+            value=None if decision.rla_id is None else float(runtime.reinforcement.worth(decision.rla_id)),
+            opinion=None if opinion is None else opinion.said,
+            opinion_of=None if of is None else of.rla_id,
+            agreement=None if agreement is None else agreement.share,
+            trusted=agreement is not None and agreement.trusted,
+            role=school.learning.critics_role.value,
+            bad_share=school.learning.bad_share,
+            signals_missing=self._signals_missing(),
+            asks_at=decision.asks_at,
+            mid=self._mid(record),
+            surprise=self._surprise,
+            goal="" if plan is None else plan.goal,
+            plan=() if plan is None else plan.behaviours,
+            plan_says="" if plan is None else plan.says,
+            nearest_value=self._withdrawn_at(nearest),
+            progress=runtime.progress.progress(),
+            standing=record.standing,
+        )
+
+    def _withdrawn_at(self, nearest: Rla | None) -> float | None:
+        if nearest is None or nearest.level != BASIC or nearest.action != ASK:
+            return None
+        return float(self._runtime.reinforcement.worth(nearest.rla_id))
+
+    def _late(self) -> float:
+        health = self._health()
+        return self._runtime.ledger.lateness().p99_us / 1000.0 if health is None else health.punctuality.p99_ms
+
+    def _urgent(self) -> str:
+        """What else the teacher should know at once, such as a disk without room; it may be a second old."""
+        health = self._health()
+        # Sensors that are silent are told by the cause, without delay.
+        troubles = () if health is None else health.troubles
+        urgent = (each for each in troubles if each.urgent and each.code not in _SENSORS)
+        return next((f"{each.what}; {each.to_do}" for each in urgent), "")
+
+    def _radius(self, level: str) -> float:
+        mid = self._runtime.mid
+        return self._runtime.level.system.radius if mid is None or level == BASIC else mid.settings.learning.radius
+
+    def _mid(self, record: TickRecord) -> MidState | None:
+        mid, decided = self._runtime.mid, record.mid
+        return None if mid is None or decided is None else mid_state(mid, decided, self._safekeeping.stamp_of)
+
+    def _signals_missing(self) -> tuple[int, int]:
+        critic, agreement = self._runtime.school.critic, self._runtime.school.agreement
+        if critic is None or agreement is None:
+            return 0, 0
+        least = critic.settings.agreement.least
+        return max(0, least - agreement.heard_of(-1)), max(0, least - agreement.heard_of(1))
+
+
+def _latched(record: TickRecord) -> ActiveStop | None:
+    """Return the guard's stop, for the teacher who has to resume; None while the guard lets the robot drive."""
+    return ActiveStop(StopReason.GUARD, ", ".join(record.grant.reasons)) if record.grant.latched else None

@@ -1,0 +1,48 @@
+"""The UDP port that the robot listens on."""
+
+import errno
+import ipaddress
+import socket
+
+from kurt2rt.channel.protocol.schema import ChannelError
+
+
+def require_port(host: str, port: int) -> None:
+    """See whether the port can be had, and leave it. Raises ChannelError that says why not."""
+    bound_socket(host, port).close()
+
+
+def bound_socket(host: str, port: int) -> socket.socket:
+    """A socket for an address of this machine, "::" for all; port 0 takes a free one. Raises ChannelError."""
+    try:
+        address = ipaddress.ip_address(host)
+    except ValueError as error:
+        raise ChannelError(f"{host!r} is no address", do="give one of this machine, such as 127.0.0.1 or ::") from error
+    text = f"::ffff:{address}" if address.version == 4 else str(address)
+    try:
+        opened = socket.socket(socket.AF_INET6, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC)
+    except OSError as error:
+        raise ChannelError(
+            f"this machine has no IPv6 sockets ({error.strerror}), which also carry IPv4",
+            do="switch IPv6 on in its kernel",
+        ) from error
+    try:
+        opened.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 0)
+        # No SO_REUSEPORT: two robot programs would each get a share of the teacher's messages.
+        opened.bind((text, port))
+    except (OSError, OverflowError) as error:
+        opened.close()
+        raise ChannelError(_why(error, host, port)) from error
+    return opened
+
+
+def _why(error: OSError | OverflowError, host: str, port: int) -> str:
+    match error:
+        case OSError(errno=errno.EADDRINUSE):
+            return f"UDP port {port} is in use, by another kurt2rt run perhaps; end that one, or give another port"
+        case OSError(errno=errno.EADDRNOTAVAIL):
+            return f"{host} is no address of this machine; give one that is, or :: for all"
+        case OSError(errno=errno.EACCES):
+            return f"UDP port {port} is not allowed to this user; give one above 1023"
+        case _:
+            return f"UDP port {port} at {host} cannot be opened ({error}); give another port or address"

@@ -1,0 +1,51 @@
+"""The teacher's channel over UDP, from a teacher's device to the wheels and to the disk."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+from kurt2rt.checks.bench.channel_lesson import measure_channel_lessons
+from kurt2rt.checks.bench.channel_load import Shifts, measure_load
+from kurt2rt.checks.bench.press_to_wheel import measure_presses, measure_presses_on_page
+from kurt2rt.checks.bench.result import Result
+from kurt2rt.checks.bench.robot_under_test import OnProgress, Subject
+
+_PAGE_PACKAGES = ("starlette", "uvicorn", "websockets")
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelLengths:
+    """How much of the channel is measured."""
+
+    presses: int
+    shifts: Shifts
+    lessons: int
+
+
+async def measure_channel(
+    subject: Subject, folder: Path, lengths: ChannelLengths, progress_of: Callable[[str], OnProgress]
+) -> tuple[Result, ...]:
+    """Presses, with and without the page; the loop with a teacher there; lessons. Files go to folders in `folder`.
+
+    The page is left out where its packages, an extra, are not installed. Raises LessonLostError, KnowledgeError,
+    ChannelError, PartnerLostError, OSError without a timerfd.
+    """
+    results = [
+        await measure_presses(
+            subject, folder / "press", lengths.presses, progress_of("pressing, in a teacher's program")
+        )
+    ]
+    if all(find_spec(package) for package in _PAGE_PACKAGES):
+        results.append(
+            await measure_presses_on_page(
+                subject, folder / "press_on_page", lengths.presses, progress_of("pressing, on the teacher's page")
+            )
+        )
+    results += await measure_load(
+        subject, folder / "load", lengths.shifts, progress_of("driving, with and without a teacher there")
+    )
+    results.append(
+        await measure_channel_lessons(subject, folder / "lessons", lengths.lessons, progress_of("teaching over UDP"))
+    )
+    return tuple(results)

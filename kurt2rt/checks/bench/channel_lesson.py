@@ -1,0 +1,61 @@
+"""How long a teacher at a device waits until he knows that a lesson is safe."""
+
+import time
+from functools import partial
+from pathlib import Path
+
+from anyio import to_thread
+
+from kurt2rt.checks.bench.helper_process import partner
+from kurt2rt.checks.bench.open_robot import OpenRobot, open_robot
+from kurt2rt.checks.bench.result import Goal, Reference, Result
+from kurt2rt.checks.bench.robot_under_test import OnProgress, Subject
+from kurt2rt.core.teaching.commands import Teach
+from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
+from kurt2rt.platform.ledger import share_of
+
+P99_LIMIT_US = 35_000.0
+"""20 ms until the lesson is durable, 10 ms until a tick sees that, the rest for the way there and back."""
+_LESSONS_AT_ONCE = 10
+_WARMING_UP = 1
+_PATIENCE_S = 10.0
+
+
+async def measure_channel_lessons(subject: Subject, folder: Path, lessons: int, on_progress: OnProgress) -> Result:
+    """From an answer of the teacher's device until it is acknowledged there; files go to `folder`.
+
+    In turns with lessons that begin and end in the robot's program. Raises LessonLostError, KnowledgeError,
+    PartnerLostError, OSError without a timerfd.
+    """
+    took_ns: list[int] = []
+    inside_ns: list[int] = []
+    async with open_robot(subject, folder) as robot, partner("kurt2rt.checks.bench.device", *robot.address) as device:
+        await device.ask("watch")
+        await device.ask("teach", lessons=_WARMING_UP)  # what is slow but once
+        while len(took_ns) < lessons:
+            count = min(_LESSONS_AT_ONCE, lessons - len(took_ns))
+            took_ns += (await device.ask("teach", lessons=count))["took_ns"]
+            for number in range(len(inside_ns), len(took_ns)):
+                inside_ns.append(await _teach_inside(robot, number))
+            on_progress(len(took_ns) / lessons)
+    took, inside = share_of(took_ns), share_of(inside_ns)
+    return Result(
+        "channel",
+        "lesson answered",
+        took,
+        Reference("durable", inside.median_us, took.median_us),
+        (Goal("p99 us", took.p99_us, P99_LIMIT_US),),
+        f"{lessons} lessons; durable, without the channel: p99 {inside.p99_us / 1000:.1f} ms",
+    )
+
+
+async def _teach_inside(robot: OpenRobot, number: int) -> int:
+    """As kurt2rt.checks.bench.lesson does; how long it took, in ns."""
+    command_id, rounds = f"bench-inside-{number}", robot.rounds
+    action = tuple(robot.runtime.level.repertoire)[number % 2]
+    begun_ns = time.perf_counter_ns()
+    robot.runtime.inbox.put(Teach(command_id, robot.device.name, action))
+    await rounds.until(lambda: rounds.newest is not None and bool(rounds.newest.results))
+    if not await to_thread.run_sync(partial(robot.writer.flush, _PATIENCE_S)):
+        raise LessonLostError(robot.writer.trouble or f"the disk did not answer within {_PATIENCE_S:g} s")
+    return time.perf_counter_ns() - begun_ns

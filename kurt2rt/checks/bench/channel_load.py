@@ -1,0 +1,166 @@
+"""What it costs the loop that teachers look at the robot and tell it something all the time."""
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from statistics import fmean
+
+from kurt2rt.channel.server.channel import PICTURES_PER_S
+from kurt2rt.checks.bench.helper_process import partner
+from kurt2rt.checks.bench.open_robot import OpenRobot, open_robot
+from kurt2rt.checks.bench.result import Goal, Reference, Result
+from kurt2rt.checks.bench.robot_under_test import OnProgress, Subject
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.platform.ledger import Ledger, Share, share_of
+
+_SETTLING_S = 0.3
+
+
+class Company(StrEnum):
+    """Who is at the robot."""
+
+    NOBODY = "leave"
+    """And the channel has no part in the rounds: no picture is made."""
+    ONLOOKER = "look"
+    """Gets the pictures."""
+    TEACHER = "watch"
+    """Gets the pictures, and says that he is there as often as one who drives by hand says where to."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shifts:
+    """How often and how long each company is there; in turns, so what the machine does meanwhile falls on all alike."""
+
+    rounds: int
+    ticks: int
+
+
+@dataclass(frozen=True, slots=True)
+class Stay:
+    """One company at the robot, for a while."""
+
+    seconds: float
+    processor_us: float
+    """That the robot's program took, the simulated robot in it included."""
+    messages: int
+    """That came in."""
+    missed_ticks: int
+
+    @property
+    def work_us(self) -> float:
+        """Of the processor, in a second."""
+        return self.processor_us / self.seconds
+
+    @property
+    def messages_per_s(self) -> float:
+        """That came in, in a second."""
+        return self.messages / self.seconds
+
+
+@dataclass(frozen=True, slots=True)
+class Stays:
+    """All stays of one company."""
+
+    lateness: Share
+    each: tuple[Stay, ...]
+
+    @property
+    def missed_ticks(self) -> int:
+        """In all stays."""
+        return sum(stay.missed_ticks for stay in self.each)
+
+
+async def measure_load(subject: Subject, folder: Path, shifts: Shifts, on_progress: OnProgress) -> tuple[Result, ...]:
+    """Lateness and processor time of a robot that drives by its RLAs, with and without company; files go to `folder`.
+
+    Raises KnowledgeError, PartnerLostError, OSError without a timerfd.
+    """
+    ledgers = {company: Ledger(shifts.rounds * shifts.ticks) for company in Company}
+    stays: dict[Company, list[Stay]] = {company: [] for company in Company}
+    async with open_robot(subject, folder) as robot, partner("kurt2rt.checks.bench.device", *robot.address) as device:
+        # It drives in the same way whoever is there.
+        robot.runtime.school.phase = Phase.AUTONOMOUS
+        robot.runtime.school.stopped = None
+        period_s = robot.runtime.robot.can.cycle_s
+        for number in range(shifts.rounds):
+            robot.pace.shift(period_s / shifts.rounds)
+            for company in Company:
+                robot.rounds.open = True
+                await device.ask(company.value)
+                await _settle(robot, company)
+                stays[company].append(await _stay(robot, ledgers[company], shifts.ticks))
+            on_progress((number + 1) / shifts.rounds)
+    return load_results(
+        {company: Stays(ledgers[company].lateness(), tuple(stays[company])) for company in Company},
+        period_s=period_s,
+        driving_share=robot.rounds.driving / robot.rounds.ticks,
+    )
+
+
+async def _settle(robot: OpenRobot, company: Company) -> None:
+    somebody = company is not Company.NOBODY
+    await robot.rounds.until(lambda: (robot.channel.observers > 0) is somebody)
+    robot.rounds.open = somebody
+    await robot.rounds.go_on_for(round(_SETTLING_S / robot.runtime.robot.can.cycle_s))
+
+
+async def _stay(robot: OpenRobot, ledger: Ledger, ticks: int) -> Stay:
+    counters, runtime = robot.channel.endpoint.counters, robot.runtime
+    missed, messages = runtime.ledger.missed_ticks, counters.received
+    processor_ns, begun_ns = time.process_time_ns(), time.monotonic_ns()
+    robot.clock.ledger = ledger
+    await robot.rounds.go_on_for(ticks)
+    robot.clock.ledger = None
+    return Stay(
+        seconds=(time.monotonic_ns() - begun_ns) / 1e9,
+        processor_us=(time.process_time_ns() - processor_ns) / 1e3,
+        messages=counters.received - messages,
+        missed_ticks=runtime.ledger.missed_ticks - missed,
+    )
+
+
+def load_results(stays: dict[Company, Stays], *, period_s: float, driving_share: float) -> tuple[Result, ...]:
+    """How late ticks begin with a teacher there, and what the channel's work is made of."""
+    nobody, onlooker, teacher = (stays[company] for company in Company)
+    late = Reference("alone, p99", nobody.lateness.p99_us, teacher.lateness.p99_us)
+    channel = _more(nobody.each, teacher.each, [1.0] * len(teacher.each))
+    alone_us = share_of([round(stay.work_us * 1e3) for stay in nobody.each]).median_us
+    picture = _more(nobody.each, onlooker.each, [PICTURES_PER_S] * len(onlooker.each))
+    more_messages = [
+        taught.messages_per_s - looked.messages_per_s
+        for looked, taught in zip(onlooker.each, teacher.each, strict=True)
+    ]
+    message = _more(onlooker.each, teacher.each, more_messages)
+    return (
+        Result(
+            "channel",
+            "late, teacher there",
+            teacher.lateness,
+            late,
+            (Goal("missed", teacher.missed_ticks, 0),),
+            f"{PICTURES_PER_S} pictures out, {fmean(more_messages):.0f} messages in per second; without "
+            f"anybody {nobody.missed_ticks} ticks missed; driving in {driving_share:.0%} of the ticks",
+        ),
+        Result(
+            "channel",
+            "channel, per second",
+            channel,
+            Reference("all else", alone_us, channel.median_us),
+            note=f"{channel.median_us / 1e4:.1f} % of a core: processor time of the robot's program with a teacher, "
+            "less that without anybody in the same round",
+        ),
+        Result("channel", "  a picture", picture, Reference("period", period_s * 1e6, picture.median_us)),
+        Result("channel", "  a message", message, Reference("period", period_s * 1e6, message.median_us)),
+    )
+
+
+def _more(less: Sequence[Stay], more: Sequence[Stay], things_per_s: Sequence[float]) -> Share:
+    """How much more work there was for each thing, round by round."""
+    return share_of(
+        [
+            round((with_it.work_us - without.work_us) / per_s * 1e3)
+            for without, with_it, per_s in zip(less, more, things_per_s, strict=True)
+        ]
+    )

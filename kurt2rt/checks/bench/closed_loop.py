@@ -1,0 +1,61 @@
+"""How many times real time a lesson runs in lockstep: world, codec, bus, runtime, teacher, on one core."""
+
+import time
+from pathlib import Path
+
+from kurt2rt.checks.bench.one_core import on_one_core
+from kurt2rt.checks.bench.result import Goal, Reference, Result
+from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, Subject, kept_knowledge, lasting
+from kurt2rt.checks.bench.tick_budget import share_result
+from kurt2rt.experiments.lockstep.lesson import teach
+from kurt2rt.platform.ledger import share_of
+
+TIMES_REAL_TIME = 60.0
+
+
+async def measure_closed_loop(
+    subject: Subject, folder: Path, blocks: int, seconds_per_block: int, on_progress: OnProgress
+) -> tuple[Result, ...]:
+    """Time per tick of a lesson that goes on from the subject's knowledge, and the runtime's share of it.
+
+    Timed by blocks of whole simulated seconds. The journal goes to `folder`. Raises KnowledgeError.
+    """
+    period_s = subject.settings.can.cycle_s
+    ticks_per_block = round(seconds_per_block / period_s)
+    # One second ahead of the first block, for all that is slow but once.
+    task = lasting(subject.task, supervised_s=period_s, corrections_s=1 + blocks * seconds_per_block - period_s)
+    tick_ns: list[int] = []
+    begun_ns = seconds = 0
+
+    def after_second(_: float) -> None:
+        nonlocal begun_ns, seconds
+        blocks_done, within = divmod(seconds, seconds_per_block)
+        seconds += 1
+        if within > 0:
+            return
+        if blocks_done > 0:
+            tick_ns.append((time.perf_counter_ns() - begun_ns) // ticks_per_block)
+            on_progress(blocks_done / blocks)
+        begun_ns = time.perf_counter_ns()
+
+    simulation = subject.open_simulation("bench closed_loop")
+    try:
+        with on_one_core() as core, kept_knowledge(subject, folder / "closed_loop.knowledge") as writer:
+            lesson = await teach(
+                simulation, subject.settings, task, writer, subject.events, seed=SEED, on_progress=after_second
+            )
+    finally:
+        simulation.close()
+    tick = share_of(tick_ns)
+    reference = Reference("period", period_s * 1e6, tick.median_us)
+    best = period_s * 1e9 / min(tick_ns)
+    loop = Result(
+        "loop",
+        "closed loop, a tick",
+        tick,
+        reference,
+        (Goal("ratio", reference.ratio, TIMES_REAL_TIME, at_least=True),),
+        f"{blocks} blocks of {ticks_per_block} ticks on core {core}: median {reference.ratio:.1f} times real time, "
+        f"best {best:.1f}; {len(lesson.rlas)} RLAs",
+    )
+    return (loop, share_result("loop", "  of it the runtime", lesson.ledger.tick(), period_s, "no physics in it"))

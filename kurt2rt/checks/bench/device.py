@@ -1,0 +1,120 @@
+"""A teacher's device in a process of its own: `python -m kurt2rt.checks.bench.device FOLDER PORT`."""
+
+import itertools
+import sys
+import time
+from contextlib import AsyncExitStack
+from pathlib import Path
+from typing import Any
+
+import anyio
+
+from kurt2rt.checks.bench.job_loop import do_jobs
+from kurt2rt.checks.bench.press_schedule import SPEED_M_S, rhythms
+from kurt2rt.checks.bench.robot_under_test import SEED
+from kurt2rt.teacher.client.answer import Answer
+from kurt2rt.teacher.client.client import TeacherClient
+
+
+class BenchmarkRefusedError(RuntimeError):
+    """The robot does not do what the benchmark needs."""
+
+
+class Device:
+    """Looks at the robot, watches over it, drives it and teaches it, as it is asked to."""
+
+    def __init__(self, folder: Path, port: int) -> None:
+        self._folder = folder
+        self._port = port
+        self._opened = AsyncExitStack()
+        self._rhythms = rhythms(SEED)
+        self._actions = itertools.cycle(("forward", "back"))
+        self._forward = True
+        self._client: TeacherClient | None = None
+
+    async def look(self) -> dict[str, Any]:
+        """Get the pictures, and nothing else."""
+        await self._join(watching=False)
+        return {}
+
+    async def watch(self) -> dict[str, Any]:
+        """Get the pictures and say many times a second that the teacher is there."""
+        await self._join(watching=True)
+        return {}
+
+    async def leave(self) -> dict[str, Any]:
+        """Be gone."""
+        await self._opened.aclose()
+        return {}
+
+    async def press(self, presses: int) -> dict[str, Any]:
+        """Press so many times, forward and backward in turns; when, on the monotonic clock."""
+        robot, made = self._robot, []
+        for _ in range(presses):
+            rhythm = next(self._rhythms)
+            speed_m_s = SPEED_M_S if self._forward else -SPEED_M_S
+            begun_s = anyio.current_time()
+            made.append((time.monotonic_ns(), self._forward))
+            robot.press(speed_m_s, speed_m_s)
+            await anyio.sleep(rhythm.held_s)
+            await robot.let_go()
+            self._forward = not self._forward
+            await anyio.sleep_until(begun_s + rhythm.next_s)
+        return {"presses": made}
+
+    async def teach(self, lessons: int) -> dict[str, Any]:
+        """Answer so many situations, each in the middle of nothing; how long until it was known to be durable."""
+        took_ns = []
+        for _ in range(lessons):
+            await anyio.sleep(next(self._rhythms).held_s / 2)  # the teacher does not know when ticks begin
+            action = next(self._actions)
+            begun_ns = time.monotonic_ns()
+            _require(await self._robot.answer(action))
+            took_ns.append(time.monotonic_ns() - begun_ns)
+        return {"took_ns": took_ns}
+
+    async def close(self) -> None:
+        """Be gone for good."""
+        await self._opened.aclose()
+
+    @property
+    def _robot(self) -> TeacherClient:
+        if self._client is None:
+            raise BenchmarkRefusedError("look or watch comes first")
+        return self._client
+
+    async def _join(self, *, watching: bool) -> None:
+        await self._opened.aclose()
+        robot = self._client = TeacherClient(self._folder, port=self._port)
+        await self._opened.enter_async_context(robot)
+        robot.watching = watching
+        if watching:
+            _require(await robot.take())
+        async for _ in robot.states():
+            return
+
+
+def _require(answer: Answer) -> None:
+    if not answer.accepted:
+        raise BenchmarkRefusedError(f"{answer.why}: {answer.text}")
+
+
+async def main(folder: Path, port: int) -> None:
+    """Do jobs until the input ends."""
+    device = Device(folder, port)
+    try:
+        await do_jobs(
+            {
+                "look": device.look,
+                "watch": device.watch,
+                "leave": device.leave,
+                "press": device.press,
+                "teach": device.teach,
+            }
+        )
+    finally:
+        await device.close()
+
+
+if __name__ == "__main__":
+    anyio.run(main, Path(sys.argv[1]), int(sys.argv[2]))

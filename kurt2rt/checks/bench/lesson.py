@@ -1,0 +1,83 @@
+"""How long the teacher waits until a lesson is safe."""
+
+import random
+import time
+from functools import partial
+from pathlib import Path
+
+import anyio
+from anyio import to_thread
+
+from kurt2rt.checks.bench.result import Goal, Reference, Result
+from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, Subject, kept_knowledge
+from kurt2rt.core.teaching.commands import Teach
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
+from kurt2rt.platform.fsync_probe import sync_ns
+from kurt2rt.platform.gc_control import quiet_gc
+from kurt2rt.platform.ledger import share_of
+from kurt2rt.platform.timerfd_clock import TimerfdClock
+from kurt2rt.runtime import build_runtime
+
+P99_LIMIT_US = 20_000.0
+
+
+async def measure_lessons(
+    subject: Subject, folder: Path, lessons: int, on_progress: OnProgress, patience_s: float = 10.0
+) -> Result:
+    """Time from a command of the teacher, over the tick that takes it, to the journal in `folder` that has it durable.
+
+    In turns with a bare fsync there. Raises LessonLostError, KnowledgeError, OSError without a timerfd.
+    """
+    period_s = subject.settings.can.cycle_s
+    chance = random.Random(SEED)
+    took_ns: list[int] = []
+    syncs_ns: list[int] = []
+    simulation = subject.open_simulation("bench lesson")
+    try:
+        with (
+            kept_knowledge(subject, folder / "lesson.knowledge") as writer,
+            (folder / "sync").open("wb", buffering=0) as file,
+            TimerfdClock() as clock,
+            simulation.live(),
+            quiet_gc(),
+        ):
+            runtime = build_runtime(simulation.robot, subject.settings, subject.task, subject.events, writer, clock)
+            actions = tuple(runtime.level.repertoire)
+            taken = anyio.Event()
+
+            def after_tick(record: TickRecord) -> None:
+                if record.results:
+                    taken.set()
+
+            async with anyio.create_task_group() as tasks:
+                tasks.start_soon(partial(runtime.scheduler.run, None, after_tick))
+                for number in range(lessons):
+                    syncs_ns.append(await to_thread.run_sync(sync_ns, file))
+                    # The teacher does not know when ticks begin.
+                    await anyio.sleep(chance.uniform(0.0, 2 * period_s))
+                    taken = anyio.Event()
+                    begun_ns = time.perf_counter_ns()
+                    # In turns, so that one where the robot stands still is never what the robot knows already.
+                    runtime.inbox.put(Teach(f"bench-lesson-{number}", "bench", actions[number % 2]))
+                    await taken.wait()
+                    if not await to_thread.run_sync(writer.flush, patience_s):
+                        break
+                    took_ns.append(time.perf_counter_ns() - begun_ns)
+                    on_progress((number + 1) / lessons)
+                runtime.scheduler.end()
+            durable = sum(each.sequence is not None for each in writer.acknowledged())
+            if durable < lessons:
+                why = writer.trouble or f"{folder}: the disk did not answer within {patience_s:g} s"
+                raise LessonLostError(f"{durable} of {lessons} lessons became durable: {why}")
+    finally:
+        simulation.close()
+    took = share_of(took_ns)
+    return Result(
+        "lesson",
+        "lesson durable",
+        took,
+        Reference("bare fsync", share_of(syncs_ns).median_us, took.median_us),
+        (Goal("p99 us", took.p99_us, P99_LIMIT_US),),
+        f"{lessons} lessons, the wait for the next tick ({period_s * 500:g} ms on average) included",
+    )

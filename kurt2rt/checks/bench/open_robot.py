@@ -1,0 +1,147 @@
+"""A robot that is open to teachers over the network, put together as the service does it."""
+
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import anyio
+import anyio.to_thread
+
+from kurt2rt.channel.security.paired_devices import Teachers
+from kurt2rt.channel.security.pairing import Device, local_pairing
+from kurt2rt.channel.server.channel import Channel, Surroundings, open_channel
+from kurt2rt.channel.server.state_builder import Safekeeping
+from kurt2rt.checks.bench.lateness_clock import NotingClock
+from kurt2rt.checks.bench.press_schedule import WitnessedRobot
+from kurt2rt.checks.bench.robot_under_test import Subject, kept_knowledge
+from kurt2rt.checks.bench.tick_phase import Pace
+from kurt2rt.core.decision.active_stop import STARTED
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.knowledge.exchange.package import package_knowledge
+from kurt2rt.knowledge.files.backup import Safe
+from kurt2rt.knowledge.journal.writer import JournalWriter
+from kurt2rt.platform.gc_control import quiet_gc
+from kurt2rt.platform.timerfd_clock import TimerfdClock
+from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.service.post_tick import Rounds, Screen
+from kurt2rt.service.settings import load_service
+
+_PATIENCE_S = 30.0
+
+
+class Turnstile:
+    """What happens after each tick: what the service does, and a look whether what is waited for has come."""
+
+    def __init__(self, with_channel: Rounds, without: Rounds) -> None:
+        self.open = True
+        """Whether the channel has its part in it."""
+        self.ticks = 0
+        self.driving = 0
+        """Ticks in which an action drove the wheels."""
+        self.newest: TickRecord | None = None
+        self._with_channel = with_channel
+        self._without = without
+        self._come: Callable[[], bool] | None = None
+        self._noticed = anyio.Event()
+
+    def __call__(self, record: TickRecord) -> None:
+        """The round after one tick."""
+        self.ticks += 1
+        self.driving += record.decision.driving
+        self.newest = record
+        (self._with_channel if self.open else self._without)(record)
+        if self._come is not None and self._come():
+            self._come = None
+            self._noticed.set()
+
+    async def until(self, come: Callable[[], bool]) -> None:
+        """Wait until something is so after a tick; one waits at a time. Raises TimeoutError after half a minute."""
+        self._noticed = anyio.Event()
+        self._come = come
+        with anyio.fail_after(_PATIENCE_S):
+            await self._noticed.wait()
+
+    async def go_on_for(self, ticks: int) -> None:
+        """Let so many ticks go by."""
+        last = self.ticks + ticks
+        await self.until(lambda: self.ticks >= last)
+
+
+@dataclass(frozen=True, slots=True)
+class OpenRobot:
+    """Ticks by itself while it is open."""
+
+    runtime: Runtime
+    writer: JournalWriter
+    channel: Channel
+    witness: WitnessedRobot
+    clock: NotingClock
+    device: Device
+    """A teacher's device that is paired with it."""
+    rounds: Turnstile
+    pace: Pace
+
+    @property
+    def address(self) -> tuple[str, ...]:
+        """Folder of the pairing and port, as a program on the device's side wants them."""
+        return str(self.device.folder), str(self.channel.endpoint.port)
+
+
+@asynccontextmanager
+async def open_robot(subject: Subject, folder: Path) -> AsyncIterator[OpenRobot]:
+    """Set the robot down, standing and open to teachers; knowledge and pairing go to `folder`, which is made.
+
+    Raises KnowledgeError, ChannelError, OSError without a timerfd, and what the block raises as it is.
+    """
+    pairing = local_pairing(folder / "teachers", folder / "devices")
+    service = load_service().model_copy(update={"knowledge": str(folder / "bench.knowledge")})
+    failed: Exception | None = None
+    simulation = subject.open_simulation(f"bench {folder.name}")
+    try:
+        with (
+            kept_knowledge(subject, Path(service.knowledge)) as writer,
+            TimerfdClock() as real_clock,
+            simulation.live(),
+            quiet_gc(),
+        ):
+            clock = NotingClock(real_clock)
+            witness = WitnessedRobot(simulation.robot, clock)
+            runtime = build_runtime(
+                witness, subject.settings, subject.task, subject.events, writer, clock, attended=True
+            )
+            runtime.school.stop(STARTED)
+            stamps: dict[str, str] = {}
+            safekeeping = Safekeeping(
+                unsaved=lambda: writer.unwritten,
+                trouble=lambda: writer.trouble,
+                stamp_of=lambda command_id: stamps.get(command_id, ""),
+            )
+            package = partial(package_knowledge, robot=subject.settings, task=subject.task)
+            safe = Safe(Path(service.knowledge), writer, package)
+            surroundings = Surroundings(safekeeping, safe, lambda: "", None)
+            screen = Screen(status=lambda _: None, question=lambda _: None, settled=lambda _: None)
+            teachers = await anyio.to_thread.run_sync(Teachers, folder / "teachers")
+            try:
+                async with (
+                    anyio.create_task_group() as tasks,
+                    open_channel(runtime, teachers, 0, surroundings) as channel,
+                ):
+                    rounds = Turnstile(
+                        Rounds(runtime, writer, stamps, service, screen, None, channel),
+                        Rounds(runtime, writer, stamps, service, screen, None, None),
+                    )
+                    pace = Pace(runtime.scheduler, clock)
+                    tasks.start_soon(pace.run, rounds)
+                    try:
+                        yield OpenRobot(runtime, writer, channel, witness, clock, pairing.device, rounds, pace)
+                    except Exception as error:  # noqa: BLE001  # raised below: a task group would wrap it
+                        failed = error
+                    pace.end()
+            finally:
+                teachers.close()
+    finally:
+        simulation.close()
+    if failed is not None:
+        raise failed

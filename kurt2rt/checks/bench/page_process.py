@@ -1,0 +1,35 @@
+"""Page process, as `kurt2rt teach` serves it: `python -m kurt2rt.checks.bench.page_process`."""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import anyio
+
+from kurt2rt.channel.security.pairing import read_device
+from kurt2rt.checks.bench.job_loop import do_jobs
+from kurt2rt.teacher.client.client import TeacherClient
+from kurt2rt.teacher.page.access import Access
+from kurt2rt.teacher.page.server import listen, run_page
+
+
+async def main(folder: Path, port: int) -> None:
+    """Serve the page of the pairing in `folder`, with the robot at `port` of this machine, until the input ends."""
+    device = read_device(folder)
+    access = Access(device.name, device.token, ())
+    with listen(0, everywhere=False) as listener:
+        page_port = listener.getsockname()[1]
+
+        async def place() -> dict[str, Any]:
+            """Where the page is, and the cookie that opens it."""
+            return {"port": page_port, "cookie": f"{access.cookie_name}={access.cookie}"}
+
+        async def told_to_end() -> None:
+            await do_jobs({"place": place})
+
+        async with TeacherClient(folder, port=port) as robot:
+            await run_page(robot, access, f"127.0.0.1:{port}", listener, told_to_end)
+
+
+if __name__ == "__main__":
+    anyio.run(main, Path(sys.argv[1]), int(sys.argv[2]))

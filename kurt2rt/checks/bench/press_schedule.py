@@ -1,0 +1,76 @@
+"""Presses of a button: when each was made, when the wheels were told, and how long that took."""
+
+import random
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from hal.robot import STANDSTILL, GuardResult, Robot, WheelSpeeds
+from hal.robot_proxy import RobotProxy
+from kurt2rt.platform.clock import Clock
+
+SPEED_M_S = 0.05
+"""Slow, and in turns forward and backward: the robot stays where it is, and a frame tells whose press it is of."""
+_HELD_S = (0.10, 0.15)
+_UNTIL_NEXT_S = (0.25, 0.40)
+
+
+class Rhythm(NamedTuple):
+    """Of one press, in seconds from its beginning; no multiple of anything that the robot does."""
+
+    held_s: float
+    next_s: float
+
+
+class Press(NamedTuple):
+    """A press, where it was made."""
+
+    at_ns: int
+    """Of the machine's monotonic clock, which all processes share."""
+    forward: bool
+
+
+class Start(NamedTuple):
+    """The first CONTROL frame with a speed after one without."""
+
+    at_ns: int
+    forward: bool
+
+
+def rhythms(seed: int) -> Iterator[Rhythm]:
+    """One after another, without end."""
+    chance = random.Random(seed)
+    while True:
+        yield Rhythm(chance.uniform(*_HELD_S), chance.uniform(*_UNTIL_NEXT_S))
+
+
+def waits_ns(presses: Sequence[Press], starts: Sequence[Start]) -> list[int]:
+    """From each press to the start of the wheels before the next press; one that did not start them has none."""
+    waits = []
+    for number, press in enumerate(presses):
+        until_ns = presses[number + 1].at_ns if number + 1 < len(presses) else None
+        for start in starts:
+            after = press.at_ns <= start.at_ns and (until_ns is None or start.at_ns < until_ns)
+            if after and start.forward is press.forward:
+                waits.append(start.at_ns - press.at_ns)
+                break
+    return waits
+
+
+class WitnessedRobot(RobotProxy):
+    """A robot of which is noted when its wheels are told to start."""
+
+    def __init__(self, robot: Robot, clock: Clock) -> None:
+        """`clock` is the machine's monotonic one."""
+        super().__init__(robot)
+        self.starts: list[Start] = []
+        self._clock = clock
+        self._stood = True
+
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
+        """As the robot does; when it returns the frame is on the bus."""
+        grant = self._robot.drive(wanted, decided_at_s, now_s)
+        stands = grant.wheel_speeds == STANDSTILL
+        if self._stood and not stands:
+            self.starts.append(Start(round(self._clock.now_s() * 1e9), grant.wheel_speeds.left_m_s > 0.0))
+        self._stood = stands
+        return grant

@@ -1,0 +1,104 @@
+"""A drive in real time, the whole runtime at work, in turns with a bare asyncio.sleep loop."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, Subject, kept_knowledge
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.platform.asyncio_clock import AsyncioClock
+from kurt2rt.platform.clock import Clock
+from kurt2rt.platform.gc_control import quiet_gc
+from kurt2rt.platform.ledger import Ledger, Share, Stage
+from kurt2rt.platform.timerfd_clock import TimerfdClock
+from kurt2rt.runtime import build_runtime
+from kurt2rt.teacher.scripted.teacher import picture_of, teacher_of
+
+
+@dataclass(frozen=True, slots=True)
+class Turns:
+    """How long runtime and reference run, in turns; what the machine does meanwhile falls on both alike."""
+
+    rounds: int
+    ticks: int
+    """Of the runtime, in each round."""
+    reference_ticks: int
+    """Of the bare loop, after them."""
+
+
+@dataclass(frozen=True, slots=True)
+class RealTimeRun:
+    """Where the time of a drive went."""
+
+    ticks: int
+    """Ticks that the run was long, missed ones included."""
+    missed_ticks: int
+    driving_share: float
+    """Share of ticks in which an action drove the wheels."""
+    rlas: int
+    """Known at the end."""
+    lateness: Share
+    asyncio_lateness: Share
+    """How late the bare loop woke."""
+    tick: Share
+    stages: dict[Stage, Share]
+
+
+async def run_in_real_time(subject: Subject, folder: Path, turns: Turns, on_progress: OnProgress) -> RealTimeRun:
+    """Drive as the service does, its journal in `folder`. Raises KnowledgeError, OSError without a timerfd."""
+    period_s = subject.settings.can.cycle_s
+    asyncio_ledger = Ledger()
+    driving = 0
+    simulation = subject.open_simulation("bench real_time")
+    try:
+        with kept_knowledge(subject, folder / "real_time.knowledge") as writer, TimerfdClock() as clock, quiet_gc():
+            runtime = build_runtime(simulation.robot, subject.settings, subject.task, subject.events, writer, clock)
+            actions = tuple(runtime.level.repertoire)
+            teacher = teacher_of(subject.task, subject.settings, actions, seed=SEED, session="bench")
+            runtime.inbox.put(teacher.enter(Phase.CORRECTIONS))
+            ticks_per_checkpoint = round(1 / period_s)
+
+            def after_tick(record: TickRecord) -> None:
+                nonlocal driving
+                driving += record.decision.driving
+                command = teacher.watch(picture_of(record))
+                if command is not None:
+                    runtime.inbox.put(command)
+                if record.tick % ticks_per_checkpoint == 0:
+                    counted = runtime.statistics
+                    writer.submit_statistics(Statistics(dict(counted.uses), dict(counted.transitions)))
+
+            for number in range(turns.rounds):
+                with simulation.live():
+                    # The controller's cycle and ours are not in step: each round meets another phase of it.
+                    await clock.wait_until(clock.now_s() + period_s * number / turns.rounds)
+                    await runtime.scheduler.run(turns.ticks, after_tick)
+                await sleep_bare(AsyncioClock(), turns.reference_ticks, period_s, asyncio_ledger)
+                # Only here: drawing a progress bar takes milliseconds that would show as lateness.
+                on_progress((number + 1) / turns.rounds)
+    finally:
+        simulation.close()
+    ledger = runtime.ledger
+    return RealTimeRun(
+        ticks=turns.rounds * turns.ticks,
+        missed_ticks=ledger.missed_ticks,
+        driving_share=driving / max(1, ledger.ticks),
+        rlas=len(runtime.level.system),
+        lateness=ledger.lateness(),
+        asyncio_lateness=asyncio_ledger.lateness(),
+        tick=ledger.tick(),
+        stages={stage: ledger.stage(stage) for stage in Stage},
+    )
+
+
+async def sleep_bare(clock: Clock, ticks: int, period_s: float, ledger: Ledger) -> None:
+    """Sleep to the next multiple of the period, so many times, and enter how late each sleep ended."""
+    start_s = clock.now_s()
+    number = 0
+    for _ in range(ticks):
+        number = max(number, int((clock.now_s() - start_s) / period_s)) + 1
+        deadline_s = start_s + number * period_s
+        await clock.wait_until(deadline_s)
+        ledger.begin(clock.now_s() - deadline_s)
+        ledger.end()

@@ -1,0 +1,157 @@
+"""What it costs the loop that its run is recorded, and how much of the disk that takes."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from kurt2rt.checks.bench.channel_load import Shifts
+from kurt2rt.checks.bench.lateness_clock import NotingClock
+from kurt2rt.checks.bench.result import Goal, Reference, Result
+from kurt2rt.checks.bench.robot_under_test import OnProgress, Subject, kept_knowledge
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.platform.gc_control import quiet_gc
+from kurt2rt.platform.ledger import Ledger, Share, share_of
+from kurt2rt.platform.switch_interval import short_turns
+from kurt2rt.platform.timerfd_clock import TimerfdClock
+from kurt2rt.runs.recording.recording import Circumstances, Recording
+from kurt2rt.runs.recording.run_files import budget_of
+from kurt2rt.runs.recording.run_folder import used_bytes
+from kurt2rt.runtime import Runtime, build_runtime
+
+_BUDGET_MB = 1000
+NOTE_LIMIT_US = 50.0
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """A while with or without a recorder."""
+
+    processor_us: float
+    """Of the robot's program, the simulated robot in it included."""
+    missed_ticks: int
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedDrive:
+    """A drive that was recorded every second stretch."""
+
+    period_s: float
+    ticks: int
+    """Of each stretch."""
+    lateness: Share
+    alone_lateness: Share
+    note: Share
+    recorded: tuple[Stretch, ...]
+    alone: tuple[Stretch, ...]
+    bytes_written: int
+    dropped: int
+    trouble: str
+
+
+async def measure_recording(
+    subject: Subject, folder: Path, shifts: Shifts, on_progress: OnProgress
+) -> tuple[Result, ...]:
+    """Drive in real time by what is known, in turns with and without a recorder; files go to `folder`.
+
+    Raises KnowledgeError, OSError without a timerfd.
+    """
+    return recording_results(await drive_recorded(subject, folder, shifts, on_progress))
+
+
+async def drive_recorded(subject: Subject, folder: Path, shifts: Shifts, on_progress: OnProgress) -> RecordedDrive:
+    """The drive. Raises as `measure_recording`."""
+    runs = folder / "runs"
+    settings, period_s = subject.settings, subject.settings.can.cycle_s
+    recording = Recording(runs, budget_of(_BUDGET_MB), "sim")
+    recorder = recording.recorder(settings, subject.task, None, Circumstances("bench", "", attended=False))
+    ledgers = {recorded: Ledger(shifts.rounds * shifts.ticks) for recorded in (False, True)}
+    stretches: dict[bool, list[Stretch]] = {False: [], True: []}
+    noted_ns: list[int] = []
+
+    def note(record: TickRecord) -> None:
+        begun_ns = time.perf_counter_ns()
+        recorder.note(record)
+        noted_ns.append(time.perf_counter_ns() - begun_ns)
+
+    simulation = subject.open_simulation("bench recording")
+    try:
+        with (
+            kept_knowledge(subject, folder / "recording.knowledge") as writer,
+            TimerfdClock() as timer,
+            quiet_gc(),
+            short_turns(),
+            recorder,
+        ):
+            clock = NotingClock(timer)
+            runtime = build_runtime(simulation.robot, settings, subject.task, subject.events, writer, clock)
+            runtime.school.phase = Phase.AUTONOMOUS
+            for number in range(shifts.rounds):
+                with simulation.live():
+                    await timer.wait_until(timer.now_s() + period_s * number / shifts.rounds)
+                    for recorded, ledger in ledgers.items():
+                        clock.ledger = ledger
+                        stretches[recorded].append(await _stretch(runtime, note if recorded else _ignore, shifts.ticks))
+                        clock.ledger = None
+                on_progress((number + 1) / shifts.rounds)
+    finally:
+        simulation.close()
+    return RecordedDrive(
+        period_s=period_s,
+        ticks=shifts.ticks,
+        lateness=ledgers[True].lateness(),
+        alone_lateness=ledgers[False].lateness(),
+        note=share_of(noted_ns),
+        recorded=tuple(stretches[True]),
+        alone=tuple(stretches[False]),
+        bytes_written=used_bytes(runs),
+        dropped=recorder.dropped,
+        trouble=recorder.trouble,
+    )
+
+
+async def _stretch(runtime: Runtime, after_tick: Callable[[TickRecord], None], ticks: int) -> Stretch:
+    missed, processor_ns = runtime.ledger.missed_ticks, time.process_time_ns()
+    await runtime.scheduler.run(ticks, after_tick)
+    return Stretch((time.process_time_ns() - processor_ns) / 1e3, runtime.ledger.missed_ticks - missed)
+
+
+def _ignore(_: TickRecord) -> None:
+    """Nobody records."""
+
+
+def recording_results(drive: RecordedDrive) -> tuple[Result, ...]:
+    """How late ticks begin while the run is recorded, what a note takes, and the recorder's work beside the loop."""
+    stretch_s = drive.ticks * drive.period_s
+    pairs = list(zip(drive.alone, drive.recorded, strict=True))
+    more = share_of([round((each.processor_us - alone.processor_us) / stretch_s * 1e3) for alone, each in pairs])
+    alone_us = share_of([round(alone.processor_us / stretch_s * 1e3) for alone in drive.alone]).median_us
+    hours = len(drive.recorded) * stretch_s / 3600
+    missed = sum(each.missed_ticks for each in drive.recorded)
+    missed_alone = sum(each.missed_ticks for each in drive.alone)
+    return (
+        Result(
+            "recording",
+            "late, recorded",
+            drive.lateness,
+            Reference("alone, p99", drive.alone_lateness.p99_us, drive.lateness.p99_us),
+            (Goal("missed", missed, 0), Goal("lost", drive.dropped, 0)),
+            drive.trouble or f"without a recorder {missed_alone} ticks missed",
+        ),
+        Result(
+            "recording",
+            "  a note, in the loop",
+            drive.note,
+            Reference("period", drive.period_s * 1e6, drive.note.median_us),
+            (Goal("p99 us", drive.note.p99_us, NOTE_LIMIT_US),),
+        ),
+        Result(
+            "recording",
+            "  writing, per second",
+            more,
+            Reference("all else", alone_us, more.median_us),
+            note=f"{more.median_us / 1e4:.1f} % of a core: processor time with a recorder, less that without one in "
+            f"the same round; {drive.bytes_written / 1e6 / hours:.0f} MB an hour",
+        ),
+    )

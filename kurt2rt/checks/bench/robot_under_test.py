@@ -1,0 +1,67 @@
+"""What is measured: a robot in its world, a task, and knowledge good enough to drive with."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from hal.robot_settings import RobotSettings
+from hal.simulation import Simulation
+from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.tick import InMemoryEventStore
+from kurt2rt.experiments.lockstep.lesson import teach
+from kurt2rt.knowledge.journal.entry import JournalEntry
+from kurt2rt.knowledge.journal.loading import open_knowledge
+from kurt2rt.knowledge.journal.writer import JournalWriter, utc_now
+
+OnProgress = Callable[[float], None]
+"""Gets the share of the work that is done, 0 to 1."""
+
+SEED = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """The robot, where it drives and what it knows."""
+
+    settings: RobotSettings
+    task: TaskSettings
+    open_simulation: Callable[[str], Simulation]
+    """Sets the robot down in the world that the task is taught in, for a purpose."""
+    events: tuple[TeachingEvent, ...] = ()
+
+
+async def learn(subject: Subject, duration_s: float, on_progress: OnProgress) -> Subject:
+    """The same subject, taught in lockstep for that much simulated time, two thirds of it with corrections."""
+    notebook = InMemoryEventStore()
+    task = lasting(subject.task, supervised_s=duration_s / 3, corrections_s=duration_s * 2 / 3)
+    simulation = subject.open_simulation("lesson")
+    try:
+        await teach(
+            simulation,
+            subject.settings,
+            task,
+            notebook,
+            (),
+            seed=SEED,
+            on_progress=lambda done_s: on_progress(done_s / duration_s),
+        )
+    finally:
+        simulation.close()
+    return Subject(subject.settings, subject.task, subject.open_simulation, tuple(notebook.events))
+
+
+def lasting(task: TaskSettings, *, supervised_s: float, corrections_s: float) -> TaskSettings:
+    """The task with a lesson of that length."""
+    teaching = task.teaching.model_copy(update={"supervised_s": supervised_s, "corrections_s": corrections_s})
+    return task.model_copy(update={"teaching": teaching})
+
+
+@contextmanager
+def kept_knowledge(subject: Subject, path: Path) -> Iterator[JournalWriter]:
+    """A writer on a new knowledge file that holds what the subject was taught. Raises KnowledgeError."""
+    with open_knowledge(path, subject.settings, subject.task) as journal:
+        journal.append([JournalEntry(event, utc_now()) for event in subject.events])
+        with JournalWriter(journal, utc_now) as writer:
+            yield writer

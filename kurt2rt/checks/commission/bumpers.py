@@ -1,0 +1,87 @@
+"""Step: which bit of BUMPERC is which bumper?"""
+
+from functools import reduce
+from operator import and_, or_
+
+from kurt2rt.checks.commission.findings import Findings
+from kurt2rt.checks.commission.frame_statistics import Heard
+from kurt2rt.checks.commission.operator import SKIP, Asked, Choice, Question, Tone
+from kurt2rt.checks.commission.step import Result
+from kurt2rt.checks.commission.test_stand import Bench
+
+_SETTLE_S = 0.1
+_LOOK_S = 0.3
+
+
+class BumpersStep:
+    """One bumper after the other is pressed and held."""
+
+    name = "bumpers"
+    title = "Each bumper's bit"
+    why = "A pressed bumper forbids the wheels to turn its way; with the ends exchanged it would forbid the way out."
+    what_to_do = "Press each bumper by hand as you are asked, and hold it for a second after Enter."
+    moves = False
+    bars_driving = False
+
+    async def take(self, bench: Bench, findings: Findings) -> Result:
+        """Ask for each bumper of the table."""
+        bumpers = bench.settings.bumpers
+        result = Result(findings.model_copy(update={"bumper_bits": {}}))
+        if not bumpers:
+            result.note("the settings know no bumpers")
+            return result
+        await bench.ask(Question(Asked.UNTOUCHED, "Touch no bumper.", (Choice("", "look"),)))
+        await bench.stand(_SETTLE_S)
+        heard = await bench.stand(_LOOK_S)
+        if not heard.bumpers:
+            result.to_do.append("BUMPERC (0x0A) never came: this robot has no bumpers, or they are not connected")
+            return result
+        untouched = reduce(or_, heard.bumpers)
+        if untouched:
+            result.to_do.append(f"{_bits(untouched)} pressed though nobody touches it: a bumper hangs")
+        found: dict[str, int] = {}
+        for at, bumper in enumerate(bumpers):
+            bit = await _find(bench, bumper.name, untouched, found)
+            if bit is None:
+                result.note(f"{bumper.name}: not found")
+                result.to_do.append(f"{bumper.name}: no bit answered, or it was skipped; check its switch and its plug")
+                continue
+            found[bumper.name] = bit
+            result.tell(
+                bench, f"{bumper.name}: bit {bit}" + (", as the table says" if bit == at else f", the table says {at}")
+            )
+        result.findings = findings.model_copy(update={"bumper_bits": found})
+        return result
+
+
+async def _find(bench: Bench, name: str, untouched: int, found: dict[str, int]) -> int | None:
+    while True:
+        question = Question(
+            Asked.BUMPER,
+            f"Press and hold: {name}.",
+            (Choice("", "look"), Choice(SKIP, "skip this one")),
+            subject=name,
+        )
+        if await bench.ask(question) == SKIP:
+            return None
+        await bench.stand(_SETTLE_S)
+        held = _held(await bench.stand(_LOOK_S)) & ~untouched
+        if held.bit_count() != 1:
+            seen = f"{_bits(held)} answered together" if held else "no bit answered"
+            bench.tell(f"{seen}: press this bumper alone, and hold it", Tone.BAD)
+            continue
+        bit = held.bit_length() - 1
+        owner = next((other for other, its in found.items() if its == bit), None)
+        if owner is None:
+            return bit
+        bench.tell(f"bit {bit} answered, but that is {owner}'s: press {name}, or skip it and repeat the step", Tone.BAD)
+
+
+def _held(heard: Heard) -> int:
+    """Bits that are set all the time."""
+    return reduce(and_, heard.bumpers) if heard.bumpers else 0
+
+
+def _bits(bits: int) -> str:
+    numbers = [str(bit) for bit in range(8) if bits >> bit & 1]
+    return ("bit " if len(numbers) == 1 else "bits ") + ", ".join(numbers)

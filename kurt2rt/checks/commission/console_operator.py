@@ -1,0 +1,58 @@
+"""The person at a terminal: reads, presses Enter, types a word."""
+
+from collections.abc import Sequence
+from typing import TextIO
+
+from rich.console import Console
+from rich.text import Text
+
+from kurt2rt.checks.commission.keyboard import Keyboard
+from kurt2rt.checks.commission.operator import LEAVE, Choice, LeftError, Question, Tone
+
+_STYLES = {Tone.TITLE: "bold", Tone.GOOD: "green", Tone.TO_DO: "yellow", Tone.BAD: "bold red"}
+_MARKS = {
+    Tone.TITLE: "\n",
+    Tone.PLAIN: "  ",
+    Tone.MEASURED: "    ",
+    Tone.GOOD: "  ",
+    Tone.TO_DO: "  TO DO: ",
+    Tone.BAD: "  ! ",
+}
+"""Lines can be told apart without colours."""
+
+
+class TypingPerson:
+    """A person (kurt2rt.checks.commission.operator.Person) behind a screen and a keyboard."""
+
+    def __init__(self, lines: TextIO, console: Console) -> None:
+        self._keyboard = Keyboard(lines)
+        self._console = console
+
+    def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
+        """Print a line."""
+        self._line(_MARKS[tone] + text, _STYLES.get(tone, ""))
+
+    async def answer(self, question: Question) -> str:
+        """Print the question until one of its answers is typed. Raises LeftError when the input has ended."""
+        choices = (*question.choices, Choice(LEAVE, "leave"))
+        while True:
+            self._line(f"  {question.text}", "cyan")
+            self._line(f"    {_shown(choices)} > ", end="")
+            line = await self._keyboard.line()
+            if line is None:
+                self._console.print()
+                raise LeftError
+            answer = line.strip().lower()
+            if not self._keyboard.echoes:
+                self.tell(answer)
+            if question.free or answer in [choice.key for choice in choices]:
+                return answer
+            self.tell(f"{answer!r} is no answer here.", Tone.BAD)
+
+    def _line(self, text: str, style: str = "", end: str = "\n") -> None:
+        # A terminal is wide as it is, and words stay whole; in a file a line is a line.
+        self._console.print(Text(text, style=style), end=end, soft_wrap=not self._console.is_terminal)
+
+
+def _shown(choices: Sequence[Choice]) -> str:
+    return "  ".join(f"[{choice.key or 'Enter'}] {choice.meaning}" for choice in choices)

@@ -1,0 +1,162 @@
+"""Step: the infra-red law, from a board held at distances by a ruler."""
+
+import statistics
+
+from hal.robot_settings import SensorSettings
+from kurt2rt.checks.commission.findings import Findings, LawFound
+from kurt2rt.checks.commission.ir_calibration import Fit, Law, LawError, Reading, fit_law
+from kurt2rt.checks.commission.operator import SKIP, Asked, Choice, Question, SkippedError, Tone
+from kurt2rt.checks.commission.sensors import SETTLE_S
+from kurt2rt.checks.commission.step import Result
+from kurt2rt.checks.commission.test_stand import Bench
+
+DISTANCES_M = (0.10, 0.15, 0.20, 0.30, 0.40, 0.50, 0.60)
+_MEASURE_S = 1.0
+_LEAST_FAR_M = 0.4
+_SECOND_LOOKS = 3
+
+
+class RulerStep:
+    """Median over a second at each distance, one law for all sensors."""
+
+    name = "infrared"
+    title = "The infra-red law, by a ruler"
+    why = "Distances that behaviours keep are read off this law; sensors of one kind differ from those of another."
+    what_to_do = (
+        "A ruler and a flat, light board, at least 10 cm wide, upright and square to the beam. Distances count from "
+        "the sensor's face. Two sensors are better than one."
+    )
+    moves = False
+    bars_driving = False
+
+    async def take(self, bench: Bench, findings: Findings) -> Result:
+        """Ask which sensors, then for the board at each distance."""
+        result = Result(findings.model_copy(update={"law": None}))
+        chosen = await _choose(bench, findings)
+        await bench.ask(Question(Asked.CLEAR, "Step back: nothing within a metre.", (Choice("", "measure"),)))
+        await bench.stand(SETTLE_S)
+        heard = await bench.stand(_MEASURE_S)
+        floors = [heard.median(_channel(sensor, findings)) for sensor in chosen]
+        if None in floors:
+            result.to_do.append("A chosen sensor's channel is not heard: take the step sensors first")
+            return result
+        floor = statistics.median([each for each in floors if each is not None])
+        readings: list[Reading] = []
+        for sensor in chosen:
+            for distance_m in DISTANCES_M:
+                reading = await _read(bench, sensor, distance_m, findings)
+                if reading is not None:
+                    readings.append(reading)
+        try:
+            fit = await _fit_with_second_looks(bench, readings, {each.name: each for each in chosen}, findings)
+        except LawError as error:
+            result.to_do.append(f"No law was fitted: {error}")
+            result.measured += [f"{each.sensor} at {each.distance_m:.2f} m: {each.counts:.0f}" for each in readings]
+            return result
+        law = fit.law
+        result.note(
+            f"counts = {law.numerator_counts_m:.2f} / (distance + {law.offset_m:.4f} m) - {law.bias_counts:.1f}"
+        )
+        for row in _rows(readings, fit):
+            result.note(row)
+        result.note(f"nothing in view: {floor:.0f} counts")
+        near_m = min(each.distance_m for each in readings)
+        far_m = _far_m(law, floor, max(each.distance_m for each in readings))
+        if far_m < _LEAST_FAR_M:
+            result.to_do.append(
+                f"With nothing in view the sensor says as much as before a board at {far_m:.2f} m: clear a metre "
+                "around the robot, then repeat this step"
+            )
+            return result
+        result.note(f"distances from {near_m:.2f} to {far_m:.2f} m can be told apart")
+        result.findings = findings.model_copy(
+            update={
+                "law": LawFound(
+                    numerator_counts_m=round(law.numerator_counts_m, 3),
+                    offset_m=round(law.offset_m, 4),
+                    bias_counts=round(law.bias_counts, 2),
+                    near_m=near_m,
+                    far_m=far_m,
+                    floor_counts=round(floor),
+                    plateau_counts=round(law.counts_at(near_m)),
+                )
+            }
+        )
+        return result
+
+
+async def _choose(bench: Bench, findings: Findings) -> tuple[SensorSettings, ...]:
+    sensors = {sensor.name: sensor for sensor in bench.settings.infrared.sensors}
+    usable = [name for name in sensors if name not in findings.dead_sensors]
+    if not usable:
+        raise SkippedError("no sensor answers: take the step sensors first")
+    usual = next((name for name in usable if sensors[name].heading_deg == 0.0 and sensors[name].y_m == 0.0), usable[0])
+    question = Question(
+        Asked.WHICH,
+        f"Which sensors? Names with blanks between them, such as: {usual} {usable[0]}",
+        (Choice("", f"{usual} alone"),),
+        free=True,
+    )
+    while True:
+        names = (await bench.ask(question)).split() or [usual]
+        strange = [name for name in names if name not in usable]
+        if not strange:
+            return tuple(sensors[name] for name in dict.fromkeys(names))
+        bench.tell(f"no such sensor, or a dead one: {', '.join(strange)}; there are: {', '.join(usable)}", Tone.BAD)
+
+
+async def _read(
+    bench: Bench, sensor: SensorSettings, distance_m: float, findings: Findings, again: str = ""
+) -> Reading | None:
+    question = Question(
+        Asked.BOARD,
+        f"{again}The board {distance_m:.2f} m before {sensor.label} ({sensor.name}).",
+        (Choice("", "measure"), Choice(SKIP, "leave this distance out" if not again else "keep the first reading")),
+        subject=sensor.name,
+        distance_m=distance_m,
+    )
+    if await bench.ask(question) == SKIP:
+        return None
+    await bench.stand(SETTLE_S)
+    counts = (await bench.stand(_MEASURE_S)).median(_channel(sensor, findings))
+    if counts is None:
+        bench.tell(f"{sensor.name} is not heard any more", Tone.BAD)
+        return None
+    bench.tell(f"{sensor.name} at {distance_m:.2f} m: {counts:.0f} counts", Tone.MEASURED)
+    return Reading(sensor.name, distance_m, counts)
+
+
+async def _fit_with_second_looks(
+    bench: Bench, readings: list[Reading], sensors: dict[str, SensorSettings], findings: Findings
+) -> Fit:
+    """Fit; what does not fit to the others is asked for once more, a few times at most. Raises LawError."""
+    looked_twice: set[int] = set()
+    while True:
+        fit = fit_law(readings)
+        again = [at for at in fit.outliers if at not in looked_twice]
+        if not again or len(looked_twice) >= _SECOND_LOOKS:
+            return fit
+        at = again[0]
+        looked_twice.add(at)
+        odd = readings[at]
+        why = f"{odd.counts:.0f} counts do not fit, the others say {fit.law.counts_at(odd.distance_m):.0f}. Once more: "
+        better = await _read(bench, sensors[odd.sensor], odd.distance_m, findings, why)
+        if better is not None:
+            readings[at] = better
+
+
+def _rows(readings: list[Reading], fit: Fit) -> list[str]:
+    return [
+        f"{reading.sensor} at {reading.distance_m:.2f} m: {reading.counts:.0f} counts, law {reading.counts - off:.0f}, "
+        f"off by {off:+.0f}" + (", left out" if at in fit.outliers else "")
+        for at, (reading, off) in enumerate(zip(readings, fit.residuals, strict=True))
+    ]
+
+
+def _far_m(law: Law, floor: float, farthest_m: float) -> float:
+    """Where the law comes down to the reading of an empty room, if that is within what was measured."""
+    return round(min(farthest_m, law.distance_m(floor)), 2)
+
+
+def _channel(sensor: SensorSettings, findings: Findings) -> str:
+    return findings.channels.get(sensor.name, sensor.channel)

@@ -1,0 +1,52 @@
+"""The report of a commissioning: a table of the steps, what is to be done, and the verdict."""
+
+from collections.abc import Sequence
+
+from rich.console import Console
+from rich.text import Text
+
+from kurt2rt.checks.commission.progress import Progress
+from kurt2rt.checks.commission.step import Outcome, Step
+from kurt2rt.platform.text_table import TextTable, print_whole
+
+_STYLES = {Outcome.PASSED: "green", Outcome.FAILED: "bold red", Outcome.SKIPPED: "yellow"}
+
+
+def passed(progress: Progress, steps: Sequence[Step]) -> bool:
+    """True when every step did."""
+    return all(step.name in progress.steps and progress.steps[step.name].outcome is Outcome.PASSED for step in steps)
+
+
+def as_text(progress: Progress, steps: Sequence[Step]) -> str:
+    """Everything that is kept about each step, to be filed."""
+    verdict = "PASSED" if passed(progress, steps) else "not passed"
+    lines = [f"{progress.name} on {progress.bus}, begun with {progress.base}: {verdict}"]
+    for step in steps:
+        record = progress.steps.get(step.name)
+        lines += ["", f"{step.title}  [{step.name}]"]
+        if record is None:
+            lines.append("  not taken")
+            continue
+        lines.append(f"  {record.outcome}, {record.at} UTC, {record.who}")
+        lines += [f"    {each}" for each in record.measured]
+        lines += [f"  TO DO: {each}" for each in record.to_do]
+    return "\n".join(lines) + "\n"
+
+
+def print_report(progress: Progress, steps: Sequence[Step], console: Console) -> None:
+    """Table, what is to be done, verdict."""
+    table = TextTable("step", "outcome", "when (UTC)", "who")
+    to_do: list[str] = []
+    for step in steps:
+        record = progress.steps.get(step.name)
+        if record is None:
+            table.add_row(Text(step.name), Text("not taken"), "", "")
+            continue
+        outcome = Text(record.outcome, style=_STYLES[record.outcome])
+        table.add_row(Text(step.name), outcome, Text(record.at), Text(record.who))
+        to_do += [f"{step.name}: {each}" for each in record.to_do]
+    print_whole(console, table, "")
+    for each in to_do:
+        console.print(Text(each), soft_wrap=not console.is_terminal)
+    verdict = "PASSED" if passed(progress, steps) else "not passed"
+    console.print(Text(f"{progress.name}: {verdict}", style="bold"), soft_wrap=True)

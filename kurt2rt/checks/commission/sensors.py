@@ -1,0 +1,138 @@
+"""Step: which analog channel does each distance sensor answer on?"""
+
+from collections.abc import Mapping, Sequence
+
+from hal.robot_settings import SensorSettings
+from kurt2rt.checks.commission.findings import Findings
+from kurt2rt.checks.commission.operator import SKIP, Asked, Choice, Question, Tone
+from kurt2rt.checks.commission.step import Result
+from kurt2rt.checks.commission.test_stand import Bench
+
+SETTLE_S = 0.15
+"""A sensor measures every 38 ms or so."""
+_BASELINE_S = 1.0
+_HAND_S = 0.6
+_LEAST_RISE = 60.0
+"""Counts; a hand at 0.2 m rises by about 220 over an empty room, and by 100 over a wall at 0.3 m."""
+_CLEARLY = 1.7
+"""So many times the rise of the second channel."""
+_FORGET = "f"
+_ALL = "a"
+
+
+class SensorsStep:
+    """A hand before one sensor after the other; the channel whose counts rise is the sensor's."""
+
+    name = "sensors"
+    title = "Each distance sensor's channel"
+    why = "A sensor on the wrong channel makes the robot see a wall where there is none. Ten of the channels are known."
+    what_to_do = (
+        "Clear a metre around the robot, then hold a flat hand 10 to 20 cm before one sensor after the other, "
+        "as you are asked. Hold it still for a second after Enter."
+    )
+    moves = False
+    bars_driving = False
+
+    async def take(self, bench: Bench, findings: Findings) -> Result:
+        """Ask for a hand before each sensor of the table."""
+        sensors = bench.settings.infrared.sensors
+        found = await _kept(bench, findings, sensors)
+        await bench.ask(Question(Asked.CLEAR, "Step back: nothing within a metre.", (Choice("", "measure"),)))
+        await bench.stand(SETTLE_S)
+        heard = await bench.stand(_BASELINE_S)
+        if not heard.channels:
+            result = Result(findings)
+            result.to_do.append("No analog channel is heard: is the robot on? Step identity tells which frames come")
+            return result
+        empty = {channel: heard.median(channel) or 0.0 for channel in heard.channels}
+        dead: list[str] = []
+        waiting = [sensor for sensor in sensors if sensor.name not in found]
+        while waiting:
+            sensor = waiting.pop(0)
+            answer = await _find(bench, sensor, empty, found, dead)
+            if answer is not None:  # an earlier hand was at the wrong sensor: that one is asked for again
+                del found[answer]
+                waiting = [sensor, *waiting, *(each for each in sensors if each.name == answer)]
+        result = Result(findings.model_copy(update={"channels": found, "dead_sensors": tuple(dead)}))
+        for sensor in sensors:
+            result.note(_row(sensor, found, dead))
+        not_tried = [sensor.name for sensor in sensors if sensor.name not in (*found, *dead)]
+        if not_tried:
+            result.to_do.append(f"Not tried: {', '.join(not_tried)}; this step goes on with them when it is repeated")
+        for name in dead:
+            result.to_do.append(f"{name} answers on no channel: check its plug and its 5 V, then repeat this step")
+        return result
+
+
+async def _kept(bench: Bench, findings: Findings, sensors: Sequence[SensorSettings]) -> dict[str, str]:
+    """Channels that were found before and need no hand again."""
+    before = dict(findings.channels)
+    missing = [sensor.name for sensor in sensors if sensor.name not in before]
+    if not before or not missing:
+        return {}
+    question = Question(
+        Asked.KEEP,
+        f"{len(before)} channels were found before.",
+        (Choice("", f"go on with {', '.join(missing)}"), Choice(_ALL, "ask for all of them anew")),
+    )
+    return {} if await bench.ask(question) == _ALL else before
+
+
+async def _find(
+    bench: Bench, sensor: SensorSettings, empty: Mapping[str, float], found: dict[str, str], dead: list[str]
+) -> str | None:
+    """Ask until a channel is found or the sensor is given up; returns another sensor that has to be asked for again."""
+    tried = False
+    while True:
+        question = Question(
+            Asked.HAND,
+            f"Your hand 10 to 20 cm before: {sensor.label} ({sensor.name}).",
+            (Choice("", "measure"), Choice(SKIP, "give this one up" if tried else "skip this one")),
+            subject=sensor.name,
+        )
+        if await bench.ask(question) == SKIP:
+            if tried:
+                dead.append(sensor.name)
+            return None
+        await bench.stand(SETTLE_S)
+        heard = await bench.stand(_HAND_S)
+        rises = sorted(
+            ((channel, (heard.median(channel) or 0.0) - counts) for channel, counts in empty.items()),
+            key=lambda each: -each[1],
+        )
+        tried = True
+        if not rises or rises[0][1] < _LEAST_RISE:
+            bench.tell("No channel answered. Nearer, flat, straight before the sensor?", Tone.BAD)
+            continue
+        channel, rise = rises[0]
+        if len(rises) > 1 and rise < _CLEARLY * rises[1][1]:
+            bench.tell(f"{channel} and {rises[1][0]} both answered: take your hand away from the neighbours", Tone.BAD)
+            continue
+        owner = next((name for name, its in found.items() if its == channel), None)
+        if owner is None:
+            found[sensor.name] = channel
+            bench.tell(f"{_said(sensor, channel)}, {rise:+.0f} counts", Tone.MEASURED)
+            return None
+        bench.tell(f"{channel} answered, but that was {owner}'s already.", Tone.BAD)
+        taken = Question(
+            Asked.HAND,
+            f"Your hand before {sensor.label} ({sensor.name}) again, or was it {owner}'s turn that was wrong?",
+            (Choice("", "measure again"), Choice(_FORGET, f"{owner} was wrong, ask for it again later")),
+            subject=sensor.name,
+        )
+        if await bench.ask(taken) == _FORGET:
+            return owner
+
+
+def _said(sensor: SensorSettings, channel: str) -> str:
+    if channel == sensor.channel:
+        return f"{sensor.name} {sensor.label}: {channel}, as the table says"
+    return f"{sensor.name} {sensor.label}: {channel}, the table says {sensor.channel}"
+
+
+def _row(sensor: SensorSettings, found: Mapping[str, str], dead: list[str]) -> str:
+    if sensor.name in found:
+        return _said(sensor, found[sensor.name])
+    if sensor.name in dead:
+        return f"{sensor.name} {sensor.label}: no channel answers"
+    return f"{sensor.name} {sensor.label}: not tried, the table says {sensor.channel}"

@@ -1,0 +1,127 @@
+"""Step: which of the firmware's speed modes answers?"""
+
+import math
+from dataclasses import dataclass, field
+
+from hal.robot import WheelSpeeds
+from hal.robot_settings import RobotSettings, SpeedMode
+from kurt2rt.checks.commission.findings import Findings
+from kurt2rt.checks.commission.moving import DRIVE_S, TEST_SPEED_M_S, leave_to_move, rests, steady, why_it_stood
+from kurt2rt.checks.commission.operator import SkippedError
+from kurt2rt.checks.commission.step import Result
+from kurt2rt.checks.commission.test_stand import RAN_AWAY, TURNS_SHARE, Bench, Drive
+
+PREFERENCE = (SpeedMode.SPEED_CM, SpeedMode.SPEED, SpeedMode.RAW)
+"""Closed loops in the controller before the open one; SPEED_CM is the finer of the two."""
+_ACCURATE = (0.6, 1.6)
+"""Measured speed against the set point's; outside of it the mode answers, but settings and robot differ."""
+_TURNS_M_S = TURNS_SHARE * TEST_SPEED_M_S
+_AFTER_RUNAWAY = "an encoder that counts the wrong way does that: go on, step wheels tells which; then repeat this one"
+
+
+class SpeedModesStep:
+    """Tries each mode with a small set point, forward and backward, and watches the encoders."""
+
+    name = "modes"
+    title = "Which speed mode answers?"
+    why = "Old firmware lacks SPEED_CM, newer firmware may lack SPEED, and there is no acknowledge: only wheels tell."
+    what_to_do = f"Each mode turns all wheels at {TEST_SPEED_M_S} m/s, {DRIVE_S} s forward and {DRIVE_S} s backward."
+    moves = True
+    bars_driving = True
+
+    async def take(self, bench: Bench, findings: Findings) -> Result:
+        """Try all three; the first of the preference that answers is the robot's."""
+        robot = bench.settings
+        result = Result(findings.model_copy(update={"speed_mode": None, "full_speed_m_s": None}))
+        trials: list[_Trial] = []
+        for mode in PREFERENCE:
+            try:
+                await leave_to_move(bench, f"All wheels turn forward, then backward: mode {mode}.")
+            except SkippedError:
+                result.tell(bench, f"{mode}: left out")
+                continue
+            trial = _Trial(mode)
+            for sign in (1.0, -1.0):
+                drive = await bench.drive(mode, WheelSpeeds(sign * TEST_SPEED_M_S, sign * TEST_SPEED_M_S), DRIVE_S)
+                trial.drives.append(drive)
+                if not rests(bench, drive, result):
+                    return result
+                if why_it_stood(drive) is not None:
+                    break
+            result.tell(bench, trial.said(robot))
+            trials.append(trial)
+        return _conclude(trials, robot, result)
+
+
+@dataclass(slots=True)
+class _Trial:
+    """A mode and what came of its drives: forward and, unless that was cut short, backward."""
+
+    mode: SpeedMode
+    drives: list[Drive] = field(default_factory=list)
+
+    def stood(self) -> str | None:
+        """Why the wheels were kept from turning."""
+        return next((why for why in map(why_it_stood, self.drives) if why is not None), None)
+
+    def answers(self, robot: RobotSettings) -> bool:
+        """Whether wheels turned both ways."""
+        return self.stood() is None and all(_fastest_m_s(drive, robot) >= _TURNS_M_S for drive in self.drives)
+
+    def share(self, robot: RobotSettings) -> float:
+        """Measured speed of the faster side against the set point's."""
+        measured_m_s = sum(_fastest_m_s(drive, robot) for drive in self.drives) / len(self.drives)
+        return measured_m_s / abs(self.drives[0].applied.left_m_s)
+
+    def full_speed_m_s(self, robot: RobotSettings) -> float:
+        """What 100 % are, where the mode is SPEED."""
+        return round(robot.motors.full_speed_m_s * self.share(robot), 3)
+
+    def said(self, robot: RobotSettings) -> str:
+        """One line of what came."""
+        stood = self.stood()
+        if stood is not None:
+            return f"{self.mode}: not tried out, {stood}"
+        if not self.answers(robot):
+            one_way = any(_fastest_m_s(drive, robot) >= _TURNS_M_S for drive in self.drives)
+            return f"{self.mode}: " + ("answers in one direction only" if one_way else "no answer")
+        told_m_s = abs(self.drives[0].applied.left_m_s)
+        said = f"{self.mode}: answers, {told_m_s * self.share(robot):.3f} m/s for a set point of {told_m_s:.3f} m/s"
+        return said + (f"; 100 % are {self.full_speed_m_s(robot):.2f} m/s" if self.mode is SpeedMode.SPEED else "")
+
+    def trouble(self, robot: RobotSettings) -> str:
+        """What is wrong with a mode that the firmware knows; empty when nothing is."""
+        stood = self.stood()
+        if stood == RAN_AWAY:
+            return f"{self.mode}: {RAN_AWAY} and were braked; {_AFTER_RUNAWAY}"
+        if stood is not None:
+            return f"{self.mode}: the wheels were kept from turning: {stood}"
+        if not self.answers(robot) or _ACCURATE[0] <= self.share(robot) <= _ACCURATE[1]:
+            return ""
+        ticks = math.tau * robot.geometry.wheel_radius_m / robot.geometry.metres_per_tick
+        return (
+            f"{self.mode}: {self.share(robot):.2f} times as fast as told, by the encoders. Turn a wheel once by hand: "
+            f"{ticks:.0f} ticks are expected (5120 on the high-speed variant). Mend geometry.metres_per_tick or, "
+            "where the mode is RAW, motors.raw_speed_m_s"
+        )
+
+
+def _conclude(trials: list[_Trial], robot: RobotSettings, result: Result) -> Result:
+    """The first mode that answers is taken; what is wrong with those after it is no matter."""
+    for trial in trials:
+        trouble = trial.trouble(robot)
+        if trouble:
+            result.to_do.append(trouble)
+        if trial.answers(robot):
+            update: dict[str, object] = {"speed_mode": trial.mode}
+            if trial.mode is SpeedMode.SPEED:
+                update["full_speed_m_s"] = trial.full_speed_m_s(robot)
+            result.findings = result.findings.model_copy(update=update)
+            result.note(f"the robot will be driven in {trial.mode}")
+            return result
+    result.to_do.append("No speed mode answers: check the motors' supply, their fuses and the emergency switch")
+    return result
+
+
+def _fastest_m_s(drive: Drive, robot: RobotSettings) -> float:
+    return max(map(abs, steady(drive, robot)))

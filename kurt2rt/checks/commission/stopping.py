@@ -1,0 +1,91 @@
+"""Step: do the wheels stand when they are braked, and by themselves when nobody speaks to the controller?"""
+
+import statistics
+
+from hal.robot import WheelSpeeds
+from kurt2rt.checks.commission.findings import Findings
+from kurt2rt.checks.commission.moving import (
+    DRIVE_S,
+    TEST_SPEED_M_S,
+    leave_to_move,
+    mode_found,
+    rests,
+    steady,
+    why_it_stood,
+)
+from kurt2rt.checks.commission.step import Result
+from kurt2rt.checks.commission.test_stand import TURNS_SHARE, Bench, Drive
+
+BRAKED_WITHIN_S = 0.5
+SILENT_S = 1.5
+_FALLEN_SHARE = 0.8
+_FORWARD = WheelSpeeds(TEST_SPEED_M_S, TEST_SPEED_M_S)
+
+
+class StoppingStep:
+    """The brake, then the controller's own watchdog."""
+
+    name = "stop"
+    title = "Emergency stop and the controller's own watchdog"
+    why = "The brake is what every fault ends in. The watchdog is all that stops the robot when this computer dies."
+    what_to_do = f"All wheels turn forward at {TEST_SPEED_M_S} m/s, twice: once they are braked, once left alone."
+    moves = True
+    bars_driving = True
+
+    async def take(self, bench: Bench, findings: Findings) -> Result:
+        """Brake; fall silent."""
+        mode = mode_found(findings)
+        result = Result(findings.model_copy(update={"controller_watchdog_s": None}))
+        await leave_to_move(bench, "All wheels turn forward; then the brake.")
+        drive = await bench.drive(mode, _FORWARD, DRIVE_S)
+        rested_s = drive.rested_after_s
+        if not rests(bench, drive, result) or rested_s is None:
+            return result
+        if _was_turning(bench, drive, result):
+            result.tell(bench, f"braked: the wheels stood {rested_s * 1000:.0f} ms after the frame")
+            if rested_s > BRAKED_WITHIN_S:
+                result.to_do.append(
+                    f"The brake took {rested_s:.2f} s, allowed are {BRAKED_WITHIN_S} s: "
+                    "does the firmware know RAW and its brake bit?"
+                )
+        await leave_to_move(bench, f"All wheels turn forward; then nothing is sent for at most {SILENT_S} s.")
+        drive = await bench.fall_silent(mode, _FORWARD, DRIVE_S, SILENT_S)
+        if _was_turning(bench, drive, result):
+            _judge_watchdog(bench, drive, result)
+        return result
+
+
+def _was_turning(bench: Bench, drive: Drive, result: Result) -> bool:
+    stood = why_it_stood(drive)
+    if stood is None and max(map(abs, steady(drive, bench.settings))) < TURNS_SHARE * TEST_SPEED_M_S:
+        stood = "no answer to the set point"
+    if stood is not None:
+        result.to_do.append(f"The wheels did not turn, so nothing could stop them: {stood}")
+    return stood is None
+
+
+def _judge_watchdog(bench: Bench, drive: Drive, result: Result) -> None:
+    if drive.rested_after_s is None:
+        result.to_do.append(
+            f"Without CONTROL the wheels turned on for {SILENT_S} s: this controller does not stop by itself. "
+            "Never drive it out of reach of a switch that cuts the motors"
+        )
+        return
+    fell_s = _fell_after_s(bench, drive)
+    result.tell(
+        bench,
+        f"without CONTROL: the drive dropped out after {fell_s * 1000:.0f} ms, "
+        f"the wheels stood after {drive.rested_after_s * 1000:.0f} ms",
+    )
+    result.findings = result.findings.model_copy(update={"controller_watchdog_s": round(fell_s, 2)})
+
+
+def _fell_after_s(bench: Bench, drive: Drive) -> float:
+    """From the last CONTROL to the first ENCODER frame that is clearly slower than the ones before."""
+    before = drive.heard.encoder[-30:]
+    steady_ticks = statistics.mean(abs(each.left) + abs(each.right) for each in before)
+    from_s = drive.heard.encoder[-1].time_s
+    for frame in drive.after.encoder:
+        if abs(frame.left) + abs(frame.right) < _FALLEN_SHARE * steady_ticks:
+            return max(bench.settings.can.cycle_s, frame.time_s - from_s)
+    return drive.rested_after_s or 0.0

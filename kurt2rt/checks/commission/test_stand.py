@@ -1,0 +1,244 @@
+"""The bench: the robot on its block, what is heard of it, time, and the person beside it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from types import TracebackType
+from typing import Self
+
+import anyio
+from anyio.lowlevel import checkpoint
+
+from hal.guard_reason import GuardReason
+from hal.kurt2 import Kurt2
+from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
+from hal.robot_settings import RobotSettings, SpeedMode
+from kurt2rt.checks.commission.frame_statistics import Heard
+from kurt2rt.checks.commission.listener import Listener
+from kurt2rt.checks.commission.operator import LEAVE, LeftError, Person, Question, Tone
+from kurt2rt.checks.commission.test_stand_settings import bench_settings
+from kurt2rt.platform.clock import Clock
+
+RAN_AWAY = "the wheels ran away"
+UNANSWERED = "a side does not turn, or its encoder counts nothing"
+TURNS_SHARE = 0.1
+"""A side that reaches so much of the set point turns. Little, for the ticks of another variant of the robot are four
+times as long, and its wheels seem slow."""
+_RUNAWAY_FACTOR, _RUNAWAY_MARGIN_M_S = 2.5, 0.1
+_RUNAWAY_FRAMES = 5
+_ANSWER_S = 0.7
+"""Time for the wheels to have their speed, and 30 frames of it."""
+_ANSWER_FRAMES = 10
+_BREATH_S = 0.1
+"""Before the wheels turn: the senses are fresh then, and whatever held up the loop is over."""
+_IDENTITY_S = 0.25
+"""INFO_1 comes every 0.1 s."""
+_HALT_S = 1.5
+_REST_S = 0.1
+
+
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """What came of an order to turn the wheels; they were braked after it."""
+
+    heard: Heard
+    """While the order held."""
+    after: Heard
+    """From then on, until they rested."""
+    applied: WheelSpeeds
+    """Set points of the last frame of the order."""
+    reasons: tuple[GuardReason, ...]
+    """The guard's, of that frame."""
+    stopped_by: str | None
+    """Why it was ended early."""
+    rested_after_s: float | None
+    """From the end of the order until the encoders stood; None when they did not, or were not heard."""
+
+
+class Bench:
+    """Ticks every cycle. The robot is opened when it first has to move, and is braked whenever it does not."""
+
+    def __init__(
+        self,
+        settings: RobotSettings,
+        open_robot: Callable[[RobotSettings], Kurt2],
+        listener: Listener,
+        clock: Clock,
+        person: Person,
+        *,
+        second_guard: bool,
+    ) -> None:
+        """`second_guard`: wake the robot's watchdog, which lives in real time."""
+        self.settings = settings
+        self._open_robot = open_robot
+        self._listener = listener
+        self._clock = clock
+        self._person = person
+        self._second_guard = second_guard
+        self._robot: Kurt2 | None = None
+        self._mode: SpeedMode | None = None
+        self._grant = GuardResult(STANDSTILL, (), latched=True)
+        self._cycle_s = settings.can.cycle_s
+        self._deadline_s = clock.now_s()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._close_robot()
+        self._listener.close()
+
+    def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
+        """Say a line to the person."""
+        self._person.tell(text, tone)
+
+    async def ask(self, question: Question) -> str:
+        """The person's answer; the robot stands meanwhile. Raises LeftError, also when the answer is to leave."""
+        answers: list[str] = []
+        gone = False
+
+        async def listen() -> None:
+            nonlocal gone
+            try:
+                answers.append(await self._person.answer(question))
+            except LeftError:
+                gone = True
+
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(listen)
+            await checkpoint()  # who answers at once is not kept waiting for a tick
+            while not answers and not gone:
+                await self._tick(Heard(), STANDSTILL)
+        if gone or answers[0] == LEAVE:
+            raise LeftError
+        return answers[0]
+
+    async def stand(self, seconds: float) -> Heard:
+        """What is heard in a while in which the robot stands; nothing is sent before the wheels first turned."""
+        heard = Heard()
+        for _ in range(self._ticks(seconds)):
+            await self._tick(heard, STANDSTILL)
+        return heard
+
+    async def hardware_id(self) -> int | None:
+        """As INFO_1 says it; None when that does not come. The robot stands while it is waited for."""
+        if self._listener.hardware_id is None:
+            await self.stand(_IDENTITY_S)
+        return self._listener.hardware_id
+
+    async def drive(self, mode: SpeedMode, wanted: WheelSpeeds, seconds: float) -> Drive:
+        """Turn the wheels in a speed mode for so long, then brake; sooner when the guard or a runaway stops them, or
+        when nothing is counted of a side that is to turn.
+        """
+        robot = await self._ready(mode)
+        return await self._brake(robot, await self._order(robot, wanted, seconds))
+
+    async def fall_silent(self, mode: SpeedMode, wanted: WheelSpeeds, seconds: float, silent_s: float) -> Drive:
+        """As `drive`, but then no CONTROL is sent for at most `silent_s`, until the wheels rest by themselves.
+
+        `rested_after_s` counts from the last CONTROL frame, and is None when they had to be braked in the end.
+        """
+        robot = await self._ready(mode)
+        drive = await self._order(robot, wanted, seconds)
+        if drive.stopped_by is None and self._unanswered(drive.heard, wanted):
+            drive = replace(drive, stopped_by=UNANSWERED)
+        if drive.stopped_by is not None:
+            return await self._brake(robot, drive)
+        # The second guard must sleep as well: it would take the silence for a stuck program, and brake.
+        robot.watchdog.stop()
+        try:
+            silent = await self._until_rest(drive, silent_s, None)
+            # An alarm has braked: that is not the controller's merit.
+            silent = replace(silent, stopped_by=_stopped_by(robot))
+        finally:
+            robot.emergency_stop(GuardReason.CHECKLIST_WAITS)
+            if self._second_guard:
+                robot.watchdog.start()
+        await self._until_rest(drive, _HALT_S, STANDSTILL)
+        return silent
+
+    async def _order(self, robot: Kurt2, wanted: WheelSpeeds, seconds: float) -> Drive:
+        heard = Heard()
+        fastest_m_s = max(abs(wanted.left_m_s), abs(wanted.right_m_s)) * _RUNAWAY_FACTOR + _RUNAWAY_MARGIN_M_S
+        stopped_by = None
+        robot.release()
+        for ticks in range(1, self._ticks(seconds) + 1):
+            await self._tick(heard, wanted)
+            stopped_by = _stopped_by(robot)
+            if stopped_by is not None:
+                break
+            speeds = heard.wheel_speeds(self.settings, _RUNAWAY_FRAMES)
+            if max(abs(speeds.left_m_s), abs(speeds.right_m_s)) > fastest_m_s:
+                stopped_by = RAN_AWAY
+                break
+            if ticks == self._ticks(_ANSWER_S) and self._unanswered(heard, wanted):
+                break  # a speed loop that hears nothing of its wheels turns them faster and faster
+        return Drive(heard, Heard(), self._grant.wheel_speeds, self._grant.reasons, stopped_by, None)
+
+    def _unanswered(self, heard: Heard, wanted: WheelSpeeds) -> bool:
+        """Whether a side that was told to turn is not counted to."""
+        counted = heard.wheel_speeds(self.settings, _ANSWER_FRAMES)
+        return any(abs(its) < TURNS_SHARE * abs(told) for its, told in zip(counted, wanted, strict=True))
+
+    async def _brake(self, robot: Kurt2, drive: Drive) -> Drive:
+        robot.emergency_stop(GuardReason.CHECKLIST_WAITS)
+        return await self._until_rest(drive, _HALT_S, STANDSTILL)
+
+    async def _until_rest(self, drive: Drive, at_most_s: float, wanted: WheelSpeeds | None) -> Drive:
+        """The same drive with what came after it, and when the wheels rested."""
+        from_s = self._clock.now_s()
+        after = Heard()
+        rested_s = None
+        for _ in range(self._ticks(at_most_s)):
+            await self._tick(after, wanted)
+            rested_s = after.rested_at_s()
+            if rested_s is not None and self._clock.now_s() - rested_s >= _REST_S:
+                break
+        return replace(drive, after=after, rested_after_s=None if rested_s is None else max(0.0, rested_s - from_s))
+
+    async def _ready(self, mode: SpeedMode) -> Kurt2:
+        """The robot, opened for this mode, braked, its senses fresh."""
+        if self._robot is None or self._mode is not mode:
+            self._close_robot()
+            ear = self._listener
+            if not ear.channels:
+                await self.stand(_BREATH_S)  # to hear which boards there are
+            settings = bench_settings(self.settings, mode, ear.channels, has_bumpers=ear.has_bumpers)
+            robot = self._robot = self._open_robot(settings)
+            self._mode = mode
+            robot.emergency_stop(GuardReason.CHECKLIST_WAITS)
+            if self._second_guard:
+                robot.watchdog.start()
+        await self.stand(_BREATH_S)
+        return self._robot
+
+    def _close_robot(self) -> None:
+        robot, self._robot = self._robot, None
+        if robot is not None:
+            robot.close()
+
+    def _ticks(self, seconds: float) -> int:
+        return max(1, round(seconds / self._cycle_s))
+
+    async def _tick(self, heard: Heard, wanted: WheelSpeeds | None) -> None:
+        """One cycle; no CONTROL is sent when nothing is wanted."""
+        # Ticks that were missed are skipped, not caught up.
+        self._deadline_s = max(self._deadline_s + self._cycle_s, self._clock.now_s())
+        await self._clock.wait_until(self._deadline_s)
+        now_s = self._clock.now_s()
+        self._listener.hear(now_s, heard)
+        robot = self._robot
+        if robot is None:
+            return
+        robot.sense(now_s)
+        if wanted is not None:
+            self._grant = robot.drive(wanted, now_s, now_s)
+
+
+def _stopped_by(robot: Kurt2) -> str | None:
+    """Why the robot is to stay stopped; None when it is not."""
+    health = robot.health
+    if health.latched is None:
+        return None
+    return f"{health.latched} ({health.trouble})" if health.trouble else health.latched

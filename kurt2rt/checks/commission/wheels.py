@@ -1,0 +1,98 @@
+"""Step: does each side's order turn that side, forward when it says forward, and does its encoder say the same?"""
+
+from hal.robot import WheelSpeeds
+from hal.robot_settings import RobotSettings
+from kurt2rt.checks.commission.findings import Findings
+from kurt2rt.checks.commission.moving import (
+    DRIVE_S,
+    TEST_SPEED_M_S,
+    leave_to_move,
+    mode_found,
+    rests,
+    steady,
+    why_it_stood,
+)
+from kurt2rt.checks.commission.operator import Asked, Choice, Question, Tone
+from kurt2rt.checks.commission.step import Result
+from kurt2rt.checks.commission.test_stand import TURNS_SHARE, Bench, Drive
+from kurt2rt.checks.commission.wiring import Motion, Side, Trial, one, parse_seen, what_to_rewire
+
+_UNEQUAL_SHARE = 0.25
+_YES = "y"
+
+
+class WheelsStep:
+    """Each side alone, both ways; a person's eyes tell motors from encoders."""
+
+    name = "wheels"
+    title = "Each wheel's side and direction"
+    why = "With sides exchanged or one reversed the robot turns into the wall it wants to leave."
+    what_to_do = "Watch the wheels: three turn together on each side. Say which turned, and which way."
+    moves = True
+    bars_driving = True
+
+    async def take(self, bench: Bench, findings: Findings) -> Result:
+        """Four drives and four looks."""
+        mode = mode_found(findings)
+        result = Result(findings)
+        trials: list[Trial] = []
+        fastest_m_s: dict[Side, float] = {}
+        for side in Side:
+            for sign in (1, -1):
+                ordered = one(side, sign)
+                await leave_to_move(bench, f"The wheels of one side turn: {ordered}.")
+                wanted = WheelSpeeds(ordered.left * TEST_SPEED_M_S, ordered.right * TEST_SPEED_M_S)
+                drive = await bench.drive(mode, wanted, DRIVE_S)
+                if not rests(bench, drive, result):
+                    return result
+                stood = why_it_stood(drive)
+                speeds = steady(drive, bench.settings)
+                counted = _counted(drive, bench.settings)
+                seen = await _seen(bench, ordered, counted)
+                trials.append(Trial(ordered, seen, counted))
+                fastest_m_s[side] = max(map(abs, speeds))
+                result.tell(
+                    bench,
+                    f"ordered {ordered}, seen {seen}, encoders {counted} "
+                    f"({speeds.left_m_s:+.3f} and {speeds.right_m_s:+.3f} m/s)",
+                )
+                if stood is not None:
+                    result.to_do.append(f"{ordered}: the wheels were kept from turning: {stood}")
+        result.to_do += what_to_rewire(trials)
+        if not result.to_do and min(fastest_m_s.values()) < (1.0 - _UNEQUAL_SHARE) * max(fastest_m_s.values()):
+            result.to_do.append(
+                "One side turns much slower than the other: look for a wheel that rubs, a slack belt, a weak motor"
+            )
+        return result
+
+
+def _counted(drive: Drive, robot: RobotSettings) -> Motion:
+    return Motion(*(_sign(speed_m_s) for speed_m_s in steady(drive, robot)))
+
+
+def _sign(speed_m_s: float) -> int:
+    if abs(speed_m_s) < TURNS_SHARE * TEST_SPEED_M_S:
+        return 0
+    return 1 if speed_m_s > 0 else -1
+
+
+async def _seen(bench: Bench, ordered: Motion, counted: Motion) -> Motion:
+    """What a person saw. Enter alone is no answer: with motors and encoders exchanged only eyes tell. Nor is yes, where
+    the encoders disagree with the order.
+    """
+    as_ordered = (Choice(_YES, f"yes, {ordered}"),) if counted == ordered else ()
+    text = (
+        f"Did the wheels turn: {ordered}? If not, type which did: left, right or both, forward or back; or none."
+        if as_ordered
+        else f"The encoders say: {counted}. Type what you saw: left, right or both, forward or back; or none."
+    )
+    question = Question(Asked.SEEN, text, as_ordered, free=True)
+    while True:
+        answer = await bench.ask(question)
+        if answer == _YES and as_ordered:
+            return ordered
+        seen = parse_seen(answer)
+        if seen is not None:
+            return seen
+        yes = ", or y" if as_ordered else ""
+        bench.tell(f"Two words, please, such as: left forward. Or: none{yes}.", Tone.BAD)

@@ -1,0 +1,89 @@
+"""CAN: does the kernel speak it, which interfaces are there, and can there be a virtual one?"""
+
+import os
+import socket
+from collections.abc import Callable
+from pathlib import Path
+
+from kurt2rt.checks.doctor.check_result import Finding, FindingCode, Status
+from kurt2rt.checks.doctor.sysfs import attribute
+
+NET_FOLDER = Path("/sys/class/net")
+MODULES_FOLDER = Path("/lib/modules", os.uname().release)
+BIT_RATE_BIT_S = 1_000_000
+"""KURT2's, as in config/robots/kurt2.yaml; held here too, for a doctor must not fail over a file that is broken."""
+
+_ARPHRD_CAN = 280
+_IFF_UP = 1
+
+
+def _open_can_socket() -> socket.socket:
+    return socket.socket(socket.AF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
+
+
+def check_can_kernel(
+    open_socket: Callable[[], socket.socket] = _open_can_socket, modules: Path = MODULES_FOLDER
+) -> Finding:
+    """Can a CAN socket be opened?"""
+    try:
+        open_socket().close()
+    except (OSError, AttributeError) as error:  # AttributeError: a Python that was built without CAN
+        code = FindingCode.CAN_UNLOADED if _offers("can-raw", modules) else FindingCode.CAN_MISSING
+        return Finding(code, Status.MISSING, {"error": str(error)})
+    return Finding(FindingCode.CAN, Status.OK)
+
+
+def check_can_interfaces(net: Path = NET_FOLDER) -> tuple[Finding, ...]:
+    """Which CAN interfaces with hardware are there, and are they up? One finding each, or one that there is none."""
+    interfaces = [each for each in _can_interfaces(net) if not _is_virtual(each)]
+    if not interfaces:
+        values = {"folder": str(net), "up": _up("can0")}
+        return (Finding(FindingCode.CAN_INTERFACE_NONE, Status.MISSING, values),)
+    return tuple(_check_interface(each) for each in interfaces)
+
+
+def check_vcan(net: Path = NET_FOLDER, modules: Path = MODULES_FOLDER) -> Finding:
+    """Is there a virtual CAN interface? Only tests over the kernel's CAN want one."""
+    interfaces = [each for each in _can_interfaces(net) if _is_virtual(each)]
+    for each in interfaces:
+        if _is_up(each):
+            return Finding(FindingCode.VCAN, Status.OK, {"name": each.name})
+    if interfaces:
+        return Finding(FindingCode.VCAN_DOWN, Status.WARNING, {"name": interfaces[0].name})
+    if not _offers("vcan", modules):
+        return Finding(FindingCode.VCAN_NO_MODULE, Status.WARNING, {"folder": str(modules)})
+    return Finding(FindingCode.VCAN_NONE, Status.WARNING)
+
+
+def _check_interface(interface: Path) -> Finding:
+    values = {"name": interface.name, "up": _up(interface.name)}
+    if not _is_up(interface):
+        return Finding(FindingCode.CAN_INTERFACE_DOWN, Status.WARNING, values)
+    if attribute(interface / "carrier") == "0":
+        return Finding(FindingCode.CAN_INTERFACE_OFF_BUS, Status.WARNING, values)
+    return Finding(FindingCode.CAN_INTERFACE, Status.OK, values)
+
+
+def _can_interfaces(net: Path) -> list[Path]:
+    return [each for each in sorted(net.glob("*")) if attribute(each / "type") == str(_ARPHRD_CAN)]
+
+
+def _is_virtual(interface: Path) -> bool:
+    # Behind slcan there is a serial line, which sysfs shows as no device.
+    return not (interface / "device").exists() and not interface.name.startswith("slcan")
+
+
+def _is_up(interface: Path) -> bool:
+    return bool(int(attribute(interface / "flags") or "0", 16) & _IFF_UP)
+
+
+def _up(name: str) -> str:
+    # The bit rate of a serial-line adapter is slcand's to set; ip refuses it. And ip takes `up` only before `type`.
+    bit_rate = "" if name.startswith("slcan") else f" type can bitrate {BIT_RATE_BIT_S}"
+    return f"sudo ip link set {name} up{bit_rate}"
+
+
+def _offers(module: str, modules: Path) -> bool:
+    """Does the running kernel have this module, loadable or built in?"""
+    lists = [modules / "modules.dep", modules / "modules.builtin"]
+    return any(f"/{module}.ko" in each.read_text(encoding="utf-8") for each in lists if each.is_file())

@@ -1,0 +1,34 @@
+"""The examination: every check, in the order in which a reader wants them."""
+
+from pathlib import Path
+
+from kurt2rt.checks.doctor.can_bus import check_can_interfaces, check_can_kernel, check_vcan
+from kurt2rt.checks.doctor.check_result import Finding
+from kurt2rt.checks.doctor.disk import check_disk
+from kurt2rt.checks.doctor.privileges import check_memory_lock, check_real_time_priority
+from kurt2rt.checks.doctor.processor import check_blas_threads, check_cores, check_governor
+from kurt2rt.checks.doctor.python import check_package, check_python
+from kurt2rt.checks.doctor.sqlite_log import check_sqlite
+from kurt2rt.checks.doctor.timer import check_clock, check_timer
+
+
+def examine(folder: Path, ticks: int = 100) -> tuple[Finding, ...]:
+    """Look at this machine; `folder` is where knowledge is kept. Changes nothing. Takes 20 ms for each of the ticks."""
+    return (
+        check_python(),
+        check_timer(ticks),
+        check_clock(),
+        check_real_time_priority(),
+        check_memory_lock(),
+        check_cores(),
+        check_governor(),
+        check_blas_threads(),
+        check_sqlite(),
+        *check_disk(folder),
+        check_can_kernel(),
+        *check_can_interfaces(),
+        check_vcan(),
+        check_package("pymunk", "the simulator's physics"),
+        check_package("shapely", "the simulator's worlds"),
+        check_package("matplotlib", "drawing to files, without a display"),
+    )

@@ -1,0 +1,62 @@
+"""The folder where knowledge is kept: can it be written, has it room, and how long does a lesson take to be durable?"""
+
+import shutil
+import statistics
+import tempfile
+from pathlib import Path
+
+from kurt2rt.checks.doctor.check_result import Finding, FindingCode, Status
+from kurt2rt.checks.doctor.sqlite_log import check_sqlite_log
+from kurt2rt.platform.fsync_probe import sync_ns
+
+SYNC_TIMES = 20
+SYNC_LIMIT_S = 0.02
+"""A lesson is acknowledged within 20 ms, of which one fsync is most (design, Knowledge)."""
+LEAST_BYTES = 64 * 1024 * 1024
+WANTED_BYTES = 1024 * 1024 * 1024
+"""Recorded runs take most of it."""
+
+
+def check_disk(folder: Path) -> tuple[Finding, ...]:
+    """All about the folder, which need not be there: then its nearest parent is judged. Leaves nothing behind."""
+    folder = folder.absolute()
+    try:
+        place = next(each for each in (folder, *folder.parents) if each.exists() or each.is_symlink())
+        with tempfile.TemporaryDirectory(prefix=".kurt2rt-doctor-", dir=place) as scratch:
+            return (
+                _check_folder(folder, place),
+                check_free_space(Path(scratch)),
+                check_sync(Path(scratch)),
+                check_sqlite_log(Path(scratch)),
+            )
+    except OSError as error:
+        values = {"folder": str(folder), "error": str(error)}
+        return (Finding(FindingCode.FOLDER_UNWRITABLE, Status.MISSING, values, needed=True),)
+
+
+def _check_folder(folder: Path, place: Path) -> Finding:
+    if place == folder:
+        return Finding(FindingCode.FOLDER, Status.OK, {"folder": str(folder)}, needed=True)
+    return Finding(FindingCode.FOLDER_TO_MAKE, Status.OK, {"folder": str(folder), "parent": str(place)}, needed=True)
+
+
+def check_free_space(folder: Path, least_bytes: int = LEAST_BYTES, wanted_bytes: int = WANTED_BYTES) -> Finding:
+    """Is there room for knowledge and for recorded runs?"""
+    free_bytes = shutil.disk_usage(folder).free
+    values = {"free_gb": free_bytes / 1e9}
+    if free_bytes < wanted_bytes:
+        status = Status.MISSING if free_bytes < least_bytes else Status.WARNING
+        return Finding(FindingCode.SPACE_LOW, status, values, needed=True)
+    return Finding(FindingCode.SPACE, Status.OK, values, needed=True)
+
+
+def check_sync(folder: Path, limit_s: float = SYNC_LIMIT_S) -> Finding:
+    """How long does the disk take until a page is durable?"""
+    with (folder / "sync").open("wb", buffering=0) as file:
+        took_s = [sync_ns(file) / 1e9 for _ in range(SYNC_TIMES)]
+    median_s = statistics.median(took_s)
+    took = {"median_ms": median_s * 1000, "times": SYNC_TIMES, "worst_ms": max(took_s) * 1000}
+    values = {**took, "limit_ms": limit_s * 1000}
+    if median_s > limit_s:
+        return Finding(FindingCode.SYNC_SLOW, Status.WARNING, values, needed=True)
+    return Finding(FindingCode.SYNC, Status.OK, values, needed=True)

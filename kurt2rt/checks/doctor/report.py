@@ -1,0 +1,56 @@
+"""The doctor's report, for people and for programs."""
+
+import json
+from collections import Counter
+from collections.abc import Sequence
+
+from rich.console import Console
+from rich.text import Text
+
+from kurt2rt.checks.doctor.check_result import Finding, Status
+from kurt2rt.checks.doctor.finding_text import text_of
+from kurt2rt.platform.text_table import TextTable, print_whole
+
+_STYLES = {Status.OK: "green", Status.WARNING: "yellow", Status.MISSING: "bold red"}
+
+
+def as_json(findings: Sequence[Finding]) -> str:
+    """A JSON list with one object per finding."""
+    return json.dumps([_row(finding) for finding in findings], indent=2)
+
+
+def _row(finding: Finding) -> dict[str, object]:
+    text = text_of(finding)
+    return {
+        "code": finding.code,
+        "subject": text.subject,
+        "status": finding.status,
+        "found": text.found,
+        "what_to_do": text.what_to_do,
+        "needed": finding.needed,
+    }
+
+
+def print_report(findings: Sequence[Finding], console: Console) -> None:
+    """Table of what was found, then what to do, then the summary."""
+    table = TextTable("subject", "status", "found")
+    for finding in findings:
+        text = text_of(finding)
+        table.add_row(Text(text.subject), Text(finding.status, style=_STYLES[finding.status]), Text(text.found))
+    print_whole(console, table, "")
+    # Beneath the table and unwrapped, since most of it is there to be copied into a shell.
+    for finding in findings:
+        text = text_of(finding)
+        if text.what_to_do:
+            label = Text(text.subject, style=_STYLES[finding.status])
+            console.print(Text.assemble(label, f": {text.what_to_do}"), soft_wrap=True)
+    console.print(Text(summary(findings)), soft_wrap=True)
+
+
+def summary(findings: Sequence[Finding]) -> str:
+    """One line: how many are how, and whether `kurt2rt run` can do with it."""
+    counts = Counter(finding.status for finding in findings)
+    numbers = ", ".join(f"{counts[status]} {status}" for status in Status)
+    wanting = ", ".join(text_of(finding).subject for finding in findings if finding.forbids_run)
+    verdict = f"kurt2rt run cannot do without: {wanting}" if wanting else "kurt2rt run can start"
+    return f"{len(findings)} checks: {numbers}; {verdict}"

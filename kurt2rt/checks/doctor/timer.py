@@ -1,0 +1,87 @@
+"""The timer that paces the ticks: is it there, and how late does it wake us?"""
+
+import statistics
+import time
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+
+import anyio
+
+from kurt2rt.checks.doctor.check_result import Finding, FindingCode, Status
+from kurt2rt.checks.doctor.sysfs import attribute
+from kurt2rt.platform.asyncio_clock import AsyncioClock
+from kurt2rt.platform.clock import Clock
+from kurt2rt.platform.timerfd_clock import TimerfdClock
+
+PERIOD_S = 0.01
+TOLERABLE_MEDIAN_S = 0.001
+"""A timer file descriptor is some 0.1 ms late, the event loop's own sleeping 1 ms: beyond that it is worth a look."""
+COARSE_RESOLUTION_S = 1e-6
+"""With high-resolution timers the kernel says 1 ns; without them one jiffy, 1 to 10 ms."""
+SLOW_CLOCK_SOURCES = frozenset({"hpet", "acpi_pm", "pit", "jiffies"})
+"""Reading these takes a system call of a microsecond or more."""
+CLOCK_SOURCE = Path("/sys/devices/system/clocksource/clocksource0/current_clocksource")
+
+
+@dataclass(frozen=True, slots=True)
+class Lateness:
+    """How late a clock woke us."""
+
+    median_s: float
+    worst_s: float
+
+
+async def measure_lateness(clock: Clock, ticks: int, period_s: float) -> Lateness:
+    """Wait for so many deadlines, a period apart, and see how late each wait returned."""
+    start_s = clock.now_s()
+    late_s = []
+    for number in range(1, ticks + 1):
+        deadline_s = start_s + number * period_s
+        await clock.wait_until(deadline_s)
+        late_s.append(clock.now_s() - deadline_s)
+    return Lateness(statistics.median(late_s), max(late_s))
+
+
+def check_timer(
+    ticks: int = 100,
+    period_s: float = PERIOD_S,
+    open_clock: Callable[[], AbstractContextManager[Clock]] = TimerfdClock,
+) -> Finding:
+    """Is there a timer file descriptor, and how late is it beside asyncio.sleep? Takes 2 x ticks x period_s."""
+
+    async def both() -> tuple[Lateness, Lateness]:
+        with open_clock() as clock:
+            ours = await measure_lateness(clock, ticks, period_s)
+        return ours, await measure_lateness(AsyncioClock(), ticks, period_s)
+
+    try:
+        ours, theirs = anyio.run(both)
+    except OSError as error:
+        return Finding(FindingCode.TIMER_MISSING, Status.MISSING, {"error": str(error)}, needed=True)
+    values = {
+        "ticks": ticks,
+        "period_ms": period_s * 1000,
+        "median_ms": ours.median_s * 1000,
+        "worst_ms": ours.worst_s * 1000,
+        "asyncio_median_ms": theirs.median_s * 1000,
+        "asyncio_worst_ms": theirs.worst_s * 1000,
+        "ratio": theirs.median_s / max(ours.median_s, 1e-9),
+    }
+    if ours.median_s > TOLERABLE_MEDIAN_S or ours.worst_s >= period_s:
+        return Finding(FindingCode.TIMER_LATE, Status.WARNING, values, needed=True)
+    return Finding(FindingCode.TIMER, Status.OK, values, needed=True)
+
+
+def check_clock(resolution_s: float | None = None, source: Path = CLOCK_SOURCE) -> Finding:
+    """Is the monotonic clock fine and quick to read?"""
+    if resolution_s is None:
+        resolution_s = time.get_clock_info("monotonic").resolution
+    name = attribute(source) or "unknown"
+    values: dict[str, float | str] = {"resolution_ns": resolution_s * 1e9, "source": name}
+    if resolution_s > COARSE_RESOLUTION_S:
+        return Finding(FindingCode.CLOCK_COARSE, Status.WARNING, values)
+    if name in SLOW_CLOCK_SOURCES:
+        return Finding(FindingCode.CLOCK_SLOW, Status.WARNING, values)
+    return Finding(FindingCode.CLOCK, Status.OK, values)

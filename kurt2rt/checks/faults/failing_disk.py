@@ -1,0 +1,166 @@
+"""A disk that fails under the journal, in step with simulated time."""
+
+import sqlite3
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
+from kurt2rt.checks.faults.fault_rig import Disturbance, SimulatedTime
+from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.loading import open_knowledge, read_lessons
+from kurt2rt.knowledge.journal.writer import JournalWriter, RetryDelays, utc_now
+from kurt2rt.knowledge.knowledge_error import explained
+
+_LOOK_S = 0.0002
+_PATIENCE_S = 20.0
+"""Real time that the writer's thread may take to do what it is about."""
+
+
+class DiskOutOfStepError(RuntimeError):
+    """The writer's thread did not do in time what it has to."""
+
+
+class DisturbedJournal(Journal):
+    """A journal whose writes fail or wait; used by the writer's thread, while the drill's thread rules over time."""
+
+    disturbance: Disturbance | None = None
+    """None: the disk is sound."""
+    simulated: SimulatedTime
+    waits_until_s: float | None = None
+    """Simulated time until which a write waits; None while none does."""
+    given_up = False
+    """The drill is over: nothing fails or waits any more."""
+
+    def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
+        """Write, with what the fault does to it. Raises KnowledgeError."""
+        now_s = self.simulated.now_s()
+        disturbance = self.disturbance
+        if self.given_up or disturbance is None or not disturbance.acts(now_s):
+            return super().append(entries)
+        match disturbance.kind:
+            case "off" | "intermittent":
+                raise explained(_sqlite_error("disk I/O error", sqlite3.SQLITE_IOERR), self.path)
+            case "garbage":
+                raise explained(_sqlite_error("database disk image is malformed", sqlite3.SQLITE_CORRUPT), self.path)
+            case "stuck":
+                self._wait(disturbance.end_s)
+            case "slow":
+                self._wait(min(now_s + disturbance.delay_s, disturbance.end_s))
+            case "delayed":
+                receipts = super().append(entries)
+                self._wait(min(now_s + disturbance.delay_s, disturbance.end_s))
+                return receipts
+            case "wrong":
+                pass  # the file itself was taken away
+        return super().append(entries)
+
+    def _wait(self, until_s: float) -> None:
+        self.waits_until_s = until_s
+        while self.simulated.now_s() < until_s and not self.given_up:
+            time.sleep(_LOOK_S)
+        self.waits_until_s = None
+
+
+class FailingDisk:
+    """A knowledge file and its writer, which the drill keeps in step; a LessonKeeper.
+
+    off and intermittent: an error. stuck: a write does not come back. garbage: the file is damaged. wrong: another
+    file is there. slow: each write takes long. delayed: each is done at once and comes back late.
+    """
+
+    def __init__(
+        self,
+        simulated: SimulatedTime,
+        disturbance: Disturbance,
+        path: Path,
+        settings: RobotSettings,
+        task: TaskSettings,
+    ) -> None:
+        self.submitted: list[str] = []
+        """Command ids of the lessons handed over."""
+        self.acknowledged: list[str] = []
+        """Of those said to be durable."""
+        self._simulated = simulated
+        self._disturbance = disturbance
+        self._path, self._settings, self._task = path, settings, task
+        with open_knowledge(path, settings, task) as new:
+            binding = new.binding
+        self._journal = DisturbedJournal.open(path, binding)
+        self._journal.disturbance = disturbance
+        self._journal.simulated = simulated
+        retry = RetryDelays(first_s=0.001, longest_s=0.001)
+        self._writer = JournalWriter(self._journal, utc_now, retry, clock=simulated.now_s)
+        if disturbance.kind == "wrong":
+            exchange_file(simulated, disturbance, path)
+
+    @property
+    def trouble(self) -> str | None:
+        """As the writer says it."""
+        return self._writer.trouble
+
+    def submit(self, event: TeachingEvent) -> None:
+        """Keep a lesson."""
+        self.submitted.append(event.origin.command_id)
+        self._writer.submit(event)
+
+    def keep_in_step(self) -> None:
+        """Wait in real time until the thread has done all that it can do at this moment. Raises DiskOutOfStepError."""
+        give_up_s = time.monotonic() + _PATIENCE_S
+        while not self._in_step():
+            if time.monotonic() > give_up_s:
+                raise DiskOutOfStepError(f"{self._writer.unwritten} lessons wait; {self._writer.trouble}")
+            time.sleep(_LOOK_S)
+        self.acknowledged += [each.command_id for each in self._writer.acknowledged() if each.sequence is not None]
+
+    def close(self) -> None:
+        """Write what is left and close the file; may be called twice. Raises KnowledgeError."""
+        self._journal.given_up = True
+        self._writer.close()
+
+    def lost_lessons(self) -> Complaint | None:
+        """Compare the closed file with the lessons; None if it holds all of them, once, and in order."""
+        kept = [event.origin.command_id for event in read_lessons(self._path, self._settings, self._task)]
+        if kept != self.submitted:
+            taught, names = len(self.submitted), f": {kept}"
+            return complaint(ComplaintCode.LESSONS_NOT_STORED, taught=taught, stored=len(kept), names=names)
+        if self.acknowledged != self.submitted:
+            saved, acknowledged = len(self.submitted), len(self.acknowledged)
+            return complaint(ComplaintCode.LESSONS_NOT_ACKNOWLEDGED, saved=saved, acknowledged=acknowledged)
+        return None
+
+    def _in_step(self) -> bool:
+        now_s = self._simulated.now_s()
+        waits_until_s = self._journal.waits_until_s
+        if waits_until_s is not None:
+            return now_s < waits_until_s
+        if self._writer.unwritten == 0:
+            return self._writer.trouble is None
+        fails = self._disturbance.kind in ("off", "intermittent", "garbage", "wrong")
+        return fails and self._disturbance.acts(now_s) and self._writer.trouble is not None
+
+
+def exchange_file(simulated: SimulatedTime, disturbance: Disturbance, path: Path) -> None:
+    """Another file stands in the place of this one, for the disturbance's span."""
+    away = path.with_name(f"{path.name}.away")
+    simulated.at(disturbance.begin_s, lambda: _exchange(path, away))
+    simulated.at(disturbance.end_s, lambda: _put_back(away, path))
+
+
+def _exchange(path: Path, away: Path) -> None:
+    path.rename(away)
+    path.write_bytes(b"")
+
+
+def _put_back(away: Path, path: Path) -> None:
+    away.rename(path)
+
+
+def _sqlite_error(text: str, code: int) -> sqlite3.DatabaseError:
+    error = sqlite3.OperationalError(text)
+    error.sqlite_errorcode = code
+    return error

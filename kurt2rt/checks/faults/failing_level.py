@@ -1,0 +1,67 @@
+"""A layer that fails at the wheels, and takes its tick along."""
+
+import math
+
+from hal.robot import SensorReadings, WheelSpeeds
+from kurt2rt.checks.faults.fault_rig import Disturbance, SimulatedTime
+from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.level import Level
+from kurt2rt.core.perception.perception import Situation
+
+_TOO_FAST_M_S = 5.0
+_TURNS_ROUND_EVERY_S = 0.3
+
+
+class BrokenTickError(RuntimeError):
+    """A tick ended in an error of the program."""
+
+
+class DisturbedLevel:
+    """Stands before the layer that decides (kurt2rt.core.decision.level.Level).
+
+    off: it raises. stuck: it comes back when the fault is over. garbage: it wants what is no number. wrong: it wants
+    far too much, and turns round, also when it was told to stand. slow: each decision takes longer than it may be old.
+    delayed: each takes longer than a period, but is young enough. intermittent: it hangs now and then.
+    """
+
+    def __init__(self, time: SimulatedTime, disturbance: Disturbance) -> None:
+        self._time = time
+        self._disturbance = disturbance
+        self._hung = -1
+        self.behind: Level | None = None
+        """The layer that really decides; set before the first tick."""
+
+    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
+        """The decision, or what the fault makes of it. Raises BrokenTickError."""
+        assert self.behind is not None
+        decision = self.behind.decide(situation, senses, stand_because)
+        disturbance, now_s = self._disturbance, self._time.now_s()
+        if not disturbance.acts(now_s):
+            return decision
+        match disturbance.kind:
+            case "off":
+                raise BrokenTickError("a behaviour failed")
+            case "stuck":
+                self._time.run_until(disturbance.end_s)
+            case "garbage":
+                return decision._replace(wheel_speeds=WheelSpeeds(math.nan, math.inf))
+            case "wrong":
+                turns = int((now_s - disturbance.begin_s) / _TURNS_ROUND_EVERY_S)
+                speed_m_s = _TOO_FAST_M_S if turns % 2 == 0 else -_TOO_FAST_M_S
+                return _driving(decision)._replace(wheel_speeds=WheelSpeeds(speed_m_s, speed_m_s))
+            case "slow" | "delayed":
+                self._time.run_until(now_s + disturbance.delay_s)
+            case "intermittent":
+                turn = int((now_s - disturbance.begin_s) / disturbance.period_s)
+                if turn != self._hung:
+                    self._hung = turn
+                    self._time.run_until(now_s + disturbance.delay_s)
+        return decision
+
+
+def _driving(decision: Decision) -> Decision:
+    """The decision of a level that heard nobody tell it to stand."""
+    if decision.driving or decision.match is None:
+        return decision
+    rla = decision.match.rla
+    return decision._replace(cause=Cause.RLA, action=rla.action, rla_id=rla.rla_id)

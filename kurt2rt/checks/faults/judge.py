@@ -1,0 +1,88 @@
+"""Holds what a drill came to against what the table says."""
+
+from typing import NamedTuple
+
+from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
+from kurt2rt.checks.faults.outcome import LOST_FRAMES, Outcome
+from kurt2rt.checks.faults.table import CaseSettings
+
+_MOMENT_S = 0.03
+"""A robot that turns round stands for a tick or two on its way."""
+
+
+class DrillVerdict(NamedTuple):
+    """Whether a case is as it must be."""
+
+    passed: bool
+    complaints: tuple[Complaint, ...]
+    """Deviations from the row; of a known gap those that the gap excuses."""
+
+
+def judge(must: CaseSettings, outcome: Outcome) -> DrillVerdict:
+    """A known gap passes as long as it is one, and excuses nothing beyond the envelope."""
+    behaviour = (*_about_standing(must, outcome), *_about_the_latch(must, outcome), *_about_the_end(must, outcome))
+    limits = _about_the_limits(must, outcome)
+    if must.known_gap is None:
+        return DrillVerdict(not (limits or behaviour), (*limits, *behaviour))
+    if not behaviour:
+        return DrillVerdict(passed=False, complaints=(*limits, complaint(ComplaintCode.GAP_CLOSED)))
+    return DrillVerdict(not limits, (*limits, *behaviour))
+
+
+def _about_the_limits(must: CaseSettings, outcome: Outcome) -> tuple[Complaint, ...]:
+    wrong = list(outcome.problems)
+    if outcome.old_frames > must.old_frames:
+        wrong.append(complaint(ComplaintCode.OLD_FRAMES, frames=outcome.old_frames, allowed=must.old_frames))
+    if must.counts is not None and not outcome.counted.get(must.counts):
+        wrong.append(complaint(ComplaintCode.NOT_COUNTED, counter=must.counts))
+    if must.counts != LOST_FRAMES and outcome.counted.get(LOST_FRAMES):
+        wrong.append(complaint(ComplaintCode.LOG_LOST_FRAMES, frames=outcome.counted[LOST_FRAMES]))
+    return tuple(wrong)
+
+
+def _about_standing(must: CaseSettings, outcome: Outcome) -> list[Complaint]:
+    if must.leads_to == "drives_on":
+        if outcome.first is not None and outcome.longest_stand_s > _MOMENT_S:
+            because = _listed(outcome.first.because)
+            return [complaint(ComplaintCode.STOOD, stood_s=outcome.longest_stand_s, because=because)]
+        return []
+    stand = outcome.first if must.leads_to == "stutters" else outcome.last
+    if stand is None or must.within_s is None:
+        return [complaint(ComplaintCode.DID_NOT_STAND, must=_listed(must.words))]
+    wrong = []
+    if stand.after_s > must.within_s:
+        late = complaint(ComplaintCode.STOOD_LATE, must_ms=must.within_s * 1000, after_ms=stand.after_s * 1000)
+        wrong.append(late)
+    if not set(must.words) & set(stand.because):
+        must_be, was = _listed(must.words), _listed(stand.because)
+        wrong.append(complaint(ComplaintCode.STOOD_FOR_ANOTHER_CAUSE, must=must_be, because=was))
+    if must.leads_to == "stutters" and not outcome.went_on:
+        wrong.append(complaint(ComplaintCode.DID_NOT_GO_ON))
+    return wrong
+
+
+def _about_the_latch(must: CaseSettings, outcome: Outcome) -> list[Complaint]:
+    if outcome.latched != must.latches:
+        latched = f"{outcome.latched} ({outcome.ended_by})" if outcome.ended_by else str(outcome.latched)
+        return [complaint(ComplaintCode.OTHER_LATCH, must=str(must.latches), latched=latched)]
+    if must.latches_within_s is None or outcome.latched_after_s is None:
+        return []
+    if outcome.latched_after_s > must.latches_within_s:
+        within_s, after_s = must.latches_within_s, outcome.latched_after_s
+        return [complaint(ComplaintCode.LATCHED_LATE, must_s=within_s, after_s=after_s)]
+    return []
+
+
+def _about_the_end(must: CaseSettings, outcome: Outcome) -> list[Complaint]:
+    if must.ends_by == "itself":
+        return [] if outcome.drove_by_itself else [complaint(ComplaintCode.DID_NOT_DRIVE_BY_ITSELF)]
+    wrong = []
+    if outcome.drove_by_itself:
+        wrong.append(complaint(ComplaintCode.DROVE_BY_ITSELF, must=must.ends_by))
+    if not outcome.drove_when_told:
+        wrong.append(complaint(ComplaintCode.DID_NOT_DRIVE_WHEN_TOLD, must=must.ends_by))
+    return wrong
+
+
+def _listed(words: tuple[str, ...]) -> str:
+    return " or ".join(words) or "nothing"

@@ -1,0 +1,100 @@
+"""Watches a drill: what the driver said, what arrived at the robot, and when."""
+
+from typing import NamedTuple
+
+from hal.robot import STANDSTILL, Robot, SensorReadings
+from hal.robot_proxy import RobotProxy
+from kurt2rt.checks.faults.complaint import ComplaintCode, complaint
+from kurt2rt.checks.faults.envelope import Envelope
+from kurt2rt.checks.faults.fault_rig import FaultRig
+from kurt2rt.core.tick import TickRecord
+
+
+class Stand(NamedTuple):
+    """A span in which the robot's end of the bus knew nothing but to stand."""
+
+    from_s: float
+    to_s: float
+
+
+class Witness(RobotProxy):
+    """Sees both ends of the bus, and is the robot for the tick."""
+
+    def __init__(self, rig: FaultRig, envelope: Envelope, controller_watchdog_s: float) -> None:
+        super().__init__(rig.robot)
+        self.envelope = envelope
+        self.latched: tuple[float, str] | None = None
+        """When the guard first stopped for good, and its word."""
+        self.drove_at_s: list[float] = []
+        """Times of ticks whose set points moved the robot."""
+        self._rig = rig
+        self._begin_s = rig.disturbance.begin_s
+        self._controller_watchdog_s = controller_watchdog_s
+        self._sensed_at_s = 0.0
+        self._arrivals: list[tuple[float, bool]] = []
+        self._words: list[tuple[float, tuple[str, ...]]] = []
+        rig.on_put = self._note_put
+        rig.on_control = self._note_arrival
+
+    def look_at(self, robot: Robot) -> None:
+        """Another driver has taken the place of the one that was there."""
+        self._robot = robot
+
+    def note(self, record: TickRecord) -> None:
+        """A tick is over."""
+        now_s = self._rig.time.now_s()
+        if record.grant.wheel_speeds != STANDSTILL:
+            self.drove_at_s.append(now_s)
+            if not record.decision.driving:
+                drove = complaint(ComplaintCode.DROVE_THOUGH, now_s, cause=record.decision.cause)
+                self.envelope.violations.append(drove)
+        else:
+            # A layer that wants to drive is not why the robot stands.
+            cause = () if record.decision.driving else (str(record.decision.cause),)
+            self._words.append((now_s, (*cause, *record.grant.reasons)))
+
+    def stands(self, begin_s: float, end_s: float) -> list[Stand]:
+        """When the robot was told to stand, or heard nothing for so long that its own watchdog stopped it."""
+        stands: list[Stand] = []
+        state, since_s, heard_at_s = True, 0.0, 0.0
+        heard = [each for each in self._arrivals if each[0] < end_s]
+        for at_s, standing in (*heard, (end_s, True)):
+            if not state and at_s - heard_at_s >= self._controller_watchdog_s:
+                state, since_s = True, heard_at_s + self._controller_watchdog_s
+            if at_s == end_s:
+                break
+            if standing != state:
+                if state:
+                    stands.append(Stand(since_s, at_s))
+                state, since_s = standing, at_s
+            heard_at_s = at_s
+        if state:
+            stands.append(Stand(since_s, end_s))
+        return [Stand(max(each.from_s, begin_s), each.to_s) for each in stands if each.to_s > begin_s]
+
+    def words_from(self, time_s: float) -> tuple[str, ...]:
+        """Why the driver told the robot to stand, the first time from a moment on."""
+        first_s = next((at_s for at_s, _ in self._words if at_s >= time_s), None)
+        return tuple(dict.fromkeys(word for at_s, words in self._words if at_s == first_s for word in words))
+
+    def sense(self, now_s: float) -> SensorReadings:
+        """A tick begins: from here on its decision ages."""
+        self._sensed_at_s = self._rig.time.now_s()
+        return self._robot.sense(now_s)
+
+    def close(self) -> None:
+        """Left to the place."""
+
+    def _note_put(self, number: int, payload: bytes) -> None:
+        now_s, latched = self._rig.time.now_s(), self._rig.robot.health.latched
+        if latched is not None:
+            if self.latched is None and now_s >= self._begin_s:
+                self.latched = (now_s, latched)
+            self._words.append((now_s, (latched,)))
+        self.envelope.put(number, now_s, payload, now_s - self._sensed_at_s, latched=latched is not None)
+
+    def _note_arrival(self, number: int, payload: bytes) -> None:
+        now_s = self._rig.time.now_s()
+        told = self.envelope.arrived(number, now_s, payload)
+        if told is not None:
+            self._arrivals.append((now_s, told.standing))

@@ -1,0 +1,50 @@
+"""Tries cases of the table, one after the other, and says of each whether it is as it must be."""
+
+import tempfile
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.checks.faults.fault_rig import RigFactory
+from kurt2rt.checks.faults.judge import DrillVerdict, judge
+from kurt2rt.checks.faults.outcome import Outcome
+from kurt2rt.checks.faults.scenario import drill
+from kurt2rt.checks.faults.table import FaultCase, FaultTable
+from kurt2rt.core.task_settings import TaskSettings
+
+
+class Trial(NamedTuple):
+    """A case, tried with one seed."""
+
+    case: FaultCase
+    outcome: Outcome
+    verdict: DrillVerdict
+
+
+async def try_case(
+    stage: RigFactory, case: FaultCase, table: FaultTable, settings: RobotSettings, task: TaskSettings, seed: int
+) -> Trial:
+    """Try one case. The seed makes noise, and the phases of fault, ticks and watchdog. Raises DidNotDriveError."""
+    with tempfile.TemporaryDirectory(prefix="kurt2rt-faults-") as folder:
+        outcome = await drill(stage, case, table, settings, task, seed=seed, folder=Path(folder))
+    return Trial(case, outcome, judge(case.must, outcome))
+
+
+async def try_cases(
+    stage: RigFactory,
+    cases: Iterable[FaultCase],
+    table: FaultTable,
+    settings: RobotSettings,
+    task: TaskSettings,
+    seeds: Sequence[int],
+    on_done: Callable[[Trial], None],
+) -> list[Trial]:
+    """Try each case with each seed; `on_done` hears of every trial. Raises DidNotDriveError."""
+    trials = []
+    for case in cases:
+        for seed in seeds:
+            trial = await try_case(stage, case, table, settings, task, seed)
+            trials.append(trial)
+            on_done(trial)
+    return trials

@@ -1,0 +1,134 @@
+"""A teacher who drives by hand, over a link that fails."""
+
+import random
+from collections.abc import Awaitable, Coroutine
+from typing import Any
+
+from kurt2rt.channel.protocol.codec import WireError, decode_request, encode_request
+from kurt2rt.channel.protocol.requests import BOOT_BYTES, HIGHEST_SPEED_M_S, DriveRequest
+from kurt2rt.channel.server.reply import Reply, Verdict
+from kurt2rt.channel.server.request_handler import Reception, Sender
+from kurt2rt.checks.faults.fault_rig import Disturbance, SimulatedTime
+from kurt2rt.knowledge.files.atomic_write import SavedCopy
+from kurt2rt.platform.file_part import FilePart
+from kurt2rt.runtime import Runtime
+from kurt2rt.teacher.client.manual_drive import BEAT_S
+
+TEACHER = "ann"
+_BOOT = bytes(BOOT_BYTES)
+_SPEEDS_M_S = (0.3, 0.28)
+_SWERVES_EVERY_S = 0.25
+_ROUNDING_S = 1e-9
+
+
+class HandLink:
+    """Messages of a press, as bytes, on their way from the teacher's device to the robot's reception.
+
+    Past the keys: what they would refuse already, garbled bytes and copies, has to be refused by the rules behind them.
+
+    off: none arrives. stuck: the last one arrives again and again. garbage: bytes of chance. wrong: well-formed, and
+    far too fast. slow: few. delayed: late. intermittent: none for a while, again and again.
+    """
+
+    def __init__(self, time: SimulatedTime, disturbance: Disturbance, runtime: Runtime, chance: random.Random) -> None:
+        self.refused = 0
+        """Messages that were not understood or not taken."""
+        self._time = time
+        self._disturbance = disturbance
+        self._chance = chance
+        self._reception = Reception(runtime, _BOOT, {}, lambda _: "", _NoCopies(), None)
+        self._number = self._hold = 0
+        self._newest = (0, b"")
+        self._passed_at_s = disturbance.begin_s
+
+    def press(self) -> None:
+        """A new press begins."""
+        self._hold += 1
+
+    def see(self, tick: int) -> None:
+        """The newest picture of the robot is of this tick, and the teacher sees it at once."""
+        self._reception.tick = tick
+
+    def beat(self) -> None:
+        """Send what is due; call it every BEAT_S."""
+        if not self._hold:
+            return
+        disturbance, now_s = self._disturbance, self._time.now_s()
+        self._number += 1
+        message = (self._number, self._message(*_SPEEDS_M_S))
+        if not disturbance.acts(now_s):
+            self._newest = message
+            self._arrive(*message)
+            return
+        match disturbance.kind:
+            case "off" | "intermittent":
+                return
+            case "stuck":
+                self._arrive(*self._newest)
+            case "garbage":
+                self._arrive(self._number, self._chance.randbytes(self._chance.randint(0, 40)))
+            case "wrong":
+                left = int((now_s - disturbance.begin_s) / _SWERVES_EVERY_S) % 2 == 0
+                speeds_m_s = (HIGHEST_SPEED_M_S, HIGHEST_SPEED_M_S / 2)
+                self._arrive(self._number, self._message(*(speeds_m_s[::-1] if left else speeds_m_s)))
+            case "slow":
+                if now_s - self._passed_at_s > disturbance.period_s - _ROUNDING_S:
+                    self._passed_at_s = now_s
+                    self._arrive(*message)
+            case "delayed":
+                self._time.at(now_s + disturbance.delay_s, lambda: self._arrive(*message))
+
+    def start(self) -> None:
+        """From now on the device sends."""
+        self._time.every(BEAT_S, self._time.now_s(), self.beat)
+
+    def _message(self, left_m_s: float, right_m_s: float) -> bytes:
+        return encode_request(DriveRequest(_BOOT, self._reception.tick, self._hold, left_m_s, right_m_s))
+
+    def _arrive(self, number: int, payload: bytes) -> None:
+        try:
+            request = decode_request(DriveRequest.path, payload)
+        except WireError:
+            self.refused += 1
+            return
+        reply = _at_once(self._reception.answer(Sender(TEACHER, b"", number), request))
+        if reply.verdict is not Verdict.DONE:
+            self.refused += 1
+
+
+class _NoCopies:
+    """No request asks for a copy here (kurt2rt.channel.server.off_tick_requests.Copies)."""
+
+    def save(self, label: str) -> Awaitable[SavedCopy]:
+        """Never asked."""
+        raise NotImplementedError(label)
+
+    def export(self) -> Awaitable[SavedCopy]:
+        """Never asked."""
+        raise NotImplementedError
+
+    def package(self) -> Awaitable[SavedCopy]:
+        """Never asked."""
+        raise NotImplementedError
+
+    def examine(self) -> Awaitable[None]:
+        """Never asked."""
+        raise NotImplementedError
+
+    def settle(self) -> Awaitable[None]:
+        """Never asked."""
+        raise NotImplementedError
+
+    def read(self, name: str, offset: int, most_bytes: int) -> Awaitable[FilePart]:
+        """Never asked."""
+        raise NotImplementedError(name)
+
+
+def _at_once(answering: Coroutine[Any, Any, Reply]) -> Reply:
+    """The reply of a request that waits for nothing, as those of a stream are."""
+    try:
+        answering.send(None)
+    except StopIteration as done:
+        reply: Reply = done.value
+        return reply
+    raise AssertionError("a message of a stream is answered at once")

@@ -1,0 +1,115 @@
+"""The knowledge file of a soak and its writer, on a disk that may fail, in step with simulated time."""
+
+import time
+from itertools import chain
+from pathlib import Path
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
+from kurt2rt.checks.faults.failing_disk import DiskOutOfStepError, DisturbedJournal, exchange_file
+from kurt2rt.checks.faults.fault_rig import Disturbance, SimulatedTime
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.loading import OpenedKnowledge, go_on_teaching
+from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter, RetryDelays, utc_now
+
+_LOOK_S = 0.0002
+_PATIENCE_S = 30.0
+"""Real time that the writer's thread may take to do what it is about."""
+_FAIL = ("off", "intermittent", "garbage", "wrong")
+
+
+def open_soak_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> OpenedKnowledge:
+    """What the file holds already, with its journal closed: the soak's own, which may fail, takes its place."""
+    opened = go_on_teaching(path, settings, task)
+    opened.journal.close()
+    return opened
+
+
+class SoakKnowledge:
+    """Made of what was opened for one start of the program; closed by `close`."""
+
+    def __init__(self, path: Path, opened: OpenedKnowledge, simulated: SimulatedTime) -> None:
+        """`opened`: by `open_soak_knowledge`, at `path`. Raises KnowledgeError."""
+        self._path = path
+        self._simulated = simulated
+        self._disturbance: Disturbance | None = None
+        # Not the entries themselves: the program that is tried here does not keep them, either.
+        self._before = [entry.event.origin.command_id for entry in opened.entries]
+        binding = opened.journal.binding
+        self._journal = DisturbedJournal.open(path, binding)
+        self._journal.simulated = simulated
+        retry = RetryDelays(first_s=0.001, longest_s=0.001)
+        self.writer = JournalWriter(self._journal, utc_now, retry, clock=simulated.now_s)
+        self.submitted: list[str] = []
+        """Command ids of the lessons of this start, in order; whoever sees them notes them here."""
+        self.acknowledged: list[str] = []
+        """Of those said to be durable."""
+
+    @property
+    def lessons(self) -> int:
+        """Of all of the file so far."""
+        return len(self._before) + len(self.submitted)
+
+    def disturb(self, disturbance: Disturbance) -> None:
+        """From now on the disk fails. Raises DiskOutOfStepError."""
+        self.keep_in_step(all_of_it=True)
+        self._disturbance = self._journal.disturbance = disturbance
+        if disturbance.kind == "wrong":
+            exchange_file(self._simulated, disturbance, self._path)
+
+    def mend(self) -> None:
+        """It is sound again."""
+        self._disturbance = self._journal.disturbance = None
+
+    def keep_in_step(self, *, all_of_it: bool = False) -> None:
+        """Wait in real time until the thread has done what it can do at this moment. Raises DiskOutOfStepError.
+
+        `all_of_it`: statistics, too, of which nobody says whether they wait.
+        """
+        if self._disturbance is None and not self.writer.unwritten and not all_of_it:
+            return
+        give_up_s = time.monotonic() + _PATIENCE_S
+        while not self._in_step():
+            if time.monotonic() > give_up_s:
+                raise DiskOutOfStepError(f"{self.writer.unwritten} lessons wait; {self.writer.trouble}")
+            time.sleep(_LOOK_S)
+        if all_of_it and self._disturbance is None and not self.writer.flush(_PATIENCE_S):
+            raise DiskOutOfStepError(f"statistics wait; {self.writer.trouble}")
+
+    def settled(self, acknowledgement: Acknowledgement) -> None:
+        """A lesson is durable, or never can be."""
+        if acknowledgement.sequence is not None:
+            self.acknowledged.append(acknowledgement.command_id)
+
+    def close(self) -> None:
+        """Write what is left and close the file. Raises KnowledgeError."""
+        self._journal.given_up = True
+        self.writer.close(_PATIENCE_S)
+        for acknowledgement in self.writer.acknowledged():
+            self.settled(acknowledgement)
+
+    def lost_lessons(self) -> Complaint | None:
+        """Compare the closed file with the lessons; None if it holds all of them, once, and in order."""
+        # One by one, for all at once would be more than the program itself takes; whether they fit one another is
+        # looked at when it is opened again.
+        awaited = chain(self._before, self.submitted)
+        with Journal.read_only(self._path) as journal:
+            agree = [entry.event.origin.command_id == next(awaited, None) for entry in journal.each_entry()]
+        if not all(agree) or len(agree) != self.lessons:
+            taught = len(self._before) + len(self.submitted)
+            return complaint(ComplaintCode.LESSONS_NOT_STORED, taught=taught, stored=len(agree), names="")
+        if self.acknowledged != self.submitted:
+            saved, acknowledged = len(self.submitted), len(self.acknowledged)
+            return complaint(ComplaintCode.LESSONS_NOT_ACKNOWLEDGED, saved=saved, acknowledged=acknowledged)
+        return None
+
+    def _in_step(self) -> bool:
+        now_s, disturbance = self._simulated.now_s(), self._disturbance
+        waits_until_s = self._journal.waits_until_s
+        if waits_until_s is not None:
+            return now_s < waits_until_s
+        if not self.writer.unwritten and self.writer.trouble is None:
+            return True
+        fails = disturbance is not None and disturbance.kind in _FAIL and disturbance.acts(now_s)
+        return fails and self.writer.trouble is not None

@@ -1,0 +1,177 @@
+"""Makes things fail at random times, and looks whether each fault led to what it must."""
+
+import random
+from collections.abc import Callable
+from typing import NamedTuple
+
+from hal.guard_reason import GuardReason
+from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
+from kurt2rt.checks.faults.failing_recorder import FailingRecorder
+from kurt2rt.checks.faults.fault_rig import Disturbance
+from kurt2rt.checks.faults.table import FaultCase, FaultTable, Kind, Target, cases_of
+from kurt2rt.checks.soak.disk_list import Spool
+from kurt2rt.checks.soak.long_run_rig import SoakRig
+from kurt2rt.checks.soak.observer import SoakWitness
+from kurt2rt.checks.soak.program_run import Life
+
+_LEAST_GAP_S = 4.0
+_LOOKS_AGAIN_S = 1.0
+_SHOWS_M_S = 0.2
+_LESSON_EVERY_S = 1.0
+_SETTLES_S = 0.3
+_HAND_FIRST_S, _SOUND_FIRST_S = 1.0, 0.1
+
+
+class FaultSeen(NamedTuple):
+    """One fault, and what it came to."""
+
+    at_s: float
+    target: Target
+    kind: Kind
+    drove: bool
+    """Whether the robot was driving when it began."""
+    stood_after_s: float | None
+    """Until its first standstill; None where it drove all the while."""
+    latched: str | None
+    """Why the robot was stopped for good at its end."""
+    complaints: tuple[Complaint, ...] = ()
+
+
+class SoakFaults:
+    """One fault at a time, each case of the table as often as any other."""
+
+    def __init__(self, rig: SoakRig, witness: SoakWitness, table: FaultTable, gap_s: float, seed: int) -> None:
+        self.seen: Spool[FaultSeen] = Spool()
+        self.expects_the_end = False
+        """Whether the program that runs may end by the fault that acts."""
+        self.acting: FaultCase | None = None
+        self.acts_until_s = 0.0
+        """Of the newest fault."""
+        self.life: Life | None = None
+        """The program that runs; None while none does."""
+        self._rig, self._witness, self._table = rig, witness, table
+        self._gap_s = gap_s
+        self._chance = random.Random(f"faults, seed {seed}")
+        self._deck: list[FaultCase] = []
+        self._disturbance: Disturbance | None = None
+        self._recorder: FailingRecorder | None = None
+        self._newest: FaultSeen | None = None
+        self._drove = False
+        self._old_frames = self._resumes = 0
+        self._suffered: Life | None = None
+        self._plan()
+
+    def _plan(self) -> None:
+        gap_s = _LEAST_GAP_S + self._chance.expovariate(1.0 / self._gap_s)
+        self._rig.time.at(self._rig.time.now_s() + gap_s, self._begin)
+
+    def _begin(self) -> None:
+        time, life = self._rig.time, self.life
+        if life is None or not life.ready:
+            time.at(time.now_s() + _LOOKS_AGAIN_S, self._begin)
+            return
+        if not self._deck:
+            self._deck = list(cases_of(self._table))
+            self._chance.shuffle(self._deck)
+        case = self.acting = self._deck.pop()
+        must, now_s = case.must, time.now_s()
+        # What repeats itself must have been heard, and somebody has to drive by hand already when his link fails.
+        begin_s = now_s + (_HAND_FIRST_S if case.target == "teacher_link" else _SOUND_FIRST_S)
+        end_s = begin_s + (must.lasts_s or self._table.schedule.lasts_s)
+        self.acts_until_s = end_s
+        self._old_frames, self._resumes = self._witness.envelope.old_frames, self._witness.resumes
+        self._witness.clock_is_wrong = case.target == "clock"
+        time.at(begin_s, self._note_driving)
+        self._suffered = life
+        self.expects_the_end = must.ends_by == "restart"
+        self._witness.envelope.slew_share = must.slew_share
+        self._witness.envelope.clock_is_wrong = case.target == "clock"
+        disturbance = self._disturbance = self._rig.begin(
+            case.target, case.kind, begin_s=begin_s, end_s=end_s, period_s=must.period_s, delay_s=must.delay_s
+        )
+        match case.target:
+            case "clock":
+                life.clock.disturb(disturbance)
+            case "tick":
+                life.level.disturb(disturbance)
+            case "disk":
+                life.knowledge.disturb(disturbance)
+                # A disk that comes and goes is to be met in both.
+                every_s = min(_LESSON_EVERY_S, must.period_s or _LESSON_EVERY_S)
+                for number in range(int((end_s - begin_s) / every_s)):
+                    time.at(begin_s + number * every_s, self._on_life(Life.teach_what_is_known))
+            case "recorder":
+                self._recorder = FailingRecorder(time, disturbance)
+                self._rig.look_on(self._recorder)
+            case "teacher_link":
+                life.take_by_hand(disturbance)
+        if must.stop_said_after_s is not None:
+            time.at(begin_s + must.stop_said_after_s, self._on_life(Life.say_stop))
+        time.at(end_s, self._look)
+        time.at(end_s + _SETTLES_S, self._end)
+
+    def _note_driving(self) -> None:
+        self._drove = not self._witness.stands
+        self._witness.look_for_a_stand()
+
+    def _on_life(self, act: Callable[[Life], None]) -> Callable[[], None]:
+        def do() -> None:
+            if self.life is not None and self.life is self._suffered:
+                act(self.life)
+
+        return do
+
+    def _look(self) -> None:
+        """The fault is over in this moment."""
+        case, robot, witness = self.acting, self._rig.robot, self._witness
+        assert case is not None
+        assert self._disturbance is not None
+        begin_s = self._disturbance.begin_s
+        stood_at_s = witness.first_stand_s()
+        complaints: list[Complaint] = []
+        # A robot that stood already shows nothing. One that is told to drive on by a teacher who has not seen what is
+        # wrong may try again, and may put as many old set points into a queue that is blocked as the first time.
+        # And wheels show only at some speed whether they obey: in a narrow curve one side nearly stands.
+        shows = GuardReason.WHEELS_DISOBEY not in case.must.words or witness.slowest_m_s >= _SHOWS_M_S
+        if case.must.leads_to == "stands" and self._drove and stood_at_s is None and shows:
+            complaints.append(complaint(ComplaintCode.DROVE_ALL_THE_WHILE))
+        old_frames = witness.envelope.old_frames - self._old_frames
+        allowed = case.must.old_frames * (1 + witness.resumes - self._resumes)
+        if old_frames > allowed and self.life is self._suffered and not self.lossy:
+            complaints.append(complaint(ComplaintCode.OLD_FRAMES, frames=old_frames, allowed=allowed))
+        self._newest = FaultSeen(
+            at_s=begin_s,
+            target=case.target,
+            kind=case.kind,
+            drove=self._drove,
+            stood_after_s=None if stood_at_s is None else max(0.0, stood_at_s - begin_s),
+            latched=None if robot is None else robot.health.latched,
+            complaints=tuple(complaints),
+        )
+
+    @property
+    def lossy(self) -> bool:
+        """Whether the wire itself holds frames up."""
+        return self.life is not None and self.life.wire == "failing"
+
+    def _end(self) -> None:
+        case, life, seen = self.acting, self.life, self._newest
+        assert case is not None
+        assert seen is not None
+        self._rig.end()
+        self._witness.envelope.slew_share = 1.0
+        self._witness.envelope.clock_is_wrong = False
+        self._witness.clock_is_wrong = False
+        if self._recorder is not None:
+            self._rig.look_on(None)
+            self._recorder.close()
+            uncounted = self._recorder.uncounted_frames()
+            if uncounted is not None:
+                seen = seen._replace(complaints=(uncounted,))
+            self._recorder = None
+        self.seen.append(seen)
+        if life is not None and life is self._suffered:
+            life.mend(case.target)
+        self.acting = self._disturbance = self._suffered = None
+        self.expects_the_end = False
+        self._plan()

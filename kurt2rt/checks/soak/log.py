@@ -1,0 +1,49 @@
+"""Minute by minute: what the robot did and what its program took of the machine."""
+
+from hal.robot import STANDSTILL
+from kurt2rt.checks.soak.disk_list import Spool
+from kurt2rt.checks.soak.program_run import Life
+from kurt2rt.checks.soak.resource_usage import open_files, resident_mb, threads
+from kurt2rt.checks.soak.result import Minute
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.tick import TickRecord
+
+
+class MinuteLog:
+    """Counts ticks, and makes a line of them when a minute is over."""
+
+    def __init__(self) -> None:
+        self.minutes: Spool[Minute] = Spool()
+        self._ticks = self._drives = self._asks = self._stopped = self._missed = 0
+        self._worst_late_s = 0.0
+
+    def note(self, record: TickRecord, late_s: float, missed: int) -> None:
+        """A tick is over: so late, after so many that were missed."""
+        self._ticks += 1
+        self._drives += record.grant.wheel_speeds != STANDSTILL
+        self._asks += record.decision.asking
+        self._stopped += record.grant.latched or record.decision.cause in (Cause.STOPPED, Cause.UNATTENDED)
+        self._missed += missed
+        self._worst_late_s = max(self._worst_late_s, late_s)
+
+    def end_minute(self, at_s: float, life: Life, mood: str) -> None:
+        """A minute is over."""
+        ticks = max(1, self._ticks)
+        self.minutes.append(
+            Minute(
+                at_s=at_s,
+                resident_mb=round(resident_mb(), 3),
+                open_files=open_files(),
+                threads=threads(),
+                rlas=len(life.runtime.level.system),
+                lessons=life.knowledge.lessons,
+                drives=round(self._drives / ticks, 4),
+                asks=round(self._asks / ticks, 4),
+                stopped=round(self._stopped / ticks, 4),
+                worst_late_s=round(self._worst_late_s, 6),
+                missed_ticks=self._missed,
+                mood=mood,
+            )
+        )
+        self._ticks = self._drives = self._asks = self._stopped = self._missed = 0
+        self._worst_late_s = 0.0

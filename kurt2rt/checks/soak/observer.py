@@ -1,0 +1,161 @@
+"""Watches every tick of a soak from both ends of the bus: envelope, standstill, and tick accounting."""
+
+import math
+
+from hal.guard_reason import GuardReason
+from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings, WheelSpeeds
+from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
+from kurt2rt.checks.faults.envelope import Envelope
+from kurt2rt.checks.faults.table import EnvelopeSettings
+from kurt2rt.checks.soak.long_run_rig import SoakRig
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.teaching.commands import Resume
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.platform.ledger import Ledger
+
+_MOST_TOLD = 200
+"""Complaints that are stored."""
+_ROUNDING_S = 1e-6
+
+
+class Complaints:
+    """What is not as it must be: all of it counted, the first ones kept."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.told: list[Complaint] = []
+
+    def add(self, found: Complaint) -> None:
+        """Count a complaint; store it while there are few."""
+        self.count += 1
+        if len(self.told) < _MOST_TOLD:
+            self.told.append(found)
+
+
+class SoakWitness:
+    """Sees what drivers say, what arrives at the robot, and each tick's record (and is, for the tick, the robot)."""
+
+    def __init__(self, rig: SoakRig, limits: EnvelopeSettings) -> None:
+        self.envelope = Envelope(limits)
+        self.complaints = Complaints()
+        """Of the motion envelope, of standing, and of accounting."""
+        self.ticks = self.missed_ticks = 0
+        """Of all starts so far."""
+        self.late_s = 0.0
+        """Of the newest tick, against its deadline, on the program's clock."""
+        self.resumes = 0
+        """How often the robot was told to drive on, and might."""
+        self.clock_is_wrong = False
+        """While the program's clock itself fails, deadlines by it say nothing."""
+        self._rig = rig
+        self._robot: Robot | None = None
+        self._limits = limits
+        self._sensed_at_s = 0.0
+        self._told_standing = True
+        self.stood_at_s: float | None = None
+        self.slowest_m_s = 0.0
+        """That a side was told since a standstill was looked for."""
+        self._heard_at_s = 0.0
+        self._must_stand = ""
+        self._begun_s: float | None = None
+        self._period_s = 0.0
+        rig.on_put = self._note_put
+        rig.on_control = self._note_arrival
+
+    def look_at(self, robot: Robot, period_s: float) -> None:
+        """A program was started anew: it must stand until it is told to drive."""
+        self._robot = robot
+        self._period_s = period_s
+        self._must_stand = "the program was started"
+        self._begun_s = None
+
+    def note(self, record: TickRecord, ledger: Ledger, begun_s: float) -> None:
+        """A tick is over; `begun_s`: when the program's loop began, on its own clock."""
+        now_s = self._rig.time.now_s()
+        moves = record.grant.wheel_speeds != STANDSTILL
+        if moves and not record.decision.driving:
+            self.complaints.add(complaint(ComplaintCode.DROVE_THOUGH, now_s, cause=record.decision.cause))
+        accepted = {result.command_id for result in record.results if result.accepted}
+        if any(isinstance(each, Resume) and each.command_id in accepted for each in record.commands):
+            self._must_stand = ""
+            self.resumes += 1
+        # A teacher's hand tells it to drive, until it lets go.
+        if moves and self._must_stand and record.decision.cause is not Cause.TEACHER:
+            self.complaints.add(complaint(ComplaintCode.DROVE_UNTOLD, now_s, must_stand=self._must_stand))
+        if record.grant.latched:
+            self._must_stand = ", ".join(record.grant.reasons) or "stopped for good"
+        if ledger.ticks + 1 + ledger.missed_ticks != record.tick:
+            done, missed = ledger.ticks + 1, ledger.missed_ticks
+            code = ComplaintCode.TICKS_UNACCOUNTED
+            self.complaints.add(complaint(code, now_s, tick=record.tick, done=done, missed=missed))
+        late_s = self.late_s = record.now_s - begun_s - record.tick * self._period_s
+        if not -_ROUNDING_S <= late_s < self._period_s + _ROUNDING_S and not self.clock_is_wrong:
+            self.complaints.add(complaint(ComplaintCode.OFF_DEADLINE, now_s, tick=record.tick, late_s=late_s))
+        for each in self.envelope.violations:
+            self.complaints.add(each)
+        self.envelope.violations.clear()
+
+    @property
+    def stands(self) -> bool:
+        """Whether the robot's end of the bus knows nothing but to stand, for it was told so or hears nothing."""
+        return self._told_standing or self._silent
+
+    def look_for_a_stand(self) -> None:
+        """From now on `stood_at_s` is that of the first standstill."""
+        self.stood_at_s = None
+        self.slowest_m_s = math.inf
+
+    def first_stand_s(self) -> float | None:
+        """When the robot's end of the bus first knew nothing but to stand, since it was looked for."""
+        if self.stood_at_s is None and self._silent:
+            return self._heard_at_s + self._limits.controller_watchdog_s
+        return self.stood_at_s
+
+    @property
+    def _silent(self) -> bool:
+        return self._rig.time.now_s() - self._heard_at_s >= self._limits.controller_watchdog_s
+
+    def sense(self, now_s: float) -> SensorReadings:
+        """A tick begins: from here on its decision ages."""
+        self._sensed_at_s = self._rig.time.now_s()
+        assert self._robot is not None
+        senses = self._robot.sense(now_s)
+        self.envelope.off_a_bumper = senses.bumpers != 0
+        return senses
+
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
+        """As the robot does."""
+        assert self._robot is not None
+        return self._robot.drive(wanted, decided_at_s, now_s)
+
+    def emergency_stop(self, reason: GuardReason) -> None:
+        """As the robot does."""
+        assert self._robot is not None
+        self._robot.emergency_stop(reason)
+
+    def release(self) -> None:
+        """As the robot does."""
+        assert self._robot is not None
+        self._robot.release()
+
+    def close(self) -> None:
+        """Left to the place."""
+
+    def _note_put(self, number: int, payload: bytes) -> None:
+        now_s, robot = self._rig.time.now_s(), self._rig.robot
+        latched = robot is not None and robot.health.latched is not None
+        self.envelope.put(number, now_s, payload, now_s - self._sensed_at_s, latched=latched)
+
+    def _note_arrival(self, number: int, payload: bytes, at_s: float) -> None:
+        told = self.envelope.arrived(number, at_s, payload)
+        if told is None:
+            return
+        if self.stood_at_s is None:
+            silent_until_s = self._heard_at_s + self._limits.controller_watchdog_s
+            if silent_until_s <= at_s:
+                self.stood_at_s = silent_until_s
+            elif told.standing:
+                self.stood_at_s = at_s
+        self._told_standing = told.standing
+        self.slowest_m_s = min(self.slowest_m_s, abs(told.left_m_s), abs(told.right_m_s))
+        self._heard_at_s = at_s

@@ -1,0 +1,35 @@
+"""What the encoders counted on a sound bus, against what the wheels turned."""
+
+from hal.robot import SensorReadings
+from kurt2rt.checks.soak.long_run_rig import SoakRig
+
+
+class OdometryCheck:
+    """From one look to the next; looks with a fault between them, or a hand that picked the robot up, say nothing."""
+
+    def __init__(self, rig: SoakRig, metres_per_tick: float) -> None:
+        self.worst_m = 0.0
+        """The greatest difference of any side between two looks."""
+        self._rig = rig
+        self._metres_per_tick = metres_per_tick
+        self._ticks = [0, 0]
+        self._turned_m = [0.0, 0.0]
+        self._valid = False
+
+    def hear(self, senses: SensorReadings) -> None:
+        """A tick's counts."""
+        self._ticks[0] += senses.encoder_left_ticks
+        self._ticks[1] += senses.encoder_right_ticks
+
+    def spoil(self) -> None:
+        """Until the next look nothing is said."""
+        self._valid = False
+
+    def look(self) -> None:
+        """Compare, and begin anew."""
+        if self._valid:
+            for ticks, turned_m, before_m in zip(self._ticks, self._rig.turned_m, self._turned_m, strict=True):
+                self.worst_m = max(self.worst_m, abs(ticks * self._metres_per_tick - (turned_m - before_m)))
+        self._ticks = [0, 0]
+        self._turned_m = list(self._rig.turned_m)
+        self._valid = True

@@ -1,0 +1,58 @@
+"""Somebody who looks after the robot itself: picks it up where it is stuck, and switches it off and on."""
+
+import math
+
+from kurt2rt.checks.soak.long_run_rig import SoakRig
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.teaching.commands import Resume
+from kurt2rt.core.tick import TickRecord
+
+_WAY_M = 0.3
+_DRIVES = (Cause.RLA, Cause.HELD, Cause.TEACHER)
+
+
+class Person:
+    """Sets the robot down elsewhere when it has been about where it is for too long though it would drive.
+
+    Where that does not help he switches it off and on: a frame of noise may have switched its motors off.
+    """
+
+    def __init__(self, rig: SoakRig, after_s: float, period_s: float) -> None:
+        self.set_down = self.switched_on = 0
+        """How often."""
+        self._rig = rig
+        self._most_ticks = round(after_s / period_s)
+        self._ticks = 0
+        self._from_m = rig.position_m
+        self._has_moved = True
+        self._go_in_vain = False
+
+    def sees(self, record: TickRecord) -> bool:
+        """See a tick; True where the robot was picked up after it."""
+        if not record.grant.latched:
+            self._go_in_vain = False
+        elif _was_told_to_go(record):
+            self._go_in_vain = True  # it stopped itself again in the very tick: where it is, no Go will help
+        if (record.grant.latched and not self._go_in_vain) or record.decision.cause not in _DRIVES:
+            return False
+        here_m = self._rig.position_m
+        if math.dist(here_m, self._from_m) > _WAY_M:
+            self._from_m, self._ticks = here_m, 0
+            self._has_moved = True
+            return False
+        self._ticks += 1
+        if self._ticks < self._most_ticks:
+            return False
+        if not self._has_moved:
+            self._rig.switch_on()
+            self.switched_on += 1
+        self._has_moved = self._go_in_vain = False
+        self._rig.set_down()
+        self._from_m, self._ticks = self._rig.position_m, 0
+        self.set_down += 1
+        return True
+
+
+def _was_told_to_go(record: TickRecord) -> bool:
+    accepted = {result.command_id for result in record.results if result.accepted}
+    return any(isinstance(each, Resume) and each.command_id in accepted for each in record.commands)

@@ -1,0 +1,226 @@
+"""One start of the robot's program until its end, in simulated time, with what `kurt2rt run` has in its loop."""
+
+import random
+import traceback
+from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+from hal.guard_reason import GuardReason
+from hal.robot_settings import RobotSettings
+from kurt2rt.checks.faults.complaint import Complaint
+from kurt2rt.checks.faults.fault_rig import Disturbance
+from kurt2rt.checks.faults.table import Target
+from kurt2rt.checks.faults.teacher_link import TEACHER, HandLink
+from kurt2rt.checks.soak.failing_clock import SoakClock
+from kurt2rt.checks.soak.failing_knowledge import SoakKnowledge, open_soak_knowledge
+from kurt2rt.checks.soak.failing_level import SoakLevel
+from kurt2rt.checks.soak.long_run_rig import SoakRig
+from kurt2rt.checks.soak.observer import SoakWitness
+from kurt2rt.checks.soak.teacher import NAME, SoakTeacher
+from kurt2rt.core.decision.active_stop import STARTED
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.teaching.commands import Command, ReplaceAction, Take
+from kurt2rt.core.teaching.inbox import InboxFullError
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.platform.gc_control import quiet_gc
+from kurt2rt.runs.recording.recording import Circumstances, Recording
+from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.service.post_tick import Rounds, Screen
+from kurt2rt.service.settings import ServiceSettings
+from kurt2rt.teacher.client.manual_drive import BEAT_S
+
+_READY_AFTER_S = 3.0
+_FIRST_DAY = datetime(2000, 1, 1, tzinfo=UTC)
+"""When simulated time begins, in the names of recordings."""
+_WRITES_EVERY_TICKS = 10
+_TENDS_EVERY_TICKS = 1000
+"""Each waits for the disk, which does not become quicker in simulated time."""
+
+
+class Life:
+    """Opened knowledge, runtime, rounds and writer; `run` until it ends, then `close`."""
+
+    def __init__(
+        self,
+        rig: SoakRig,
+        witness: SoakWitness,
+        teacher: SoakTeacher,
+        settings: RobotSettings,
+        task: TaskSettings,
+        service: ServiceSettings,
+        *,
+        recording: Recording,
+        number: int,
+        wire: str,
+        seed: int,
+    ) -> None:
+        """`number`: of this start. Raises KnowledgeError, SettingsError."""
+        self.wire = wire
+        self.refused = 0
+        """Commands that the robot refused."""
+        self.most_waiting = 0
+        """Commands in the inbox when a tick took them."""
+        self.ended_by = ""
+        """The error that ended the program; empty when none did."""
+        self._rig, self._witness, self._teacher = rig, witness, teacher
+        self._settings = settings
+        self._time = rig.time
+        self._number = number
+        self._presses = 0
+        self._lessons_said = self._recorded_at = self._tended_at = 0
+        self._chance = random.Random(f"life {number}, seed {seed}")
+        self._started_s: float | None = None
+        self._begun_s = 0.0
+        self._checkpoint_ticks = round(service.checkpoint_period_s / settings.can.cycle_s)
+        self._link: HandLink | None = None
+        path = Path(service.knowledge)
+        opened = open_soak_knowledge(path, settings, task)
+        self.knowledge = SoakKnowledge(path, opened, rig.time)
+        robot = rig.start_driver(wire)
+        witness.look_at(robot, settings.can.cycle_s)
+        teacher.program_started()
+        self.clock = SoakClock(rig.time)
+        self.level = SoakLevel(rig.time)
+        self.runtime: Runtime = build_runtime(
+            witness,
+            settings,
+            task,
+            opened.events,
+            self.knowledge.writer,
+            self.clock,
+            statistics=opened.counter,
+            level_override=self.level,
+            attended=True,
+            saved=opened.saved,
+        )
+        self.level.behind = self.runtime.level
+        self.runtime.school.stop(STARTED)
+        screen = Screen(status=lambda _: None, question=lambda _: None, settled=self.knowledge.settled)
+        circumstances = Circumstances(f"{number:016x}", service.knowledge, attended=True, stopped=STARTED)
+        started = _FIRST_DAY + timedelta(seconds=rig.time.now_s())
+        # Without its thread: it writes when it is told to, as far as simulated time has gone.
+        self.recorder = recording.recorder(settings, task, opened, circumstances, started=started)
+        self.recorder.tend()
+        self._rounds = Rounds(
+            self.runtime,
+            self.knowledge.writer,
+            opened.stamps,
+            service,
+            screen,
+            None,
+            None,
+            recorder=self.recorder,
+        )
+
+    @property
+    def ready(self) -> bool:
+        """Whether something may fail: it runs, and has run for a moment."""
+        return self._started_s is not None and self._time.now_s() - self._started_s > _READY_AFTER_S
+
+    async def run(self, on_tick: Callable[[TickRecord], None], is_over: Callable[[], bool]) -> None:
+        """As kurt2rt.service.serve does: whatever ends the loop, the wheels stand before anything else ends.
+
+        `is_over`: asked after each tick.
+        """
+        runtime = self.runtime
+        self._started_s = self._time.now_s()
+        self._begun_s = self.clock.now_s()
+
+        def after_tick(record: TickRecord) -> None:
+            self._after_tick(record)
+            on_tick(record)
+            if is_over():
+                runtime.scheduler.end()
+
+        with quiet_gc():
+            try:
+                await runtime.scheduler.run(None, after_tick)
+            except Exception as error:  # noqa: BLE001  # whatever a fault raised ends the program, and is judged
+                self.ended_by = _told(error)
+            finally:
+                self._witness.emergency_stop(GuardReason.SERVICE_ENDS)
+        self._started_s = None
+
+    def close(self) -> Complaint | None:
+        """Save statistics, end the driver, close the file and compare it with the lessons. Raises KnowledgeError."""
+        self.runtime.scheduler.end()
+        self._rig.end_driver()
+        if not self.ended_by:
+            self._rounds.save_statistics()
+        self.recorder.close()
+        self.knowledge.mend()
+        self.knowledge.close()
+        return self.knowledge.lost_lessons()
+
+    def take_by_hand(self, disturbance: Disturbance) -> None:
+        """Somebody takes the robot and drives it by hand, over a link that will fail."""
+        link = self._link = HandLink(self._time, disturbance, self.runtime, self._chance)
+        self._presses += 1
+        for _ in range(self._presses):  # a press has a larger number than that of any press before
+            link.press()
+        self._lessons_said += 1
+        self._put(Take(f"hand-{self._number}-{self._lessons_said}", TEACHER))
+        self._beat(link)
+
+    def teach_what_is_known(self) -> None:
+        """A lesson that changes nothing."""
+        rla = next(iter(self.runtime.level.system.rlas), None)
+        if rla is not None:
+            self._lessons_said += 1
+            self._put(ReplaceAction(f"known-{self._number}-{self._lessons_said}", NAME, rla.rla_id, rla.action))
+
+    def say_stop(self) -> None:
+        """The teacher sees that something is wrong."""
+        self._put(self._teacher.stop())
+
+    def mend(self, target: Target) -> None:
+        """What failed is sound again."""
+        match target:
+            case "clock":
+                self.clock.mend()
+            case "tick":
+                self.level.mend()
+            case "disk":
+                self.knowledge.mend()
+            case "teacher_link":
+                self._link = None
+
+    def _after_tick(self, record: TickRecord) -> None:
+        runtime = self.runtime
+        self._witness.note(record, runtime.ledger, self._begun_s)
+        self.most_waiting = max(self.most_waiting, len(record.commands))
+        self.refused += sum(not result.accepted for result in record.results)
+        self.knowledge.submitted += [event.origin.command_id for event in record.events]
+        self._rounds(record)
+        if record.tick - self._recorded_at >= _WRITES_EVERY_TICKS:
+            self._recorded_at = record.tick
+            self.recorder.write_waiting()
+        if record.tick - self._tended_at >= _TENDS_EVERY_TICKS:
+            self._tended_at = record.tick
+            self.recorder.tend()
+        self.knowledge.keep_in_step(all_of_it=(runtime.ledger.ticks % self._checkpoint_ticks) == 0)
+        authority = runtime.school.authority
+        if self._link is not None:
+            self._link.see(record.tick)
+        taken = authority.teacher not in (None, NAME)
+        for command in self._teacher.watch(record, hand=self._link is not None, taken=taken):
+            self._put(command)
+
+    def _beat(self, link: HandLink) -> None:
+        """The device of the hand sends, until somebody has ended it."""
+        if self._link is link:
+            link.beat()
+            self._time.at(self._time.now_s() + BEAT_S, lambda: self._beat(link))
+
+    def _put(self, command: Command) -> None:
+        try:
+            self.runtime.inbox.put(command)
+        except InboxFullError:
+            self.refused += 1  # a loop that hangs takes nothing; he says it again
+
+
+def _told(error: Exception) -> str:
+    """What it is, and where in the program."""
+    *_, where = traceback.extract_tb(error.__traceback__)
+    return f"{error!r} in {Path(where.filename).name}, line {where.lineno}"

@@ -1,0 +1,267 @@
+"""The day: start after start of the program, fault after fault, mood after mood."""
+
+import gc
+import random
+import time
+import tracemalloc
+from collections.abc import Callable
+from pathlib import Path
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
+from kurt2rt.checks.faults.table import FaultTable
+from kurt2rt.checks.soak.checks import HOUR_S, envelope_check, fault_check, memory_check, starts_check, steady_check
+from kurt2rt.checks.soak.disk_list import Spool
+from kurt2rt.checks.soak.faults import SoakFaults
+from kurt2rt.checks.soak.log import MinuteLog
+from kurt2rt.checks.soak.long_run_rig import SoakRig
+from kurt2rt.checks.soak.observer import SoakWitness
+from kurt2rt.checks.soak.odometry import OdometryCheck
+from kurt2rt.checks.soak.operator import Person
+from kurt2rt.checks.soak.program_run import Life
+from kurt2rt.checks.soak.resource_usage import objects_by_type, used_mb
+from kurt2rt.checks.soak.result import Check, CheckCode, SoakResult, Start
+from kurt2rt.checks.soak.settings import SoakSettings
+from kurt2rt.checks.soak.teacher import SoakTeacher
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.task_repertoire import repertoire_of
+from kurt2rt.runs.recording.recording import Recording
+from kurt2rt.service.settings import ServiceSettings
+
+_MINUTE_S = 60.0
+_LEAST_LIFE_S = 5.0
+_MOST_UNEXPECTED = 20
+"""Ends of the program after which there is nothing to be learnt from more of them."""
+
+
+class Day:
+    """One soak, in its place."""
+
+    def __init__(
+        self,
+        rig: SoakRig,
+        soak: SoakSettings,
+        table: FaultTable,
+        settings: RobotSettings,
+        task: TaskSettings,
+        service: ServiceSettings,
+        recording: Recording,
+        *,
+        seed: int,
+        by_module: bool = False,
+    ) -> None:
+        """`service`: with this soak's knowledge file. `by_module`: trace memory, which takes four times as long."""
+        self._rig, self._soak, self._settings, self._task, self._service = rig, soak, settings, task, service
+        self._recording = recording
+        self._seed = seed
+        self._by_module = by_module
+        self._period_s = settings.can.cycle_s
+        self._chance = random.Random(f"day {soak.name}, seed {seed}")
+        self._witness = SoakWitness(rig, table.envelope)
+        actions = tuple(repertoire_of(task, settings))
+        self._teacher = SoakTeacher(soak, task, settings, actions, seed)
+        self._faults = SoakFaults(rig, self._witness, table, soak.fault_gap_s, seed)
+        self._person = Person(rig, soak.picked_up_after_s, self._period_s)
+        self._odometry = OdometryCheck(rig, settings.geometry.metres_per_tick)
+        self._log = MinuteLog()
+        self._starts: Spool[Start] = Spool()
+        self._unexpected: list[Complaint] = []
+        self._objects: dict[str, dict[str, int]] = {}
+        self._first_hour: tracemalloc.Snapshot | None = None
+        self._next_minute_s = _MINUTE_S
+        self._missed_before = 0
+        self._refused = self._most_waiting = self._session_off = 0
+        self._recorded = self._unrecorded = 0
+        self._troubles: list[str] = []
+        self._session_from: int | None = None
+        self._cut_short = False
+
+    def end(self) -> None:
+        """End as soon as nothing fails; what was seen until then is judged. From a signal handler, too."""
+        self._cut_short = True
+
+    async def run(self, hours: float, on_progress: Callable[[float], None]) -> SoakResult:
+        """So many simulated hours; `on_progress` gets simulated seconds; once only.
+
+        Raises KnowledgeError, DiskOutOfStepError, OSError.
+        """
+        try:
+            return await self._run(hours, on_progress)
+        finally:
+            for spool in (self._log.minutes, self._starts, self._faults.seen):
+                spool.close()
+
+    async def _run(self, hours: float, on_progress: Callable[[float], None]) -> SoakResult:
+        begun_s = time.monotonic()
+        end_s = hours * HOUR_S
+        clock = self._rig.time
+        if self._by_module:
+            tracemalloc.start(1)
+        while (
+            not self._cut_short and clock.now_s() < end_s - _LEAST_LIFE_S and len(self._unexpected) < _MOST_UNEXPECTED
+        ):
+            until_s = min(end_s, clock.now_s() + self._chance.uniform(*self._soak.lives_s))
+            start = await self._live(until_s, on_progress)
+            # A fault that ended the program is over before somebody starts it anew.
+            clock.run_until(max(clock.now_s(), self._faults.acts_until_s) + self._chance.uniform(*self._soak.down_s))
+            # On a robot the end of the program takes all that it knew along; two at a time would count twice.
+            gc.collect()
+            self._starts.append(start._replace(left_mb=round(used_mb(), 3)))
+        return self._result(clock.now_s(), time.monotonic() - begun_s)
+
+    async def _live(self, until_s: float, on_progress: Callable[[float], None]) -> Start:
+        wires = self._soak.wires
+        (wire,) = self._chance.choices(list(wires), list(wires.values()))
+        begun_s = self._rig.time.now_s()
+        life = Life(
+            self._rig,
+            self._witness,
+            self._teacher,
+            self._settings,
+            self._task,
+            self._service,
+            recording=self._recording,
+            number=len(self._starts) + 1,
+            wire=wire,
+            seed=self._seed,
+        )
+        self._missed_before = 0
+        self._session_from = None
+        self._odometry.spoil()
+        self._faults.life = life
+
+        def on_tick(record: TickRecord) -> None:
+            self._see(life, record, on_progress)
+
+        # A program that is ended while its disk fails says what it could not save; that is no loss to look for here.
+        await life.run(
+            on_tick,
+            lambda: (self._cut_short or self._rig.time.now_s() >= until_s) and self._faults.acting is None,
+        )
+        expected = self._faults.expects_the_end
+        self._faults.life = None
+        if life.ended_by and not expected:
+            now_s = self._rig.time.now_s()
+            self._unexpected.append(complaint(ComplaintCode.ENDED_UNEXPECTEDLY, now_s, error=life.ended_by))
+        try:
+            lost = life.close()
+        except KnowledgeError as error:
+            lost = complaint(ComplaintCode.NOT_SAVED, error=str(error))
+        ledger = life.runtime.ledger
+        self._witness.ticks += ledger.ticks
+        self._witness.missed_ticks += ledger.missed_ticks
+        self._refused += life.refused
+        self._unrecorded += life.recorder.dropped
+        self._recorded += life.recorder.written
+        if life.recorder.trouble and len(self._troubles) < 20:
+            self._troubles.append(life.recorder.trouble)
+        self._most_waiting = max(self._most_waiting, life.most_waiting)
+        lasted_s = self._rig.time.now_s() - begun_s
+        return Start(begun_s, lasted_s, wire, life.ended_by, lost)
+
+    def _see(self, life: Life, record: TickRecord, on_progress: Callable[[float], None]) -> None:
+        now_s = self._rig.time.now_s()
+        ledger = life.runtime.ledger
+        missed = ledger.missed_ticks - self._missed_before
+        self._missed_before = ledger.missed_ticks
+        self._log.note(record, self._witness.late_s, missed)
+        self._odometry.hear(record.senses)
+        if self._person.sees(record):
+            life.runtime.set_down()
+            self._odometry.spoil()
+        if self._faults.acting is not None or life.wire in ("lossy", "failing"):
+            self._odometry.spoil()
+        self._look_at_the_session(life, record)
+        if now_s >= self._next_minute_s:
+            self._next_minute_s += _MINUTE_S
+            self._odometry.look()
+            self._log.end_minute(now_s, life, self._teacher.mood)
+            on_progress(now_s)
+            if len(self._log.minutes) % 60 == 0:
+                self._look_at_memory(len(self._log.minutes) // 60)
+
+    def _look_at_the_session(self, life: Life, record: TickRecord) -> None:
+        school = life.runtime.school
+        if school.session is None:
+            return
+        if self._session_from is None:
+            self._session_from = record.tick - school.teaching_ticks(record.tick)
+        if record.tick - self._session_from != school.teaching_ticks(record.tick):
+            self._session_off += 1
+
+    def _look_at_memory(self, hour: int) -> None:
+        if hour in (1, 6, 12, 18, 24):
+            self._objects[str(hour)] = objects_by_type()
+        if self._by_module and hour == 1:
+            self._first_hour = tracemalloc.take_snapshot()
+
+    def _result(self, simulated_s: float, took_s: float) -> SoakResult:
+        witness, limits = self._witness, self._soak.limits
+        minutes, starts, faults = tuple(self._log.minutes), tuple(self._starts), tuple(self._faults.seen)
+        frames = witness.envelope.frames
+        counted = {
+            "set down": self._person.set_down,
+            "switched off and on": self._person.switched_on,
+            "controller crashes": self._rig.crashes,
+            "collisions": self._rig.collisions,
+            "refused commands": self._refused,
+            "commands": self._teacher.said,
+            "old set points": witness.envelope.old_frames,
+        }
+        checks = (
+            envelope_check(witness.complaints, frames),
+            fault_check(faults),
+            starts_check(starts, self._unexpected),
+            memory_check(minutes, limits),
+            steady_check(minutes),
+            Check(
+                CheckCode.WAITING,
+                self._most_waiting <= limits.waiting,
+                {"commands": self._most_waiting, "allowed": limits.waiting},
+            ),
+            Check(
+                CheckCode.ODOMETRY,
+                self._odometry.worst_m <= limits.odometry_m,
+                {"worst_mm": self._odometry.worst_m * 1000},
+            ),
+            Check(
+                CheckCode.RECORDED,
+                self._unrecorded == 0 and self._recorded == witness.ticks,
+                {
+                    "recorded": self._recorded,
+                    "ticks": witness.ticks,
+                    "lost": self._unrecorded,
+                    "trouble": "".join(f"; {each}" for each in self._troubles[:1]),
+                },
+            ),
+            Check(CheckCode.TEACHING_CLOCK, self._session_off == 0, {"ticks": self._session_off}),
+        )
+        return SoakResult(
+            name=self._soak.name,
+            seed=self._seed,
+            simulated_s=simulated_s,
+            took_s=took_s,
+            ticks=witness.ticks,
+            missed_ticks=witness.missed_ticks,
+            frames=frames,
+            checks=checks,
+            minutes=minutes,
+            starts=starts,
+            faults=faults,
+            complaints=(*witness.complaints.told, *self._unexpected),
+            counted=counted,
+            objects=self._objects,
+            grown_kb=self._grown_kb(),
+        )
+
+    def _grown_kb(self) -> dict[str, float]:
+        if self._first_hour is None:
+            return {}
+        compared = tracemalloc.take_snapshot().compare_to(self._first_hour, "filename")
+        tracemalloc.stop()
+        return {
+            str(Path(*Path(each.traceback[0].filename).parts[-3:])): round(each.size_diff / 1000, 1)
+            for each in compared[:25]
+        }

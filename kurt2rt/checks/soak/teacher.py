@@ -1,0 +1,158 @@
+"""A teacher of changing patience."""
+
+import random
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.checks.soak.settings import MoodSettings, SoakSettings
+from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.task_settings import TaskSettings, TeacherSettings
+from kurt2rt.core.teaching.commands import (
+    Appraise,
+    BeginSession,
+    Command,
+    Correct,
+    Resume,
+    Reward,
+    SetPhase,
+    Stop,
+    Take,
+    Undo,
+    Watch,
+)
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.teacher.scripted.teacher import ScriptedTeacher, picture_of
+
+NAME = "scripted teacher"
+_SIGN_EVERY_TICKS = 2
+_TAKES_EVERY_TICKS = 20
+_STOPS_FOR_S = (0.3, 3.0)
+_LEAST_REACTION_S = 0.3
+_MARGIN = 0.7
+"""Praise is more frequent than blame."""
+
+
+class SoakTeacher:
+    """Goes from mood to mood; outlives the robot's program, and sees at each of its starts a robot that stands."""
+
+    def __init__(
+        self, soak: SoakSettings, task: TaskSettings, robot: RobotSettings, actions: tuple[str, ...], seed: int
+    ) -> None:
+        self.mood = ""
+        """The present one; empty before the first tick."""
+        self.said = 0
+        """Commands so far, signs of being there left out."""
+        self._soak, self._task, self._robot, self._actions = soak, task, robot, actions
+        self._period_s = robot.can.cycle_s
+        self._chance = random.Random(f"teacher of {soak.name}, seed {seed}")
+        self._appraisals = tuple(load_critic(task.critic).values)
+        self._moods = 0
+        self._mood_left = 0
+        self._settings: MoodSettings
+        self._scripted: ScriptedTeacher
+        self._begins: list[Command] = []
+        self._corrected = 0
+        self._most_corrections = soak.first_corrections
+        self._stopped_ticks = 0
+        self._resumes_in = 0
+        self._started_anew = True
+
+    def program_started(self) -> None:
+        """The robot's program was started anew: it knows nothing of sessions, phases and teachers."""
+        self._started_anew = True
+
+    def watch(self, record: TickRecord, *, hand: bool, taken: bool) -> list[Command]:
+        """See a tick; what the teacher says to it.
+
+        `hand`: somebody else drives by hand just now; `taken`: that one has the robot still.
+        """
+        if self._mood_left == 0:
+            self._change_mood()
+        self._mood_left -= 1
+        settings = self._settings
+        if not settings.there or hand:
+            return []
+        said: list[Command] = []
+        if record.tick % _SIGN_EVERY_TICKS == 0:
+            said.append(Watch(NAME, record.tick))
+        commands = self._take_back(record) if taken else self._commands(record)
+        return said + commands
+
+    def stop(self) -> Command:
+        """What a teacher says who sees that something is wrong."""
+        return Stop(self._next_id(), NAME)
+
+    def _commands(self, record: TickRecord) -> list[Command]:
+        settings, chance = self._settings, self._chance
+        if self._started_anew:
+            self._started_anew = False
+            self._stopped_ticks = 0
+            identity = self._next_id()
+            return [
+                BeginSession(identity, NAME, identity),
+                SetPhase(self._next_id(), NAME, Phase(settings.phase)),
+            ]
+        if self._begins:
+            begins, self._begins = self._begins, []
+            return begins
+        if record.grant.latched or record.decision.cause is Cause.STOPPED:
+            return self._go(record)
+        self._stopped_ticks = 0
+        if self._happens(settings.stops_every_s):
+            self._resumes_in = round(chance.uniform(*_STOPS_FOR_S) / self._period_s)
+            return [self.stop()]
+        if self._happens(settings.undoes_every_s):
+            return [Undo(self._next_id(), NAME)]
+        if self._happens(settings.rewards_every_s) and record.decision.driving:
+            return [Reward(self._next_id(), NAME, 1 if chance.random() < _MARGIN else -1, record.tick)]
+        if self._happens(settings.appraises_every_s):
+            return [Appraise(self._next_id(), NAME, chance.choice(self._appraisals), record.tick)]
+        picture = picture_of(record)
+        if not picture.asking and self._corrected >= self._most_corrections:
+            return []  # he looks on
+        command = self._scripted.watch(picture)
+        if isinstance(command, Correct):
+            self._corrected += 1
+        return [] if command is None else [command]
+
+    def _take_back(self, record: TickRecord) -> list[Command]:
+        return [Take(self._next_id(), NAME)] if record.tick % _TAKES_EVERY_TICKS == 0 else []
+
+    def _go(self, record: TickRecord) -> list[Command]:
+        """What lets a robot drive on that stands for good, some time after he has seen it."""
+        self._stopped_ticks += 1
+        waits = self._resumes_in or round(max(_LEAST_REACTION_S, self._settings.reaction_s) / self._period_s)
+        if self._stopped_ticks < waits:
+            return []
+        self._stopped_ticks = self._resumes_in = 0
+        return [Resume(self._next_id(), NAME, record.tick)]
+
+    def _change_mood(self) -> None:
+        moods, chance = self._soak.moods, self._chance
+        (self.mood,) = chance.choices(list(moods), [mood.share for mood in moods.values()])
+        settings = self._settings = moods[self.mood]
+        self._moods += 1
+        self._mood_left = max(1, round(chance.uniform(*settings.lasts_s) / self._period_s))
+        self._scripted = ScriptedTeacher(
+            self._task.policy.build(self._robot.infrared),
+            self._actions,
+            TeacherSettings(
+                reaction_s=settings.reaction_s, patience_s=settings.patience_s, error_rate=settings.error_rate
+            ),
+            replace_within_share=self._task.learning.insert_beyond_share,
+            period_s=self._period_s,
+            seed=chance.getrandbits(32),
+            session=f"mood-{self._moods}",
+        )
+        self._most_corrections = max(self._soak.first_corrections, self._corrected + settings.most_corrections)
+        phase = Phase(settings.phase)
+        self._scripted.phase = phase
+        self._begins = [SetPhase(self._next_id(), NAME, phase)]
+
+    def _happens(self, every_s: float) -> bool:
+        return every_s > 0.0 and self._chance.random() < self._period_s / every_s
+
+    def _next_id(self) -> str:
+        self.said += 1
+        return f"soak-{self.said}"

@@ -1,0 +1,105 @@
+"""What an undo or a redo would change is shown, and at a terminal the user is asked, before anything is changed."""
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from kurt2rt.cli.knowledge.shared import replaying, say
+from kurt2rt.core.rla.lesson_history import LessonRecord
+from kurt2rt.knowledge.versions.editing import require_at_rest
+from kurt2rt.knowledge.versions.undo import Planned
+from kurt2rt.runs.replay.trial import said
+from kurt2rt.runs.replay.undo_preview import Tried, preview, preview_on_newest
+from kurt2rt.service.settings import load_service
+
+Runs = Annotated[
+    Path | None,
+    typer.Option(
+        help="Folder of recorded runs, or one run of it: try it on all of that. "
+        "Default: the last ten minutes of the newest run where the settings say that runs are kept."
+    ),
+]
+NoPreview = Annotated[bool, typer.Option("--no-preview", help="Replay nothing, ask nothing: do it.")]
+DryRun = Annotated[bool, typer.Option("--dry-run", help="Only show what it would change.")]
+Yes = Annotated[bool, typer.Option("--yes", "-y", help="Do not ask; nor does it where there is no terminal.")]
+
+_STRETCHES = 8
+"""Of each run so many are told, the longest."""
+
+
+def agreed(
+    planned: Planned, what: str, become: str, runs: Path | None, *, no_preview: bool, dry_run: bool, yes: bool
+) -> bool:
+    """Show what it would change; whether to go on with it, False where the user only wanted to look.
+
+    `what`: undo or redo; `become`: what the lessons would be by it. Raises KnowledgeError, before anything is
+    replayed, where a robot runs on the file; ends the program, with 1, where the user says no.
+    """
+    # Python has no standard input where it was closed.
+    asks = not (dry_run or yes or no_preview) and sys.stdin is not None and sys.stdin.isatty()
+    if not dry_run and not no_preview:
+        require_at_rest(planned.path)
+    if dry_run or asks:
+        for record in planned.lessons:
+            say(f"{planned.path}: would be {become}: {told(record)}")
+        for reason in planned.stay:
+            say(f"would stay as it is: {reason}")
+    if not no_preview:
+        _show(planned, runs)
+    if dry_run:
+        say("nothing was changed: --dry-run")
+        return False
+    if asks and not typer.confirm(_question(planned, what), err=True):
+        say("nothing was changed")
+        raise typer.Exit(1)
+    return True
+
+
+def told(record: LessonRecord) -> str:
+    """A lesson in a few words, with its id."""
+    origin = record.event.origin
+    return f"{record.text} (lesson {origin.command_id} by {origin.teacher})"
+
+
+def _question(planned: Planned, what: str) -> str:
+    if len(planned.lessons) == 1:
+        return f"{what.capitalize()} lesson {planned.lessons[0].event.origin.command_id}?"
+    return f"{what.capitalize()} these {len(planned.lessons)} lessons?"
+
+
+def _show(planned: Planned, runs: Path | None) -> None:
+    recordings = runs or Path(load_service().recordings)
+    try_on = preview if runs else preview_on_newest
+    with replaying() as report:
+        shown = try_on(planned, recordings, report)
+    for tried in shown.runs:
+        for line in _changes(tried):
+            say(line)
+    for note in shown.notes:
+        say(f"not tried: {note}")
+    if not shown.runs and not shown.notes:
+        say(f"not tried: {recordings} holds no recorded run of such knowledge")
+
+
+def _changes(tried: Tried) -> Iterator[str]:
+    found = tried.found
+    decisions = f"{found.decided} decisions"
+    if tried.from_s:
+        decisions += f" from {tried.from_s:.0f} s on"
+    if found.same:
+        yield f"{tried.run}: not one of {decisions} would have been another"
+        return
+    counts = (
+        (found.other_action, "another action"),
+        (found.would_ask, "ask where it drove"),
+        (found.would_drive, "drive where it asked"),
+        (found.mid_otherwise, "another way"),
+    )
+    kinds = ", ".join(f"{count} times {what}" for count, what in counts if count)
+    yield f"{tried.run}: of {decisions}: {kinds}; the longest:"
+    longest = sorted(found.stretches, key=lambda each: -each.ticks)[:_STRETCHES]
+    for each in sorted(longest, key=lambda each: each.from_s):
+        yield f"  {each.from_s:7.2f} to {each.to_s:7.2f} s  {said(each.would_be)}, instead of {said(each.was)}"

@@ -1,0 +1,45 @@
+"""Tables on standard output, and how a study ends there."""
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.console import Console
+
+from kurt2rt.cli.json_output import print_json
+from kurt2rt.platform.text_table import print_whole
+
+if TYPE_CHECKING:
+    from kurt2rt.experiments.study.table import Sheet
+
+
+_UNLIMITED = 100_000
+
+
+def console_of() -> Console:
+    """Return standard output: as wide as the terminal or COLUMNS; a file or a pager gets each line whole."""
+    console = Console(highlight=False)
+    if console.is_terminal or "COLUMNS" in os.environ:
+        return console
+    return Console(highlight=False, width=_UNLIMITED)
+
+
+def print_study(
+    sheets: "Iterable[Sheet]", reasons_not_to_judge: Iterable[str], report: Path, *, as_json: bool = False
+) -> None:
+    """Its tables, why some of it was not judged, and where the report is."""
+    if as_json:
+        print_json({"tables": tables_of(sheets), "not_judged": list(reasons_not_to_judge), "report": report})
+        return
+    # Not at the top: the simulator is an extra, and this module is imported without it.
+    from kurt2rt.experiments.study.table import as_rich
+
+    console = console_of()
+    print_whole(console, *map(as_rich, sheets), *(f"Not judged: {reason}" for reason in reasons_not_to_judge))
+    print_whole(console, f"report  {report}")
+
+
+def tables_of(sheets: "Iterable[Sheet]") -> list[dict[str, Any]]:
+    """Return tables for JSON: cells are texts, as they are printed."""
+    return [{"title": each.title, "columns": each.columns, "rows": each.rows, "note": each.note} for each in sheets]

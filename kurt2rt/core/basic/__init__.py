@@ -1,0 +1,1 @@
+"""Basic level: RLAs and policies that choose wheel speeds."""

@@ -1,0 +1,149 @@
+"""The basic level: RLAs over the 72-D situation, of the taught behaviour that is wanted; actions of the repertoire."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from behaviors.repertoire import Repertoire
+from hal.robot import STANDSTILL, SensorReadings
+from kurt2rt.core.basic.epsilon_greedy import Choice
+from kurt2rt.core.basic.held_action import HeldAction
+from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
+from kurt2rt.core.perception.perception import Situation
+from kurt2rt.core.rla.match import Match
+from kurt2rt.core.rla.matching import exact_square
+from kurt2rt.core.rla.rla import (
+    BASIC,
+    ActionReplaced,
+    ActionWithdrawn,
+    LessonRedone,
+    LessonUndone,
+    Rla,
+    RlaCreated,
+    RlaDeleted,
+    TeachingEvent,
+)
+from kurt2rt.core.rla.rla_system import RlaSystem
+
+
+def _named(behaviour: str) -> str:
+    return f"the behaviour {behaviour}" if behaviour else "a behaviour without a name, the only one of its task"
+
+
+class BasicLevel:
+    """Winner takes all, with a minimum time per action against dithering between neighbours."""
+
+    def __init__(
+        self,
+        system: RlaSystem,
+        repertoire: Repertoire,
+        minimum_action_ticks: int,
+        wanted: Wanted,
+        choice: Choice | None = None,
+    ) -> None:
+        """`choice`: among RLAs on the very same condition; without it the oldest answers.
+
+        Raises UnknownActionError, or UnknownBehaviourError for RLAs that nothing which can be wanted would ask.
+        """
+        for rla in system.rlas:
+            if rla.behaviour not in wanted.behaviours:
+                raise UnknownBehaviourError(
+                    f"RLA {rla.rla_id} belongs to {_named(rla.behaviour)}, and this task teaches "
+                    f"{', '.join(wanted.behaviours) or 'one without a name'}; "
+                    "give the task that this knowledge was taught with"
+                )
+            if rla.action not in repertoire and not rla.asks:
+                raise UnknownActionError(
+                    f"RLA {rla.rla_id} has the action {rla.action}, which the repertoire lacks; "
+                    f"add it there, or teach with the repertoire it came from: {', '.join(repertoire)}"
+                )
+        self.system = system
+        self.repertoire = repertoire
+        self.wanted = wanted
+        self._pursued = wanted.behaviour
+        self._held = HeldAction(repertoire, minimum_action_ticks)
+        self._choice = choice
+        self.nobody_is_asked = False
+        """Whether RLAs whose action was withdrawn are passed over, so that their neighbours answer."""
+        self.kept = ""
+        """The action whose minimum time was not over when it was decided last; empty where any could drive."""
+        self._decisions = 0
+        self._driver: Rla | None = None
+        self._drivers_condition: NDArray[np.float64] | None = None
+        """Of the RLA that drives, once it was needed."""
+
+    def restart(self) -> None:
+        """Decide as if nothing had driven before; what was taught stays."""
+        self._held.stand()
+        self._driver = None
+        if self._choice is not None:
+            self._choice.forget()
+
+    def apply(self, event: TeachingEvent) -> None:
+        """Change the knowledge; what the robot does next follows it at once, whatever action was being held."""
+        drives = self._is_about_driving(event)
+        self.system.apply(event)
+        if drives:
+            self._held.yield_next()
+
+    def _is_about_driving(self, event: TeachingEvent) -> bool:
+        """Whether an event, not yet applied, may change what drives; rewards, and what the critic is taught, do not."""
+        match event:
+            case RlaCreated(rla):
+                return rla.level == BASIC
+            case ActionReplaced(rla_id) | ActionWithdrawn(rla_id) | RlaDeleted(rla_id):
+                rla_meant = self.system.get(rla_id)
+                return rla_meant is not None and rla_meant.level == BASIC
+        return isinstance(event, LessonUndone | LessonRedone)
+
+    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
+        """Answer a situation: the winner's action, the held one, or standstill where it may not drive or knows none."""
+        if self._pursued != self.wanted.behaviour:
+            self._pursued = self.wanted.behaviour
+            self._held.yield_next()
+        self._decisions += 1
+        self.kept = self._held.keeps
+        match = self.system.match(situation.vector, self._pursued, asking=not self.nobody_is_asked)
+        if stand_because is not None:
+            return self._stand(stand_because, match)
+        if match is None or not match.known:
+            return self._stand(Cause.UNKNOWN, match)
+        rla = match.rla
+        if self._choice is not None:
+            group = self.system.competitors(rla)
+            if len(group) > 1:
+                rla = self._choice.among(group, self._decisions)
+        if self._held.choose(rla.action):
+            if rla is not self._driver:
+                self._driver, self._drivers_condition = rla, None
+            return self._drive(senses, Cause.RLA, rla, match, answers=True)
+        driver = self._driver
+        assert driver is not None
+        answers = driver.condition == rla.condition or self._inside(driver, situation)
+        return self._drive(senses, Cause.HELD, driver, match, answers=answers)
+
+    def would_answer(self, group: tuple[Rla, ...]) -> Rla:
+        """Which of several on one condition, oldest first, answers where that is nearest, chance left out."""
+        return group[0] if self._choice is None else self._choice.likely(group, self._decisions)
+
+    def _drive(self, senses: SensorReadings, cause: Cause, rla: Rla, match: Match, *, answers: bool) -> Decision:
+        """What the action at the wheels does; where that one is lost, this level knows no better and asks."""
+        wheel_speeds = self._held.step(senses)
+        if self._held.lost:
+            # It is not begun anew: back where it knows the situation it goes on, as any RLA does.
+            return Decision(STANDSTILL, Cause.UNKNOWN, None, None, match)
+        return Decision(wheel_speeds, cause, self._held.name, rla.rla_id, match, answers)
+
+    def _inside(self, rla: Rla, situation: Situation) -> bool:
+        """Whether the situation lies within the radius of the RLA that drives, though another one is nearer."""
+        if self._drivers_condition is None:
+            self._drivers_condition = np.array(rla.condition)
+        off = (situation.vector - self._drivers_condition) * self.system.weights
+        radius = self.system.radius if rla.radius is None else rla.radius
+        return exact_square(off) <= radius * radius
+
+    def _stand(self, cause: Cause, match: Match | None) -> Decision:
+        """Stand; the next action begins anew."""
+        self._held.stand()
+        return Decision(STANDSTILL, cause, None, None, match)

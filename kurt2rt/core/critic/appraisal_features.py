@@ -1,0 +1,146 @@
+"""Appraisal features of one tick: the critic's view of the last few seconds of senses."""
+
+import math
+from collections.abc import Callable
+from operator import itemgetter
+
+from behaviors.judges.judge import AppraisalFeatures
+from hal.odometry import WheelMotion, WheelOdometry
+from hal.robot import HIGHEST_COUNTS, SensorReadings
+from hal.robot_settings import InfraredSettings, RobotSettings
+from hal.settings import SettingsError
+from kurt2rt.core.critic.settings import CriticSettings
+from kurt2rt.core.numerics import steady
+
+
+class CircumstancesPerception:
+    """Turns SensorReadings into AppraisalFeatures, once per tick, in memory that does not grow."""
+
+    def __init__(self, critic: CriticSettings, robot: RobotSettings) -> None:
+        """Raises SettingsError for a sensor that the robot does not have."""
+        want, period_s = critic.perception, robot.can.cycle_s
+        sensors, infrared = want.sensors, robot.infrared
+        missing = sorted(sensors.used - set(infrared.names))
+        if missing:
+            raise SettingsError(
+                f"critic {critic.name}: perception.sensors: the robot has no sensor {', '.join(missing)}",
+                do=f"allowed: {', '.join(infrared.names)}",
+            )
+        # Looked up by the highest count of a side, for a nearer thing never has a lower one: this runs in every tick.
+        self._distance_m = tuple(infrared.distance_m(counts) for counts in range(HIGHEST_COUNTS + 1))
+        sides = (sensors.left, sensors.front, sensors.right, sensors.rear, sensors.ahead_left, sensors.ahead_right)
+        self._left, self._front, self._right, self._rear, self._ahead_left, self._ahead_right = (
+            _look(infrared, side) for side in sides
+        )
+        self._wall = _look(infrared, sensors.wall)
+        self._left_ends, self._right_ends = (
+            _look(infrared, (side[0], side[-1])) for side in (sensors.left, sensors.right)
+        )
+        self._left_baseline_m = _baseline_m(infrared, sensors.left, critic.name)
+        self._right_baseline_m = _baseline_m(infrared, sensors.right, critic.name)
+        self._wall_m = want.wall_m
+        self._no_progress_m2 = want.no_progress_m**2
+        self._odometry = WheelOdometry(robot.geometry)
+        self._period_s = period_s
+        self._share_of_new = 1.0 - steady(math.exp(-period_s / want.smoothing_s))
+        self._bump_held_ticks = round(want.bump_held_s / period_s)
+        self._surprise_held_ticks = 0 if want.surprise_held_s is None else round(want.surprise_held_s / period_s)
+        self._no_wall_ticks = round(want.no_wall_s / period_s)
+        self._stale_infrared_s = robot.guard.stale_infrared_s
+        steps = max(1, round(want.no_progress_s / period_s))
+        self._x_m, self._y_m = [0.0] * steps, [0.0] * steps
+        self._here_x_m = self._here_y_m = self._heading_rad = 0.0
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget what was: the robot has just been switched on, or was blind."""
+        self._speed_m_s = self._turn_rad_s = 0.0
+        self._since_bump = self._bump_held_ticks
+        self._since_surprise = self._surprise_held_ticks
+        self._without_wall = 0
+        self._driven = 0  # ticks without a pause, so many places of the ring are of this drive
+        self._next = 0
+
+    def be_surprised(self) -> None:
+        """In the tick before something else came than was expected."""
+        self._since_surprise = -1
+
+    def perceive(self, senses: SensorReadings, *, driving: bool) -> AppraisalFeatures:
+        """Return the features of this tick; `driving`: whether an action drove the wheels until now.
+
+        While the robot waits, the time without a wall stands still, and a wait is not a lack of progress.
+        """
+        if not senses.infrared_age_s <= self._stale_infrared_s:
+            self.restart()
+        counts, distance_m = senses.infrared_counts, self._distance_m
+        self._move(self._odometry.motion(senses.encoder_left_ticks, senses.encoder_right_ticks))
+        self._since_bump = 0 if senses.bumpers else self._since_bump + 1
+        self._since_surprise += 1
+        if distance_m[max(self._wall(counts))] < self._wall_m:
+            self._without_wall = 0
+        elif driving:
+            self._without_wall += 1
+        return AppraisalFeatures(
+            distance_m[max(self._left(counts))],
+            distance_m[max(self._front(counts))],
+            distance_m[max(self._right(counts))],
+            distance_m[max(self._rear(counts))],
+            distance_m[max(self._ahead_left(counts))],
+            distance_m[max(self._ahead_right(counts))],
+            self._angle_rad(self._left_ends(counts), self._left_baseline_m),
+            self._angle_rad(self._right_ends(counts), self._right_baseline_m),
+            self._speed_m_s,
+            self._turn_rad_s,
+            1.0 if self._since_bump < self._bump_held_ticks else 0.0,
+            1.0 if self._gets_nowhere(driving=driving) else 0.0,
+            1.0 if self._without_wall >= self._no_wall_ticks else 0.0,
+            1.0 if self._since_surprise < self._surprise_held_ticks else 0.0,
+        )
+
+    def _angle_rad(self, counts: tuple[int, ...], baseline_m: float) -> float:
+        """Angle to a wall of which a side's foremost and hindmost sensors see so many counts."""
+        front_m, back_m = self._distance_m[counts[0]], self._distance_m[counts[1]]
+        if front_m >= self._wall_m and back_m >= self._wall_m:
+            return 0.0
+        return steady(math.atan2(front_m - back_m, baseline_m))
+
+    def _move(self, motion: WheelMotion) -> None:
+        """Follow the wheels through one tick."""
+        way_m, turn_rad = motion.forward_m, motion.turn_rad
+        self._speed_m_s += self._share_of_new * (way_m / self._period_s - self._speed_m_s)
+        self._turn_rad_s += self._share_of_new * (turn_rad / self._period_s - self._turn_rad_s)
+        self._heading_rad += turn_rad
+        self._here_x_m += way_m * steady(math.cos(self._heading_rad))
+        self._here_y_m += way_m * steady(math.sin(self._heading_rad))
+
+    def _gets_nowhere(self, *, driving: bool) -> bool:
+        """Whether it has driven for the whole time and is about where it was."""
+        if not driving:
+            self._driven = 0
+            return False
+        place, steps = self._next, len(self._x_m)
+        off_x_m, off_y_m = self._here_x_m - self._x_m[place], self._here_y_m - self._y_m[place]
+        self._x_m[place], self._y_m[place] = self._here_x_m, self._here_y_m
+        self._next = place + 1 if place + 1 < steps else 0
+        self._driven += 1
+        return self._driven > steps and off_x_m * off_x_m + off_y_m * off_y_m < self._no_progress_m2
+
+
+def _look(infrared: InfraredSettings, names: tuple[str, ...]) -> Callable[[tuple[int, ...]], tuple[int, ...]]:
+    """The counts of some sensors."""
+    places = [infrared.names.index(name) for name in names]
+    if len(places) == 1:  # of one place alone itemgetter gives no tuple
+        places *= 2
+    return itemgetter(*places)
+
+
+def _baseline_m(infrared: InfraredSettings, side: tuple[str, ...], critic: str) -> float:
+    """How far ahead of a side's last sensor its first one sits."""
+    x_m = {sensor.name: sensor.x_m for sensor in infrared.sensors}
+    baseline_m = x_m[side[0]] - x_m[side[-1]]
+    if baseline_m <= 0:
+        raise SettingsError(
+            f"critic {critic}: perception.sensors: {side[0]} does not sit ahead of {side[-1]}",
+            do="give the sensors of a side from front to back",
+        )
+    return baseline_m

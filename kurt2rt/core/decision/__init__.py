@@ -1,0 +1,1 @@
+"""Decisions, their causes, and the settings of a task that all levels share."""

@@ -1,0 +1,125 @@
+"""Standing in words: why the robot stands, and what to touch or to look at."""
+
+import re
+from typing import NamedTuple
+
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.standing import Standing, StandReason
+
+GO_ON_PAGE = "GO lets it drive on"
+GO_IN_TERMINAL = "Type go to let it drive on"
+
+
+class _Text(NamedTuple):
+    why: str
+    """Goes on from "stands: "; may name the fields of Standing."""
+    to_do: str = ""
+    """A sentence of its own; before Go, where it stands until Go."""
+
+
+_TEXTS: dict[StandReason, _Text] = {
+    StandReason.DRIVES: _Text(""),
+    StandReason.ASKS: _Text("it does not know this situation", "Teach it what to do here"),
+    StandReason.ASKS_THE_WAY: _Text("it does not know the way", "Teach it which behaviour to follow"),
+    StandReason.FRONT_BUMPER: _Text("it touches something in front", "Drive it back"),
+    StandReason.REAR_BUMPER: _Text("it touches something behind", "Drive it forward"),
+    StandReason.BOTH_BUMPERS: _Text("it touches something in front and behind", "Set it free"),
+    StandReason.STOPPED: _Text("{stop}"),
+    StandReason.UNATTENDED: _Text("no teacher looks at it", "Take the robot"),
+    StandReason.BLIND: _Text("its infra-red sensors are silent", "Check its power and CAN cable"),
+    StandReason.UNSAVED: _Text("lessons cannot be saved", "Look at the disk"),
+    StandReason.AT_GOAL: _Text("{says}"),
+    StandReason.NO_WAY: _Text("{says}"),
+    StandReason.COMPUTER_TOO_SLOW: _Text("the computer was too slow{stall}"),
+    StandReason.BUS_LOST: _Text("its bus is lost", "Check its power and CAN cable"),
+    StandReason.BUS_BLOCKED: _Text("its bus carries nothing", "Check its power, CAN cable and bit rate"),
+    StandReason.BUS_OFF: _Text("its bus failed too often", "Check cable, termination and bit rate"),
+    StandReason.FOREIGN_CONTROL: _Text("another program drives it, too", "Find and end that one"),
+    StandReason.WHEELS_DISOBEY: _Text("its wheels disobey", "Set them free, or switch it off and on"),
+    StandReason.INFRARED_FROZEN: _Text("its infra-red readings are frozen", "Switch it off and on"),
+    StandReason.HALTED: _Text("{says}"),
+    StandReason.LATE: _Text("the computer is too slow", "End other work on it"),
+    StandReason.CLOCK: _Text("the computer's clock ran backwards", "Wait until it is right again"),
+    StandReason.ENCODERS_SILENT: _Text("its encoders are silent", "Check its power and CAN cable"),
+    StandReason.BUMPERS_SILENT: _Text("its bumpers are silent", "Check its power and CAN cable"),
+    StandReason.NOT_A_NUMBER: _Text("what was decided is no speed", "Teach it another action here"),
+}
+
+_STOPS: dict[StopReason, str] = {
+    StopReason.SAID_STOP: "{name} said stop",
+    StopReason.LET_GO: "{name} drove by hand and let go",
+    StopReason.SESSION_OVER: "the session {name!r} is over",
+    StopReason.BEHAVIOUR_OVER: "{name} is over",
+    StopReason.NO_TEACHER: "no teacher is there",
+    StopReason.TEACHER_NOT_YET: "{name} is not there yet",
+    StopReason.LINK_LOST: "lost the link to {name}",
+    StopReason.STARTED: "the robot program was started",
+    StopReason.NEXT_RUN: "a new run was begun",
+    StopReason.GUARD: "the guard: {name}",
+    StopReason.OTHER: "{name}",
+}
+"""Sentences of stops, read by older devices and kept in recordings: in the order in which they are recognised."""
+
+_QUESTIONS = {
+    StandReason.FRONT_BUMPER: "I touch something in front of me; what now?",
+    StandReason.REAR_BUMPER: "I touch something behind me; what now?",
+    StandReason.BOTH_BUMPERS: "I touch something in front of me and behind me; what now?",
+}
+"""Asked where an RLA goes on pushing."""
+
+
+def stop_text(stop: ActiveStop | None) -> str:
+    """Return the sentence of a stop; empty without one."""
+    return "" if stop is None else _STOPS[stop.reason].format(name=stop.name)
+
+
+def stop_of_text(text: str) -> ActiveStop | None:
+    """Return the stop of a sentence, as an older robot or a recording has it; None of an empty one.
+
+    A sentence that is not in the table becomes the name of an OTHER.
+    """
+    for reason, sentence in _STOPS.items():
+        before, name, after = re.split(r"({name(?:!r)?}|$)", sentence, maxsplit=1)
+        inner = text.removeprefix(before).removesuffix(after)
+        quoted = "!r" in name
+        if text and before + inner + after == text and bool(inner) == bool(name):
+            return ActiveStop(reason, inner[1:-1] if quoted else inner)
+    return None
+
+
+def why_it_stands(standing: Standing) -> str:
+    """Return the reason in a few words, to go on from "stands: "; empty while the robot drives."""
+    stall = "" if standing.stall_s is None else f" for {standing.stall_s:.1f} s"
+    return _TEXTS[standing.reason].why.format(
+        says=standing.says or standing.reason, stop=stop_text(standing.stop) or standing.reason, stall=stall
+    )
+
+
+def what_it_asks(standing: Standing) -> str:
+    """Return the question of a robot that is held at a bumper; empty where it asks nothing, or something else."""
+    return _QUESTIONS.get(standing.reason, "") if standing.asks and not standing.needs_go else ""
+
+
+def in_short(standing: Standing) -> str:
+    """Return why the robot stands, for one line among others; empty while it drives or asks what to do."""
+    if standing.needs_go:
+        return f"stands until Go: {why_it_stands(standing)}"
+    if standing.reason in (StandReason.DRIVES, StandReason.ASKS, StandReason.ASKS_THE_WAY):
+        return ""
+    return f"stands: {what_it_asks(standing) or why_it_stands(standing)}"
+
+
+def headline_of(standing: Standing, go: str) -> str:
+    """Return one or two sentences for the teacher: why the robot stands, and what to do; empty while it drives.
+
+    Args:
+        standing: of the robot.
+        go: how the teacher says Go on this surface, as a sentence without its full stop.
+    """
+    question = what_it_asks(standing)
+    if question or standing.reason is StandReason.DRIVES:
+        return question
+    to_do = _TEXTS[standing.reason].to_do
+    if standing.needs_go:
+        to_do = f"{to_do}; then {go[0].lower() + go[1:] if go[:2] != 'GO' else go}" if to_do else go
+    return f"Stands: {why_it_stands(standing)}" + (f". {to_do}" if to_do else "")

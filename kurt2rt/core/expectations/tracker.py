@@ -1,0 +1,85 @@
+"""What is expected at all levels that drive: learned and compared in every tick, saved with the statistics."""
+
+from collections.abc import Mapping
+from itertools import chain
+
+from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.expectations.expectations import Expectations
+from kurt2rt.core.expectations.surprise import Surprise
+from kurt2rt.core.expectations.transitions import BasicFollowing, MidFollowing
+from kurt2rt.core.mid.mid_level import MidLevel
+from kurt2rt.core.perception.perception import Situation
+from kurt2rt.core.rla.expectation import Expectation
+from kurt2rt.core.rla.rla import BASIC, MID, RlaCreated, TeachingEvent
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.space import Space
+
+
+class Expecting:
+    """The expectations of the basic level, and of the mid level where there is one."""
+
+    def __init__(
+        self,
+        system: RlaSystem,
+        mid: MidLevel | None,
+        transitions: Mapping[tuple[int, int], int],
+        saved: Mapping[int, Expectation] | None = None,
+    ) -> None:
+        """`system`: with all that was taught. `transitions`: as counted, this tick's not yet.
+
+        `saved`: goes on from these; those of levels that do not drive here are kept.
+        """
+        self._system = system
+        self._mid = mid
+        basic = Space(system.dimensions, system.radius, system.weights)
+        self._basic_following = BasicFollowing(Expectations(BASIC, system, basic, transitions, saved))
+        self._mid_following = (
+            None if mid is None else MidFollowing(Expectations(MID, system, mid.settings.space, transitions, saved))
+        )
+        self._levels = {BASIC: self._basic_following.expectations}
+        if self._mid_following is not None:
+            self._levels[MID] = self._mid_following.expectations
+        self._others = {rla_id: each for rla_id, each in (saved or {}).items() if self._is_elsewhere(rla_id)}
+
+    def see(
+        self, tick: int, decision: Decision, situation: Situation, behaviour: str, *, driving: bool
+    ) -> Surprise | None:
+        """Take in one tick, before its transition is counted. Of two levels that have something to say, the higher."""
+        surprise = self._basic_following.see(tick, decision.rla_id if driving else None, situation.vector, behaviour)
+        following, mid, commanded = self._mid_following, self._mid, decision.mid
+        if following is None or mid is None or commanded is None:
+            return surprise
+        if commanded.overridden or decision.cause is Cause.TEACHER:
+            following.restart()
+        return following.see(commanded, mid.vector, driving=driving) or surprise
+
+    def hear(self, event: TeachingEvent) -> int | None:
+        """An event that was applied: what an RLA did with another action is expected no more.
+
+        Returns the RLA of which that is so: what was counted as following it does so no more, either.
+        """
+        changed = self._basic_following.hear(event)
+        if self._mid_following is not None:
+            changed = self._mid_following.hear(event) or changed
+        return None if isinstance(event, RlaCreated) else changed
+
+    def restart(self) -> None:
+        """The robot was set down elsewhere: what comes next follows from nothing."""
+        self._basic_following.restart()
+        if self._mid_following is not None:
+            self._mid_following.restart()
+
+    def of(self, rla_id: int) -> Expectation | None:
+        """What is expected of an RLA; None for one that was never seen to end, and for levels that do not drive."""
+        rla = self._system.get(rla_id)
+        expectations = None if rla is None else self._levels.get(rla.level)
+        return None if expectations is None else expectations.of(rla_id)
+
+    def to_save(self) -> dict[int, Expectation]:
+        """All of them as they are now; what has not changed since the last call is the same object."""
+        kept = {rla_id: each for rla_id, each in self._others.items() if self._is_elsewhere(rla_id)}
+        return dict(chain(kept.items(), *(each.to_save().items() for each in self._levels.values())))
+
+    def _is_elsewhere(self, rla_id: int) -> bool:
+        rla = self._system.get(rla_id)
+        return rla is not None and rla.level not in self._levels

@@ -1,0 +1,52 @@
+"""The stack of layers: information goes up to the mid level, its command comes down to the basic level."""
+
+from hal.robot import STANDSTILL, SensorReadings
+from kurt2rt.core.decision.decision import Cause, Decision, standing
+from kurt2rt.core.decision.level import Level
+from kurt2rt.core.decision.plan_step import Course
+from kurt2rt.core.mid.mid_level import MidLevel
+from kurt2rt.core.perception.perception import Situation
+from kurt2rt.core.planning.navigator import Navigator
+from kurt2rt.core.rla.rla import MID
+
+_STANDS: dict[Course | None, Cause] = {Course.ARRIVED: Cause.AT_GOAL, Course.NO_WAY: Cause.NO_WAY}
+"""Why a robot stands that seeks a goal, whatever its mid level commands."""
+
+
+class LayerStack:
+    """A mid level over a basic one; itself a level, so the tick sees one layer (kurt2rt.core.decision.level.Level)."""
+
+    def __init__(self, basic: Level, mid: MidLevel, navigator: Navigator | None = None) -> None:
+        """Both share one ActiveBehaviour: the mid level commands there, the basic level looks there.
+
+        `navigator`: of that mid level; has it go to a goal, while there is one.
+        """
+        self.basic = basic
+        self.mid = mid
+        self.navigator = navigator
+        self._before = Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
+
+    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
+        """The basic level's decision about what the mid level commands; where that one asks, the robot stands."""
+        commanded = self.mid.decide(senses, self._before)
+        navigator = self.navigator
+        if navigator is not None:
+            navigator.go_on()
+        if commanded.asks:
+            decision = self._decide_below(situation, senses, stand_because or Cause.UNKNOWN)
+            self._before = decision._replace(match=commanded.match, asks_at=MID, mid=commanded)
+        else:
+            if navigator is not None and not self.mid.overridden:
+                stand_because = stand_because or _STANDS.get(navigator.stands_as)
+            decision = self._decide_below(situation, senses, stand_because)
+            self._before = decision._replace(mid=commanded)
+        if navigator is not None and navigator.step is not None:
+            self._before = self._before._replace(plan=navigator.step)
+        return self._before
+
+    def restart(self) -> None:
+        """The robot has been set down elsewhere."""
+        self.mid.restart()
+
+    def _decide_below(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
+        return standing(self.basic.decide(situation, senses, stand_because), stand_because)

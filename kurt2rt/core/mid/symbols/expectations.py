@@ -1,0 +1,58 @@
+"""What the basic level expected and got: the follow-up RLA, where it was the one that follows most often."""
+
+from collections import Counter
+from collections.abc import Mapping
+from typing import Annotated
+
+from pydantic import Field
+
+from kurt2rt.core.decision.decision import Decision
+from kurt2rt.core.decision.junction_event import JunctionEvent
+from kurt2rt.core.mid.junction_detector import JunctionDetector
+from kurt2rt.core.mid.symbols.source import NONE, SymbolSettings, SymbolSource, Transitions
+
+
+class ExpectationsSettings(SymbolSettings):
+    """Numbers of RLAs of the basic level are the symbols. What follows by chance makes none."""
+
+    least_share: Annotated[float, Field(ge=0, le=1)]
+    """A follow-up is expected that has at least this share of all that have followed."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """RLAs have numbers."""
+        return ()
+
+    def build(self, transitions: Transitions) -> SymbolSource:
+        """The source; what was counted up to now says what is expected."""
+        return Expectations(self.least_share, transitions)
+
+
+class Expectations:
+    """Each expected follow-up RLA, when it is another than the last one. Counts go on while the robot drives."""
+
+    def __init__(self, least_share: float, transitions: Mapping[tuple[int, int], int]) -> None:
+        self._least_share = least_share
+        self._follow_ups: dict[int, Counter[int]] = {}
+        for (before, after), count in transitions.items():
+            self._follow_ups.setdefault(before, Counter())[after] += count
+        self.restart()
+
+    def restart(self) -> None:
+        """No RLA has driven yet."""
+        self._driver: int | None = None
+        self._last = NONE
+
+    def perceive(self, before: Decision, detector: JunctionDetector, passed: JunctionEvent | None) -> int:  # noqa: ARG002
+        """The RLA that took over in the tick before."""
+        driver, self._driver = self._driver, before.rla_id
+        if self._driver is None or driver is None or self._driver == driver:
+            return NONE
+        follow_ups = self._follow_ups.setdefault(driver, Counter())
+        follow_ups[self._driver] += 1
+        count = follow_ups[self._driver]
+        expected = count == max(follow_ups.values()) and count >= self._least_share * follow_ups.total()
+        if not expected or self._driver == self._last:
+            return NONE
+        self._last = self._driver
+        return self._last

@@ -1,0 +1,37 @@
+"""What each feature counts in the distance between a situation and a condition."""
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hal.settings import SettingsError
+from kurt2rt.core.perception.definition import SituationDefinition
+
+
+def weights_of(
+    definition: SituationDefinition, changed: Iterable[tuple[Iterable[str], float]], past_weight: float, task: str
+) -> NDArray[np.float64]:
+    """Weights (d,): 1 for recent features but those of `changed`, and `past_weight` times that for averaged ones.
+
+    Raises SettingsError, with the name of the `task`, for a feature that the definition has not, or that is changed
+    twice, and when nothing weighs anything.
+    """
+    names = [feature.name for feature in definition.features]
+    recent = dict.fromkeys(names, 1.0)
+    seen: set[str] = set()
+    for place, (features, weight) in enumerate(changed):
+        key = f"task {task}: learning.weights.{place}.features"
+        for name in features:
+            if name not in recent:
+                raise SettingsError(
+                    f"situation {definition.name} has no feature {name!r}", where=key, do=f"it has: {', '.join(names)}"
+                )
+            if name in seen:
+                raise SettingsError(f"{name!r} is given two weights", where=key, do="leave one out")
+            seen.add(name)
+            recent[name] = weight
+    if not any(recent.values()):
+        raise SettingsError("learning.weights: every feature weighs 0", where=f"task {task}", do="leave one with more")
+    values = np.array([recent[name] for name in names])
+    return np.concatenate((values, past_weight * values))

@@ -1,0 +1,196 @@
+"""Going to a goal: plan, follow the plan, plan anew when surprised, and say so where there is no way."""
+
+from collections.abc import Callable
+
+from kurt2rt.core.decision.goal import Goal
+from kurt2rt.core.decision.plan_step import Course
+from kurt2rt.core.planning.map_builder import Survey
+from kurt2rt.core.planning.plan import Plan, plan_to
+from kurt2rt.core.planning.target import GroupAt, Target, Vector
+from kurt2rt.core.planning.topological_map import Chart, Charting
+from kurt2rt.core.rla.rla import Rla
+
+PIECES = 16
+"""RLAs and places that are looked at in one tick, for a plan; each takes 30 to 60 us."""
+
+
+class Seeking:
+    """Where the robot is to go, and the plan to get there. Changes at junction events only, and when it is told to.
+
+    A plan is made over several ticks, counted in RLAs and places, so that no tick waits for it, and the same run is the
+    same again.
+    """
+
+    def __init__(self, charting: Callable[[], Charting], group_at: GroupAt) -> None:
+        """`charting`: begins a chart of what is known and expected now; asked for when a plan is.
+
+        `group_at` knows no place where the mid level would ask, so no plan drives there either.
+        """
+        self._charting = charting
+        self._group_at = group_at
+        self._target: Target | None = None
+        self._survey: Survey | None = None
+        """While a plan is being made: what has been looked at for it."""
+        self._here = 0
+        """The place that it begins at."""
+        self._begun = False
+        """The tick that begins a plan may still hear of what an RLA leads to no more: it looks at nothing."""
+        self._looked = False
+        """Whether the survey is done; the search has the next tick for itself."""
+        self._stood_as: Course | None = None
+        """How the robot stood when the plan was begun."""
+        self._meaningless = ""
+        """Why the goal means nothing any more."""
+        self._planned_on: Chart | None = None
+        self._next_place: frozenset[int] = frozenset()
+        """RLAs on the place that the plan leads to next."""
+        self._disappointed: set[int] = set()
+        """Places that looked like the goal on the chart, and were not when the robot came there."""
+        self.goal: Goal | None = None
+        self.course = Course.NONE
+        self.plan: Plan | None = None
+        """What is left of it; its first way is the one that is being gone."""
+        self.surprises = 0
+        """How often the robot came to another place than planned, since this goal was given."""
+
+    @property
+    def stands(self) -> bool:
+        """Whether the robot stands: it has arrived, sees no way, is lost, or was so when it began to plan."""
+        return self.stands_as is not None
+
+    @property
+    def stands_as(self) -> Course | None:
+        """Why the robot stands: at a goal, or without a way; None where it does not."""
+        match self.course:
+            case Course.ARRIVED:
+                return Course.ARRIVED
+            case Course.NO_WAY | Course.LOST:
+                return Course.NO_WAY
+            case Course.PLANNING:
+                return self._stood_as
+        return None
+
+    @property
+    def text(self) -> str:
+        """How it stands, in a few words; empty while there is no goal."""
+        if self.goal is None:
+            return ""
+        match self.course:
+            case Course.ARRIVED:
+                return f"arrived: {self.goal.text}"
+            case Course.PLANNING:
+                return f"planning the way to {self.goal.text}"
+            case Course.NO_WAY if self._meaningless:
+                return f"{self.goal.text} cannot be gone to any more: {self._meaningless}"
+            case Course.NO_WAY:
+                return f"no way from here to {self.goal.text}: nothing taught leads there"
+            case Course.LOST:
+                return f"lost on the way to {self.goal.text}: this place is not known; answer here, or set it down"
+        left = 0 if self.plan is None else len(self.plan.ways)
+        way = None if self.plan is None else self.plan.next
+        if way is None:
+            return f"on the way to {self.goal.text}: the plan begins behind the next junction"
+        ways = "1 way" if left == 1 else f"{left} ways"
+        return f"on the way to {self.goal.text}: {ways} left, now {way.action} (RLA {way.rla_id})"
+
+    def seek(self, goal: Goal, target: Target) -> None:
+        """Go there from now on; the plan is begun at the next `arrive`."""
+        self._stood_as = self.stands_as
+        self.goal, self._target = goal, target
+        self._meaningless = ""
+        self._disappointed.clear()
+        self._survey = self.plan = None
+        self.course = Course.UNDER_WAY
+        self.surprises = 0
+
+    def mean(self, target: Target) -> None:
+        """The same goal, as it is told from other situations by what is known now."""
+        self._target = target
+
+    def give_up(self, because: str) -> None:
+        """The goal means nothing any more: the robot stands, until there is another one, or none."""
+        self._target = None
+        self._meaningless = because
+        self._settle(Course.NO_WAY)
+
+    def stop(self) -> None:
+        """No goal any more."""
+        self.goal = self._target = None
+        self._settle(Course.NONE)
+
+    def arrive(self, situation: Vector) -> None:
+        """The robot has come to a place: is it the goal, or where the plan leads to, and how does it go on?"""
+        if self._target is None or self.course is Course.ARRIVED:
+            return
+        if self._target.met_by(situation):
+            self._settle(Course.ARRIVED)
+            return
+        group = self._group_at(situation)
+        if self.plan is not None and self.plan.next is not None:
+            rest = self.plan.after_first()
+            ids = {rla.rla_id for rla in group}
+            as_planned = not ids.isdisjoint(self._next_place)
+            self.surprises += not as_planned
+            if as_planned and rest.next is not None and rest.next.rla_id in ids:
+                self._follow(rest)
+                return
+        self._plan_from(group)
+
+    def replan(self, situation: Vector) -> None:
+        """What is known has changed: plan from here."""
+        self.plan = None
+        self.arrive(situation)
+
+    def choose(self, group: tuple[Rla, ...]) -> Rla | None:
+        """Of the RLAs on the place where the robot is, the one that the plan goes by; None where it has no opinion."""
+        way = None if self.plan is None else self.plan.next
+        if way is None:
+            return None
+        return next((rla for rla in group if rla.rla_id == way.rla_id), None)
+
+    def think(self) -> bool:
+        """A tick's share of the work on a plan; whether that has settled how it goes on."""
+        survey = self._survey
+        if survey is None:
+            return False
+        if not self._begun:
+            self._begun = True
+            return False
+        if not self._looked:
+            self._looked = survey.step(PIECES)
+            return False
+        chart, goals = survey.chart, survey.goals
+        assert chart is not None
+        if self._here in goals:
+            self._disappointed.add(self._here)
+        plan = plan_to(chart, self._here, goals - self._disappointed)
+        self._settle(Course.NO_WAY if plan is None else Course.UNDER_WAY)
+        if plan is not None:
+            self._planned_on = chart
+            self._follow(plan)
+        return True
+
+    def wait_for_the_next_place(self) -> None:
+        """The plan came too late for this junction: it is made anew behind it."""
+        self.plan = None
+
+    def _plan_from(self, group: tuple[Rla, ...]) -> None:
+        assert self._target is not None
+        if not group:
+            self._settle(Course.LOST)
+            return
+        self._stood_as = self._stood_as or self.stands_as
+        self.course, self.plan = Course.PLANNING, None
+        self._survey = Survey(self._charting(), self._target)
+        self._begun = self._looked = False
+        self._here = group[0].rla_id
+
+    def _settle(self, course: Course) -> None:
+        self.course = course
+        self._survey = self.plan = self._stood_as = None
+
+    def _follow(self, plan: Plan) -> None:
+        self.plan = plan
+        assert self._planned_on is not None
+        assert plan.next is not None
+        self._next_place = self._planned_on.members(plan.next.end)

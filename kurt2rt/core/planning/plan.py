@@ -1,0 +1,44 @@
+"""A plan: the chain of RLAs from a place to a goal."""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from itertools import pairwise
+
+import networkx as nx
+
+from kurt2rt.core.planning.topological_map import Chart, Way
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """Ways that follow each other, in the order of driving."""
+
+    ways: tuple[Way, ...]
+
+    @property
+    def ticks(self) -> float:
+        """How long it is expected to take."""
+        return sum(way.ticks for way in self.ways)
+
+    @property
+    def next(self) -> Way | None:
+        """The way to go now; None at the goal."""
+        return self.ways[0] if self.ways else None
+
+    def after_first(self) -> "Plan":
+        """What is left of it where its first way leads."""
+        return Plan(self.ways[1:])
+
+
+def plan_to(chart: Chart, start: int, goals: Collection[int]) -> Plan | None:
+    """The cheapest chain of ways from a place to one of the goals (Dijkstra); None where none leads to any."""
+    if start not in chart.graph:
+        return None
+    costs: dict[int, float]
+    paths: dict[int, list[int]]
+    costs, paths = nx.single_source_dijkstra(chart.graph, start, weight="cost")  # type: ignore[assignment]
+    reached = [goal for goal in goals if goal in costs]
+    if not reached:
+        return None
+    path = paths[min(reached, key=lambda goal: (costs[goal], goal))]
+    return Plan(tuple(chart.way(*pair) for pair in pairwise(path)))

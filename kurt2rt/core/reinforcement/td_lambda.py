@@ -1,0 +1,153 @@
+"""TD(lambda): each RLA has a value V, what may be expected of a situation that it answers (paper, phase 3).
+
+Every step, with e the trace:   delta = gamma V(now) - V(before),   V_i += alpha delta e_i
+At a signal r about a tick t:   V_i += alpha r e_i(t)
+
+V begins at `first_value`, and praise lifts it to `highest_value` at most. Both differ between a robot that has a
+teacher and one that is alone, and each of them has an account of its own.
+"""
+
+import math
+from collections.abc import Collection, Iterable, Mapping
+
+from kurt2rt.core.numerics import power, steady
+from kurt2rt.core.reinforcement.eligibility_trace import LEAST_SHARE, Trace
+from kurt2rt.core.reinforcement.rule import Booking
+from kurt2rt.core.reinforcement.settings import ReinforcementSettings, WorthSettings
+from kurt2rt.core.reinforcement.value_history import Accounts
+from kurt2rt.core.rla.credit import Credit
+from kurt2rt.core.rla.statistics import Statistics
+
+
+class TdLambda:
+    """Values of RLAs, and an eligibility trace of those that drive."""
+
+    def __init__(self, settings: ReinforcementSettings, worths: WorthSettings, period_s: float) -> None:
+        """`worths`: where values begin, and how high they may rise. `period_s` of a tick."""
+        self._settings = settings
+        self._worths = worths
+        self._decay = steady(math.exp(-period_s / settings.trace_s))
+        self._step_ticks = max(1, round(settings.step_s / period_s))
+        self._accounts = Accounts[float]()
+        """V less the first value."""
+        self._trace: dict[int, float] = {}
+        """Divided by the scale, so that a tick need not touch what only fades."""
+        self._scale = 1.0
+        self._tick = -1
+        self._before: int | None = None
+        """Which RLA drove in the tick of the last step."""
+        self._before_tick = -1
+        self._trace_before: dict[int, float] = {}
+        """The trace as it was in the tick of the last step."""
+
+    def drove(self, rla_id: int | None, tick: int) -> None:
+        """Take in one tick: the trace fades, grows for the one that answered, and every so often a step is made."""
+        self._scale *= self._decay if tick == self._tick + 1 else power(self._decay, tick - self._tick)
+        self._tick = tick
+        if self._scale < 1e-100:
+            self._trace, self._scale = {}, 1.0
+        if rla_id is not None:
+            self._trace[rla_id] = self._trace.get(rla_id, 0.0) + (1.0 - self._decay) / self._scale
+        if tick % self._step_ticks == 0:
+            self._step(rla_id, tick)
+
+    def credits_of(self, value: int, trace: Trace) -> tuple[Credit, ...]:
+        """Each RLA its share of the signal, as far as its value may rise."""
+        alpha = self._settings.alpha
+        changes = ((rla_id, self._change(rla_id, alpha * value * share)) for rla_id, share in trace.shares.items())
+        return tuple(Credit(rla_id, change) for rla_id, change in changes if change != 0.0)
+
+    def take(self, value: int, trace: Trace) -> None:
+        """V_i += alpha r e_i(t)."""
+        for rla_id, change, _ in self.credits_of(value, trace):
+            self._add(rla_id, change)
+
+    def book(self, bookings: Iterable[Booking], sign: int) -> None:
+        """Add credits to values, or take them off."""
+        for (rla_id, change, before), depth in bookings:
+            if before is not None:  # of the other rule
+                continue
+            earned = self._accounts.at(rla_id, depth)
+            if earned is not None or sign > 0:
+                self._accounts.put(rla_id, depth, (earned or 0.0) + sign * change)
+
+    def worth(self, rla_id: int) -> float:
+        """V."""
+        return self._worths.first_value + self._accounts.present.get(rla_id, 0.0)
+
+    def depth(self, rla_id: int) -> int:
+        """How many actions it has had before."""
+        return self._accounts.depth(rla_id)
+
+    def renew(self, rla_id: int) -> None:
+        """V of the new action is that of the beginning, and what the old one did is not its merit."""
+        self._accounts.renew(rla_id)
+        self._drop_trace(rla_id)
+
+    def go_back(self, rla_id: int) -> None:
+        """V as it was."""
+        self._accounts.go_back(rla_id)
+        self._drop_trace(rla_id)
+
+    def leave(self, rla_id: int) -> None:
+        """Its V waits."""
+        self._accounts.renew(rla_id)
+        self._drop_trace(rla_id)
+        self._end_step_from(rla_id)
+
+    def forget(self, rla_id: int) -> None:
+        """Nothing is left of it."""
+        self._accounts.forget(rla_id)
+        self._drop_trace(rla_id)
+        self._end_step_from(rla_id)
+
+    @property
+    def values(self) -> Mapping[int, float]:
+        """V, where it is not that of the beginning."""
+        first_value = self._worths.first_value
+        return {rla_id: first_value + change for rla_id, change in self._accounts.present.items()}
+
+    @property
+    def edge_weights(self) -> Mapping[tuple[int, int], float]:
+        """None."""
+        return {}
+
+    def restore(self, saved: Statistics, only: Collection[int] | None = None) -> None:
+        """Values as they were saved."""
+        first_value = self._worths.first_value
+        changes = {rla_id: value - first_value for rla_id, value in saved.values.items()}
+        self._accounts.restore(changes, only)
+
+    def _change(self, rla_id: int, change: float) -> float:
+        """What a signal changes: praise up to the highest value, blame down from there where V is above it."""
+        room = self._room_above(rla_id)
+        return min(change, max(0.0, room)) if change > 0.0 else change + min(0.0, room)
+
+    def _room_above(self, rla_id: int) -> float:
+        """How far V may rise; negative where it stands higher: blame was undone that praise had healed."""
+        highest = self._worths.highest_value
+        return math.inf if highest is None else highest - self.worth(rla_id)
+
+    def _add(self, rla_id: int, change: float) -> None:
+        self._accounts.present[rla_id] = self._accounts.present.get(rla_id, 0.0) + change
+
+    def _drop_trace(self, rla_id: int) -> None:
+        self._trace.pop(rla_id, None)
+        self._trace_before.pop(rla_id, None)
+
+    def _end_step_from(self, rla_id: int) -> None:
+        if self._before == rla_id:
+            self._before = None
+
+    def _step(self, now: int | None, tick: int) -> None:
+        alpha, gamma = self._settings.alpha, self._settings.gamma
+        if now is not None and self._before is not None and tick - self._before_tick == self._step_ticks:
+            delta = gamma * self.worth(now) - self.worth(self._before)
+            for rla_id, share in self._trace_before.items():
+                change = alpha * delta * share
+                self._add(rla_id, min(change, max(0.0, self._room_above(rla_id))))
+        self._before, self._before_tick = now, tick
+        faded = {rla_id: share * self._scale for rla_id, share in self._trace.items()}
+        self._trace = {rla_id: share for rla_id, share in faded.items() if share >= LEAST_SHARE}
+        self._scale = 1.0
+        self._trace_before = dict(self._trace)

@@ -1,0 +1,210 @@
+"""Outcome of a teacher's command: a code, and the numbers and names that belong to it.
+
+Programs decide by the code; `kurt2rt.core.rla.outcome_text` puts it into words for each surface.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Self
+
+Field = str | int | tuple[str, ...] | None
+
+
+class ResultCode(StrEnum):
+    """What was done."""
+
+    REPEATED = "repeated"
+    """A command of this id was carried out before; it counts once."""
+    # Who teaches, and whether the robot may drive.
+    TAKEN = "taken"
+    HANDED_OVER = "handed over"
+    RELEASED = "released"
+    """The robot has no teacher now."""
+    STOPPED = "stopped"
+    RELEASE_SUPERSEDED = "release superseded"
+    """A later press than the one that was let go drives."""
+    RESUMED = "resumed"
+    PHASE_SET = "phase set"
+    SESSION_BEGUN = "session begun"
+    SESSION_ENDED = "session ended"
+    ACTION_RUNS = "action runs"
+    BEHAVIOUR_WANTED = "behaviour wanted"
+    BEHAVIOUR_WANTED_TO_JUNCTION = "behaviour wanted to junction"
+    GOAL_SOUGHT = "goal sought"
+    GOAL_DROPPED = "goal dropped"
+    LOCATED = "located"
+    # Lessons.
+    SITUATION_NAMED = "situation named"
+    RLA_TAUGHT = "rla taught"
+    RLA_ADDED = "rla added"
+    """On the condition of others, as another possibility."""
+    RLA_CORRECTED = "rla corrected"
+    RLA_ANSWERED = "rla answered"
+    """The RLA asked, for its action had been withdrawn."""
+    RLA_AGREES = "rla agrees"
+    """It says so already; nothing was changed."""
+    RLA_CONFLICTS = "rla conflicts"
+    """Another RLA on the same condition says so already; nothing was changed."""
+    RLA_DELETED = "rla deleted"
+    RLA_REWARDED = "rla rewarded"
+    RLA_PUNISHED = "rla punished"
+    LESSON_UNDONE = "lesson undone"
+    CRITIC_AGREED = "critic agreed"
+    CRITIC_AGREES = "critic agrees"
+    """It thinks so by now, but did not when the situation was; nothing was changed."""
+    # Files, exams and the simulated world.
+    COPIED = "copied"
+    EXAM_BEGUN = "exam begun"
+    SPEED_SET = "speed set"
+    NEXT_RUN = "next run"
+    WALL_MOVED = "wall moved"
+    ROBOT_PLACED = "robot placed"
+
+
+class RefusalCode(StrEnum):
+    """Why a command is not carried out, or a file not handed out."""
+
+    # Who teaches.
+    ANOTHER_TEACHES = "another teaches"
+    DRIVES_BY_HAND = "drives by hand"
+    """The teacher drives by hand, so no other one takes the robot."""
+    NO_TEACHER = "no teacher"
+    CRITICS_NAME = "critic's name"
+    TEACHER_ABSENT = "teacher absent"
+    # When it was said.
+    RESTARTED = "restarted"
+    OLD_PICTURE = "old picture"
+    OVERTAKEN = "overtaken"
+    TOO_OFTEN = "too often"
+    TOO_MANY = "too many"
+    STOPPED_SINCE = "stopped since"
+    STOPPED_BY = "stopped by"
+    PRESS_OVER = "press over"
+    JUNCTION_PASSED = "junction passed"
+    GOAL_SINCE = "goal since"
+    GOAL_IN_SAME_TICK = "goal in same tick"
+    BEHAVIOUR_SINCE = "behaviour since"
+    TICK_FORGOTTEN = "tick forgotten"
+    NOT_SAVED_YET = "not saved yet"
+    NOT_SAVED = "not saved"
+    # What it names.
+    RESERVED_ID = "reserved id"
+    NO_ACTION = "no action"
+    NO_BEHAVIOUR = "no behaviour"
+    NO_APPRAISAL = "no appraisal"
+    NO_RLA = "no rla"
+    NO_LEVEL = "no level"
+    NO_MID_LEVEL = "no mid level"
+    NO_CRITIC = "no critic"
+    NO_PLACE = "no place"
+    NO_PLACES = "no places"
+    """The mid level knows none."""
+    NOT_NAMED = "not named"
+    BAD_NAME = "bad name"
+    NO_FEATURE = "no feature"
+    SESSION_ON = "session on"
+    NO_SESSION = "no session"
+    # Lessons.
+    BLIND = "blind"
+    """The infra-red sensors are silent."""
+    WAS_BLIND = "was blind"
+    """They were, in the tick that is meant."""
+    PLACE_UNKNOWN = "place unknown"
+    NO_OTHER_WAY = "no other way"
+    """The basic level does one thing in a situation."""
+    SAYS_SO = "says so"
+    """Another RLA on the same condition says so already."""
+    NO_RLA_DROVE = "no rla drove"
+    OUTSIDE_RADIUS = "outside radius"
+    NO_LESSON = "no lesson"
+    NO_SUCH_LESSON = "no such lesson"
+    UNDONE_ALREADY = "undone already"
+    STANDS_ALREADY = "stands already"
+    TAUGHT_AFTER = "taught after"
+    """A later lesson stands on this one."""
+    TAUGHT_INSTEAD = "taught instead"
+    """Another lesson stands in its place."""
+    STANDS_ON_UNDONE = "stands on undone"
+    ACTION_NOT_IN_TASK = "action not in task"
+    DOES_NOT_FIT = "does not fit"
+    # Files, exams and the simulated world.
+    NOT_SIMULATED = "not simulated"
+    OWN_TIME = "own time"
+    """A simulated wire has a time of its own."""
+    WORLD_REFUSES = "world refuses"
+    EXAM_UNDER_WAY = "exam under way"
+    EXAM_FAILED = "exam failed"
+    NEXT_RUN_UNDER_WAY = "next run under way"
+    NEXT_RUN_FAILED = "next run failed"
+    COPY_FAILED = "copy failed"
+    NO_FILE = "no file"
+    UPLOAD_UNKNOWN = "upload unknown"
+    UPLOAD_GAP = "upload gap"
+    UPLOAD_TOO_LARGE = "upload too large"
+    UPLOAD_DIFFERS = "upload differs"
+    UPLOAD_INCOMPLETE = "upload incomplete"
+    # On the teacher's side.
+    MALFORMED = "malformed"
+    STOPPED_MEANWHILE = "stopped meanwhile"
+    NO_PICTURE = "no picture"
+    """No press begins, for no state of the robot came lately."""
+    PICTURE_LOST = "picture lost"
+    """A press ended, for no state of the robot came any more."""
+    RESTARTED_MEANWHILE = "restarted meanwhile"
+    NOT_UNDERSTOOD = "not understood"
+
+
+Code = ResultCode | RefusalCode
+_CODES: dict[str, Code] = {each.value: each for each in (*ResultCode, *RefusalCode)}
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """Code with its fields; `says` is a field that holds the words of another program or of a file's name."""
+
+    code: Code
+    fields: Mapping[str, Field] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, code: Code, **fields: Field) -> Self:
+        """Return the outcome of these fields."""
+        return cls(code, fields)
+
+    @property
+    def accepted(self) -> bool:
+        """Whether the command was carried out."""
+        return isinstance(self.code, ResultCode)
+
+
+def outcome_in(code: object, fields: object) -> Outcome | None:
+    """Return the outcome of a code and fields off the wire; None for a code that is not known here."""
+    if not isinstance(code, str) or not isinstance(fields, Mapping) or code not in _CODES:
+        return None
+    if not all(each is None or isinstance(each, str | int | list) for each in fields.values()):
+        return None
+    return Outcome(
+        _CODES[code],
+        {str(key): tuple(map(str, each)) if isinstance(each, list) else each for key, each in fields.items()},
+    )
+
+
+class CommandRefusedError(ValueError):
+    """A command that is not carried out."""
+
+    def __init__(self, code: RefusalCode, **fields: Field) -> None:
+        super().__init__(code, fields)
+        self.outcome = Outcome(code, fields)
+
+    def __str__(self) -> str:
+        """Return the sentence, for callers that word any ValueError."""
+        from kurt2rt.core.rla.outcome_text import text_of  # the texts stand above the codes
+
+        return text_of(self.outcome)
+
+
+def refuse(outcome: Outcome | None) -> None:
+    """Raise CommandRefusedError if there is a reason."""
+    if outcome is not None:
+        assert isinstance(outcome.code, RefusalCode)
+        raise CommandRefusedError(outcome.code, **outcome.fields)

@@ -1,0 +1,185 @@
+"""Outcomes in words: what was done, or why not and what to do, on each surface."""
+
+from collections.abc import Mapping
+from enum import StrEnum
+from string import Formatter
+
+from kurt2rt.core.rla.outcome import Code, Field, Outcome, RefusalCode, ResultCode
+from kurt2rt.core.rla.rla import BASIC, rla_title
+
+
+class Surface(StrEnum):
+    """Where a teacher reads the text."""
+
+    PAGE = "page"
+    TERMINAL = "terminal"
+    LOG = "log"
+    """Also on the wire, for devices that know no codes."""
+
+
+_WORDS: dict[Surface, dict[str, str]] = {
+    Surface.PAGE: {
+        "go": "touch GO",
+        "until_go": "until GO",
+        "take": "touch Take the robot",
+        "press": "let go and press again",
+        "look": "look at the picture",
+    },
+    Surface.TERMINAL: {
+        "go": "type go",
+        "until_go": "until you type go",
+        "take": "type take",
+        "press": "let go and press again",
+        "look": "look at the robot",
+    },
+    Surface.LOG: {
+        "go": "say resume",
+        "until_go": "until it is told to resume",
+        "take": "take the robot",
+        "press": "let go and press again",
+        "look": "look at the robot",
+    },
+}
+"""What a text calls the controls of each surface."""
+
+_TEXTS: dict[Code, str] = {
+    ResultCode.REPEATED: "had been taken already; counted once",
+    ResultCode.TAKEN: "{teacher} teaches",
+    ResultCode.HANDED_OVER: "{teacher} teaches now",
+    ResultCode.RELEASED: "the robot has no teacher now",
+    ResultCode.STOPPED: "the robot stands {until_go}",
+    ResultCode.RELEASE_SUPERSEDED: "that press is over; a later one drives",
+    ResultCode.RESUMED: "the robot may drive",
+    ResultCode.PHASE_SET: "phase {phase}, {name}",
+    ResultCode.SESSION_BEGUN: "session {session!r} begins",
+    ResultCode.SESSION_ENDED: "session {session!r} is over; the robot stands",
+    ResultCode.ACTION_RUNS: "{action} for {ticks} ticks",
+    ResultCode.BEHAVIOUR_WANTED: "{wanted} is wanted",
+    ResultCode.BEHAVIOUR_WANTED_TO_JUNCTION: "{wanted} is wanted until the next junction is passed",
+    ResultCode.GOAL_SOUGHT: "{says}",
+    ResultCode.GOAL_DROPPED: "no goal is sought",
+    ResultCode.LOCATED: "the robot is at {name}",
+    ResultCode.SITUATION_NAMED: "situation named: {name}",
+    ResultCode.RLA_TAUGHT: "{title} taught: {action}",
+    ResultCode.RLA_ADDED: "{title} taught next to RLA {next_to}: {action}",
+    ResultCode.RLA_CORRECTED: "{title} corrected: {action} instead of {was}",
+    ResultCode.RLA_ANSWERED: "{title} answered again: {action}",
+    ResultCode.RLA_AGREES: "{title} says {action} already",
+    ResultCode.RLA_CONFLICTS: "{title} says {action} there already; nothing was changed",
+    ResultCode.RLA_DELETED: "{title} deleted",
+    ResultCode.RLA_REWARDED: "{title} rewarded",
+    ResultCode.RLA_PUNISHED: "{title} punished",
+    ResultCode.LESSON_UNDONE: "undone: {says}",
+    ResultCode.CRITIC_AGREED: "the critic thought {appraisal}, too",
+    ResultCode.CRITIC_AGREES: "the critic says {appraisal} already",
+    ResultCode.COPIED: "{name}, {size} bytes",
+    ResultCode.EXAM_BEGUN: "the exam has begun; the robot goes on meanwhile",
+    ResultCode.SPEED_SET: "speed {times}",
+    ResultCode.NEXT_RUN: "{says}",
+    ResultCode.WALL_MOVED: "{name} moved",
+    ResultCode.ROBOT_PLACED: "the robot stands elsewhere",
+    RefusalCode.ANOTHER_TEACHES: "{teacher} teaches now; ask to be handed over to, or {take}",
+    RefusalCode.DRIVES_BY_HAND: "{teacher} drives by hand just now; stop the robot first",
+    RefusalCode.NO_TEACHER: "the robot has no teacher; {take} first",
+    RefusalCode.CRITICS_NAME: "{name} is the name of the robot's own critic; teach under another name",
+    RefusalCode.TEACHER_ABSENT: "a behaviour runs only while its teacher is there and watches",
+    RefusalCode.RESTARTED: "the robot program was started again; {look}, then repeat the command",
+    RefusalCode.OLD_PICTURE: "given on an old picture; {look}, then repeat the command",
+    RefusalCode.OVERTAKEN: "a newer message came before this one",
+    RefusalCode.TOO_OFTEN: "asked too often; ten times a second is enough",
+    RefusalCode.TOO_MANY: "too many commands wait; repeat the command",
+    RefusalCode.STOPPED_SINCE: "the robot was stopped after this command; {look}, then repeat the command",
+    RefusalCode.STOPPED_BY: "{teachers} stopped the robot; {go} first",
+    RefusalCode.PRESS_OVER: "this press is over; {press}",
+    RefusalCode.JUNCTION_PASSED: "a junction was passed after this command; {look}, then repeat the command",
+    RefusalCode.GOAL_SINCE: "another goal was given after this command; {look}, then repeat the command",
+    RefusalCode.GOAL_IN_SAME_TICK: "another goal was given in the same tick; repeat the command",
+    RefusalCode.BEHAVIOUR_SINCE: "{wanted} was asked for after this command; {look}, then repeat the command",
+    RefusalCode.TICK_FORGOTTEN: "the decision of tick {tick} is not remembered any more; {look}",
+    RefusalCode.NOT_SAVED_YET: "not saved yet; it may still count: look at the lessons",
+    RefusalCode.NOT_SAVED: "{says}",
+    RefusalCode.RESERVED_ID: "the id {command_id!r} has a {sign}, which only the robot's own ids have; leave it out",
+    RefusalCode.NO_ACTION: "there is no action {action!r}; the repertoire has: {known}",
+    RefusalCode.NO_BEHAVIOUR: "there is no taught behaviour {behaviour!r}; this task has: {known}",
+    RefusalCode.NO_APPRAISAL: "there is no appraisal {appraisal!r}; the critic knows: {known}",
+    RefusalCode.NO_RLA: "there is no RLA {rla}; it may have been deleted",
+    RefusalCode.NO_LEVEL: "nothing is taught at a level {level!r}; there are: {known}",
+    RefusalCode.NO_MID_LEVEL: "this robot has no mid level",
+    RefusalCode.NO_CRITIC: "this robot has no critic",
+    RefusalCode.NO_PLACE: "there is no place {name!r}; named were: {known}; RLA 12 is the place that this RLA knows",
+    RefusalCode.NO_PLACES: "this robot's mid level does not know places",
+    RefusalCode.NOT_NAMED: "nothing was named {name!r}; named were: {known}",
+    RefusalCode.BAD_NAME: "{name!r} is no name for a situation; give 1 to {longest} letters on one line",
+    RefusalCode.NO_FEATURE: "{features} cannot be sought; level {level} knows: {known}",
+    RefusalCode.SESSION_ON: "the session {session!r} is on; end it first",
+    RefusalCode.NO_SESSION: "no session is on",
+    RefusalCode.BLIND: "the infra-red sensors are silent, so there is no situation; wait for their readings",
+    RefusalCode.WAS_BLIND: "the infra-red sensors were silent then, so there is no situation",
+    RefusalCode.PLACE_UNKNOWN: "the robot does not know where it is; say where it is first",
+    RefusalCode.NO_OTHER_WAY: "another possibility is taught at the mid level; the basic level does one thing",
+    RefusalCode.SAYS_SO: "{title} says {action} there already; delete RLA {delete} instead",
+    RefusalCode.NO_RLA_DROVE: "no RLA drove the robot then; there is nothing to reward or to punish",
+    RefusalCode.OUTSIDE_RADIUS: "the situation lay outside the radius of {title}, or it stood; no RLA is rewarded",
+    RefusalCode.NO_LESSON: "there is no lesson to undo",
+    RefusalCode.NO_SUCH_LESSON: "there is no lesson {lesson!r}",
+    RefusalCode.UNDONE_ALREADY: "lesson {lesson!r} was undone already",
+    RefusalCode.STANDS_ALREADY: "lesson {lesson!r} stands; there is nothing to redo",
+    RefusalCode.TAUGHT_AFTER: "lesson {later!r} came after {lesson!r} ({says}); undo that one first",
+    RefusalCode.TAUGHT_INSTEAD: "lesson {later!r} came in the place of {lesson!r} ({says}); undo that one first",
+    RefusalCode.STANDS_ON_UNDONE: "{lesson!r} was taught after {earlier!r} ({says}); redo that one first",
+    RefusalCode.ACTION_NOT_IN_TASK: "{title} would say {action} again, which this task does not have; "
+    "undo it with the task that it was taught with",
+    RefusalCode.DOES_NOT_FIT: "{says}",
+    RefusalCode.NOT_SIMULATED: "this robot is not simulated",
+    RefusalCode.OWN_TIME: "a simulated wire has a time of its own; start kurt2rt run without --wire",
+    RefusalCode.WORLD_REFUSES: "{says}",
+    RefusalCode.EXAM_UNDER_WAY: "an exam is under way; wait for its end",
+    RefusalCode.EXAM_FAILED: "{says}",
+    RefusalCode.NEXT_RUN_UNDER_WAY: "the next run is being prepared; wait for it",
+    RefusalCode.NEXT_RUN_FAILED: "{says}",
+    RefusalCode.COPY_FAILED: "{says}",
+    RefusalCode.NO_FILE: "{says}",
+    RefusalCode.UPLOAD_UNKNOWN: "this upload was not begun here, or another one has taken its place; begin again at 0",
+    RefusalCode.UPLOAD_GAP: "a part is missing: got the part at {offset}, the next byte is {size}",
+    RefusalCode.UPLOAD_TOO_LARGE: "the file is too large (at most {most_bytes} bytes); give it to kurt2rt run",
+    RefusalCode.UPLOAD_DIFFERS: "the part at {offset} differs from the one before; begin again with another id",
+    RefusalCode.UPLOAD_INCOMPLETE: "the file did not arrive whole (SHA-256); upload it again",
+    RefusalCode.MALFORMED: "{says}",
+    RefusalCode.STOPPED_MEANWHILE: "{command} was stopped meanwhile",
+    RefusalCode.NO_PICTURE: "no picture of the robot: nothing is sent to it",
+    RefusalCode.PICTURE_LOST: "no picture of the robot: the press is over",
+    RefusalCode.RESTARTED_MEANWHILE: "the robot program was started again: the press is over",
+    RefusalCode.NOT_UNDERSTOOD: "the robot is not understood: {says}",
+}
+
+_ONLY_BEHAVIOUR = "the only behaviour"
+_MADE_OF = {"title": "rla", "wanted": "behaviour"}
+"""Names in texts that are made of a field."""
+
+
+def fields_of(code: Code) -> frozenset[str]:
+    """Return the names of the fields that the text of a code shows."""
+    shown = {name for _, name, _, _ in Formatter().parse(_TEXTS[code]) if name}
+    return frozenset(_MADE_OF.get(name, name) for name in shown - _WORDS[Surface.LOG].keys())
+
+
+def text_of(outcome: Outcome, surface: Surface = Surface.LOG) -> str:
+    """Return a sentence for the teacher, empty fields and all. Raises KeyError for a field that is missing."""
+    return _TEXTS[outcome.code].format(**{**_shown(outcome.fields), **_WORDS[surface]})
+
+
+def _shown(fields: Mapping[str, Field]) -> dict[str, str | int]:
+    shown = {key: _plain(key, each) for key, each in fields.items()}
+    shown["wanted"] = shown.get("behaviour") or _ONLY_BEHAVIOUR
+    rla = fields.get("rla")
+    if isinstance(rla, int):
+        shown["title"] = rla_title(rla, str(fields.get("behaviour", "")), str(fields.get("level", BASIC)))
+    return shown
+
+
+def _plain(key: str, value: Field) -> str | int:
+    if isinstance(value, tuple):
+        return (" and " if key == "teachers" else ", ").join(
+            each or "one, without a name" for each in value
+        ) or "nothing"
+    return "" if value is None else value

@@ -1,0 +1,1 @@
+"""A teacher's commands, applied to what the robot knows."""

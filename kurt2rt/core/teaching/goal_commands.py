@@ -1,0 +1,57 @@
+"""What a teacher says of places and goals: names for situations, where the robot is, where it is to go."""
+
+from kurt2rt.core.planning.navigator import Navigator
+from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
+from kurt2rt.core.rla.rla import MID, Origin, SituationNamed, TeachingEvent
+from kurt2rt.core.teaching.commands import BeAt, NameSituation, Seek, StopSeeking
+from kurt2rt.core.teaching.mid_lessons import MidLessons
+
+ErrandCommand = NameSituation | Seek | StopSeeking | BeAt
+
+LONGEST_NAME = 64
+
+
+class Errands:
+    """Carries these commands out, with the navigator."""
+
+    def __init__(self, navigator: Navigator, lessons: MidLessons) -> None:
+        self._navigator = navigator
+        self._lessons = lessons
+        self._seen_tick = -1
+        """What the teacher had seen when he said what is sought now."""
+        self._planned_tick = -1
+
+    def name(self, command: NameSituation, origin: Origin) -> tuple[Outcome, TeachingEvent]:
+        """Return what was done and the event that names a situation. Raises CommandRefusedError."""
+        name = command.name
+        if not 0 < len(name) <= LONGEST_NAME or not name.isprintable() or name != name.strip():
+            raise CommandRefusedError(RefusalCode.BAD_NAME, name=name, longest=LONGEST_NAME)
+        situation = tuple(self._lessons.meant(command.decision_tick).vector.tolist())
+        return Outcome.of(ResultCode.SITUATION_NAMED, name=name), SituationNamed(name, situation, MID, origin)
+
+    def carry_out(self, command: Seek | StopSeeking | BeAt, tick: int) -> Outcome:
+        """Return what was done. Raises CommandRefusedError, also for a command that a later one has replaced."""
+        seen_tick = tick if command.seen_tick is None else command.seen_tick
+        if isinstance(command, BeAt):
+            return self._be_at(command.name, seen_tick)
+        if seen_tick < self._seen_tick:
+            raise CommandRefusedError(RefusalCode.GOAL_SINCE)
+        said = self._seek(command, tick)
+        self._seen_tick = seen_tick
+        return said
+
+    def _seek(self, command: Seek | StopSeeking, tick: int) -> Outcome:
+        if isinstance(command, StopSeeking):
+            self._navigator.stop()
+            return Outcome(ResultCode.GOAL_DROPPED)
+        if tick == self._planned_tick:  # a plan takes a good part of a tick
+            raise CommandRefusedError(RefusalCode.GOAL_IN_SAME_TICK)
+        says = self._navigator.seek(command.goal)
+        self._planned_tick = tick
+        return Outcome.of(ResultCode.GOAL_SOUGHT, says=says)
+
+    def _be_at(self, name: str, seen_tick: int) -> Outcome:
+        if seen_tick < self._lessons.passed_at_tick:
+            raise CommandRefusedError(RefusalCode.JUNCTION_PASSED)
+        self._navigator.be_at(name)
+        return Outcome.of(ResultCode.LOCATED, name=name)

@@ -1,0 +1,94 @@
+"""What is learnt when the wheels have been told: from rewards, and from the critic in its teacher's place."""
+
+from collections.abc import Iterable
+
+from kurt2rt.core.basic.basic_level import BasicLevel
+from kurt2rt.core.critic.agreement import Agreement
+from kurt2rt.core.critic.critic import Opinion
+from kurt2rt.core.critic.state import Role
+from kurt2rt.core.decision.decision import Decision
+from kurt2rt.core.reinforcement.reinforcement import Reinforcement
+from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
+from kurt2rt.core.rla.rla import Phase, TeachingEvent
+from kurt2rt.core.rla.rla_system import InvalidEventError
+
+
+class Learning:
+    """The one place where the knowledge of a running robot changes; all that follow it are told."""
+
+    def __init__(
+        self,
+        level: BasicLevel,
+        *,
+        taken_command_ids: Iterable[str],
+        reinforcement: Reinforcement | None,
+        agreement: Agreement | None,
+        self_teaching: SelfTeaching | None,
+    ) -> None:
+        """Without `reinforcement` nothing is learnt from rewards, without `self_teaching` nothing in phase 5."""
+        self._level = level
+        self._reinforcement = reinforcement
+        self._agreement = agreement
+        self._self_teaching = self_teaching
+        self.taken = set(taken_command_ids)
+        """Ids of all commands that were carried out, and of all that came of signals."""
+        self.trouble = ""
+        """What the robot wanted to learn by itself and could not, in one line; empty while there is nothing."""
+        self._skipped = 0
+
+    @property
+    def critics_role(self) -> Role:
+        """What the critic did in the last tick; it listens where there is none."""
+        return Role.LISTENS if self._self_teaching is None else self._self_teaching.role
+
+    @property
+    def bad_share(self) -> float | None:
+        """Share of the driven time that the critic found bad lately; None while it only listens."""
+        return None if self._self_teaching is None else self._self_teaching.bad_share
+
+    def apply(self, event: TeachingEvent) -> None:
+        """Change the knowledge, and tell all that follow it. Raises InvalidEventError, and then nothing has changed."""
+        self._level.apply(event)
+        self.taken.add(event.origin.command_id)
+        if self._reinforcement is not None:
+            self._reinforcement.hear(event)
+        if self._agreement is not None:
+            self._agreement.hear(event)
+        if self._self_teaching is not None:
+            self._self_teaching.hear(event)
+
+    def from_tick(self, phase: Phase, tick: int, decision: Decision, opinion: Opinion | None) -> list[TeachingEvent]:
+        """What is learnt from a tick: the decision, and what the critic thinks of it.
+
+        The events act from the next tick on and have to reach the journal.
+        """
+        reinforcement, alone = self._reinforcement, self._self_teaching
+        if reinforcement is None:
+            return []
+        reinforcement.count_for(phase)
+        if alone is not None and not alone.stands_in(phase):
+            alone = None
+        changes_itself = alone is not None and not alone.measures
+        learns = phase in (Phase.REINFORCEMENT, Phase.CRITIC) or changes_itself
+        reinforcement.choice.explores = learns
+        if learns:
+            reinforcement.drove(decision.rla_id if decision.answers else None, tick)
+        if alone is not None:
+            alone.signal(tick, decision, opinion)
+        events: list[TeachingEvent] = []
+        for lesson in reinforcement.repairs(tick, phase):
+            self._take_in(lesson, events)
+        if alone is not None:
+            for undone in alone.roll_back(tick, decision, opinion):
+                self._take_in(undone, events)
+        return events
+
+    def _take_in(self, event: TeachingEvent, events: list[TeachingEvent]) -> None:
+        """Apply what the robot learnt by itself. Where it does not fit, it is skipped, and told of."""
+        try:
+            self.apply(event)
+        except InvalidEventError as error:
+            self._skipped += 1
+            self.trouble = f"changes that did not fit the knowledge were skipped: {self._skipped}, the last: {error}"
+        else:
+            events.append(event)

@@ -1,0 +1,129 @@
+"""The robot's question: "I don't know this situation, teach me"."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
+from kurt2rt.core.rla.match import Match
+from kurt2rt.core.rla.rla import ASK, MID, rla_title
+
+
+@dataclass(frozen=True, slots=True)
+class FeatureDifference:
+    """One feature in which the situation differs from the nearest RLA's condition."""
+
+    name: str
+    here: float
+    in_condition: float
+
+
+@dataclass(frozen=True, slots=True)
+class Question:
+    """What the teacher sees when the robot asks."""
+
+    nearest_rla: int | None
+    """None before the first lesson."""
+    action: str | None
+    """What the nearest RLA would do."""
+    distance: float
+    radius: float
+    differing: tuple[FeatureDifference, ...]
+    """The features that differ most, most first."""
+    behaviour: str = ""
+    """The taught behaviour that is wanted; empty where the task has only one."""
+    words: SensorWords = field(default=NO_WORDS, compare=False, repr=False)
+    """For the features that differ."""
+    worth: float | None = None
+    """Of the nearest RLA where its action was withdrawn; None where that is not known."""
+    touches: str = ""
+    """The question of a robot that is held at a bumper; empty where it asks what it does not know."""
+
+    def __str__(self) -> str:
+        if self.nearest_rla is None:
+            of = f" of {self.behaviour}" if self.behaviour else ""
+            return f"I know nothing{of} yet, teach me"
+        features = "; ".join(
+            self.words.difference(each.name, each.here, each.in_condition)
+            for each in self.differing
+            if self.words.differs(each.name, each.here, each.in_condition)
+        )
+        nearest = rla_title(self.nearest_rla, self.behaviour)
+        if self.touches:
+            return f"{self.touches} {nearest} says {self.action}"
+        if self.action == ASK and self.distance <= self.radius:
+            worth = "" if self.worth is None else f": worth {self.worth:.2f} now"
+            return f"{nearest} was blamed{worth}, teach me again"
+        if self.action != ASK and self.distance <= self.radius:
+            # It was chosen, and is a taught system itself, in which no RLA is near enough.
+            return f"{nearest} says {self.action}, which does not know how to go on here; teach me another action"
+        action = "its action was withdrawn" if self.action == ASK else self.action
+        return (
+            f"I don't know this situation, teach me: nearest is {nearest} ({action}) "
+            f"at {self.distance:.0f} of {self.radius:.0f}{'; ' if features else ''}{features}"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class WayQuestion:
+    """What the teacher sees when the mid level asks which taught behaviour is to be followed."""
+
+    nearest_rla: int | None
+    """None before the first lesson of the mid level."""
+    behaviour: str | None
+    """What the nearest RLA would command."""
+    distance: float
+    """Infinite where there is none, and where the robot does not know where it is."""
+    radius: float
+    here: tuple[str, ...]
+    """The mid level's situation in words, the newest first."""
+
+    def __str__(self) -> str:
+        came_by = f"; I came by {', '.join(self.here)}" if self.here else ""
+        if self.nearest_rla is None:
+            return f"I don't know any way yet, teach me which behaviour to follow{came_by}"
+        if math.isinf(self.distance):
+            return "I don't know where I am: set me down at a place that has a name, and say at which one I am"
+        nearest = rla_title(self.nearest_rla, "", MID)
+        action = "its action was withdrawn" if self.behaviour == ASK else self.behaviour
+        return (
+            f"I don't know the way from here, teach me which behaviour to follow: nearest is {nearest} ({action}) "
+            f"at {self.distance:.3g} of {self.radius:.3g}{came_by}"
+        )
+
+
+def ask_the_way(match: Match | None, words: Iterable[str]) -> WayQuestion:
+    """Question of the mid level, whose nearest RLA is `match`; `words` of its situation, empty ones left out."""
+    here = tuple(word for word in words if word)
+    if match is None:
+        return WayQuestion(None, None, float("inf"), 0.0, here)
+    return WayQuestion(match.rla.rla_id, match.rla.action, match.distance, match.radius, here)
+
+
+def ask(
+    match: Match | None,
+    situation: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    feature_names: tuple[str, ...],
+    behaviour: str = "",
+    most: int = 5,
+    words: SensorWords = NO_WORDS,
+) -> Question:
+    """Return the question about a situation vector whose nearest RLA of `behaviour` is `match`.
+
+    `situation` and `weights`, with which the match was found, have shape (d,).
+    """
+    if match is None:
+        return Question(None, None, float("inf"), 0.0, (), behaviour, words)
+    condition = np.array(match.rla.condition)
+    differences = np.abs(situation - condition) * weights
+    order = np.argsort(-differences, kind="stable")[:most]
+    differing = tuple(
+        FeatureDifference(feature_names[i], float(situation[i]), float(condition[i]))
+        for i in order
+        if differences[i] > 0.0
+    )
+    return Question(match.rla.rla_id, match.rla.action, match.distance, match.radius, differing, behaviour, words)

@@ -1,0 +1,56 @@
+"""Teaching the critic what a situation was worth (paper, phase 4)."""
+
+from kurt2rt.core.critic.critic import Critic
+from kurt2rt.core.reinforcement.decision_history import RecentDecisions
+from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
+from kurt2rt.core.rla.rla import CRITIC, ActionReplaced, Appraised, Origin, Rla, RlaCreated
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.teaching.commands import Appraise
+from kurt2rt.core.teaching.taught import Taught, rla_outcome
+
+
+class Appraising:
+    """Turns what a teacher says of a situation into the event that teaches it to the critic."""
+
+    def __init__(self, critic: Critic, system: RlaSystem, recent: RecentDecisions) -> None:
+        self._critic = critic
+        self._system = system
+        self._recent = recent
+
+    @property
+    def appraisals(self) -> tuple[str, ...]:
+        """Names that a situation can be given."""
+        return self._critic.appraisals
+
+    def event_of(self, command: Appraise, meant: int, origin: Origin) -> Taught:
+        """Return what is done and its event; `meant`: a tick that is remembered. Raises CommandRefusedError.
+
+        Another opinion than the critic's is learnt, the same one only counts for how far they agree. What the critic
+        has come to think since that tick counts for nothing: it may have learnt it from what was said just before.
+        """
+        if command.appraisal not in self.appraisals:
+            raise CommandRefusedError(RefusalCode.NO_APPRAISAL, appraisal=command.appraisal, known=self.appraisals)
+        circumstances = self._recent.circumstances(meant)
+        if circumstances is None:
+            raise CommandRefusedError(RefusalCode.WAS_BLIND)
+        vector = self._critic.vector_of(circumstances)
+        now, then = self._critic.opinion(vector), self._recent.opinion(meant)
+        if now is not None and now.known and now.appraisal == command.appraisal:
+            if then is not None and then.known and then.appraisal == command.appraisal:
+                value = self._critic.settings.values[command.appraisal]
+                agreed = Outcome.of(ResultCode.CRITIC_AGREED, appraisal=command.appraisal)
+                return Taught(agreed, Appraised(command.appraisal, value, meant, origin))
+            return Taught(Outcome.of(ResultCode.CRITIC_AGREES, appraisal=command.appraisal))
+        if now is not None and now.rla is not None and now.distance <= self._critic.insert_beyond:
+            rla = now.rla
+            event = ActionReplaced(rla.rla_id, command.appraisal, rla.action, origin)
+            return Taught(rla_outcome(ResultCode.RLA_CORRECTED, rla, action=command.appraisal, was=rla.action), event)
+        rla = Rla(
+            rla_id=self._system.next_id,
+            condition=tuple(vector.tolist()),
+            action=command.appraisal,
+            radius=None,
+            origin=origin,
+            level=CRITIC,
+        )
+        return Taught(rla_outcome(ResultCode.RLA_TAUGHT, rla, action=rla.action), RlaCreated(rla))

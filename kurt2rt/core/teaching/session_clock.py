@@ -1,0 +1,32 @@
+"""Sessions, and how long they last: the time that the paper counts as teaching."""
+
+from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
+from kurt2rt.core.rla.rla import Origin, SessionBegun, SessionEnded, TeachingEvent
+from kurt2rt.core.teaching.commands import BeginSession, EndSession
+
+
+class TeachingClock:
+    """Runs while a session is on; one at a time."""
+
+    def __init__(self) -> None:
+        self.session: str | None = None
+        """Name of the session that is on."""
+        self._from_tick = 0
+        self._lasted_ticks = 0
+
+    def ticks(self, tick: int) -> int:
+        """How long the session that is on has lasted at `tick`, or how long the last one did."""
+        return self._lasted_ticks if self.session is None else tick - self._from_tick
+
+    def take(self, command: BeginSession | EndSession, tick: int, origin: Origin) -> tuple[Outcome, TeachingEvent]:
+        """Begin or end a session; return what was done and its event. Raises CommandRefusedError."""
+        if isinstance(command, BeginSession):
+            if self.session is not None:
+                raise CommandRefusedError(RefusalCode.SESSION_ON, session=self.session)
+            self.session, self._from_tick = command.name, tick
+            return Outcome.of(ResultCode.SESSION_BEGUN, session=command.name), SessionBegun(command.name, origin)
+        if self.session is None:
+            raise CommandRefusedError(RefusalCode.NO_SESSION)
+        name, self._lasted_ticks = self.session, self.ticks(tick)
+        self.session = None
+        return Outcome.of(ResultCode.SESSION_ENDED, session=name), SessionEnded(self._lasted_ticks, origin)

@@ -1,0 +1,1 @@
+"""Lessons and exams in simulated time, one world step a tick."""

@@ -1,0 +1,35 @@
+"""What a scripted teacher or an examiner says has to be carried out: nobody is there who would read a refusal."""
+
+from collections.abc import Callable
+
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.rla.outcome_text import text_of
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
+
+
+def require_carried_out(
+    record: TickRecord, task: TaskSettings, may_be_late: Callable[[str], bool] = lambda _command_id: False
+) -> int:
+    """Raise LessonLostError for a command that this tick refused, with what it was and what the task is made of.
+
+    Those that `may_be_late`, by their ids, may be refused; returns how many were.
+    """
+    if record.decision.cause is Cause.BLIND:
+        return 0  # the bus is in trouble, and nothing can be taught meanwhile; the teacher says it again
+    late = 0
+    for result in record.results:
+        if result.accepted:
+            continue
+        if may_be_late(result.command_id):
+            late += 1
+            continue
+        raise LessonLostError(
+            f"task {task.name}, tick {record.tick}: the robot refused {result.command_id}: {text_of(result.outcome)}",
+            do=(
+                f"make policy {task.policy.kind}, course {task.course.kind} and repertoire {task.repertoire} "
+                "fit together"
+            ),
+        )
+    return late

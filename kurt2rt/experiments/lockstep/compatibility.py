@@ -1,0 +1,31 @@
+"""Whether a task can be taught and examined where it is to be."""
+
+from collections.abc import Iterable
+
+from behaviors.metrics.task_metric import Course, RouteCourse
+from hal.settings import SettingsError
+from hal.simulation import SimulationFactory
+from kurt2rt.core.task_settings import TaskSettings
+
+
+def require_course(stage: SimulationFactory, task: TaskSettings, worlds: Iterable[str]) -> None:
+    """Look, before anything is taught, whether each of these worlds has what the task's course needs.
+
+    Raises hal.settings.SettingsError that names task, course and world.
+    """
+    for world in dict.fromkeys(worlds):
+        try:
+            task.course.require(stage.plan_of(world), task.behaviours)
+        except SettingsError as error:
+            raise SettingsError(str(error), where=f"task {task.name}") from error
+
+
+def route_of(course: Course, task: TaskSettings) -> RouteCourse:
+    """The course, along whose route a mid level is taught. Raises hal.settings.SettingsError for another one."""
+    if isinstance(course, RouteCourse):
+        return course
+    raise SettingsError(
+        f"course {task.course.kind} has no route, so nobody can say what the mid level is to want",
+        where=f"task {task.name}",
+        do="give the course route, or leave mid out",
+    )

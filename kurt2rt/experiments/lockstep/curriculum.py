@@ -1,0 +1,114 @@
+"""A lesson and its exams, for one seed: what a demonstration shows once and a study repeats."""
+
+from collections.abc import Callable, Sequence
+from contextlib import closing
+from dataclasses import dataclass
+from pathlib import Path
+
+from hal.robot_settings import RobotSettings
+from hal.simulation import SimulationFactory
+from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.exam import ExamResult, examine
+from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
+from kurt2rt.experiments.lockstep.lesson import LessonResult, teach
+from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
+from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
+from kurt2rt.knowledge.journal.loading import read_lessons
+from kurt2rt.knowledge.journal.writer import Acknowledgement
+
+Report = Callable[[str, float, float], None]
+"""Progress of a long job: what, simulated seconds done, simulated seconds in all."""
+
+
+@dataclass(frozen=True, slots=True)
+class WorldResult:
+    """One world's exam beside the teacher's own drive there."""
+
+    learned: ExamResult
+    teacher: ExamResult
+    verdict: ExamVerdict
+
+    @property
+    def succeeded(self) -> bool:
+        """Whether the exam was judged and passed."""
+        return self.verdict is ExamVerdict.PASSED
+
+
+@dataclass(frozen=True, slots=True)
+class CurriculumResult:
+    """A lesson and its exams."""
+
+    lesson: LessonResult
+    exams: tuple[WorldResult, ...]
+
+
+async def run_lesson(
+    stage: SimulationFactory,
+    settings: RobotSettings,
+    task: TaskSettings,
+    knowledge: Path,
+    *,
+    seed: int,
+    report: Report,
+    on_saved: Callable[[Acknowledgement], None] = lambda _: None,
+    plan: LessonPlan | None = None,
+) -> tuple[LessonResult, list[TeachingEvent]]:
+    """Teach, with the lessons kept in the file `knowledge`; returns the result and all events the file then holds.
+
+    Goes on from what the file holds already. `on_saved` hears of each lesson once it is durable. `plan`: None: the
+    task's own lesson, phases 1 and 2. Raises KnowledgeError, SettingsError, LessonLostError.
+    """
+    plan = plan or plan_of(task)
+    world, whole_s = task.teaching.world, plan.duration_s
+    with lessons_kept(knowledge, settings, task, on_saved) as keeping:
+        with closing(stage.open(world, seed, plan.purpose)) as simulation:
+            lesson = await teach(
+                simulation,
+                settings,
+                task,
+                keeping.writer,
+                keeping.opened.events,
+                seed=seed,
+                on_progress=keeping.telling(report, f"teaching in world {world}", whole_s),
+                statistics=keeping.opened.counter,
+                saved=keeping.opened.saved,
+                plan=plan,
+            )
+        keeping.end(lesson.saved)
+        report(f"teaching in world {world}", whole_s, whole_s)
+    return lesson, read_lessons(knowledge, settings, task)
+
+
+async def run_exams(
+    stage: SimulationFactory,
+    settings: RobotSettings,
+    task: TaskSettings,
+    events: Sequence[TeachingEvent],
+    worlds: Sequence[str],
+    *,
+    seed: int,
+    report: Report,
+) -> tuple[WorldResult, ...]:
+    """Examine in each world, and let the teacher's policy drive there for comparison, from the same start."""
+
+    async def drive(world: str, *, by_teacher: bool) -> ExamResult:
+        who = "the teacher's own drive" if by_teacher else "exam without teacher"
+        with closing(stage.open(world, seed, "exam")) as simulation:
+            return await examine(
+                simulation,
+                settings,
+                task,
+                world,
+                events,
+                seed=seed,
+                on_progress=lambda done_s: report(f"{who}, world {world}", done_s, task.exam.duration_s),
+                by_teacher=by_teacher,
+            )
+
+    results = []
+    for world in worlds:
+        learned = await drive(world, by_teacher=False)
+        teacher = await drive(world, by_teacher=True)
+        results.append(WorldResult(learned, teacher, learned.verdict(teacher.progress, task.exam.success)))
+    return tuple(results)

@@ -1,0 +1,68 @@
+"""What a lesson consists of."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.task_settings import TaskSettings
+
+Signs = Literal["none", "judge", "unknown", "chance"]
+"""What the teacher goes by when he praises and blames: nothing, the task's judge, that the robot knew no answer, or
+chance."""
+
+
+@dataclass(frozen=True, slots=True)
+class SignalTimes:
+    """How often the teacher praises and blames."""
+
+    bad_every_s: float = 1.0
+    good_every_s: float = 2.0
+    neutral_every_s: float = 1.0
+    """Only the critic is taught what is neutral."""
+    patience_s: float = 0.0
+    """He speaks of what has been bad for so long without a break; teaching the critic he needs none."""
+    gap_s: float = 0.0
+    """The shortest time between two signals of any kind."""
+    most_blame: int = 0
+    """He blames no more often than this; 0: as often as he likes."""
+
+
+@dataclass(frozen=True, slots=True)
+class LessonPlan:
+    """Phases one after the other, and what the teacher does in them besides."""
+
+    phases: tuple[tuple[Phase, float], ...]
+    """Each with its time in s."""
+    purpose: str = "lesson"
+    """Another one begins at another place, with other noise."""
+    signs: Signs = "none"
+    times: SignalTimes = SignalTimes()
+    blame_by_chance: int = 0
+    """Who goes by chance blames so many times in all."""
+    reposition_every_s: float | None = None
+    """The robot is set down at some start so often; 0: never; None: as the task says."""
+    rescue_after_s: float | None = None
+    """A robot that makes no way for so long is set down elsewhere by hand; None: as the task says."""
+    set_down_every_s: float = 0.0
+    """In phase 4 the robot is set down anywhere in sight of something, also close to it, so often; 0: never."""
+    shown_s: float = 0.0
+    """Then some action of the repertoire, whatever it leads to, drives it for so long."""
+    shown_share: float = 1.0
+    """So often of the times that it is set down."""
+    rescues_who_asks: bool = False
+    """Whether the time in which it makes no way goes on after a question, instead of beginning anew."""
+
+    corrects_basic: bool = True
+    """Where there is a mid level: whether the basic level is corrected, too. It is answered in any case."""
+
+    @property
+    def duration_s(self) -> float:
+        """Robot time of all of it."""
+        return sum(lasts_s for _, lasts_s in self.phases)
+
+
+def plan_of(task: TaskSettings) -> LessonPlan:
+    """The lesson that the task describes: phases 1 and 2, or that one of them which it has time for."""
+    teaching = task.teaching
+    phases = ((Phase.SUPERVISED, teaching.supervised_s), (Phase.CORRECTIONS, teaching.corrections_s))
+    return LessonPlan(tuple(each for each in phases if each[1]) or phases[:1])

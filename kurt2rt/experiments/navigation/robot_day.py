@@ -1,0 +1,104 @@
+"""One robot's whole day: it learns the town, and then runs its errands."""
+
+import random
+from collections.abc import Sequence
+from contextlib import closing
+from pathlib import Path
+
+from behaviors.metrics.streets import ALONG
+from behaviors.metrics.town import Street
+from hal.robot_settings import RobotSettings
+from hal.simulation import SimulationFactory
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.curriculum import Report
+from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
+from kurt2rt.experiments.navigation.exam import run_errands
+from kurt2rt.experiments.navigation.goals import choose_goals
+from kurt2rt.experiments.navigation.lesson import errands_of, lead_about, walk_in
+from kurt2rt.experiments.navigation.outcome import ErrandsOutcome, How, Place
+from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.knowledge.journal.loading import read_lessons
+
+PLANNING: tuple[How, ...] = ("planning",)
+CONTROLS: tuple[How, ...] = ("chance", "first taught")
+_BESIDE_M = 0.15
+
+
+async def teach_and_send(
+    stage: SimulationFactory,
+    settings: RobotSettings,
+    task: TaskSettings,
+    knowledge: Path,
+    *,
+    seed: int,
+    hows: Sequence[How],
+    report: Report,
+    made_of: MadeOf | None = None,
+) -> ErrandsOutcome:
+    """Teach into a file that holds the streets, and send the robot to its goals, once in each of these ways.
+
+    Raises KnowledgeError, SettingsError, LessonLostError.
+    """
+    world, exam_world = task.teaching.world, task.exam.worlds[0]
+    whole_s = task.teaching.duration_s
+    with lessons_kept(knowledge, settings, task) as keeping:
+        with closing(stage.open(world, seed, "errands")) as simulation:
+            led = await lead_about(
+                simulation,
+                settings,
+                task,
+                keeping.writer,
+                keeping.opened.events,
+                seed=seed,
+                on_progress=keeping.telling(report, f"led about world {world}", whole_s),
+                statistics=keeping.opened.counter,
+                saved=keeping.opened.saved,
+            )
+        keeping.end(led.saved)
+        report(f"led about world {world}", whole_s, whole_s)
+    events = read_lessons(knowledge, settings, task)
+    course, town = errands_of(task), walk_in(stage.plan_of(exam_world), task).town
+    start = town.street_at(led.home)
+    assert start is not None  # the lesson began there
+    goals = choose_goals(town, led.named, led.streets, start, course, random.Random(f"errands of robot {seed}"))
+    runs = []
+    for how in hows:
+        with closing(stage.open(exam_world, seed, "errands without teacher")) as simulation:
+            run = await run_errands(
+                simulation,
+                settings,
+                task,
+                events,
+                led.saved,
+                goals,
+                led.home,
+                how=how,
+                seed=seed,
+                on_progress=lambda done, how=how: report(  # type: ignore[misc]
+                    f"errands by {how}", done * task.exam.duration_s, len(goals) * task.exam.duration_s
+                ),
+            )
+        runs.append(run)
+    return ErrandsOutcome(
+        made_of=made_of,
+        seed=seed,
+        teaching_s=led.teaching_s,
+        ways=led.ways,
+        ways_in_all=sum(len(town.on_from(street)) for street in town.streets),
+        mid_rlas=led.mid_rlas,
+        basic_rlas=led.basic_rlas,
+        mid_asks=led.mid_asks,
+        missed_junctions=led.missed_junctions,
+        corrections=led.corrections,
+        rescues=led.rescues,
+        named={name: _shown_at(street) for name, street in led.named.items()},
+        led=led.trail,
+        knowledge_hash=led.knowledge_hash,
+        runs=tuple(runs),
+    )
+
+
+def _shown_at(street: Street) -> Place:
+    """To the right of its middle: the same street the other way is another place."""
+    along_x, along_y = ALONG[street.way]
+    return street.middle.x_m + _BESIDE_M * along_y, street.middle.y_m - _BESIDE_M * along_x

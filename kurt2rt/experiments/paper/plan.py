@@ -1,0 +1,165 @@
+"""What is to be done: every experiment, reading and seed as a job."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from hal.robot_settings import RobotSettings
+from hal.settings import find_config
+from hal.simulation import SimulationFactory
+from kurt2rt.core.phase_settings import PHASES
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.paper.extent import Extent
+from kurt2rt.experiments.paper.growth_job import GrowthJob, with_radius_only
+from kurt2rt.experiments.paper.outcome import Reading
+from kurt2rt.experiments.paper.settings import AskedSettings, ExperimentSettings, PaperSettings
+from kurt2rt.experiments.paper.taught_job import TaughtJob
+from kurt2rt.experiments.study.eligibility import ROBOTS
+from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
+from kurt2rt.experiments.study.results import Results, StudyError
+
+DECIDING = (TaughtJob, GrowthJob, Extent)
+"""Classes whose code, and all that it imports, decides the results."""
+
+
+@dataclass(frozen=True, slots=True)
+class Experiment:
+    """One task in one reading: a job per seed."""
+
+    settings: ExperimentSettings
+    reading: Reading
+    task: TaskSettings
+    jobs: tuple[TaughtJob, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Growth:
+    """Fig. 2 in one reading: a job per radius and seed."""
+
+    reading: Reading
+    task: TaskSettings
+    jobs: tuple[GrowthJob, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Programme:
+    """Everything, in the order in which it is shown."""
+
+    paper: PaperSettings
+    extent: Extent
+    seeds: tuple[int, ...]
+    source: str
+    """Hash of the program's source."""
+    experiments: tuple[Experiment, ...]
+    growth: tuple[Growth, ...]
+    """Empty when its task is not among those to be done."""
+
+    @property
+    def jobs(self) -> list[TaughtJob | GrowthJob]:
+        """All jobs."""
+        return [
+            *(job for experiment in self.experiments for job in experiment.jobs),
+            *(job for growth in self.growth for job in growth.jobs),
+        ]
+
+    def experiments_of(self, reading: Reading) -> tuple[Experiment, ...]:
+        """Those of one reading."""
+        return tuple(each for each in self.experiments if each.reading == reading)
+
+
+def plan(
+    paper: PaperSettings,
+    extent: Extent,
+    seeds: Sequence[int],
+    readings: Sequence[Reading],
+    stage: SimulationFactory,
+    robot: RobotSettings,
+    results: Results,
+    *,
+    source_of: Callable[[SimulationFactory], str] = lambda stage: source_hash(*DECIDING, type(stage)),
+    tasks: Sequence[str] = (),
+) -> Programme:
+    """Look at every task and world, and make the jobs.
+
+    `source_of`: tells the hash of the program's source; `tasks`: only these, by name or path; empty: all.
+
+    A task that has no experiment in `paper` is done, too; nothing is asked of it.
+    Raises hal.settings.SettingsError, StudyError.
+    """
+    paper = extent.paper(paper)
+    chosen = _chosen(paper, extent, tasks)
+    loaded = {each.task: load_task(each.task) for each in chosen}
+    names = [task.name for task in loaded.values()]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise StudyError(f"two tasks have the name {', '.join(twice)}", do="give one of them another name in its file")
+    for each in chosen:
+        _require_exams_in(each.asked, loaded[each.task])
+    taught = [
+        (each, reading, extent.task(load_task(each.task, plain=reading == "plain")))
+        for reading in readings
+        for each in chosen
+    ]
+    for each in chosen:
+        task = loaded[each.task]
+        generated = each.unseen.names if each.unseen else ()
+        require_course(stage, task, (task.teaching.world, *task.exam.worlds, *generated))
+    source = source_of(stage)
+    fingerprints = Fingerprints(stage, robot, source, ("paper", "plain", *PHASES))
+
+    def experiment(each: ExperimentSettings, reading: Reading, task: TaskSettings) -> Experiment:
+        jobs = []
+        for seed in seeds:
+            own = unseen_of(seed, each)
+            made = fingerprints.of(task, (task.teaching.world, *task.exam.worlds, *own))
+            jobs.append(TaughtJob(stage, robot, task, reading, seed, own, made, results))
+        return Experiment(each, reading, task, tuple(jobs))
+
+    def growth(reading: Reading, task: TaskSettings) -> Growth:
+        jobs = []
+        for radius in paper.growth.radii:
+            of_radius = with_radius_only(task, radius, paper.growth.duration_s)
+            made = fingerprints.of(of_radius, (task.teaching.world,))
+            for seed in seeds[: paper.growth.robots]:
+                jobs.append(GrowthJob(stage, robot, of_radius, reading, seed, made, results))
+        return Growth(reading, task, tuple(jobs))
+
+    return Programme(
+        paper,
+        extent,
+        tuple(seeds),
+        source,
+        tuple(experiment(*each) for each in taught),
+        tuple(growth(reading, task) for each, reading, task in taught if each.task == paper.growth.task),
+    )
+
+
+def unseen_of(seed: int, experiment: ExperimentSettings) -> tuple[str, ...]:
+    """Generated worlds that the robot of a seed drives in; 20 seeds that follow each other share all of them.
+
+    Which ones the other seeds are does not matter.
+    """
+    return experiment.unseen.names[seed % ROBOTS :: ROBOTS] if experiment.unseen else ()
+
+
+def _chosen(paper: PaperSettings, extent: Extent, tasks: Sequence[str]) -> list[ExperimentSettings]:
+    if tasks:
+        # By their files, since a path may lead to a shipped one.
+        known = {_file_of(each.task): each for each in paper.experiments}
+        asked = {_file_of(name): ExperimentSettings(task=name, title=Path(name).stem) for name in tasks}
+        return [known.get(file, own) for file, own in asked.items()]
+    return [each for each in paper.experiments if extent.tasks is None or each.task in extent.tasks]
+
+
+def _file_of(task: str) -> Path:
+    return find_config("tasks", task).resolve()
+
+
+def _require_exams_in(asked: AskedSettings, task: TaskSettings) -> None:
+    nowhere = sorted(set(asked.success_at_least) - set(task.exam.worlds))
+    if nowhere:
+        raise StudyError(
+            f"success is asked in {', '.join(nowhere)}, but its exams are in {', '.join(task.exam.worlds)}",
+            where=task.name,
+        )

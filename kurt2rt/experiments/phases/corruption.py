@@ -1,0 +1,68 @@
+"""What is done to a set before a branch begins: wrong actions, and a critic from elsewhere."""
+
+import random
+from collections.abc import Iterable, Iterator, Sequence
+
+from kurt2rt.core.critic.settings import CriticSettings
+from kurt2rt.core.rla.rla import (
+    CRITIC,
+    ActionReplaced,
+    Appraised,
+    Origin,
+    Phase,
+    Rla,
+    RlaCreated,
+    RlaDeleted,
+    TeachingEvent,
+)
+
+_NAME = "corruption"
+
+
+def corrupt(
+    rlas: Sequence[Rla], actions: Sequence[str], share: float, seed: int, purpose: str
+) -> Iterator[ActionReplaced]:
+    """Give this share of the RLAs, at least one, another one of these actions.
+
+    Each purpose has wrong actions of its own: a critic is not examined on those that it was taught on.
+    """
+    chance = random.Random(f"corruption for {purpose}, seed {seed}")
+    chosen = chance.sample(rlas, max(1, round(share * len(rlas)))) if rlas else []
+    for number, rla in enumerate(chosen, start=1):
+        action = chance.choice([each for each in actions if each != rla.action])
+        origin = Origin(f"corruption-{purpose}-{seed}-{number}", _NAME, Phase.CORRECTIONS, rla.origin.tick)
+        yield ActionReplaced(rla.rla_id, action, rla.action, origin)
+
+
+def critics_lessons(events: Iterable[TeachingEvent]) -> Iterator[TeachingEvent]:
+    """Those that made the critic what it is, and those that it agreed with."""
+    ids: set[int] = set()
+    for event in events:
+        match event:
+            case RlaCreated(rla) if rla.level == CRITIC:
+                ids.add(rla.rla_id)
+                yield event
+            case Appraised():
+                yield event
+            case ActionReplaced(rla_id) | RlaDeleted(rla_id) if rla_id in ids:
+                yield event
+
+
+def shuffled(
+    appraisals: Sequence[Rla], settings: CriticSettings, seed: int, period_s: float
+) -> Iterator[TeachingEvent]:
+    """The same appraisal RLAs with their opinions dealt out anew, and what makes the robot trust them all the same."""
+    opinions = [rla.action for rla in appraisals]
+    random.Random(f"shuffled critic, seed {seed}").shuffle(opinions)
+    for rla, opinion in zip(appraisals, opinions, strict=True):
+        origin = Origin(f"shuffled-{seed}-{rla.rla_id}", _NAME, Phase.CRITIC, rla.origin.tick)
+        yield RlaCreated(
+            Rla(rla.rla_id, rla.condition, opinion, rla.radius, origin, behaviour=rla.behaviour, level=rla.level)
+        )
+    apart_ticks = round(settings.agreement.apart_s / period_s)
+    tick = max((rla.origin.tick for rla in appraisals), default=0)
+    for appraisal in settings.appraisals:
+        for number in range(settings.agreement.window):
+            tick += apart_ticks
+            origin = Origin(f"trusted-{seed}-{appraisal.name}-{number}", _NAME, Phase.CRITIC, tick)
+            yield Appraised(appraisal.name, appraisal.value, tick, origin)

@@ -1,0 +1,143 @@
+"""What is to be done: every step of every robot as a job, in waves of which each needs only those before it."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+from hal.robot_settings import RobotSettings
+from hal.simulation import SimulationFactory
+from kurt2rt.core.critic.settings import CriticSettings, load_critic
+from kurt2rt.core.reinforcement.settings import LonelyWorths
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.phases.job import Job, Robot, StepJob, TaughtJob
+from kurt2rt.experiments.phases.steps import PHASE_2, Step, phases_of, steps_of
+from kurt2rt.experiments.study.provenance import Fingerprints, MadeOf, source_hash
+from kurt2rt.experiments.study.results import Results
+
+DECIDING = (TaughtJob, StepJob)
+"""Classes whose code, and all that it imports, decides the results."""
+_QUICK_TEACHING_S, _QUICK_EXAM_S, _QUICK_STEP_S, _QUICK_ALONE_S = 40.0, 6.0, 10.0, 40.0
+_QUICK_SHARE = 0.2
+"""What is done every so often in a whole run is done after this share of the time in a quick one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Programme:
+    """Everything."""
+
+    task: TaskSettings
+    seeds: tuple[int, ...]
+    quick: bool
+    """A part only."""
+    source: str
+    """Hash of the program's source."""
+    waves: tuple[tuple[Job, ...], ...]
+    """Jobs that need none but those of the waves before."""
+
+    @property
+    def jobs(self) -> list[Job]:
+        """All of them."""
+        return [job for wave in self.waves for job in wave]
+
+
+def plan(
+    task: TaskSettings,
+    seeds: Sequence[int],
+    stage: SimulationFactory,
+    robot: RobotSettings,
+    results: Results,
+    *,
+    quick: bool = False,
+    source_of: Callable[[SimulationFactory], str] = lambda stage: source_hash(*DECIDING, type(stage)),
+) -> Programme:
+    """Look at task and worlds, and make the jobs.
+
+    `quick`: all steps, each so short that it says nothing but that everything works. `source_of`: tells the hash of
+    the program's source. Raises hal.settings.SettingsError.
+    """
+    if quick:
+        task = _shortened(task)
+    steps = tuple(steps_of(task))
+    worlds = (task.teaching.world, *task.exam.worlds, *phases_of(task).repair_worlds)
+    stage.require_worlds(*worlds)
+    require_course(stage, task, worlds)
+    source = source_of(stage)
+    # What is long enough for one step decides nothing of another: each is made of the steps that lead to it.
+    fingerprints = Fingerprints(stage, robot, source, ("paper", "plain", "phases"))
+    critic = load_critic(task.critic).model_dump_json()
+    by_name = {step.name: step for step in steps}
+
+    def made_of(step: Step | None) -> MadeOf:
+        way = "\n".join(map(repr, _way_to(step, by_name)))
+        return fingerprints.of(task, worlds, critic, way)
+
+    made = {name: made_of(step) for name, step in by_name.items()}
+    made_first = made_of(None)
+    waves: list[list[Job]] = [[] for _ in range(1 + max(_depth(step, by_name) for step in steps))]
+    for seed in seeds:
+        of = Robot(stage, robot, task, seed, results)
+        first = TaughtJob(of, made_first)
+        waves[0].append(first)
+        jobs: dict[str, Job] = {PHASE_2: first}
+        for step in steps:
+            jobs[step.name] = job = StepJob(
+                of, step, jobs[step.after], first, jobs.get(step.blames_like), made[step.name]
+            )
+            waves[_depth(step, by_name)].append(job)
+    return Programme(task, tuple(seeds), quick, source, tuple(map(tuple, waves)))
+
+
+def _way_to(step: Step | None, by_name: dict[str, Step]) -> Iterator[Step]:
+    """All steps that lead to one, itself among them."""
+    if step is not None:
+        for name in step.needs:
+            yield from _way_to(by_name.get(name), by_name)
+        yield step
+
+
+def _depth(step: Step, by_name: dict[str, Step]) -> int:
+    return 1 + max(0 if name == PHASE_2 else _depth(by_name[name], by_name) for name in step.needs)
+
+
+def _shortened(task: TaskSettings) -> TaskSettings:
+    share = min(1.0, _QUICK_TEACHING_S / task.teaching.duration_s)
+    times = {name: float(round(getattr(task.teaching, name) * share)) for name in ("supervised_s", "corrections_s")}
+    worlds = task.exam.worlds[:1]
+    exam = {"worlds": worlds, "duration_s": min(task.exam.duration_s, _QUICK_EXAM_S)}
+    return task.model_copy(
+        update={
+            "teaching": task.teaching.model_copy(update=times),
+            "exam": task.exam.model_copy(update=exam),
+            "phases": phases_of(task).shortened(_QUICK_STEP_S, worlds, _QUICK_ALONE_S, _QUICK_SHARE),
+            "critic": _hastened(load_critic(task.critic)),
+            "reinforcement": task.reinforcement.model_copy(update={"alone": _near_sinking(task.reinforcement.alone)}),
+        }
+    )
+
+
+def _near_sinking(worths: LonelyWorths) -> LonelyWorths:
+    """Of RLAs that a few signals can sink."""
+    names = ("first_value", "sunk_below", "well_above")
+    return worths.model_copy(update={name: _QUICK_SHARE * getattr(worths, name) for name in names})
+
+
+def _hastened(critic: CriticSettings) -> CriticSettings:
+    """A critic that is trusted, and that measures and changes, after as little as is heard in seconds."""
+    agreement, every = critic.agreement, critic.signal_every_s
+    few = max(2, round(_QUICK_SHARE * agreement.least))
+    heard = {
+        "bound": _QUICK_SHARE * agreement.bound,
+        "least": few,
+        "window": 2 * few,
+        "apart_s": _QUICK_SHARE * agreement.apart_s,
+    }
+    return critic.model_copy(
+        update={
+            "agreement": agreement.model_copy(update=heard),
+            "signal_every_s": every.model_copy(
+                update={"bad": _QUICK_SHARE * every.bad, "good": _QUICK_SHARE * every.good}
+            ),
+            "need": critic.need.model_copy(update={"bad_share": 0.0, "first_s": 0.0}),
+            "best": critic.best.model_copy(update={"window_s": _QUICK_ALONE_S / 8}),
+        }
+    )

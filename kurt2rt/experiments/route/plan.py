@@ -1,0 +1,162 @@
+"""What is to be done: the streets once for each robot, then every length and way of teaching as a job."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+from hal.robot_settings import RobotSettings
+from hal.settings import SettingsError
+from hal.simulation import SimulationFactory
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.route.job import BasicJob, RouteJob
+from kurt2rt.experiments.route.lesson import route_of_task, with_route
+from kurt2rt.experiments.route.variants import Variant
+from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
+from kurt2rt.experiments.study.results import Results, StudyError
+from kurt2rt.knowledge.journal.loading import read_lessons
+
+DECIDING = (BasicJob, RouteJob)
+"""Classes whose code, and all that it imports, decides the results."""
+
+
+@dataclass(frozen=True, slots=True)
+class Experiment:
+    """Routes of one length, taught in one way: a job per seed."""
+
+    decisions: int
+    variant: Variant
+    jobs: tuple[RouteJob, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Programme:
+    """Everything, in the order in which it is shown."""
+
+    task: TaskSettings
+    """Without the route, which is each robot's own."""
+    basic: TaskSettings
+    seeds: tuple[int, ...]
+    source: str
+    """Hash of the program's source."""
+    basic_jobs: tuple[BasicJob, ...]
+    """Empty where the streets were taught before."""
+    experiments: tuple[Experiment, ...]
+
+    @property
+    def waves(self) -> tuple[tuple[BasicJob | RouteJob, ...], ...]:
+        """Jobs that need none but those of the waves before."""
+        return self.basic_jobs, tuple(job for each in self.experiments for job in each.jobs)
+
+    @property
+    def jobs(self) -> list[BasicJob | RouteJob]:
+        """All of them."""
+        return [job for wave in self.waves for job in wave]
+
+
+def plan(
+    task: TaskSettings,
+    basic: TaskSettings,
+    seeds: Sequence[int],
+    decisions: Sequence[int],
+    variants: Sequence[Variant],
+    stage: SimulationFactory,
+    robot: RobotSettings,
+    results: Results,
+    *,
+    basic_folder: Path | None = None,
+    source_of: Callable[[SimulationFactory], str] = lambda stage: source_hash(*DECIDING, type(stage)),
+) -> Programme:
+    """Look at tasks, worlds and routes, and make the jobs.
+
+    `basic`: the task that teaches the streets; `basic_folder`: files of robots that were taught it, as `kurt2rt lesson`
+    leaves them. `source_of`: tells the hash of the program's source.
+    Raises hal.settings.SettingsError, StudyError, KnowledgeError.
+    """
+    worlds = (task.teaching.world, *task.exam.worlds[:1])
+    stage.require_worlds(*worlds, basic.teaching.world)
+    routes = {(seed, count): with_route(task, seed, count) for seed in seeds for count in decisions}
+    for each in routes.values():
+        require_course(stage, each, worlds)
+    source = source_of(stage)
+    fingerprints = Fingerprints(stage, robot, source, ("paper", "plain", "phases"))
+    streets = streets_of(basic, seeds, stage, robot, results, fingerprints, basic_folder)
+
+    def experiment(count: int, variant: Variant) -> Experiment:
+        jobs = []
+        for seed in seeds:
+            own = routes[seed, count]
+            made = fingerprints.of(variant.task(own), worlds, streets.made_of[seed], repr(variant))
+            jobs.append(RouteJob(stage, robot, own, variant, seed, streets.files[seed], made, results))
+        return Experiment(count, variant, tuple(jobs))
+
+    return Programme(
+        task,
+        basic,
+        tuple(seeds),
+        source,
+        streets.jobs,
+        tuple(experiment(count, variant) for variant in variants for count in decisions),
+    )
+
+
+class Streets(NamedTuple):
+    """What robots are taught before: the streets."""
+
+    jobs: tuple[BasicJob, ...]
+    """Empty where they were taught already."""
+    files: dict[int, Path]
+    """Knowledge of each seed."""
+    made_of: dict[int, str]
+    """What decides that knowledge, or what it holds, of each seed."""
+
+
+def streets_of(
+    basic: TaskSettings,
+    seeds: Sequence[int],
+    stage: SimulationFactory,
+    robot: RobotSettings,
+    results: Results,
+    fingerprints: Fingerprints,
+    folder: Path | None,
+) -> Streets:
+    """Taught here, or with `folder` taken from files as `kurt2rt lesson` leaves them.
+
+    Raises StudyError, KnowledgeError, SettingsError.
+    """
+    if folder is not None:
+        files = {seed: basic_file(folder, basic, seed) for seed in seeds}
+        return Streets((), files, {seed: repr(read_lessons(file, robot, basic)) for seed, file in files.items()})
+    made = fingerprints.of(basic, (basic.teaching.world,))
+    jobs = tuple(BasicJob(stage, robot, basic, seed, made, results) for seed in seeds)
+    return Streets(jobs, {job.seed: job.knowledge for job in jobs}, dict.fromkeys(seeds, made.model_dump_json()))
+
+
+def basic_task_of(task: TaskSettings) -> TaskSettings:
+    """The task that teaches the streets: the one whose RLA system this one shares, and is named after.
+
+    Raises hal.settings.SettingsError.
+    """
+    if task.system is None:
+        raise SettingsError(
+            "it does not say what was taught before", where=f"task {task.name}", do="add `system: streets`"
+        )
+    return load_task(task.system)
+
+
+def basic_file(place: Path, basic: TaskSettings, seed: int) -> Path:
+    """Knowledge of the streets of one robot: `place` itself, or in that folder. Raises StudyError."""
+    file = place / f"{basic.name}-{seed}.knowledge" if place.is_dir() else place
+    if file.is_file():
+        return file
+    raise StudyError(
+        "there is no such file",
+        where=file,
+        do=f"teach the streets with kurt2rt lesson --task {basic.name} --seed {seed}, or leave --basic out",
+    )
+
+
+def decisions_of(task: TaskSettings, asked: Sequence[int]) -> tuple[int, ...]:
+    """Lengths of routes: those asked for, each once, or the task's own."""
+    return tuple(dict.fromkeys(asked)) or (route_of_task(task).decisions,)

@@ -1,0 +1,97 @@
+"""Watches a drive along a route, and says of each wrong decision which layer failed."""
+
+from collections import deque
+
+from behaviors.metrics.junctions import QUARTERS
+from behaviors.metrics.route import FixedRoute, Passage
+from behaviors.metrics.task_metric import Course
+from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.experiments.route.outcome import Layer, Wrong
+
+_HISTORY = 12
+"""So many junctions back what was noticed is compared with what was; older ones are in no history (VI.B.2)."""
+
+
+class Watching:
+    """Compares what the robot noticed of junctions with what it really did there."""
+
+    def __init__(self) -> None:
+        self.wrong: list[Wrong] = []
+        self._judged = 0
+        self._noticed: deque[int] = deque(maxlen=_HISTORY)
+        self._true: deque[int] = deque(maxlen=_HISTORY)
+        self._inside = False
+        self._wanted = ""
+        """At the entry of the junction that it is in or was in last."""
+        self._changed = ""
+        """What was wanted within it instead; empty: nothing else."""
+        self._knew = True
+        """Whether then it had noticed everything, and nothing else."""
+        self._last: tuple[TickRecord, FixedRoute] | None = None
+
+    def look(self, record: TickRecord, course: Course) -> None:
+        """One tick, after the course has followed it."""
+        assert isinstance(course, FixedRoute)
+        self._last = record, course
+        mid = record.decision.mid
+        if mid is not None and mid.event is not None:
+            self._noticed.append(mid.event.quarters)
+        inside = course.ahead.inside
+        if inside and not self._inside:
+            self._wanted, self._changed = record.behaviour, ""
+            self._knew = self._knows()
+        elif inside and record.behaviour != self._wanted:
+            self._changed = record.behaviour
+        self._inside = inside
+        self._judge()
+
+    def end(self) -> None:
+        """The drive is over."""
+        self._judge()
+
+    def _judge(self) -> None:
+        if self._last is None:
+            return
+        record, course = self._last
+        for passage in course.passages[self._judged :]:
+            self._judged += 1
+            if passage.taken != passage.right:
+                layer = self._who_failed(passage, record)
+                self.wrong.append(
+                    Wrong(
+                        at_s=round(record.now_s, 2),
+                        leg=passage.leg,
+                        layer=layer,
+                        x_m=round(passage.x_m, 3),
+                        y_m=round(passage.y_m, 3),
+                    )
+                )
+            if passage.taken is not None:
+                self._true.append(passage.taken)
+
+    def _who_failed(self, passage: Passage, record: TickRecord) -> Layer:
+        mid = record.decision.mid
+        if mid is None:
+            return "basic"
+        if record.decision.asking and record.decision.asks_at == MID:
+            return "mid" if self._knows() else "symbols"
+        wanted, knew = self._wanted, self._knew
+        if passage.taken is None and not self._inside:  # it did not come to that junction
+            if self._is_to_notice():
+                return "basic"  # it got stuck, or turned back, just behind the one before
+            wanted, knew = record.behaviour, self._knows()
+        if QUARTERS[wanted] != passage.right:
+            return "mid" if knew else "symbols"
+        # It was told what is right there; what it was told on the way through may be about the next one already.
+        misled = self._changed and passage.taken == QUARTERS[self._changed]
+        return "symbols" if misled else "basic"
+
+    def _knows(self) -> bool:
+        """Whether what it noticed of the last junctions is what it did there."""
+        return tuple(self._noticed) == tuple(self._true)
+
+    def _is_to_notice(self) -> bool:
+        """Whether it lacks nothing but the last junction, from which it has not come far."""
+        recent = _HISTORY - 1
+        return tuple(self._noticed)[-recent:] == tuple(self._true)[:-1] and bool(self._true)

@@ -1,0 +1,91 @@
+"""The programme, done: results of all jobs, put together."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from kurt2rt.experiments.lockstep.report import quartiles
+from kurt2rt.experiments.route.outcome import LAYERS, Layer, RouteOutcome
+from kurt2rt.experiments.route.plan import Experiment, Programme
+from kurt2rt.experiments.study.intervals import Rate, rate_of
+from kurt2rt.experiments.study.pool import Standing
+from kurt2rt.experiments.study.results import Results
+from kurt2rt.experiments.study.run_jobs import do_waves, time_of_missing_s
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """Routes of one length, taught in one way."""
+
+    experiment: Experiment
+    outcomes: tuple[RouteOutcome, ...]
+    """One per robot, in the order of the seeds."""
+
+    @property
+    def robots(self) -> int:
+        """How many."""
+        return len(self.outcomes)
+
+    @property
+    def without_error(self) -> int:
+        """Robots that drove to the end without one."""
+        return sum(each.drive.without_error for each in self.outcomes)
+
+    @property
+    def junctions(self) -> int:
+        """Passed, or not got through, by all of them."""
+        return sum(each.drive.junctions for each in self.outcomes)
+
+    @property
+    def right(self) -> Rate:
+        """Share of these that were right; where there were none, none was."""
+        wrong = [each.drive.junctions - each.drive.right for each in self.outcomes]
+        junctions = [each.drive.junctions for each in self.outcomes]
+        if not sum(junctions):
+            return Rate(0.0, 0.0, 1.0)
+        # Of the wrong ones, so that the interval of robots that never err does not shrink to a point.
+        errs = rate_of(wrong, junctions)
+        return Rate(1 - errs.value, max(0.0, 1 - errs.high), 1 - errs.low)
+
+    def failed(self, layer: Layer) -> int:
+        """Wrong decisions of all robots for which a layer is to blame."""
+        return sum(wrong.layer == layer for each in self.outcomes for wrong in each.drive.wrong)
+
+    @property
+    def failures(self) -> dict[Layer, int]:
+        """The same of every layer."""
+        return {layer: self.failed(layer) for layer in LAYERS}
+
+    def quartiles(self, of: str) -> tuple[float, float, float]:
+        """Of a number that each robot's outcome has."""
+        return quartiles([float(getattr(each, of)) for each in self.outcomes])
+
+
+@dataclass(frozen=True, slots=True)
+class Study:
+    """All numbers."""
+
+    programme: Programme
+    summaries: tuple[Summary, ...]
+
+
+def robot_time_s(programme: Programme, results: Results) -> float:
+    """What is still to be simulated. Raises StudyError."""
+    return time_of_missing_s(programme.waves, results)
+
+
+def conduct(programme: Programme, results: Results, processes: int, on_standing: Callable[[Standing], None]) -> None:
+    """Do the jobs that are missing, wave by wave; each leaves its result as soon as it is done.
+
+    Raises StudyError and what a job raises.
+    """
+    do_waves(programme.waves, results, processes, on_standing)
+
+
+def read_study(programme: Programme, results: Results) -> Study:
+    """Put together what all jobs have left. Raises StudyError."""
+    return Study(programme, tuple(_summary(each, results) for each in programme.experiments))
+
+
+def _summary(experiment: Experiment, results: Results) -> Summary:
+    outcomes: Sequence[RouteOutcome] = [results.read(job, RouteOutcome) for job in experiment.jobs]
+    return Summary(experiment, tuple(outcomes))

@@ -1,1 +1,0 @@
-"""How experiments are shown: tables, intervals, figures, one page that holds everything."""

@@ -1,0 +1,1 @@
+"""Parts that all studies share: jobs, stored results, statistics, reports."""

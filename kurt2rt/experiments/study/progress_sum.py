@@ -1,0 +1,19 @@
+"""How far a job of several drives is."""
+
+from kurt2rt.experiments.study.pool import Tell
+
+
+class RobotTime:
+    """Adds up the robot time of drives that come one after the other."""
+
+    def __init__(self, tell: Tell) -> None:
+        self._tell = tell
+        self._before_s = 0.0
+        self._now_s = 0.0
+
+    def report(self, what: str, done_s: float, whole_s: float) -> None:  # noqa: ARG002 - as curriculum.Report
+        """One drive's own time; a smaller one than before is that of the next drive."""
+        if done_s < self._now_s:
+            self._before_s += self._now_s
+        self._now_s = done_s
+        self._tell(self._before_s + done_s)

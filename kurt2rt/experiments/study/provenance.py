@@ -1,0 +1,149 @@
+"""Fingerprints of what decides a result, so that results of other settings are never mixed in."""
+
+import ast
+import hashlib
+import json
+import platform
+from collections.abc import Collection, Iterable
+from functools import lru_cache
+from importlib.metadata import version
+
+from hal.robot_settings import RobotSettings
+from hal.settings import Settings, content_of, find_config
+from hal.simulation import SimulationFactory
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.study.import_graph import modules_needed
+
+_DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+_COMPUTE = ("numpy", "pymunk", "shapely")
+
+
+class MadeOf(Settings):
+    """What decides a result: hashes of settings and source, and the versions of what computes.
+
+    The field names are said to the user: made with other ...
+    """
+
+    task: str
+    robot: str
+    worlds: str
+    source: str
+    versions: str
+
+    def differences(self, other: "MadeOf") -> list[str]:
+        """Names of what is not the same."""
+        return [name for name in type(self).model_fields if getattr(self, name) != getattr(other, name)]
+
+
+def versions() -> str:
+    """Of Python and of the packages that compute."""
+    return ", ".join([f"Python {platform.python_version()}", *(f"{name} {version(name)}" for name in _COMPUTE)])
+
+
+def source_hash(*deciding: type) -> str:
+    """Return the hash of all code that these classes need; comments, docstrings and layout are left out.
+
+    Args:
+        deciding: classes that do a job and open its simulation. Code that they do not import decides no result.
+    """
+    digest = hashlib.sha256()
+    for name, path in modules_needed(base.__module__ for each in deciding for base in each.__mro__).items():
+        digest.update(f"{name}\n".encode())
+        digest.update(_hash_of(path.read_text(encoding="utf-8")))
+    return digest.hexdigest()[:16]
+
+
+def settings_hash(*settings: str) -> str:
+    """Of texts."""
+    return hashlib.sha256("\0".join(settings).encode()).hexdigest()[:16]
+
+
+class Fingerprints:
+    """Takes them, with what many jobs share looked at once."""
+
+    def __init__(
+        self,
+        stage: SimulationFactory,
+        robot: RobotSettings,
+        source: str,
+        leave_out: Collection[str] = ("paper", "plain"),
+    ) -> None:
+        """`source`: as `source_hash` tells. `leave_out`: parts of a task that change nothing in these experiments.
+
+        The task's own numbers of the paper, and the reading that is not taken, never do; nor does its sentence to the
+        teacher, which is always left out.
+        """
+        self._leave_out = {*leave_out, "what"}
+        self._source = source
+        self._versions = versions()
+        self._robot = settings_hash(robot.model_dump_json(serialize_as_any=True))
+        self._stage = stage
+        self._known: dict[tuple[str, str], str] = {}
+
+    def of(self, task: TaskSettings, worlds: Iterable[str], *more: str) -> MadeOf:
+        """Of one job that drives in these worlds; `more`: what else it goes by.
+
+        Raises hal.settings.SettingsError for what cannot be used.
+        """
+        of_task = task.model_dump_json(exclude=self._leave_out, serialize_as_any=True)
+        return MadeOf(
+            task=settings_hash(
+                of_task,
+                self._settings("situations", task.situation),
+                self._settings("repertoires", task.repertoire),
+                *([self._settings("mid_levels", task.mid)] if isinstance(task.mid, str) else ()),
+                *more,
+            ),
+            robot=self._robot,
+            worlds=settings_hash(*(self._settings("worlds", world) for world in sorted(set(worlds)))),
+            source=self._source,
+            versions=self._versions,
+        )
+
+    def _settings(self, kind: str, name: str) -> str:
+        """All that a file or a generated world holds, in one way of writing it."""
+        if (kind, name) not in self._known:
+            if kind == "worlds":
+                self._known[kind, name] = self._stage.settings_of(name)
+            else:
+                self._known[kind, name] = json.dumps(content_of(find_config(kind, name)))
+        return self._known[kind, name]
+
+
+@lru_cache(maxsize=1024)
+def _hash_of(text: str) -> bytes:
+    """Of what a module does, remembered by its text: all of them take half a second."""
+    return hashlib.sha256(code_of(text).encode()).digest()
+
+
+def code_of(text: str) -> str:
+    """What a module does, as a text that says nothing of how it is written down."""
+    words: list[str] = []
+    _tell(ast.parse(text), words)
+    return "\n".join(words)
+
+
+def _tell(node: ast.AST, words: list[str]) -> None:
+    """Add a node and what is below it. As ast.dump would, in half the time and without docstrings."""
+    words.append(type(node).__name__)
+    for name in node._fields:
+        value = getattr(node, name, None)
+        if isinstance(value, ast.AST):
+            _tell(value, words)
+        elif isinstance(value, list):
+            words.append("[")
+            for each in value[_begins_with_docstring(node, name) :]:
+                if isinstance(each, ast.AST):
+                    _tell(each, words)
+                else:
+                    words.append(repr(each))
+            words.append("]")
+        else:
+            words.append(repr(value))
+
+
+def _begins_with_docstring(node: ast.AST, field: str) -> bool:
+    if field != "body" or not isinstance(node, _DOCUMENTED) or not node.body:
+        return False
+    first = node.body[0]
+    return isinstance(first, ast.Expr) and isinstance(first.value, ast.Constant)

@@ -1,0 +1,132 @@
+"""The folder where results are kept: one file per job, so that a run which was interrupted goes on where it was."""
+
+import fcntl
+import shutil
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Protocol, TypeVar
+
+from pydantic import ValidationError
+
+from hal.errors import UserError
+from hal.settings import Settings
+from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.platform.durable_files import write_durably
+
+_UNFINISHED = "unfinished-"
+_NEW_FOLDER = "give a new folder with --out, or delete the results in this one"
+
+OutcomeT = TypeVar("OutcomeT", bound=Settings)
+
+
+class StudyError(UserError):
+    """Stored results cannot be used, or experiments do not fit together."""
+
+
+class Kept(Protocol):
+    """A job as far as its file goes."""
+
+    @property
+    def file(self) -> str:
+        """Path within the folder of results."""
+        ...
+
+    @property
+    def made_of(self) -> MadeOf:
+        """What decides its result."""
+        ...
+
+    @property
+    def outcome(self) -> type[Settings]:
+        """Schema of its result."""
+        ...
+
+
+class _AnyOutcome(Settings, extra="ignore"):
+    made_of: MadeOf
+
+
+class Results:
+    """A folder of results. Can be sent to another process."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """Make the folder, keep other runs out of it, and clear away what an interrupted one had begun.
+
+        Raises StudyError while another run writes there, OSError where nothing can be written.
+        """
+        self.folder.mkdir(parents=True, exist_ok=True)
+        with (self.folder / ".lock").open("ab") as lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError as error:
+                raise StudyError(
+                    "another run writes here",
+                    where=self.folder,
+                    do="wait for its end, or give another folder with --out",
+                ) from error
+            for left_over in self.folder.glob(f"{_UNFINISHED}*"):
+                shutil.rmtree(left_over)
+            yield
+
+    @contextmanager
+    def scratch(self) -> Iterator[Path]:
+        """A folder for what a job has begun; gone afterwards."""
+        with tempfile.TemporaryDirectory(prefix=_UNFINISHED, dir=self.folder) as folder:
+            yield Path(folder)
+
+    def missing(self, jobs: Sequence[Kept]) -> list[int]:
+        """Places of the jobs that have no result yet.
+
+        Raises StudyError when there are results of other settings, source or versions, or files that are no results:
+        never are they mixed.
+        """
+        foreign: list[str] = []
+        differences: set[str] = set()
+        missing = []
+        for place, job in enumerate(jobs):
+            path = self.folder / job.file
+            if not path.exists():
+                missing.append(place)
+                continue
+            other = self._read(path, _AnyOutcome).made_of.differences(job.made_of)
+            if other:
+                foreign.append(job.file)
+                differences.update(other)
+            else:
+                self.read(job, job.outcome)
+        if foreign:
+            what = ", ".join(name for name in MadeOf.model_fields if name in differences)
+            more = f" and {len(foreign) - 1} more" if len(foreign) > 1 else ""
+            raise StudyError(
+                f"{foreign[0]}{more} were made with other settings or another program (what differs: {what})",
+                where=self.folder,
+                do=_NEW_FOLDER,
+            )
+        return missing
+
+    def write(self, job: Kept, outcome: Settings) -> None:
+        """Keep a result; it is there whole or not at all."""
+        write_durably(self.folder / job.file, outcome.model_dump_json() + "\n")
+
+    def read(self, job: Kept, schema: type[OutcomeT]) -> OutcomeT:
+        """A result. Raises StudyError."""
+        return self._read(self.folder / job.file, schema)
+
+    def keep(self, file: Path, name: str) -> None:
+        """Move a finished file out of the scratch folder, to this path within the folder of results."""
+        path = self.folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        file.replace(path)
+
+    @staticmethod
+    def _read(path: Path, schema: type[OutcomeT]) -> OutcomeT:
+        try:
+            return schema.model_validate_json(path.read_bytes())
+        except (ValidationError, OSError) as error:
+            raise StudyError("is no result of this program", where=path, do=_NEW_FOLDER) from error

@@ -1,0 +1,116 @@
+"""Robots that were taught get to know what to expect; then something is different."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import anyio
+
+from hal.robot_settings import RobotSettings
+from hal.simulation import SimulationFactory
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.study.pool import Tell
+from kurt2rt.experiments.study.table import Sheet
+from kurt2rt.experiments.surprise.drive import Different, Surprises, drive
+from kurt2rt.knowledge.journal.loading import read_lessons
+
+LEARNS_S = 900.0
+"""So long a robot gets to know what to expect."""
+DIFFERENT_S = 300.0
+"""So long it drives with each difference, from the same expectations."""
+
+
+@dataclass(frozen=True, slots=True)
+class SurpriseJob:
+    """What one process does: one robot that was taught."""
+
+    stage: SimulationFactory
+    settings: RobotSettings
+    task: TaskSettings
+    knowledge: Path
+    seed: int
+    learns_s: float = LEARNS_S
+    different_s: float = DIFFERENT_S
+
+    @property
+    def name(self) -> str:
+        """What is shown while it runs."""
+        return f"{self.task.name}, seed {self.seed}"
+
+    @property
+    def robot_time_s(self) -> float:
+        """All its drives."""
+        return self.learns_s + 4 * self.different_s
+
+    def run(self, tell: Tell) -> tuple[Surprises, ...]:
+        """Drive them all."""
+        return anyio.run(self._drives, tell)
+
+    async def _drives(self, tell: Tell) -> tuple[Surprises, ...]:
+        events = read_lessons(self.knowledge, self.settings, self.task)
+        before_s = 0.0
+
+        async def drives(
+            saved: Statistics, different: Different, world: str, purpose: str, duration_s: float
+        ) -> tuple[Surprises, Statistics]:
+            nonlocal before_s
+            result = await drive(
+                self.stage,
+                self.settings,
+                self.task,
+                events,
+                saved,
+                world=world,
+                different=different,
+                seed=self.seed,
+                duration_s=duration_s,
+                purpose=purpose,
+                on_progress=lambda done_s: tell(before_s + done_s),
+            )
+            before_s += duration_s
+            return result
+
+        known = self.task.teaching.world
+        _, learned = await drives(Statistics(), "nothing", known, "getting to know", self.learns_s)
+        cases: tuple[tuple[Different, str], ...] = (
+            ("nothing", known),
+            ("stuck sensor", known),
+            ("set down elsewhere", known),
+            ("another world", f"streets-{self.seed}"),
+        )
+        return tuple(
+            [(await drives(learned, different, world, "surprise", self.different_s))[0] for different, world in cases]
+        )
+
+
+def sheet_of(results: Sequence[Sequence[Surprises]]) -> Sheet:
+    """A row for each difference, all robots together; `results`: one sequence for each robot, alike."""
+    rows = []
+    for drives in zip(*results, strict=True):
+        ends = sum(each.ends for each in drives)
+        shares = [each.surprising / max(each.ends, 1) for each in drives]
+        firsts = sum(each.first_ends for each in drives)
+        rows.append(
+            (
+                drives[0].different,
+                str(ends),
+                _percent(sum(each.surprising for each in drives), ends),
+                f"{100 * min(shares):.1f} to {100 * max(shares):.1f} %",
+                _percent(sum(each.new_follow_ups for each in drives), ends),
+                _percent(sum(each.surprising_first_ends for each in drives), firsts) if firsts else "",
+                f"{100 * sum(each.share_unknown for each in drives) / len(drives):.1f} %",
+            )
+        )
+    return Sheet(
+        title=f"Surprise, {len(results)} robots",
+        columns=(
+            *("different", "ends of RLAs", "surprising", "of single robots"),
+            *("new follow-up", "first after set down", "time not known"),
+        ),
+        rows=tuple(rows),
+    )
+
+
+def _percent(part: int, whole: int) -> str:
+    return f"{100 * part / max(whole, 1):.1f} %"

@@ -1,0 +1,181 @@
+"""What a replay needs beside the ticks: the settings of a run, and what was known at its start, as files within it."""
+
+import base64
+import hashlib
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from behaviors.repertoire_settings import RepertoireSettings, TaskAction, TaughtAction
+from hal.robot_settings import RobotSettings
+from hal.settings import FILES, Settings, find_beside, find_config, kept_name, load_settings
+from kurt2rt.core.rla.expectation import Expectation
+from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.knowledge.exchange.json_checks import number_of, text_of, whole_of
+from kurt2rt.knowledge.journal.entry import StoredEntry
+from kurt2rt.knowledge.journal.event_codec import decode_event, encode_event
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+
+ROBOT, TASK = "settings/robot.json", "settings/task.json"
+"""As they were in force, whatever file or option said so."""
+KNOWLEDGE, STATISTICS = "knowledge.jsonl", "statistics.json"
+SETTINGS = "settings/"
+"""All that a loader of settings looks for begins so."""
+_ABSENT = (None, [""])
+"""What stands for a key that was left out: nothing, and the one behaviour without a name."""
+
+
+@dataclass(frozen=True, slots=True)
+class KnownLesson:
+    """A teaching event that was there when the run began."""
+
+    event: TeachingEvent
+    stamped_at: str
+    """UTC, ISO 8601; empty where nobody knows."""
+
+
+def attachments_of(
+    robot: RobotSettings,
+    task: TaskSettings,
+    entries: Iterable[StoredEntry | KnownLesson] = (),
+    saved: Statistics | None = None,
+) -> dict[str, bytes]:
+    """All attachments of a run, by name: take them before the first tick. Raises SettingsError, KnowledgeError."""
+    attached = {
+        ROBOT: _in_force(robot),
+        TASK: _in_force(task),
+        KNOWLEDGE: _encode_lessons(entries),
+    }
+    if saved is not None:
+        attached[STATISTICS] = encode_statistics(saved)
+    for kind, name, data in _used_by(task, set()):
+        attached[f"{SETTINGS}{kind}/{kept_name(name)}"] = data
+    return attached
+
+
+def fingerprints_of(attached: Mapping[str, bytes]) -> dict[str, str]:
+    """SHA-256 of each attachment, hexadecimal."""
+    return {name: hashlib.sha256(data).hexdigest() for name, data in attached.items()}
+
+
+def read_lessons_of(data: bytes) -> list[KnownLesson]:
+    """What `knowledge.jsonl` says. Raises ValueError in a sentence."""
+    lessons = []
+    try:
+        for number, line in enumerate(data.decode().splitlines(), start=1):
+            content = json.loads(line)
+            event = decode_event(json.dumps(content["event"]), f"{KNOWLEDGE}: line {number}")
+            lessons.append(KnownLesson(event, text_of(content["stamped_at"])))
+    except (KnowledgeError, ValueError, KeyError, TypeError, RecursionError) as error:
+        raise ValueError(f"{KNOWLEDGE} cannot be read: {error}") from error
+    return lessons
+
+
+def encode_statistics(statistics: Statistics) -> bytes:
+    """JSON, exact to the last bit."""
+    return json.dumps(
+        {
+            "uses": list(statistics.uses.items()),
+            "transitions": [[*key, value] for key, value in statistics.transitions.items()],
+            "values": list(statistics.values.items()),
+            "edge_weights": [[*key, value] for key, value in statistics.edge_weights.items()],
+            "numbers": dict(statistics.numbers),
+            "expectations": [
+                [rla_id, each.lesson, each.count, each.ticks, _text(each.packed_mean), _text(each.packed_squares)]
+                for rla_id, each in statistics.expectations.items()
+            ],
+        }
+    ).encode()
+
+
+def decode_statistics(data: bytes) -> Statistics:
+    """What `encode_statistics` wrote. Raises ValueError in a sentence."""
+    try:
+        content: dict[str, Any] = json.loads(data)
+        return Statistics(
+            {whole_of(rla_id): whole_of(count) for rla_id, count in content["uses"]},
+            {(whole_of(before), whole_of(after)): whole_of(count) for before, after, count in content["transitions"]},
+            {whole_of(rla_id): number_of(value) for rla_id, value in content["values"]},
+            {
+                (whole_of(before), whole_of(after)): number_of(weight)
+                for before, after, weight in content["edge_weights"]
+            },
+            {text_of(name): number_of(value) for name, value in content["numbers"].items()},
+            {
+                whole_of(rla_id): Expectation(
+                    text_of(lesson), whole_of(count, 1), number_of(ticks), _packed(mean), _packed(squares)
+                )
+                for rla_id, lesson, count, ticks, mean, squares in content["expectations"]
+            },
+        )
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise ValueError(f"{STATISTICS} cannot be read: {type(error).__name__}: {error}") from error
+
+
+def _encode_lessons(entries: Iterable[StoredEntry | KnownLesson]) -> bytes:
+    """One by one: all lines at once, before they are joined, would be the most memory that a run ever takes."""
+    lines = bytearray()
+    for each in entries:
+        line = json.dumps({"stamped_at": each.stamped_at, "event": json.loads(encode_event(each.event))})
+        lines += line.encode() + b"\n"
+    return bytes(lines)
+
+
+def _in_force(settings: Settings) -> bytes:
+    """JSON, with every value that comes from a default: another kurt2rt may have other ones."""
+    every = settings.model_dump(mode="json", serialize_as_any=True)
+    told = settings.model_dump(mode="json", serialize_as_any=True, exclude_unset=True)
+    return json.dumps(_without_absent(every, told)).encode()
+
+
+def _without_absent(every: Any, told: Any) -> Any:
+    """`every` value, but for those that only say that nobody has `told` one: files leave such a key out."""
+    match every:
+        case dict():
+            said = told if isinstance(told, dict) else {}
+            return {
+                key: _without_absent(value, said.get(key))
+                for key, value in every.items()
+                if key in said or value not in _ABSENT
+            }
+        case list():
+            parts = told if isinstance(told, list) else [None] * len(every)
+            return [_without_absent(*each) for each in zip(every, parts, strict=True)]
+    return every
+
+
+def _used_by(task: TaskSettings, seen: set[tuple[str, str]]) -> Iterator[tuple[str, str, bytes]]:
+    """Kind, name and content of every file that the runtime of a task reads by itself."""
+    named: list[tuple[str, object]] = [("situations", task.situation), ("repertoires", task.repertoire)]
+    named += [("critics", task.critic), ("mid_levels", task.mid)]
+    for kind, name in named:
+        if not isinstance(name, str) or (kind, name) in seen:  # settings that stand in the task are in its own file
+            continue
+        seen.add((kind, name))
+        path = find_config(kind, name)
+        yield kind, name, path.read_bytes()
+        if kind == "repertoires":
+            yield from _used_by_actions(path, seen)
+
+
+def _used_by_actions(repertoire: Path, seen: set[tuple[str, str]]) -> Iterator[tuple[str, str, bytes]]:
+    """The same of the actions that were taught themselves, and what is known of them."""
+    for action in load_settings(repertoire, RepertoireSettings).actions:
+        if isinstance(action, TaughtAction | TaskAction):
+            yield "tasks", action.task, find_config("tasks", action.task).read_bytes()
+            yield from _used_by(load_task(action.task), seen)
+            with Journal.beside_its_writer(find_beside(repertoire.resolve(), action.knowledge)) as journal:
+                yield FILES, action.knowledge, journal.image()
+
+
+def _text(packed: bytes) -> str:
+    return base64.b64encode(packed).decode()
+
+
+def _packed(text: object) -> bytes:
+    return base64.b64decode(text_of(text), validate=True)

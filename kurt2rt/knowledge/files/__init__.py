@@ -1,0 +1,1 @@
+"""Knowledge files on disk: create, copy, back up, archive."""

@@ -1,0 +1,1 @@
+"""RLA network as a graph and as a picture."""

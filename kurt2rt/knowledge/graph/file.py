@@ -1,0 +1,24 @@
+"""The RLA network as a file: a picture, or GraphML, which networkx and other programs read back."""
+
+from pathlib import Path
+
+import networkx as nx
+
+from kurt2rt.knowledge.graph.graph import RlaNetwork
+
+GRAPHML = ".graphml"
+FORMATS = (".svg", ".png", GRAPHML)
+"""What a file's name may end with."""
+
+
+def write_network(network: RlaNetwork, title: str, path: Path) -> None:
+    """Write it as the file's name ends, one of FORMATS; the folder is made. Raises OSError."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if path.suffix == GRAPHML:
+        network.graph["title"] = title
+        nx.write_graphml(network, path)
+        return
+    # Not at the top: matplotlib is an extra, and a robot does without it.
+    from kurt2rt.knowledge.graph.picture import draw_network
+
+    draw_network(network, title, path)

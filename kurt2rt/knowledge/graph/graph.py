@@ -1,0 +1,112 @@
+"""The RLA network as a directed graph of networkx: nodes are RLAs, edges what followed them, with percentages."""
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import NoReturn, TypeAlias
+
+import networkx as nx
+
+from kurt2rt.core.expectations.expectations import is_of
+from kurt2rt.core.rla.rla import BASIC
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.statistics import Statistics, follow_ups
+from kurt2rt.knowledge.journal.fold import fold_entries
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+
+RlaNetwork: TypeAlias = "nx.DiGraph[int]"
+"""Nodes are ids of RLAs, with the attributes of `network_of`; edges have `times` and `percent`."""
+
+
+def read_network(journal: Journal, *, level: str = BASIC, behaviour: str | None = None) -> RlaNetwork:
+    """The network of one level in a knowledge file. Raises KnowledgeError, also where nothing was taught there."""
+    # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
+    entries = journal.entries()
+    system = fold_entries(journal, entries, radius=math.inf)
+    features = journal.binding.levels[level].feature_names if level in journal.binding.levels else ()
+    network = network_of(system, journal.statistics(), level=level, behaviour=behaviour, features=features)
+    if not network:
+        _refuse(journal, system, level, behaviour)
+    return network
+
+
+def network_of(
+    system: RlaSystem,
+    statistics: Statistics,
+    *,
+    level: str = BASIC,
+    behaviour: str | None = None,
+    features: Iterable[str] = (),
+) -> RlaNetwork:
+    """All living RLAs of a level, or of one behaviour of it, and how they followed each other.
+
+    A node's attributes: `level`, `behaviour`, `action`, `uses`; where it was seen to end `ends` (how often) and `ticks`
+    (how long it drives); where `features` name a place, `x_m` and `y_m`. `percent` of an edge is its share of all that
+    followed, also of RLAs that are not shown.
+    """
+    network: RlaNetwork = nx.DiGraph()
+    place = _place_in(tuple(features))
+    for rla in system.rlas_at(level):
+        if behaviour is not None and rla.behaviour != behaviour:
+            continue
+        network.add_node(
+            rla.rla_id,
+            level=rla.level,
+            behaviour=rla.behaviour,
+            action=rla.action,
+            uses=statistics.uses.get(rla.rla_id, 0),
+        )
+        expectation = statistics.expectations.get(rla.rla_id)
+        if expectation is not None and is_of(system, rla.rla_id, expectation, level):
+            network.add_node(rla.rla_id, ends=expectation.count, ticks=expectation.ticks)
+        if place is not None:
+            x, y = place
+            network.add_node(rla.rla_id, x_m=rla.condition[x], y_m=rla.condition[y])
+    for before, shares in follow_ups(statistics).items():
+        _add_ways(network, before, shares, statistics.transitions)
+    return network
+
+
+def without_rare(network: RlaNetwork, at_least_percent: float) -> RlaNetwork:
+    """The same without edges of a smaller share, and without RLAs that are then alone and were never used."""
+    kept: RlaNetwork = nx.DiGraph()
+    edges = [edge for edge in network.edges(data=True) if edge[2]["percent"] >= at_least_percent]
+    linked = {end for edge in edges for end in edge[:2]}
+    kept.add_nodes_from(
+        (rla_id, attributes)
+        for rla_id, attributes in network.nodes(data=True)
+        if rla_id in linked or attributes["uses"]
+    )
+    kept.add_edges_from(edges)
+    return kept
+
+
+def _add_ways(
+    network: RlaNetwork, before: int, shares: Mapping[int, float], times: Mapping[tuple[int, int], int]
+) -> None:
+    if before not in network:
+        return
+    for after, percent in shares.items():
+        if after in network:
+            network.add_edge(before, after, times=times[before, after], percent=percent)
+
+
+def _place_in(features: tuple[str, ...]) -> tuple[int, int] | None:
+    """Which values of a condition say where it is; None where none do."""
+    if "x_m" in features and "y_m" in features:
+        return features.index("x_m"), features.index("y_m")
+    return None
+
+
+def _refuse(journal: Journal, system: RlaSystem, level: str, behaviour: str | None) -> NoReturn:
+    levels = [each for each in (BASIC, *journal.binding.levels) if system.rlas_at(each)]
+    if level not in levels:
+        raise KnowledgeError(
+            f"holds no RLA of the level {level!r}",
+            where=journal.path,
+            do=f"it has RLAs of: {', '.join(levels) or 'none'}",
+        )
+    taught = sorted({rla.behaviour or "one without a name" for rla in system.rlas_at(level)})
+    raise KnowledgeError(
+        f"holds no RLA of the behaviour {behaviour!r}", where=journal.path, do=f"it has: {', '.join(taught)}"
+    )

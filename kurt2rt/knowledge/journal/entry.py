@@ -1,0 +1,59 @@
+"""Rows of the journal: a lesson before it is written, as it stands there, and the receipt for it."""
+
+import zlib
+from dataclasses import dataclass
+
+from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.knowledge.journal.event_codec import decode_event
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+
+
+@dataclass(frozen=True, slots=True)
+class JournalEntry:
+    """A lesson to be written."""
+
+    event: TeachingEvent
+    stamped_at: str
+    """Wall clock, UTC, ISO 8601."""
+
+
+@dataclass(frozen=True, slots=True)
+class StoredEntry:
+    """A lesson that stands in the journal."""
+
+    sequence: int
+    """1, 2, 3 ... without gaps, in the order of writing."""
+    event: TeachingEvent
+    stamped_at: str
+
+
+@dataclass(frozen=True, slots=True)
+class Receipt:
+    """Where a lesson stands in the journal."""
+
+    command_id: str
+    sequence: int
+    stamped_at: str
+    """Stamp of the row: when the lesson was first written, however often its command came."""
+    new: bool
+    """False: the command was written before, and was not written again."""
+    agrees: bool
+    """False: the row holds another lesson of the same command id, and this lesson stands nowhere."""
+
+
+def checksum(command_id: str, stamped_at: str, text: str) -> int:
+    """CRC-32 of a row: a worn flash disk may turn one digit into another, and SQLite would not see it."""
+    return zlib.crc32("\n".join((command_id, stamped_at, text)).encode(errors="surrogateescape"))
+
+
+def read_row(row: tuple[int, str, str, str, int], where: str) -> StoredEntry:
+    """A row (sequence, command id, stamp, event, checksum) as an entry. Raises KnowledgeError that begins `where`."""
+    sequence, command_id, stamped_at, text, written_checksum = row
+    # A page of zeros has rows, too: of nothing.
+    if all(isinstance(part, str) for part in row[1:4]):
+        event = decode_event(text, where)
+        if checksum(command_id, stamped_at, text) == written_checksum and event.origin.command_id == command_id:
+            return StoredEntry(sequence, event, stamped_at)
+    raise KnowledgeError(
+        "was changed after it was written (checksum)", where=where, do="keep the file, and go on with a backup copy"
+    )

@@ -1,0 +1,271 @@
+"""A teaching event as one line of JSON, exact to the last bit of every float64."""
+
+import json
+import math
+import sys
+from typing import Any
+
+from kurt2rt.core.rla.credit import Credit
+from kurt2rt.core.rla.rla import (
+    BASIC,
+    ActionReplaced,
+    ActionWithdrawn,
+    Appraised,
+    KnowledgeMerged,
+    LessonRedone,
+    LessonUndone,
+    Origin,
+    Phase,
+    Rla,
+    RlaCreated,
+    RlaDeleted,
+    RlaRewarded,
+    SessionBegun,
+    SessionEnded,
+    SituationNamed,
+    TeachingEvent,
+)
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+
+EVENT_VERSION = 6
+"""Raise it when the fields below change, and keep reading the older ones: journals live as long as robots.
+
+Version 1 knew created, replaced and deleted, with the same fields as version 2. Up to version 2 created has no
+behaviour: all RLAs belonged to one without a name. Up to version 3 it has no level, all belonged to the basic one, and
+rewarded has neither credits nor what the critic said: there was no critic, and nothing was learnt from rewards.
+Up to version 4 no situation was named. Up to version 5 nothing was redone, nor merged from another file, and no
+credit told of which edge it was.
+"""
+
+_ADDED: tuple[tuple[int, str, str, object], ...] = (
+    (3, "created", "behaviour", ""),
+    (4, "created", "level", BASIC),
+    (4, "rewarded", "credits", []),
+    (4, "rewarded", "said", None),
+)
+"""Since which version an event of a kind has a field, and what that field is in older ones."""
+
+_SINCE = {"named": 5, "redone": 6, "merged": 6}
+"""Since which version there are events of a kind that older programs cannot read."""
+
+_ORIGIN = ("command_id", "teacher", "phase", "tick")
+_FIELDS = {
+    "created": ("rla_id", "condition", "action", "radius", "behaviour", "level", *_ORIGIN),
+    "replaced": ("rla_id", "action", "instead_of", *_ORIGIN),
+    "withdrawn": ("rla_id", "instead_of", *_ORIGIN),
+    "deleted": ("rla_id", *_ORIGIN),
+    "rewarded": ("rla_id", "value", "decided_at_tick", "credits", "said", *_ORIGIN),
+    "appraised": ("appraisal", "value", "decided_at_tick", *_ORIGIN),
+    "named": ("name", "situation", "level", *_ORIGIN),
+    "undone": ("lesson", *_ORIGIN),
+    "redone": ("lesson", *_ORIGIN),
+    "merged": ("source", "rows", "last", *_ORIGIN),
+    "session begun": ("name", *_ORIGIN),
+    "session ended": ("lasted_ticks", *_ORIGIN),
+}
+
+
+def encode_event(event: TeachingEvent) -> str:
+    """JSON text of an event. Raises KnowledgeError for one that could not be read back: NaN, infinity, wrong types."""
+    content = {"version": EVENT_VERSION, **_content(event)}
+    try:
+        _event(content)  # what would be refused on reading must never be written
+        return json.dumps(content, allow_nan=False, separators=(",", ":"))
+    except (TypeError, ValueError, OverflowError) as error:
+        name = event.origin.command_id
+        raise KnowledgeError(f"command {name!r}: cannot be written: {error}", do="teach it again") from error
+
+
+def decode_event(text: str, where: str) -> TeachingEvent:
+    """The event that a JSON text stands for. Raises KnowledgeError that begins with `where` (file and row)."""
+    try:
+        return _event(json.loads(text))
+    except (ValueError, OverflowError, RecursionError) as error:
+        problem = f"{where}: not a teaching event: {error}"
+        raise KnowledgeError(str(problem), do="keep the file, and go on with a backup copy") from error
+
+
+def _content(event: TeachingEvent) -> dict[str, Any]:
+    match event:
+        case RlaCreated(rla):
+            own: dict[str, Any] = {
+                "kind": "created",
+                "rla_id": rla.rla_id,
+                "condition": list(rla.condition),
+                "action": rla.action,
+                "radius": rla.radius,
+                "behaviour": rla.behaviour,
+                "level": rla.level,
+            }
+        case ActionReplaced(rla_id, action, instead_of, _):
+            own = {"kind": "replaced", "rla_id": rla_id, "action": action, "instead_of": instead_of}
+        case ActionWithdrawn(rla_id, instead_of, _):
+            own = {"kind": "withdrawn", "rla_id": rla_id, "instead_of": instead_of}
+        case RlaDeleted(rla_id, _):
+            own = {"kind": "deleted", "rla_id": rla_id}
+        case RlaRewarded(rla_id, value, decided_at_tick, _, credits_, said):
+            own = {
+                "kind": "rewarded",
+                "rla_id": rla_id,
+                "value": value,
+                "decided_at_tick": decided_at_tick,
+                "credits": [[*credit] if credit.before is not None else [*credit[:2]] for credit in credits_],
+                "said": said,
+            }
+        case Appraised(appraisal, value, decided_at_tick, _):
+            own = {"kind": "appraised", "appraisal": appraisal, "value": value, "decided_at_tick": decided_at_tick}
+        case SituationNamed(name, situation, level, _):
+            own = {"kind": "named", "name": name, "situation": list(situation), "level": level}
+        case LessonUndone(lesson, _):
+            own = {"kind": "undone", "lesson": lesson}
+        case LessonRedone(lesson, _):
+            own = {"kind": "redone", "lesson": lesson}
+        case KnowledgeMerged(source, rows, last, _):
+            own = {"kind": "merged", "source": source, "rows": rows, "last": last}
+        case SessionBegun(name, _):
+            own = {"kind": "session begun", "name": name}
+        case SessionEnded(lasted_ticks, _):
+            own = {"kind": "session ended", "lasted_ticks": lasted_ticks}
+    origin = event.origin
+    own.update(command_id=origin.command_id, teacher=origin.teacher, phase=origin.phase, tick=origin.tick)
+    return own
+
+
+def _event(content: object) -> TeachingEvent:
+    if not isinstance(content, dict):
+        raise ValueError(f"a JSON {type(content).__name__} is no object")  # noqa: TRY004 - all problems are of one type
+    version = _whole(content, "version", least=1)
+    if version > EVENT_VERSION:
+        raise ValueError(f"its version {version} is of a newer kurt2rt, this one reads up to {EVENT_VERSION}")
+    kind = _text(content, "kind")
+    if version < _SINCE.get(kind, 1):
+        raise ValueError(f"there was no {kind} in version {version}")
+    content = _as_of_now(content, kind, version)
+    if kind not in _FIELDS:
+        raise ValueError(f"kind is {kind!r}, known are {', '.join(_FIELDS)}")
+    foreign = sorted(content.keys() - {"version", "kind", *_FIELDS[kind]})
+    if foreign:
+        raise ValueError(f"{kind} has no {', '.join(map(repr, foreign))}")
+    origin = Origin(
+        _text(content, "command_id"),
+        _word(content, "teacher"),
+        Phase(_whole(content, "phase", least=1)),
+        _whole(content, "tick", least=0),
+    )
+    match kind:
+        case "undone":
+            return LessonUndone(_text(content, "lesson"), origin)
+        case "redone":
+            return LessonRedone(_text(content, "lesson"), origin)
+        case "merged":
+            rows = _whole(content, "rows", least=0)
+            return KnowledgeMerged(_text(content, "source"), rows, _text(content, "last"), origin)
+        case "appraised":
+            value = _opinion(content, "value")
+            return Appraised(_word(content, "appraisal"), value, _whole(content, "decided_at_tick", least=0), origin)
+        case "named":
+            return SituationNamed(
+                _text(content, "name"), _numbers(content, "situation"), _text(content, "level"), origin
+            )
+        case "session begun":
+            return SessionBegun(_text(content, "name"), origin)
+        case "session ended":
+            return SessionEnded(_whole(content, "lasted_ticks", least=0), origin)
+    return _about_an_rla(kind, content, origin)
+
+
+def _as_of_now(content: dict[str, Any], kind: str, version: int) -> dict[str, Any]:
+    """The fields that this version knows, of an event that an older one wrote."""
+    content = dict(content)
+    for since, of_kind, field, default in _ADDED:
+        if version < since and kind == of_kind:
+            if field in content:
+                raise ValueError(f"{kind} has no {field!r} in version {version}")
+            content[field] = default
+    return content
+
+
+def _about_an_rla(kind: str, content: dict[str, Any], origin: Origin) -> TeachingEvent:
+    rla_id = _whole(content, "rla_id", least=1)
+    match kind:
+        case "created":
+            numbers = _numbers(content, "condition")
+            radius = _value(content, "radius")
+            own_radius = None if radius is None else _number(radius, "radius")
+            behaviour, level = _word(content, "behaviour"), _word(content, "level")
+            return RlaCreated(Rla(rla_id, numbers, _word(content, "action"), own_radius, origin, behaviour, level))
+        case "replaced":
+            return ActionReplaced(rla_id, _word(content, "action"), _word(content, "instead_of"), origin)
+        case "withdrawn":
+            return ActionWithdrawn(rla_id, _word(content, "instead_of"), origin)
+        case "rewarded":
+            value = _whole(content, "value", least=-1)
+            if value not in (1, -1):
+                raise ValueError(f"value must be 1 or -1, not {value}")
+            meant = _whole(content, "decided_at_tick", least=0)
+            said = None if _value(content, "said") is None else _opinion(content, "said")
+            return RlaRewarded(rla_id, value, meant, origin, _credits(content), said)
+        case _:
+            return RlaDeleted(rla_id, origin)
+
+
+def _credits(content: dict[str, Any]) -> tuple[Credit, ...]:
+    rows = _value(content, "credits")
+    if not isinstance(rows, list) or not all(isinstance(row, list) and len(row) in (2, 3) for row in rows):
+        raise ValueError("credits must be a list of pairs of an RLA's id and a number, or with the id of one before it")
+    return tuple(
+        Credit(_id_of_credit(rla_id), _number(change, "credits"), *map(_id_of_credit, before))
+        for rla_id, change, *before in rows
+    )
+
+
+def _id_of_credit(value: object) -> int:
+    return _whole({"rla_id of a credit": value}, "rla_id of a credit", least=1)
+
+
+def _opinion(content: dict[str, Any], key: str) -> int:
+    value = _whole(content, key, least=-1)
+    if value > 1:
+        raise ValueError(f"{key} must be -1, 0 or 1, not {value}")
+    return value
+
+
+def _value(content: dict[str, Any], key: str) -> object:
+    if key not in content:
+        raise ValueError(f"{key} is missing")
+    value: object = content[key]
+    return value
+
+
+def _text(content: dict[str, Any], key: str) -> str:
+    value = _value(content, key)
+    if not isinstance(value, str):
+        raise ValueError(f"{key} must be a text")  # noqa: TRY004
+    value.encode()  # half a surrogate pair is fine for JSON, not for SQLite; UnicodeEncodeError is a ValueError
+    return value
+
+
+def _word(content: dict[str, Any], key: str) -> str:
+    """A text that many events have, which is then held once."""
+    value = _text(content, key)
+    return sys.intern(value) if type(value) is str else value
+
+
+def _whole(content: dict[str, Any], key: str, least: int) -> int:
+    value = _value(content, key)
+    if not isinstance(value, int) or isinstance(value, bool) or value < least:
+        raise ValueError(f"{key} must be a whole number from {least}")
+    return value
+
+
+def _numbers(content: dict[str, Any], key: str) -> tuple[float, ...]:
+    values = _value(content, key)
+    if not isinstance(values, list):
+        raise ValueError(f"{key} must be a list of numbers")  # noqa: TRY004
+    return tuple(_number(each, key) for each in values)
+
+
+def _number(value: object, key: str) -> float:
+    if not isinstance(value, (int, float)) or isinstance(value, bool) or not math.isfinite(value):
+        raise ValueError(f"{key} must be made of finite numbers")
+    return float(value)

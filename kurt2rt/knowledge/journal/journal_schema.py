@@ -1,0 +1,104 @@
+"""Schema of a knowledge file: SQL texts, an empty database in memory, and the comparison of a file with them."""
+
+import sqlite3
+from collections.abc import Mapping
+from contextlib import closing
+from functools import lru_cache
+from pathlib import Path
+
+from kurt2rt.knowledge.journal.statistics_tables import LATER_TABLES
+from kurt2rt.knowledge.knowledge_error import KnowledgeError, explained
+
+APPLICATION_ID = 0x4B525432
+"""'KRT2' in SQLite's header: tells a knowledge file from every other SQLite file."""
+
+FORMAT_VERSION = 1
+
+_SCHEMA = f"""
+PRAGMA application_id = {APPLICATION_ID};
+PRAGMA user_version = {FORMAT_VERSION};
+CREATE TABLE binding (key TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT, WITHOUT ROWID;
+CREATE TABLE lesson (
+    sequence INTEGER PRIMARY KEY,
+    command_id TEXT NOT NULL UNIQUE,
+    stamped_at TEXT NOT NULL,
+    event TEXT NOT NULL,
+    checksum INTEGER NOT NULL
+) STRICT;
+CREATE TRIGGER lesson_stays BEFORE DELETE ON lesson BEGIN SELECT RAISE(ABORT, 'lessons are never deleted'); END;
+CREATE TRIGGER lesson_stands BEFORE UPDATE ON lesson BEGIN SELECT RAISE(ABORT, 'lessons are never changed'); END;
+CREATE TABLE uses (rla_id INTEGER PRIMARY KEY, count INTEGER NOT NULL) STRICT;
+CREATE TABLE transition (
+    from_rla INTEGER NOT NULL, to_rla INTEGER NOT NULL, count INTEGER NOT NULL, PRIMARY KEY (from_rla, to_rla)
+) STRICT, WITHOUT ROWID;
+"""
+
+
+def require_our_mark(connection: sqlite3.Connection, path: Path) -> None:
+    """Ask SQLite for the application id. Raises KnowledgeError if it is no knowledge file."""
+    try:
+        (application_id,) = connection.execute("PRAGMA application_id").fetchone()
+    except sqlite3.Error as error:
+        raise explained(error, path) from error
+    if application_id != APPLICATION_ID:
+        raise KnowledgeError(
+            "is an SQLite file of another program", where=path, do="give the path of a kurt2rt knowledge file"
+        )
+
+
+def require_known_version(version: int, path: Path) -> None:
+    """Raise KnowledgeError for a format that only a newer kurt2rt reads."""
+    if version > FORMAT_VERSION:
+        raise KnowledgeError(
+            f"has format {version} of a newer kurt2rt, this one knows up to {FORMAT_VERSION}",
+            where=path,
+            do="update kurt2rt",
+        )
+
+
+def require_our_schema(connection: sqlite3.Connection, path: Path) -> None:
+    """Compare the file's schema with ours before any table is read. Raises KnowledgeError.
+
+    A view in the place of a table may have endless rows, and a foreign trigger may change what a lesson does. Tables
+    that a newer kurt2rt has added are left alone.
+    """
+    try:
+        found = connection.execute("SELECT type, name, sql FROM sqlite_schema").fetchall()
+    except sqlite3.Error as error:
+        raise explained(error, path) from error
+    ours = _our_schema()
+    for kind, name, sql in found:
+        text = _one_line(sql)
+        if name in ours:
+            foreign = ours[name] != (kind, text)
+        elif kind == "index":
+            foreign = bool(text)  # SQLite makes the index of a key by itself, without a text
+        else:
+            foreign = kind != "table" or not text.upper().startswith("CREATE TABLE ")
+        if foreign:
+            raise KnowledgeError(
+                f"holds a {kind} {name!r} that kurt2rt did not make",
+                where=path,
+                do="it may be damaged or meant to harm: go on with a backup copy",
+            )
+
+
+@lru_cache(maxsize=1)
+def _our_schema() -> Mapping[str, tuple[str, str]]:
+    """Kind and SQL text of each table and trigger that kurt2rt makes, by name."""
+    with closing(new_database()) as connection:
+        rows = connection.execute("SELECT type, name, sql FROM sqlite_schema WHERE sql IS NOT NULL").fetchall()
+    return {name: (kind, _one_line(sql)) for kind, name, sql in rows}
+
+
+def _one_line(sql: str | None) -> str:
+    return " ".join((sql or "").split())
+
+
+def new_database() -> sqlite3.Connection:
+    """Make an empty knowledge file in memory."""
+    connection = sqlite3.connect(":memory:", isolation_level=None)
+    connection.executescript(_SCHEMA)
+    for statement in LATER_TABLES.values():
+        connection.execute(statement)
+    return connection

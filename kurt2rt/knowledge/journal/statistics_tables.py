@@ -1,0 +1,119 @@
+"""The statistics' tables in a knowledge file, and what to write where they have changed."""
+
+import sqlite3
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from kurt2rt.core.rla.expectation import Expectation
+from kurt2rt.core.rla.statistics import Statistics
+
+LATER_TABLES = {
+    "value": "CREATE TABLE value (rla_id INTEGER PRIMARY KEY, value REAL NOT NULL) STRICT",
+    "edge_weight": """CREATE TABLE edge_weight (
+        from_rla INTEGER NOT NULL, to_rla INTEGER NOT NULL, weight REAL NOT NULL, PRIMARY KEY (from_rla, to_rla)
+    ) STRICT, WITHOUT ROWID""",
+    "number": "CREATE TABLE number (name TEXT PRIMARY KEY, value REAL NOT NULL) STRICT, WITHOUT ROWID",
+    "expectation": """CREATE TABLE expectation (
+        rla_id INTEGER PRIMARY KEY, lesson TEXT NOT NULL, count INTEGER NOT NULL, ticks REAL NOT NULL,
+        mean BLOB NOT NULL, squares BLOB NOT NULL
+    ) STRICT""",
+}
+"""Tables that files of an earlier kurt2rt lack: there they are read as empty. An earlier one leaves them alone."""
+
+
+class Change(NamedTuple):
+    """A statement, and the rows that it is carried out for."""
+
+    statement: str
+    rows: Sequence[tuple[float | str | bytes, ...]]
+
+
+class _Table(NamedTuple):
+    """One value behind its key."""
+
+    name: str
+    columns: tuple[str, ...]
+    """Its key, the value behind it."""
+
+    def read(self, connection: sqlite3.Connection) -> dict[Any, Any]:
+        """Its content, by an RLA's id, a pair of two or a name; empty where a file lacks it that may."""
+        if self.name in LATER_TABLES and not has_table(connection, self.name):
+            return {}
+        columns, keys = ", ".join(self.columns), ", ".join(self.columns[:-1])
+        rows = connection.execute(f"SELECT {columns} FROM {self.name} ORDER BY {keys}")
+        return {key[0] if len(key) == 1 else tuple(key): value for *key, value in rows}
+
+    def changes(self, before: Mapping[Any, float], after: Mapping[Any, float]) -> list[Change]:
+        """Statements that make the one content out of the other, none where they are the same."""
+        keys = " AND ".join(f"{column} = ?" for column in self.columns[:-1])
+        marks = ", ".join("?" for _ in self.columns)
+        gone = [_key(key) for key in before.keys() - after.keys()]
+        written = [(*_key(key), value) for key, value in after.items() if before.get(key) != value]
+        both = [
+            Change(f"DELETE FROM {self.name} WHERE {keys}", gone),
+            Change(f"INSERT OR REPLACE INTO {self.name} VALUES ({marks})", written),
+        ]
+        return [change for change in both if change.rows]
+
+
+_USES = _Table("uses", ("rla_id", "count"))
+_TRANSITIONS = _Table("transition", ("from_rla", "to_rla", "count"))
+_VALUES = _Table("value", ("rla_id", "value"))
+_EDGE_WEIGHTS = _Table("edge_weight", ("from_rla", "to_rla", "weight"))
+_NUMBERS = _Table("number", ("name", "value"))
+
+
+def read_statistics(connection: sqlite3.Connection) -> Statistics:
+    """The statistics as they stand in the file. Raises sqlite3.Error."""
+    return Statistics(
+        _USES.read(connection),
+        _TRANSITIONS.read(connection),
+        _VALUES.read(connection),
+        _EDGE_WEIGHTS.read(connection),
+        _NUMBERS.read(connection),
+        _read_expectations(connection),
+    )
+
+
+def changes(before: Statistics, after: Statistics) -> list[Change]:
+    """What makes the one out of the other: only rows that differ, to spare the flash disk."""
+    return [
+        *_USES.changes(before.uses, after.uses),
+        *_TRANSITIONS.changes(before.transitions, after.transitions),
+        *_VALUES.changes(before.values, after.values),
+        *_EDGE_WEIGHTS.changes(before.edge_weights, after.edge_weights),
+        *_NUMBERS.changes(before.numbers, after.numbers),
+        *_expectation_changes(before.expectations, after.expectations),
+    ]
+
+
+def has_table(connection: sqlite3.Connection, name: str) -> bool:
+    """Whether the file has that table. Raises sqlite3.Error."""
+    found = connection.execute("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = ?", (name,))
+    return found.fetchone() is not None
+
+
+def _key(key: int | str | tuple[int, int]) -> tuple[int | str, ...]:
+    return key if isinstance(key, tuple) else (key,)
+
+
+def _read_expectations(connection: sqlite3.Connection) -> dict[int, Expectation]:
+    if not has_table(connection, "expectation"):
+        return {}
+    rows = connection.execute("SELECT rla_id, lesson, count, ticks, mean, squares FROM expectation ORDER BY rla_id")
+    return {rla_id: Expectation(*values) for rla_id, *values in rows}
+
+
+def _expectation_changes(before: Mapping[int, Expectation], after: Mapping[int, Expectation]) -> list[Change]:
+    """Whose expectation is the same object has not changed: so a large table is gone through in microseconds."""
+    gone = [(rla_id,) for rla_id in before.keys() - after.keys()]
+    written = [
+        (rla_id, each.lesson, each.count, each.ticks, each.packed_mean, each.packed_squares)
+        for rla_id, each in after.items()
+        if before.get(rla_id) is not each and before.get(rla_id) != each
+    ]
+    both = [
+        Change("DELETE FROM expectation WHERE rla_id = ?", gone),
+        Change("INSERT OR REPLACE INTO expectation VALUES (?, ?, ?, ?, ?, ?)", written),
+    ]
+    return [change for change in both if change.rows]

@@ -1,0 +1,278 @@
+"""The journal's writer: a thread that makes lessons durable while the tick goes on."""
+
+import math
+import queue
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from types import TracebackType
+from typing import Self
+
+from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
+from kurt2rt.knowledge.journal.event_codec import encode_event
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError, ReconnectRequiredError
+
+HANGS_AFTER_S = 3.0
+"""A disk that has lessons to keep and makes no headway for so long hangs."""
+
+
+@dataclass(frozen=True, slots=True)
+class Acknowledgement:
+    """What became of a submitted lesson: durable at `sequence`, or never to be written because of `error`."""
+
+    command_id: str
+    sequence: int | None
+    error: str | None
+    stamped_at: str
+    """When its row was written, UTC, ISO 8601; empty where there is an error."""
+
+
+@dataclass(frozen=True, slots=True)
+class RetryDelays:
+    """How long the writer waits before it tries a failing disk again: doubled each time, up to the longest."""
+
+    first_s: float = 0.1
+    longest_s: float = 2.0
+
+
+class _Flush:
+    """Queue token: somebody waits until what came before it is durable, or never will be."""
+
+    def __init__(self) -> None:
+        self.durable = False
+        self.settled = threading.Event()
+
+
+class _Stop:
+    """Queue token: no more comes."""
+
+
+def utc_now() -> str:
+    """The wall clock as UTC in ISO 8601, to the millisecond."""
+    return datetime.now(UTC).isoformat(timespec="milliseconds")
+
+
+class JournalWriter:
+    """Owns a journal from now on, and closes it. Lessons are written in the order of `submit`; none is ever dropped.
+
+    On a failing disk the lessons wait, `trouble` says why (the robot must stand meanwhile), and the writer tries again
+    until it succeeds.
+    """
+
+    def __init__(
+        self,
+        journal: Journal,
+        now: Callable[[], str],
+        retry: RetryDelays | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """`now` stamps the rows; `clock`, in seconds, tells when a write hangs."""
+        self._failure: str | None = None
+        self._journal = journal
+        self._now = now
+        self._clock = clock
+        self._headway_at_s = -math.inf
+        self._retry = retry or RetryDelays()
+        # SimpleQueue.put never waits for the thread at the other end; a lock of our own could make the tick wait.
+        self._inbox: queue.SimpleQueue[TeachingEvent | Statistics | _Flush | _Stop] = queue.SimpleQueue()
+        self._acknowledged: queue.SimpleQueue[Acknowledgement] = queue.SimpleQueue()
+        self._accepting = True
+        self._ended = False
+        self._submitted = 0
+        self._settled = 0
+        self.last_write_s: float | None = None
+        """How long the disk took to keep the last lessons; None before the first."""
+        # The worker's own, from here on.
+        self._waiting: list[JournalEntry] = []
+        self._statistics: Statistics | None = None
+        self._flushes: list[_Flush] = []
+        self._stuck = False
+        self._thread = threading.Thread(target=self._run, name="knowledge journal", daemon=True)
+        self._thread.start()
+
+    @property
+    def trouble(self) -> str | None:
+        """One line: what, where, what to do; None while lessons become durable."""
+        if self._failure is None and self.unwritten and self._clock() - self._headway_at_s > HANGS_AFTER_S:
+            return f"{self._journal.path}: the disk does not answer; {self.unwritten} lessons wait; look at its health"
+        return self._failure
+
+    @property
+    def unwritten(self) -> int:
+        """Lessons submitted and not yet settled."""
+        return self._submitted - self._settled
+
+    @property
+    def is_alive(self) -> bool:
+        """Whether its thread still works; one that ended keeps nothing more."""
+        return self._thread.is_alive()
+
+    def submit(self, event: TeachingEvent) -> None:
+        """Hand over a lesson; never waits. Raises KnowledgeError after `close`."""
+        self._require_open()
+        if not self.unwritten:
+            self._headway_at_s = self._clock()
+        self._submitted += 1
+        self._inbox.put(event)
+
+    def submit_statistics(self, statistics: Statistics) -> None:
+        """Hand over statistics; never waits. Only the newest that wait are written."""
+        self._require_open()
+        self._inbox.put(statistics)
+
+    def acknowledged(self) -> list[Acknowledgement]:
+        """What was settled since the last call, in the order of `submit`; never waits."""
+        settled: list[Acknowledgement] = []
+        while True:
+            try:
+                settled.append(self._acknowledged.get_nowait())
+            except queue.Empty:
+                return settled
+
+    def flush(self, timeout_s: float) -> bool:
+        """Wait until everything handed over before is durable; False when it is not after `timeout_s`."""
+        flush = _Flush()
+        self._inbox.put(flush)
+        # Put first, then look: a writer that ends after this look still finds it in the inbox.
+        if not self._ended:
+            flush.settled.wait(timeout_s)
+        return flush.durable
+
+    def close(self, timeout_s: float = 10.0) -> None:
+        """Flush, then close the journal; waits so long for the disk, all in all.
+
+        Raises KnowledgeError that says why and how many lessons were not written.
+        """
+        if not self._accepting:
+            return
+        self._accepting = False
+        until_s = time.monotonic() + timeout_s
+        self.flush(timeout_s)
+        self._inbox.put(_Stop())
+        self._thread.join(max(0.0, until_s - time.monotonic()))
+        if self.trouble is not None or self._thread.is_alive():
+            why = self.trouble or f"{self._journal.path}: the disk does not answer; look at its health"
+            raise KnowledgeError(why, do=f"closed with {self.unwritten} lessons not written")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _require_open(self) -> None:
+        if not self._accepting:
+            raise KnowledgeError("its writer is closed", where=self._journal.path, do="open the journal again to teach")
+
+    def _run(self) -> None:
+        try:
+            self._work()
+        except BaseException as error:
+            self._failure = (
+                f"{self._journal.path}: its writer ended by {error!r}; stop the robot program, start it anew"
+            )
+            raise
+        finally:
+            self._end()
+
+    def _end(self) -> None:
+        try:
+            self._journal.close()
+        except KnowledgeError as error:  # what was acknowledged is durable nevertheless
+            self._failure = self._failure or str(error)
+        self._ended = True
+        while not self._inbox.empty():
+            item = self._inbox.get()
+            if isinstance(item, _Flush):
+                self._flushes.append(item)
+        for flush in self._flushes:
+            flush.settled.set()
+
+    def _work(self) -> None:
+        pause_s = 0.0
+        while True:
+            stop = self._take_in(pause_s)
+            try:
+                if self._stuck:
+                    self._journal.reconnect()
+                    self._stuck = False
+                self._write()
+            except KnowledgeError as error:
+                self._failure = str(error)
+                self._stuck = self._stuck or isinstance(error, ReconnectRequiredError)
+                pause_s = min(max(2 * pause_s, self._retry.first_s), self._retry.longest_s)
+            else:
+                self._failure = None
+                pause_s = 0.0
+            if stop:
+                return
+
+    def _take_in(self, pause_s: float) -> bool:
+        """Take everything that was handed over; wait for something to come, or while the disk fails, all the pause."""
+        until_s = time.monotonic() + pause_s
+        item = self._inbox.get() if pause_s == 0.0 else None
+        while True:
+            match item:
+                case _Stop():
+                    return True
+                case _Flush():
+                    self._flushes.append(item)
+                case Statistics():
+                    self._statistics = item
+                case None:  # only at the start of a pause
+                    pass
+                case _:
+                    self._take_event(item)
+            try:
+                item = self._inbox.get(timeout=max(0.0, until_s - time.monotonic()))
+            except queue.Empty:
+                return False
+
+    def _take_event(self, event: TeachingEvent) -> None:
+        try:
+            encode_event(event)
+        except KnowledgeError as error:  # trying again would not help, and hold up all that come after
+            self._settle(_refused(event.origin.command_id, str(error)))
+        else:
+            self._waiting.append(JournalEntry(event, self._now()))
+
+    def _write(self) -> None:
+        if self._waiting:
+            begun_s = self._clock()
+            receipts = self._journal.append(self._waiting)
+            self.last_write_s = self._clock() - begun_s
+            self._waiting = []
+            for receipt in receipts:
+                self._settle(_acknowledgement(receipt))
+        if self._statistics is not None:
+            self._journal.checkpoint(self._statistics)
+            self._statistics = None
+        for flush in self._flushes:
+            flush.durable = True
+            flush.settled.set()
+        self._flushes = []
+
+    def _settle(self, acknowledgement: Acknowledgement) -> None:
+        self._acknowledged.put(acknowledgement)
+        self._headway_at_s = self._clock()
+        self._settled += 1
+
+
+def _acknowledgement(receipt: Receipt) -> Acknowledgement:
+    if receipt.agrees:
+        return Acknowledgement(receipt.command_id, receipt.sequence, None, receipt.stamped_at)
+    return _refused(
+        receipt.command_id,
+        f"command {receipt.command_id!r}: another lesson of this id stands in row {receipt.sequence}; teach it again",
+    )
+
+
+def _refused(command_id: str, error: str) -> Acknowledgement:
+    return Acknowledgement(command_id, None, error, stamped_at="")

@@ -1,0 +1,1 @@
+"""Knowledge as tables for a terminal."""

@@ -1,0 +1,280 @@
+"""What `kurt2rt knowledge show` prints: every RLA with who taught it, when, instead of what, and how it is used."""
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from kurt2rt.core.perception.definition import AVERAGED
+from kurt2rt.core.rla.rla import (
+    BASIC,
+    CRITIC,
+    MID,
+    ActionReplaced,
+    ActionWithdrawn,
+    Appraised,
+    LessonRedone,
+    LessonUndone,
+    Rla,
+    RlaDeleted,
+    RlaRewarded,
+    SessionBegun,
+)
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.statistics import Statistics, follow_ups
+from kurt2rt.knowledge.journal.entry import StoredEntry
+from kurt2rt.knowledge.journal.fold import fold_entries
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.show.level import level_table
+from kurt2rt.knowledge.show.mid import mid_table, named_table
+from kurt2rt.knowledge.show.table_cells import answer, appraised, instead_of, plain, valued, when_and_who
+from kurt2rt.platform.text_table import TextTable
+
+TICK_S = 0.01
+"""The KURT2's cycle: a knowledge file counts in ticks and does not say how long they last."""
+
+_TELLING_FEATURES = 3
+_FOLLOW_UPS = 3
+
+
+def render_knowledge(journal: Journal, limit: int | None = None, *, wide: bool = True) -> RenderableType:
+    """Binding, summary and a table of the RLAs, oldest first, at most `limit` of them. Raises KnowledgeError.
+
+    `wide` also shows each RLA's largest features and what follows it, for which 80 columns are too few.
+    """
+    # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
+    entries = journal.entries()
+    system = fold_entries(journal, entries, radius=math.inf)
+    rlas = system.rlas
+    statistics = journal.statistics()
+    any_value = any(rla.rla_id in statistics.values for rla in rlas)
+    taught = {entry.event.origin.command_id: entry for entry in entries}
+    shares = follow_ups(statistics)
+    named = any(rla.behaviour for rla in rlas)
+    table = _empty_table(named=named, any_value=any_value, wide=wide)
+    for rla in rlas[:limit]:
+        entry = taught[rla.origin.command_id]
+        cells: list[str | Text] = [
+            str(rla.rla_id),
+            *((plain(rla.behaviour),) if named else ()),
+            answer(rla),
+            instead_of(entry),
+            when_and_who(entry.stamped_at, rla.origin.teacher),
+            f"{rla.origin.phase.value}",
+            *((str(rla.origin.tick),) if wide or not any_value else ()),
+            str(statistics.uses.get(rla.rla_id, 0)),
+            appraised(system.appraisal(rla.rla_id)),
+            *((valued(statistics.values.get(rla.rla_id)),) if any_value else ()),
+        ]
+        if wide:
+            cells.append(plain(_telling(rla, journal.binding.feature_names)))
+            cells.append(_followed_by(shares.get(rla.rla_id, {})))
+        table.add_row(*cells)
+    hidden = len(rlas) - table.row_count
+    parts: list[RenderableType] = [plain(_bound_to(journal)), plain(_summary(entries, system)), table]
+    if hidden:
+        parts.append(Text(f"and {hidden} more RLAs"))
+    for level, features in journal.binding.levels.items():
+        of_level = system.rlas_at(level)
+        if of_level:
+            if level == MID:
+                parts.append(mid_table(of_level[:limit], features, taught, statistics.uses, shares))
+            else:
+                parts.append(level_table(level, of_level[:limit], features.feature_names, taught))
+            more = len(of_level) - len(of_level[:limit])
+            parts.extend([Text(f"and {more} more of the level {level}")] if more else [])
+        names = system.named_at(level)
+        if names:
+            parts.append(named_table(names, features))
+    return Group(*parts)
+
+
+def render_lessons(journal: Journal, limit: int | None = None, taught_by: str | None = None) -> RenderableType:
+    """All lessons, newest first, at most `limit` of them, with the ids that an undo takes. Raises KnowledgeError.
+
+    `taught_by`: only those of that teacher.
+    """
+    entries = journal.entries()
+    everybodys = fold_entries(journal, entries, radius=math.inf).lessons
+    records = [record for record in everybodys if taught_by in (None, record.event.origin.teacher)]
+    stamps = {entry.event.origin.command_id: entry.stamped_at for entry in entries}
+    undone_by = {
+        entry.event.lesson: entry.event.origin.teacher for entry in entries if isinstance(entry.event, LessonUndone)
+    }
+    table = TextTable()
+    for heading in ("lesson", "id", "taught (UTC), by", "undone by"):
+        table.add_column(heading)
+    for record in records[::-1][:limit]:
+        origin = record.event.origin
+        table.add_row(
+            plain(record.text),
+            plain(origin.command_id),
+            when_and_who(stamps[origin.command_id], origin.teacher),
+            plain(undone_by[origin.command_id] if record.undone else ""),
+        )
+    hidden = len(records) - table.row_count
+    return Group(table, Text(f"and {hidden} older lessons")) if hidden else table
+
+
+def knowledge_as_data(journal: Journal) -> dict[str, Any]:
+    """Return binding, RLAs of all levels and named situations, for JSON. Raises KnowledgeError."""
+    # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
+    entries = journal.entries()
+    system = fold_entries(journal, entries, radius=math.inf)
+    statistics = journal.statistics()
+    taught = {entry.event.origin.command_id: entry for entry in entries}
+    binding = journal.binding
+    features = {BASIC: binding.feature_names} | {
+        level: others.feature_names for level, others in binding.levels.items()
+    }
+    return {
+        "file": str(journal.path),
+        "task": binding.system,
+        "robot": binding.robot,
+        "definition": binding.feature_hash,
+        "lessons": system.standing_lessons,
+        "rlas": [
+            _rla_as_data(rla, taught[rla.origin.command_id], system, statistics, features[rla.level])
+            for level in features
+            for rla in system.rlas_at(level)
+        ],
+        "named": {
+            level: {
+                name: dict(zip(names, situation, strict=True)) for name, situation in system.named_at(level).items()
+            }
+            for level, names in features.items()
+            if system.named_at(level)
+        },
+    }
+
+
+def _rla_as_data(
+    rla: Rla, entry: StoredEntry, system: RlaSystem, statistics: Statistics, names: tuple[str, ...]
+) -> dict[str, Any]:
+    appraisal = system.appraisal(rla.rla_id)
+    return {
+        "rla": rla.rla_id,
+        "level": rla.level,
+        "behaviour": rla.behaviour,
+        "action": rla.action,
+        "asks": rla.asks,
+        "instead_of": instead_of(entry).plain,
+        "teacher": rla.origin.teacher,
+        "phase": rla.origin.phase.value,
+        "tick": rla.origin.tick,
+        "taught_at": entry.stamped_at,
+        "lesson": rla.origin.command_id,
+        "uses": statistics.uses.get(rla.rla_id, 0),
+        "rewards": appraisal.rewards,
+        "punishments": appraisal.punishments,
+        "value": statistics.values.get(rla.rla_id),
+        "followed_by_percent": follow_ups(statistics).get(rla.rla_id, {}),
+        "condition": dict(zip(names, rla.condition, strict=True)),
+    }
+
+
+def lessons_as_data(journal: Journal, limit: int | None = None, taught_by: str | None = None) -> dict[str, Any]:
+    """Return the lessons that `render_lessons` shows, for JSON. Raises KnowledgeError."""
+    entries = journal.entries()
+    stamps = {entry.event.origin.command_id: entry.stamped_at for entry in entries}
+    undone_by = {
+        entry.event.lesson: entry.event.origin.teacher for entry in entries if isinstance(entry.event, LessonUndone)
+    }
+    everybodys = fold_entries(journal, entries, radius=math.inf).lessons
+    records = [record for record in everybodys if taught_by in (None, record.event.origin.teacher)][::-1]
+    shown = records[:limit]
+    return {
+        "file": str(journal.path),
+        "lessons": [
+            {
+                "id": record.event.origin.command_id,
+                "lesson": record.text,
+                "teacher": record.event.origin.teacher,
+                "taught_at": stamps[record.event.origin.command_id],
+                "undone_by": undone_by[record.event.origin.command_id] if record.undone else None,
+            }
+            for record in shown
+        ],
+        "older": len(records) - len(shown),
+    }
+
+
+def _empty_table(*, named: bool, any_value: bool, wide: bool) -> TextTable:
+    table = TextTable()
+    behaviour = ("behaviour",) if named else ()
+    value = ("value",) if any_value else ()
+    tick = ("tick",) if wide or not any_value else ()  # where there is no room for both
+    numbers = ("phase", *tick, "uses", "rewards", *value)
+    for heading in ("RLA", *behaviour, "action", "instead of", "taught (UTC), by", *numbers):
+        table.add_column(heading, number=heading in ("RLA", *numbers))
+    if wide:
+        table.add_column("largest features")
+        table.add_column("followed by")
+    return table
+
+
+def _bound_to(journal: Journal) -> str:
+    binding = journal.binding
+    return (
+        f"{journal.path}: knowledge of {binding.system}, first taught on {binding.robot}, "
+        f"{len(binding.feature_names)} features, definition {binding.feature_hash}"
+    )
+
+
+def _summary(entries: list[StoredEntry], system: RlaSystem) -> str:
+    if not entries:
+        return "Nothing was taught yet."
+    events = [entry.event for entry in entries]
+    parts = [
+        f"{sum(isinstance(event, ActionReplaced) for event in events)} corrections",
+        f"{sum(isinstance(event, RlaDeleted) for event in events)} deletions",
+    ]
+    for kind, name in ((ActionWithdrawn, "withdrawals"), (RlaRewarded, "rewards"), (Appraised, "agreements")):
+        count = sum(isinstance(event, kind) for event in events)
+        if count:
+            parts.append(f"{count} {name}")
+    for change, name in ((LessonUndone, "undone"), (LessonRedone, "redone")):
+        own = [event for event in events if isinstance(event, change)]
+        if own:
+            parts.append(f"{len(own)} {name} by {_names(event.origin.teacher for event in own)}")
+    teachers = _names(record.event.origin.teacher for record in system.lessons)
+    by = f" by {teachers}" if teachers else ""
+    summary = (
+        f"{_how_many(system)} from {len(system.lessons)} lessons ({', '.join(parts)}){by}, "
+        f"{entries[0].stamped_at} to {entries[-1].stamped_at}"
+    )
+    sessions = sum(isinstance(event, SessionBegun) for event in events)
+    if sessions:
+        minutes, seconds = divmod(round(system.teaching_ticks * TICK_S), 60)
+        summary += f"; {sessions} sessions, {minutes} min {seconds} s of teaching"
+    return summary
+
+
+def _names(teachers: Iterable[str]) -> str:
+    return ", ".join(sorted(set(teachers)))
+
+
+def _how_many(system: RlaSystem) -> str:
+    asking = sum(rla.asks for rla in system.rlas)
+    ways, appraisals = len(system.rlas_at(MID)), len(system.rlas_at(CRITIC))
+    return (
+        f"{len(system)} RLAs"
+        + (f", {asking} of which ask again," if asking else "")
+        + (f" and {ways} mid-level RLAs" if ways else "")
+        + (f" and {appraisals} appraisal RLAs" if appraisals else "")
+    )
+
+
+def _telling(rla: Rla, feature_names: tuple[str, ...]) -> str:
+    """The recent features farthest from 0: a high count is a near obstacle, a wheel speed may be negative."""
+    recent = [
+        feature for feature in zip(feature_names, rla.condition, strict=True) if not feature[0].endswith(AVERAGED)
+    ]
+    features = sorted(recent, key=lambda feature: -abs(feature[1]))
+    return ", ".join(f"{name} {value:.0f}" for name, value in features[:_TELLING_FEATURES])
+
+
+def _followed_by(shares: Mapping[int, float]) -> str:
+    return ", ".join(f"{rla_id} ({percent:.0f} %)" for rla_id, percent in list(shares.items())[:_FOLLOW_UPS])

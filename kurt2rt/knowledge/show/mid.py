@@ -1,0 +1,77 @@
+"""The mid level as tables: which taught behaviour is to be followed where, who taught it; and what has a name."""
+
+from collections.abc import Iterable, Mapping
+
+from hal.settings import shipped_names
+from kurt2rt.core.mid.settings import MidSettings, load_mid
+from kurt2rt.core.rla.condition import Condition
+from kurt2rt.core.rla.feature_set import LevelFeatures
+from kurt2rt.core.rla.rla import Rla
+from kurt2rt.knowledge.journal.entry import StoredEntry
+from kurt2rt.knowledge.show.table_cells import answer, instead_of, plain, when_and_who
+from kurt2rt.platform.text_table import TextTable
+
+_FOLLOW_UPS = 3
+
+
+def mid_table(
+    rlas: Iterable[Rla],
+    features: LevelFeatures,
+    taught: Mapping[str, StoredEntry],
+    uses: Mapping[int, int],
+    follow_ups: Mapping[int, Mapping[int, float]],
+) -> TextTable:
+    """A row per RLA. `taught`: the entry of each command id; `follow_ups`: shares in percent, most frequent first.
+
+    A history is told in words, the newest symbol first, where its settings are shipped; else in numbers.
+    """
+    settings = _shipped_mid(features.feature_hash)
+    table = TextTable()
+    table.add_column("mid-level RLA", number=True)
+    for heading in ("behaviour", "instead of", "taught (UTC), by"):
+        table.add_column(heading)
+    table.add_column("uses", number=True)
+    table.add_column("where: the newest first")
+    table.add_column("followed by")
+    for rla in rlas:
+        entry = taught[rla.origin.command_id]
+        following = list(follow_ups.get(rla.rla_id, {}).items())[:_FOLLOW_UPS]
+        table.add_row(
+            str(rla.rla_id),
+            answer(rla),
+            instead_of(entry),
+            when_and_who(entry.stamped_at, rla.origin.teacher),
+            str(uses.get(rla.rla_id, 0)),
+            plain(_where(rla.condition, settings, features.feature_names)),
+            ", ".join(f"{rla_id} ({percent:.0f} %)" for rla_id, percent in following),
+        )
+    return table
+
+
+def named_table(named: Mapping[str, Condition], features: LevelFeatures) -> TextTable:
+    """The situations that have a name, in the order of the alphabet; in words or numbers as above."""
+    settings = _shipped_mid(features.feature_hash)
+    table = TextTable()
+    for heading in ("named", "where: the newest first"):
+        table.add_column(heading)
+    for name in sorted(named):
+        table.add_row(plain(name), plain(_where(named[name], settings, features.feature_names)))
+    return table
+
+
+def _shipped_mid(feature_hash: str) -> MidSettings | None:
+    """Return the shipped mid level with these features, since a knowledge file holds no more than their fingerprint.
+
+    None: settings of a user, or of another kurt2rt. Raises SettingsError.
+    """
+    shipped = map(load_mid, shipped_names("mid_levels"))
+    return next((each for each in shipped if each.feature_hash == feature_hash), None)
+
+
+def _where(situation: Condition, settings: MidSettings | None, feature_names: tuple[str, ...]) -> str:
+    if settings is not None:
+        words = [word for word in settings.situation.words(situation) if word]
+    else:
+        named = zip(feature_names, situation, strict=True)
+        words = [f"{name} {value:.3g}" for name, value in named if value]
+    return ", ".join(words) or "at the beginning"

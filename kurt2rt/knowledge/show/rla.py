@@ -1,0 +1,96 @@
+"""One RLA, whole: condition, action, and what is expected to follow it (paper, III.A), for `knowledge show --rla`."""
+
+import math
+from typing import Any
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from kurt2rt.core.expectations.expectations import is_of
+from kurt2rt.core.perception.definition import AVERAGED
+from kurt2rt.core.rla.expectation import Expectation
+from kurt2rt.core.rla.rla import BASIC, Rla
+from kurt2rt.core.rla.statistics import follow_ups
+from kurt2rt.knowledge.journal.fold import fold_entries
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.show.knowledge import TICK_S
+from kurt2rt.knowledge.show.table_cells import plain
+from kurt2rt.platform.text_table import TextTable
+
+
+def render_rla(journal: Journal, rla_id: int, limit: int | None = None) -> RenderableType:
+    """What one RLA says, and what followed it: the features that change most come first, at most `limit` of them.
+
+    Raises KnowledgeError where no such RLA lives.
+    """
+    # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
+    system = fold_entries(journal, journal.entries(), radius=math.inf)
+    rla = system.get(rla_id)
+    if rla is None:
+        raise KnowledgeError(f"holds no RLA {rla_id}", where=journal.path, do="kurt2rt knowledge show lists them")
+    statistics = journal.statistics()
+    binding = journal.binding
+    names = binding.feature_names if rla.level == BASIC else binding.levels[rla.level].feature_names
+    known = statistics.expectations.get(rla_id)
+    expectation = known if known is not None and is_of(system, rla_id, known, rla.level) else None
+    origin = rla.origin
+    uses = statistics.uses.get(rla_id, 0)
+    parts: list[RenderableType] = [
+        plain(f"{rla.title}: {rla.action}, taught by {origin.teacher} in phase {origin.phase.value}, used {uses} times")
+    ]
+    shares = follow_ups(statistics).get(rla_id, {})
+    if shares:
+        parts.append(Text("followed by " + ", ".join(f"{each} ({share:.0f} %)" for each, share in shares.items())))
+    if expectation is None:
+        parts.append(Text("Nothing is expected yet: it was never seen to end with another RLA taking over."))
+    else:
+        seconds = f"{expectation.ticks * TICK_S:.2f} s"
+        parts.append(Text(f"expected, of {expectation.count} ends seen, {seconds} after it began:"))
+    parts.append(_features(rla, names, expectation, limit))
+    return Group(*parts)
+
+
+def expectation_as_data(journal: Journal, rla_id: int) -> dict[str, Any] | None:
+    """Return what is expected to follow an RLA, for JSON; None if nothing is yet.
+
+    Raises KnowledgeError if no such RLA lives.
+    """
+    system = fold_entries(journal, journal.entries(), radius=math.inf)
+    rla = system.get(rla_id)
+    if rla is None:
+        raise KnowledgeError(f"holds no RLA {rla_id}", where=journal.path, do="kurt2rt knowledge show lists them")
+    binding = journal.binding
+    names = binding.feature_names if rla.level == BASIC else binding.levels[rla.level].feature_names
+    known = journal.statistics().expectations.get(rla_id)
+    if known is None or not is_of(system, rla_id, known, rla.level):
+        return None
+    return {
+        "ends_seen": known.count,
+        "after_s": known.ticks * TICK_S,
+        "mean": dict(zip(names, known.mean.tolist(), strict=True)),
+        "spread": dict(zip(names, known.spread.tolist(), strict=True)),
+    }
+
+
+def _features(rla: Rla, names: tuple[str, ...], expectation: Expectation | None, limit: int | None) -> RenderableType:
+    mean = None if expectation is None else expectation.mean.tolist()
+    spread = None if expectation is None else expectation.spread.tolist()
+    # Averages over seconds say little of what one RLA changed.
+    farthest = rla.condition if mean is None else [then - now for then, now in zip(mean, rla.condition, strict=True)]
+    order = sorted(range(len(names)), key=lambda place: (names[place].endswith(AVERAGED), -abs(farthest[place])))
+    table = TextTable()
+    for heading in ("feature", "condition", *(("expected", "spread") if mean is not None else ())):
+        table.add_column(heading, number=heading != "feature")
+    for place in order[:limit]:
+        cells = [_number(rla.condition[place])]
+        if mean is not None and spread is not None:
+            cells += [_number(mean[place]), f"±{_number(spread[place])}"]
+        table.add_row(plain(names[place]), *cells)
+    hidden = len(names) - table.row_count
+    return Group(table, Text(f"and {hidden} more features")) if hidden else table
+
+
+def _number(value: float) -> str:
+    """Counts whole, metres and shares with their decimals."""
+    return f"{value:.0f}" if abs(value) >= 10 else f"{value:.2f}".rstrip("0").rstrip(".")

@@ -1,0 +1,52 @@
+"""Puts a taught system together: as the runtime does for the one that is taught, but nothing teaches this one."""
+
+from collections.abc import Iterable
+
+from behaviors.repertoire import Repertoire
+from hal.robot_settings import RobotSettings
+from kurt2rt.core.basic.basic_level import BasicLevel
+from kurt2rt.core.basic.epsilon_greedy import Choice
+from kurt2rt.core.basic.taught_action import TaughtSystem
+from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.layer_stack import LayerStack
+from kurt2rt.core.mid.mid_level import MidLevel
+from kurt2rt.core.mid.settings import MidSettings
+from kurt2rt.core.perception.definition import load_situation
+from kurt2rt.core.perception.perception import Perception
+from kurt2rt.core.perception.weights import weights_of
+from kurt2rt.core.rla.rla import MID, TeachingEvent
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.task_settings import TaskSettings
+
+
+def build_taught_system(
+    task: TaskSettings,
+    robot: RobotSettings,
+    lessons: Iterable[TeachingEvent],
+    repertoire: Repertoire,
+    wanted: Wanted,
+    mid: MidSettings | None,
+) -> TaughtSystem:
+    """What `lessons` have taught of a task, as one action.
+
+    `repertoire`: of the task, for this system alone. `wanted`: of the task's behaviours the one to follow, unless
+    there is a `mid` level, which says so. Raises SettingsError; UnknownActionError or UnknownBehaviourError for
+    knowledge that cannot act here.
+    """
+    sensors, period_s = robot.infrared.names, robot.can.cycle_s
+    definition = load_situation(task.situation, sensors)
+    learning = task.learning
+    changed = ((each.features, each.weight) for each in learning.weights)
+    weights = weights_of(definition, changed, learning.past_weight, task.name)
+    others = {} if mid is None else {MID: mid.space}
+    system = RlaSystem(definition.dimensions, learning.radius, weights, others=others)
+    system.apply_all(lessons)
+    # Nothing is learnt here: among equals the newest answers, which was tried because those before it had sunk.
+    settings = task.reinforcement
+    choice = Choice(lambda _: 0.0, epsilon=0.0, hold_ticks=round(settings.hold_s / period_s), seed=settings.seed)
+    perception = Perception(definition, sensors)
+    basic = BasicLevel(system, repertoire, round(learning.minimum_action_s / period_s), wanted, choice)
+    if mid is None:
+        return TaughtSystem(perception, basic, (perception, basic))
+    over_it = MidLevel(system, mid.build(robot), mid, wanted)
+    return TaughtSystem(perception, LayerStack(basic, over_it), (perception, basic, over_it))

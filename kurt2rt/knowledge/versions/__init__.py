@@ -1,0 +1,1 @@
+"""Versions of knowledge: undo, branch, diff, merge."""

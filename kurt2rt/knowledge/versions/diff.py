@@ -1,0 +1,60 @@
+"""How two knowledge files differ: lessons that stand in one of them only, and RLAs."""
+
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
+
+from kurt2rt.core.rla.lesson_history import LessonRecord
+from kurt2rt.core.rla.rla import BASIC, Rla
+from kurt2rt.knowledge.versions.lesson_identity import Mark, Taught, common_rows
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Of one file (a) and another (b)."""
+
+    common_rows: int
+    """How many rows both begin with."""
+    lessons_a: tuple[LessonRecord, ...]
+    """Those that stand in a and not in b, oldest first."""
+    lessons_b: tuple[LessonRecord, ...]
+    rlas_a: tuple[Rla, ...]
+    """Those that live in a and not in b."""
+    rlas_b: tuple[Rla, ...]
+    changed: tuple[tuple[Rla, Rla], ...]
+    """Those with another action: as in a, as in b."""
+
+    @property
+    def none(self) -> bool:
+        """Whether both know the same, by the same lessons."""
+        return not (self.lessons_a or self.lessons_b or self.rlas_a or self.rlas_b or self.changed)
+
+
+def difference(a: Taught, b: Taught) -> Difference:
+    """Compare two files of the same features: RLAs are the same where the same lesson made them."""
+    stands_a = {a.marks[record.event.origin.command_id] for record in a.system.lessons if not record.undone}
+    stands_b = {b.marks[record.event.origin.command_id] for record in b.system.lessons if not record.undone}
+    rlas_a = {a.rla_marks[rla.rla_id]: rla for rla in living(a)}
+    rlas_b = {b.rla_marks[rla.rla_id]: rla for rla in living(b)}
+    return Difference(
+        common_rows(a.entries, b.entries),
+        _standing_only_in(a, stands_b),
+        _standing_only_in(b, stands_a),
+        tuple(rla for mark, rla in rlas_a.items() if mark not in rlas_b),
+        tuple(rla for mark, rla in rlas_b.items() if mark not in rlas_a),
+        tuple(
+            (rla, rlas_b[mark]) for mark, rla in rlas_a.items() if mark in rlas_b and rlas_b[mark].action != rla.action
+        ),
+    )
+
+
+def _standing_only_in(one: Taught, other: AbstractSet[Mark]) -> tuple[LessonRecord, ...]:
+    return tuple(
+        record
+        for record in one.system.lessons
+        if not record.undone and one.marks[record.event.origin.command_id] not in other
+    )
+
+
+def living(taught: Taught) -> list[Rla]:
+    """All living RLAs, of all levels."""
+    return [rla for level in (BASIC, *taught.journal.binding.levels) for rla in taught.system.rlas_at(level)]

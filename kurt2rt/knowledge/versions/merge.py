@@ -1,0 +1,313 @@
+"""Brings the lessons of another knowledge file in: what changed there since both last met, pile by pile.
+
+A pile are the lessons about one RLA, or that gave one name; those that stand lie on one another. A pile that changed
+only there becomes as it is there, by undos, redos and new lessons. One that changed on both sides is a conflict, and
+so is a new RLA that says something else than one of this file at nearly the same place. Praise and blame of both add
+up, each by itself: their order does not matter.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+
+from kurt2rt.core.rla.expectation import Expectation
+from kurt2rt.core.rla.rla import KnowledgeMerged, Rla, rla_title
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.knowledge.journal.binding import require_same
+from kurt2rt.knowledge.journal.entry import JournalEntry
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.versions.contradictions import Borders, Contradictions
+from kurt2rt.knowledge.versions.diff import living
+from kurt2rt.knowledge.versions.editing import new_origin, write
+from kurt2rt.knowledge.versions.lesson_identity import Mark, PileMark, Taught, read_taught, standing_piles
+from kurt2rt.knowledge.versions.merge_base import Parting, Side, Sides, Way
+from kurt2rt.knowledge.versions.merge_writer import Bringing, Wanted
+
+__all__ = ["Conflict", "ConflictCode", "Merge", "Merging", "Side", "merge"]
+
+
+class ConflictCode(StrEnum):
+    """Reason why two states exclude each other."""
+
+    CHANGED_ON_BOTH_SIDES = "changed on both sides"
+    REWARDED_HERE = "rewarded here"
+    """Rewarded in this file for a lesson that was undone in the other one."""
+    OTHER_SITUATION = "other situation"
+    """A name means different situations, or none in one file."""
+    NEAR = "near"
+    """Different actions at nearly the same condition."""
+
+
+@dataclass(frozen=True, slots=True)
+class Conflict:
+    """Two states that exclude each other."""
+
+    mine: str
+    """What this file says, in words."""
+    theirs: str
+    code: ConflictCode
+    distance: float | None = None
+    """Between the conditions of the RLAs, for NEAR."""
+    radius_fraction: float | None = None
+    """Fraction of R within which a correction replaces, for NEAR."""
+
+
+@dataclass(frozen=True)
+class Merge:
+    """What a merge would write."""
+
+    entries: tuple[JournalEntry, ...]
+    statistics: Statistics
+    conflicts: tuple[Conflict, ...]
+    """All that were found; settled where a side was preferred."""
+    lessons: int
+    """How many lessons are new here."""
+    undone: int
+    redone: int
+    new_ids: dict[int, int]
+    """RLA id there -> the new id here, of the RLAs that come with it."""
+    left_out: tuple[str, ...]
+    """Praise and blame that is not brought, or not taken back, and why, in words."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Pile:
+    """A pile, what becomes of its lessons here, and of its rewards."""
+
+    mark: PileMark
+    sides: Sides
+    way: Way
+    came: tuple[Mark, ...]
+    """Praise and blame that comes."""
+    went: tuple[Mark, ...]
+    """Praise and blame that goes."""
+
+    @property
+    def homeless(self) -> frozenset[Mark]:
+        """Praise and blame of this file that stands on something that is not there any more."""
+        theirs, at = set(self.sides.theirs), self._under()
+        own = (mark for mark in self.sides.mine if mark.is_reward and mark not in theirs and mark not in self.went)
+        return frozenset(mark for mark in own if at[mark] not in theirs)
+
+    def as_there(self) -> Wanted:
+        """The lessons of theirs, with the rewards of mine where they were given."""
+        at, theirs = self._under(), set(self.sides.theirs)
+        own = [mark for mark in self.sides.mine if mark.is_reward and mark not in theirs and mark not in self.went]
+        then = list[Mark]()
+        for mark in self.sides.theirs:
+            if not mark.is_reward:
+                then += [mark, *(reward for reward in own if at[reward] == mark)]
+            elif mark in self.came or mark in self.sides.mine:
+                then.append(mark)
+        return Wanted(self.mark, self.sides.mine, tuple(then))
+
+    def as_here(self) -> Wanted:
+        """The lessons of mine; a reward under one of them stays."""
+        then = tuple(mark for mark in self.sides.mine if mark not in self.went or mark in self.stuck)
+        return Wanted(self.mark, self.sides.mine, (*then, *self.came))
+
+    @property
+    def stuck(self) -> frozenset[Mark]:
+        """Rewards that went there, and on which a lesson of this file lies."""
+        mine = self.sides.mine
+        tops = [place for place, mark in enumerate(mine) if not mark.is_reward]
+        return frozenset(mark for mark in self.went if tops and mine.index(mark) < tops[-1])
+
+    def _under(self) -> dict[Mark, Mark | None]:
+        """On which lesson each reward of mine was given."""
+        at, lesson = dict[Mark, Mark | None](), None
+        for mark in self.sides.mine:
+            if mark.is_reward:
+                at[mark] = lesson
+            else:
+                lesson = mark
+        return at
+
+
+class Merging:
+    """One merge, planned; changes neither file. Goes on with the fold of mine: plans once."""
+
+    def __init__(self, mine: Taught, theirs: Taught, borders: Borders, *, teacher: str, stamp: str) -> None:
+        """`teacher` and `stamp` of what is undone or redone by it; lessons keep those that they have."""
+        self._mine, self._theirs = mine, theirs
+        self._borders = borders
+        self._teacher, self._stamp = teacher, stamp
+        self._bringing = Bringing(mine, theirs, teacher=teacher, stamp=stamp)
+
+    def plan(self, saved: Statistics, of_theirs: Statistics, prefer: Side | None) -> Merge:
+        """What to write, given the statistics of both files. Raises KnowledgeError where it does not fit together."""
+        bringing, piles = self._bringing, self._piles()
+        both = [each for each in piles if each.way == "both"]
+        conflicts = [self._conflict_of(each) for each in both]
+        moved = [each for each in piles if each.way == "as there" or (each.way == "both" and prefer == "theirs")]
+        changed = {each.mark for each in moved}
+        contradictions = Contradictions(self._unknown_there(moved), self._borders)
+        left_out, deletions = set[PileMark](), list[int]()
+        for each in moved:
+            rla = self._created(each)
+            near = None if rla is None else contradictions.of(rla)
+            if rla is not None and near is not None:
+                fraction = self._borders.shares[rla.level]
+                conflicts.append(Conflict(_says(near.rla), _says(rla), ConflictCode.NEAR, near.distance, fraction))
+                if prefer == "theirs":
+                    deletions.append(near.rla.rla_id)
+                else:
+                    left_out.add(each.mark)
+        stuck = [self._stays(mark) for each in piles if each.mark not in changed for mark in each.stuck]
+        known = frozenset(self._mine.marks.values())
+        wanted = [
+            each.as_there() if each.mark in changed else each.as_here() for each in piles if each.mark not in left_out
+        ]
+        bringing.bring(wanted, deletions)
+        stands = {mark for each in wanted for mark in each.then if bringing.name_of(mark) is not None}
+        stood = {mark for each in wanted for mark in each.now}
+        bringing.bring_sessions()
+        entries, told = list(bringing.entries), (*stuck, *bringing.left_out)
+        if entries or conflicts or told:
+            last = self._theirs.entries[-1].event.origin.command_id
+            name = self._theirs.journal.path.name
+            merged = KnowledgeMerged(name, len(self._theirs.entries), last, new_origin("merge", self._teacher))
+            entries.append(JournalEntry(merged, self._stamp))
+        return Merge(
+            entries=tuple(entries),
+            statistics=self._statistics(saved, of_theirs),
+            conflicts=tuple(conflicts),
+            lessons=len(stands - known),
+            undone=len(stood - stands),
+            redone=len((stands & known) - stood),
+            new_ids=dict(bringing.new_ids),
+            left_out=told,
+        )
+
+    def _piles(self) -> list[_Pile]:
+        """Piles of theirs that are not the same here, and what becomes of them."""
+        here = standing_piles(self._mine.system.lessons, self._mine.marks)
+        there = standing_piles(self._theirs.system.lessons, self._theirs.marks)
+        parting, found = Parting(self._mine, self._theirs), list[_Pile]()
+        for mark in self._theirs.piles:
+            sides = Sides(here.get(mark, ()), there.get(mark, ()))
+            if sides.mine == sides.theirs:
+                continue
+            way = parting.way_of(mark, sides)
+            if way == "both" and self._come_to_the_same(mark):
+                way = "stays"
+            came, went = parting.rewards_that_came(sides), parting.rewards_that_went(sides)
+            pile = _Pile(mark, sides, way, came, went)
+            found.append(replace(pile, way="both") if way == "as there" and pile.homeless else pile)
+        return found
+
+    def _unknown_there(self, moved: Sequence[_Pile]) -> list[Rla]:
+        """RLAs of mine that theirs was taught without, or against, and that stay."""
+        piles, marks = {each.mark for each in moved}, self._mine.rla_marks
+        actions = {self._theirs.rla_marks[rla.rla_id]: rla.action for rla in living(self._theirs)}
+        return [
+            rla
+            for rla in living(self._mine)
+            if marks[rla.rla_id] not in piles and actions.get(marks[rla.rla_id]) != rla.action
+        ]
+
+    def _come_to_the_same(self, mark: PileMark) -> bool:
+        pile = self._theirs.piles[mark]
+        if isinstance(pile, tuple):
+            level, name = pile
+            return self._theirs.system.named_at(level).get(name) == self._mine.system.named_at(level).get(name)
+        theirs, mine = self._theirs.system.get(pile), self._rla_here(mark)
+        return (theirs and theirs.action) == (mine and mine.action)
+
+    def _rla_here(self, mark: PileMark) -> Rla | None:
+        pile = self._mine.piles.get(mark)
+        return self._mine.system.get(pile) if isinstance(pile, int) else None
+
+    def _conflict_of(self, each: _Pile) -> Conflict:
+        pile, of_mine = self._theirs.piles[each.mark], self._mine.piles.get(each.mark)
+        if isinstance(pile, tuple):
+            level, name = pile
+            title = f"the name {name}"
+            there, here = (
+                f"{title} is given" if name in side.system.named_at(level) else f"{title} is not given"
+                for side in (self._theirs, self._mine)
+            )
+            return Conflict(here, there, ConflictCode.OTHER_SITUATION)
+        there = _state(self._theirs.system.get(pile), pile)
+        if not isinstance(of_mine, int):
+            return Conflict("it was left out here before", there, ConflictCode.CHANGED_ON_BOTH_SIDES)
+        code = ConflictCode.REWARDED_HERE if each.homeless else ConflictCode.CHANGED_ON_BOTH_SIDES
+        return Conflict(_state(self._rla_here(each.mark), of_mine), there, code)
+
+    def _created(self, each: _Pile) -> Rla | None:
+        """The RLA that a pile brings anew, as it lives there."""
+        pile = self._theirs.piles[each.mark]
+        if isinstance(pile, tuple) or each.mark in self._mine.piles:
+            return None
+        rla = self._theirs.system.get(pile)
+        return None if rla is None or rla.asks else rla
+
+    def _stays(self, mark: Mark) -> str:
+        names = [name for name, other in self._mine.marks.items() if other == mark]
+        record = self._mine.records[names[-1]]
+        return (
+            f"{record.text} by {record.event.origin.teacher} was taken back there, and stays under what came here since"
+        )
+
+    def _statistics(self, saved: Statistics, of_theirs: Statistics) -> Statistics:
+        """What was counted of the RLAs that are new here comes with them; what they are worth, by their lessons."""
+        both, new_ids = self._bringing.rlas, self._bringing.new_ids
+        uses = {new: of_theirs.uses[old] for old, new in new_ids.items() if old in of_theirs.uses}
+        transitions = {
+            (both[before], both[after]): count
+            for (before, after), count in of_theirs.transitions.items()
+            if before in both and after in both and (before in new_ids or after in new_ids)
+        }
+        expectations = {
+            new: self._renamed(of_theirs.expectations[old])
+            for old, new in new_ids.items()
+            if old in of_theirs.expectations
+        }
+        return replace(
+            saved,
+            uses={**saved.uses, **uses},
+            transitions={**saved.transitions, **transitions},
+            expectations={**saved.expectations, **expectations},
+        )
+
+    def _renamed(self, expectation: Expectation) -> Expectation:
+        mark = self._theirs.marks.get(expectation.lesson)
+        name = None if mark is None else self._bringing.name_of(mark)
+        return expectation if name is None else replace(expectation, lesson=name)
+
+
+def merge(
+    path: Path, other: Path, borders: Borders, prefer: Side | None, *, teacher: str, stamp: str, dry_run: bool = False
+) -> Merge:
+    """Bring what was taught in `other` since both last met into `path`; durable on return, all or nothing.
+
+    Where there are conflicts and no side is preferred, or `dry_run`, nothing is changed, and a robot may run on `path`
+    meanwhile. Raises KnowledgeError, also for knowledge of other features or another task.
+    """
+    with Journal.read_only(path) as look:
+        mine, saved = read_taught(look), look.statistics()
+    binding = mine.journal.binding
+    with Journal.read_only(other) as look:
+        require_same(look.binding, binding, other, look.has_lessons_at)
+        theirs, of_theirs = read_taught(look), look.statistics()
+    planned = Merging(mine, theirs, borders, teacher=teacher, stamp=stamp).plan(saved, of_theirs, prefer)
+    if not planned.entries or dry_run or (prefer is None and planned.conflicts):
+        return planned
+    both = replace(binding, levels={**theirs.journal.binding.levels, **binding.levels})
+    with Journal.open(path, both) as journal:
+        if tuple(journal.entries()) != mine.entries or journal.statistics() != saved:
+            raise KnowledgeError("was taught in while it was looked at", where=path, do="merge again")
+        write(journal, planned.entries, planned.statistics)
+    return planned
+
+
+def _says(rla: Rla) -> str:
+    return f"{rla.title} says {rla.action}"
+
+
+def _state(rla: Rla | None, rla_id: int) -> str:
+    if rla is None:
+        return f"{rla_title(rla_id, '')} is gone"
+    return f"{rla.title} asks" if rla.asks else _says(rla)

@@ -1,1 +1,0 @@
-"""The RLA network: which RLAs follow each other, and how often (paper, III.B)."""

@@ -1,0 +1,1 @@
+"""Clocks, pacing, signals, durable files: this process and its computer. Imports nothing of ours."""

@@ -1,0 +1,56 @@
+"""Scheduler of the 100 Hz tick: one call per period, late ones skipped whole."""
+
+from collections.abc import Callable
+from typing import Generic, TypeVar
+
+from kurt2rt.platform.clock import Clock
+from kurt2rt.platform.ledger import Ledger
+
+RecordT = TypeVar("RecordT")
+
+
+class Scheduler(Generic[RecordT]):
+    """Pacer that runs a tick at each multiple of the period.
+
+    A tick that cannot begin within its period is missed: skipped whole and counted, never caught up in a burst.
+    Each tick waits for the clock exactly once. A clock in lockstep takes one step of the world in each wait.
+    """
+
+    def __init__(
+        self, clock: Clock, run_tick: Callable[[int, float], RecordT], period_s: float, ledger: Ledger
+    ) -> None:
+        """`run_tick`: takes the tick's number, from 1, and its time in seconds; returns the tick's record."""
+        self._clock = clock
+        self._run_tick = run_tick
+        self._period_s = period_s
+        self._ledger = ledger
+        self._number = 0
+        self._ending = False
+
+    def end(self) -> None:
+        """Let `run` return after the tick it is in."""
+        self._ending = True
+
+    async def run(self, ticks: int | None, after_tick: Callable[[RecordT], None]) -> None:
+        """Run until `end` is called, or for so many ticks of the clock, missed ones included.
+
+        `after_tick` sees each record when the wheels have been told; it counts against the period.
+        """
+        clock, period_s = self._clock, self._period_s
+        last = None if ticks is None else self._number + ticks
+        # Deadlines are multiples of the period from here, computed anew each time: no rounding error adds up.
+        origin_s = clock.now_s() - self._number * period_s
+        while not self._ending and (last is None or self._number < last):
+            self._number += 1
+            deadline_s = origin_s + self._number * period_s
+            await clock.wait_until(deadline_s)
+            now_s = clock.now_s()
+            missed = int((now_s - deadline_s) / period_s)
+            if missed > 0:
+                self._ledger.missed_ticks += missed
+                self._number += missed
+                deadline_s += missed * period_s
+            self._ledger.begin(now_s - deadline_s)
+            after_tick(self._run_tick(self._number, now_s))
+            self._ledger.end()
+        self._ending = False

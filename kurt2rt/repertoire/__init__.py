@@ -1,1 +1,0 @@
-"""Actions that were taught themselves: RLA systems that stand in a repertoire beside motor values and control loops."""

@@ -1,0 +1,1 @@
+"""Driven runs: recording, replay, explanation."""

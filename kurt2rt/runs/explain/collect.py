@@ -1,0 +1,235 @@
+"""From a runtime and the record of its newest tick to the facts of that decision."""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kurt2rt.core.decision.decision import Cause, Decision, MidDecision
+from kurt2rt.core.decision.plan_step import Course
+from kurt2rt.core.rla.lesson_history import LessonRecord
+from kurt2rt.core.rla.match import Match
+from kurt2rt.core.rla.rla import BASIC, MID, Rla, RlaRewarded
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.runs.explain.facts import Act, DecisionFacts, LevelFacts, RlaStory
+from kurt2rt.runtime import Runtime
+
+_PASSED_OVER = 12
+"""RLAs whose action was withdrawn are not told of where nobody is asked: so many more are looked at."""
+
+StampOf = Callable[[str], str]
+"""When the lesson of a command was written, UTC, ISO 8601; empty where that is not known."""
+
+
+def facts_of(
+    runtime: Runtime,
+    record: TickRecord,
+    stamp_of: StampOf,
+    *,
+    most: int | None = None,
+    uses_before: Mapping[int, int] | None = None,
+) -> DecisionFacts:
+    """What the decision of `record`, the newest tick of `runtime`, rested on.
+
+    `most`: how many RLAs behind the nearest are told of each level; None: all. With few it takes about a millisecond,
+    however many there are.
+    `uses_before`: of RLAs how often they had been used when they got the action that they have.
+    """
+    decision, school = record.decision, runtime.school
+    reader = _Reader(runtime, stamp_of, most, uses_before or {})
+    mid = decision.mid
+    return DecisionFacts(
+        tick=record.tick,
+        now_s=record.now_s,
+        robot=runtime.robot.name,
+        task=runtime.task.name,
+        phase=int(school.phase),
+        cause=decision.cause.value,
+        action=decision.action,
+        asks_at=decision.asks_at,
+        decided=decision.wheel_speeds,
+        granted=record.grant.wheel_speeds,
+        reasons=record.grant.reasons,
+        latched=record.grant.latched,
+        stopped=school.stopped,
+        trouble=record.trouble or "",
+        teacher=school.authority.teacher or "",
+        infrared_counts=record.senses.infrared_counts,
+        infrared_age_s=record.senses.infrared_age_s,
+        basic=reader.basic(record, decision),
+        mid=None if mid is None else reader.mid(mid),
+        overridden=mid is not None and mid.overridden,
+        plan_says="" if decision.plan is None else decision.plan.says,
+        kept=runtime.level.kept,
+        history_frozen=record.situation.history_frozen,
+        taught_now=bool(record.events),
+        hindrances=_hindrances(runtime, record),
+    )
+
+
+def _hindrances(runtime: Runtime, record: TickRecord) -> tuple[str, ...]:
+    """In the order in which they count."""
+    school, navigator, mid = runtime.school, runtime.navigator, record.decision.mid
+    found = []
+    if not record.senses.infrared_age_s <= runtime.robot.guard.stale_infrared_s:
+        found.append(Cause.BLIND)
+    if record.trouble is not None:
+        found.append(Cause.UNSAVED)
+    if school.needs_a_teacher and not school.authority.present(record.tick):
+        found.append(Cause.UNATTENDED)
+    if navigator is not None and mid is not None and not mid.overridden:
+        match navigator.stands_as:
+            case Course.ARRIVED:
+                found.append(Cause.AT_GOAL)
+            case Course.NO_WAY:
+                found.append(Cause.NO_WAY)
+    return tuple(cause.value for cause in found)
+
+
+class _Reader:
+    """Looks things up in one runtime."""
+
+    def __init__(self, runtime: Runtime, stamp_of: StampOf, most: int | None, uses_before: Mapping[int, int]) -> None:
+        self._runtime = runtime
+        self._system: RlaSystem = runtime.level.system
+        self._stamp_of = stamp_of
+        self._most = most
+        self._uses_before = uses_before
+
+    def basic(self, record: TickRecord, decision: Decision) -> LevelFacts:
+        vector, system = record.situation.vector, self._system
+        # Where the mid level asks, the decision holds that level's match.
+        asking = not self._runtime.level.nobody_is_asked
+        match = decision.match
+        if decision.asks_at != BASIC:
+            match = system.match(vector, record.behaviour, asking=asking)
+        return self._level(
+            BASIC, record.behaviour, self._runtime.definition.names, vector, system.weights, match, decision.rla_id
+        )
+
+    def mid(self, decision: MidDecision) -> LevelFacts | None:
+        mid = self._runtime.mid
+        if mid is None:
+            return None
+        space, vector = mid.settings.space, mid.vector
+        weights = np.ones(space.dimensions) if space.weights is None else space.weights
+        symbols = space.metric != "euclidean"
+        facts = self._level(
+            MID, "", mid.settings.features, vector, weights, decision.match, decision.rla_id, symbols=symbols
+        )
+        words = mid.settings.situation.words
+        there = () if facts.nearest is None else words(facts.nearest.condition)
+        return _with_words(facts, words(vector), there)
+
+    def _level(
+        self,
+        level: str,
+        behaviour: str,
+        names: tuple[str, ...],
+        vector: NDArray[np.float64],
+        weights: NDArray[np.float64],
+        match: Match | None,
+        driver_id: int | None,
+        *,
+        symbols: bool = False,
+    ) -> LevelFacts:
+        ranking = self._ranking(level, behaviour, vector, driver_id)
+        distances: Mapping[int, float] = dict(ranking)
+        nearest = None if match is None else self._story(match.rla, match.radius, match.distance)
+        driver_rla = None if driver_id is None else self._system.get(driver_id)
+        driver = None
+        if driver_rla is not None:
+            driver = self._story(driver_rla, self._radius_of(driver_rla), distances.get(driver_rla.rla_id, math.inf))
+        others: list[RlaStory] = []
+        for rla_id, distance in ranking:
+            rla = self._system.get(rla_id)
+            if rla is None or (match is not None and rla_id == match.rla.rla_id):
+                continue
+            if rla.asks and level == BASIC and self._runtime.level.nobody_is_asked:
+                continue  # passed over
+            if self._most is not None and len(others) >= self._most:
+                break
+            others.append(self._story(rla, self._radius_of(rla), distance))
+        return LevelFacts(
+            level=level,
+            behaviour=behaviour,
+            names=names,
+            vector=tuple(vector.tolist()),
+            weights=tuple(weights.tolist()),
+            euclidean=not symbols,
+            nearest=nearest,
+            driver=driver,
+            others=tuple(others),
+            count=self._system.competing(behaviour, level),
+        )
+
+    def _ranking(
+        self, level: str, behaviour: str, vector: NDArray[np.float64], driver_id: int | None
+    ) -> tuple[tuple[int, float], ...]:
+        """The nearest, as many as will be told and may be passed over; all where the driver is farther off."""
+        if self._most is not None:
+            ranking = self._system.nearest_first(vector, behaviour, level, most=self._most + 1 + _PASSED_OVER)
+            ids = {rla_id for rla_id, _ in ranking}
+            rlas = [self._system.get(rla_id) for rla_id in ids]
+            speak = sum(rla is not None and not rla.asks for rla in rlas)
+            if (driver_id is None or driver_id in ids) and speak > self._most:
+                return ranking
+        return self._system.nearest_first(vector, behaviour, level)
+
+    def _radius_of(self, rla: Rla) -> float:
+        if rla.radius is not None:
+            return rla.radius
+        mid = self._runtime.mid
+        return self._system.radius if rla.level == BASIC or mid is None else mid.settings.learning.radius
+
+    def _story(self, rla: Rla, radius: float, distance: float) -> RlaStory:
+        counted, appraisal = self._runtime.statistics, self._system.appraisal(rla.rla_id)
+        rewarded = appraisal.rewards or appraisal.punishments
+        lessons = self._system.lessons_about(rla.rla_id)
+        acts = tuple(self._act(each) for each in lessons)
+        uses = counted.uses.get(rla.rla_id, 0)
+        before = self._uses_before.get(rla.rla_id)
+        if before is None and all(isinstance(each.event, RlaRewarded) for each in lessons[1:]):
+            before = 0  # it has the action that it was taught with
+        return RlaStory(
+            rla_id=rla.rla_id,
+            title=rla.title,
+            action=rla.action,
+            condition=tuple(rla.condition),
+            distance=distance,
+            radius=radius,
+            acts=acts,
+            uses=uses,
+            uses_since=None if before is None else max(0, uses - before),
+            rewards=appraisal.rewards,
+            punishments=appraisal.punishments,
+            value=float(self._runtime.reinforcement.worth(rla.rla_id)) if rewarded else None,
+            asks=rla.asks,
+            leads=self._leads(rla),
+        )
+
+    def _leads(self, rla: Rla) -> bool:
+        group = self._system.competitors(rla)
+        if len(group) < 2:
+            return True
+        # Of ways from one place the oldest leads, unless a plan chooses: that one is told as the driver.
+        return rla == (self._runtime.level.would_answer(group) if rla.level == BASIC else group[0])
+
+    def _act(self, record: LessonRecord) -> Act:
+        origin = record.event.origin
+        return Act(
+            text=record.text,
+            teacher=origin.teacher,
+            phase=int(origin.phase),
+            tick=origin.tick,
+            stamp=self._stamp_of(origin.command_id),
+            undone=record.undone,
+            changes=not record.undone and not isinstance(record.event, RlaRewarded),
+        )
+
+
+def _with_words(facts: LevelFacts, here: tuple[str, ...], there: tuple[str, ...]) -> LevelFacts:
+    return replace(facts, words=here, nearest_words=there)

@@ -1,0 +1,97 @@
+"""A decision of a recorded run: the run is replayed up to it, and what is known there is looked up."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+
+from kurt2rt.core.rla.lesson_history import rla_of
+from kurt2rt.core.rla.rla import (
+    ActionReplaced,
+    ActionWithdrawn,
+    LessonRedone,
+    LessonUndone,
+    RlaCreated,
+    RlaDeleted,
+    TeachingEvent,
+)
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.runs.explain.collect import facts_of
+from kurt2rt.runs.explain.counterfactual import Tip, tips
+from kurt2rt.runs.explain.facts import DecisionFacts
+from kurt2rt.runs.replay.comparison import Difference, compare
+from kurt2rt.runs.replay.replay import Replay
+from kurt2rt.runs.replay.run import Run
+
+
+@dataclass(frozen=True, slots=True)
+class Explained:
+    """A decision of a run, looked into."""
+
+    facts: DecisionFacts
+    tips: tuple[Tip, ...]
+    """What would have changed it, one reading alone."""
+    at_s: float
+    """From the first tick of the run."""
+    difference: Difference | None
+    """Where the replay first came to something else than was recorded; None where it never did."""
+
+
+def explain_run(run: Run, at_s: float, report: Callable[[float], None] = lambda _s: None) -> Explained:
+    """The last decision by `at_s` seconds from the first tick of the run. Raises RecordingError.
+
+    `report` gets the seconds of the run that are done, once for each.
+    """
+    replay = Replay(run)
+    stamps = {lesson.event.origin.command_id: lesson.stamped_at for lesson in run.lessons}
+    reckoned: dict[str, str] = {}
+    counted = replay.runtime.statistics
+    uses_before: dict[int, int] = {}
+    began_s = last_s = 0.0
+    newest = None
+    difference = None
+    for entry in run.entries():
+        if newest is None:
+            began_s = entry.now_s
+        elif entry.now_s - began_s > at_s:
+            break
+        last_s = entry.now_s - began_s
+        for event in entry.events:
+            reckoned[event.origin.command_id] = _stamp(run.head.started_at, last_s)
+            _note_uses(event, counted.uses, uses_before, replay.runtime.level.system)
+        newest = replay.step(entry)
+        if difference is None:
+            difference = next(iter(compare(entry, newest)), None)
+        if entry.tick % 100 == 0:
+            report(last_s)
+    if newest is None:
+        raise RecordingError(
+            "holds no tick", where=run.name, do=f"{run.trouble or 'the program ended before the first one'}"
+        )
+    runtime = replay.runtime
+    # As the journal has it; a recording that does not say so says to the second when the tick was.
+    stamps.update({**reckoned, **run.stamps_of(reckoned.keys())})
+    facts = facts_of(runtime, newest, lambda command_id: stamps.get(command_id, ""), uses_before=uses_before)
+    found = tips(facts, runtime.definition, runtime.robot.infrared)
+    return Explained(facts, found, last_s, difference)
+
+
+def _note_uses(event: TeachingEvent, uses: dict[int, int], before: dict[int, int], system: RlaSystem) -> None:
+    """How often an RLA had been used when it got the action that it has."""
+    match event:
+        case RlaCreated() | ActionReplaced() | ActionWithdrawn() | RlaDeleted():
+            before[rla_of(event)] = uses.get(rla_of(event), 0)
+        case LessonUndone(lesson) | LessonRedone(lesson):
+            record = system.lesson(lesson)
+            if record is not None and isinstance(
+                record.event, RlaCreated | ActionReplaced | ActionWithdrawn | RlaDeleted
+            ):
+                before.pop(rla_of(record.event), None)  # the action is older than the run may know
+
+
+def _stamp(started_at: str, at_s: float) -> str:
+    """To the second: the program had started a moment before its first tick."""
+    try:
+        return (datetime.fromisoformat(started_at) + timedelta(seconds=at_s)).isoformat(timespec="seconds")
+    except ValueError:
+        return ""

@@ -1,0 +1,49 @@
+"""Teaching events in a few words each, as they come: what is taken back is told by what it was."""
+
+from kurt2rt.core.rla.lesson_history import LessonRecord, rla_of
+from kurt2rt.core.rla.rla import (
+    BASIC,
+    Appraised,
+    KnowledgeMerged,
+    LessonRedone,
+    LessonUndone,
+    RlaCreated,
+    SessionBegun,
+    SessionEnded,
+    SituationNamed,
+    TeachingEvent,
+)
+
+
+class LessonWords:
+    """Remembers what was taught, to say what a later event is about."""
+
+    def __init__(self) -> None:
+        self._texts: dict[str, str] = {}
+        self._home_of: dict[int, tuple[str, str]] = {}
+        """Behaviour and level of each RLA."""
+
+    def tell(self, event: TeachingEvent) -> str:
+        """In a few words, with who taught it."""
+        by = event.origin.teacher
+        match event:
+            case LessonUndone(lesson):
+                return f"taken back: {self._texts.get(lesson, 'a lesson')} ({by})"
+            case LessonRedone(lesson):
+                return f"stands again: {self._texts.get(lesson, 'a lesson')} ({by})"
+            case SessionBegun(name):
+                return f"session {name} begun by {by}"
+            case SessionEnded():
+                return f"session ended by {by}"
+            case Appraised(appraisal):
+                return f"called {appraisal} ({by})"
+            case KnowledgeMerged(source):
+                return f"lessons of {source} brought in ({by})"
+            case RlaCreated(rla):
+                self._home_of[rla.rla_id] = rla.behaviour, rla.level
+        behaviour, level = (
+            ("", BASIC) if isinstance(event, SituationNamed) else self._home_of.get(rla_of(event), ("", BASIC))
+        )
+        text = LessonRecord(event, behaviour=behaviour, level=level).text
+        self._texts[event.origin.command_id] = text
+        return f"{text} ({by})"

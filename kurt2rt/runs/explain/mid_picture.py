@@ -1,0 +1,124 @@
+"""The mid level's situation as a picture: a map of the places it knows, or the last symbols, here and as taught."""
+
+from collections.abc import Mapping, Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.patches import Circle, FancyBboxPatch
+
+from kurt2rt.runs.explain.colours import ASKS, INK, PALE_INK, STANDS
+from kurt2rt.runs.explain.facts import LevelFacts, RlaStory
+from kurt2rt.runs.explain.sentences import far
+
+_KNOWN, _LIMIT = "#e3f1e6", "#3f9b5c"
+_SAME, _OTHER = "#dfe5ea", "#f0b27f"
+_ARROW_M = 0.42
+_ROOM_M = 0.6
+_MOST_SYMBOLS = 12
+
+
+def draw_mid(axes: Axes, mid: LevelFacts, colours: Mapping[str, str]) -> None:
+    """One of both, whatever the situation is made of."""
+    axes.set_xticks([])
+    axes.set_yticks([])
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+    if mid.names[:4] == ("x_m", "y_m", "east", "north"):
+        _draw_places(axes, mid, colours)
+    else:
+        _draw_symbols(axes, mid)
+
+
+def _draw_places(axes: Axes, mid: LevelFacts, colours: Mapping[str, str]) -> None:
+    """Each place with the heading in which it is come to, in the colour of what is done there."""
+    stories = [story for story in (mid.nearest, *mid.others) if story is not None]
+    x_m, y_m, east, north = mid.vector[:4]
+    lost = mid.lost
+    title = "The places it knows" if lost else "Where it is, and the places it knows"
+    axes.set_title(title, fontsize=11.5, loc="left", color=INK, pad=8)
+    axes.set_aspect("equal", adjustable="datalim")
+    if not lost and stories:
+        axes.add_patch(
+            Circle((x_m, y_m), stories[0].radius, facecolor=_KNOWN, edgecolor=_LIMIT, linestyle=(0, (4, 2)), zorder=1)
+        )
+    for story in stories:
+        x, y, dx, dy = story.condition[:4]
+        colour = ASKS if story.asks else colours.get(story.action, STANDS)
+        chosen = mid.driver is not None and story.rla_id == mid.driver.rla_id
+        _arrow(axes, (x, y), (dx, dy), colour, wide=3.6 if chosen else 2.2)
+        axes.plot(x, y, "o", markersize=8 if chosen else 5, color=colour, markeredgecolor=INK if chosen else "white")
+        axes.annotate(
+            str(story.rla_id), (x, y), xytext=(4, 5), textcoords="offset points", fontsize=7.5, color=PALE_INK
+        )
+    if not lost:
+        _arrow(axes, (x_m, y_m), (east, north), INK, wide=2.6)
+        axes.plot(x_m, y_m, "*", markersize=15, color=INK, markeredgecolor="white", zorder=9)
+    shown = [(x, y) for x, y, *_ in [story.condition for story in stories]] + ([] if lost else [(x_m, y_m)])
+    if shown:
+        low_x, high_x = min(x for x, _ in shown), max(x for x, _ in shown)
+        low_y, high_y = min(y for _, y in shown), max(y for _, y in shown)
+        axes.update_datalim([(low_x - _ROOM_M, low_y - _ROOM_M), (high_x + _ROOM_M, high_y + _ROOM_M)])
+        axes.autoscale_view()
+    if mid.nearest is not None and not lost:
+        axes.set_xlabel(
+            f"star: here; nearest {mid.nearest.title} at {far(mid.nearest.distance)} m, R {far(mid.nearest.radius)} m",
+            fontsize=9,
+            color=PALE_INK,
+        )
+    if lost:
+        axes.set_xlabel("it is lost: nobody has said where it was set down", fontsize=9, color=ASKS)
+
+
+def _arrow(axes: Axes, at: tuple[float, float], along: tuple[float, float], colour: str, *, wide: float) -> None:
+    end = (at[0] + _ARROW_M * along[0], at[1] + _ARROW_M * along[1])
+    axes.annotate("", end, at, arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": wide}, zorder=6)
+
+
+def _draw_symbols(axes: Axes, mid: LevelFacts) -> None:
+    """Two rows, the newest on the left: what was done, and what the nearest RLA knows in those places."""
+    nearest = mid.nearest
+    axes.set_title("What came last, the newest first", fontsize=11.5, loc="left", color=INK, pad=8)
+    count = min(len(mid.vector), _MOST_SYMBOLS)
+    axes.set_xlim(-0.1, count + 0.1)
+    axes.set_ylim(-1.5, 1.9)
+    _row(axes, 1.0, mid.words, mid.vector, nearest, count)
+    if nearest is not None:
+        _row(axes, -0.4, mid.nearest_words, nearest.condition, None, count, mid.vector)
+        axes.text(0, -0.75, f"as {nearest.title} knows it", fontsize=8.5, color=PALE_INK, va="top")
+        differ = sum(here != there for here, there in zip(mid.vector, nearest.condition, strict=True))
+        axes.text(
+            count,
+            -0.75,
+            f"{differ} places differ, R {far(nearest.radius)}",
+            fontsize=8.5,
+            color=PALE_INK,
+            va="top",
+            ha="right",
+        )
+    axes.text(0, 1.75, "here", fontsize=8.5, color=PALE_INK, va="bottom")
+
+
+def _row(
+    axes: Axes,
+    height: float,
+    words: Sequence[str],
+    values: Sequence[float],
+    nearest: RlaStory | None,
+    count: int,
+    other: Sequence[float] | None = None,
+) -> None:
+    beside = nearest.condition if nearest is not None else other
+    for place in range(count):
+        differs = beside is not None and values[place] != beside[place]
+        axes.add_patch(
+            FancyBboxPatch(
+                (place + 0.06, height - 0.3),
+                0.88,
+                0.6,
+                boxstyle="round,pad=0,rounding_size=0.1",
+                facecolor=_OTHER if differs else _SAME,
+                edgecolor="none",
+            )
+        )
+        word = words[place] if place < len(words) else ""
+        size = 6.8 if len(word) < 7 else 5.4
+        axes.text(place + 0.5, height, word[:10], ha="center", va="center", fontsize=size, color=INK)

@@ -1,0 +1,184 @@
+"""A decision as a picture: the situation beside the one that was taught, how near all RLAs were, what differed."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from textwrap import fill
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.perception.definition import AVERAGED
+from kurt2rt.core.perception.sensor_words import SensorWords, words_for
+from kurt2rt.core.rla.rla import MID
+from kurt2rt.runs.explain.attribution import shares
+from kurt2rt.runs.explain.bars import draw_differences, draw_nearness, draw_tug_of_war
+from kurt2rt.runs.explain.colours import ASKS, INK, PALE_INK, STANDS, TEACHER, colours_of, ink_on
+from kurt2rt.runs.explain.counterfactual import Tip
+from kurt2rt.runs.explain.facts import DecisionFacts, RlaStory
+from kurt2rt.runs.explain.mid_picture import draw_mid
+from kurt2rt.runs.explain.reasons import because, headline
+from kurt2rt.runs.explain.save_figure import save
+from kurt2rt.runs.explain.sensor_view import LEGEND, Mark, draw_surroundings
+from kurt2rt.runs.explain.sentences import guarded, mid_lines, taught, used, would_change
+
+_FEATURES, _FEATURES_BELOW_MID = 7, 4
+_POINTED_AT = 4
+_MARKS = 1
+_CAPTION = 76
+"""Characters in a line below a situation."""
+_WORTH_POINTING = 0.03
+
+
+def draw_why(facts: DecisionFacts, found: tuple[Tip, ...], robot: RobotSettings, title: str, path: Path) -> None:
+    """Write a picture as the file's name ends; `found`: what would have changed it. Raises OSError."""
+    level = facts.basic
+    story = level.driver or level.nearest
+    known = (*([] if story is None else [story]), *level.others)
+    said = [story.action for story in known] + ([facts.action] if facts.action else [])
+    if facts.mid is not None:
+        said += [each.action for each in (facts.mid.nearest, *facts.mid.others) if each is not None]
+    colours = colours_of(said)
+    figure = Figure(figsize=(14.5, 9.2), facecolor="white")
+    top = _heading(figure, facts, found, title, colours)
+    grid = figure.add_gridspec(
+        2,
+        3,
+        left=0.015,
+        right=0.98,
+        top=top,
+        bottom=0.085,
+        width_ratios=(1.0, 1.0, 0.95),
+        height_ratios=(1.0, 0.14),
+        wspace=0.05,
+        hspace=0.32,  # room for four lines about who taught it
+    )
+    _situations(figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1]), facts, found, robot, story, colours)
+    draw_nearness(figure.add_subplot(grid[1, 0:2]), level, story, colours)
+    _right_column(figure, grid[:, 2], facts, story, colours, words_for(robot.infrared))
+    figure.text(0.02, 0.014, LEGEND, fontsize=8.5, color=PALE_INK)
+    save(figure, path)
+
+
+def _right_column(
+    figure: Figure,
+    spec: SubplotSpec,
+    facts: DecisionFacts,
+    story: RlaStory | None,
+    colours: Mapping[str, str],
+    words: SensorWords,
+) -> None:
+    """What mattered: at the level that decided, with the level above where there is one."""
+    level, mid = facts.basic, facts.mid
+    if mid is not None and mid.lost and mid.nearest is None:
+        mid = None  # neither where it is nor any place is there to be drawn; the text says so
+    if mid is not None and facts.asks_at == MID and mid.nearest is not None and not mid.lost:
+        right = spec.subgridspec(2, 1, hspace=0.3, height_ratios=(2.0, 1.0))
+        draw_mid(figure.add_subplot(right[0]), mid, colours)
+        draw_differences(figure.add_subplot(right[1]), mid, mid.nearest, _FEATURES_BELOW_MID, words)
+        return
+    rows = _FEATURES if mid is None else _FEATURES_BELOW_MID
+    if mid is None:
+        right = spec.subgridspec(2, 1, hspace=0.42)
+    else:
+        right = spec.subgridspec(3, 1, hspace=0.42, height_ratios=(1.5, 1.0, 1.0))
+        draw_mid(figure.add_subplot(right[0]), mid, colours)
+    draw_differences(figure.add_subplot(right[-2]), level, story, rows, words)
+    draw_tug_of_war(figure.add_subplot(right[-1]), level, story, colours, rows, words)
+
+
+def _heading(
+    figure: Figure, facts: DecisionFacts, found: tuple[Tip, ...], title: str, colours: Mapping[str, str]
+) -> float:
+    """The decision in words; returns how high the rest may reach."""
+    colour = _colour_of(facts, colours)
+    figure.text(0.02, 0.967, title, fontsize=10.5, color=PALE_INK, va="center")
+    figure.text(
+        0.025,
+        0.922,
+        headline(facts),
+        fontsize=20,
+        fontweight="bold",
+        color=ink_on(colour),
+        va="center",
+        bbox={"boxstyle": "round,pad=0.28", "facecolor": colour, "edgecolor": "none"},
+    )
+    changes = would_change(found, most=1)
+    lines = [
+        *because(facts),
+        *([f"It would have been otherwise with {changes[0]}."] if changes else []),
+        *mid_lines(facts)[:1],
+        *([guarded(facts)] if guarded(facts) else []),
+    ]
+    text = "\n".join(fill(line, 178) for line in lines)
+    figure.text(0.02, 0.886, text, fontsize=10.5, color=INK, va="top", linespacing=1.4)
+    return 0.83 - 0.023 * text.count("\n")
+
+
+def _colour_of(facts: DecisionFacts, colours: Mapping[str, str]) -> str:
+    if facts.action is not None and not facts.latched:
+        return TEACHER if facts.cause == Cause.TEACHER else colours[facts.action]
+    return ASKS if facts.cause in (Cause.UNKNOWN, Cause.TOUCHES) and not facts.latched else STANDS
+
+
+def _situations(
+    here: Axes,
+    there: Axes,
+    facts: DecisionFacts,
+    found: tuple[Tip, ...],
+    robot: RobotSettings,
+    story: RlaStory | None,
+    colours: Mapping[str, str],
+) -> None:
+    level, sensors = facts.basic, robot.infrared.names
+    pointed_at: set[str] = set()
+    if story is not None:
+        differing = [share.name for share in shares(level, story) if share.share >= _WORTH_POINTING]
+        pointed_at = set([name for name in differing if name in sensors][:_POINTED_AT])
+    decided, granted = facts.decided, facts.granted
+    motion = granted if facts.latched else decided
+    counts, averages = _halves(level.names, level.vector, sensors)
+    draw_surroundings(
+        here,
+        robot,
+        counts,
+        averages,
+        differing=pointed_at,
+        marks=[_mark(tip, colours) for tip in found[:_MARKS]],
+        motion=motion,
+        colour=_colour_of(facts, colours),
+    )
+    here.set_title(f"Now: tick {facts.tick}", fontsize=13, fontweight="bold", color=INK)
+    if story is None:
+        there.set_axis_off()
+        there.text(0.5, 0.5, "nothing was taught yet", ha="center", va="center", color=PALE_INK, fontsize=13)
+        return
+    counts, averages = _halves(level.names, story.condition, sensors)
+    draw_surroundings(there, robot, counts, averages, differing=pointed_at)
+    says = "asks again" if story.asks else story.action
+    there.set_title(f"As taught: {story.title}, {says}", fontsize=13, fontweight="bold", color=INK)
+    below = f"{fill(taught(story), _CAPTION)}\n{fill(used(story), _CAPTION)}"
+    there.text(0.5, -0.015, below, transform=there.transAxes, ha="center", va="top", fontsize=8.5, color=INK)
+    moving = f"wheels: {granted.left_m_s:+.2f} / {granted.right_m_s:+.2f} m/s"
+    if facts.reasons and not facts.latched:
+        moving += f", on the way to {decided.left_m_s:+.2f} / {decided.right_m_s:+.2f}"
+    here.text(0.5, -0.015, moving, transform=here.transAxes, ha="center", va="top", fontsize=9, color=INK)
+
+
+def _mark(tip: Tip, colours: Mapping[str, str]) -> Mark:
+    if tip.rla is None:
+        return Mark(tip.sensor, tip.needed_m, "asks", ASKS)
+    return Mark(tip.sensor, tip.needed_m, tip.rla.action, colours[tip.rla.action])
+
+
+def _halves(
+    names: tuple[str, ...], vector: tuple[float, ...], sensors: tuple[str, ...]
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Readings of each sensor, and their averages, as far as they are features."""
+    value = dict(zip(names, vector, strict=True))
+    return (
+        {name: value[name] for name in sensors if name in value},
+        {name: value[name + AVERAGED] for name in sensors if name + AVERAGED in value},
+    )

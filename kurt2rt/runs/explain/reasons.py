@@ -1,0 +1,196 @@
+"""What a robot does, and why it does so: because of an RLA, a teacher, a question, or something in its way."""
+
+import math
+
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.standing import DRIVES, Standing, StandReason, standing_latched, touched
+from kurt2rt.core.decision.standing_text import in_short, stop_text, why_it_stands
+from kurt2rt.core.rla.rla import MID
+from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaStory
+from kurt2rt.runs.explain.sentences import far, who
+
+_STANDS = {
+    Cause.BLIND: "it sees nothing",
+    Cause.STOPPED: "it was stopped",
+    Cause.UNATTENDED: "no teacher is there",
+    Cause.UNSAVED: "lessons cannot be saved",
+    Cause.AT_GOAL: "it is at its goal",
+    Cause.NO_WAY: "no way leads to its goal",
+    Cause.TOUCHES: "it touches something",
+}
+
+_NOTHING_BESIDE = (Cause.BLIND, Cause.AT_GOAL, Cause.NO_WAY)
+"""There is no situation to tell of, or it is the robot itself that has it stand."""
+
+
+def headline(facts: DecisionFacts) -> str:
+    """What the robot does, in a few words."""
+    standing = standing_in(facts)
+    if standing.reason is not StandReason.DRIVES:
+        return in_short(standing)
+    if facts.action is not None:
+        if facts.cause == Cause.TEACHER:
+            return f"{facts.action}: {facts.teacher or 'a teacher'} drives"
+        return facts.action
+    if facts.cause == Cause.UNKNOWN:
+        return "stands and asks the way" if facts.asks_at == MID else "stands and asks"
+    return f"stands: {_STANDS.get(Cause(facts.cause), facts.cause)}"
+
+
+def standing_in(facts: DecisionFacts) -> Standing:
+    """Return what the guard has the robot stand for, or what it touches; that it drives in any other case."""
+    if facts.latched:
+        return standing_latched(facts.reasons)
+    if facts.cause == Cause.TOUCHES or facts.action is not None:
+        bumpers = touched(facts.granted, facts.reasons)
+        if bumpers is not None:
+            return Standing(bumpers, asks=facts.cause == Cause.TOUCHES)
+    return DRIVES
+
+
+def because(facts: DecisionFacts) -> list[str]:
+    """Why it does so, the main reason first."""
+    lines = []
+    if facts.latched:
+        lines.append(
+            f"The guard stopped the robot for {', '.join(facts.reasons)}, and keeps it stopped until a teacher says Go."
+        )
+    if facts.cause == Cause.RLA:
+        lines += _rla_drives(facts.basic)
+    elif facts.cause == Cause.HELD:
+        lines += _held(facts.basic)
+    elif facts.cause == Cause.TEACHER:
+        lines.append(f"{facts.teacher or 'A teacher'} drives: {facts.action}. No RLA was asked.")
+        lines += _would(facts)
+    elif facts.cause == Cause.TOUCHES:
+        lines += _touches(facts)
+    elif facts.cause == Cause.UNKNOWN:
+        lines += _asks_the_way(facts.mid) if facts.asks_at == MID and facts.mid is not None else _asks(facts.basic)
+    else:
+        lines.append(_stands(facts))
+        lines += _would(facts)
+    return lines
+
+
+def _stands(facts: DecisionFacts) -> str:
+    match facts.cause:
+        case Cause.BLIND:
+            age = "never came" if math.isinf(facts.infrared_age_s) else f"are {facts.infrared_age_s * 1000:.0f} ms old"
+            return f"The infra-red readings {age}: there is no situation to decide on, nor to ask about."
+        case Cause.STOPPED:
+            return f"The robot was stopped: {stop_text(facts.stopped) or 'a teacher said so'}. It waits for Go."
+        case Cause.UNATTENDED:
+            return "The robot knows what to do, but drives only while a teacher is there, and none is."
+        case Cause.UNSAVED:
+            why = f" ({facts.trouble})" if facts.trouble else ""
+            return f"Lessons cannot be saved at the moment{why}: the robot stands until they can."
+        case Cause.AT_GOAL | Cause.NO_WAY:
+            return f"{facts.plan_says or _STANDS[Cause(facts.cause)]}."
+    return f"Cause: {facts.cause}."
+
+
+def _rla_drives(level: LevelFacts) -> list[str]:
+    nearest, driver = level.nearest, level.driver
+    if nearest is None:
+        return ["What drove is not among the RLAs any more."]
+    lines = [
+        f"This is like {nearest.title}, which says {nearest.action}: "
+        f"distance {far(nearest.distance)} of R {far(nearest.radius)}{_percent(nearest)}."
+    ]
+    if driver is not None and driver.rla_id != nearest.rla_id:
+        lines[0] = (
+            f"This is like {nearest.title}: distance {far(nearest.distance)} of R {far(nearest.radius)}"
+            f"{_percent(nearest)}. Of those on the very same condition {driver.title} was chosen, which says "
+            f"{driver.action}{_worth(driver)}."
+        )
+    return lines
+
+
+def _held(level: LevelFacts) -> list[str]:
+    nearest, driver = level.nearest, level.driver
+    if driver is None or nearest is None:
+        return ["An action keeps its minimum time."]
+    return [
+        f"{driver.title} ({driver.action}) was chosen a moment ago, and its action keeps its minimum time.",
+        f"Nearest by now is {who(nearest)}, at {far(nearest.distance)} of R {far(nearest.radius)}{_percent(nearest)}.",
+    ]
+
+
+def _touches(facts: DecisionFacts) -> list[str]:
+    why, leader = why_it_stands(standing_in(facts)), facts.basic.leader
+    says = "an RLA goes on toward it" if leader is None else f"{who(leader)} goes on toward it"
+    return [f"{why[0].upper()}{why[1:]}, and {says}: the guard lets no wheel turn that way, so the robot asks."]
+
+
+def _asks(level: LevelFacts) -> list[str]:
+    nearest, of = level.nearest, f" of {level.behaviour}" if level.behaviour else ""
+    if nearest is None:
+        return [f"Nothing{of} was taught yet, so the robot asks."]
+    if nearest.distance <= nearest.radius:
+        if nearest.asks:
+            return [
+                f"This is like {nearest.title}, at {far(nearest.distance)} of R {far(nearest.radius)}, "
+                "whose action was withdrawn: there the robot asks."
+            ]
+        return [f"{nearest.title} says {nearest.action}, which does not know how to go on here: the robot asks."]
+    return [
+        f"No RLA{of} is near enough: the nearest is {who(nearest)}, at {far(nearest.distance)}, "
+        f"{nearest.distance / nearest.radius:.2f} times R ({far(nearest.radius)})."
+        if nearest.radius > 0 and math.isfinite(nearest.distance)
+        else f"No RLA{of} is near enough: the nearest is {who(nearest)}, {far(nearest.distance)}."
+    ]
+
+
+def _asks_the_way(level: LevelFacts) -> list[str]:
+    nearest = level.nearest
+    if level.lost:
+        return ["The robot is lost: nobody has said where it was set down, so it asks."]
+    if nearest is None:
+        return ["The mid level was taught nothing yet, so the robot asks which behaviour to follow."]
+    return [f"The mid level does not know the way from here: {_nearest(nearest)}."]
+
+
+def _would(facts: DecisionFacts) -> list[str]:
+    """What it would do if a stop, its teacher's hand, or whatever had it stand just then, did not."""
+    if facts.cause in _NOTHING_BESIDE:
+        return []
+    others = [each for each in facts.hindrances if each != facts.cause]
+    unable = next((each for each in others if each in (Cause.BLIND, Cause.UNSAVED)), None)
+    if unable is not None:
+        return [f"By itself it would stand: {_STANDS[Cause(unable)]}."]
+    if facts.asks_at == MID and facts.mid is not None:
+        return [f"By itself it would ask the way: {_why_the_way(facts.mid)}."]
+    nearest, leader = facts.basic.nearest, facts.basic.leader
+    known = nearest is not None and nearest.distance <= nearest.radius and not nearest.asks
+    stands = next(iter(others), None)
+    if Cause.UNATTENDED in others:  # what it does not know it asks, whoever comes
+        stands = Cause.UNATTENDED if known else None
+    if stands is not None:
+        return [f"By itself it would stand: {_STANDS[Cause(stands)]}."]
+    if nearest is None or leader is None:
+        return ["By itself it would ask: nothing was taught yet."]
+    if known:
+        return [f"By itself it would do as {who(leader)} says, at {far(leader.distance)} of R {far(leader.radius)}."]
+    return [f"By itself it would ask: {_nearest(nearest)}."]
+
+
+def _why_the_way(mid: LevelFacts) -> str:
+    if mid.lost:
+        return "it is lost, for nobody has said where it was set down"
+    if mid.nearest is None:
+        return "the mid level was taught nothing yet"
+    return _nearest(mid.nearest)
+
+
+def _nearest(story: RlaStory) -> str:
+    return f"nearest is {who(story)}, at {far(story.distance)} of R {far(story.radius)}"
+
+
+def _percent(story: RlaStory) -> str:
+    if not story.radius > 0 or math.isinf(story.distance):
+        return ""
+    return f" ({100 * story.distance / story.radius:.0f} %)"
+
+
+def _worth(story: RlaStory) -> str:
+    return "" if story.value is None else f" and is worth {story.value:.2f}"

@@ -1,0 +1,189 @@
+"""An explanation, or the timeline of a run, for a terminal."""
+
+import math
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
+from kurt2rt.core.rla.rla import MID
+from kurt2rt.knowledge.show.table_cells import plain
+from kurt2rt.platform.text_table import TextTable
+from kurt2rt.runs.explain.attribution import pulls, shares
+from kurt2rt.runs.explain.counterfactual import Tip
+from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaStory
+from kurt2rt.runs.explain.reasons import because, headline
+from kurt2rt.runs.explain.sentences import beside, guarded, mid_lines, still_kept, taught, used, when, would_change
+from kurt2rt.runs.explain.timeline import Kind, Stretch, Timeline, summary
+
+_FEATURES = 6
+_STYLES = {Kind.DRIVES: "green", Kind.LED: "magenta", Kind.ASKS: "red", Kind.STANDS: "yellow"}
+_BAR = 20
+
+
+def render_why(
+    facts: DecisionFacts, found: tuple[Tip, ...], where: str, words: SensorWords = NO_WORDS
+) -> RenderableType:
+    """Render one decision.
+
+    `found`: what would have changed it; `where`: of which run, and when; `words`: for the robot's sensors.
+    """
+    parts: list[RenderableType] = [Text.assemble((where, "dim")), Text(headline(facts), style="bold")]
+    parts += [plain(line) for line in because(facts)]
+    if guarded(facts):
+        parts.append(plain(guarded(facts)))
+    if facts.asks_at == MID and facts.mid is not None and facts.mid.nearest is not None:
+        parts += _of_level(facts.mid, None, words)
+    else:
+        parts += _of_level(facts.basic, facts.basic.driver, words)
+    changes = would_change(found)
+    if changes:
+        parts.append(Text("\nWhat would have changed it, one reading alone:", style="bold"))
+        parts += [plain(f"  {line}") for line in changes]
+    if still_kept(facts):
+        parts.append(plain(still_kept(facts)))
+    above = mid_lines(facts)
+    if above:
+        parts.append(Text(""))
+        parts += [plain(line) for line in above]
+    return Group(*parts)
+
+
+def _of_level(level: LevelFacts, driver: RlaStory | None, words: SensorWords) -> list[RenderableType]:
+    """The RLA it went by, those beside it, and the features."""
+    story = driver or level.nearest
+    if story is None:
+        return []
+    parts: list[RenderableType] = [plain(line) for line in beside(level)]
+    parts.append(_differences(level, story, words))
+    parts += [Text("Taught", style="bold"), plain(taught(story)), plain(used(story))]
+    if len(story.acts) > 1:
+        parts.append(_history(story))
+    return parts
+
+
+def _differences(level: LevelFacts, story: RlaStory, words: SensorWords) -> RenderableType:
+    found = shares(level, story)
+    other = level.rival_of(story)
+    pull = {} if other is None else {each.name: each.pull for each in pulls(level, story, other)}
+    theirs = {} if other is None else dict(zip(level.names, other.condition, strict=True))
+    table = TextTable()
+    table.add_column("feature")
+    table.add_column("here", number=True)
+    table.add_column(f"RLA {story.rla_id}", number=True)
+    table.add_column("of the distance")
+    if other is not None:
+        table.add_column(f"RLA {other.rla_id}", number=True)
+        table.add_column("speaks for")
+    for share in found[:_FEATURES]:
+        cells: list[str | Text] = [
+            plain(words.place(share.name)),
+            *(words.reading(share.name, each) for each in (share.here, share.there)),
+        ]
+        cells.append(f"{100 * share.share:3.0f} % {'█' * round(_BAR * share.share)}")
+        if other is not None:
+            of_feature = pull.get(share.name, 0.0)
+            ahead = f"{100 * abs(of_feature):.0f} %"
+            side = story if of_feature > 0 else other
+            cells += [
+                words.reading(share.name, theirs[share.name]),
+                "" if abs(of_feature) < 0.005 else f"{ahead} for RLA {side.rla_id}",
+            ]
+        table.add_row(*cells)
+    hidden = len(found) - table.row_count
+    if not found:
+        return Text("It is the very situation that was taught." if story.distance == 0 else "")
+    return Group(table, Text(f"and {hidden} more features that differ", style="dim")) if hidden > 0 else table
+
+
+def _history(story: RlaStory) -> TextTable:
+    table = TextTable()
+    for heading in ("when", "by", "phase", "what"):
+        table.add_column(heading)
+    for act in story.acts:
+        text = f"{act.text} (taken back)" if act.undone else act.text
+        table.add_row(plain(when(act)), plain(act.teacher), str(act.phase), plain(text))
+    return table
+
+
+def render_timeline(timeline: Timeline, where: str, most: int) -> RenderableType:
+    """What the robot did when. Of more than `most` stretches only those in which it did not drive by itself."""
+    whole_s = max(timeline.to_s - timeline.from_s, 1e-9)
+    parts: list[RenderableType] = [
+        Text(where, style="dim"),
+        Text(summary(timeline), style="bold"),
+        _shares(timeline, whole_s),
+    ]
+    rows = list(timeline.stretches)
+    if len(rows) > most:
+        rows = [stretch for stretch in rows if stretch.kind is not Kind.DRIVES]
+        parts.append(
+            Text(
+                f"{len(timeline.stretches)} stretches; here are those in which it did not drive by itself. "
+                "Give --from and --to for all of a shorter time."
+            )
+        )
+    table = TextTable()
+    for heading in ("from s", "to s", "lasts s"):
+        table.add_column(heading, number=True)
+    table.add_column("what")
+    table.add_column("RLAs (share of the time)")
+    table.add_column("farthest", number=True)
+    table.add_column("guard")
+    for stretch in rows[:most]:
+        table.add_row(*_row(stretch))
+    parts.append(table)
+    if len(rows) > most:
+        parts.append(Text(f"and {len(rows) - most} more"))
+    notes = timeline.notes[:most]
+    if notes:
+        told = TextTable()
+        told.add_column("at s", number=True)
+        told.add_column("what happened")
+        for note in notes:
+            told.add_row(f"{note.at_s:.2f}", plain(f"{note.kind}: {note.text}" if note.kind == "alarm" else note.text))
+        parts.append(told)
+        if len(timeline.notes) > most:
+            parts.append(Text(f"and {len(timeline.notes) - most} more"))
+    return Group(*parts)
+
+
+def _shares(timeline: Timeline, whole_s: float) -> TextTable:
+    """Each thing that it did, the most first."""
+    lasts: dict[tuple[Kind, str], float] = {}
+    times: dict[tuple[Kind, str], int] = {}
+    for stretch in timeline.stretches:
+        key = stretch.kind, stretch.what
+        lasts[key] = lasts.get(key, 0.0) + stretch.lasts_s
+        times[key] = times.get(key, 0) + 1
+    table = TextTable()
+    for heading, side in (("what", "left"), ("s", "right"), ("times", "right"), ("share of the time", "left")):
+        table.add_column(heading, number=side == "right")
+    for kind, what in sorted(lasts, key=lambda key: -lasts[key]):
+        share = lasts[kind, what] / whole_s
+        bar = f"{100 * share:3.0f} % {'█' * round(_BAR * share)}"
+        table.add_row(
+            Text(_said(kind, what), style=_STYLES[kind]), f"{lasts[kind, what]:.1f}", str(times[kind, what]), bar
+        )
+    return table
+
+
+def _row(stretch: Stretch) -> list[str | Text]:
+    ticks = sum(stretch.rlas.values())
+    drove = sorted(stretch.rlas.items(), key=lambda each: -each[1])[:4]
+    rlas = ", ".join(f"{rla_id} ({100 * count / ticks:.0f} %)" for rla_id, count in drove)
+    more = len(stretch.rlas) - len(drove)
+    what = _said(stretch.kind, stretch.what)
+    return [
+        f"{stretch.from_s:.2f}",
+        f"{stretch.to_s:.2f}",
+        f"{stretch.lasts_s:.2f}",
+        Text(f"{what} ({stretch.behaviour})" if stretch.behaviour else what, style=_STYLES[stretch.kind]),
+        f"{rlas} and {more} more" if more else rlas,
+        "far off" if math.isinf(stretch.worst) else f"{stretch.worst:.2f} R" if stretch.rlas else "",
+        ", ".join(stretch.guarded),
+    ]
+
+
+def _said(kind: Kind, what: str) -> str:
+    return f"led: {what}" if kind is Kind.LED else f"stands: {what}" if kind is Kind.STANDS else what

@@ -1,0 +1,289 @@
+"""A run as stretches: what the robot did from when to when, by which rules, and where it stood or asked."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from enum import StrEnum
+from itertools import groupby
+
+from hal.odometry import PlanePose, WheelOdometry
+from hal.robot_settings import RobotSettings
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.rla.rla import BASIC, Lesson, TeachingEvent
+from kurt2rt.runs.explain.lesson_words import LessonWords
+from kurt2rt.runs.explain.sentences import times
+from kurt2rt.runs.recording.entries import DecisionEntry, TickEntry
+
+MOST_SAMPLES = 5000
+"""A picture is not as wide as twice that."""
+
+
+class Kind(StrEnum):
+    """What a stretch is."""
+
+    DRIVES = "drives"
+    """By its RLAs."""
+    LED = "led"
+    """By a teacher."""
+    ASKS = "asks"
+    STANDS = "stands"
+    """For another reason."""
+
+
+@dataclass(slots=True)
+class Stretch:
+    """Ticks on end in which the robot did one thing. Grows while the run is read."""
+
+    kind: Kind
+    what: str
+    """The action, or why the robot stood."""
+    behaviour: str
+    """The taught behaviour that was wanted; empty where there is only one."""
+    from_s: float
+    """From the first tick of the run."""
+    to_s: float
+    rlas: dict[int, int] = field(default_factory=dict)
+    """How many ticks each RLA drove; where the robot asked or stood, was nearest."""
+    worst: float = 0.0
+    """Largest distance as a share of R; infinite where nothing was near."""
+    guarded: dict[str, int] = field(default_factory=dict)
+    """In how many ticks the guard changed what was decided, by its reasons; but for the slew limit."""
+
+    @property
+    def lasts_s(self) -> float:
+        """How long."""
+        return self.to_s - self.from_s
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """Something that happened in one tick."""
+
+    at_s: float
+    kind: str
+    """lesson, saying (a session, an opinion, what was taken back), alarm."""
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """One tick, for curves."""
+
+    at_s: float
+    share: float
+    """Distance of the nearest RLA as a share of R; NaN where there is none."""
+    rla_id: int | None
+    """The one that drives; None while none does."""
+    action: str | None
+    left_m_s: float
+    """As the guard let it through."""
+    right_m_s: float
+    held_back: bool
+    """Whether the guard changed what was decided, for another reason than its slew limit."""
+    x_m: float
+    """By the encoders, from where the first tick found it, looking along x."""
+    y_m: float
+
+
+@dataclass(frozen=True, slots=True)
+class Timeline:
+    """A run, or a part of it."""
+
+    stretches: tuple[Stretch, ...]
+    notes: tuple[Note, ...]
+    samples: tuple[Sample, ...]
+    ticks: int
+    missed: int
+    """Ticks that were skipped."""
+    unrecorded: int = 0
+    """Ticks that were not skipped, but are not in the recording."""
+
+    @property
+    def from_s(self) -> float:
+        """Of the first tick."""
+        return self.stretches[0].from_s if self.stretches else 0.0
+
+    @property
+    def to_s(self) -> float:
+        """Of the end of the last one."""
+        return self.stretches[-1].to_s if self.stretches else 0.0
+
+
+def timeline_of(
+    entries: Iterable[TickEntry],
+    robot: RobotSettings,
+    *,
+    from_s: float = 0.0,
+    to_s: float = math.inf,
+    every: int = 5,
+    known: Iterable[TeachingEvent] = (),
+) -> Timeline:
+    """Read the entries of a run, oldest first; times in s from its first tick. Of `every` so many ticks a sample,
+    of a long run of fewer: at most twice MOST_SAMPLES.
+
+    `known`: what had been taught before.
+    """
+    reader = _Reader(robot, from_s, to_s, every)
+    for event in known:
+        reader.lessons.tell(event)
+    for entry in entries:
+        if not reader.take(entry):
+            break
+    return reader.timeline
+
+
+class _Reader:
+    """Goes through a run once."""
+
+    def __init__(self, robot: RobotSettings, from_s: float, to_s: float, every: int) -> None:
+        self._period_s = robot.can.cycle_s
+        self._odometry = WheelOdometry(robot.geometry)
+        self._pose = PlanePose()
+        self._from_s, self._to_s, self._every = from_s, to_s, every
+        self._began_s: float | None = None
+        self._stretches: list[Stretch] = []
+        self._notes: list[Note] = []
+        self._samples: list[Sample] = []
+        self._ticks = self._missed = self._unrecorded = 0
+        self._before: TickEntry | None = None
+        self._latched = False
+        self.lessons = LessonWords()
+
+    @property
+    def timeline(self) -> Timeline:
+        return Timeline(
+            tuple(self._stretches),
+            tuple(self._notes),
+            tuple(self._samples),
+            self._ticks,
+            self._missed,
+            self._unrecorded,
+        )
+
+    def take(self, entry: TickEntry) -> bool:
+        """Take in one tick; False behind the end."""
+        if self._began_s is None:
+            self._began_s = entry.now_s
+        at_s = entry.now_s - self._began_s
+        self._reckon(entry)
+        told = [(_kind(event), self.lessons.tell(event)) for event in entry.events]
+        if at_s > self._to_s:
+            return False
+        if at_s < self._from_s:
+            return True
+        unrecorded = 0
+        if self._before is not None:
+            unrecorded = max(0, entry.number - self._before.number - 1)
+            self._unrecorded += unrecorded
+            self._missed += max(0, entry.tick - self._before.tick - 1 - unrecorded)
+        self._before = entry
+        kind, what = _doing(entry)
+        last = self._stretches[-1] if self._stretches else None
+        if last is None or unrecorded or (last.kind, last.what, last.behaviour) != (kind, what, entry.behaviour):
+            if last is not None and not unrecorded:
+                last.to_s = at_s
+            last = Stretch(kind, what, entry.behaviour, at_s, at_s)
+            self._stretches.append(last)
+        last.to_s = at_s + self._period_s
+        self._count(last, entry)
+        self._note(entry, told, at_s)
+        if self._ticks % self._every == 0:
+            self._samples.append(self._sample(entry, at_s))
+            if len(self._samples) == 2 * MOST_SAMPLES:
+                del self._samples[1::2]
+                self._every *= 2
+        self._ticks += 1
+        return True
+
+    def _reckon(self, entry: TickEntry) -> None:
+        motion = self._odometry.motion(entry.senses.encoder_left_ticks, entry.senses.encoder_right_ticks)
+        self._pose = self._pose.moved(motion.forward_m, motion.turn_rad)
+
+    def _count(self, stretch: Stretch, entry: TickEntry) -> None:
+        decision = entry.decision
+        nearest = None if decision.match is None else decision.match.rla_id
+        rla_id = nearest if decision.rla_id is None else decision.rla_id
+        if rla_id is not None:
+            stretch.rlas[rla_id] = stretch.rlas.get(rla_id, 0) + 1
+        share = _share(decision)
+        if not math.isnan(share):
+            stretch.worst = max(stretch.worst, share)
+        for reason in _out_of_the_ordinary(entry):
+            stretch.guarded[reason] = stretch.guarded.get(reason, 0) + 1
+
+    def _note(self, entry: TickEntry, told: Iterable[tuple[str, str]], at_s: float) -> None:
+        self._notes += [Note(at_s, kind, text) for kind, text in told]
+        if entry.grant.latched and not self._latched:
+            self._notes.append(Note(at_s, "alarm", ", ".join(entry.grant.reasons)))
+        self._latched = entry.grant.latched
+
+    def _sample(self, entry: TickEntry, at_s: float) -> Sample:
+        return Sample(
+            at_s=at_s,
+            share=_share(entry.decision),
+            rla_id=entry.decision.rla_id,
+            action=entry.decision.action,
+            left_m_s=entry.grant.wheel_speeds.left_m_s,
+            right_m_s=entry.grant.wheel_speeds.right_m_s,
+            held_back=bool(_out_of_the_ordinary(entry)),
+            x_m=self._pose.x_m,
+            y_m=self._pose.y_m,
+        )
+
+
+def spells(timeline: Timeline, kind: Kind) -> tuple[tuple[float, float], ...]:
+    """From when to when it did nothing but this, whatever the action or the question was."""
+    groups = [tuple(group) for each, group in groupby(timeline.stretches, lambda stretch: stretch.kind) if each is kind]
+    return tuple((group[0].from_s, group[-1].to_s) for group in groups)
+
+
+def summary(timeline: Timeline) -> str:
+    """How much of the time the robot drove, asked and stood, in a line."""
+    whole_s = timeline.to_s - timeline.from_s
+    if not whole_s > 0:
+        return "Nothing was recorded in that time."
+    words = {Kind.DRIVES: "drove by its RLAs", Kind.LED: "was led", Kind.ASKS: "asked", Kind.STANDS: "stood"}
+    parts = []
+    for kind, word in words.items():
+        lasts_s = sum(stretch.lasts_s for stretch in timeline.stretches if stretch.kind is kind)
+        if lasts_s > 0:
+            often = f" ({times(len(spells(timeline, kind)))})" if kind in (Kind.ASKS, Kind.STANDS) else ""
+            parts.append(f"{word} {100 * lasts_s / whole_s:.0f} %{often}")
+    lessons = sum(note.kind == "lesson" for note in timeline.notes)
+    alarms = sum(note.kind == "alarm" for note in timeline.notes)
+    parts += [_counted(lessons, "lesson")] if lessons else []
+    parts += [_counted(alarms, "alarm")] if alarms else []
+    parts += [f"{timeline.missed} ticks missed"] if timeline.missed else []
+    parts += [f"{timeline.unrecorded} ticks not recorded"] if timeline.unrecorded else []
+    return f"{whole_s:.1f} s: {', '.join(parts)}"
+
+
+def _kind(event: TeachingEvent) -> str:
+    return "lesson" if isinstance(event, Lesson) else "saying"
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
+
+
+def _doing(entry: TickEntry) -> tuple[Kind, str]:
+    decision = entry.decision
+    if entry.grant.latched:
+        return Kind.STANDS, f"guard: {', '.join(entry.grant.reasons)}"
+    if decision.action is not None:
+        return (Kind.LED if decision.cause is Cause.TEACHER else Kind.DRIVES), decision.action
+    if decision.cause is Cause.TOUCHES:
+        return Kind.ASKS, "asks: touches something"
+    if decision.cause is Cause.UNKNOWN:
+        return Kind.ASKS, "asks the way" if decision.asks_at != BASIC else "asks"
+    return Kind.STANDS, decision.cause.value
+
+
+def _out_of_the_ordinary(entry: TickEntry) -> tuple[str, ...]:
+    """Why the guard changed what was decided, but for the slew at each change of action."""
+    return tuple(reason for reason in entry.grant.reasons if not reason.routine)
+
+
+def _share(decision: DecisionEntry) -> float:
+    match = decision.match
+    return math.nan if match is None or not match.radius > 0 else match.distance / match.radius

@@ -1,0 +1,264 @@
+"""A run as a picture: where it went, what it did when, how well it knew where it was, and who drove."""
+
+import math
+from bisect import bisect_left
+from collections.abc import Mapping, Sequence
+from itertools import groupby, pairwise
+from pathlib import Path
+
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from kurt2rt.runs.explain.colours import ASKS, INK, PALE_INK, STANDS, TEACHER, colours_of
+from kurt2rt.runs.explain.save_figure import save
+from kurt2rt.runs.explain.timeline import Kind, Note, Sample, Stretch, Timeline, spells, summary
+
+_KNOWN, _LIMIT = "#e3f1e6", "#3f9b5c"
+_CURVE = "#3b4754"
+_LEFT, _RIGHT, _HELD_BACK = "#2b7bba", "#c85a0a", "#efe3f5"
+_HIGHEST_SHARE = 1.6
+_MOST_NUMBERED = 24
+_MOST_STRETCHES = 400
+"""Of more nobody sees single ones."""
+_WHILES = 200
+"""In which a long run is told."""
+
+
+def draw_timeline(timeline: Timeline, title: str, path: Path) -> None:
+    """Write a picture as the file's name ends. Raises OSError."""
+    colours = colours_of(stretch.what for stretch in timeline.stretches if stretch.kind is Kind.DRIVES)
+    figure = Figure(figsize=(16.0, 8.6), facecolor="white")
+    figure.text(0.02, 0.962, title, fontsize=15, fontweight="bold", color=INK, va="center")
+    figure.text(0.02, 0.925, summary(timeline), fontsize=10.5, color=PALE_INK, va="center")
+    grid = figure.add_gridspec(
+        4,
+        2,
+        left=0.03,
+        right=0.985,
+        top=0.86,
+        bottom=0.14,
+        width_ratios=(0.62, 1.0),
+        height_ratios=(0.34, 1.0, 1.0, 0.7),
+        wspace=0.11,
+        hspace=0.16,
+    )
+    _way(figure.add_subplot(grid[:, 0]), timeline, colours)
+    lanes = [figure.add_subplot(grid[row, 1]) for row in range(4)]
+    _ribbon(lanes[0], timeline, colours)
+    _familiarity(lanes[1], timeline)
+    _drivers(lanes[2], timeline, colours)
+    _speeds(lanes[3], timeline)
+    for lane in lanes:
+        lane.set_xlim(timeline.from_s, max(timeline.to_s, timeline.from_s + 0.01))
+        lane.tick_params(length=0, labelsize=9, colors=PALE_INK)
+        for side in ("top", "right", "left", "bottom"):
+            lane.spines[side].set_visible(False)
+        if lane is not lanes[-1]:
+            lane.set_xticks([])
+    lanes[-1].set_xlabel("s into the run", fontsize=9.5, color=PALE_INK)
+    _legend(figure, timeline, colours)
+    save(figure, path)
+
+
+def colour_of(stretch: Stretch, colours: Mapping[str, str]) -> str:
+    """As its kind has it, or its action."""
+    match stretch.kind:
+        case Kind.DRIVES:
+            return colours[stretch.what]
+        case Kind.LED:
+            return TEACHER
+        case Kind.ASKS:
+            return ASKS
+    return STANDS
+
+
+def _way(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
+    """Where it went, by its encoders, in the colours of what it did."""
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_axis_off()
+    samples = timeline.samples
+    if not samples:
+        return
+    stretches = iter(timeline.stretches)
+    stretch = next(stretches)
+    lines: list[list[tuple[float, float]]] = []
+    shades: list[str] = []
+    for one, other in pairwise(samples):
+        while one.at_s >= stretch.to_s:
+            stretch = next(stretches, stretch)
+            if stretch is timeline.stretches[-1]:
+                break
+        lines.append([(one.x_m, one.y_m), (other.x_m, other.y_m)])
+        shades.append(colour_of(stretch, colours))
+    wide = 3.4 if len(timeline.stretches) <= _MOST_STRETCHES else 1.2
+    axes.add_collection(LineCollection(lines, colors="#ffffff", linewidths=2 * wide, capstyle="round", zorder=2))
+    axes.add_collection(LineCollection(lines, colors=shades, linewidths=wide, capstyle="round", zorder=3))
+    first, last = samples[0], samples[-1]
+    axes.plot(first.x_m, first.y_m, "o", markersize=9, color="white", markeredgecolor=INK, zorder=5)
+    axes.plot(last.x_m, last.y_m, "s", markersize=8, color=INK, zorder=5)
+    axes.annotate("begin", (first.x_m, first.y_m), xytext=(9, -13), textcoords="offset points", fontsize=9, color=INK)
+    axes.annotate("end", (last.x_m, last.y_m), xytext=(9, -10), textcoords="offset points", fontsize=9, color=INK)
+    asked = spells(timeline, Kind.ASKS)
+    for number, (from_s, _) in enumerate(asked, start=1):
+        place = _at(samples, from_s)
+        axes.plot(place.x_m, place.y_m, "o", markersize=6, color=ASKS, markeredgecolor="white", zorder=6)
+        if len(asked) <= _MOST_NUMBERED:
+            axes.annotate(
+                str(number),
+                (place.x_m, place.y_m),
+                xytext=(5, 5),
+                textcoords="offset points",
+                fontsize=8.5,
+                color=ASKS,
+                zorder=7,
+            )
+    axes.autoscale_view()
+    _scale(axes, samples)
+
+
+def _scale(axes: Axes, samples: Sequence[Sample]) -> None:
+    """A bar of a round length."""
+    low_x, low_y = min(each.x_m for each in samples), min(each.y_m for each in samples)
+    wide_m = max(max(each.x_m for each in samples) - low_x, max(each.y_m for each in samples) - low_y, 0.2)
+    length_m = max((each for each in (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 50.0) if each <= wide_m / 2), default=0.1)
+    y = low_y - 0.09 * wide_m
+    axes.plot([low_x, low_x + length_m], [y, y], color=INK, linewidth=2.0, solid_capstyle="butt")
+    axes.text(low_x, y - 0.015 * wide_m, f"{length_m:g} m, by the encoders", fontsize=9, color=PALE_INK, va="top")
+
+
+def _at(samples: Sequence[Sample], at_s: float) -> Sample:
+    behind = bisect_left(samples, at_s, key=lambda sample: sample.at_s)
+    return min(samples[max(behind - 1, 0) : behind + 1], key=lambda sample: abs(sample.at_s - at_s))
+
+
+def _ribbon(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
+    """What it did when, with what was taught above."""
+    if len(timeline.stretches) > _MOST_STRETCHES:
+        _shares_over_time(axes, timeline, colours)
+    else:
+        _one_by_one(axes, timeline, colours)
+    asked = spells(timeline, Kind.ASKS)
+    if len(asked) <= _MOST_NUMBERED:
+        for number, (from_s, to_s) in enumerate(asked, start=1):
+            axes.text((from_s + to_s) / 2, -0.08, str(number), ha="center", va="top", fontsize=8, color=ASKS)
+    _notes(axes, timeline.notes, "lesson", "v", INK, 1.22)
+    _notes(axes, timeline.notes, "alarm", "X", ASKS, 1.5)
+    axes.set_ylim(-0.3, 1.75)
+    axes.set_yticks([])
+    axes.set_ylabel("what it did", fontsize=9.5, color=PALE_INK)
+
+
+def _one_by_one(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
+    for colour, group in groupby(
+        sorted(timeline.stretches, key=lambda each: colour_of(each, colours)), key=lambda each: colour_of(each, colours)
+    ):
+        spans = [(stretch.from_s, stretch.lasts_s) for stretch in group]
+        axes.broken_barh(spans, (0.0, 1.0), facecolors=colour, linewidth=0)
+
+
+def _shares_over_time(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
+    """Of a long run: how much of each while it did what."""
+    low_s, high_s = timeline.from_s, timeline.to_s
+    width_s = (high_s - low_s) / _WHILES
+    lasts: dict[str, list[float]] = {}
+    for stretch in timeline.stretches:
+        of_colour = lasts.setdefault(colour_of(stretch, colours), [0.0] * _WHILES)
+        first, last = ((each - low_s) / width_s for each in (stretch.from_s, stretch.to_s))
+        for place in range(int(first), min(_WHILES, int(last) + 1)):
+            of_colour[place] += max(0.0, min(place + 1, last) - max(place, first))
+    edges = [low_s + place * width_s for place in range(_WHILES + 1)]
+    below = [0.0] * (_WHILES + 1)
+    order = [*colours.values(), TEACHER, ASKS, STANDS]
+    for colour in sorted(lasts, key=order.index):
+        above = [low + share for low, share in zip(below, [*lasts[colour], lasts[colour][-1]], strict=True)]
+        axes.fill_between(edges, below, above, step="post", color=colour, linewidth=0)
+        below = above
+
+
+def _notes(axes: Axes, notes: Sequence[Note], kind: str, marker: str, colour: str, height: float) -> None:
+    times = [note.at_s for note in notes if note.kind == kind]
+    many = len(times) > _MOST_STRETCHES
+    axes.plot(
+        times,
+        [height] * len(times),
+        "|" if many else marker,
+        markersize=6,
+        color=colour,
+        alpha=0.3 if many else 1.0,
+        linestyle="none",
+        clip_on=False,
+    )
+
+
+def _familiarity(axes: Axes, timeline: Timeline) -> None:
+    """How far the nearest RLA is, as a share of R."""
+    times = [sample.at_s for sample in timeline.samples]
+    shown = [min(sample.share, _HIGHEST_SHARE) for sample in timeline.samples]
+    axes.axhspan(0, 1, facecolor=_KNOWN, zorder=0)
+    axes.axhline(1, color=_LIMIT, linewidth=1.4, linestyle=(0, (4, 2)), zorder=1)
+    wide = 1.1 if len(timeline.stretches) <= _MOST_STRETCHES else 0.3
+    axes.plot(times, shown, color=_CURVE, linewidth=wide, zorder=3)
+    above = [not math.isnan(share) and share > 1 for share in shown]
+    axes.fill_between(times, 1, shown, where=above, color=ASKS, alpha=0.75, linewidth=0, zorder=2)
+    highest = max((share for share in shown if not math.isnan(share)), default=1.0)
+    axes.set_ylim(0, max(1.12, 1.06 * highest))
+    axes.set_yticks([0, 0.5, 1], ["0", "0.5 R", "R"])
+    axes.set_ylabel("nearest RLA", fontsize=9.5, color=PALE_INK)
+
+
+def _drivers(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
+    """Which RLA drives: the older the lower."""
+    highest = 1
+    lines: list[list[tuple[float, float]]] = []
+    shades: list[str] = []
+    ends = [sample.at_s for sample in timeline.samples[1:]] + [timeline.to_s]
+    spans = zip(timeline.samples, ends, strict=False)
+    for (rla_id, action), group in groupby(spans, key=lambda span: (span[0].rla_id, span[0].action)):
+        if rla_id is None or action is None:
+            continue
+        drives = list(group)
+        highest = max(highest, rla_id)
+        lines.append([(drives[0][0].at_s, rla_id), (drives[-1][1], rla_id)])
+        shades.append(colours.get(action, STANDS))
+    axes.add_collection(LineCollection(lines, colors=shades, linewidths=5.0, zorder=3))
+    axes.set_ylim(0, highest * 1.06 + 0.5)
+    axes.grid(axis="y", color="#e4e8ec", linewidth=0.8, zorder=0)
+    axes.set_ylabel("RLA that drives", fontsize=9.5, color=PALE_INK)
+
+
+def _speeds(axes: Axes, timeline: Timeline) -> None:
+    """What the wheels were told; shaded where the guard held them back."""
+    times = [sample.at_s for sample in timeline.samples]
+    left = [sample.left_m_s for sample in timeline.samples]
+    right = [sample.right_m_s for sample in timeline.samples]
+    low, high = min([0.0, *left, *right]) - 0.02, max([0.1, *left, *right]) + 0.02
+    held_back = [sample.held_back for sample in timeline.samples]
+    axes.fill_between(times, low, high, where=held_back, step="mid", color=_HELD_BACK, linewidth=0, zorder=0)
+    axes.axhline(0, color="#e4e8ec", linewidth=0.8, zorder=1)
+    wide = 1.2 if len(timeline.stretches) <= _MOST_STRETCHES else 0.25
+    axes.plot(times, left, color=_LEFT, linewidth=wide, zorder=2)
+    axes.plot(times, right, color=_RIGHT, linewidth=wide, zorder=3)
+    axes.set_ylim(low, high)
+    axes.set_ylabel("wheels, m/s", fontsize=9.5, color=PALE_INK)
+
+
+def _legend(figure: Figure, timeline: Timeline, colours: Mapping[str, str]) -> None:
+    kinds = {stretch.kind for stretch in timeline.stretches}
+    handles: list[Patch | Line2D] = [Patch(color=colour, label=action) for action, colour in colours.items()]
+    for kind, colour, label in (
+        (Kind.LED, TEACHER, "led by a teacher"),
+        (Kind.ASKS, ASKS, "stands and asks"),
+        (Kind.STANDS, STANDS, "stands"),
+    ):
+        if kind in kinds:
+            handles.append(Patch(color=colour, label=label))
+    for kind_of_note, marker, colour in (("lesson", "v", INK), ("alarm", "X", ASKS)):
+        if any(note.kind == kind_of_note for note in timeline.notes):
+            handles.append(Line2D([], [], marker=marker, linestyle="none", color=colour, label=kind_of_note))
+    handles += [Line2D([], [], color=_LEFT, label="left wheels"), Line2D([], [], color=_RIGHT, label="right wheels")]
+    if any(sample.held_back for sample in timeline.samples):
+        handles.append(Patch(color=_HELD_BACK, label="held back by the guard"))
+    figure.legend(handles=handles, loc="lower center", ncols=min(len(handles), 9), frameon=False, fontsize=9.5)

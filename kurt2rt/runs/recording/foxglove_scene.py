@@ -1,0 +1,211 @@
+"""What a recording shows without a word of the project's own: Foxglove's scan, pose, transform, scene and log."""
+
+import math
+from collections.abc import Sequence
+
+from foxglove.messages import (
+    ArrowPrimitive,
+    Color,
+    CubePrimitive,
+    CylinderPrimitive,
+    Duration,
+    FrameTransform,
+    FrameTransforms,
+    LaserScan,
+    LinePrimitive,
+    LinePrimitiveLineType,
+    Point3,
+    Pose,
+    PoseInFrame,
+    Quaternion,
+    SceneEntity,
+    SceneUpdate,
+    TextPrimitive,
+    Timestamp,
+    TriangleListPrimitive,
+    Vector3,
+)
+
+from hal.odometry import PlanePose
+from hal.robot_settings import RobotSettings
+from hal.simulation import WorldPlan
+from kurt2rt.core.decision.decision import Decision
+from kurt2rt.core.rla.rla import rla_title
+from kurt2rt.runs.recording.sensor_rays import SCAN_STEP_DEG, SensorRays
+
+ROBOT, START, WORLD = "robot", "start", "world"
+"""Frames: the robot's centre; where it was switched on, by its encoders; the simulated world."""
+
+_DRIVES = Color(r=0.15, g=0.55, b=0.3, a=1.0)
+_ASKS = Color(r=0.9, g=0.6, b=0.1, a=1.0)
+_STANDS = Color(r=0.7, g=0.2, b=0.2, a=1.0)
+_RAY = Color(r=0.2, g=0.45, b=0.8, a=0.9)
+_FAR_RAY = Color(r=0.6, g=0.6, b=0.6, a=0.35)
+_AHEAD = Color(r=1.0, g=1.0, b=1.0, a=0.9)
+_WALL = Color(r=0.55, g=0.55, b=0.55, a=1.0)
+_WALL_FACE = Color(r=0.55, g=0.55, b=0.55, a=0.3)
+_WALL_HEIGHT_M = 0.15
+_ROBOT_HEIGHT_M = 0.25
+_RAY_HEIGHT_M = 0.1
+_TEXT_HEIGHT_M = 0.7
+
+
+def timestamp(time_ns: int) -> Timestamp:
+    """Nanoseconds since 1970 as Foxglove says it."""
+    return Timestamp(time_ns // 1_000_000_000, time_ns % 1_000_000_000)
+
+
+def pose_in(frame: str, pose: PlanePose, time_ns: int) -> PoseInFrame:
+    """A pose on the floor."""
+    return PoseInFrame(timestamp=timestamp(time_ns), frame_id=frame, pose=_pose(pose))
+
+
+def transforms(moves: Sequence[tuple[str, str, PlanePose]], time_ns: int) -> FrameTransforms:
+    """For each (parent, child, pose): where the child frame's origin stands in the parent's."""
+    moved = [
+        FrameTransform(
+            timestamp=timestamp(time_ns),
+            parent_frame_id=parent,
+            child_frame_id=child,
+            translation=Vector3(x=pose.x_m, y=pose.y_m, z=0.0),
+            rotation=_turned(pose.heading_rad),
+        )
+        for parent, child, pose in moves
+    ]
+    return FrameTransforms(transforms=moved)
+
+
+class RobotPictures:
+    """Scans and scenes of one robot."""
+
+    def __init__(self, settings: RobotSettings) -> None:
+        self._length_m = settings.geometry.outline_length_m
+        self._width_m = settings.geometry.outline_width_m
+        self._rays = SensorRays(settings.infrared)
+
+    def scan(self, counts: Sequence[int], time_ns: int) -> LaserScan:
+        """What the sensors see, as seen from the robot's centre."""
+        return LaserScan(
+            timestamp=timestamp(time_ns),
+            frame_id=ROBOT,
+            pose=_pose(PlanePose(0.0, 0.0, 0.0), _RAY_HEIGHT_M),
+            start_angle=0.0,
+            end_angle=math.radians(360 - SCAN_STEP_DEG),
+            ranges=self._rays.scan_m(counts),
+        )
+
+    def scene(self, counts: Sequence[int], decision: Decision, behaviour: str, time_ns: int) -> SceneUpdate:
+        """The robot's outline with an arrow ahead, the rays of its sensors, and what drives it as text."""
+        points: list[Point3] = []
+        colors: list[Color] = []
+        for ray in self._rays.of(counts):
+            points.append(Point3(x=ray.from_x_m, y=ray.from_y_m, z=_RAY_HEIGHT_M))
+            points.append(Point3(x=ray.to_x_m, y=ray.to_y_m, z=_RAY_HEIGHT_M))
+            colors += [_RAY if ray.seen else _FAR_RAY] * 2
+        color = _DRIVES if decision.driving else _ASKS if decision.asking else _STANDS
+        body = CubePrimitive(
+            pose=_pose(PlanePose(0.0, 0.0, 0.0), _ROBOT_HEIGHT_M / 2),
+            size=Vector3(x=self._length_m, y=self._width_m, z=_ROBOT_HEIGHT_M),
+            color=color,
+        )
+        ahead = ArrowPrimitive(
+            pose=_pose(PlanePose(-self._length_m / 4, 0.0, 0.0), _ROBOT_HEIGHT_M + 0.02),
+            shaft_length=self._length_m / 4,
+            shaft_diameter=0.04,
+            head_length=self._length_m / 4,
+            head_diameter=0.12,
+            color=_AHEAD,
+        )
+        text = TextPrimitive(
+            pose=_pose(PlanePose(0.0, 0.0, 0.0), _TEXT_HEIGHT_M),
+            billboard=True,
+            font_size=14.0,
+            scale_invariant=True,
+            color=color,
+            text=words_of(decision, behaviour),
+        )
+        rays = LinePrimitive(
+            type=LinePrimitiveLineType.LineList,
+            pose=_pose(PlanePose(0.0, 0.0, 0.0)),
+            thickness=0.008,
+            points=points,
+            colors=colors,
+        )
+        entity = SceneEntity(
+            timestamp=timestamp(time_ns),
+            frame_id=ROBOT,
+            id="robot",
+            frame_locked=True,
+            cubes=[body],
+            arrows=[ahead],
+            lines=[rays],
+            texts=[text],
+        )
+        return SceneUpdate(entities=[entity])
+
+
+def world_scene(world: WorldPlan, time_ns: int) -> SceneUpdate:
+    """The simulated world: its walls, each a face under a line, and posts."""
+    outlines = [corners for corners in (world.outline, *(wall.corners for wall in world.walls)) if corners]
+    faces = TriangleListPrimitive(
+        pose=_pose(PlanePose(0.0, 0.0, 0.0)),
+        points=[point for corners in outlines for point in _faces_under(corners)],
+        color=_WALL_FACE,
+    )
+    lines = [
+        LinePrimitive(
+            type=LinePrimitiveLineType.LineLoop,
+            pose=_pose(PlanePose(0.0, 0.0, 0.0)),
+            thickness=0.02,
+            points=[Point3(x=x_m, y=y_m, z=_WALL_HEIGHT_M) for x_m, y_m in corners],
+            color=_WALL,
+        )
+        for corners in outlines
+    ]
+    posts = [
+        CylinderPrimitive(
+            pose=_pose(PlanePose(post.x_m, post.y_m, 0.0), _WALL_HEIGHT_M / 2),
+            size=Vector3(x=2 * post.radius_m, y=2 * post.radius_m, z=_WALL_HEIGHT_M),
+            bottom_scale=1.0,
+            top_scale=1.0,
+            color=_WALL,
+        )
+        for post in world.posts
+    ]
+    entity = SceneEntity(
+        timestamp=timestamp(time_ns),
+        frame_id=WORLD,
+        id="world",
+        lifetime=Duration(0, 0),
+        lines=lines,
+        triangles=[faces],
+        cylinders=posts,
+    )
+    return SceneUpdate(entities=[entity])
+
+
+def _faces_under(corners: Sequence[tuple[float, float]]) -> list[Point3]:
+    """Two triangles from the floor to the height of a wall for each side of a closed outline; x, y in metres."""
+    points = []
+    for (from_x, from_y), (to_x, to_y) in zip(corners, (*corners[1:], corners[0]), strict=True):
+        low, high = Point3(x=from_x, y=from_y, z=0.0), Point3(x=from_x, y=from_y, z=_WALL_HEIGHT_M)
+        end_low, end_high = Point3(x=to_x, y=to_y, z=0.0), Point3(x=to_x, y=to_y, z=_WALL_HEIGHT_M)
+        points += [low, end_low, end_high, low, end_high, high]
+    return points
+
+
+def words_of(decision: Decision, behaviour: str) -> str:
+    """What drives the wheels, in a few words."""
+    if decision.action is not None and decision.rla_id is not None:
+        return f"{decision.action} by {rla_title(decision.rla_id, behaviour)}"
+    if decision.action is not None:
+        return f"{decision.action}, as the teacher says"
+    return "asks" if decision.asking else f"stands: {decision.cause.value}"
+
+
+def _pose(pose: PlanePose, height_m: float = 0.0) -> Pose:
+    return Pose(position=Vector3(x=pose.x_m, y=pose.y_m, z=height_m), orientation=_turned(pose.heading_rad))
+
+
+def _turned(heading_rad: float) -> Quaternion:
+    return Quaternion(x=0.0, y=0.0, z=math.sin(heading_rad / 2), w=math.cos(heading_rad / 2))

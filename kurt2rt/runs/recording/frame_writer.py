@@ -1,0 +1,90 @@
+"""Writes frames to a file that other CAN tools read."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Protocol
+
+import can
+
+from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.platform.yield_gil import politely
+
+ENDINGS = (".log", ".asc", ".blf", ".csv", ".trc", ".mf4")
+"""File formats, by ending: candump, Vector ASC and BLF, table, PEAK trace, ASAM MF4. Not python-can's SQLite, whose
+own queue has no bound."""
+
+_ERROR_FLAG = 0x2000_0000
+"""CAN_ERR_FLAG of linux/can.h."""
+_MOST_OF_A_NAME = 1000
+
+
+class FrameWriter(Protocol):
+    """Where a CAN log puts its frames. It may wait and raise what it likes: it runs beside the robot."""
+
+    def write(self, frames: Sequence[can.Message]) -> None:
+        """Frames with time stamps in s since 1970; afterwards they outlive this process, where the format can."""
+        ...
+
+    def close(self) -> None:
+        """No more comes."""
+        ...
+
+
+class LogFile:
+    """A new file in one of python-can's formats (FrameWriter)."""
+
+    def __init__(self, path: Path) -> None:
+        """Make the file; one that exists is kept, and the new one numbered. Raises RecordingError, OSError."""
+        if path.suffix not in ENDINGS:
+            raise RecordingError(
+                "no known kind of CAN log", where=path, do=f"give a name that ends in {', '.join(ENDINGS)}"
+            )
+        self.path = _made_anew(path)
+        """The file that is written."""
+        try:
+            self._writer = can.Logger(self.path)
+        except NotImplementedError as error:
+            self.path.unlink()
+            raise RecordingError(
+                "needs the package asammdf", where=path, do="install it, or give a name in .blf"
+            ) from error
+        self._is_candump = path.suffix == ".log"
+
+    def write(self, frames: Sequence[can.Message]) -> None:
+        """Frames in candump's, Vector's, ... words; see FrameWriter. Raises OSError."""
+        for frame in politely(frames):
+            self._writer.on_message_received(_as_candump_says_it(frame) if self._is_candump else frame)
+        flush = getattr(getattr(self._writer, "file", None), "flush", None)
+        if flush is not None:
+            flush()
+
+    def close(self) -> None:
+        """Make it whole: BLF and MF4 can be read only then. Raises OSError."""
+        self._writer.stop()
+
+
+def _made_anew(path: Path) -> Path:
+    # A supervisor starts the same command line again after a crash, and the log of the crash is the one to keep.
+    for number in range(1, _MOST_OF_A_NAME):
+        numbered = path if number == 1 else path.with_stem(f"{path.stem}-{number}")
+        try:
+            numbered.touch(exist_ok=False)
+        except FileExistsError:
+            continue
+        return numbered
+    raise RecordingError("so many logs of this name are there already", where=path, do="move them away")
+
+
+def _as_candump_says_it(frame: can.Message) -> can.Message:
+    """An error frame keeps its class, which python-can's own line drops: 20000040# is a bus-off."""
+    if not frame.is_error_frame:
+        return frame
+    return can.Message(
+        timestamp=frame.timestamp,
+        arbitration_id=_ERROR_FLAG | frame.arbitration_id,
+        is_extended_id=True,
+        is_rx=frame.is_rx,
+        channel=frame.channel,
+        data=frame.data,
+        dlc=frame.dlc,
+    )

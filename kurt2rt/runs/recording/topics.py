@@ -1,0 +1,203 @@
+"""The topics of a recorded run: the project's own, and pictures that Foxglove shows by itself."""
+
+import json
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from foxglove import Channel, Context
+from foxglove import channel as sdk_channel
+from foxglove.channels import (
+    FrameTransformsChannel,
+    LaserScanChannel,
+    LogChannel,
+    PoseInFrameChannel,
+    SceneUpdateChannel,
+)
+from foxglove.messages import Log, LogLevel
+
+from hal.guard_reason import GuardReason
+from hal.odometry import PlanePose, WheelOdometry
+from hal.robot_settings import RobotSettings
+from hal.simulation import SimulatedPlace, WorldPlan
+from kurt2rt.core.rla.fingerprint import knowledge_hash_of
+from kurt2rt.core.rla.outcome_text import text_of
+from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.knowledge.journal.event_codec import encode_event
+from kurt2rt.knowledge.journal.writer import Acknowledgement
+from kurt2rt.platform.yield_gil import politely
+from kurt2rt.runs.recording.entries import tick_entry_of
+from kurt2rt.runs.recording.foxglove_scene import (
+    ROBOT,
+    START,
+    WORLD,
+    RobotPictures,
+    pose_in,
+    timestamp,
+    transforms,
+    words_of,
+    world_scene,
+)
+from kurt2rt.runs.recording.schemas import HEALTH_SCHEMA, LESSON_SCHEMA, TICK_SCHEMA, situation_schema
+from kurt2rt.runs.recording.segment_reader import TICK_TOPIC
+from kurt2rt.runs.recording.tick_json import encode_tick
+
+TICK, LESSON, SITUATION, HEALTH, LOG = TICK_TOPIC, "/lesson", "/situation", "/health", "/log"
+SCAN, POSE, TF, TRUTH, SCENE, GROUND = "/scan", "/pose", "/tf", "/truth", "/scene", "/world"
+
+SCANS_HZ, SCENES_HZ = 20, 10
+_GROUND_EVERY_S = 5
+
+
+class Topics:
+    """Logs what a run is made of in a context, whoever takes it there: a file, a live view. Times in ns since 1970."""
+
+    def __init__(self, context: Context, settings: RobotSettings, features: tuple[str, ...]) -> None:
+        """`features`: names of the situation's values."""
+        self._features = features
+        self._pictures = RobotPictures(settings)
+        self._odometry = WheelOdometry(settings.geometry)
+        self._reckoned = PlanePose()
+        period_s = settings.can.cycle_s
+        self._scan_ticks = max(1, round(1 / SCANS_HZ / period_s))
+        self._scene_ticks = max(1, round(1 / SCENES_HZ / period_s))
+        self._ground_ticks = round(_GROUND_EVERY_S / period_s)
+        self._next_scan = self._next_scene = self._next_ground = 0
+        self._begins: PlanePose | None = None
+        self._doing = ""
+        self._asking = False
+        self._reasons: tuple[GuardReason, ...] = ()
+        self._trouble: str | None = None
+        self._tick = _channel(TICK, TICK_SCHEMA, context)
+        self._lesson = _channel(LESSON, LESSON_SCHEMA, context)
+        self._situation = _channel(SITUATION, situation_schema(features), context)
+        self._health = _channel(HEALTH, HEALTH_SCHEMA, context)
+        self._scan = LaserScanChannel(SCAN, context=context)
+        self._pose = PoseInFrameChannel(POSE, context=context)
+        self._tf = FrameTransformsChannel(TF, context=context)
+        self._truth = PoseInFrameChannel(TRUTH, context=context)
+        self._scene = SceneUpdateChannel(SCENE, context=context)
+        self._ground = SceneUpdateChannel(GROUND, context=context)
+        self._log = LogChannel(LOG, context=context)
+
+    def tick(self, record: TickRecord, *, saved: bool, truth: SimulatedPlace | None, time_ns: int) -> None:
+        """One tick. Raises RecordingError for one that cannot be written."""
+        senses = record.senses
+        motion = self._odometry.motion(senses.encoder_left_ticks, senses.encoder_right_ticks)
+        pose = self._reckoned.moved(motion.forward_m, motion.turn_rad)
+        self._reckoned = pose._replace(heading_rad=math.remainder(pose.heading_rad, math.tau))
+        if self._tick.has_sinks():  # the most work of all, for which a live view seldom asks
+            knowledge = None
+            if record.knowledge is not None:
+                knowledge = knowledge_hash_of(politely(sorted(record.knowledge, key=lambda rla: rla.rla_id)))
+            self._tick.log(encode_tick(tick_entry_of(record, saved=saved, knowledge=knowledge)), log_time=time_ns)
+        for event in record.events:
+            self._taught(event, time_ns)
+        self._tell(record, time_ns)
+        if truth is not None:
+            self._truly(truth, time_ns)
+        if record.tick >= self._next_scan:
+            self._next_scan = record.tick + self._scan_ticks
+            self._where(record, time_ns)
+        begins_to_ask = record.decision.asking and not self._asking
+        self._asking = record.decision.asking
+        if record.tick >= self._next_scene or begins_to_ask:
+            self._next_scene = record.tick + self._scene_ticks
+            self._look(record, time_ns)
+
+    def acknowledged(self, acknowledgement: Acknowledgement, time_ns: int) -> None:
+        """A lesson is durable, or never will be."""
+        content = {
+            "acknowledged": acknowledgement.command_id,
+            "sequence": acknowledgement.sequence,
+            "error": acknowledgement.error,
+            "stamped_at": acknowledgement.stamped_at,
+        }
+        self._lesson.log(_json({key: value for key, value in content.items() if value is not None}), log_time=time_ns)
+        if acknowledgement.error is not None:
+            self.say(f"not saved: {acknowledgement.command_id}: {acknowledgement.error}", LogLevel.Error, time_ns)
+
+    def asked(self, question: str, time_ns: int) -> None:
+        """The robot begins to ask."""
+        self.say(question, LogLevel.Warning, time_ns)
+
+    def healthy(self, report: Mapping[str, Any], time_ns: int) -> None:
+        """Log a health report in plain values."""
+        self._health.log(_json(report), log_time=time_ns)
+
+    def ground(self, world: WorldPlan, tick: int, time_ns: int) -> None:
+        """The simulated world."""
+        if tick >= self._next_ground:
+            self._next_ground = tick + self._ground_ticks
+            self._ground.log(world_scene(world, time_ns), log_time=time_ns)
+
+    def begin_anew(self) -> None:
+        """Whoever takes it from now on knows nothing yet: what is told seldom is told again."""
+        self._next_scan = self._next_scene = self._next_ground = 0
+
+    def say(self, text: str, level: LogLevel, time_ns: int) -> None:
+        """A line for the log."""
+        self._log.log(Log(timestamp=timestamp(time_ns), level=level, message=text, name="kurt2rt"), log_time=time_ns)
+
+    def _taught(self, event: TeachingEvent, time_ns: int) -> None:
+        self._lesson.log(b'{"event":%s}' % encode_event(event).encode(), log_time=time_ns)
+
+    def _tell(self, record: TickRecord, time_ns: int) -> None:
+        """What a reader of the log wants to know of a tick, where it is new."""
+        for result in record.results:
+            level = LogLevel.Info if result.accepted else LogLevel.Warning
+            self.say(f"{result.command_id}: {text_of(result.outcome)}", level, time_ns)
+        doing = words_of(record.decision, record.behaviour)
+        if doing != self._doing:
+            self._doing = doing
+            self.say(doing, LogLevel.Debug, time_ns)
+        if record.grant.reasons != self._reasons:
+            self._reasons = record.grant.reasons
+            if self._reasons:
+                # Each turn begins at the slew limit: nothing that anybody needs to be warned of.
+                gently = LogLevel.Debug if all(reason.routine for reason in self._reasons) else LogLevel.Warning
+                level = LogLevel.Error if record.grant.latched else gently
+                self.say(f"guard: {', '.join(self._reasons)}", level, time_ns)
+        if record.trouble != self._trouble:
+            self._trouble = record.trouble
+            self.say(self._trouble or "lessons are saved again", LogLevel.Error, time_ns)
+
+    def _where(self, record: TickRecord, time_ns: int) -> None:
+        if self._scan.has_sinks():
+            self._scan.log(self._pictures.scan(record.senses.infrared_counts, time_ns), log_time=time_ns)
+        pose = self._reckoned
+        self._pose.log(pose_in(START, pose, time_ns), log_time=time_ns)
+        moves = [(START, ROBOT, pose)]
+        if self._begins is not None:
+            # Reckoned and true place drift apart from the same beginning. The root comes first: a viewer takes the
+            # first parent that it hears of for the ground.
+            moves.insert(0, (WORLD, START, self._begins))
+        # One message holds the whole tree: after a seek a viewer has but the last one of each topic.
+        self._tf.log(transforms(moves, time_ns), log_time=time_ns)
+
+    def _truly(self, truth: SimulatedPlace, time_ns: int) -> None:
+        here = PlanePose(truth.x_m, truth.y_m, truth.heading_rad)
+        if self._begins is None:
+            self._begins = here
+        self._truth.log(pose_in(WORLD, here, time_ns), log_time=time_ns)
+
+    def _look(self, record: TickRecord, time_ns: int) -> None:
+        if self._situation.has_sinks():
+            values: list[float] = record.situation.vector.tolist()
+            self._situation.log(_json(dict(zip(self._features, values, strict=True))), log_time=time_ns)
+        if self._scene.has_sinks():
+            scene = self._pictures.scene(record.senses.infrared_counts, record.decision, record.behaviour, time_ns)
+            self._scene.log(scene, log_time=time_ns)
+
+
+def _channel(topic: str, schema: dict[str, Any], context: Context) -> Channel:
+    channel = Channel(topic, schema=schema, context=context)
+    # The SDK keeps each that was ever made, by its id, which is for those who look one up: here nobody does, and a
+    # process that records run after run would grow by 8 kB with each.
+    getattr(sdk_channel, "_channels_by_id", {}).pop(channel.id(), None)
+    return channel
+
+
+def _json(content: Mapping[str, Any]) -> bytes:
+    return json.dumps(content, separators=(",", ":")).encode()

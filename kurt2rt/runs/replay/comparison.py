@@ -1,0 +1,59 @@
+"""Compares a tick as it was recorded with the same tick replayed, bit for bit."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from kurt2rt.core.rla.fingerprint import knowledge_hash_of
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.runs.recording.entries import TickEntry, tick_entry_of
+
+
+class Difference(NamedTuple):
+    """Something that came out differently."""
+
+    tick: int
+    field: str
+    """Dots between its levels."""
+    recorded: object
+    replayed: object
+
+    @property
+    def in_words(self) -> str:
+        """What was, and what is."""
+        return f"{self.field} was {_said(self.recorded)}, and is {_said(self.replayed)} now"
+
+    def __str__(self) -> str:
+        return f"tick {self.tick}: {self.in_words}"
+
+
+def compare(entry: TickEntry, record: TickRecord) -> list[Difference]:
+    """All that a replayed tick has otherwise than the recorded one; empty where all is the same to the last bit."""
+    knowledge = None
+    if entry.knowledge is not None and record.knowledge is not None:
+        knowledge = knowledge_hash_of(sorted(record.knowledge, key=lambda rla: rla.rla_id))
+    again = tick_entry_of(record, saved=entry.saved, knowledge=knowledge)
+    coded = all(each.code is not None for each in entry.results)
+    entry, again = _without_words(entry, coded=coded), _without_words(again, coded=coded)
+    if repr(again) == repr(entry):  # `==` takes 0.0 for -0.0 and True for 1, and NaN for another one
+        return []
+    return [Difference(entry.tick, *each) for each in _differences("", entry, again)]
+
+
+def _without_words(entry: TickEntry, *, coded: bool) -> TickEntry:
+    """Return the entry without the sentences of its results, and without codes unless they were recorded."""
+    results = (each._replace(text="", code=each.code if coded else None) for each in entry.results)
+    return entry._replace(results=tuple(results))
+
+
+def _differences(place: str, recorded: object, replayed: object) -> Iterator[tuple[str, object, object]]:
+    if isinstance(recorded, tuple) and hasattr(recorded, "_fields") and type(recorded) is type(replayed):
+        for name in recorded._fields:
+            below = f"{place}.{name}" if place else name
+            yield from _differences(below, getattr(recorded, name), getattr(replayed, name))
+    elif repr(recorded) != repr(replayed):
+        yield place, recorded, replayed
+
+
+def _said(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 120 else f"{text[:117]}..."

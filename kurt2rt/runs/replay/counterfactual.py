@@ -1,0 +1,153 @@
+"""Which decisions of a run would have differed under other knowledge."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.runs.replay.counterfactual_policy import Answer, Answers, Shadow, answers_then
+from kurt2rt.runs.replay.replay import Replay, ReplayedTick, no_tick
+from kurt2rt.runs.replay.run import Run
+from kurt2rt.runtime import Runtime
+
+_DECIDES = frozenset({Cause.RLA, Cause.HELD, Cause.UNKNOWN})
+"""Where knowledge has a say; elsewhere the robot stands for another reason, or its teacher drives."""
+
+Look = Callable[[TickRecord, Runtime], Answers]
+"""What some knowledge says of a replayed tick."""
+
+
+class Stretch(NamedTuple):
+    """Ticks in a row in which the same was decided, and the same other thing would have been."""
+
+    level: str
+    from_s: float
+    """At the first tick, since the first tick of the run."""
+    to_s: float
+    """At the last one."""
+    ticks: int
+    was: Answer
+    """Of the first tick."""
+    would_be: Answer
+    """Of the first tick."""
+
+
+@dataclass(frozen=True, slots=True)
+class Counterfactual:
+    """What would have been otherwise."""
+
+    ticks: int
+    """Of the run, which were compared."""
+    decided: int
+    """Ticks in which knowledge had a say: no teacher drove, and nothing else had the robot stand."""
+    other_action: int
+    """Of those: another action would have been taken."""
+    would_ask: int
+    """Of those: it would have asked where it drove."""
+    would_drive: int
+    """Of those: it would have driven where it asked."""
+    mid_otherwise: int
+    """Ticks in which the mid level would have commanded otherwise, or asked; 0 where there is none."""
+    stretches: tuple[Stretch, ...]
+    """In the order of time."""
+    trouble: str
+    """Why not the whole run was looked at, in a sentence; empty where it was."""
+
+    @property
+    def same(self) -> bool:
+        """Whether not one decision would have differed."""
+        return not self.stretches
+
+
+def counterfactual(
+    run: Run,
+    would_be: Shadow,
+    was: Shadow | None = None,
+    on_tick: Callable[[ReplayedTick], None] | None = None,
+    from_s: float = 0.0,
+) -> Counterfactual:
+    """Replay a run and compare what two sets of knowledge say of each situation.
+
+    `was`: None: what the robot knew then. `on_tick` is called for each tick, to show how far it is. `from_s`: ticks
+    that began earlier, since the first one, are replayed and not compared. Raises RecordingError.
+    """
+    replay = Replay(run)
+    before: Look = answers_then if was is None else was.look
+    count = _Count()
+    for tick in replay:
+        at_s, record, runtime = run.second_of(tick.entry), tick.record, replay.runtime
+        if at_s >= from_s:
+            count.take_in(at_s, record, before(record, runtime), would_be.look(record, runtime))
+        if on_tick is not None:
+            on_tick(tick)
+    found = count.result(run.trouble)
+    if not found.ticks:
+        raise no_tick(run)
+    return found
+
+
+class _Count:
+    """Counts, and folds ticks into stretches."""
+
+    def __init__(self) -> None:
+        self._ticks = self._decided = self._other_action = self._would_ask = self._would_drive = self._mid = 0
+        self._open: dict[str, Stretch] = {}
+        self._stretches: list[Stretch] = []
+
+    def take_in(self, at_s: float, record: TickRecord, was: Answers, would_be: Answers) -> None:
+        """One tick, `at_s` since the first one."""
+        self._ticks += 1
+        decides = record.decision.cause in _DECIDES
+        self._decided += decides
+        basic = decides and record.decision.asks_at == BASIC
+        self._follow(BASIC, at_s, was.basic, would_be.basic, decides=basic)
+        if was.mid is not None and would_be.mid is not None:
+            self._follow(MID, at_s, was.mid, would_be.mid, decides=decides)
+
+    def result(self, trouble: str) -> Counterfactual:
+        """All that was counted."""
+        stretches = sorted([*self._stretches, *self._open.values()], key=lambda each: (each.from_s, each.level))
+        return Counterfactual(
+            self._ticks,
+            self._decided,
+            self._other_action,
+            self._would_ask,
+            self._would_drive,
+            self._mid,
+            tuple(stretches),
+            trouble,
+        )
+
+    def _follow(self, level: str, at_s: float, was: Answer, would_be: Answer, *, decides: bool) -> None:
+        differs = decides and was.action != would_be.action
+        if differs:
+            self._note(level, was, would_be)
+        stretch = self._open.get(level)
+        if differs and stretch is not None and _alike(stretch, was, would_be):
+            self._open[level] = stretch._replace(to_s=at_s, ticks=stretch.ticks + 1)
+            return
+        if stretch is not None:
+            self._stretches.append(self._open.pop(level))
+        if differs:
+            self._open[level] = Stretch(level, at_s, at_s, 1, was, would_be)
+
+    def _note(self, level: str, was: Answer, would_be: Answer) -> None:
+        if level == MID:
+            self._mid += 1
+        elif was.action is None:
+            self._would_drive += 1
+        elif would_be.action is None:
+            self._would_ask += 1
+        else:
+            self._other_action += 1
+
+
+def _alike(stretch: Stretch, was: Answer, would_be: Answer) -> bool:
+    return tuple(_who(stretch.was)) == tuple(_who(was)) and tuple(_who(stretch.would_be)) == tuple(_who(would_be))
+
+
+def _who(answer: Answer) -> Iterator[object]:
+    yield answer.action
+    yield None if answer.rla is None else answer.rla.rla_id

@@ -1,0 +1,109 @@
+"""Replays a run: what was recorded goes through the same tick again."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from hal.settings import SettingsError
+from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
+from kurt2rt.core.decision.standing_text import stop_of_text
+from kurt2rt.core.rla.rla_system import InvalidEventError
+from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.runs.recording.entries import TickEntry
+from kurt2rt.runs.replay.environment import Replayed
+from kurt2rt.runs.replay.run import Run
+from kurt2rt.runtime import Runtime, build_runtime
+
+
+class ReplayedTick(NamedTuple):
+    """A tick twice: as it was recorded, and as it came out again."""
+
+    entry: TickEntry
+    record: TickRecord
+
+
+class Replay:
+    """A runtime as it was at the start of a run, and its ticks, one after the other."""
+
+    def __init__(self, run: Run) -> None:
+        """Raises RecordingError where that is gone, or this program cannot build it."""
+        run.require_beginning()
+        self.run = run
+        self._replayed = Replayed()
+        self.runtime = self._build()
+
+    def step(self, entry: TickEntry) -> TickRecord:
+        """The next tick, with all that went into it."""
+        runtime = self.runtime
+        self._replayed.entry = entry
+        runtime.inbox.hold(entry.commands)
+        runtime.ledger.begin(0.0)
+        record = runtime.tick.run(entry.tick, entry.now_s)
+        runtime.ledger.end()
+        if entry.saved:
+            runtime.to_save()  # drops the counts of RLAs that are no more, and plans are made of counts
+        return record
+
+    def __iter__(self) -> Iterator[ReplayedTick]:
+        """All ticks, once. Raises RecordingError."""
+        for entry in self.run.entries():
+            yield ReplayedTick(entry, self.step(entry))
+
+    def _build(self) -> Runtime:
+        run, head = self.run, self.run.head
+        try:
+            wanted = Wanted(run.task.behaviours)
+            if head.behaviour:
+                wanted.pursue(head.behaviour)
+            with run.settings():
+                runtime = build_runtime(
+                    self._replayed,
+                    run.robot,
+                    run.task,
+                    [lesson.event for lesson in run.lessons],
+                    self._replayed,
+                    self._replayed,
+                    statistics=StatisticsCounter(dict(run.saved.uses), dict(run.saved.transitions)),
+                    attended=head.attended,
+                    wanted=wanted,
+                    saved=run.saved,
+                    asked=head.asked,
+                    tolerates_stalls=head.tolerates_stalls,
+                    asks_when_held=head.asks_when_held,
+                )
+        except (SettingsError, KnowledgeError, InvalidEventError, UnknownActionError, UnknownBehaviourError) as error:
+            raise RecordingError(f"cannot be replayed by this kurt2rt: {error}", where=run.name) from error
+        except ValueError as error:
+            raise RecordingError(f"cannot be replayed: {error}", where=run.name) from error
+        stop = stop_of_text(head.stopped)
+        if stop is not None:
+            runtime.school.stop(stop)
+        return runtime
+
+
+def replay_until(run: Run, now_s: float) -> tuple[Runtime, ReplayedTick]:
+    """The runtime as it was after the last tick that began by `now_s` of the runtime's clock, and that tick.
+
+    `Run.began_s` is that of the first tick.
+
+    Of a time before the first tick, the first. Raises RecordingError, also for a run without ticks.
+    """
+    replay = Replay(run)
+    last = None
+    for entry in run.entries():
+        if last is not None and entry.now_s > now_s:
+            break
+        last = ReplayedTick(entry, replay.step(entry))
+    if last is None:
+        raise no_tick(run)
+    return replay.runtime, last
+
+
+def no_tick(run: Run) -> RecordingError:
+    """What there is to say of a run without ticks, once they were looked for."""
+    return RecordingError(
+        "holds no tick", where=run.name, do=f"{run.trouble or 'the program ended before the first one'}"
+    )

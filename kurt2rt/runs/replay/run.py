@@ -1,0 +1,250 @@
+"""A recorded run, as it is read."""
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from functools import cached_property
+from typing import TypeVar
+
+from pydantic import ValidationError
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.knowledge.exchange.attachment_files import laid_out, trouble_of
+from kurt2rt.knowledge.exchange.attachments import (
+    KNOWLEDGE,
+    ROBOT,
+    SETTINGS,
+    STATISTICS,
+    TASK,
+    KnownLesson,
+    decode_statistics,
+    fingerprints_of,
+    read_lessons_of,
+)
+from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.runs.recording.entries import TickEntry
+from kurt2rt.runs.recording.run_head import RunHead
+
+DecodedT = TypeVar("DecodedT")
+
+
+class Run:
+    """One start of the robot program until its end: what stood at its beginning, and its ticks."""
+
+    def __init__(
+        self,
+        name: str,
+        head: RunHead,
+        attachments: Mapping[str, bytes],
+        read: Callable[[], Iterator[TickEntry]],
+        torn: Callable[[], str] = str,
+        ends_s: Callable[[], float] = float,
+        without_gap: Callable[[], bool] = bool,
+        *,
+        in_part: bool = False,
+        stamps: Callable[[], Iterator[tuple[str, str]]] = lambda: iter(()),
+    ) -> None:
+        """`read`: reads the ticks anew from the first one. `torn`: where that came to an early end, in a sentence.
+
+        `ends_s`: time of the last tick, for those who tell how far they are. `without_gap`: whether no tick is missing
+        before it, found out quicker than by reading them. `in_part`: to look at what there is; one whose beginning is
+        gone will do, which cannot be replayed. `stamps`: reads the command ids of the lessons that became durable, and
+        when.
+
+        Raises RecordingError where what a replay needs is missing or damaged.
+        """
+        self.name = name
+        self.head = head
+        self._attachments = attachments
+        self._read = read
+        self._torn = torn
+        self._ends_s = ends_s
+        self._without_gap = without_gap
+        self._in_part = in_part
+        self._stamps = stamps
+        self._gap = ""
+        self.began_s: float | None = None
+        """Time of the runtime's clock at the first tick; None until that was read."""
+        self._check()
+
+    @property
+    def trouble(self) -> str:
+        """Why `entries` ended before the run did, in a sentence; empty where it did not, as far as it has come."""
+        return self._gap or self._torn()
+
+    @property
+    def lasts_s(self) -> float:
+        """From the first tick to the last, by the runtime's clock; 0 where nobody knows. Reads the last segment."""
+        first = next(self.entries(), None)
+        return 0.0 if first is None else max(self._ends_s() - first.now_s, 0.0)
+
+    @property
+    def lasts_without_gap_s(self) -> float:
+        """The same up to the last tick before the first that is missing: what can be replayed. Goes through all of
+        that, and reads it where one is.
+        """
+        if self._without_gap():
+            return self.lasts_s
+        newest = 0.0
+        for entry in self.entries():
+            newest = self.second_of(entry)
+        return newest
+
+    def second_of(self, entry: TickEntry) -> float:
+        """How long after the first tick one began that was read."""
+        return 0.0 if self.began_s is None else entry.now_s - self.began_s
+
+    @property
+    def whole(self) -> bool:
+        """Whether no tick was missing between those that were read: the end alone may be."""
+        return not self._gap
+
+    @cached_property
+    def robot(self) -> RobotSettings:
+        """Settings of the robot, as they were in force."""
+        return RobotSettings.model_validate_json(self._attachments[ROBOT])
+
+    @cached_property
+    def task(self) -> TaskSettings:
+        """Settings of the task, as they were in force."""
+        return TaskSettings.model_validate_json(self._attachments[TASK])
+
+    @cached_property
+    def lessons(self) -> tuple[KnownLesson, ...]:
+        """What had been taught before the run; nothing where its beginning is gone."""
+        data = self._attachments.get(KNOWLEDGE)
+        return () if data is None else tuple(_decoded(read_lessons_of, data))
+
+    def stamps_of(self, command_ids: Collection[str]) -> dict[str, str]:
+        """When these lessons of the run became durable, as the journal has it, UTC; those that never did are left out.
+
+        Reads until all are found. Raises RecordingError.
+        """
+        found: dict[str, str] = {}
+        if command_ids:
+            for command_id, stamp in self._stamps():
+                if command_id in command_ids:
+                    found[command_id] = stamp
+                    if len(found) == len(command_ids):
+                        break
+        return found
+
+    @cached_property
+    def saved(self) -> Statistics:
+        """What had been counted before the run."""
+        data = self._attachments.get(STATISTICS)
+        return Statistics() if data is None else _decoded(decode_statistics, data)
+
+    @contextmanager
+    def settings(self) -> Iterator[None]:
+        """While it lasts all settings are those that were kept with the run. Raises RecordingError."""
+        kept = {name: data for name, data in self._attachments.items() if name.startswith(SETTINGS)}
+        with ExitStack() as stack:
+            try:
+                stack.enter_context(laid_out(kept))
+            except OSError as error:
+                raise RecordingError(
+                    f"its settings cannot be laid out ({error})",
+                    where=self.name,
+                    do="make room where temporary files go",
+                ) from error
+            yield
+
+    def require_beginning(self) -> None:
+        """Raises RecordingError where what was known at the start is not there, so that nothing can be replayed."""
+        first = None if KNOWLEDGE in self._attachments else next(self._read(), None)
+        if first is None or first.number == 1:
+            self._require(KNOWLEDGE)
+            return
+        minutes = (first.number - 1) * self.robot.can.cycle_s / 60
+        raise RecordingError(
+            f"is there from its tick {first.number} on; the {minutes:.1f} min before have gone to make room "
+            "for later ones, and with them what was known at the start, so it can neither be replayed nor "
+            "one of its decisions be explained. kurt2rt why without --at tells what is there",
+            where=self.name,
+            do="raise recordings_mb for the next",
+        )
+
+    def entries(self) -> Iterator[TickEntry]:
+        """The ticks from the first one, up to the end or to the first that is missing. Raises RecordingError."""
+        self._gap = ""
+        for number, entry in enumerate(self._read(), start=1):
+            if number == 1:
+                self.began_s = entry.now_s
+            if entry.number != number:
+                missing = entry.number - number
+                self._gap = (
+                    f"{missing} ticks before {self.second_of(entry):.2f} s (tick {entry.tick}) are not in the "
+                    "recording, so what came after them cannot be replayed"
+                )
+                return
+            yield entry
+
+    def entries_in_part(self) -> Iterator[TickEntry]:
+        """All ticks that are there, also behind a gap; `trouble` tells of those that are not. Raises RecordingError."""
+        self._gap = ""
+        newest = missing = gaps = 0
+        for entry in self._read():
+            if newest == 0:
+                self.began_s = entry.now_s
+            if entry.number > newest + 1 and newest == 0 and KNOWLEDGE not in self._attachments:
+                self._gap = self._beginning_gone(entry.number - 1)
+            elif entry.number > newest + 1:
+                missing += entry.number - newest - 1
+                gaps += 1
+            newest = entry.number
+            yield entry
+        if gaps:
+            where = "in one place" if gaps == 1 else f"in {gaps} places"
+            told = f"{missing} ticks {where} are not in the recording"
+            self._gap = f"{self._gap}; {told}" if self._gap else told
+
+    def _beginning_gone(self, ticks: int) -> str:
+        minutes = ticks * self.robot.can.cycle_s / 60
+        return (
+            f"the first {ticks} ticks of the run ({minutes:.1f} min) are gone, which made room for later ones; times "
+            "are those from the first tick that is there"
+        )
+
+    def _check(self) -> None:
+        self._require(ROBOT, TASK)
+        if not self._in_part:
+            self.require_beginning()
+        trouble = trouble_of({name: len(data) for name, data in self._attachments.items()})
+        if trouble:
+            raise RecordingError(trouble, where=self.name, do="give a run as kurt2rt run recorded it")
+        found = fingerprints_of(self._attachments)
+        for name, fingerprint in self.head.fingerprints.items():
+            if name in found and found[name] != fingerprint:
+                raise RecordingError(f"{name} is damaged", where=self.name, do="give another copy of the run")
+        try:
+            _ = self.robot, self.task
+        except ValidationError as error:
+            problem = error.errors(include_url=False)[0]
+            raise RecordingError(
+                f"was recorded by kurt2rt {self.head.kurt2rt}, whose settings this one cannot use "
+                f"({'.'.join(map(str, problem['loc']))}: {problem['msg']})",
+                where=self.name,
+                do="replay it with that one",
+            ) from error
+
+    def _require(self, *names: str) -> None:
+        missing = [name for name in names if name not in self._attachments]
+        if missing:
+            raise RecordingError(
+                f"{', '.join(missing)} is missing, with which the run began",
+                where=self.name,
+                do=(
+                    "its first segment may have gone to make room for later ones: give a whole run, or "
+                    "raise recordings_mb for the next"
+                ),
+            )
+
+
+def _decoded(decode: Callable[[bytes], DecodedT], data: bytes) -> DecodedT:
+    """Decode an attachment. Raises RecordingError."""
+    try:
+        return decode(data)
+    except ValueError as error:
+        raise RecordingError(str(error)) from error

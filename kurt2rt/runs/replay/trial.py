@@ -1,0 +1,159 @@
+"""A change of knowledge tried on recorded runs: what the robot would have done with it, and without."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+from hal.settings import SettingsError
+from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_same
+from kurt2rt.knowledge.journal.loading import binding_of
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.runs.recording.run_folder import runs_in, segments_in
+from kurt2rt.runs.replay.counterfactual_policy import Answer, Answers, Shadow
+from kurt2rt.runs.replay.reader import read_run
+from kurt2rt.runs.replay.replay import Replay, ReplayedTick
+from kurt2rt.runs.replay.run import Run
+
+Report = Callable[[str, float, float], None]
+"""Called now and then with a run's name, how many seconds of it were tried, and how many there are."""
+
+_REPORT_EVERY_TICKS = 500
+_NEWEST = 20
+"""So many runs are looked through for one that suits."""
+
+
+class Known(NamedTuple):
+    """All that a robot begins with."""
+
+    events: tuple[TeachingEvent, ...]
+    statistics: Statistics
+
+
+@dataclass(frozen=True)
+class Runs:
+    """Recorded runs that a change is tried on."""
+
+    runs: tuple[Run, ...]
+    left_out: tuple[str, ...]
+    """Why others cannot be, a sentence each."""
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was not tried, and why; of a run with a gap that is known once it was replayed."""
+        gaps = (f"{run.name}: {run.trouble}" for run in self.runs if not run.whole)
+        return (*self.left_out, *gaps)
+
+
+def runs_to_try(folder: Path, binding: KnowledgeBinding) -> Runs:
+    """The runs in a folder of recordings, or the one that `folder` is, that this knowledge could have been used in.
+
+    Raises KnowledgeError where there is none.
+    """
+    paths = _recorded_in(folder) or [folder]
+    if not folder.exists() or (folder.is_dir() and paths == [folder] and not segments_in(folder)):
+        raise KnowledgeError(
+            "holds no recorded run", where=folder, do="kurt2rt run makes them, --runs says where they are"
+        )
+    runs, left_out = list[Run](), list[str]()
+    for path in paths:
+        try:
+            run = read_run(path)
+            why_not = _why_not(run, binding)
+        except RecordingError as error:
+            why_not = str(error)
+        if why_not is None:
+            runs.append(run)
+        else:
+            left_out.append(why_not)
+    if not runs:
+        raise KnowledgeError(f"none of its runs can be tried: {left_out[0]}", where=folder)
+    return Runs(tuple(runs), tuple(left_out))
+
+
+def newest_to_try(recordings: Path, binding: KnowledgeBinding, knowledge: Path) -> Runs:
+    """The newest of the last recorded runs that taught into the file `knowledge`, else the newest that this knowledge
+    could have been used in; none where there is none. Its notes say which newer ones cannot be read.
+
+    All that was known at a run's start is read with it: of the others none is kept in memory.
+    """
+    newest, left_out = None, list[str]()
+    for path in _recorded_in(recordings)[: -_NEWEST - 1 : -1]:
+        try:
+            run = read_run(path)
+            if _why_not(run, binding) is not None or next(run.entries(), None) is None:
+                continue
+        except RecordingError as error:
+            if newest is None:
+                left_out.append(str(error))
+            continue
+        if _taught_into(run, path, knowledge):
+            return Runs((run,), tuple(left_out))
+        newest = newest or run
+    return Runs(() if newest is None else (newest,), tuple(left_out))
+
+
+def answers(run: Run, knowledge: Sequence[Known], report: Report) -> Iterator[tuple[TickRecord, list[Answers]]]:
+    """What each of these says to the situations of each tick of a run, as they were, and that tick."""
+    replay = Replay(run)
+    shadows = [Shadow(run, each.events, each.statistics) for each in knowledge]
+    tell = telling(run, report)
+    for tick in replay:
+        tell(tick)
+        yield tick.record, [shadow.look(tick.record, replay.runtime) for shadow in shadows]
+
+
+def telling(run: Run, report: Report) -> Callable[[ReplayedTick], None]:
+    """To be called with each replayed tick of a run; it reports now and then."""
+    whole_s = run.lasts_s
+
+    def tell(tick: ReplayedTick) -> None:
+        if tick.entry.number % _REPORT_EVERY_TICKS == 1:
+            report(run.name, run.second_of(tick.entry), whole_s)
+
+    return tell
+
+
+def told(both: Answers) -> str:
+    """What they say in a few words: the mid level first, where there is one."""
+    return ", ".join(said(each) for each in (both.mid, both.basic) if each is not None)
+
+
+def said(answer: Answer) -> str:
+    """What one level answers."""
+    return "asks" if answer.rla is None else f"{answer.rla.action} by {answer.rla.title}"
+
+
+def _recorded_in(folder: Path) -> list[Path]:
+    """The oldest first."""
+    return [each for each in runs_in(folder) if segments_in(each)]
+
+
+def _taught_into(run: Run, path: Path, knowledge: Path) -> bool:
+    """Whether a run, recorded at `path`, taught into that file.
+
+    An earlier kurt2rt told of the file as it was given: from the folder that it was started in, which nobody knows,
+    but as a rule the recordings lie below it, wherever we are started.
+    """
+    if not run.head.knowledge:
+        return False
+    told, file = Path(run.head.knowledge), knowledge.resolve()
+    if told.is_absolute():
+        return told.resolve() == file
+    return any((folder / told).resolve() == file for folder in path.resolve().parents)
+
+
+def _why_not(run: Run, binding: KnowledgeBinding) -> str | None:
+    """Why this knowledge could not have been used in a run. Raises RecordingError for one of another kurt2rt."""
+    try:
+        with run.settings():
+            require_same(binding, binding_of(run.robot, run.task), Path(run.name), lambda _: False)
+    except KnowledgeError as error:
+        return str(error)
+    except SettingsError as error:
+        raise RecordingError(f"its settings cannot be used by this kurt2rt: {error}", where=run.name) from error
+    return None

@@ -1,0 +1,1 @@
+"""The program on the robot: start, serve, reload, shut down."""

@@ -1,0 +1,187 @@
+"""Judgement of health reports: their troubles, and how long each has lasted."""
+
+import math
+from collections import deque
+from collections.abc import Iterator, Mapping
+from typing import Final, NamedTuple
+
+from hal.robot_settings import RobotSettings
+from kurt2rt.channel.protocol.health import DiskSpace, Machine, Punctuality, Trouble
+from kurt2rt.channel.protocol.trouble_code import TroubleCode
+from kurt2rt.service.health.snapshot import Snapshot
+
+LATELY_S = 60
+"""Counters are judged by how they grew in so many seconds, one report each."""
+LATE_SHARE = 0.2
+"""Of a period: ticks that begin later than that are late, 2 ms at 100 Hz."""
+TOLERATED_SHARE = 0.1
+"""Of the ticks of the last minute: fewer missed ones are no trouble where the robot stalls with the program, for it
+then still drives as it was taught.
+"""
+SLOW_WRITE_S = 0.5
+LITTLE_ROOM_BYTES = 500 * 10**6
+NO_ROOM_BYTES = 50 * 10**6
+LITTLE_MEMORY_BYTES = 100 * 10**6
+LOW_BATTERY = 0.2
+EMPTY_BATTERY = 0.07
+
+
+class _Found(NamedTuple):
+    code: TroubleCode
+    urgent: bool = False
+    name: str = ""
+    numbers: tuple[float, ...] = ()
+    line: str = ""
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """Identity across reports: a sensor or disk keeps it when its code changes."""
+        return self.code.about, self.name or self.code
+
+
+class Counted:
+    """How counters grew in the last minute."""
+
+    def __init__(self) -> None:
+        self._past: deque[Mapping[str, int]] = deque([{}], maxlen=LATELY_S + 1)  # all begin at nothing
+        self._now: Mapping[str, int] = {}
+
+    def see(self, counters: Mapping[str, int]) -> None:
+        """Their values, once a second."""
+        self._now = counters
+        self._past.append(counters)
+
+    def lately(self, name: str) -> int:
+        """How much one grew; nothing for one that is not counted."""
+        return self._now.get(name, 0) - self._past[0].get(name, 0)
+
+
+class _Writes:
+    """The slowest write of lessons in the last minute."""
+
+    def __init__(self) -> None:
+        self._newest_s: float | None = None
+        self._slow: deque[tuple[float, float]] = deque()
+
+    def see(self, now_s: float, last_write_s: float | None) -> None:
+        """What the newest one took; a value that is there still is of the same write."""
+        if last_write_s != self._newest_s:
+            self._newest_s = last_write_s
+            if last_write_s is not None and last_write_s > SLOW_WRITE_S:
+                self._slow.append((now_s, last_write_s))
+        while self._slow and now_s - self._slow[0][0] > LATELY_S:
+            self._slow.popleft()
+
+    @property
+    def slowest_s(self) -> float | None:
+        """None when all were quick."""
+        return max((took_s for _, took_s in self._slow), default=None)
+
+
+class TroubleBook:
+    """Finds what is wrong in each report, and remembers since when."""
+
+    def __init__(self, settings: RobotSettings, *, tolerates_stalls: bool = False) -> None:
+        """`tolerates_stalls`: of a robot that stalls with this program; late ticks are then no trouble."""
+        self._settings = settings
+        self._tolerates_stalls = tolerates_stalls
+        self._since_s: dict[tuple[str, str], float] = {}
+        self._writes = _Writes()
+
+    def judge(
+        self,
+        snapshot: Snapshot,
+        punctuality: Punctuality,
+        disks: tuple[DiskSpace, ...],
+        machine: Machine,
+        counted: Counted,
+    ) -> tuple[Trouble, ...]:
+        """The troubles of one report: the urgent ones first, then those that have lasted longest."""
+        self._writes.see(snapshot.now_s, snapshot.last_write_s)
+        found = [
+            *self._of_senses(snapshot),
+            *_of_bus(snapshot, counted),
+            *_of_keeping(snapshot, self._writes.slowest_s, disks),
+            *self._of_ticks(punctuality),
+            *_of_machine(machine),
+            *_of_drops(snapshot, counted),
+            *(_Found(TroubleCode.PROGRAM, name=part, line=line) for part, line in snapshot.says.items()),
+        ]
+        now_s = snapshot.now_s
+        self._since_s = {each.key: self._since_s.get(each.key, now_s) for each in found}
+        troubles = [
+            Trouble(each.code, now_s - self._since_s[each.key], each.urgent, each.name, each.numbers, each.line)
+            for each in found
+        ]
+        return tuple(sorted(troubles, key=lambda each: (not each.urgent, -each.since_s)))
+
+    def _of_senses(self, snapshot: Snapshot) -> Iterator[_Found]:
+        guard = self._settings.guard
+        for name, age_s, stale_s in (
+            ("infra-red sensors", snapshot.infrared_age_s, guard.stale_infrared_s),
+            ("encoders", snapshot.encoder_age_s, guard.stale_encoder_s),
+            ("bumpers", snapshot.bumper_age_s, guard.stale_bumper_s),
+        ):
+            if math.isinf(age_s):
+                yield _Found(TroubleCode.SENSORS_UNHEARD, True, name)
+            elif not age_s <= stale_s:  # a NaN, too
+                yield _Found(TroubleCode.SENSORS_SILENT, True, name, (age_s,))
+
+    def _of_ticks(self, punctuality: Punctuality) -> Iterator[_Found]:
+        lately_ticks = min(punctuality.ticks, round(LATELY_S / self._settings.can.cycle_s))
+        if self._tolerates_stalls and punctuality.missed_lately <= TOLERATED_SHARE * lately_ticks:
+            return
+        if punctuality.missed_lately:
+            yield _Found(TroubleCode.TICKS_MISSED, numbers=(punctuality.missed_lately, punctuality.missed))
+        bound_ms = LATE_SHARE * self._settings.can.cycle_s * 1000
+        if punctuality.p99_ms > bound_ms and not self._tolerates_stalls:
+            yield _Found(TroubleCode.TICKS_LATE, numbers=(punctuality.p99_ms,))
+
+
+_COUNTERS: Final = {
+    "junk": TroubleCode.CAN_JUNK,
+    "error frames": TroubleCode.CAN_ERROR_FRAMES,
+    "send failures": TroubleCode.SEND_FAILURES,
+    "receive failures": TroubleCode.RECEIVE_FAILURES,
+    "foreign control": TroubleCode.FOREIGN_CONTROL,
+}
+
+
+def _of_bus(snapshot: Snapshot, counted: Counted) -> Iterator[_Found]:
+    bus = snapshot.bus
+    if bus is None:
+        return
+    if bus.trouble:
+        yield _Found(TroubleCode.BUS_ALARM, bus.latched is not None, line=bus.trouble)
+    for name, code in _COUNTERS.items():
+        lately = counted.lately(name)
+        if lately:
+            yield _Found(code, numbers=(lately,))
+
+
+def _of_keeping(snapshot: Snapshot, slowest_write_s: float | None, disks: tuple[DiskSpace, ...]) -> Iterator[_Found]:
+    if snapshot.keeper_trouble:
+        yield _Found(TroubleCode.LESSONS_UNSAVED, True, line=snapshot.keeper_trouble)
+    if slowest_write_s is not None:
+        yield _Found(TroubleCode.SLOW_DISK, numbers=(slowest_write_s,))
+    for disk in disks:
+        if disk.free_bytes is None:
+            yield _Found(TroubleCode.DISK_SILENT, True, disk.of)
+        elif disk.free_bytes < LITTLE_ROOM_BYTES:
+            urgent = disk.free_bytes < NO_ROOM_BYTES
+            yield _Found(TroubleCode.LITTLE_ROOM, urgent, disk.of, (disk.free_bytes / 10**6,))
+
+
+def _of_machine(machine: Machine) -> Iterator[_Found]:
+    if machine.battery is not None and machine.discharging and machine.battery < LOW_BATTERY:
+        yield _Found(TroubleCode.LOW_BATTERY, machine.battery < EMPTY_BATTERY, numbers=(machine.battery,))
+    available = machine.available_bytes
+    if available is not None and available < LITTLE_MEMORY_BYTES:
+        yield _Found(TroubleCode.LITTLE_MEMORY, numbers=(available / 10**6,))
+
+
+def _of_drops(snapshot: Snapshot, counted: Counted) -> Iterator[_Found]:
+    for queue in snapshot.drops:
+        lately = counted.lately(f"drops {queue}")
+        if lately:
+            yield _Found(TroubleCode.DROPS, name=queue, numbers=(lately,))

@@ -1,0 +1,60 @@
+"""How much room is on the disks, looked at where a disk that hangs holds up nothing else."""
+
+import threading
+import time
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from kurt2rt.channel.protocol.health import DiskSpace
+from kurt2rt.platform.durable_files import free_bytes
+
+_EVERY_S = 1.0
+_ANSWERS_WITHIN_S = 4.0
+
+
+class DiskLook:
+    """A thread that looks once a second. What a disk said last counts for some seconds."""
+
+    def __init__(self, folders: Mapping[str, Path], now: Callable[[], float] = time.monotonic) -> None:
+        """`folders` by what is kept there; `now`: a clock in s."""
+        self._folders = dict(folders)
+        self._now = now
+        self._said: dict[str, tuple[float, int]] = {}
+        self._ending = threading.Event()
+        self._threads = [
+            threading.Thread(target=self._run, args=(of,), name=f"room for {of}", daemon=True) for of in self._folders
+        ]
+
+    def look(self, of: str) -> None:
+        """Ask one disk, and wait for it; what the thread does again and again."""
+        try:
+            found = free_bytes(self._folders[of])
+        except OSError:
+            return  # told as a disk that does not answer
+        self._said[of] = self._now(), found
+
+    def spaces(self) -> tuple[DiskSpace, ...]:
+        """What is free as far as it is known; never waits."""
+        now_s = self._now()
+        found = []
+        for of in self._folders:
+            said_at_s, free_bytes = self._said.get(of, (float("-inf"), 0))
+            found.append(DiskSpace(of, free_bytes if now_s - said_at_s <= _ANSWERS_WITHIN_S else None))
+        return tuple(found)
+
+    def __enter__(self) -> Self:
+        for thread in self._threads:
+            thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._ending.set()  # not joined: one that hangs would hang us
+
+    def _run(self, of: str) -> None:
+        self.look(of)
+        while not self._ending.wait(_EVERY_S):
+            self.look(of)

@@ -1,0 +1,186 @@
+"""Makes the health report, once a second, beside the tick."""
+
+import queue
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from hal.health import Health
+from kurt2rt.channel.protocol.health import BusHealth, Drops, HealthReport, Punctuality, Safety, SensorAges
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.runtime import Runtime
+from kurt2rt.service.health.diagnostics import Counted, TroubleBook
+from kurt2rt.service.health.disk_monitor import DiskLook
+from kurt2rt.service.health.machine import MachineWatch
+from kurt2rt.service.health.probes import Instruments, Keeping
+from kurt2rt.service.health.snapshot import Snapshot, take_snapshot
+
+_ENDS_WITHIN_S = 0.2
+
+
+class HealthWatch:
+    """Reads the program between two ticks, once a second; a thread makes a report of it, for percentiles cost more than
+    a tick.
+    """
+
+    def __init__(
+        self,
+        runtime: Runtime,
+        keeping: Keeping,
+        instruments: Instruments,
+        *,
+        boot: str,
+        knowledge: Path,
+        now: Callable[[], float] = time.monotonic,
+        tolerates_stalls: bool = False,
+    ) -> None:
+        """`boot`: random letters of this start; `knowledge`: where lessons are kept; `now`: a clock in s."""
+        self._runtime = runtime
+        self._keeping = keeping
+        folders = {"knowledge": knowledge.parent, **instruments.folders}
+        self._instruments = replace(instruments, folders=folders)
+        self._boot = boot
+        self._knowledge = str(knowledge)
+        self._now = now
+        self._every_ticks = max(1, round(1 / runtime.robot.can.cycle_s))
+        self._started_s = now()
+        self._started_at = datetime.now(UTC).isoformat(timespec="seconds")
+        self._version = version("kurt2rt")
+        self._listeners: list[Callable[[HealthReport], None]] = []
+        self._ticks = 0
+        self.newest: HealthReport | None = None
+        """None in the first second."""
+        # Of the thread, or of whoever calls `report`.
+        self._disks = DiskLook(self._instruments.folders)
+        self._machine = MachineWatch()
+        self._counted = Counted()
+        self._troubles = TroubleBook(runtime.robot, tolerates_stalls=tolerates_stalls)
+        self._waiting: queue.SimpleQueue[Snapshot | None] = queue.SimpleQueue()
+        self._made: HealthReport | None = None
+        self._thread = threading.Thread(target=self._run, name="health", daemon=True)
+
+    def include(
+        self,
+        *,
+        drops: Mapping[str, Callable[[], int]] | None = None,
+        says: Mapping[str, Callable[[], str]] | None = None,
+    ) -> None:
+        """Read these of the program's parts as well, from now on: a channel opens when the network is there."""
+        self._instruments = self._instruments.with_more(drops, says)
+
+    def listen(self, listener: Callable[[HealthReport], None]) -> None:
+        """Call `listener` with each report, in the loop, after a tick; it must not wait."""
+        self._listeners.append(listener)
+
+    def after_tick(self, record: TickRecord) -> None:
+        """After each tick; never waits."""
+        self._ticks += 1
+        if self._ticks % self._every_ticks == 0 and self._waiting.empty():
+            self._waiting.put(self.snapshot(record))
+        made = self._made
+        if made is not self.newest and made is not None:
+            self.newest = made
+            for listener in self._listeners:
+                listener(made)
+
+    def snapshot(self, record: TickRecord) -> Snapshot:
+        """The program as it is after a tick."""
+        return take_snapshot(self._runtime, record, self._keeping, self._instruments, self._now())
+
+    def report(self, snapshot: Snapshot) -> HealthReport:
+        """The report of one snapshot, once a second: what grew lately is counted by reports. Takes about 1 ms."""
+        self._counted.see(_counters(snapshot))
+        punctuality = self._punctuality(snapshot)
+        disks, machine = self._disks.spaces(), self._machine.look()
+        last_write_s = snapshot.last_write_s
+        return HealthReport(
+            version=self._version,
+            boot=self._boot,
+            robot=self._runtime.robot.name,
+            task=self._runtime.task.name,
+            knowledge=self._knowledge,
+            started_at=self._started_at,
+            uptime_s=snapshot.now_s - self._started_s,
+            tick=snapshot.tick,
+            doing=snapshot.doing,
+            rlas=snapshot.rlas,
+            lessons=snapshot.lessons,
+            punctuality=punctuality,
+            ages=SensorAges(
+                _finite(snapshot.infrared_age_s), _finite(snapshot.encoder_age_s), _finite(snapshot.bumper_age_s)
+            ),
+            bus=None if snapshot.bus is None else _bus_health(snapshot.bus),
+            disks=disks,
+            safety=Safety(snapshot.unwritten, None if last_write_s is None else last_write_s * 1000),
+            machine=machine,
+            progress=snapshot.progress,
+            drops=tuple(Drops(of, count) for of, count in snapshot.drops.items()),
+            troubles=self._troubles.judge(snapshot, punctuality, disks, machine, self._counted),
+        )
+
+    def __enter__(self) -> Self:
+        self._disks.__enter__()
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._waiting.put(None)
+        self._thread.join(_ENDS_WITHIN_S)
+        self._disks.__exit__(kind, error, trace)
+
+    def _punctuality(self, snapshot: Snapshot) -> Punctuality:
+        ledger = self._runtime.ledger
+        lately, late = ledger.lateness_of_last(self._every_ticks), ledger.lateness()
+        return Punctuality(
+            newest_ms=lately.worst_us / 1000,
+            median_ms=late.median_us / 1000,
+            p99_ms=late.p99_us / 1000,
+            worst_ms=late.worst_us / 1000,
+            took_p99_ms=ledger.tick().p99_us / 1000,
+            ticks=snapshot.ticks,
+            missed=snapshot.missed_ticks,
+            missed_lately=self._counted.lately("missed"),
+        )
+
+    def _run(self) -> None:
+        while (snapshot := self._waiting.get()) is not None:
+            self._made = self.report(snapshot)
+
+
+def _counters(snapshot: Snapshot) -> Mapping[str, int]:
+    counters = {f"drops {of}": count for of, count in snapshot.drops.items()}
+    counters["missed"] = snapshot.missed_ticks
+    bus = snapshot.bus
+    if bus is not None:
+        counters |= {
+            "junk": bus.junk,
+            "error frames": bus.error_frames,
+            "send failures": bus.send_failures,
+            "receive failures": bus.receive_failures,
+            "foreign control": bus.foreign_control,
+        }
+    return counters
+
+
+def _bus_health(bus: Health) -> BusHealth:
+    return BusHealth(
+        controller=bus.controller.value,
+        frames=bus.frames,
+        junk=bus.junk,
+        error_frames=bus.error_frames,
+        foreign_control=bus.foreign_control,
+        send_failures=bus.send_failures,
+        receive_failures=bus.receive_failures,
+    )
+
+
+def _finite(age_s: float) -> float | None:
+    return age_s if age_s < float("inf") else None

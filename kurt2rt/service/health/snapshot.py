@@ -1,0 +1,77 @@
+"""What is read of the program in its loop, between two ticks; what costs more is worked out of it elsewhere."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from hal.health import Health
+from kurt2rt.core.decision.standing_text import in_short
+from kurt2rt.core.rla.rla import rla_title
+from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.runtime import Runtime
+from kurt2rt.service.health.probes import Instruments, Keeping
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """The program after one tick."""
+
+    tick: int
+    now_s: float
+    """Of the clock that tells since when something is wrong."""
+    infrared_age_s: float
+    encoder_age_s: float
+    bumper_age_s: float
+    """Infinite before the first frame, as in SensorReadings."""
+    bus: Health | None
+    unwritten: int
+    keeper_trouble: str | None
+    last_write_s: float | None
+    drops: Mapping[str, int]
+    says: Mapping[str, str]
+    """Lines of trouble that are not empty, by part."""
+    ticks: int
+    missed_ticks: int
+    rlas: int
+    lessons: int
+    doing: str
+    progress: Progress = NO_PROGRESS
+
+
+def take_snapshot(
+    runtime: Runtime, record: TickRecord, keeping: Keeping, instruments: Instruments, now_s: float
+) -> Snapshot:
+    """Read everything; some ten microseconds, and nothing waits."""
+    senses, system, ledger = record.senses, runtime.level.system, runtime.ledger
+    says = {part: say() for part, say in instruments.says.items()}
+    says["teaching"] = runtime.school.learning.trouble
+    return Snapshot(
+        tick=record.tick,
+        now_s=now_s,
+        infrared_age_s=senses.infrared_age_s,
+        encoder_age_s=senses.encoder_age_s,
+        bumper_age_s=senses.bumper_age_s,
+        bus=None if instruments.bus is None else instruments.bus(),
+        unwritten=keeping.unwritten,
+        keeper_trouble=keeping.trouble,
+        last_write_s=keeping.last_write_s,
+        drops={queue: count() for queue, count in instruments.drops.items()},
+        says={part: line for part, line in says.items() if line},
+        ticks=ledger.ticks,
+        missed_ticks=ledger.missed_ticks,
+        rlas=len(system),
+        lessons=system.standing_lessons,
+        progress=runtime.progress.progress(),
+        doing=_doing(record),
+    )
+
+
+def _doing(record: TickRecord) -> str:
+    decision, stands = record.decision, in_short(record.standing)
+    if stands:
+        return stands
+    if decision.rla_id is not None:
+        return f"{decision.action} by {rla_title(decision.rla_id, record.behaviour)}"
+    if decision.driving:
+        return f"{decision.action}, as the teacher says"
+    return "stands and asks"

@@ -1,0 +1,176 @@
+"""The health report for other programs of this machine: a socket beside the knowledge file, one line a second."""
+
+import json
+import os
+import socket
+import threading
+from collections.abc import AsyncIterator, Callable, Iterator, Mapping
+from contextlib import asynccontextmanager, contextmanager, suppress
+from dataclasses import replace
+from pathlib import Path
+
+import anyio
+from anyio.abc import Listener, SocketStream
+
+from hal.errors import UserError
+from kurt2rt.channel.protocol.health import HealthReport
+from kurt2rt.channel.protocol.health_codec import plain_of, report_of
+from kurt2rt.channel.protocol.schema import WireError
+from kurt2rt.service.health.monitor import HealthWatch
+
+_MOST_READERS = 8
+_TAKEN_WITHIN_S = 2.0
+_REMOVED_WITHIN_S = 0.2
+_LONGEST_LINE = 65_536
+_WAITS_FOR = "waits_for"
+_PAGES = "pages"
+
+
+class StatusError(UserError):
+    """The status of a robot program cannot be read."""
+
+
+def socket_of(knowledge: Path) -> Path:
+    """Where the program that teaches on in a knowledge file tells how it is; there is one such program at most."""
+    return knowledge.with_name(f"{knowledge.name}.status")
+
+
+class StatusSocket:
+    """Tells every reader each report. One that does not read is left."""
+
+    def __init__(self, watch: HealthWatch, path: Path, pages: Callable[[], tuple[str, ...]] = tuple) -> None:
+        """`path`: of the socket; users who may write it may read the status, and the links of `pages` with it."""
+        self._pages = pages
+        self._watch = watch
+        self._path = path
+        self._news = anyio.Event()
+        self._readers = 0
+        self.trouble = ""
+        """Why nobody can read; empty while somebody could."""
+        watch.listen(self._wake)
+
+    async def serve(self) -> None:
+        """Until cancelled. A place where no socket can be made is told, and nothing else ends."""
+        try:
+            async with _listener(self._path) as listener:
+                await listener.serve(self._tell)
+        except OSError as error:
+            self.trouble = f"{self._path}: no status is told there ({error.strerror}); give a file in another folder"
+
+    def _wake(self, _: HealthReport) -> None:
+        self._news.set()
+        self._news = anyio.Event()
+
+    async def _tell(self, reader: SocketStream) -> None:
+        if self._readers >= _MOST_READERS:
+            await reader.aclose()
+            return
+        self._readers += 1
+        try:
+            async with reader:
+                while True:
+                    report, news = self._watch.newest, self._news
+                    if report is not None:
+                        with anyio.fail_after(_TAKEN_WITHIN_S):
+                            await reader.send(json.dumps({**plain_of(report), _PAGES: self._pages()}).encode() + b"\n")
+                    await news.wait()
+        except (anyio.BrokenResourceError, anyio.ClosedResourceError, TimeoutError):
+            return  # gone, or too slow
+        finally:
+            self._readers -= 1
+
+
+async def tell_waiting(path: Path, waits_for: Callable[[], str]) -> None:
+    """Tell every reader what the program still waits for, until cancelled; its status then takes the socket's place.
+
+    `waits_for`: in a line with what to do.
+    """
+
+    async def tell(reader: SocketStream) -> None:
+        async with reader:
+            with suppress(anyio.BrokenResourceError, anyio.ClosedResourceError, TimeoutError):  # gone, or too slow
+                with anyio.fail_after(_TAKEN_WITHIN_S):
+                    await reader.send(json.dumps({_WAITS_FOR: waits_for()}).encode() + b"\n")
+
+    with suppress(OSError):  # the status will tell why nothing is told there
+        with short_name(path) as short:
+            listener = await anyio.create_unix_listener(short, mode=0o600)
+        async with listener:
+            await listener.serve(tell)
+
+
+def reports_at(path: Path, patience_s: float) -> Iterator[HealthReport]:
+    """Each report of the program that tells at `path`, the newest first; waits for each, so not in a loop of events.
+
+    Raises StatusError when none runs, when it still waits for something, when nothing comes for `patience_s`, or for
+    another version's words.
+    """
+    with socket.socket(socket.AF_UNIX) as reader, reader.makefile("rb") as lines:
+        reader.settimeout(patience_s)
+        try:
+            with short_name(path) as short:
+                reader.connect(short)
+        except (FileNotFoundError, ConnectionRefusedError) as error:
+            raise StatusError(
+                f"no robot program runs with the knowledge {path.with_suffix('')}, or it waits for its disk",
+                do="start one with kurt2rt run, or name its knowledge file",
+            ) from error
+        except OSError as error:
+            raise StatusError(f"cannot be read ({error})", where=path, do="be the user of the robot program") from error
+        while True:
+            try:
+                line = lines.readline(_LONGEST_LINE)
+            except TimeoutError as error:
+                raise StatusError(
+                    f"the robot program at {path} has said nothing for {patience_s:g} s",
+                    do="it hangs or was stopped: end it and start it anew",
+                ) from error
+            except OSError as error:
+                raise StatusError(f"the robot program ended ({error})", where=path) from error
+            if not line:
+                raise StatusError("the robot program has ended", where=path)
+            try:
+                told = json.loads(line)
+                if isinstance(told, dict) and _WAITS_FOR in told:
+                    raise StatusError(f"the robot program stands and waits for {told[_WAITS_FOR]}")
+                yield replace(report_of(told), pages=_links_in(told))
+            except (ValueError, WireError) as error:
+                raise StatusError(
+                    f"is not understood ({error})", where=path, do="use the kurt2rt that the robot runs"
+                ) from error
+
+
+def _links_in(told: Mapping[str, object]) -> tuple[str, ...]:
+    links = told.get(_PAGES, ())
+    return tuple(map(str, links)) if isinstance(links, list) else ()
+
+
+@asynccontextmanager
+async def _listener(path: Path) -> "AsyncIterator[Listener[SocketStream]]":
+    with short_name(path) as short:
+        # It takes the place of one that a killed program left: the knowledge file is ours alone.
+        listener = await anyio.create_unix_listener(short, mode=0o600)
+    try:
+        async with listener:
+            yield listener
+    finally:
+        # A disk that hangs must not hold up the end of the program.
+        removing = threading.Thread(target=_remove, args=(path,), name="end of status", daemon=True)
+        removing.start()
+        removing.join(_REMOVED_WITHIN_S)
+
+
+def _remove(path: Path) -> None:
+    # The next program takes the place of a socket that is left on a read-only disk.
+    with suppress(OSError):
+        path.unlink(missing_ok=True)
+
+
+@contextmanager
+def short_name(path: Path) -> Iterator[str]:
+    """Another name of the same file, as long as the folder is open: the kernel takes no more than 107 bytes."""
+    folder = os.open(path.parent, os.O_PATH | os.O_DIRECTORY)
+    try:
+        yield f"/proc/self/fd/{folder}/{path.name}"
+    finally:
+        os.close(folder)

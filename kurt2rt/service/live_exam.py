@@ -1,0 +1,98 @@
+"""An exam of the knowledge of a robot that runs: another process drives it, at a lower priority than the robot's."""
+
+import json
+import subprocess
+import threading
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from kurt2rt.channel.protocol.exam_status import EXAM, NO_EXAM, ExamStanding
+from kurt2rt.channel.protocol.schema import WireError
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+
+Command = Callable[[Path, Path], Sequence[str]]
+"""The words that start an exam of a knowledge file, with the path of its picture."""
+
+
+class LiveExam:
+    """One exam at a time. A thread reads what its process says, a line of JSON (`exam_standing.EXAM`) at a time."""
+
+    def __init__(self, command: Command) -> None:
+        """`command` starts a process that ends by itself when its standard input does."""
+        self._command = command
+        self._process: subprocess.Popen[bytes] | None = None
+        self._reading: threading.Thread | None = None
+        self._lock = threading.Lock()
+        self._closed = False
+        self.standing = NO_EXAM
+        """Replaced whole by the thread that reads."""
+
+    def begin(self, knowledge: Path, picture: Path) -> None:
+        """Examine a copy of the knowledge, which is deleted at the end. Raises KnowledgeError while an exam runs."""
+        with self._lock:
+            if self._closed or self.standing.running:
+                knowledge.unlink(missing_ok=True)
+                raise KnowledgeError("an exam is under way", do="wait for its end")
+            try:
+                self._process = subprocess.Popen(
+                    self._command(knowledge, picture),
+                    stdin=subprocess.PIPE,
+                    stdout=subprocess.PIPE,
+                    start_new_session=True,
+                )
+            except OSError as error:
+                knowledge.unlink(missing_ok=True)
+                raise KnowledgeError(f"the exam cannot be started ({error})", do="install kurt2rt whole") from error
+            self.standing = ExamStanding(True, 0.0, "the exam begins")
+            self._reading = threading.Thread(
+                target=self._read, args=(self._process, knowledge, picture), name="exam", daemon=True
+            )
+            self._reading.start()
+
+    def close(self) -> None:
+        """End the exam that runs, without a verdict."""
+        with self._lock:
+            self._closed = True
+            process, reading = self._process, self._reading
+        if process is not None and process.poll() is None:
+            process.kill()
+        if reading is not None:
+            reading.join()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _read(self, process: "subprocess.Popen[bytes]", knowledge: Path, picture: Path) -> None:
+        assert process.stdout is not None
+        assert process.stdin is not None
+        verdict: ExamStanding | None = None
+        try:
+            for line in process.stdout:
+                with suppress(WireError, ValueError):  # what a library prints between is no news of the exam
+                    told = EXAM.read(json.loads(line))
+                    if told.running:
+                        self.standing = told
+                    else:
+                        verdict = told
+            code = process.wait()
+        finally:
+            process.stdin.close()
+            process.stdout.close()
+            knowledge.unlink(missing_ok=True)
+        # At once with its picture: pages do not ask again once the exam is over.
+        if verdict is None:
+            trouble = f"the exam ended without a verdict (code {code}); examine again"
+            self.standing = replace(self.standing, running=False, trouble=trouble)
+        elif verdict.trouble:
+            self.standing = verdict
+        else:
+            self.standing = replace(verdict, picture=picture.name if picture.is_file() else "")

@@ -1,0 +1,67 @@
+"""The composition root: the one place that knows which robot is there, the simulated or the real one."""
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from typing import NamedTuple, Protocol
+
+from hal.bus import open_bus
+from hal.kurt2 import Kurt2
+from hal.robot_settings import RobotSettings
+from hal.simulation import SimulatedWorld, Simulation
+from hal.tap import Tap
+from kurt2rt.platform.simulated_clock import HeldWorld
+from kurt2rt.service.bus_names import NO_WIRE, SIMULATED
+
+
+class OpenedRobot(NamedTuple):
+    """A robot, and the ground it stands on where that is simulated."""
+
+    robot: Kurt2
+    ground: SimulatedWorld | None
+    lives: Callable[[], bool]
+    """Whether the simulator still runs; always so where there is none."""
+    world: HeldWorld | None = None
+    """Of a simulated robot whose time may pass faster than real time."""
+    simulation: Simulation | None = None
+    """The simulated robot seen from above, for measures."""
+    require_world: Callable[[str], None] | None = None
+    """Raises SettingsError unless the simulator can load the world of that name; None for a real robot."""
+
+
+class Opening(Protocol):
+    """Gives a robot for as long as it is needed; `open_robot` is one."""
+
+    def __call__(
+        self, settings: RobotSettings, bus: str, world: str, seed: int, tap: Tap | None = None, wire: str = NO_WIRE
+    ) -> AbstractContextManager[OpenedRobot]:
+        """The robot on a bus. Raises BusError, SettingsError."""
+        ...
+
+
+@contextmanager
+def open_robot(
+    settings: RobotSettings, bus: str, world: str, seed: int, tap: Tap | None = None, wire: str = NO_WIRE
+) -> Iterator[OpenedRobot]:
+    """The robot for a run in real time, its second guard awake: the simulated one for `sim`, else the one on `bus`.
+
+    `tap` looks on at the runtime's end of the bus. `wire` is the simulated robot's (config/wires).
+    Raises BusError, SettingsError, and on leaving whatever ended the simulation.
+    """
+    if bus == SIMULATED:
+        # Here, because a robot carries no simulator: the packages it needs are an extra.
+        from simbridge.simulation import Kurt2SimulationFactory, simulated_robot
+
+        with simulated_robot(settings, world, seed, wire, tap) as (simulation, ground):
+            # A wire has a time of its own, in real time.
+            held_world = ground.held_world if wire == NO_WIRE else None
+            require_world = Kurt2SimulationFactory(settings, wire).require_worlds
+            yield OpenedRobot(simulation.robot, ground, lambda: ground.lives, held_world, simulation, require_world)
+        return
+    end = open_bus(bus)
+    end.tap = tap
+    robot = Kurt2(settings, end)
+    try:
+        with robot.watchdog:
+            yield OpenedRobot(robot, None, lambda: True)
+    finally:
+        robot.close()

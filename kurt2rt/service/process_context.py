@@ -1,0 +1,25 @@
+"""What keeps the program up and ends it well, for whoever serves."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from threading import Thread
+
+from kurt2rt.service.config_reload import Reloading
+from kurt2rt.service.shutdown import Ending
+from kurt2rt.service.systemd.notifier import Notifier
+
+
+@dataclass(frozen=True, slots=True)
+class Upkeep:
+    """Made by the program around its service."""
+
+    ending: Ending
+    notifier: Notifier
+    reloading: Reloading | None = None
+    """None: settings stay as they were at the start."""
+    parts: Mapping[str, Callable[[], bool]] = field(default_factory=dict)
+    """What has to be alive beside the loop, by name."""
+    guards: Callable[[], Iterable[Thread]] = tuple
+    """Threads that have to overtake the loop."""
+    tell: Callable[[str], None] = lambda _: None
+    """Takes what whoever reads the log should know. Called from the loop: it may not wait."""

@@ -1,0 +1,77 @@
+"""Schema of `config/runtime/*.yaml`: how the service runs."""
+
+from typing import Annotated, Final, Literal, NamedTuple
+
+from pydantic import Field, PlainValidator
+
+from hal.settings import Settings, find_config, load_settings
+from kurt2rt.platform.realtime_priority import UNIT_PRIORITY
+
+WHILE_RUNNING: Final = "may change while the robot runs"
+"""Stands beside the keys that SIGHUP takes; all others are taken at the next start."""
+AUTO: Final = "auto"
+_HIGHEST_PRIORITY = 80
+
+
+def _priority_of(value: object) -> int | Literal["auto"]:
+    if value == AUTO:
+        return AUTO
+    if isinstance(value, int) and not isinstance(value, bool) and 0 <= value <= _HIGHEST_PRIORITY:
+        return value
+    raise ValueError(f"has to be {AUTO}, or a whole number from 0 to {_HIGHEST_PRIORITY}")
+
+
+class ServiceSettings(Settings):
+    """Settings of `kurt2rt run`."""
+
+    name: str
+    robot: str
+    task: str
+    world: str
+    knowledge: str
+    checkpoint_period_s: Annotated[float, Field(ge=0.1, le=60), WHILE_RUNNING]
+    status_period_s: Annotated[float, Field(ge=1, le=3600), WHILE_RUNNING]
+    real_time_priority: Annotated[int | Literal["auto"], PlainValidator(_priority_of), WHILE_RUNNING]
+    teachers: str
+    devices: str
+    port: Annotated[int, Field(ge=0, le=65535)]
+    page_port: Annotated[int, Field(ge=0, le=65535)]
+    recordings: str
+    recordings_mb: Annotated[int, Field(ge=10, le=1_000_000), WHILE_RUNNING]
+
+    @property
+    def priority(self) -> int:
+        """Real-time priority of the loop; 0: none."""
+        return 0 if self.real_time_priority == AUTO else self.real_time_priority
+
+
+class Reloaded(NamedTuple):
+    """What comes of settings that were read while the robot runs."""
+
+    settings: ServiceSettings
+    """As before, with what may change as it was read."""
+    taken: tuple[str, ...]
+    """Keys that changed."""
+    refused: tuple[str, ...]
+    """Keys that say something else in the file, and go on as they were."""
+
+
+def load_service(name_or_path: str = "default") -> ServiceSettings:
+    """Settings of a shipped file by name, or of a file by path. Raises hal.settings.SettingsError."""
+    return load_settings(find_config("runtime", name_or_path), ServiceSettings)
+
+
+def for_a_unit(settings: ServiceSettings) -> ServiceSettings:
+    """Return the settings with the priority of a unit for `auto`."""
+    if settings.real_time_priority != AUTO:
+        return settings
+    return settings.model_copy(update={"real_time_priority": UNIT_PRIORITY})
+
+
+def while_running(current: ServiceSettings, read: ServiceSettings) -> Reloaded:
+    """Take over what may change while the robot runs."""
+    fields = ServiceSettings.model_fields
+    changed = [key for key in fields if getattr(current, key) != getattr(read, key)]
+    taken = tuple(key for key in changed if WHILE_RUNNING in fields[key].metadata)
+    settings = current.model_copy(update={key: getattr(read, key) for key in taken})
+    return Reloaded(settings, taken, tuple(key for key in changed if key not in taken))

@@ -1,0 +1,211 @@
+"""Runs of the simulated robot, one after the other in one program: each with a world, a task and a knowledge file."""
+
+import re
+import secrets
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import anyio.to_thread
+
+from hal.robot_settings import RobotSettings
+from hal.settings import SettingsError, shipped_names
+from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
+from kurt2rt.channel.server.simulation import TeacherNow
+from kurt2rt.core.basic.basic_level import BasicLevel
+from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
+from kurt2rt.core.mid.mid_level import MidLevel
+from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.perception.definition import load_situation
+from kurt2rt.core.rla.rla import Phase, TeachingEvent
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.core.teaching.commands import BeginSession, Command, SetPhase, Take
+from kurt2rt.knowledge.exchange.package import import_knowledge
+from kurt2rt.knowledge.files.archive_existing import set_aside
+from kurt2rt.knowledge.journal import journal_file
+from kurt2rt.knowledge.journal.loading import go_on_teaching, read_lessons
+from kurt2rt.knowledge.journal.writer import utc_now
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.task_repertoire import repertoire_of
+from kurt2rt.runtime import empty_system
+
+_GENERATED = re.compile(r"(rooms|streets)-\d{1,9}", re.ASCII)
+"""A teacher chooses among names: a path would read any file of the robot's machine."""
+_BY_SCRIPT = "the scripted teacher teaches this run; start kurt2rt run without --auto"
+_ZIP = b"PK"
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatedRun:
+    """World, task, knowledge and teacher of one run."""
+
+    world: str
+    task: TaskSettings
+    task_name: str
+    """As it was chosen: a name, or a path that the command line gave."""
+    knowledge: Path
+    fresh: bool = False
+    """Whether what stands at `knowledge` is set aside first."""
+    loaded: Path | None = None
+    """Knowledge file that comes to `knowledge` then."""
+    teacher: TeacherNow | None = None
+    """Teacher of the run before, who teaches on; None in the first run."""
+
+    @property
+    def begin_with(self) -> tuple[Command, ...]:
+        """Commands of the first tick, so that the teacher need not take the robot again."""
+        if self.teacher is None:
+            return ()
+        device, phase, session = self.teacher
+
+        def identity() -> str:
+            return f"{device}-next-{secrets.token_hex(8)}"
+
+        commands: tuple[Command, ...] = (Take(identity(), device), SetPhase(identity(), device, Phase(phase), -1))
+        return commands if session is None else (*commands, BeginSession(identity(), device, session))
+
+
+class SimulatedRuns:
+    """The present run, and the next one once a teacher wants one (kurt2rt.channel.server.simulation.RunControl)."""
+
+    def __init__(
+        self,
+        robot: RobotSettings,
+        first: SimulatedRun,
+        require_world: Callable[[str], None],
+        *,
+        taught_by_script: bool,
+    ) -> None:
+        """Begin with the first run.
+
+        Args:
+            robot: settings of the robot in all runs.
+            first: world, task and knowledge of the first run.
+            require_world: raises SettingsError unless the simulator can load the world of that name.
+            taught_by_script: the scripted teacher teaches the first run's task in its world, so no other run follows.
+        """
+        self._robot = robot
+        self._require_world = require_world
+        self._taught_by_script = taught_by_script
+        self._files = {first.task_name: first.knowledge}
+        self._view: SimulationView | None = None
+        self.present = first
+        self.next: SimulatedRun | None = None
+
+    async def view(self) -> SimulationView:
+        """Return the simulated world and task, and those to choose from."""
+        if self._view is None:
+            self._view = await anyio.to_thread.run_sync(self._look)
+        return self._view
+
+    async def prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> str:
+        """Look whether the next run can be so, and keep it. Raises ValueError in one line."""
+        if self._taught_by_script:
+            raise ValueError(_BY_SCRIPT)
+        view = await self.view()
+        if world is not None and world not in (*view.worlds, view.world) and not _GENERATED.fullmatch(world):
+            raise ValueError(f"world: {world!r} is not known; give one of {', '.join(view.worlds)}, rooms-N, streets-N")
+        if task is not None and task not in (view.task, *(each.name for each in view.tasks)):
+            raise ValueError(f"task: {task!r} is not known; give one of {', '.join(each.name for each in view.tasks)}")
+        try:
+            self.next = await anyio.to_thread.run_sync(self._prepare, world, task, fresh, teacher)
+        except (SettingsError, KnowledgeError) as error:
+            raise ValueError(str(error)) from error
+        return f"world {self.next.world}, task {self.next.task_name}: the robot stands until Go"
+
+    def advance(self) -> str:
+        """Make the next run the present one, before it begins; what to tell of its knowledge file, or nothing.
+
+        Raises KnowledgeError where the present knowledge cannot be set aside; then the next run goes on with it.
+        """
+        assert self.next is not None
+        self.present, self.next, self._view = self.next, None, None
+        self._files[self.present.task_name] = self.present.knowledge
+        if not self.present.fresh:
+            return ""
+        loaded, knowledge = self.present.loaded, self.present.knowledge
+        self.present = replace(self.present, fresh=False, loaded=None)
+        kept = set_aside(knowledge)
+        if loaded is not None:
+            loaded.rename(knowledge)
+        return "" if kept is None else f"the knowledge up to now is kept as {kept}"
+
+    async def load(self, content: bytes, teacher: TeacherNow) -> str:
+        """Look at knowledge that the next run is to begin with, and keep it. Raises ValueError in one line."""
+        if self._taught_by_script:
+            raise ValueError(_BY_SCRIPT)
+        try:
+            self.next, lessons = await anyio.to_thread.run_sync(self._load, content, teacher)
+        except (KnowledgeError, SettingsError, OSError) as error:
+            raise ValueError(str(error)) from error
+        return f"{lessons} lessons loaded: the robot stands until Go"
+
+    def _load(self, content: bytes, teacher: TeacherNow) -> tuple[SimulatedRun, int]:
+        present = self.present
+        folder = present.knowledge.parent
+        kept = folder / f".{present.knowledge.name}.loaded"
+        with TemporaryDirectory(dir=folder, prefix=".loading-") as room:
+            brought, loaded = Path(room, "upload"), Path(room, "loaded.knowledge")
+            brought.write_bytes(content)
+            try:
+                if content.startswith(_ZIP):
+                    import_knowledge(brought, loaded, self._robot, present.task, None, stamp=utc_now())
+                else:
+                    brought.rename(loaded)
+                # Opened as the next run opens it: damage, another task's lessons.
+                lessons = self._look_at_knowledge(loaded, present.task)
+            except (KnowledgeError, UnknownActionError, UnknownBehaviourError) as error:
+                text = str(error)
+                for path in (brought.resolve(), loaded.resolve(), brought, loaded):
+                    text = text.replace(str(path), "the uploaded file")
+                raise KnowledgeError(text) from error
+            loaded.rename(kept)
+        return replace(present, fresh=True, loaded=kept, teacher=teacher), lessons
+
+    def _prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> SimulatedRun:
+        present = self.present
+        name = task or present.task_name
+        settings = present.task if name == present.task_name else load_task(name)
+        where = world or (present.world if name == present.task_name else settings.teaching.world)
+        self._require_world(where)
+        knowledge = self._files.get(name, present.knowledge.with_name(f"{settings.name}.knowledge"))
+        if knowledge != present.knowledge and knowledge.exists():
+            # Looked at as the next run opens it, so that another program that writes it is found out now.
+            if fresh:
+                journal_file.lock_for_writing(knowledge).close()
+            else:
+                self._look_at_knowledge(knowledge, settings)
+        if knowledge == present.knowledge and name != present.task_name and not fresh:
+            # This very program writes it, for the present task.
+            _require_able(read_lessons(knowledge, self._robot, settings, beside_its_writer=True), self._robot, settings)
+        return SimulatedRun(where, settings, name, knowledge, fresh, teacher=teacher)
+
+    def _look_at_knowledge(self, path: Path, task: TaskSettings) -> int:
+        """Open it as the next run does; how many lessons it holds.
+
+        Raises KnowledgeError; UnknownActionError or UnknownBehaviourError for knowledge that cannot act here.
+        """
+        opened = go_on_teaching(path, self._robot, task)
+        opened.journal.close()
+        _require_able(opened.events, self._robot, task)
+        return len(opened.entries)
+
+    def _look(self) -> SimulationView:
+        tasks = tuple(TaskName(name, load_task(name).sentence) for name in shipped_names("tasks"))
+        worlds = tuple(shipped_names("worlds"))
+        return SimulationView(self.present.world, self.present.task_name, worlds, tasks)
+
+
+def _require_able(events: Iterable[TeachingEvent], robot: RobotSettings, task: TaskSettings) -> None:
+    """Raises UnknownActionError or UnknownBehaviourError, as the next run would, and that one ends the program."""
+    mid = None if task.mid is None else load_mid(task.mid)
+    definition = load_situation(task.situation, robot.infrared.names)
+    system = empty_system(task, definition, load_critic(task.critic), mid)
+    system.apply_all(events)
+    wanted = Wanted(task.behaviours)
+    BasicLevel(system, repertoire_of(task, robot), 1, wanted)
+    if mid is not None:
+        MidLevel(system, mid.build(robot), mid, wanted)

@@ -1,0 +1,86 @@
+"""The line that tells once a second how the robot's program is."""
+
+from hal.health import Health
+from kurt2rt.core.decision.standing_text import in_short
+from kurt2rt.core.rla.rla import MID, rla_title
+from kurt2rt.service.post_tick import Status
+
+
+def status_line(status: Status, health: Health, trouble: str = "") -> str:
+    """Return one line: what drives the wheels and why, lessons, lateness, and what is wrong, `trouble` last."""
+    parts = [f"{_clock_s(status):8.1f} s", f"{doing(status):<48}", *numbers(status)]
+    return " | ".join([*parts, *troubles(status, health), *([trouble] if trouble else [])])
+
+
+def numbers(status: Status) -> list[str]:
+    """Return how many RLAs there are, and how punctual the loop is, each in words."""
+    runtime = status.runtime
+    lateness = runtime.ledger.lateness()
+    return [
+        f"{len(runtime.level.system):3d} RLAs",
+        f"late {lateness.median_us / 1000:.2f} ms, p99 {lateness.p99_us / 1000:.2f} ms",
+        f"missed {runtime.ledger.missed_ticks}",
+    ]
+
+
+def timed_doing(status: Status) -> str:
+    """Return the time since the start, and what drives the wheels or why they stand."""
+    return f"{_clock_s(status):.1f} s  {doing(status)}"
+
+
+def _clock_s(status: Status) -> float:
+    return status.record.tick * status.runtime.robot.can.cycle_s
+
+
+def doing(status: Status) -> str:
+    """What drives the wheels and why, or why the robot stands."""
+    record = status.record
+    decision, match, stands = record.decision, record.decision.match, in_short(record.standing)
+    near = "" if match is None else f" at {match.distance:.0f} of R {match.radius:.0f}"
+    if stands:
+        return stands
+    if decision.rla_id is not None:
+        text = f"{decision.action} by {rla_title(decision.rla_id, record.behaviour)}{near}"
+    elif decision.driving:
+        text = f"{decision.action}, as the teacher says"
+    elif decision.asking and decision.asks_at == MID:
+        text = "stands and asks the way" + ("" if match is None else f", nearest {match.rla.title}{near}")
+    else:
+        about = f" about {record.behaviour}" if record.behaviour else ""
+        text = "stands and asks" + (about if match is None else f", nearest {match.rla.title}{near}")
+    if decision.mid is not None and decision.driving:
+        by = "its teacher" if decision.mid.rla_id is None else rla_title(decision.mid.rla_id, "", MID)
+        text += f", sent by {by}"
+    return text
+
+
+def troubles(status: Status, health: Health) -> list[str]:
+    """What is wrong, each part in words; empty when nothing is."""
+    return [*guarded(status), *alarms(status, health)]
+
+
+def guarded(status: Status) -> list[str]:
+    """Return what the guard changed in this tick, in words; empty when it let through what was decided."""
+    reasons = status.record.grant.reasons
+    return ["guard: " + ", ".join(reasons)] if reasons else []
+
+
+def alarms(status: Status, health: Health) -> list[str]:
+    """Return what is wrong besides what the guard changes in passing, each part in words."""
+    runtime = status.runtime
+    parts = []
+    if status.unsaved_lessons:
+        parts.append(f"{status.unsaved_lessons} lessons not saved yet")
+    if status.trouble is not None:
+        parts.append(status.trouble)
+    if runtime.school.learning.trouble:
+        parts.append(runtime.school.learning.trouble)
+    if status.channel_trouble:
+        parts.append(status.channel_trouble)
+    if status.recording_trouble:
+        parts.append(status.recording_trouble)
+    if health.trouble:
+        parts.append(health.trouble)
+    if health.foreign_control:
+        parts.append(f"{health.foreign_control} CONTROL frames of another sender so far")
+    return parts

@@ -1,0 +1,101 @@
+"""The unit is put in its place and taken away again."""
+
+import pwd
+import subprocess
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from kurt2rt.platform.durable_files import write_durably
+from kurt2rt.service.systemd.unit import MARK, USER, Unit, UnitError, require_name
+
+Do = Callable[[Sequence[str]], None]
+"""Runs one of systemd's commands. Raises UnitError."""
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Where systemd looks for its files."""
+
+    units: Path = Path("/etc/systemd/system")
+    users: Path = Path("/etc/sysusers.d")
+    others: tuple[Path, ...] = tuple(
+        map(Path, ("/run/systemd/system", "/usr/local/lib/systemd/system", "/usr/lib/systemd/system"))
+    )
+    """Of units of other programs, which one of ours must not hide."""
+
+    def files(self, name: str) -> tuple[Path, Path]:
+        """Of a unit and its user."""
+        return self.units / f"{name}.service", self.users / f"{name}.conf"
+
+
+def do(command: Sequence[str]) -> None:
+    """Run a command of systemd. Raises UnitError when it fails or is not there."""
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    except FileNotFoundError as error:
+        raise UnitError(f"{command[0]} is not on this machine", do="the unit needs systemd") from error
+    if done.returncode:
+        raise UnitError(f"{' '.join(done.stderr.split()) or f'exit code {done.returncode}'}", where=" ".join(command))
+
+
+def require_free(name: str, places: Places | None = None) -> None:
+    """Raises UnitError for a name that a unit, or a user, of another program has."""
+    require_name(name)
+    places = places or Places()
+    to_do = "give another --name"
+    for path in (*places.files(name), *(folder / f"{name}.service" for folder in places.others)):
+        if _is_there(path) and not (path.parent in (places.units, places.users) and _is_ours(path)):
+            raise UnitError("is another program's", where=path, do=to_do)
+    try:
+        user = pwd.getpwnam(name)
+    except KeyError:
+        return
+    if user.pw_gecos != USER:
+        raise UnitError("is a user of this machine already", where=name, do=to_do)
+
+
+def install(unit: Unit, run: Do = do, places: Places | None = None) -> tuple[Path, ...]:
+    """Write the unit and make its user; starts nothing. Returns the files. Raises UnitError."""
+    places = places or Places()
+    require_free(unit.name, places)
+    files = places.files(unit.name)
+    for path, text in zip(files, (unit.service, unit.sysusers), strict=True):
+        try:
+            write_durably(path, text)
+        except OSError as error:
+            raise UnitError(f"cannot be written ({error})", where=path, do="say it with sudo") from error
+    run(("systemd-sysusers", str(files[1])))
+    run(("systemctl", "daemon-reload"))
+    return files
+
+
+def uninstall(name: str, run: Do = do, places: Places | None = None) -> tuple[Path, ...]:
+    """End and disable the unit and remove its files; what was taught and its user stay. Raises UnitError."""
+    require_name(name)
+    places = places or Places()
+    files = tuple(each for each in places.files(name) if _is_there(each))
+    if not files:
+        raise UnitError("there is no such unit", where=places.files(name)[0], do="kurt2rt service install makes one")
+    for path in files:
+        if not _is_ours(path):
+            raise UnitError("is another program's and stays", where=path, do="give the --name that you installed with")
+    run(("systemctl", "disable", "--now", f"{name}.service"))
+    for path in files:
+        try:
+            path.unlink()
+        except OSError as error:
+            raise UnitError(f"cannot be removed ({error})", where=path, do="say it with sudo") from error
+    run(("systemctl", "daemon-reload"))
+    return files
+
+
+def _is_there(path: Path) -> bool:
+    return path.is_symlink() or path.exists()  # a link to nowhere is somebody's as well
+
+
+def _is_ours(path: Path) -> bool:
+    try:
+        return not path.is_symlink() and path.read_text(encoding="utf-8", errors="replace").startswith(MARK)
+    except OSError as error:
+        raise UnitError(f"cannot be read ({error})", where=path, do="say it with sudo") from error

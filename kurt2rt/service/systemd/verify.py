@@ -1,0 +1,66 @@
+"""The unit, looked at by systemd's own tools: does it load, and how much of the system is the service exposed to?"""
+
+import re
+import shutil
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from kurt2rt.service.systemd.unit import Unit, UnitError
+
+TOOL = "systemd-analyze"
+MOST_EXPOSURE = 2.0
+"""Of 10, by `systemd-analyze security`: what needs no CAN, network and real-time priority is shut."""
+_LONGEST_S = 60.0
+_OVERALL = re.compile(r"Overall exposure level.*: ([\d.]+)")
+_OPEN = re.compile(r"^✗ (\S+)\s+(.*?)\s+([\d.]+)\s*$", re.MULTILINE)
+
+
+@dataclass(frozen=True, slots=True)
+class Examined:
+    """What the tools found."""
+
+    complaints: tuple[str, ...]
+    """Of `systemd-analyze verify`, as it says them; empty when the unit loads."""
+    exposure: float
+    """0 to 10, smaller is safer."""
+    open: tuple[str, ...]
+    """What is not shut, the setting, its meaning and its share of the exposure in a line each."""
+
+    @property
+    def passed(self) -> bool:
+        """Whether it loads and is shut enough."""
+        return not self.complaints and self.exposure <= MOST_EXPOSURE
+
+
+def has_tool() -> bool:
+    """Whether this machine has systemd's tools."""
+    return shutil.which(TOOL) is not None
+
+
+def examine(unit: Unit) -> Examined:
+    """Have the unit looked at; nothing is installed or started. Raises UnitError where the tool is missing."""
+    tool = shutil.which(TOOL)
+    if tool is None:
+        raise UnitError(f"{TOOL} is not on this machine", do="on Debian: apt-get install systemd")
+    with tempfile.TemporaryDirectory(prefix="kurt2rt-unit-") as folder:
+        path = Path(folder) / f"{unit.name}.service"
+        path.write_text(unit.service, encoding="utf-8")
+        verified = _say(tool, "verify", "--man=no", str(path))
+        security = _say(tool, "security", "--offline=true", "--no-pager", str(path)).stdout
+    complaints = tuple(line for line in verified.stderr.splitlines() if path.name in line or verified.returncode)
+    overall = _OVERALL.search(security)
+    if overall is None:
+        raise UnitError(
+            f"{TOOL} security says no exposure: {' '.join(security.split())[-200:]!r}", do="look at it yourself"
+        )
+    found = tuple(f"{setting} {meaning} ({share})" for setting, meaning, share in _OPEN.findall(security))
+    return Examined(complaints, float(overall[1]), found)
+
+
+def _say(tool: str, *words: str) -> "subprocess.CompletedProcess[str]":
+    try:
+        return subprocess.run([tool, *words], capture_output=True, text=True, check=False, timeout=_LONGEST_S)
+    except subprocess.TimeoutExpired as error:
+        raise UnitError(f"{TOOL} {words[0]} does not end", do="look at the machine's load") from error

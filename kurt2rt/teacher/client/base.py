@@ -1,0 +1,36 @@
+"""What all parts of a teacher's device share: the connection to its robot, once it is open, and the pictures of it."""
+
+from collections.abc import Callable
+
+from kurt2rt.teacher.client.connection import Connection
+from kurt2rt.teacher.client.manual_drive import Hand
+from kurt2rt.teacher.client.request_sender import Asking
+from kurt2rt.teacher.client.state_stream import Pictures
+from kurt2rt.teacher.client.stop_sender import Stopping
+
+
+class Connected:
+    """Base of the parts of a `TeacherClient`. What asks the robot raises RuntimeError while it is not open."""
+
+    def __init__(self, now: Callable[[], float]) -> None:
+        """`now` is a monotonic clock in seconds."""
+        self._pictures = Pictures(now)
+        self._connection: Connection | None = None
+
+    @property
+    def _asking(self) -> Asking:
+        return self._open.asking
+
+    @property
+    def _stopping(self) -> Stopping:
+        return self._open.stopping
+
+    @property
+    def _hand(self) -> Hand:
+        return self._open.hand
+
+    @property
+    def _open(self) -> Connection:
+        if self._connection is None:
+            raise RuntimeError("the client is not open; use it as: async with TeacherClient(folder) as robot: ...")
+        return self._connection

@@ -1,0 +1,335 @@
+"""A teacher for scripts and notebooks: `TeacherClient` without async.
+
+with Teacher("var/devices/local") as teacher:
+    teacher.take()
+    asking = teacher.wait_for_question()
+    teacher.answer("forward", of=asking.tick)
+"""
+
+import time
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from types import TracebackType
+from typing import Self, TypeVar
+
+import anyio
+from anyio.from_thread import BlockingPortal, start_blocking_portal
+
+from kurt2rt.channel.protocol.hello import Hello
+from kurt2rt.channel.protocol.lesson_list import LessonLine
+from kurt2rt.channel.protocol.state import State
+from kurt2rt.channel.protocol.world import World
+from kurt2rt.core.rla.rla import BASIC, Phase
+from kurt2rt.runs.explain.facts import DecisionFacts
+from kurt2rt.teacher.client.answer import Answer, NoAnswerError
+from kurt2rt.teacher.client.client import ANSWER_WITHIN_S, TeacherClient
+from kurt2rt.teacher.client.link_quality import Link
+
+LOCAL_DEVICE = Path("var/devices/local")
+"""Pairing that `kurt2rt run` makes for programs of its own machine."""
+ATTENTION_S = 1.0
+"""Default of `attention_s`, in seconds."""
+
+_LOOK_S = 0.05
+
+_Result = TypeVar("_Result")
+
+
+class Teacher:
+    """Blocking teacher's device; its event loop runs in a thread, so it works where a loop runs already (Jupyter).
+
+    Use it as a context manager, or call `open` in one notebook cell and `close` in a later one. Commands return the
+    robot's `Answer`; a refusal is an Answer too. Each call raises NoAnswerError if the robot does not answer within
+    `patience_s`, and RuntimeError while the Teacher is not open.
+
+    The robot is told that its teacher is there during each call and for `attention_s` after it. Then it stands, and
+    drives on only after `resume`: if the script hangs or computes for longer, and between two notebook cells.
+
+    Use one Teacher from one thread at a time. Speeds are in metres per second.
+    """
+
+    def __init__(
+        self,
+        folder: Path | str = LOCAL_DEVICE,
+        host: str | None = None,
+        port: int | None = None,
+        *,
+        patience_s: float = ANSWER_WITHIN_S,
+        connect_s: float = 10.0,
+        attention_s: float = ATTENTION_S,
+    ) -> None:
+        """Name the robot; nothing is sent before `open`.
+
+        Args:
+            folder: Device's side of a pairing. Default: the one that `kurt2rt run` makes below its working folder.
+            host: Address of the robot. None: as noted in the pairing.
+            port: UDP port of the robot. None: as noted in the pairing.
+            patience_s: Seconds to wait for the answer to a call.
+            connect_s: Seconds to wait for the robot in `open`.
+            attention_s: Seconds after the last call during which the robot may still drive.
+        """
+        self._folder = Path(folder)
+        self._host = host
+        self._port = port
+        self._patience_s = patience_s
+        self._connect_s = connect_s
+        self._attention_s = attention_s
+        self._portal: BlockingPortal | None = None
+        self._robot: TeacherClient | None = None
+        self._stack = ExitStack()
+        self._calls = 0
+        self._attentive_until_s = 0.0
+        self._shown: State | None = None
+
+    # Opening and closing
+
+    def open(self) -> Self:
+        """Connect to the robot.
+
+        Raises:
+            CredentialsError: The pairing is missing, damaged, or used by another program.
+            NoAnswerError: No robot answers within `connect_s`.
+        """
+        if self._robot is not None:
+            raise RuntimeError(f"{self._folder}: this Teacher is open already; close it first")
+        with ExitStack() as stack:
+            self._portal = stack.enter_context(start_blocking_portal(name="teacher"))
+            client = TeacherClient(self._folder, self._host, self._port, patience_s=self._patience_s)
+            self._robot = stack.enter_context(self._portal.wrap_async_context_manager(client))
+            stack.callback(self._forget)
+            looking = self._portal.start_task_soon(self._end_attention)
+            stack.callback(looking.cancel)
+            self._call(self._find_robot)
+            self._stack = stack.pop_all()
+        return self
+
+    def close(self) -> None:
+        """End the connection; the robot stands because its teacher is gone. Closing twice does nothing."""
+        self._stack.close()
+
+    def __enter__(self) -> Self:
+        """Connect to the robot, as `open` does."""
+        return self.open()
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """End the connection, as `close` does."""
+        self.close()
+
+    # Looking
+
+    @property
+    def state(self) -> State:
+        """The newest state of the robot, which sends 20 a second."""
+        return self._call(self._newest)
+
+    @property
+    def link(self) -> Link:
+        """Round trip, answered share and states a second."""
+        return self._client.link
+
+    def states(self) -> Iterator[State]:
+        """Yield each state as it comes, without end; a slow reader misses some.
+
+        Raises:
+            NoAnswerError: No state came for `patience_s`.
+        """
+        while True:
+            self._shown = self._call(self._next)
+            yield self._shown
+
+    def wait_until(self, met: Callable[[State], bool], timeout_s: float = 60.0) -> State:
+        """Return the first state for which `met` returns True.
+
+        Raises:
+            TimeoutError: No such state within `timeout_s`.
+            NoAnswerError: No state came for `patience_s`.
+        """
+        ends_s = time.monotonic() + timeout_s
+        state = self.state
+        while not met(state):
+            if time.monotonic() >= ends_s:
+                raise TimeoutError(
+                    f"waited {timeout_s:g} s; the robot's newest state: {state.cause} at tick {state.tick}"
+                )
+            state = next(self.states())
+        return state
+
+    def wait_for_question(self, timeout_s: float = 60.0) -> State:
+        """Return the next state in which an answer lets the robot drive on. Raises as `wait_until` does."""
+        return self.wait_until(lambda state: state.stands.asks and not state.stands.needs_go, timeout_s)
+
+    def hello(self) -> Hello:
+        """Return what the robot is: its task, actions, sensors and size."""
+        return self._call(self._client.hello)
+
+    def world(self) -> World | None:
+        """Return the simulated world; None if the robot is a real one."""
+        return self._call(self._client.world)
+
+    def why(self) -> DecisionFacts | None:
+        """Return what the robot's newest decision rested on; None before its first tick."""
+        return self._call(self._client.why)
+
+    # Being the teacher
+
+    def take(self) -> Answer:
+        """Become the robot's teacher."""
+        return self._call(self._client.take)
+
+    def hand_over(self, to: str | None = None) -> Answer:
+        """Stop being the teacher; `to` names the next one, None: the first one that takes the robot."""
+        return self._call(lambda: self._client.hand_over(to))
+
+    def set_phase(self, phase: Phase) -> Answer:
+        """Choose the training phase."""
+        return self._call(lambda: self._client.set_phase(phase))
+
+    def begin_session(self, name: str) -> Answer:
+        """Start the teaching clock."""
+        return self._call(lambda: self._client.begin_session(name))
+
+    def end_session(self) -> Answer:
+        """Stop the teaching clock."""
+        return self._call(self._client.end_session)
+
+    def save(self, label: str = "") -> Answer:
+        """Copy the knowledge on the robot; `extra` of the answer holds the copy's name and SHA-256."""
+        return self._call(lambda: self._client.save(label))
+
+    # Lessons; `of` is the tick of the state that is meant, None: the present decision
+
+    def answer(self, action: str, *, of: int | None = None, level: str = BASIC) -> Answer:
+        """Answer the robot's question with an action (phase 1), at level MID with a behaviour."""
+        return self._call(lambda: self._client.answer(action, of=of, level=level))
+
+    def correct(self, action: str, *, of: int | None = None, level: str = BASIC) -> Answer:
+        """Tell the robot that another action is right (phase 2), at level MID another behaviour."""
+        return self._call(lambda: self._client.correct(action, of=of, level=level))
+
+    def reward(self, value: int, *, of: int | None = None) -> Answer:
+        """Reward what the robot did (phase 3); `value` is -1 or +1."""
+        return self._call(lambda: self._client.reward(value, of=of))
+
+    def appraise(self, appraisal: str, *, of: int | None = None) -> Answer:
+        """Teach the critic the worth of a situation (phase 4): a name of `Hello.appraisals`."""
+        return self._call(lambda: self._client.appraise(appraisal, of=of))
+
+    def undo(self, lesson: str | None = None) -> Answer:
+        """Take back a lesson by its command id; None: the last one that stands."""
+        return self._call(lambda: self._client.undo(lesson))
+
+    def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:
+        """Return the newest lessons, newest first; `count` is at most 20."""
+        return self._call(lambda: self._client.lessons(count))
+
+    # Moving
+
+    def resume(self) -> Answer:
+        """Let the robot drive on after a stop (the page's Go)."""
+        return self._call(self._client.resume)
+
+    def stop(self) -> Answer:
+        """Stop the robot; always allowed."""
+        return self._call(self._client.stop)
+
+    def pursue(self, behaviour: str) -> Answer:
+        """Choose which of the task's behaviours the robot follows and is taught."""
+        return self._call(lambda: self._client.pursue(behaviour))
+
+    def run(self, action: str, seconds: float) -> Answer:
+        """Start one action of the repertoire for a time; returns at once, and the robot stands afterwards."""
+        return self._call(lambda: self._client.run(action, seconds=seconds))
+
+    def drive(self, left_m_s: float, right_m_s: float, seconds: float) -> str:
+        """Drive by hand for a time, then stop.
+
+        An exception in the calling thread, such as KeyboardInterrupt, ends the drive at once.
+
+        Returns:
+            Why the drive ended before its time, in a sentence; empty if it lasted.
+
+        Raises:
+            WireError: The speeds are out of range.
+        """
+        return self._call(lambda: self._drive(left_m_s, right_m_s, seconds))
+
+    # The simulated world
+
+    def place(self, x_m: float, y_m: float, heading_rad: float) -> Answer:
+        """Put the simulated robot down elsewhere."""
+        return self._call(lambda: self._client.place(x_m, y_m, heading_rad))
+
+    # In the caller's thread
+
+    @property
+    def _client(self) -> TeacherClient:
+        if self._robot is None:
+            raise RuntimeError(
+                "this Teacher is not open; use it as: with Teacher(folder) as teacher: ... (or call open() first)"
+            )
+        return self._robot
+
+    def _forget(self) -> None:
+        self._robot = self._shown = None
+
+    def _call(self, make: Callable[[], Awaitable[_Result]]) -> _Result:
+        client, portal = self._client, self._portal
+        assert portal is not None
+
+        async def attended() -> _Result:
+            self._calls += 1
+            client.watching = True
+            try:
+                return await make()
+            finally:
+                self._calls -= 1
+                self._attentive_until_s = time.monotonic() + self._attention_s
+
+        future = portal.start_task_soon(attended)
+        try:
+            return future.result()
+        except BaseException:
+            future.cancel()  # after KeyboardInterrupt: a drive by hand must not go on in the other thread
+            raise
+
+    # In the loop's thread
+
+    async def _end_attention(self) -> None:
+        while True:
+            await anyio.sleep(_LOOK_S)
+            if not self._calls and time.monotonic() >= self._attentive_until_s:
+                self._client.watching = False
+
+    async def _find_robot(self) -> None:
+        with anyio.move_on_after(self._connect_s):
+            await anext(self._client.states())
+            return
+        why = f" ({self._client.trouble})" if self._client.trouble else ""
+        raise NoAnswerError(
+            f"no robot answers for {self._connect_s:g} s{why}", where=self._folder, do="start one: kurt2rt run"
+        )
+
+    async def _newest(self) -> State:
+        state = self._client.state
+        return state if state is not None and self._client.state_age_s < self._patience_s else await self._next()
+
+    async def _next(self) -> State:
+        with anyio.move_on_after(self._patience_s):
+            async for state in self._client.states():
+                if state is not self._shown:
+                    return state
+        raise NoAnswerError(f"no state of the robot for {self._patience_s:g} s. {self._client.trouble}".strip())
+
+    async def _drive(self, left_m_s: float, right_m_s: float, seconds: float) -> str:
+        async with self._client.driving() as wheel:
+            if not wheel.set(left_m_s, right_m_s):
+                return wheel.ended or self._client.refused
+            ends_s = time.monotonic() + seconds
+            while True:
+                left_s = ends_s - time.monotonic()
+                if wheel.ended or left_s <= 0.0:
+                    return wheel.ended
+                await anyio.sleep(min(left_s, _LOOK_S))

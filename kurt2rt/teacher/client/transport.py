@@ -1,0 +1,229 @@
+"""Protected requests to one robot: everything of aiocoap that a teacher's device needs is in here.
+
+Plain requests with `protect` and `unprotect` around them: aiocoap's own OSCORE client leaks two tasks for each answer
+that is lost, and its number limits end observations.
+"""
+
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import aiocoap
+import anyio.to_thread
+from aiocoap import oscore
+from aiocoap.numbers.constants import TransportTuning
+from aiocoap.pipe import Pipe
+from aiocoap.util import hostportjoin
+
+from kurt2rt.channel.protocol.codec import CONTENT_FORMAT
+from kurt2rt.channel.protocol.schema import ChannelError
+from kurt2rt.channel.security.context_folder import SECRET, CredentialsError
+from kurt2rt.channel.security.oscore_context import OscoreContext
+
+_LOGGER = "kurt2rt.teacher-client"
+_LARGEST_DATAGRAM = 65_536
+"""aiocoap reads 4 kB otherwise; a world with many walls is longer."""
+
+
+class _Loose(TransportTuning):  # type: ignore[misc]  # Any
+    """Sent once: whoever needs an answer sends it again."""
+
+    reliability = False
+
+
+class _Registering(TransportTuning):  # type: ignore[misc]  # Any
+    """Sent three times in 0.4 s and given up after 0.9 s, so before the next registration begins after 1 s.
+
+    aiocoap sends one confirmable message at a time and throws those away that wait for one that is given up.
+    """
+
+    reliability = True
+    ACK_TIMEOUT = 0.13
+    ACK_RANDOM_FACTOR = 1.0
+    MAX_RETRANSMIT = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Response:
+    """What the robot answered; certainly the robot."""
+
+    code: str
+    """Such as "2.04 Changed"."""
+    payload: bytes
+    number: int
+    """Grows with each picture of one observation; -1 where the answer has none of its own."""
+
+    @property
+    def successful(self) -> bool:
+        """Whether the request was carried out."""
+        return self.code.startswith("2.")
+
+
+OnResponse = Callable[[Response], None]
+
+
+class Exchange:
+    """A request that is under way, or an observation that lasts."""
+
+    def __init__(self) -> None:
+        self.ended = False
+        """Nothing more comes of it: answered, failed, or ended."""
+        self._stop: Callable[[], object] | None = None
+
+    def end(self) -> None:
+        """Forget it: what still comes in answer is not for anybody. Ending twice does nothing."""
+        self.ended = True
+        stop, self._stop = self._stop, None
+        if stop is not None:
+            stop()
+
+    def _begin(self, stop: Callable[[], object]) -> None:
+        self._stop = stop
+
+
+class OscoreRequests:
+    """An open socket and the device's side of a pairing. Sending never waits and never raises."""
+
+    def __init__(self, coap: Any, keys: OscoreContext, host: str, port: int, paired_ms: int) -> None:
+        """Use `open_requests`."""
+        self.trouble = ""
+        """Why the robot is not reached, as far as the network tells; empty after each answer of the robot."""
+        self.damaged = 0
+        """Answers that the robot did not make, or that were changed on their way."""
+        self._coap = coap
+        self._keys = keys
+        self._host = host
+        self._port = port
+        self._paired_ms = paired_ms
+        self._robot: Any = None
+
+    @property
+    def next_number(self) -> int:
+        """Grows with each message, also from one run of this program to the next, and when the pairing is renewed.
+
+        That is the pairing's own count, which no clock sets back, from the millisecond of the pairing on.
+        """
+        number: int = self._keys.sender_sequence_number
+        return self._paired_ms + number
+
+    @property
+    def open_exchanges(self) -> int:
+        """Requests and observations that still wait for something."""
+        return len(self._coap.request_interfaces[0].outgoing_requests)
+
+    async def find_robot(self) -> None:
+        """Look its address up, anew each time: it may have got another one. A failure is told by `trouble`."""
+        try:
+            probe = aiocoap.Message(code=aiocoap.GET, uri=f"coap://{hostportjoin(self._host, self._port)}")
+            await self._coap.find_remote_and_interface(probe)
+        except (aiocoap.error.Error, OSError, ValueError) as error:
+            self.trouble = f"{self._host} is not found: {error}"
+        else:
+            self._robot = probe.remote
+
+    def post(self, path: str, payload: bytes, on_response: OnResponse) -> Exchange:
+        """Send a request once; `on_response` is called at most once, from the event loop."""
+        request = aiocoap.Message(code=aiocoap.POST, payload=payload, transport_tuning=_Loose())
+        request.opt.content_format = CONTENT_FORMAT
+        return self._begin(path, request, on_response)
+
+    def observe(self, path: str, on_response: OnResponse) -> Exchange:
+        """Ask for a resource now and whenever it changes, until the exchange ends, or the robot ends it."""
+        request = aiocoap.Message(code=aiocoap.GET, transport_tuning=_Registering())
+        request.opt.observe = 0
+        return self._begin(path, request, on_response)
+
+    async def close(self) -> None:
+        """Close the socket and store the state of the pairing."""
+        await self._coap.shutdown()
+        await anyio.to_thread.run_sync(self._keys.close)
+
+    def _begin(self, path: str, request: Any, on_response: OnResponse) -> Exchange:
+        exchange = Exchange()
+        request.opt.uri_path = tuple(path.strip("/").split("/"))
+        self._send(request, exchange, on_response, prove=True)
+        return exchange
+
+    def _send(self, request: Any, exchange: Exchange, on_response: OnResponse, *, prove: bool) -> None:
+        if self._robot is None:
+            exchange.end()
+            return
+        try:
+            outer, request_id = self._keys.protect(request)
+        except oscore.ContextUnavailable as error:
+            self.trouble = str(error)
+            exchange.end()
+            return
+        outer.remote = self._robot
+        pipe = Pipe(outer, self._coap.log)
+
+        def on_event(event: Any) -> bool:
+            if exchange.ended:
+                return False
+            if event.exception is not None:
+                self.trouble = f"nothing is heard of {self._host}: {event.exception}"
+                exchange.end()
+                return False
+            message = self._unprotected(event.message, request_id)
+            if message is None:
+                if event.is_last:
+                    exchange.end()
+                return not event.is_last
+            self.trouble = ""
+            if prove and message.code == aiocoap.UNAUTHORIZED and message.opt.echo is not None:
+                # The robot was started anew and wants to be sure that this is no replay (RFC 8613, B.1.2).
+                self._send(request.copy(echo=message.opt.echo), exchange, on_response, prove=False)
+                return False
+            if event.is_last:
+                exchange.end()
+            number = -1 if message.opt.observe is None else message.opt.observe
+            on_response(Response(str(message.code), message.payload, number))
+            return not (event.is_last or exchange.ended)
+
+        exchange._begin(pipe.on_event(on_event))
+        self._coap.request_interfaces[0].request(pipe)
+
+    def _unprotected(self, message: Any, request_id: Any) -> Any:
+        try:
+            plain, _ = self._keys.unprotect(message, request_id)
+        except oscore.NotAProtectedMessage:
+            self.damaged += 1
+            if message.code == aiocoap.UNAUTHORIZED:
+                self.trouble = "the robot says that it does not know this device; pair it: kurt2rt pair"
+            return None
+        except Exception:  # noqa: BLE001 - forged bytes make the library raise many things, and none is an answer
+            self.damaged += 1
+            return None
+        return plain
+
+
+async def open_requests(folder: Path, host: str, port: int) -> OscoreRequests:
+    """Open a socket for a device's pairing in `folder`, locked until `close`; the robot need not be there.
+
+    Raises ChannelError, and CredentialsError where it is the pairing.
+    """
+    keys, paired_ms = await anyio.to_thread.run_sync(_open_keys, folder)
+    try:
+        # Not even warnings: on a bad link its own ones come by the hundred, and `trouble` tells.
+        logging.getLogger(_LOGGER).setLevel(logging.CRITICAL)
+        coap = await aiocoap.Context.create_client_context(loggername=_LOGGER, transports=["udp6"])
+        coap.request_interfaces[0].token_interface.message_interface.transport.max_size = _LARGEST_DATAGRAM
+    except OSError as error:
+        keys.close()
+        raise ChannelError(
+            f"no UDP socket can be opened ({error.strerror})", do="switch on IPv6 sockets, which also carry IPv4"
+        ) from error
+    requests = OscoreRequests(coap, keys, host, port, paired_ms)
+    await requests.find_robot()
+    return requests
+
+
+def _open_keys(folder: Path) -> tuple[OscoreContext, int]:
+    keys = OscoreContext(folder)
+    try:
+        return keys, (folder / SECRET).stat().st_mtime_ns // 1_000_000
+    except OSError as error:
+        keys.close()
+        raise CredentialsError(f"cannot be looked at ({error})", where=folder / SECRET) from error

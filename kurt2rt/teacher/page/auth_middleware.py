@@ -1,0 +1,108 @@
+"""The door of the page's server: what comes through without the cookie, and what every answer says about itself."""
+
+import time
+from collections.abc import Callable
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.requests import HTTPConnection
+from starlette.responses import HTMLResponse, PlainTextResponse, Response
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from kurt2rt.teacher.page.access import Access
+from kurt2rt.teacher.page.http_timeouts import shown_cookie
+from kurt2rt.teacher.page.login_throttle import Attempts
+from kurt2rt.teacher.page.public_address import PublicAddress
+
+_LONGEST_COOKIE_S = 90 * 24 * 3600
+
+_SCAN_AGAIN = """<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<title>kurt2rt</title></head>
+<body><h1>Scan the code again</h1>
+<p>This browser is not paired with the robot, or no longer.</p>
+<p>Open the address that <code>{command}</code> shows, or scan its code.</p></body></html>
+"""
+# Not a redirect: a browser that came by a link from elsewhere would follow it without the new SameSite cookie.
+_WELCOME = """<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><meta http-equiv="refresh" content="0;url=/">
+<link rel="icon" href="/icon.svg" type="image/svg+xml">
+<title>kurt2rt</title></head>
+<body><p><a href="/">Go on to the robot</a></p></body></html>
+"""
+
+
+class Door:
+    """In front of everything else. Checks the host, then the pairing, then where a WebSocket comes from."""
+
+    def __init__(self, app: ASGIApp, access: Access, *, now: Callable[[], float] = time.monotonic) -> None:
+        self._app = app
+        self._access = access
+        self._attempts = Attempts()
+        self._now = now
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """ASGI."""
+        if scope["type"] == "lifespan":
+            await self._app(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        send = _with_security_headers(send, headers.get("host", ""), self._access.public)
+        local_address = (scope.get("server") or ("", None))[0]
+        if not self._access.is_for_us(headers, local_address):
+            refusal: Response = PlainTextResponse("this address does not belong to this machine (see --host-name)", 421)
+        elif scope["type"] == "http" and scope["path"] == "/pair":
+            refusal = self._pair(HTTPConnection(scope))
+        elif not self._access.knows(HTTPConnection(scope).cookies):
+            refusal = self._scan_again(403)
+        elif scope["type"] == "websocket" and not self._access.comes_from_us(headers):
+            refusal = PlainTextResponse("opened by a page from elsewhere", 403)
+        else:
+            shown_cookie(scope)
+            await self._app(scope, receive, send)
+            return
+        if scope["type"] == "websocket":
+            await send({"type": "websocket.close", "code": 1008, "reason": ""})
+        else:
+            await refusal(scope, receive, send)
+
+    def _pair(self, request: HTTPConnection) -> Response:
+        address = request.client.host if request.client else ""
+        # Before the tries are counted: others at this address, such as a proxy's, must not lock out the teacher. A
+        # token has 192 random bits, so it cannot be guessed however often a stranger tries.
+        if not self._access.opens(request.query_params.get("token", "")):
+            if not self._attempts.allowed(address, self._now()):
+                return PlainTextResponse("too many wrong tokens from this address; the right one is taken", 429)
+            self._attempts.failed(address, self._now())
+            return self._scan_again(403)
+        response = HTMLResponse(_WELCOME)
+        response.set_cookie(
+            self._access.cookie_name,
+            self._access.cookie,
+            max_age=_LONGEST_COOKIE_S,
+            httponly=True,
+            samesite="strict",
+            secure=self._access.is_public(request.headers),
+        )
+        return response
+
+    def _scan_again(self, status: int) -> Response:
+        return HTMLResponse(_SCAN_AGAIN.format(command=self._access.shown_by), status)
+
+
+def _with_security_headers(send: Send, host: str, public: PublicAddress | None) -> Send:
+    sockets = f"ws://{host}" if public is None else f"ws://{host} wss://{public.place}"
+    policy = f"default-src 'self'; connect-src 'self' {sockets}; frame-ancestors 'none'; base-uri 'none'"
+
+    async def send_on(message: Message) -> None:
+        if message["type"] == "http.response.start":
+            headers = MutableHeaders(scope=message)
+            headers["Content-Security-Policy"] = f"{policy}; form-action 'none'; object-src 'none'"
+            headers["X-Content-Type-Options"] = "nosniff"
+            headers["X-Frame-Options"] = "DENY"
+            headers["Referrer-Policy"] = "no-referrer"
+            headers["Cross-Origin-Opener-Policy"] = "same-origin"
+            headers["Cross-Origin-Resource-Policy"] = "same-origin"
+            headers["Cache-Control"] = "no-cache"
+        await send(message)
+
+    return send_on

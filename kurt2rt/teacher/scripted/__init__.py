@@ -1,0 +1,1 @@
+"""Scripted teachers, for simulated lessons."""

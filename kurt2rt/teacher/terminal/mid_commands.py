@@ -1,0 +1,77 @@
+"""What a person types to the mid level: which way is right, what places are called, where the robot is to go."""
+
+from collections.abc import Awaitable, Sequence
+
+from kurt2rt.channel.protocol.hello import Hello
+from kurt2rt.channel.protocol.state import State
+from kurt2rt.core.rla.rla import MID
+from kurt2rt.teacher.client.answer import Answer
+from kurt2rt.teacher.client.client import TeacherClient
+from kurt2rt.teacher.terminal.terminal_text import asks_way_in
+
+_MOST_DIGITS = 15
+
+
+def way_command(
+    robot: TeacherClient, hello: Hello, words: Sequence[str], state: State | None
+) -> Awaitable[Answer] | None:
+    """The command that a line is; None where it is none to the mid level. `state`: the picture it was typed at."""
+    given = None if hello.mid is None else _lesson(robot, hello, words, state)
+    return _goal(robot, words, state) if given is None and hello.seeks else given
+
+
+def _lesson(robot: TeacherClient, hello: Hello, words: Sequence[str], state: State | None) -> Awaitable[Answer] | None:
+    judged = None if state is None else state.tick
+    match words:
+        case [way] if _means_way(way, hello, state):
+            if state is None or state.mid is None or asks_way_in(state.mid):
+                return robot.answer(way, of=judged, level=MID)
+            return robot.correct(way, of=judged, level=MID)
+        case ["also", way]:
+            return robot.answer(way, of=judged, level=MID, beside=True)
+    return None
+
+
+def _goal(robot: TeacherClient, words: Sequence[str], state: State | None) -> Awaitable[Answer] | None:
+    match words:
+        case ["name", *name] if name:
+            return robot.name_situation(" ".join(name), of=None if state is None else state.tick)
+        case ["here", *name] if name:
+            return robot.be_at(" ".join(name))
+        case ["seek"]:
+            return robot.stop_seeking()
+        case ["seek", "rla", rla_id] if rla_id.isdecimal() and len(rla_id) <= _MOST_DIGITS:
+            return robot.seek_rla(int(rla_id))
+        case ["seek", *goal]:
+            like = _features_in(goal)
+            return robot.seek(" ".join(goal)) if like is None else robot.seek_like(*like)
+    return None
+
+
+def _means_way(name: str, hello: Hello, state: State | None) -> bool:
+    """Whether a name means the taught behaviour; where an action has the same one, only while the mid level asks."""
+    if name not in hello.behaviours:
+        return False
+    return name not in hello.actions or (state is not None and state.asks_at == MID)
+
+
+def _features_in(words: Sequence[str]) -> tuple[dict[str, float], float] | None:
+    """Features and tolerance of a goal: x_m=1.8 wall_left=1 within 0.2; None for anything else."""
+    tolerance = None
+    if len(words) > 2 and words[-2] == "within":
+        words, tolerance = words[:-2], _number_in(words[-1])
+        if tolerance is None:
+            return None
+    features: dict[str, float] = {}
+    for word in words:
+        name, equals, value = word.partition("=")
+        number = _number_in(value)
+        if not name or not equals or number is None:
+            return None
+        features[name] = number
+    return (features, tolerance or 0.0) if features else None
+
+
+def _number_in(text: str) -> float | None:
+    plain = text.removeprefix("-").replace(".", "", 1)
+    return float(text) if plain.isdecimal() and len(text) <= _MOST_DIGITS else None

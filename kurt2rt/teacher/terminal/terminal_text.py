@@ -1,0 +1,190 @@
+"""What the terminal tells its teacher, in words."""
+
+import math
+from collections.abc import Sequence
+
+from kurt2rt.channel.protocol.hello import AppraisalName, Hello, MidIntroduction
+from kurt2rt.channel.protocol.lesson_list import LessonLine
+from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
+from kurt2rt.core.critic.state import Role
+from kurt2rt.core.decision.standing import StandReason
+from kurt2rt.core.decision.standing_text import GO_IN_TERMINAL, headline_of, what_it_asks
+from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
+from kurt2rt.core.rla.rla import ASK, MID, rla_title
+from kurt2rt.core.teaching.question import FeatureDifference, Question, WayQuestion
+
+HISTORY = "history"
+LOUD_FROM = 4.0
+"""Times the usual distance; the page's mark is loud from there on."""
+
+_HELP = """\
+an action                answers the robot's question, or corrects what it does
+(just Enter), stop       the robot stands until you type go; at once, whatever waits for its answer
+go                       the robot drives where it knows the way
+step ACTION [SECONDS]    one action for half a second, or as long as you say; teaches nothing
++, -                     reward or punish what the robot does
+undo [LESSON], lessons   take the last lesson back, or the one of that id; show the last ten
+replace N ACTION, delete N     change or end RLA N
+phase 1 to 5             supervised, corrections, reinforcement, critic, autonomous
+begin [NAME], end        a session of teaching, with its clock
+save [LABEL], export     a copy of the knowledge, or a table of it, on the robot
+health                   how late its ticks are, its sensors, bus and disk, what is wrong and what to do
+take, release            be the teacher, or let another one be it
+help, quit"""
+_PURSUE_HELP = "pursue NAME              follow another taught behaviour; lessons are about the one that is followed"
+_CRITIC_HELP = """\
+an appraisal             teaches the critic what this situation is worth (phase 4)
+critic                   what the critic thinks, how well it agrees with you, what it changed last"""
+
+_MID_HELP = """\
+a behaviour              answers which way is right here, or corrects the mid level
+also NAME                this behaviour is possible here, too
+pursue NAME              only this once, until it has finished; teaches nothing
+way                      what the mid level wants, why, and what it has come by"""
+_GOAL_HELP = """\
+name NAME, places        give the mid level's situation a name; show those that have one
+seek NAME, seek rla N    go there, by what was taught; seek FEATURE=VALUE ... [within T] for any such place
+seek, here NAME          seek nothing any more; the robot was set down there"""
+
+
+def help_lines(hello: Hello) -> tuple[str, ...]:
+    """What can be typed."""
+    more = [_CRITIC_HELP] if hello.appraisals else []
+    if hello.mid is not None:
+        more.append(_MID_HELP)
+    elif len(hello.behaviours) > 1:
+        more.append(_PURSUE_HELP)
+    more += [_GOAL_HELP] if hello.seeks else []
+    return (_HELP, *more, *name_lines(hello))
+
+
+def name_lines(hello: Hello) -> tuple[str, ...]:
+    """Names that this robot knows."""
+    lines = [f"actions: {', '.join(hello.actions)}"]
+    if hello.appraisals:
+        lines.append(f"appraisals: {', '.join(each.name for each in hello.appraisals)}")
+    if len(hello.behaviours) > 1:
+        lines.append(f"taught behaviours: {', '.join(hello.behaviours)}")
+    return tuple(lines)
+
+
+def question_in(state: State, words: SensorWords = NO_WORDS) -> Question | WayQuestion:
+    """Return the question that a picture shows, in the robot's `words` for its sensors."""
+    if state.asks_at == MID and state.mid is not None:
+        mid = state.mid
+        came_by = tuple(word for word in mid.here if word)
+        return WayQuestion(mid.nearest, mid.nearest_behaviour, mid.distance, mid.radius, came_by)
+    differing = tuple(FeatureDifference(each.name, each.here, each.in_condition) for each in state.question)
+    return Question(
+        state.nearest,
+        state.nearest_action,
+        state.distance,
+        state.radius,
+        differing,
+        state.behaviour,
+        words,
+        state.nearest_value,
+        what_it_asks(state.stands),
+    )
+
+
+def asks_in(state: State) -> bool:
+    """Whether an action that is typed at this picture is an answer: there is nothing near that it could correct."""
+    if state.asks_at == MID:
+        return False  # nearest is of the mid level; a correction is right however near the basic one's are
+    return state.nearest is None or state.nearest_action == ASK or state.distance > state.radius
+
+
+def asks_way_in(mid: MidState) -> bool:
+    """Whether a behaviour that is typed at this picture is an answer to the mid level, and no correction."""
+    return mid.nearest is None or mid.nearest_behaviour == ASK or mid.distance > mid.radius
+
+
+def way_in(state: State, introduced: MidIntroduction) -> str:
+    """What the mid level wants, and why; empty while it asks, or where there is none."""
+    mid = state.mid
+    if mid is None or mid.asks:
+        return ""
+    if mid.overridden:
+        return f"{mid.behaviour}, because a teacher said so, until it has finished"
+    if mid.rla is None:
+        return f"{mid.behaviour}; the mid level has not said anything yet"
+    if introduced.kind == HISTORY:
+        off = f"{mid.distance:.0f} of {introduced.length} differ, R {mid.radius:.0f}"
+    else:
+        off = f"{mid.distance:.2f} off, R {mid.radius:.2f}"
+    leads = f"it leads to {state.goal}, " if state.goal and state.plan else ""
+    return f"{mid.behaviour} because {leads}{rla_title(mid.rla, '', MID)}: {off}"
+
+
+def came_by_in(mid: MidState, introduced: MidIntroduction) -> str:
+    """What the mid level has come by, the newest first, or where it is; and what the nearest RLA knows beside it."""
+    is_at = "came by" if introduced.kind == HISTORY else "is at"
+    here = ", ".join(word for word in mid.here if word) or "nothing yet"
+    if mid.nearest is None:
+        return f"{is_at} {here}"
+    there = ", ".join(word for word in mid.there if word) or "nothing yet"
+    return f"{is_at} {here}; {rla_title(mid.nearest, '', MID)} knows {there}"
+
+
+def surprise_in(surprise: SurpriseState) -> str:
+    """What surprised the robot."""
+    after, came = (rla_title(each, "", surprise.level) for each in (surprise.rla, surprise.follow_up))
+    new = ", which had never followed it" if surprise.new else ""
+    return f"surprise: {surprise.times:.1f} times as far off as usual after {after}; {came} took over{new}"
+
+
+def is_worth_saying(surprise: SurpriseState) -> bool:
+    """Of the basic level, whose RLAs end many times a second, only what is far off."""
+    return surprise.level == MID or surprise.times >= LOUD_FROM
+
+
+def sentence_of(state: State) -> str:
+    """What the robot does and why, without what changes all the time."""
+    stands = state.stands
+    if stands.reason is not StandReason.DRIVES:
+        return headline_of(stands, GO_IN_TERMINAL) + (f"; {state.trouble}" if state.trouble else "")
+    if state.action is not None:
+        if state.rla is None:
+            return f"{state.action}, by {state.teacher}"
+        return f"{state.action} by {rla_title(state.rla, state.behaviour)}"
+    return ""
+
+
+def opinion_in(state: State, appraisals: Sequence[AppraisalName]) -> str:
+    """What the critic thinks of a picture, and whether it may be believed."""
+    name = next((each.name for each in appraisals if each.value == state.opinion), None)
+    thinks = "does not know this situation" if name is None else f"thinks {name}"
+    return f"critic: {thinks} · {trust_in(state)}"
+
+
+def trust_in(state: State) -> str:
+    """How well the critic agrees with its teacher."""
+    if state.agreement is None:
+        bad, good = state.signals_missing
+        missing = " and ".join(f"{count} {of}" for count, of in ((bad, "bad"), (good, "good")) if count)
+        return f"needs {missing or 'a few'} signals more of yours (not trusted)"
+    share = math.floor(state.agreement * 100) / 100  # not rounded up to the bound that it misses
+    trusted = "trusted" if state.trusted else "not trusted"
+    return f"agrees with you {share:.2f} ({'; '.join(part for part in (trusted, role_in(state)) if part)})"
+
+
+def role_in(state: State) -> str:
+    """What a critic does that is alone with the robot; empty while it only listens."""
+    match state.role:
+        case Role.LISTENS:
+            return ""
+        case Role.MEASURES:
+            return "measures how well it goes"
+        case Role.NOT_NEEDED:
+            percent = math.floor((state.bad_share or 0.0) * 100)  # not rounded up to what it would be needed for
+            return f"not needed: {percent} % of the driving was bad"
+        case other:
+            return other
+
+
+def change_in(lesson: LessonLine | None) -> str:
+    """What the critic changed last."""
+    if lesson is None:
+        return "critic: changed nothing lately"
+    return f"critic: changed last: {lesson.text}{', undone' if lesson.undone else ''}"

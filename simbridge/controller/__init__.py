@@ -1,0 +1,1 @@
+"""Simulated micro-controller: frames on the bus, motor commands, watchdog."""

@@ -1,0 +1,1 @@
+"""Simulated robot: body, wheels, sensors, bumpers."""

@@ -1,0 +1,99 @@
+"""World of a simulation for a teacher who sees and changes it from above (hal.simulation.SimulatedWorld)."""
+
+import shapely
+
+from hal.robot_settings import GeometrySettings
+from hal.simulation import Pose, Post, SimulatedPlace, Street, Wall, WorldPlan
+from simbridge.realtime import RealtimeSimulation
+from simbridge.simulated_robot import SimulatedRobot
+from simbridge.worlds.geometry import rectangle
+from simbridge.worlds.world_settings import WorldSettings
+
+
+def plan_of(world: WorldSettings, version: int = 0) -> WorldPlan:
+    """Return a world from above; `version`: number of changes since the run began."""
+    walls = [Wall(each.name, each.corners) for each in world.walls]
+    walls += [Wall(each.name, each.corners) for each in world.polygon_obstacles]
+    return WorldPlan(
+        version=version,
+        name=world.name,
+        size_m=world.size_m,
+        outline=world.outline,
+        walls=tuple(walls),
+        posts=tuple(Post(each.name, each.x_m, each.y_m, each.radius_m) for each in world.round_obstacles),
+        streets=tuple(Street(each.from_m, each.to_m, each.width_m) for each in world.streets),
+        junctions=tuple(world.junctions),
+    )
+
+
+class Kurt2World:
+    """Reads what the simulation's thread writes, and hands changes to that thread."""
+
+    def __init__(
+        self, robot: SimulatedRobot, world: WorldSettings, geometry: GeometrySettings, simulation: RealtimeSimulation
+    ) -> None:
+        self._robot = robot
+        self._world = world
+        self._geometry = geometry
+        self._simulation = simulation
+        self._version = 0
+        self._start = robot.pose
+
+    @property
+    def held_world(self) -> RealtimeSimulation:
+        """The simulation, for a clock that steps it."""
+        return self._simulation
+
+    @property
+    def lives(self) -> bool:
+        """Whether the simulation goes on."""
+        return self._simulation.error is None
+
+    def place(self) -> SimulatedPlace:
+        """Where the robot is."""
+        pose = self._robot.pose
+        return SimulatedPlace(
+            pose.x_m, pose.y_m, pose.heading_rad, self._robot.laps, self._robot.collisions, self._version
+        )
+
+    def world(self) -> WorldPlan:
+        """The world as it is as soon as the simulation has taken its next step."""
+        return plan_of(self._world, self._version)
+
+    def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
+        """Shift a wall or obstacle; not onto the robot. Raises ValueError."""
+        try:
+            world = self._world.moved(name, dx_m, dy_m)
+        except KeyError as error:
+            raise ValueError(error.args[0]) from error
+        if self._stands_on_robot(world, name):
+            raise ValueError(f"{name} would stand where the robot is")
+        self._world = world
+        self._version += 1
+        self._simulation.submit(lambda: self._robot.world.move_wall(name, dx_m, dy_m))
+
+    def put_robot(self, x_m: float, y_m: float, heading_rad: float) -> None:
+        """Put the robot down elsewhere, wheels still. Raises ValueError."""
+        pose = Pose(x_m, y_m, heading_rad)
+        if self._world.clearance_m(pose, self._geometry) == 0.0:
+            raise ValueError("there is no room for the robot there")
+        self._simulation.submit(lambda: self._robot.place(pose))
+
+    def put_robot_back(self) -> None:
+        """Put the robot down where the run began, wheels still. Raises ValueError."""
+        if self._world.clearance_m(self._start, self._geometry) == 0.0:
+            raise ValueError("a wall stands where the run began; move it")
+        self._simulation.submit(lambda: self._robot.place(self._start))
+
+    def _stands_on_robot(self, world: WorldSettings, name: str) -> bool:
+        # Only this one: a robot that leans against another wall must not nail down all of them.
+        pose, geometry = self._robot.pose, self._geometry
+        body = shapely.Polygon(
+            rectangle((pose.x_m, pose.y_m), geometry.outline_length_m, geometry.outline_width_m, pose.heading_rad)
+        )
+        corners = [each.corners for each in world.walls if each.name == name]
+        corners += [each.corners for each in world.polygon_obstacles if each.name == name]
+        posts = [each for each in world.round_obstacles if each.name == name]
+        return any(body.intersects(shapely.Polygon(each)) for each in corners) or any(
+            body.distance(shapely.Point(each.x_m, each.y_m)) <= each.radius_m for each in posts
+        )

@@ -1,0 +1,204 @@
+"""The simulated half of the composition root: robot, world and bus, put together for experiments and for a run."""
+
+import random
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from hal.guard_reason import GuardReason
+from hal.kurt2 import Kurt2
+from hal.robot_settings import RobotSettings
+from hal.simulation import Pose, Position, WorldPlan
+from hal.tap import Tap
+from simbridge.realtime import RealtimeSimulation
+from simbridge.simulated_robot import SimulatedRobot
+from simbridge.simulated_world import Kurt2World, plan_of
+from simbridge.stall_tolerant_kurt2 import StallTolerantKurt2
+from simbridge.survey.clearance import Clearance
+from simbridge.survey.drawing import draw_robot, draw_world
+from simbridge.survey.free_poses import FreePoses
+from simbridge.wire.line import NO_WIRE, open_line, require_wire
+from simbridge.worlds.world_loading import load_world
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class Kurt2Simulation:
+    """The simulated KURT2 in one world, on a CAN bus of its own (hal.simulation.Simulation)."""
+
+    def __init__(
+        self,
+        settings: RobotSettings,
+        world: str,
+        seed: int,
+        purpose: str,
+        wire: str = NO_WIRE,
+        driver: type[Kurt2] = Kurt2,
+    ) -> None:
+        """`seed` makes the robot, with the spread of its sensors; together with `purpose` it makes start and noise.
+
+        `wire`: by name (config/wires) or path, or `none`: the bus takes no time and loses nothing.
+        `driver`: drives the simulated robot over its bus.
+        """
+        self._world = load_world(world, settings)
+        self._cycle_s = settings.can.cycle_s
+        chance = random.Random(f"{purpose} in world {world}, seed {seed}")
+        noise_seed = chance.getrandbits(32)
+        self._line = open_line(wire, self._cycle_s, noise_seed)
+        self.simulated_robot = SimulatedRobot(settings, self._world, self._line.robot_end, noise_seed, robot_seed=seed)
+        self.robot = driver(settings, self._line.notebook_end)
+        self._settings = settings
+        self._starts = [start.pose for start in self._world.start_poses]
+        self.simulated_robot.place(chance.choice(self._starts))
+
+    @property
+    def position(self) -> Position:
+        """True position."""
+        pose = self.simulated_robot.pose
+        return Position(pose.x_m, pose.y_m)
+
+    @property
+    def pose(self) -> Pose:
+        """True pose."""
+        return self.simulated_robot.pose
+
+    @property
+    def plan(self) -> WorldPlan:
+        """What a course may go by, with walls where they stand now."""
+        return plan_of(self.simulated_robot.world.settings)
+
+    # Surveys of the whole world, which a run on a large map never asks for.
+    @cached_property
+    def _nearest(self) -> Clearance:
+        return Clearance(self.simulated_robot.world)
+
+    @cached_property
+    def _free(self) -> FreePoses:
+        return FreePoses(self.simulated_robot.world, self._settings)
+
+    @property
+    def nearest_m(self) -> float:
+        """From the robot's centre to the nearest wall or obstacle."""
+        pose = self.simulated_robot.pose
+        return self._nearest.distance_m((pose.x_m, pose.y_m))
+
+    @property
+    def collisions(self) -> int:
+        """Contacts so far."""
+        return self.simulated_robot.collisions
+
+    @property
+    def touching(self) -> bool:
+        """Whether the robot touches something now."""
+        return self.simulated_robot.touching
+
+    @property
+    def laps(self) -> float:
+        """Progress along walls, in laps."""
+        return self.simulated_robot.laps
+
+    @property
+    def lap_m(self) -> float:
+        """Length of a lap."""
+        return self.simulated_robot.lap_m
+
+    def step(self) -> None:
+        """One cycle of 10 ms."""
+        self._line.cycle(self.simulated_robot.step)
+
+    def look_on(self, tap: Tap | None) -> None:
+        """Somebody who sees what passes the notebook's end of the bus; None: nobody."""
+        self._line.notebook_end.tap = tap
+
+    def rescue(self) -> None:
+        """Set the robot down at the nearest start pose."""
+        here = self.simulated_robot.pose
+
+        def squared_distance(pose: Pose) -> float:
+            return (pose.x_m - here.x_m) ** 2 + (pose.y_m - here.y_m) ** 2
+
+        self.simulated_robot.place(min(self._starts, key=squared_distance))
+
+    def reposition(self, chance: random.Random, *, in_sight: bool, close: bool = False) -> None:
+        """Set the robot down elsewhere."""
+        self.simulated_robot.place(self._free.draw(chance, close=close) if in_sight else chance.choice(self._starts))
+
+    def put(self, pose: Pose) -> None:
+        """Set the robot down here."""
+        self.simulated_robot.place(pose)
+
+    @contextmanager
+    def live(self) -> Iterator[RealtimeSimulation]:
+        """Let the world go on by itself, in a thread and in real time, with the robot's second guard awake."""
+        with (
+            self._line.live(),
+            RealtimeSimulation(self.simulated_robot, self._cycle_s) as realtime,
+            self.robot.watchdog,
+        ):
+            yield realtime
+
+    def close(self) -> None:
+        """Stop the robot and shut both ends of the bus."""
+        self.robot.close()
+        self._line.robot_end.shutdown()
+
+
+@dataclass(frozen=True, slots=True)
+class Kurt2SimulationFactory:
+    """Opens simulated simulations (hal.simulation.SimulationFactory); can be sent to another process."""
+
+    settings: RobotSettings
+    wire: str = NO_WIRE
+
+    def open(self, world: str, seed: int, purpose: str) -> Kurt2Simulation:
+        """The simulated robot in a world."""
+        return Kurt2Simulation(self.settings, world, seed, purpose, self.wire)
+
+    def require_worlds(self, *worlds: str) -> None:
+        """Look at the wire and each world, so that a long job does not fail at its last one. Raises SettingsError."""
+        require_wire(self.wire)
+        for world in worlds:
+            load_world(world, self.settings)
+
+    def plan_of(self, world: str) -> WorldPlan:
+        """What stands where in a world, and where its streets lead."""
+        return plan_of(load_world(world, self.settings))
+
+    def draw(self, axes: "Axes", world: str) -> None:
+        """Draw a world from above."""
+        draw_world(axes, load_world(world, self.settings))
+
+    def draw_robot(self, axes: "Axes", world: str) -> None:
+        """Draw the robot at the first start pose of a world."""
+        draw_robot(axes, load_world(world, self.settings).start_poses[0].pose, self.settings)
+
+    def settings_of(self, world: str) -> str:
+        """All that a world is made of, and the wire."""
+        return f"{self.wire} {load_world(world, self.settings).model_dump_json(serialize_as_any=True)}"
+
+
+@contextmanager
+def simulated_robot(
+    settings: RobotSettings, world: str, seed: int, wire: str = NO_WIRE, tap: Tap | None = None
+) -> Iterator[tuple[Kurt2Simulation, Kurt2World]]:
+    """Yield a simulation that runs in real time, its second guard awake, and its world for a teacher.
+
+    A stall of this program does not keep the robot stopped: its wheels stalled with it.
+
+    `tap` looks on at the notebook's end of its bus. Raises SettingsError, and on leaving whatever ended the simulation.
+    """
+    simulation = Kurt2Simulation(settings, world, seed, "run", wire, StallTolerantKurt2)
+    simulation.look_on(tap)
+    try:
+        with simulation.live() as realtime:
+            yield (
+                simulation,
+                Kurt2World(simulation.simulated_robot, load_world(world, settings), settings.geometry, realtime),
+            )
+            # While the simulation still runs, so that the last frame finds a listener.
+            simulation.robot.emergency_stop(GuardReason.RUN_OVER)
+    finally:
+        simulation.close()

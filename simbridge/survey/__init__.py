@@ -1,0 +1,1 @@
+"""Measures of a simulated world: free poses, clearances, laps, drawings."""

@@ -1,0 +1,78 @@
+"""Drawing of worlds, robots and trajectories on the caller's axes."""
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from hal.robot_settings import RobotSettings
+from hal.simulation import Pose
+from simbridge.worlds.geometry import Point, rectangle
+from simbridge.worlds.world_settings import WorldSettings
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_WALL = "#d5d5d5"
+_WALL_EDGE = "#9a9a9a"
+_ROBOT = "#2f6db3"
+_TEXT = "#222222"
+_TEXT_SIZE = 11.0
+_MARGIN_M = 0.15
+_MOST_TICKS = 10
+
+
+def draw_world(axes: "Axes", world: WorldSettings) -> None:
+    """Draw walls and obstacles to scale in metres, seen from above."""
+    # Imported here: driving a simulated robot needs no matplotlib.
+    from matplotlib.patches import Circle, Polygon
+
+    width_m, height_m = world.size_m
+    axes.set_xlim(-_MARGIN_M, width_m + _MARGIN_M)
+    axes.set_ylim(-_MARGIN_M, height_m + _MARGIN_M)
+    axes.set_aspect("equal")
+    axes.set_facecolor(_WALL)
+    outline = axes.add_patch(
+        Polygon(world.outline, closed=True, facecolor="white", edgecolor=_WALL_EDGE, linewidth=1.0, zorder=0)
+    )
+    for corners in world.solids:
+        solid = axes.add_patch(
+            Polygon(corners, closed=True, facecolor=_WALL, edgecolor=_WALL_EDGE, linewidth=1.0, zorder=1)
+        )
+        solid.set_clip_path(outline)  # many walls start inside the wall they lean on
+    for post in world.round_obstacles:
+        axes.add_patch(
+            Circle((post.x_m, post.y_m), post.radius_m, facecolor=_WALL, edgecolor=_WALL_EDGE, linewidth=1.0, zorder=1)
+        )
+    step_m = next(step_m for step_m in (1, 2, 5, 10, 20, 50) if max(width_m, height_m) <= _MOST_TICKS * step_m)
+    axes.set_xticks(range(0, math.floor(width_m) + 1, step_m))
+    axes.set_yticks(range(0, math.floor(height_m) + 1, step_m))
+    axes.tick_params(length=0, labelsize=_TEXT_SIZE, colors=_TEXT)
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+    axes.set_xlabel("x in m", fontsize=_TEXT_SIZE, color=_TEXT)
+    axes.set_ylabel("y in m", fontsize=_TEXT_SIZE, color=_TEXT)
+
+
+def draw_robot(axes: "Axes", pose: Pose, robot: RobotSettings, colour: str = _ROBOT) -> None:
+    """Draw the body to scale in metres, with a wedge that points ahead."""
+    from matplotlib.patches import Polygon
+
+    length_m, width_m = robot.geometry.outline_length_m, robot.geometry.outline_width_m
+    centre = (pose.x_m, pose.y_m)
+    body = rectangle(centre, length_m, width_m, pose.heading_rad)
+    axes.add_patch(Polygon(body, closed=True, facecolor=colour, edgecolor=colour, alpha=0.25, zorder=3))
+    axes.add_patch(Polygon(body, closed=True, fill=False, edgecolor=colour, linewidth=1.0, zorder=3))
+    cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
+
+    def at(ahead_m: float, left_m: float) -> Point:
+        return pose.x_m + ahead_m * cos - left_m * sin, pose.y_m + ahead_m * sin + left_m * cos
+
+    wedge = (at(length_m * 0.42, 0.0), at(length_m * 0.12, width_m * 0.25), at(length_m * 0.12, -width_m * 0.25))
+    axes.add_patch(Polygon(wedge, closed=True, facecolor=colour, linewidth=0.0, zorder=4))
+
+
+def draw_trail(axes: "Axes", points: Sequence[Point], colour: str = _ROBOT) -> None:
+    """Draw a trajectory of (x, y) points in metres."""
+    axes.plot(
+        [x for x, _ in points], [y for _, y in points], color=colour, linewidth=1.2, solid_joinstyle="round", zorder=2
+    )

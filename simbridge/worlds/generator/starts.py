@@ -1,0 +1,50 @@
+"""Start poses with the wall on the left."""
+
+import math
+from collections.abc import Iterator
+
+import shapely
+
+from simbridge.worlds.generator.drivable import TURNING_M
+from simbridge.worlds.generator.seeded_random import SeededRandom
+from simbridge.worlds.geometry import Edge, edges_of
+from simbridge.worlds.world_settings import StartPoseSettings
+
+_HALF_SEEN_M = 0.24
+"""Half of the wall segment seen by the four sensors of a side, 0.14 m, and its corners."""
+_FARTHEST_M = 0.43
+"""Distance from the wall to the robot's centre; its sensors are 0.165 m nearer."""
+_APART_M = 0.45
+
+
+def starts_along_walls(room: shapely.Polygon, rng: SeededRandom) -> tuple[StartPoseSettings, ...]:
+    """Return clockwise poses along the outer wall with room to turn; none if no wall is long enough."""
+    clear = room.buffer(-TURNING_M)
+    starts: list[StartPoseSettings] = []
+    for a, b in _clockwise(room):
+        length_m = math.dist(a, b)
+        along_m = _HALF_SEEN_M + rng.length_m(0.0, 0.2)
+        while along_m <= length_m - _HALF_SEEN_M:
+            start = _start(a, b, along_m / length_m, rng.length_m(TURNING_M + 0.01, _FARTHEST_M))
+            at = shapely.Point(start.x_m, start.y_m)
+            near = any(math.dist((start.x_m, start.y_m), (each.x_m, each.y_m)) < _APART_M for each in starts)
+            if clear.contains(at) and not near:
+                starts.append(start)
+            along_m += _APART_M + rng.length_m(0.0, 0.5)
+    return tuple(starts)
+
+
+def _clockwise(room: shapely.Polygon) -> Iterator[Edge]:
+    # Without the corners that lie on a straight line, where a wall stands against another.
+    ring = shapely.normalize(shapely.Polygon(room.exterior).simplify(0.001))  # normal is clockwise
+    yield from edges_of([(float(x), float(y)) for x, y in shapely.get_coordinates(ring)[:-1]])
+
+
+def _start(a: tuple[float, float], b: tuple[float, float], share: float, away_m: float) -> StartPoseSettings:
+    heading_rad = math.atan2(b[1] - a[1], b[0] - a[0])
+    # Clockwise round the room, its inside lies on the right.
+    return StartPoseSettings(
+        x_m=round(a[0] + share * (b[0] - a[0]) + away_m * math.sin(heading_rad), 3),
+        y_m=round(a[1] + share * (b[1] - a[1]) - away_m * math.cos(heading_rad), 3),
+        heading_deg=round(math.degrees(heading_rad), 1),
+    )

@@ -1,0 +1,146 @@
+"""Worlds from maps: the room of the start poses, with its islands as obstacles."""
+
+import math
+from pathlib import Path
+from typing import Literal
+
+import shapely
+from pydantic import ValidationError
+from shapely.affinity import scale, translate
+
+from hal.robot_settings import GeometrySettings
+from hal.settings import SettingsError, load_settings
+from hal.simulation import Pose
+from simbridge.worlds.map_server.occupancy import drivable_cells
+from simbridge.worlds.map_server.settings import MapSettings, MapWorldSettings, image_error
+from simbridge.worlds.map_server.starts import starts_beside_walls, turning_places
+from simbridge.worlds.map_server.tracing import TooRaggedError, trace
+from simbridge.worlds.obstacle_settings import PolygonObstacleSettings
+from simbridge.worlds.world_settings import StartPoseSettings, WorldSettings
+
+MOST_WALLS = 5000
+_MOST_M = 200.0
+_THIN_M = 0.09
+"""Gap between two side sensors; with one ray per sensor the legs of a chair would often be missed."""
+_SLIP_M = 0.06
+"""Extra room for turning."""
+_SHRINK = "clean the map of specks, or crop it to the robot's area"
+
+
+def world_from_map(source: Path, geometry: GeometrySettings) -> WorldSettings:
+    """Return the world of a map, with start poses next to a wall on the left.
+
+    Raises SettingsError that names file and key.
+    """
+    floors = _floors(source, load_settings(source, MapSettings))
+    # Few floors have room for a robot; the largest come first, until no other one can have more room.
+    turning_m = math.hypot(geometry.outline_length_m, geometry.outline_width_m) / 2 + _SLIP_M
+    best: tuple[float, shapely.Polygon, shapely.Polygon] | None = None
+    searched_walls = 0
+    for floor in floors:
+        if best is not None and floor.area <= best[0]:
+            break
+        # Checked before the search for room, which takes half a minute for 30 000 pieces of specks.
+        walls = _walls_of(floor)
+        if best is not None and searched_walls + walls > MOST_WALLS:
+            continue
+        _require_few_walls(source, searched_walls + walls)
+        places = turning_places(floor, turning_m)
+        if places is None:
+            searched_walls += walls
+        elif best is None or places.area > best[0]:
+            best = places.area, floor, places
+    if best is None:
+        raise image_error(
+            source,
+            f"no free space for the robot, which needs {2 * turning_m:.2f} m to turn",
+            "check resolution, negate, the thresholds and mode",
+        )
+    return _world(source, best[1], starts_beside_walls(best[1], best[2]), _rays_for(best[1]))
+
+
+def world_on_map(source: Path) -> WorldSettings:
+    """Return the world of a file with a map and start poses in the map's frame. Raises SettingsError."""
+    chosen = load_settings(source, MapWorldSettings)
+    map_source = source.parent / chosen.map
+    if not map_source.is_file():
+        raise SettingsError(f"map: {map_source} does not exist", where=source, do="give a path relative to this file")
+    settings = load_settings(map_source, MapSettings)
+    starts = [_on_grid(start.pose, settings) for start in chosen.start_poses]
+    first = shapely.Point(starts[0].x_m, starts[0].y_m)
+    floor = min(_floors(map_source, settings), key=lambda each: float(each.distance(first)), default=None)
+    if floor is None:
+        raise image_error(map_source, "no cell is free", "check negate and the thresholds")
+    _require_few_walls(map_source, _walls_of(floor))
+    return _world(source, floor, starts, chosen.infrared_rays or _rays_for(floor))
+
+
+def _floors(source: Path, settings: MapSettings) -> list[shapely.Polygon]:
+    """Return the free areas in m from the lower left corner of the image, the largest first."""
+    try:
+        cells = trace(drivable_cells(source, settings))
+    except TooRaggedError as error:
+        raise image_error(source, str(error), f"{_SHRINK}; check the thresholds") from error
+    floors = [scale(each, settings.resolution, settings.resolution, origin=(0, 0)) for each in cells]
+    return sorted(floors, key=lambda each: float(each.area), reverse=True)
+
+
+def _walls_of(floor: shapely.Polygon) -> int:
+    return len(shapely.get_coordinates(floor)) - 1 - len(floor.interiors)
+
+
+def _require_few_walls(source: Path, walls: int) -> None:
+    if walls > MOST_WALLS:
+        raise image_error(source, f"too many pieces of walls (got {walls}, allowed {MOST_WALLS})", _SHRINK)
+
+
+def _on_grid(start: Pose, settings: MapSettings) -> Pose:
+    """Return the pose relative to the lower left corner of the image, along its edges."""
+    x_m, y_m, turned_rad = settings.origin
+    dx, dy = start.x_m - x_m, start.y_m - y_m
+    cos, sin = math.cos(turned_rad), math.sin(turned_rad)
+    return Pose(dx * cos + dy * sin, dy * cos - dx * sin, start.heading_rad - turned_rad)
+
+
+def _world(source: Path, floor: shapely.Polygon, starts: list[Pose], infrared_rays: Literal[1, 3]) -> WorldSettings:
+    west_m, south_m, east_m, north_m = floor.bounds
+    width_m, height_m = east_m - west_m, north_m - south_m
+    if max(width_m, height_m) > _MOST_M:
+        raise SettingsError(
+            f"the free space is too large (got {width_m:.0f} m x {height_m:.0f} m, allowed {_MOST_M:.0f} m)",
+            where=f"{source}: resolution",
+            do="crop the map to the robot's area",
+        )
+    shifted = translate(floor, -west_m, -south_m)
+    try:
+        return WorldSettings(
+            name=source.stem,
+            size_m=(width_m, height_m),
+            infrared_rays=infrared_rays,
+            outline=_corners(shifted.exterior),
+            polygon_obstacles=tuple(
+                PolygonObstacleSettings(name=f"island-{i}", corners=_corners(ring)[:-1])
+                for i, ring in enumerate(shifted.interiors, start=1)
+            ),
+            start_poses=tuple(
+                StartPoseSettings(
+                    x_m=start.x_m - west_m,
+                    y_m=start.y_m - south_m,
+                    heading_deg=math.degrees(math.remainder(start.heading_rad, 2 * math.pi)),
+                )
+                for start in starts
+            ),
+        )
+    except ValidationError as error:
+        key = ".".join(str(part) for part in error.errors()[0]["loc"]) or "(whole file)"
+        raise SettingsError(f"{key}: {error.errors()[0]['msg']}", where=source) from error
+
+
+def _rays_for(floor: shapely.Polygon) -> Literal[1, 3]:
+    boxes = [ring.bounds for ring in floor.interiors]
+    thin = any(min(east_m - west_m, north_m - south_m) < _THIN_M for west_m, south_m, east_m, north_m in boxes)
+    return 3 if thin else 1
+
+
+def _corners(ring: shapely.LinearRing) -> tuple[tuple[float, float], ...]:
+    return tuple((float(x), float(y)) for x, y in ring.coords)

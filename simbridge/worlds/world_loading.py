@@ -1,0 +1,106 @@
+"""Loader of worlds by name or path, with a check that the robot can drive in them."""
+
+from pathlib import Path
+
+import shapely
+
+from hal.robot_settings import GeometrySettings, RobotSettings, load_robot
+from hal.settings import SettingsError, content_of, find_config, load_settings
+from simbridge.worlds.generator.names import GENERATED, generated
+from simbridge.worlds.geometry import polygons_of
+from simbridge.worlds.world_settings import WorldSettings
+
+START_CLEARANCE_M = 0.05
+"""A start pose nearer to a wall than this would begin with a collision as soon as the robot turns."""
+
+
+_IMAGES = (".png", ".pgm", ".ppm", ".pbm", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".svg")
+"""Endings of files that are never opened as a world, whatever they are."""
+
+
+def load_world(name_or_path: str = "a", robot: RobotSettings | None = None) -> WorldSettings:
+    """Return a world that the robot (KURT2 unless given) can drive in: shipped or generated, by name, or from a file.
+
+    Names: those in config/worlds, `rooms-17` and `streets-17` for any number (simbridge.worlds.generator). Files: a
+    world, a map of ROS's map_server, or a world on such a map (simbridge.worlds.map_server).
+    Raises hal.settings.SettingsError that names file and key.
+    """
+    geometry = (robot or load_robot()).geometry
+    world = generated(name_or_path)
+    source = name_or_path
+    if world is None:
+        path = _find(name_or_path)
+        source, world = str(path), _read(path, geometry)
+    require_drivable(world, geometry, source)
+    return world
+
+
+def _read(path: Path, geometry: GeometrySettings) -> WorldSettings:
+    """Return the world of a file: a world, a map or a world on a map, by its keys."""
+    keys = _keys(path)
+    if not keys & {"image", "map"} or "outline" in keys:
+        return load_settings(path, WorldSettings)
+    # Imported here: only maps need the image libraries.
+    from simbridge.worlds.map_server.world import world_from_map, world_on_map
+
+    return world_from_map(path, geometry) if "image" in keys else world_on_map(path)
+
+
+def _keys(path: Path) -> set[str]:
+    try:
+        content = content_of(path)
+    except SettingsError:
+        return set()  # load_settings reports the error
+    return set(content) if isinstance(content, dict) else set()
+
+
+def _find(name_or_path: str) -> Path:
+    given = Path(name_or_path)
+    if given.suffix.lower() in _IMAGES:
+        raise SettingsError(
+            "is an image, not a world",
+            where=name_or_path,
+            do=(
+                f"give the YAML file of its map, such as {given.with_suffix('.yaml')} (ROS map_server: "
+                "image, resolution, origin, thresholds)"
+            ),
+        )
+    try:
+        return find_config("worlds", name_or_path)
+    except SettingsError as error:
+        raise SettingsError(str(error), do=f"or {GENERATED}") from error
+
+
+def require_drivable(world: WorldSettings, geometry: GeometrySettings, source: str) -> None:
+    """See that each start is free, each other one within reach, and each street wide enough.
+
+    Raises SettingsError that names the source and the key.
+    """
+    clearances_m = world.clearances_m((start.pose for start in world.start_poses), geometry)
+    for i, clear_m in enumerate(clearances_m):
+        if clear_m < START_CLEARANCE_M:
+            raise SettingsError(
+                f"start_poses.{i}: the robot is {clear_m:.3f} m from a wall or obstacle, allowed is at least "
+                f"{START_CLEARANCE_M} m",
+                where=source,
+                do="move the pose away from it",
+            )
+    # Where the robot's centre can be at all: it gets through a gap that is as wide as itself.
+    within_reach = world.free_space.buffer(-geometry.outline_width_m / 2)
+    pieces = polygons_of(within_reach)
+    first = world.start_poses[0]
+    home = min(pieces, key=lambda piece: float(piece.distance(shapely.Point(first.x_m, first.y_m))))
+    for i, start in enumerate(world.start_poses):
+        if not home.intersects(shapely.Point(start.x_m, start.y_m)):
+            raise SettingsError(
+                f"start_poses.{i}: no way that is {geometry.outline_width_m} m wide leads there from start_poses.0",
+                where=source,
+                do="open one, or leave the pose out",
+            )
+    for i, street in enumerate(world.streets):
+        if not home.covers(shapely.LineString([street.from_m, street.to_m])):
+            raise SettingsError(
+                f"streets.{i}: the robot does not fit along its middle line, or cannot get there",
+                where=source,
+                do="move the line or what stands in its way",
+            )

@@ -1,0 +1,167 @@
+import random
+from functools import cache
+
+import pytest
+
+from behaviors.metrics.junctions import Junctions, JunctionsSettings
+from behaviors.metrics.streets import StreetMap
+from behaviors.metrics.task_metric import Course
+from hal.settings import SettingsError
+from tests.behaviors.metrics.paths import Point, follow, put
+from tests.behaviors.metrics.worlds import course_in
+from tests.experiments.helpers import STAGE
+
+SETTINGS = JunctionsSettings(kind="junctions")
+ALL = ("straight_on", "turn_left", "turn_right")
+
+# In Manhattan world, streets at 0.4, 2.2, 4.0 and 5.8 each way.
+SOUTH_OF_A_CROSSING, CROSSING = (2.2, 1.3), (2.2, 2.2)
+WAYS_ON: dict[str, Point] = {"straight_on": (2.2, 3.1), "turn_left": (1.3, 2.2), "turn_right": (3.1, 2.2)}
+
+
+@cache
+def manhattan() -> StreetMap:
+    simulation = STAGE.open("manhattan", 1, "test")
+    simulation.close()
+    return StreetMap(simulation.plan)
+
+
+def in_manhattan(behaviours: tuple[str, ...], seed: int = 1) -> Course:
+    return Junctions(manhattan(), behaviours, random.Random(seed))
+
+
+def set_down(behaviours: tuple[str, ...], at: Point = SOUTH_OF_A_CROSSING, towards_deg: float = 90.0) -> Course:
+    course = in_manhattan(behaviours)
+    put(course, at, towards_deg)
+    return course
+
+
+def passed(course: Course) -> tuple[float, float]:
+    """Junctions that were passed, and those of them that were right."""
+    return course.findings["junctions"], course.findings["junctions right"]
+
+
+@pytest.mark.parametrize("behaviour", ALL)
+@pytest.mark.parametrize("taken", ALL)
+def test_a_junction_is_right_when_it_is_left_through_the_side_that_was_asked_for(behaviour: str, taken: str) -> None:
+    course = set_down((behaviour,))
+    follow(course, [SOUTH_OF_A_CROSSING, CROSSING, WAYS_ON[taken]])
+    assert passed(course) == (1.0, float(taken == behaviour))
+    assert course.progress == float(taken == behaviour)
+    assert course.behaviour == behaviour
+
+
+def test_turning_back_in_a_junction_is_wrong() -> None:
+    course = set_down(("straight_on",))
+    follow(course, [SOUTH_OF_A_CROSSING, CROSSING, SOUTH_OF_A_CROSSING])
+    assert passed(course) == (1.0, 0.0)
+
+
+def test_a_junction_is_passed_only_once_it_is_left_behind() -> None:
+    course = set_down(("turn_left",))
+    follow(course, [SOUTH_OF_A_CROSSING, CROSSING, (1.75, 2.2)])  # out of its square, which ends at 1.8
+    assert passed(course) == (0.0, 0.0)
+    follow(course, [(1.75, 2.2), (1.65, 2.2)])
+    assert passed(course) == (1.0, 1.0)
+
+
+def test_who_turns_back_on_the_way_has_not_done_what_was_asked() -> None:
+    course = set_down(("turn_left",))
+    follow(course, [SOUTH_OF_A_CROSSING, (2.2, 1.7), (2.2, 0.9)])
+    assert passed(course) == (0.0, 0.0)  # it may turn again
+    follow(course, [(2.2, 0.9), (2.2, 0.5)])  # but it came to the junction in the south
+    assert passed(course) == (1.0, 0.0)
+    follow(course, [(2.2, 0.5), (2.2, 0.4), (3.1, 0.4)])  # where it turns left, as it is still asked to
+    assert passed(course) == (2.0, 1.0)
+
+
+@pytest.mark.parametrize("way", [[SOUTH_OF_A_CROSSING, (2.2, 1.6)], [SOUTH_OF_A_CROSSING, CROSSING]])
+def test_who_ends_early_has_not_done_what_was_asked(way: list[Point]) -> None:
+    course = set_down(("turn_left",))
+    follow(course, way)
+    assert passed(course) == (0.0, 0.0)  # nor does it count where the time is over
+    course.end_early()
+    assert passed(course) == (1.0, 0.0)
+
+
+def test_who_ends_early_where_nothing_could_be_asked_has_done_nothing_wrong() -> None:
+    course = set_down(("straight_on",), (2.2, 4.9))  # the northern border ends that street
+    course.end_early()
+    assert passed(course) == (0.0, 0.0)
+    course = set_down(("straight_on",), CROSSING)
+    course.end_early()
+    assert passed(course) == (0.0, 0.0)
+
+
+def test_what_is_wanted_changes_where_a_junction_is_left_behind_and_is_always_possible() -> None:
+    course = set_down(ALL, (1.3, 0.4), 0.0)  # along the southern border: streets go on ahead and to the left
+    asked = []
+    for x_m in (1.3, 3.1):
+        asked.append(course.behaviour)
+        follow(course, [(x_m, 0.4), (x_m + 1.8, 0.4)])
+    assert set(asked) <= {"straight_on", "turn_left"}
+    assert course.behaviour == "turn_left"  # nothing else is possible at the corner
+    follow(course, [(4.9, 0.4), (5.8, 0.4), (5.8, 1.3)])
+    findings = course.findings
+    assert (findings["junctions"], findings["junctions right"]) == (3.0, 1.0 + asked.count("straight_on"))
+    assert findings["junctions, turn_left"] == 1.0 + asked.count("turn_left")
+    assert findings["junctions right, turn_left"] == 1.0
+    assert findings["junctions, turn_right"] == 0.0
+
+
+def test_all_behaviours_are_asked_for_by_chance_and_the_same_chance_asks_the_same() -> None:
+    def asked(seed: int) -> list[str]:
+        course = in_manhattan(ALL, seed)
+        behaviours = []
+        for _ in range(20):
+            put(course, SOUTH_OF_A_CROSSING, 90.0)
+            behaviours.append(course.behaviour)
+        return behaviours
+
+    assert set(asked(1)) == set(ALL)
+    assert asked(1) == asked(1) != asked(2)
+
+
+def test_straight_on_at_a_t_is_stranded_and_set_down_elsewhere_it_goes_on() -> None:
+    course = set_down(("straight_on",), (2.2, 4.9))  # the northern border ends that street
+    follow(course, [(2.2, 4.9), (2.2, 5.3)])
+    assert not course.stranded
+    follow(course, [(2.2, 5.3), (2.2, 5.6)])
+    assert course.stranded
+    put(course, SOUTH_OF_A_CROSSING, 90.0)
+    assert not course.stranded
+    follow(course, [SOUTH_OF_A_CROSSING, CROSSING, WAYS_ON["straight_on"]])
+    assert passed(course) == (1.0, 1.0)
+
+
+def test_a_robot_that_turned_back_is_asked_for_something_possible_where_it_comes_to() -> None:
+    course = set_down(ALL, (4.9, 0.4), 180.0)  # towards a T, with streets ahead and to the right
+    follow(course, [(4.9, 0.4), (5.0, 0.4), (5.5, 0.4)])  # but it came to the corner, where only a left turn is left
+    assert course.behaviour == "turn_left"
+    assert not course.stranded
+
+
+def test_set_down_within_a_junction_it_is_not_judged_there() -> None:
+    course = set_down(("straight_on",), CROSSING, 90.0)
+    follow(course, [CROSSING, WAYS_ON["turn_left"]])
+    assert passed(course) == (0.0, 0.0)
+
+
+def test_the_lateral_deviation_is_that_from_the_middle_of_the_streets_only() -> None:
+    course = set_down(("straight_on",))
+    follow(course, [(2.25, 0.9), (2.25, 1.7)])
+    assert course.findings["lateral deviation, m"] == pytest.approx(0.05, abs=0.002)
+    follow(course, [(2.5, 1.9), (2.5, 2.5)])  # within the junction
+    assert course.findings["lateral deviation, m"] == pytest.approx(0.05, abs=0.002)
+
+
+def test_streets_of_other_widths_and_missing_blocks_have_a_map_too() -> None:
+    course = course_in("streets-3", SETTINGS, ALL)
+    assert course.unit == "junctions"
+
+
+def test_a_world_without_streets_and_a_task_with_other_behaviours_are_refused() -> None:
+    with pytest.raises(SettingsError, match="course junctions: world A has no streets that meet"):
+        course_in("a", SETTINGS, ALL)
+    with pytest.raises(SettingsError, match="must be among straight_on, turn_left, turn_right"):
+        course_in("manhattan", SETTINGS, ("",))

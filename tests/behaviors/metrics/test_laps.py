@@ -1,0 +1,103 @@
+import math
+import random
+
+import pytest
+
+from behaviors.metrics.laps import LapsSettings
+from behaviors.metrics.task_metric import Course
+from behaviors.metrics.way import WaySettings
+from hal.robot import WheelSpeeds
+from hal.simulation import Pose
+from kurt2rt.core.task_settings import load_task
+from simbridge.simulation import Kurt2Simulation
+from tests.behaviors.metrics.paths import Point, along
+from tests.experiments.helpers import STAGE, short_task, teachers_drive
+
+WANTED_M = 0.365
+# In world one_object, a room of 4.4 m by 4.4 m with its walls on the left of who goes round it clockwise.
+ROUND: list[Point] = [(0.4, 0.4), (0.4, 4.0), (4.0, 4.0), (4.0, 0.4), (0.4, 0.4)]
+
+
+def laps_in(simulation: Kurt2Simulation) -> Course:
+    settings = LapsSettings(kind="laps", wanted_m=WANTED_M)
+    return settings.build(simulation, ("",), random.Random(1))
+
+
+def carry(simulation: Kurt2Simulation, course: Course, pose: Pose) -> None:
+    simulation.simulated_robot.place(pose)
+    course.follow(pose)
+
+
+def test_the_distance_error_is_that_to_the_nearest_wall() -> None:
+    simulation = STAGE.open("one_object", 1, "test")
+    try:
+        course = laps_in(simulation)
+        for pose in along(ROUND[:2], 0.02):
+            carry(simulation, course, pose)
+        assert course.unit == "laps"
+        assert course.findings["distance error, m"] == pytest.approx(0.4 - WANTED_M, abs=0.002)
+    finally:
+        simulation.close()
+
+
+def test_what_was_carried_is_no_lap() -> None:
+    simulation = STAGE.open("one_object", 1, "test")
+    try:
+        course = laps_in(simulation)
+        for pose in along(ROUND, 0.02):
+            carry(simulation, course, pose)
+        assert course.progress == 0.0
+        course.end_early()
+        course.put(Pose(0.4, 0.4, math.pi / 2))
+        assert course.progress == 0.0
+        assert not course.stranded
+    finally:
+        simulation.close()
+
+
+@pytest.mark.parametrize(("towards_rad", "sign"), [(math.pi / 2, 1), (-math.pi / 2, -1)])
+def test_what_it_drives_itself_along_the_wall_is_and_backwards_counts_against(towards_rad: float, sign: int) -> None:
+    simulation = STAGE.open("one_object", 1, "test")
+    try:
+        course = laps_in(simulation)
+        simulation.simulated_robot.place(Pose(0.4, 2.2, towards_rad))
+        before = course.progress
+        for tick in range(300):
+            simulation.robot.sense(tick * 0.01)
+            simulation.robot.drive(WheelSpeeds(0.3, 0.3), tick * 0.01, tick * 0.01)
+            simulation.step()
+            course.follow(simulation.pose)
+        way_m = abs(simulation.pose.y_m - 2.2)
+        assert way_m > 0.5
+        # Once round, 0.35 m from the walls of 4.4 m, is 14.8 m.
+        assert sign * (course.progress - before) == pytest.approx(way_m / 14.8, rel=0.05)
+    finally:
+        simulation.close()
+
+
+def test_least_progress_of_laps_and_way_is_a_tenth_of_a_metre_a_second() -> None:
+    simulation = STAGE.open("one_object", 1, "test")
+    try:
+        assert simulation.lap_m == pytest.approx(4 * (4.4 - 2 * 0.35))
+        laps = LapsSettings(kind="laps", wanted_m=WANTED_M).least_progress(simulation, 300.0)
+        assert laps * simulation.lap_m == pytest.approx(30.0)
+        assert WaySettings(kind="way").least_progress(simulation, 300.0) == pytest.approx(30.0)
+        assert load_task("circle").course.least_progress(simulation, 300.0) == 0.0
+    finally:
+        simulation.close()
+
+
+@pytest.mark.parametrize(
+    ("world", "drive_s"),
+    [
+        ("maps/flat", 8.0),  # through a door of 0.6 m
+        ("rooms-9007", 50.0),  # into a dead end of 0.85 m and out of it again
+    ],
+)
+def test_laps_of_the_policy_in_narrow_places_are_its_way(world: str, drive_s: float) -> None:
+    drive = teachers_drive(short_task(exam_s=drive_s, worlds=(world,)))
+    simulation = STAGE.open(world, 1, "test")
+    try:
+        assert drive.progress * simulation.lap_m == pytest.approx(drive.way_m, rel=0.15)
+    finally:
+        simulation.close()

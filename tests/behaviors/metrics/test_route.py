@@ -1,0 +1,176 @@
+import math
+from functools import cache
+
+import pytest
+
+from behaviors.metrics.route import FixedRoute, RouteSettings
+from behaviors.metrics.routes import Leg, Route
+from behaviors.metrics.streets import StreetMap
+from behaviors.metrics.task_metric import RouteCourse
+from hal.settings import SettingsError
+from tests.behaviors.metrics.paths import Point, follow
+from tests.behaviors.metrics.worlds import course_in
+from tests.experiments.helpers import STAGE
+
+ALL = ("straight_on", "turn_left", "turn_right")
+MEANING = dict(zip(ALL, (0, 1, -1), strict=True))
+
+
+@cache
+def streets() -> StreetMap:
+    return StreetMap(STAGE.plan_of("manhattan"))
+
+
+def a_route(seed: int = 1, decisions: int = 8) -> Route:
+    return RouteSettings(kind="route", decisions=decisions, seed=seed).route_in(STAGE.plan_of("manhattan"), ALL)
+
+
+def set_down(route: Route | None = None) -> FixedRoute:
+    course = FixedRoute(streets(), route or a_route(), ALL)
+    course.put(course.set_down_at)
+    return course
+
+
+def middle(leg: Leg) -> Point:
+    return leg.middle.x_m, leg.middle.y_m
+
+
+def corner(leg: Leg) -> Point:
+    return leg.junction.x_m, leg.junction.y_m
+
+
+def drive(course: FixedRoute, legs: int) -> None:
+    """From the middle of the street that it is in, along the route."""
+    all_legs = course.route.legs
+    for _ in range(legs):
+        leg, following = (all_legs[(course.ahead.passed + k) % len(all_legs)] for k in (0, 1))
+        follow(course, [middle(leg), corner(leg), middle(following)])
+
+
+def wrong_way(leg: Leg) -> Point:
+    """The middle of a street that leads out of a leg's junction and is not on the route."""
+    junction = leg.junction
+    side = next(each for each in sorted(junction.arms) if each not in (leg.leaves, leg.way.turned(2)))
+    along = {0: (0.9, 0.0), 1: (0.0, 0.9), 2: (-0.9, 0.0), 3: (0.0, -0.9)}[side]
+    return junction.x_m + along[0], junction.y_m + along[1]
+
+
+def with_a_choice(course: FixedRoute) -> None:
+    """Drive on to where another way than the route's is possible."""
+    while len(course.route.legs[course.ahead.passed % 8].junction.arms) < 3:
+        drive(course, 1)
+
+
+def test_it_begins_in_the_middle_of_the_first_street_and_says_what_is_right_at_its_end() -> None:
+    course = set_down()
+    assert isinstance(course, RouteCourse)
+    assert course.set_down_at == course.route.legs[0].middle
+    assert MEANING[course.behaviour] == course.route.quarters[0]
+    passed, inside, here, after = course.ahead
+    assert (passed, inside, here, MEANING[after]) == (0, False, course.behaviour, course.route.quarters[1])
+
+
+def test_round_the_route_every_decision_is_right_and_the_next_one_is_said_where_a_junction_is_left() -> None:
+    course = set_down()
+    asked = []
+    for _ in range(16):
+        asked.append(MEANING[course.behaviour])
+        drive(course, 1)
+    assert tuple(asked) == course.route.quarters * 2
+    assert course.progress == course.findings["junctions"] == course.findings["junctions right"] == 16.0
+    lefts = float(2 * course.route.quarters.count(1))
+    assert course.findings["junctions, turn_left"] == course.findings["junctions right, turn_left"] == lefts
+    assert course.ahead.passed == 16
+    assert not course.stranded
+
+
+def test_within_a_junction_the_decision_is_still_the_one_there() -> None:
+    course = set_down()
+    first = course.route.legs[0]
+    before = course.behaviour
+    follow(course, [middle(first), corner(first)])
+    assert (course.ahead.inside, course.behaviour) == (True, before)
+
+
+def test_a_wrong_way_counts_and_it_is_set_down_where_it_should_be() -> None:
+    course = set_down()
+    with_a_choice(course)
+    place = course.ahead.passed
+    leg = course.route.legs[place]
+    follow(course, [middle(leg), corner(leg), wrong_way(leg)])
+    assert course.stranded
+    assert course.passages[-1].taken != leg.quarters
+    assert course.set_down_at == course.route.legs[(place + 1) % 8].middle
+    course.put(course.set_down_at)
+    assert not course.stranded
+    drive(course, 3)
+    assert course.findings["junctions"] - course.findings["junctions right"] == 1.0
+    assert course.progress == place + 3.0
+
+
+def test_who_turns_back_on_the_way_did_wrong_and_tries_again() -> None:
+    course = set_down()
+    drive(course, 1)
+    follow(course, [middle(course.route.legs[1]), corner(course.route.legs[0])])
+    assert course.stranded
+    assert course.passages[-1].taken is None
+    assert course.set_down_at == course.route.legs[1].middle
+    course.put(course.set_down_at)
+    drive(course, 1)
+    assert (course.progress, course.findings["junctions"]) == (2.0, 3.0)
+
+
+def test_turning_back_in_a_junction_is_wrong() -> None:
+    course = set_down()
+    leg = course.route.legs[0]
+    follow(course, [middle(leg), corner(leg), middle(leg)])
+    assert course.stranded
+    assert abs(course.passages[-1].taken or 0) == 2
+
+
+def test_stuck_in_a_street_it_tries_again_and_stuck_in_a_junction_it_goes_on_behind_it() -> None:
+    course = set_down()
+    first, second = course.route.legs[:2]
+    assert course.set_down_at == first.middle
+    course.put(course.set_down_at)
+    assert course.passages == []
+    follow(course, [middle(first), corner(first)])
+    assert course.set_down_at == second.middle
+    course.put(course.set_down_at)
+    assert [each.taken for each in course.passages] == [None]
+    assert (course.ahead.passed, course.ahead.inside) == (1, False)
+
+
+def test_who_ends_early_has_not_done_what_was_right() -> None:
+    course = set_down()
+    drive(course, 2)
+    course.end_early()
+    assert (course.progress, course.findings["junctions"]) == (2.0, 3.0)
+
+
+def test_the_route_is_that_of_its_seed_whatever_the_chance_of_the_drive() -> None:
+    settings = RouteSettings(kind="route", decisions=12, seed=3)
+    routes = []
+    for seed in (1, 2):
+        course = course_in("manhattan", settings, ALL, seed)
+        assert isinstance(course, FixedRoute)
+        routes.append(course.route)
+    assert routes[0] == routes[1] != a_route(4, 12)
+
+
+def test_a_world_without_streets_other_behaviours_and_an_impossible_number_are_refused() -> None:
+    settings = RouteSettings(kind="route")
+    with pytest.raises(SettingsError, match="course route: world A has no streets that meet"):
+        course_in("a", settings, ALL)
+    with pytest.raises(SettingsError, match="must be among straight_on, turn_left, turn_right"):
+        course_in("manhattan", settings, ("",))
+    with pytest.raises(SettingsError, match="no loop of 7 decisions"):
+        course_in("manhattan", RouteSettings(kind="route", decisions=7), ALL)
+
+
+def test_headings_of_the_ways_are_those_of_the_streets() -> None:
+    for leg in a_route().legs:
+        assert (round(math.cos(leg.middle.heading_rad)), round(math.sin(leg.middle.heading_rad))) == (
+            {0: 1, 1: 0, 2: -1, 3: 0}[leg.way],
+            {0: 0, 1: 1, 2: 0, 3: -1}[leg.way],
+        )

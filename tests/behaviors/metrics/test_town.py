@@ -1,0 +1,79 @@
+"""Streets as one goes through them, and the shortest ways among them."""
+
+import math
+from itertools import pairwise
+
+import pytest
+
+from behaviors.metrics.errands import ErrandsSettings
+from behaviors.metrics.streets import Side
+from behaviors.metrics.town import Street, Town, length_m
+from hal.robot_settings import load_robot
+from hal.simulation import Pose
+from kurt2rt.core.task_settings import load_task
+from simbridge.simulation import Kurt2SimulationFactory
+
+BEHAVIOURS = ("straight_on", "turn_left", "turn_right")
+PLAN = Kurt2SimulationFactory(load_robot()).plan_of("manhattan")
+COURSE = load_task("errands").course
+
+
+@pytest.fixture(scope="module")
+def town() -> Town:
+    assert isinstance(COURSE, ErrandsSettings)
+    return COURSE.walk_in(PLAN, BEHAVIOURS).town
+
+
+def street(town: Town, x_m: float, y_m: float, way: Side) -> Street:
+    found = town.street_at(Pose(x_m, y_m, way.heading_rad))
+    assert found is not None
+    return found
+
+
+def test_manhattan_has_24_streets_two_ways_and_104_ways_on(town: Town) -> None:
+    assert len(town.streets) == 48
+    assert sum(len(town.on_from(each)) for each in town.streets) == 104
+
+
+def test_what_leads_on_from_a_street_depends_on_where_it_ends(town: Town) -> None:
+    inner = town.on_from(street(town, 1.3, 2.2, Side.EAST))
+    assert set(inner) == set(BEHAVIOURS)
+    assert inner["turn_left"].way is Side.NORTH
+    corner = town.on_from(street(town, 0.4, 4.9, Side.NORTH))
+    assert set(corner) == {"turn_right"}
+    assert corner["turn_right"] == street(town, 1.3, 5.8, Side.EAST)
+
+
+def test_within_a_junction_one_is_in_no_street(town: Town) -> None:
+    assert town.street_at(Pose(2.2, 2.2, 0.0)) is None
+    assert town.street_at(Pose(2.55, 2.2, 0.0)) is None
+    assert town.street_at(Pose(2.65, 2.2, 0.0)) is not None  # where a robot may already know that it is there
+
+
+def test_the_shortest_way_never_turns_back(town: Town) -> None:
+    start, behind = street(town, 3.1, 2.2, Side.EAST), street(town, 1.3, 2.2, Side.EAST)
+    way = town.shortest(start, behind)
+    assert way is not None
+    assert (way[0], way[-1]) == (start, behind)
+    assert all(there in town.on_from(here).values() for here, there in pairwise(way))
+    assert length_m(way) == pytest.approx(1.8 * (len(way) - 1))
+    assert len(way) == 6
+
+
+def test_ways_are_measured_from_where_one_is_to_where_one_comes(town: Town) -> None:
+    way = town.shortest(street(town, 1.3, 2.2, Side.EAST), street(town, 2.2, 3.1, Side.NORTH))
+    assert way is not None
+    assert length_m(way) == pytest.approx(1.8)
+    assert length_m(way, Pose(1.9, 2.2, 0.0), Pose(2.2, 2.8, math.pi / 2)) == pytest.approx(0.9)
+
+
+def test_the_walk_notes_each_street_once_and_breaks_where_the_robot_was_set_down() -> None:
+    assert isinstance(COURSE, ErrandsSettings)
+    walk = COURSE.walk_in(PLAN, BEHAVIOURS)
+    walk.put(Pose(1.3, 2.2, 0.0))
+    for x_m in (1.5, 1.8, 2.2, 2.6, 2.75, 3.0):
+        walk.follow(Pose(x_m, 2.2, 0.0))
+    walk.put(Pose(1.3, 2.2, 0.0))
+    first, second = street(walk.town, 1.3, 2.2, Side.EAST), street(walk.town, 3.1, 2.2, Side.EAST)
+    assert walk.streets == [None, first, second, None, first]
+    assert walk.progress == 1.0

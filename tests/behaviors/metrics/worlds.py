@@ -1,0 +1,15 @@
+"""Courses in shipped worlds."""
+
+import random
+
+from behaviors.metrics.task_metric import Course, CourseSettings
+from tests.experiments.helpers import STAGE
+
+
+def course_in(world: str, settings: CourseSettings, behaviours: tuple[str, ...] = ("",), seed: int = 1) -> Course:
+    """The course at its beginning."""
+    simulation = STAGE.open(world, 1, "test")
+    try:
+        return settings.build(simulation, behaviours, random.Random(seed))
+    finally:
+        simulation.close()

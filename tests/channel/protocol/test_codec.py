@@ -1,0 +1,390 @@
+"""What goes over the wire comes back the same; what is not right is refused in a sentence, and in no other way."""
+
+import math
+from dataclasses import astuple, replace
+from typing import Any
+
+import cbor2
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from hal.simulation import SimulatedPlace
+from kurt2rt.channel.protocol.codec import (
+    PATHS,
+    WireError,
+    decode_answer,
+    decode_request,
+    decode_state,
+    encode_answer,
+    encode_request,
+    encode_state,
+)
+from kurt2rt.channel.protocol.requests import (
+    AnswerRequest,
+    AppraiseRequest,
+    CorrectRequest,
+    DriveRequest,
+    LessonsRequest,
+    MoveWallRequest,
+    PhaseRequest,
+    Request,
+    RewardRequest,
+    SeekLikeRequest,
+    SessionRequest,
+    checks_of,
+)
+from kurt2rt.channel.protocol.schema import (
+    Check,
+    Flag,
+    ManyOf,
+    Octets,
+    OctetsUpTo,
+    OneOf,
+    OneWord,
+    OrNone,
+    Real,
+    Row,
+    Text,
+    Whole,
+)
+from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.rla.rla import BASIC, MID, Phase
+from kurt2rt.core.teaching.progress import Progress
+from kurt2rt.core.teaching.question import FeatureDifference
+from tests.channel.mischief import Mischief
+from tests.channel.states import COMMANDS, SURPRISED, state
+
+BOOT = b"boot"
+ID = b"12345678"
+NUMBERS = st.integers(0, 2**53)
+REALS = st.floats(allow_nan=False)
+FINITE = st.floats(-1e9, 1e9)
+PRINTABLE = st.characters(categories=("L", "N", "P", "S")) | st.just(" ")
+NAMES = st.text(PRINTABLE, max_size=64)
+WORDS = st.lists(NAMES, max_size=12).map(tuple)
+LEVELS = st.sampled_from((BASIC, MID))
+
+
+def values(check: Check) -> st.SearchStrategy[Any]:
+    """Whatever a check lets pass."""
+    match check:
+        case Octets(length=length):
+            return st.binary(min_size=length, max_size=length)
+        case OctetsUpTo(most=most):
+            return st.binary(min_size=1, max_size=min(most, 64))
+        case Whole(least=least, most=most):
+            return st.integers(least, most)
+        case Real(most=most):
+            return st.floats(-most, most)
+        case OneOf(numbers=numbers, kind=kind):
+            return st.sampled_from(numbers).map(kind)
+        case OneWord(words=words):
+            return st.sampled_from(words)
+        case Flag():
+            return st.booleans()
+        case Text(most=most, least=least):
+            return st.text(PRINTABLE, min_size=least, max_size=most)
+        case OrNone(check=inner):
+            return st.none() | values(inner)
+        case ManyOf(check=inner, most=most):
+            return st.lists(values(inner), max_size=min(most, 6)).map(tuple)
+        case Row(checks=checks):
+            return st.tuples(*map(values, checks))
+    raise AssertionError(f"no strategy for {check}")
+
+
+REQUESTS = st.one_of(
+    [st.builds(kind, **{name: values(check) for name, check in checks_of(kind)}) for kind in PATHS.values()]
+)
+
+STATES = st.builds(
+    State,
+    boot=st.binary(min_size=4, max_size=4),
+    tick=NUMBERS,
+    phase=st.integers(1, 5),
+    infrared_counts=st.lists(st.integers(0, 1023), max_size=18).map(tuple),
+    infrared_age_s=REALS,
+    bumpers=st.integers(0, 255),
+    left_m_s=FINITE,
+    right_m_s=FINITE,
+    cause=NAMES,
+    action=st.none() | NAMES,
+    rla=st.none() | NUMBERS,
+    nearest=st.none() | NUMBERS,
+    nearest_action=st.none() | NAMES,
+    distance=REALS,
+    radius=REALS,
+    taught_by=NAMES,
+    taught_at=NAMES,
+    question=st.lists(st.builds(FeatureDifference, NAMES, FINITE, FINITE), max_size=5).map(tuple),
+    teacher=st.none() | NAMES,
+    by_hand=st.booleans(),
+    stopped=st.none() | st.builds(ActiveStop, st.sampled_from(StopReason), NAMES),
+    rlas=NUMBERS,
+    lessons=NUMBERS,
+    unsaved=NUMBERS,
+    session=st.none() | NAMES,
+    clock_s=FINITE,
+    guard=st.lists(NAMES, max_size=4).map(tuple),
+    trouble=NAMES,
+    late_p99_ms=REALS,
+    missed_ticks=NUMBERS,
+    place=st.none() | st.builds(SimulatedPlace, FINITE, FINITE, FINITE, FINITE, NUMBERS, NUMBERS),
+    behaviour=NAMES,
+    value=st.none() | FINITE,
+    opinion=st.sampled_from((None, -1, 0, 1)),
+    opinion_of=st.none() | NUMBERS,
+    agreement=st.none() | st.floats(0.0, 1.0),
+    trusted=st.booleans(),
+    role=NAMES,
+    bad_share=st.none() | st.floats(0.0, 1.0),
+    signals_missing=st.tuples(NUMBERS, NUMBERS),
+    asks_at=LEVELS,
+    mid=st.none()
+    | st.builds(
+        MidState,
+        behaviour=NAMES,
+        rla=st.none() | NUMBERS,
+        nearest=st.none() | NUMBERS,
+        nearest_behaviour=st.none() | NAMES,
+        distance=REALS,
+        radius=REALS,
+        taught_by=NAMES,
+        taught_at=NAMES,
+        asks=st.booleans(),
+        overridden=st.booleans(),
+        here=WORDS,
+        there=WORDS,
+    ),
+    surprise=st.none() | st.builds(SurpriseState, NUMBERS, LEVELS, NUMBERS, NUMBERS, REALS, st.booleans()),
+    goal=NAMES,
+    plan=WORDS,
+    plan_says=NAMES,
+    nearest_value=st.none() | FINITE,
+    progress=st.builds(Progress, st.integers(0, 60), st.none() | st.integers(0, 100), NUMBERS),
+)
+
+ANYTHING = st.recursive(
+    st.none()
+    | st.booleans()
+    | st.integers(-(2**64), 2**64 - 1)
+    | st.floats()
+    | st.text(max_size=70)
+    | st.binary(max_size=9),
+    lambda inner: st.lists(inner, max_size=7) | st.dictionaries(st.text(max_size=3), inner, max_size=4),
+    max_leaves=9,
+)
+
+
+@given(REQUESTS)
+def test_every_request_comes_back_the_same(request_: Request) -> None:
+    assert decode_request(request_.path, encode_request(request_)) == request_
+
+
+@given(STATES)
+def test_every_state_comes_back_the_same(picture: State) -> None:
+    assert decode_state(encode_state(picture)) == picture
+
+
+@given(st.sampled_from(sorted(PATHS)), st.binary(max_size=80) | st.lists(ANYTHING, max_size=7).map(cbor2.dumps))
+@example("/hello", b"")
+@example("/hello", b"\x80")
+@example("/reward", b"\xd8\x1c\x81\xd8\x1d\x00")
+def test_any_bytes_are_a_valid_request_or_are_refused(path: str, payload: bytes) -> None:
+    try:
+        request = decode_request(path, payload)
+    except WireError:
+        return
+    assert decode_request(path, encode_request(request)) == request
+    for value in astuple(request):
+        assert not isinstance(value, float) or math.isfinite(value)
+
+
+@given(st.binary(max_size=80) | ANYTHING.map(cbor2.dumps))
+def test_any_bytes_are_a_valid_answer_or_are_refused(payload: bytes) -> None:
+    try:
+        answer = decode_answer(payload)
+    except WireError:
+        return
+    assert isinstance(answer, dict)
+
+
+@given(st.sampled_from(sorted(cbor2.loads(encode_state(state())))), ANYTHING)
+def test_a_state_with_anything_in_one_place_is_valid_or_is_refused(key: str, anything: object) -> None:
+    picture = cbor2.loads(encode_state(state())) | {key: anything}
+    try:
+        decoded = decode_state(cbor2.dumps(picture))
+    except WireError:
+        return
+    assert decode_state(encode_state(decoded)) == decoded
+
+
+def test_state_of_a_robot_without_progress_is_understood() -> None:
+    picture = cbor2.loads(encode_state(state(progress=Progress(60, 87, 3))))
+    del picture["pg"], picture["nv"]
+    assert decode_state(cbor2.dumps(picture)) == state()
+
+
+@given(st.binary(max_size=80))
+def test_any_bytes_are_no_state(payload: bytes) -> None:
+    with pytest.raises(WireError):
+        decode_state(payload)
+
+
+def refusal(path: str, payload: bytes) -> str:
+    with pytest.raises(WireError) as refused:
+        decode_request(path, payload)
+    return str(refused.value)
+
+
+def test_what_is_not_one_flat_list_of_plain_values_is_refused() -> None:
+    good = cbor2.dumps([ID, None])
+    assert "not the CBOR" in refusal("/stop", b"")
+    assert "not the CBOR" in refusal("/stop", good[:-1])
+    assert "1 bytes too many" in refusal("/stop", good + b"\x00")
+    assert "a list of 2: [command_id, hold]" in refusal("/stop", cbor2.dumps([ID]))
+    assert "a list of 2: [command_id, hold]" in refusal("/stop", cbor2.dumps({"id": ID}))
+    assert "nesting" in refusal("/stop", cbor2.dumps([[ID]]))
+    assert "indefinite" in refusal("/stop", b"\x9f" + good[1:] + b"\xff")
+    assert "tag 2: tagged values are not taken" in refusal("/lessons", b"\x81\xc2\x41\x01")
+    assert "2000 bytes are too many" in refusal("/stop", b"\x81" * 2000)
+    assert refusal("/fly", b"\x80") == "there is no /fly here"
+
+
+@pytest.mark.parametrize(
+    ("path", "body", "sentence"),
+    [
+        ("/stop", [b"short", None], "command_id has to be 8 bytes"),
+        ("/stop", ["12345678", None], "command_id has to be 8 bytes"),
+        ("/lessons", [True], "count has to be a whole number from 0 to 20"),
+        ("/lessons", [21], "count has to be a whole number from 0 to 20"),
+        ("/lessons", [2.0], "count has to be a whole number from 0 to 20"),
+        ("/watch", [BOOT, -1], "seen has to be a whole number from 0 to 9007199254740992"),
+        ("/drive", [BOOT, 0, 0, math.nan, 0.0], "left_m_s has to be a number from -2 to 2 m/s"),
+        ("/drive", [BOOT, 0, 0, 0.0, 2.01], "right_m_s has to be a number from -2 to 2 m/s"),
+        ("/drive", [BOOT, 0, 0, 0.0, True], "right_m_s has to be a number from -2 to 2 m/s"),
+        ("/drive", [BOOT, 0, 0, 0.0, 2**64 - 1], "right_m_s has to be a number from -2 to 2 m/s"),
+        ("/world/move", [BOOT, ID, 0, "north", 100.5, 0.0], "dx_m has to be a number from -100 to 100 m"),
+        ("/world/move", [BOOT, ID, 0, "north", 0.0, -math.inf], "dy_m has to be a number from -100 to 100 m"),
+        ("/reward", [BOOT, ID, 0, 0, None], "value has to be one of 1, -1"),
+        ("/reward", [BOOT, ID, 0, True, None], "value has to be one of 1, -1"),
+        ("/appraise", [BOOT, ID, 0, "", None], "appraisal has to be text of 1 to 64 printable characters"),
+        ("/appraise", [BOOT, ID, 0, -1, None], "appraisal has to be text of 1 to 64 printable characters"),
+        ("/name", [BOOT, ID, 0, "", None], "name has to be text of 1 to 64 printable characters"),
+        ("/seek", [BOOT, ID, 0, 12], "name has to be text of 1 to 64 printable characters"),
+        ("/seek/rla", [BOOT, ID, 0, "12"], "rla_id has to be a whole number from 0 to 9007199254740992"),
+        ("/seek/like", [BOOT, ID, 0, ["x"], 0.1], "features has to be a list of 2"),
+        ("/seek/like", [BOOT, ID, 0, [["x", math.nan]], 0.1], "features has to be a number from -1e+06 to 1e+06"),
+        ("/seek/like", [BOOT, ID, 0, [["x", 1]] * 17, 0.1], "features has to be a list of up to 16"),
+        ("/here", [BOOT, ID, 0, None], "name has to be text of 1 to 64 printable characters"),
+        ("/phase", [BOOT, ID, 0, 6], "phase has to be one of 1, 2, 3, 4, 5"),
+        ("/answer", [BOOT, ID, 0, "turn_left", None, "high", False], "level has to be one of basic, mid"),
+        ("/answer", [BOOT, ID, 0, "turn_left", None, None, False], "level has to be one of basic, mid"),
+        ("/answer", [BOOT, ID, 0, "turn_left", None, "mid", 1], "beside has to be true or false"),
+        ("/correct", [BOOT, ID, 0, "turn_left", None, b"mid"], "level has to be one of basic, mid"),
+        (
+            "/correct",
+            [BOOT, ID, 0, "turn_left", None, "mid", False],
+            "/correct takes a list of 6: [boot, command_id, seen, action, decision_tick, level]",
+        ),
+        (
+            "/answer",
+            [BOOT, ID, 0, "turn_left"],
+            "/answer takes a list of 7: [boot, command_id, seen, action, decision_tick, level, beside]",
+        ),
+        ("/answer", [BOOT, ID, 0, "", None], "action has to be text of 1 to 64 printable characters"),
+        ("/answer", [BOOT, ID, 0, "a\nb", None], "action has to be text of 1 to 64 printable characters"),
+        ("/answer", [BOOT, ID, 0, "x" * 65, None], "action has to be text of 1 to 64 printable characters"),
+        ("/session", [BOOT, ID, 0, 7], "name has to be text of 1 to 64 printable characters"),
+        ("/behaviour", [BOOT, ID, 0, "forward", 0], "ticks has to be a whole number from 1 to 60000"),
+    ],
+)
+def test_a_refusal_says_what_would_be_right(path: str, body: list[object], sentence: str) -> None:
+    assert refusal(path, cbor2.dumps(body)) == sentence
+
+
+def test_nothing_is_sent_that_the_robot_cannot_take() -> None:
+    with pytest.raises(WireError, match="value has to be one of"):
+        encode_request(RewardRequest(BOOT, ID, 0, 3, None))
+
+
+def test_the_bodies_are_the_lists_of_the_contract() -> None:
+    assert cbor2.loads(encode_request(DriveRequest(BOOT, 90, 2, 0.25, -0.25))) == [BOOT, 90, 2, 0.25, -0.25]
+    answer = AnswerRequest(BOOT, ID, 90, "forward", 88)
+    assert cbor2.loads(encode_request(answer)) == [BOOT, ID, 90, "forward", 88, "basic", False]
+    correction = CorrectRequest(BOOT, ID, 90, "turn_left", None, MID)
+    assert cbor2.loads(encode_request(correction)) == [BOOT, ID, 90, "turn_left", None, "mid"]
+    assert cbor2.loads(encode_request(AppraiseRequest(BOOT, ID, 90, "bad", 88))) == [BOOT, ID, 90, "bad", 88]
+    assert cbor2.loads(encode_request(PhaseRequest(BOOT, ID, 90, Phase.CORRECTIONS))) == [BOOT, ID, 90, 2]
+    assert cbor2.loads(encode_request(SessionRequest(BOOT, ID, 90, None))) == [BOOT, ID, 90, None]
+    like = SeekLikeRequest(BOOT, ID, 90, (("x_m", 1.75), ("y_m", 0.5)), 0.25)
+    assert cbor2.loads(encode_request(like)) == [BOOT, ID, 90, [["x_m", 1.75], ["y_m", 0.5]], 0.25]
+    assert cbor2.loads(encode_request(LessonsRequest(10))) == [10]
+
+
+def test_a_device_of_version_2_knows_no_levels_and_teaches_the_basic_one() -> None:
+    lesson = [BOOT, ID, 90, "forward", 88]
+    assert decode_request("/answer", cbor2.dumps(lesson)) == AnswerRequest(BOOT, ID, 90, "forward", 88, BASIC, False)
+    assert decode_request("/correct", cbor2.dumps(lesson)) == CorrectRequest(BOOT, ID, 90, "forward", 88, BASIC)
+
+
+def test_a_whole_number_is_taken_for_a_way() -> None:
+    request = decode_request("/world/move", cbor2.dumps([BOOT, ID, 0, "north", 1, 0]))
+    assert request == MoveWallRequest(BOOT, ID, 0, "north", 1.0, 0.0)
+    assert isinstance(request, MoveWallRequest)
+    assert isinstance(request.dx_m, float)
+
+
+def test_a_state_leaves_room_in_its_datagram() -> None:
+    assert len(encode_state(state())) < 480
+    assert len(encode_state(state(mid=COMMANDS, surprise=SURPRISED, plan=("turn_left",) * 12))) < 900
+
+
+def test_words_of_the_levels_are_cut_and_tidied_too() -> None:
+    untidy = state(mid=replace(COMMANDS, behaviour="turn\nleft", here=("left",) * 40), plan=("straight_on",) * 40)
+    picture = decode_state(encode_state(untidy))
+    assert picture.mid is not None
+    assert (picture.mid.behaviour, picture.mid.here) == ("turn left", ("left",) * 32)
+    assert picture.plan == ("straight_on",) * 32
+
+
+def test_a_line_break_in_a_text_does_not_cost_the_teacher_the_picture() -> None:
+    untidy = state(trouble="disk full\n\tat " + "x" * 600, guard=("held\nback",), session="a\x00b")
+    picture = decode_state(encode_state(untidy))
+    assert picture.trouble == "disk full  at " + "x" * 498
+    assert picture.guard == ("held back",)
+    assert picture.session == "a b"
+
+
+def test_a_newer_robot_may_tell_more_but_not_less() -> None:
+    picture = cbor2.loads(encode_state(state()))
+    assert decode_state(cbor2.dumps(picture | {"weather": "fine"})) == state()
+    del picture["m"]
+    with pytest.raises(WireError, match="the state has no 'm'"):
+        decode_state(cbor2.dumps(picture))
+
+
+def test_an_answer_is_a_map() -> None:
+    answer = {"t": 12, "ok": True, "text": "RLA 7 taught: forward", "phases": {1: "supervised"}}
+    assert decode_answer(encode_answer(answer)) == answer
+    with pytest.raises(WireError, match="a map"):
+        decode_answer(b"\x80")
+    with pytest.raises(WireError, match="a map with text keys"):
+        decode_answer(cbor2.dumps({1: 2}))
+
+
+def test_rows_and_lists_count_what_they_hold() -> None:
+    with pytest.raises(WireError, match="place has to be a list of 2"):
+        Row((Flag(), Flag()))("place", [True])
+    with pytest.raises(WireError, match="place has to be true or false"):
+        Row((Flag(), Flag()))("place", [True, 1])
+    with pytest.raises(WireError, match="a list of up to 2"):
+        ManyOf(Flag(), most=2)("flags", [True] * 3)
+
+
+@pytest.mark.parametrize("kind", PATHS.values(), ids=lambda kind: kind.path)
+def test_mischief_knows_the_fields_of_every_request(kind: type[Request]) -> None:
+    request = Mischief(1, lambda: (b"boot", 0)).valid(kind)
+    assert decode_request(kind.path, encode_request(request)) == request

@@ -1,0 +1,74 @@
+"""The report as it goes over the wire and into JSON, and back."""
+
+import json
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from kurt2rt.channel.protocol.codec import decode_answer, encode_answer
+from kurt2rt.channel.protocol.health import HealthReport, Trouble
+from kurt2rt.channel.protocol.health_codec import MOST_ROWS, plain_of, report_of
+from kurt2rt.channel.protocol.schema import WireError
+from kurt2rt.channel.protocol.trouble_code import TroubleCode
+from kurt2rt.core.teaching.progress import Progress
+from tests.service.health.reports import ILL, LATE, WELL
+
+
+@pytest.mark.parametrize("report", [WELL, ILL, replace(WELL, bus=None), replace(WELL, progress=Progress(60, 87, 3))])
+def test_it_comes_back_as_it_went(report: HealthReport) -> None:
+    assert report_of(json.loads(json.dumps(plain_of(report), allow_nan=False))) == report
+    assert report_of(decode_answer(encode_answer({"health": plain_of(report)}))["health"]) == report
+
+
+def test_what_a_newer_robot_tells_besides_is_left_out() -> None:
+    plain = plain_of(WELL)
+    assert report_of({**plain, "mood": "good", "ages": {**plain["ages"], "lidar_s": 1.0}}) == WELL
+
+
+def test_report_of_a_robot_without_progress_is_understood() -> None:
+    plain = plain_of(replace(WELL, progress=Progress(60, 87, 3)))
+    del plain["progress"]
+    assert report_of(plain) == WELL
+
+
+def test_an_error_message_of_any_shape_costs_nobody_the_report() -> None:
+    odd = Trouble(TroubleCode.PROGRAM, 1.0, False, "channel", (), "first line\nsecond\t" + "x" * 1000)
+    told = report_of(plain_of(replace(ILL, troubles=(odd,) * 40)))
+    assert len(told.troubles) == MOST_ROWS
+    assert told.troubles[0].what.startswith("first line second x")
+
+
+def test_report_of_older_robot_keeps_the_texts() -> None:
+    plain = plain_of(ILL)
+    for each in plain["troubles"]:
+        for key in ("code", "name", "numbers", "line"):
+            del each[key]
+    told = report_of(plain).troubles
+    assert {each.code for each in told} == {TroubleCode.OTHER}
+    assert [(each.about, each.what, each.to_do) for each in told] == [
+        (each.about, each.what, each.to_do) for each in ILL.troubles
+    ]
+
+
+def test_report_of_too_few_numbers_keeps_the_text() -> None:
+    plain = plain_of(replace(ILL, troubles=(LATE,)))
+    plain["troubles"][0]["numbers"] = [3]
+    (told,) = report_of(plain).troubles
+    assert (told.code, told.what) == (TroubleCode.OTHER, LATE.what)
+
+
+@pytest.mark.parametrize(
+    "broken",
+    [
+        None,
+        [],
+        {},
+        {**plain_of(WELL), "ages": None},
+        {**plain_of(WELL), "uptime_s": "long"},
+        {**plain_of(WELL), "troubles": [{"what": "no more"}]},
+    ],
+)
+def test_what_is_no_report_is_refused_in_a_sentence(broken: Any) -> None:
+    with pytest.raises(WireError, match="has"):
+        report_of(broken)

@@ -1,0 +1,67 @@
+"""The report in words."""
+
+from dataclasses import replace
+
+import pytest
+
+from kurt2rt.channel.protocol.health import Trouble
+from kurt2rt.channel.protocol.health_text import URGENT, WARNS, headline, lasting, lines_of, rows_of, size, trouble_in
+from kurt2rt.channel.protocol.trouble_code import TroubleCode
+from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
+from tests.service.health.reports import ILL, LATE, WELL
+
+
+def test_a_robot_that_is_well_in_a_few_words() -> None:
+    assert headline(WELL) == "well; late 0.31 ms (p99), missed 0"
+    assert all(not row.level for row in rows_of(WELL))
+
+
+def test_each_row_is_as_bad_as_the_worst_trouble_about_it() -> None:
+    levels = {row.name: row.level for row in rows_of(ILL) if row.level}
+    assert levels == {"sensors": URGENT, "ticks": WARNS}
+
+
+def test_troubles_are_named_and_not_counted() -> None:
+    assert headline(ILL).startswith("sensors silent (urgent), ticks missed; ")
+    assert headline(replace(ILL, troubles=(LATE, LATE))).startswith("ticks missed; ")
+
+
+def test_trouble_in_appends_duration_and_remedy() -> None:
+    assert trouble_in(LATE) == f"{LATE.what} (for 3 min 5 s): {LATE.to_do}"
+    drops = Trouble(TroubleCode.DROPS, 185.0, False, "lines", (40,))
+    assert trouble_in(drops) == f"{drops.what} (for 3 min 5 s)"
+    assert f"! {trouble_in(LATE)}" in lines_of(ILL)
+
+
+@pytest.mark.parametrize(
+    ("progress", "words"),
+    [
+        (NO_PROGRESS, "nothing was driven yet"),
+        (Progress(12, 0, 1), "0 % driven by itself, 1 question in the first 12 s"),
+        (Progress(60, 87, 3), "87 % driven by itself, 3 questions in the last minute"),
+    ],
+)
+def test_progress_row_tells_share_and_questions(progress: Progress, words: str) -> None:
+    rows = {row.name: row.text for row in rows_of(replace(WELL, progress=progress))}
+    assert rows["progress"] == words
+
+
+def test_what_is_not_there_is_said_so() -> None:
+    rows = {row.name: row.text for row in rows_of(replace(ILL, bus=None))}
+    assert "bus" not in rows
+    assert rows["sensors"].endswith("bumpers never heard")
+    assert rows["disk"] == "knowledge: 412 MB free, recordings: no answer"
+    assert lines_of(None) == ("nothing is known yet, the robot program has just begun",)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"),
+    [(0.4, "0 s"), (59.4, "59 s"), (59.6, "1 min 0 s"), (3725, "1 h 2 min"), (90_000, "1 d 1 h")],
+)
+def test_lengths_of_time(seconds: float, words: str) -> None:
+    assert lasting(seconds) == words
+
+
+@pytest.mark.parametrize(("count", "words"), [(900, "1 kB"), (136_183_808, "136 MB"), (79_893_155_840, "79.9 GB")])
+def test_sizes(count: int, words: str) -> None:
+    assert size(count) == words

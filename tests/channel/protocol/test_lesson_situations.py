@@ -1,0 +1,18 @@
+"""The list of named situations, as a device takes it in."""
+
+import pytest
+
+from kurt2rt.channel.protocol.codec import decode_answer, encode_answer
+from kurt2rt.channel.protocol.lesson_situations import situations_of
+from kurt2rt.channel.protocol.requests import LONGEST_TEXT, MOST_SITUATIONS
+from kurt2rt.channel.protocol.schema import WireError
+
+
+def test_as_many_as_are_told_fit_into_an_answer_however_long_their_names() -> None:
+    names = ("😀" * LONGEST_TEXT,) * MOST_SITUATIONS
+    assert situations_of(decode_answer(encode_answer({"situations": names}))) == names
+
+
+def test_an_answer_without_them_is_refused() -> None:
+    with pytest.raises(WireError, match="the robot's answer has no situations"):
+        situations_of({})

@@ -1,0 +1,436 @@
+"""Stories of a teacher behind a bad link, in simulated time: what counts, what does not, and when the wheels stand."""
+
+import asyncio
+import itertools
+import os
+import random
+import signal
+import statistics
+import sys
+from collections import Counter
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import anyio
+import pytest
+from anyio.abc import Process
+
+from kurt2rt.channel.protocol.requests import AnswerRequest, CommandRequest, ReplaceRequest, Request, RewardRequest
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.rla.outcome import ResultCode
+from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.teacher import TeacherClient
+from kurt2rt.teacher.client.answer import Answer, NoAnswerError
+from kurt2rt.teacher.client.transport import Exchange, OnResponse
+from tests.channel.bad_links import BAD_LINKS, BadLink
+from tests.channel.jumping_loop import run_jumping
+from tests.channel.lossy_link import LossyLink, Weather
+from tests.channel.robot_at_work import REACH_TICKS, RobotAtWork, journal_of, robot_at_work
+
+_LONGEST_S = 60.0
+"""Of simulated time, for anything that has to come sooner or later."""
+_HELD_S = 6.0
+_HOLE_S = 2.0
+_BEAT_S = 0.1
+_FEW = (BAD_LINKS[29],)
+
+
+@dataclass(frozen=True, slots=True)
+class Length:
+    """How long each part of a story lasts, in simulated seconds."""
+
+    lessons_s: float
+    driving_s: float
+
+
+SHORT = Length(lessons_s=3.0, driving_s=1.5)
+LONG = Length(lessons_s=8.0, driving_s=20.0)
+
+
+@dataclass
+class Note:
+    """One command, and what the teacher was told of it."""
+
+    request: Request
+    answer: Answer | None = None
+    """None: nobody answered."""
+    took_s: float = 0.0
+
+
+class NotingTeacher(TeacherClient):
+    """Notes each command with its id, and the robot's tick at which each message of a stream was sent."""
+
+    def __init__(self, at_work: RobotAtWork, link: LossyLink) -> None:
+        self._loop = asyncio.get_running_loop()
+        super().__init__(at_work.pairing.device.folder, port=link.port, now=self._loop.time)
+        self.notes: list[Note] = []
+        self.sent_ticks: list[int] = []
+        self._at_work = at_work
+
+    def note_what_is_sent(self) -> None:
+        requests, asking = self._open.requests, self._asking
+        post, ask = requests.post, asking.ask
+
+        async def noted_ask(request: Request, patience_s: float | None = None) -> Answer:
+            note = Note(request)
+            self.notes.append(note)
+            began_s = self._loop.time()
+            note.answer = await ask(request, patience_s)
+            note.took_s = self._loop.time() - began_s
+            return note.answer
+
+        def noted(path: str, payload: bytes, on_response: OnResponse) -> Exchange:
+            if path in ("/watch", "/drive"):
+                self.sent_ticks.append(self._at_work.tick)
+            return post(path, payload, on_response)
+
+        requests.post = noted  # type: ignore[method-assign]
+        asking.ask = noted_ask  # type: ignore[method-assign]
+
+    def freeze(self) -> Callable[[], None]:
+        """Its program hangs; returns what wakes it."""
+        hand = self._hand
+        hand.beat = lambda: None  # type: ignore[method-assign]
+
+        def wake() -> None:
+            del hand.beat
+
+        return wake
+
+    def die(self) -> None:
+        """As if its program was killed: nothing leaves it any more, no goodbye either."""
+        self._open.requests._robot = None
+
+
+@dataclass
+class Told:
+    """What came of one story."""
+
+    link: BadLink
+    notes: list[Note] = field(default_factory=list)
+    stops: Counter[str] = field(default_factory=Counter)
+    """False ones, by who drove."""
+    stand_ticks: list[int] = field(default_factory=list)
+    """From the last message to standing wheels."""
+    back_s: list[float] = field(default_factory=list)
+    """From the end of a hole to the next picture."""
+
+    def line(self) -> str:
+        count = Counter("no answer" if n.answer is None else n.answer.why or "accepted" for n in self.notes)
+        took_ms = [1000 * note.took_s for note in self.notes if note.answer is not None]
+        p99 = statistics.quantiles(took_ms, n=100, method="inclusive")[98]
+        refused = len(self.notes) - count["accepted"] - count["no answer"]
+        return (
+            f"| {self.link.name} | {len(self.notes)} | {count['accepted']} | {refused} | {count['no answer']} "
+            f"| {statistics.median(took_ms):.0f} | {p99:.0f} | {self.stops['hand']} | {self.stops['rlas']} "
+            f"| {10 * max(self.stand_ticks)} | {max(self.back_s):.2f} |"
+        )
+
+
+_HEAD = (
+    "| link | commands | accepted | refused | no answer | answer p50 ms | p99 ms | false stops by hand | of RLAs "
+    "| longest to stand ms | longest to come back s |\n|---|---|---|---|---|---|---|---|---|---|---|"
+)
+
+
+class Story:
+    """A teacher who teaches and drives over one bad link."""
+
+    def __init__(self, at_work: RobotAtWork, link: LossyLink, teacher: NotingTeacher, told: Told) -> None:
+        self._at_work = at_work
+        self._link = link
+        self._teacher = teacher
+        self._told = told
+        self._now = asyncio.get_running_loop().time
+        self._chance = random.Random(told.link.seed)
+
+    async def tell(self, length: Length) -> None:
+        await self._begin()
+        async with self._a_hole_in_the_middle(length.lessons_s):
+            await self._teach(length.lessons_s)
+        await self._drive_by_hand(length.driving_s)
+        await self._drive_by_rlas(length.driving_s)
+        await self._is_cut_off_while_driving_by_hand()
+        await self._freezes_while_driving_by_hand()
+        await self._freezes_while_rlas_drive()
+        if self._told.link.holds_back:
+            await self._dies_while_all_he_says_is_held_back()
+        else:
+            await self._dies()
+
+    async def _begin(self) -> None:
+        await self._insist(self._teacher.take)
+        await self._insist(lambda: self._teacher.answer("forward"))
+
+    async def _insist(self, say: Callable[[], Any]) -> None:
+        """Say it until it is accepted."""
+        with anyio.fail_after(_LONGEST_S):
+            while True:
+                try:
+                    if (await say()).accepted:
+                        return
+                except NoAnswerError:
+                    pass
+
+    async def _teach(self, lasts_s: float) -> None:
+        teacher, until_s = self._teacher, self._now() + lasts_s
+        number = 0
+        while self._now() < until_s:
+            number += 1
+            state = teacher.state
+            assert state is not None
+            try:
+                if state.stopped:
+                    await teacher.resume()
+                match number % 3:
+                    case 0:
+                        self._at_work.robot.counts = self._chance.randrange(60, 560)
+                        await teacher.answer(self._chance.choice(("forward", "back", "spin_left")))
+                    case 1:
+                        await teacher.reward(1)  # blame would have the robot ask, and stand
+                    case _:
+                        await teacher.replace(self._chance.randint(1, state.rlas + 1), "spin_right")
+            except NoAnswerError:
+                pass
+            await anyio.sleep(0.05)
+
+    @asynccontextmanager
+    async def _a_hole_in_the_middle(self, lasts_s: float) -> AsyncIterator[None]:
+        async with anyio.create_task_group() as tasks:
+            if self._told.link.hole:
+                tasks.start_soon(self._hole, lasts_s / 2)
+            yield
+
+    async def _hole(self, after_s: float) -> None:
+        await anyio.sleep(after_s)
+        self._link.cut()
+        await anyio.sleep(_HOLE_S)
+        await self._mend()
+
+    async def _mend(self) -> None:
+        self._link.mend()
+        mended_s, before = self._now(), self._teacher._pictures.count
+        await self._at_work.until(lambda: self._teacher._pictures.count > before)
+        self._told.back_s.append(self._now() - mended_s)
+
+    async def _drive_by_hand(self, lasts_s: float) -> None:
+        await self._press_until_it_drives()
+        first, until_s = self._at_work.tick, self._now() + lasts_s
+        while self._now() < until_s:
+            self._teacher.press(0.2, 0.2)
+            await anyio.sleep(_BEAT_S)
+        self._told.stops["hand"] += self._stops_since(first, (Cause.TEACHER,))
+        with anyio.move_on_after(_LONGEST_S):
+            await self._insist(self._teacher.stop)
+
+    async def _drive_by_rlas(self, lasts_s: float) -> None:
+        await self._until_rlas_drive()
+        first, until_s = self._at_work.tick, self._now() + lasts_s
+        while self._now() < until_s:
+            if self._at_work.records[-1].decision.cause is Cause.STOPPED:
+                await self._until_rlas_drive()
+            await anyio.sleep(_BEAT_S)
+        self._told.stops["rlas"] += self._stops_since(first, (Cause.RLA, Cause.HELD))
+
+    def _stops_since(self, first: int, driving: tuple[Cause, ...]) -> int:
+        causes = [record.decision.cause in driving for record in self._at_work.records if record.tick >= first]
+        return sum(before and not after for before, after in itertools.pairwise(causes))
+
+    async def _is_cut_off_while_driving_by_hand(self) -> None:
+        await self._press_until_it_drives()
+        self._link.cut()
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(self._keep_pressing, _HOLE_S)
+            await self._must_stand(_HOLE_S)
+        await self._mend()
+        # What was held back before the cut comes now.
+        await self._must_not_move(_HELD_S if self._told.link.holds_back else 1.0)
+
+    async def _freezes_while_driving_by_hand(self) -> None:
+        await self._press_until_it_drives()
+        wake = self._teacher.freeze()
+        await self._must_stand(1.0)
+        wake()
+        # It still thinks that the button is down; the robot knows that this press is over.
+        await self._must_not_move(1.0)
+
+    async def _freezes_while_rlas_drive(self) -> None:
+        await self._until_rlas_drive()
+        wake = self._teacher.freeze()
+        await self._must_stand(1.0)
+        wake()
+        await self._must_not_move(1.0)
+
+    async def _dies(self) -> None:
+        await self._press_until_it_drives()
+        self._teacher.die()
+        await self._must_stand(1.0)
+
+    async def _dies_while_all_he_says_is_held_back(self) -> None:
+        await self._press_until_it_drives()
+        self._link.change_weather(up=Weather(held_back=1.0, held_back_s=5.0))
+        tick = self._at_work.tick
+        sent = max(self._teacher.sent_ticks)
+        held = len(self._teacher.notes)
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(self._keep_pressing, _HOLE_S)
+            with pytest.raises(NoAnswerError):
+                await self._teacher.answer("back")
+        # With nothing newer behind it OSCORE takes what comes now for new: the rules above it have to know better.
+        self._teacher.die()
+        await anyio.sleep(_HELD_S)
+        self._note_standing(sent)
+        assert self._at_work.moved_since(tick + REACH_TICKS) == []
+        (note,) = [note for note in self._teacher.notes[held:] if isinstance(note.request, AnswerRequest)]
+        assert not self._at_work.runtime.school.has_taken(_identity(note.request))
+
+    async def _keep_pressing(self, lasts_s: float) -> None:
+        until_s = self._now() + lasts_s
+        while self._now() < until_s:
+            self._teacher.press(0.2, 0.2)
+            await anyio.sleep(_BEAT_S)
+
+    async def _press_until_it_drives(self) -> None:
+        def drives() -> bool:
+            self._teacher.press(0.2, 0.2)
+            return self._at_work.records[-1].decision.cause is Cause.TEACHER
+
+        await self._at_work.until(drives)
+
+    async def _until_rlas_drive(self) -> None:
+        with anyio.fail_after(_LONGEST_S):
+            while self._at_work.records[-1].decision.cause not in (Cause.RLA, Cause.HELD):
+                await self._insist(self._teacher.resume)
+                with anyio.move_on_after(0.5):
+                    await self._at_work.until(lambda: self._at_work.records[-1].decision.driving)
+
+    async def _must_stand(self, lasts_s: float) -> None:
+        """From now on nothing new reaches the robot."""
+        sent = max(self._teacher.sent_ticks)
+        await anyio.sleep(lasts_s)
+        self._note_standing(sent)
+
+    def _note_standing(self, sent: int) -> None:
+        moved = self._at_work.moved_since(sent)
+        self._told.stand_ticks.append(moved[-1] + 1 - sent if moved else 0)
+        assert self._told.stand_ticks[-1] <= REACH_TICKS, f"{self._told.link.name}: sent in {sent}, moved in {moved}"
+
+    async def _must_not_move(self, lasts_s: float) -> None:
+        tick = self._at_work.tick
+        await anyio.sleep(lasts_s)
+        assert self._at_work.moved_since(tick) == [], self._told.link.name
+
+
+def _identity(request: Request) -> str:
+    assert isinstance(request, CommandRequest)
+    return f"local-{request.command_id.hex()}"
+
+
+def _tell(link: BadLink, folder: Path, length: Length) -> Told:
+    told = Told(link)
+
+    async def story() -> None:
+        async with (
+            robot_at_work(folder) as at_work,
+            LossyLink(at_work.port, up=link.weather, down=link.weather, seed=link.seed) as lossy,
+            NotingTeacher(at_work, lossy) as teacher,
+        ):
+            teacher.note_what_is_sent()
+            told.notes = teacher.notes
+            await Story(at_work, lossy, teacher, told).tell(length)
+            assert at_work.channel.failures == 0
+            assert at_work.channel.endpoint.counters.failed == 0, at_work.channel.endpoint.newest_failure
+            assert at_work.runtime.ledger.missed_ticks == 0
+
+    random.seed(link.seed)  # aiocoap draws message ids and pauses
+    run_jumping(story)
+    return told
+
+
+def _must_agree(notes: list[Note], events: list[TeachingEvent]) -> None:
+    """The journal holds what the teacher was told that it holds."""
+    written = Counter(event.origin.command_id for event in events)
+    lessons = [note for note in notes if isinstance(note.request, AnswerRequest | ReplaceRequest | RewardRequest)]
+    assert set(written) <= {_identity(note.request) for note in lessons}
+    assert set(written.values()) <= {1}
+    for note in lessons:
+        count = written[_identity(note.request)]
+        if note.answer is None or note.answer.why == "unsaved":
+            assert count <= 1
+        elif not note.answer.accepted:
+            assert count == 0
+        elif "row" in note.answer.extra:
+            row = note.answer.extra["row"]
+            assert events[row - 1].origin.command_id == _identity(note.request)
+        else:
+            assert note.answer.outcome is not None
+            assert note.answer.outcome.code is ResultCode.RLA_AGREES, note.answer
+            assert count == 0
+
+
+def _must_be_good(told: Told, folder: Path) -> None:
+    _must_agree(told.notes, journal_of(folder))
+    if told.link.weather.loss <= 0.3:
+        assert told.stops.total() <= (0 if told.link.missing <= 0.3 else 1), told.stops
+    if told.link.weather.loss <= 0.1:
+        assert all(note.answer is not None for note in told.notes if isinstance(note.request, RewardRequest))
+
+
+@pytest.fixture(scope="module")
+def report() -> Iterator[list[Told]]:
+    """Written to the file that KURT2RT_LINKS_REPORT names, if any."""
+    tales: list[Told] = []
+    yield tales
+    path = os.environ.get("KURT2RT_LINKS_REPORT")
+    if path and tales:
+        Path(path).write_text("\n".join((_HEAD, *(told.line() for told in tales))) + "\n", encoding="utf-8")
+
+
+@pytest.mark.parametrize("link", _FEW, ids=lambda link: link.name)
+def test_over_a_bad_link_lessons_count_once_and_silence_stops_the_wheels(link: BadLink, tmp_path: Path) -> None:
+    _must_be_good(_tell(link, tmp_path, SHORT), tmp_path)
+
+
+@asynccontextmanager
+async def _driver(at_work: RobotAtWork) -> AsyncIterator[Process]:
+    """A teacher's program that drives, in real time; killed at the end."""
+    command = [sys.executable, "-m", "tests.channel.driver_process", str(at_work.pairing.device.folder)]
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3])}
+    async with await anyio.open_process([*command, str(at_work.port)], env=environment, stderr=None) as process:
+        try:
+            await at_work.until(lambda: bool(at_work.moved_since(at_work.tick - 1)))
+            yield process
+        finally:
+            if process.returncode is None:
+                process.kill()
+
+
+async def _must_stand_from(at_work: RobotAtWork, tick: int) -> None:
+    """Nobody drives from this tick on; a second longer than the robot may take is looked at."""
+    await at_work.until(lambda: at_work.tick >= tick + REACH_TICKS + 100)
+    assert at_work.moved_since(tick + REACH_TICKS) == []
+
+
+@pytest.mark.deep
+async def test_a_program_that_hangs_or_is_killed_leaves_a_robot_that_stands(tmp_path: Path) -> None:
+    async with robot_at_work(tmp_path) as at_work:
+        async with _driver(at_work) as process:
+            process.send_signal(signal.SIGSTOP)
+            # The tick that is next may still hear what was sent before the signal came.
+            await _must_stand_from(at_work, at_work.tick + 1)
+            process.send_signal(signal.SIGCONT)
+            await _must_stand_from(at_work, at_work.tick - REACH_TICKS)
+        async with _driver(at_work) as process:
+            process.kill()
+            await _must_stand_from(at_work, at_work.tick + 1)
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("link", BAD_LINKS, ids=lambda link: link.name)
+def test_over_forty_bad_links(link: BadLink, tmp_path: Path, report: list[Told]) -> None:
+    told = _tell(link, tmp_path, LONG)
+    report.append(told)
+    _must_be_good(told, tmp_path)

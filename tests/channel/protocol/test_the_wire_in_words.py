@@ -1,0 +1,151 @@
+"""docs/the-wire.md says what the codec does: all keys, all paths, and how many places each body has."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import cbor2
+import pytest
+
+from kurt2rt.channel.protocol.codec import PATHS, encode_state
+from kurt2rt.channel.protocol.health_codec import plain_of
+from kurt2rt.channel.protocol.requests import VERSION, checks_of
+from kurt2rt.channel.protocol.schema import (
+    Flag,
+    ManyOf,
+    Octets,
+    OctetsUpTo,
+    OneOf,
+    OneWord,
+    OrNone,
+    Real,
+    Row,
+    Text,
+    Whole,
+)
+from kurt2rt.core.decision.standing import Standing
+from tests.channel.jumping_loop import run_jumping
+from tests.channel.robot_at_work import robot_at_work
+from tests.channel.states import COMMANDS, SURPRISED, state
+from tests.service.health.reports import ILL
+
+TEXT = (Path(__file__).parents[3] / "docs" / "the-wire.md").read_text(encoding="utf-8")
+PICTURE = TEXT[TEXT.index("### The picture") : TEXT.index("### What a teacher says")]
+HEALTH = TEXT[TEXT.index("### Health") : TEXT.index("### Versions")]
+SAID = TEXT[TEXT.index("### What a teacher says") : TEXT.index("### Versions")]
+
+
+def bodies() -> dict[str, list[str]]:
+    """By path, the words of its body; nested lists are one place."""
+    found: dict[str, list[str]] = {}
+    for row in re.findall(r"^\| \w+ \| (`/.*?) \| (`\[.*?) \|", SAID, re.MULTILINE):
+        paths, written = (re.findall(r"`([^`]*)`", column) for column in row)
+        for path, body in zip(paths, written if len(written) == len(paths) else written * len(paths), strict=True):
+            found[path] = [each for each in body.strip("[]").split(", ") if each]
+    return found
+
+
+def test_every_key_of_the_picture_is_explained() -> None:
+    keys = set(cbor2.loads(encode_state(state())))
+    explained = set(re.findall(r"`(\w+)`", "".join(re.findall(r"^\|.*\|$", PICTURE, re.MULTILINE))))
+    assert keys <= explained, keys - explained
+
+
+@pytest.mark.parametrize("key", ["mid", "su", "sd"])
+def test_the_rows_of_the_picture_have_the_places_that_are_written(key: str) -> None:
+    row = cbor2.loads(encode_state(state(mid=COMMANDS, surprise=SURPRISED, standing=Standing())))[key]
+    written = re.search(rf"`{key}` is `\[(.*?)\]`", PICTURE)
+    assert written is not None
+    assert len(written[1].split(", ")) == len(row)
+
+
+def test_every_path_is_explained_with_as_many_places_as_it_takes() -> None:
+    assert {path: len(body) for path, body in bodies().items()} == {
+        path: len(checks_of(kind)) for path, kind in PATHS.items()
+    }
+
+
+def ranges() -> dict[str, str]:
+    """By word of a body, what it takes."""
+    table = SAID[SAID.index("What each of them takes") : SAID.index("Answers are maps;")]
+    return {
+        word: text
+        for words, text in re.findall(r"^\| (`.*?`) \| (.*?) \|$", table, re.MULTILINE)
+        for word in re.findall(r"`(.*?)`", words)
+    }
+
+
+def in_words(check: object) -> str:
+    match check:
+        case Octets(length):
+            return f"{length} bytes"
+        case OctetsUpTo(most):
+            return f"1 to {most} bytes"
+        case Whole(least, most):
+            return f"whole number, {least} to {most}"
+        case Real(most, unit):
+            return f"number, {-most:g} to {most:g} {unit}".strip()
+        case Text(most, least):
+            return f"text, {least} to {most} printable characters"
+        case OneWord(words):
+            return " or ".join(words)
+        case OneOf(numbers):
+            return " or ".join(filter(None, (", ".join(map(str, numbers[:-1])), str(numbers[-1]))))
+        case Flag():
+            return "true or false"
+        case OrNone(inner):
+            return f"{in_words(inner)}, or null"
+        case ManyOf(Row(checks), most):
+            return f"up to {most} of `[{'; '.join(map(in_words, checks))}]`"
+    raise AssertionError(check)
+
+
+@pytest.mark.parametrize("path", sorted(PATHS))
+def test_the_range_of_every_place_is_written(path: str) -> None:
+    written = ranges()
+    for word, (_, check) in zip(bodies()[path], checks_of(PATHS[path]), strict=True):
+        name = word.removesuffix(" or null")
+        takes = in_words(check)
+        if name != word:
+            takes = takes.removesuffix(", or null")
+        if path == "/file" and name == "name":
+            assert "for `/file` up to 128" in written[name]
+            assert takes == "text, 1 to 128 printable characters"
+            continue
+        assert written[name].split("; the guard")[0].split("; for `/file`")[0] == takes, word
+
+
+def test_every_key_of_hello_is_explained(tmp_path: Path) -> None:
+    told: list[set[str]] = []
+
+    async def story() -> None:
+        async with robot_at_work(tmp_path) as at_work:
+            reception: Any = at_work.channel._reception
+            told.append({*reception._hello, "tick"})
+
+    run_jumping(story)
+    table = SAID[SAID.index("`/hello` answers:") :]
+    explained = set(re.findall(r"`(\w+)`", "".join(re.findall(r"^\| `.*?` \|", table, re.MULTILINE))))
+    assert told == [told[0] & explained]
+
+
+def keys_in(plain: object) -> Iterator[str]:
+    """All keys of maps in maps and lists."""
+    if isinstance(plain, dict):
+        for key, value in plain.items():
+            yield key
+            yield from keys_in(value)
+    elif isinstance(plain, list):
+        for each in plain:
+            yield from keys_in(each)
+
+
+def test_every_key_of_the_health_report_is_explained() -> None:
+    keys = set(keys_in(plain_of(ILL)))
+    explained = set(re.findall(r"`(\w+)`", HEALTH))
+    assert keys <= explained, keys - explained
+
+
+def test_the_version_is_the_one_that_the_robot_speaks() -> None:
+    assert f"is the version of this contract: {VERSION}." in TEXT

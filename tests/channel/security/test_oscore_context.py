@@ -1,0 +1,240 @@
+import json
+import random
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from aiocoap import oscore
+
+from kurt2rt.channel.security.context_folder import ContextFolder, CredentialsError
+from kurt2rt.channel.security.oscore_context import CHUNK, OscoreContext
+from kurt2rt.channel.security.pairing import Pairing, pair, renew
+from tests.channel.sides import answer_challenge, ask, ask_until_fresh, sequence_of
+from tests.cli.helpers import ROOT, started
+
+
+def opened(folder: Path, chunk: int = CHUNK) -> OscoreContext:
+    """With a clock that was set back to before the pairing: numbers are those that are stored."""
+    return OscoreContext(folder, chunk=chunk, now=lambda: 0.0)
+
+
+@pytest.fixture
+def pairing(tmp_path: Path) -> Pairing:
+    return pair(tmp_path / "teachers", tmp_path / "devices", "phone")
+
+
+class SlowDisk:
+    """Each store waits until the test lets it through; counts those that were made in the test's own thread."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.may_store = threading.Event()
+        self.may_store.set()
+        self.asked = threading.Event()
+        self.in_place = 0
+        self.broken = False
+        write = ContextFolder.write_sequence
+        here = threading.get_ident()
+
+        def slow(folder: ContextFolder, next_to_send: int) -> None:
+            self.in_place += threading.get_ident() == here
+            self.asked.set()
+            assert self.may_store.wait(timeout=10)
+            if self.broken:
+                raise OSError(28, "No space left on device")
+            write(folder, next_to_send)
+
+        monkeypatch.setattr(ContextFolder, "write_sequence", slow)
+
+    def wait(self) -> None:
+        """Until no thread stores any more."""
+        for thread in threading.enumerate():
+            if thread.name.startswith("oscore"):
+                thread.join(timeout=10)
+
+
+def test_a_request_is_read_by_the_other_side_and_names_the_teacher(pairing: Pairing) -> None:
+    device, robot = OscoreContext(pairing.device.folder), OscoreContext(pairing.teacher)
+    answer_challenge(device, robot)
+    assert ask(device, robot, "forward") == "forward"
+    assert robot.authenticated_claims == ["phone"]
+    device.close()
+    robot.close()
+
+
+def test_while_it_is_in_use_the_file_holds_a_reservation_and_no_replay_window(pairing: Pairing) -> None:
+    robot = opened(pairing.teacher, chunk=100)
+    assert json.loads(sequence_of(pairing.teacher)) == {"next-to-send": 100, "received": "unknown"}
+    robot.close()
+
+
+def test_closed_in_order_no_number_is_wasted(pairing: Pairing) -> None:
+    device, robot = opened(pairing.device.folder), opened(pairing.teacher)
+    answer_challenge(device, robot)
+    for _ in range(3):
+        ask(device, robot, "forward")
+    device.close()
+    robot.close()
+    assert json.loads(sequence_of(pairing.device.folder)) == {"next-to-send": 5, "received": "unknown"}
+
+
+def test_numbers_are_reserved_in_a_thread_before_they_run_out(
+    pairing: Pairing, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    context = opened(pairing.teacher, chunk=10)
+    disk = SlowDisk(monkeypatch)
+    numbers = [context.new_sequence_number() for _ in range(6)]
+    disk.wait()
+    numbers += [context.new_sequence_number() for _ in range(10)]
+    disk.wait()
+    assert numbers == list(range(16))
+    assert json.loads(sequence_of(pairing.teacher))["next-to-send"] == 30
+    assert disk.in_place == 0
+    context.close()
+
+
+def test_a_number_that_is_not_stored_yet_is_not_given_out(pairing: Pairing, monkeypatch: pytest.MonkeyPatch) -> None:
+    context = opened(pairing.teacher, chunk=10)
+    disk = SlowDisk(monkeypatch)
+    disk.may_store.clear()
+    for _ in range(10):
+        context.new_sequence_number()
+    assert disk.asked.wait(timeout=10)
+    threading.Timer(0.05, disk.may_store.set).start()
+    assert context.new_sequence_number() == 10  # waited for the thread
+    assert json.loads(sequence_of(pairing.teacher))["next-to-send"] == 20
+    assert disk.in_place == 0
+    context.close()
+
+
+def test_a_full_disk_is_told_and_the_last_number_is_not_passed(
+    pairing: Pairing, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    context = opened(pairing.teacher, chunk=10)
+    disk = SlowDisk(monkeypatch)
+    disk.broken = True
+    for _ in range(10):
+        context.new_sequence_number()
+    disk.wait()
+    with pytest.raises(oscore.ContextUnavailable, match="No space left"):
+        context.new_sequence_number()
+    assert "No space left" in context.trouble
+    disk.broken = False
+    assert context.new_sequence_number() == 11  # the one that was refused was not sent
+    context.abandon()
+
+
+@pytest.mark.parametrize("kills", [4, pytest.param(60, marks=pytest.mark.deep)])
+def test_killed_over_and_over_it_never_uses_a_number_twice(pairing: Pairing, kills: int) -> None:
+    chance = random.Random(2004)
+    used: list[int] = []
+    folder = pairing.device.folder
+    for _ in range(kills):
+        chunk = str(chance.randint(1, 9))
+        with started("tests.channel.send_until_killed", str(folder), chunk, folder=ROOT) as child:
+            assert child.stdout is not None
+            assert child.stderr is not None
+            said = [child.stdout.readline() for _ in range(chance.randint(1, 60))]
+            child.kill()
+            said += child.stdout.readlines()
+            assert child.stderr.read() == ""
+        used += [int(line) for line in said if line.endswith("\n")]
+    assert used == sorted(set(used))
+    with_state_lost = OscoreContext(folder)
+    robot = OscoreContext(pairing.teacher)
+    assert with_state_lost.sender_sequence_number > used[-1]
+    assert ask_until_fresh(with_state_lost, robot, "still the same teacher") == "still the same teacher"
+    with_state_lost.close()
+    robot.close()
+
+
+def test_a_killed_robot_lets_nobody_replay_and_goes_on_after_one_challenge(pairing: Pairing) -> None:
+    device = OscoreContext(pairing.device.folder)
+    robot = OscoreContext(pairing.teacher)
+    answer_challenge(device, robot)
+    robot.abandon()  # leaves the folder as a kill does: the reservation, and a window that is not known
+    robot = OscoreContext(pairing.teacher)
+    with pytest.raises(oscore.ReplayErrorWithEcho):
+        ask(device, robot, "forward")
+    assert ask_until_fresh(device, robot, "left") == "left"
+    assert ask(device, robot, "right") == "right"
+    device.close()
+    robot.close()
+
+
+def test_a_closed_context_sends_nothing_more(pairing: Pairing) -> None:
+    context = OscoreContext(pairing.teacher)
+    context.close()
+    context.close()
+    with pytest.raises(oscore.ContextUnavailable, match="closed or revoked"):
+        context.new_sequence_number()
+
+
+def test_what_an_old_pairing_stores_does_not_get_into_the_renewed_one(pairing: Pairing, tmp_path: Path) -> None:
+    old = OscoreContext(pairing.teacher, chunk=10)
+    renewed = renew(tmp_path / "teachers", tmp_path / "devices", "phone")
+    before = sequence_of(renewed.teacher)
+    for _ in range(9):
+        old.new_sequence_number()
+    old.close()
+    assert sequence_of(renewed.teacher) == before
+
+
+def test_two_programs_cannot_use_the_same_side(pairing: Pairing) -> None:
+    first = OscoreContext(pairing.teacher)
+    with pytest.raises(CredentialsError, match="another program uses this pairing"):
+        OscoreContext(pairing.teacher)
+    with pytest.raises(TimeoutError):
+        oscore.FilesystemSecurityContext(str(pairing.teacher))  # aiocoap's own tools are kept out as well
+    first.close()
+    OscoreContext(pairing.teacher).close()
+
+
+def test_aiocoaps_own_context_reads_what_is_left(pairing: Pairing) -> None:
+    opened(pairing.teacher).close()
+    theirs = oscore.FilesystemSecurityContext(str(pairing.teacher))
+    assert theirs.new_sequence_number() == 0
+    theirs._destroy()
+    ours = opened(pairing.teacher)
+    assert ours.sender_sequence_number == 1
+    ours.close()
+
+
+def test_a_folder_that_is_not_there_is_told_with_what_to_do(tmp_path: Path) -> None:
+    with pytest.raises(CredentialsError, match=r"no pairing to open .*kurt2rt pair nobody"):
+        OscoreContext(tmp_path / "nobody")
+
+
+def _write(name: str, text: str) -> Callable[[Path], None]:
+    def damage(folder: Path) -> None:
+        (folder / name).write_text(text, encoding="utf-8")
+
+    return damage
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        _write("sequence.json", ""),
+        _write("sequence.json", "[]"),
+        _write("sequence.json", '{"next-to-send": -1, "received": "unknown"}'),
+        _write("sequence.json", '{"next-to-send": 1}'),
+        _write("sequence.json", '{"next-to-send": 1, "received": 5}'),
+        _write("settings.json", '{"sender-id_hex": "01", "recipient-id_hex": "02", "paired-at": "today"}'),
+        _write("settings.json", '{"sender-id_hex": "01", "recipient-id_hex": "02", "paired-at": []}'),
+        _write("secret.json", '{"secret_hex": "no hex"}'),
+        _write("secret.json", "{}"),
+        _write("settings.json", '{"sender-id_hex": "00112233445566778899"}'),
+        lambda folder: (folder / "secret.json").unlink(),
+        lambda folder: (folder / "sequence.json").unlink(),
+    ],
+)
+def test_a_damaged_pairing_is_refused_in_one_line(pairing: Pairing, damage: Callable[[Path], None]) -> None:
+    damage(pairing.teacher)
+    with pytest.raises(CredentialsError) as refused:
+        OscoreContext(pairing.teacher)
+    assert str(refused.value).startswith(str(pairing.teacher))
+    assert str(refused.value).endswith("kurt2rt pair phone --renew")
+    assert "\n" not in str(refused.value)
+    with pytest.raises(CredentialsError, match="renew"):  # and it let go of the lock
+        OscoreContext(pairing.teacher)

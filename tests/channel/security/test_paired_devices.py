@@ -1,0 +1,225 @@
+import os
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+from aiocoap import oscore
+
+from kurt2rt.channel.security.context_folder import CredentialsError
+from kurt2rt.channel.security.oscore_context import OscoreContext
+from kurt2rt.channel.security.paired_devices import Change, Teachers
+from kurt2rt.channel.security.pairing import local_pairing, pair, paired, renew, revoke
+from tests.channel.clock import Clock
+from tests.channel.sides import answer_challenge, ask, ask_until_fresh, header_of
+
+
+class House:
+    """A robot's folders, and its teachers while it runs."""
+
+    def __init__(self, folder: Path) -> None:
+        self.teachers, self.devices = folder / "teachers", folder / "devices"
+        self.clock = Clock()
+        self._open: list[Teachers | OscoreContext] = []
+
+    def pair(self, name: str) -> None:
+        pair(self.teachers, self.devices, name)
+
+    def start(self) -> Teachers:
+        teachers = Teachers(self.teachers, now=self.clock)
+        self._open.append(teachers)
+        return teachers
+
+    def device(self, name: str) -> OscoreContext:
+        device = OscoreContext(self.devices / name)
+        self._open.append(device)
+        return device
+
+    def close(self) -> None:
+        for each in self._open:
+            each.close()
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Iterator[House]:
+    house = House(tmp_path)
+    yield house
+    house.close()
+
+
+def test_a_request_finds_the_keys_of_its_device(house: House) -> None:
+    house.pair("phone")
+    house.pair("tablet")
+    teachers = house.start()
+    assert teachers.names == ("phone", "tablet")
+    for name in teachers.names:
+        assert teachers.find(header_of(house.device(name))).authenticated_claims == [name]
+
+
+async def test_a_folder_with_the_critics_name_lets_nobody_in_and_is_told_of(house: House) -> None:
+    house.pair("phone")
+    (house.teachers / "phone").rename(house.teachers / "critic")
+    house.pair("tablet")
+    teachers = house.start()
+    await teachers.refresh()
+    assert teachers.names == ("tablet",)
+    (line,) = teachers.trouble
+    assert "critic is the name of the robot's own critic; kurt2rt pair critic --revoke" in line
+
+
+def test_strangers_find_nothing(house: House) -> None:
+    house.pair("phone")
+    teachers = house.start()
+    known = header_of(house.device("phone"))
+    for header in (
+        {},
+        {oscore.COSE_KID: b""},
+        {oscore.COSE_KID: b"strange"},
+        {**known, oscore.COSE_KID_CONTEXT: b"other"},
+    ):
+        with pytest.raises(KeyError):
+            teachers.find(header)
+
+
+async def test_a_device_that_is_paired_while_the_robot_runs_is_taken_up(house: House) -> None:
+    teachers = house.start()
+    assert teachers.names == ()
+    house.pair("phone")
+    assert await teachers.refresh() == Change(came=("phone",), gone=())
+    device = house.device("phone")
+    assert ask_until_fresh(device, teachers.find(header_of(device)), "forward") == "forward"
+    assert await teachers.refresh() == Change(came=(), gone=())
+
+
+async def test_a_device_that_is_revoked_while_the_robot_runs_is_refused(house: House) -> None:
+    house.pair("phone")
+    house.pair("tablet")
+    teachers = house.start()
+    header = header_of(house.device("phone"))
+    context = teachers.find(header)
+    revoke(house.teachers, house.devices, "phone")
+    assert await teachers.refresh() == Change(came=(), gone=("phone",))
+    assert teachers.names == ("tablet",)
+    with pytest.raises(KeyError):
+        teachers.find(header)
+    with pytest.raises(oscore.ContextUnavailable):  # and it is shown no more pictures
+        context.new_sequence_number()
+
+
+async def test_a_renewed_device_is_known_by_its_new_keys_alone(house: House) -> None:
+    house.pair("phone")
+    teachers = house.start()
+    old = header_of(house.device("phone"))
+    renew(house.teachers, house.devices, "phone")
+    assert await teachers.refresh() == Change(came=("phone",), gone=("phone",))
+    with pytest.raises(KeyError):
+        teachers.find(old)
+    device = house.device("phone")
+    assert ask_until_fresh(device, teachers.find(header_of(device)), "forward") == "forward"
+
+
+async def test_renewed_and_revoked_between_two_looks_it_is_gone(house: House) -> None:
+    house.pair("phone")
+    teachers = house.start()
+    renew(house.teachers, house.devices, "phone")
+    revoke(house.teachers, house.devices, "phone")
+    assert await teachers.refresh() == Change(came=(), gone=("phone",))
+
+
+async def test_a_damaged_pairing_keeps_nobody_else_out_and_is_told(house: House) -> None:
+    house.pair("phone")
+    house.pair("tablet")
+    (house.teachers / "tablet" / "sequence.json").write_text("", encoding="utf-8")
+    teachers = house.start()
+    assert teachers.names == ("phone",)
+    (line,) = teachers.trouble
+    assert "kurt2rt pair tablet --renew" in line
+    renew(house.teachers, house.devices, "tablet")
+    assert (await teachers.refresh()).came == ("tablet",)
+    assert teachers.trouble == ()
+
+
+def test_two_robot_programs_cannot_share_a_folder(house: House) -> None:
+    house.pair("phone")
+    house.start()
+    second = house.start()
+    assert second.names == ()
+    assert "another program uses this pairing" in second.trouble[0]
+
+
+async def test_a_teachers_folder_that_is_deleted_lets_nobody_in(house: House, tmp_path: Path) -> None:
+    house.pair("phone")
+    teachers = house.start()
+    house.teachers.rename(tmp_path / "away")
+    assert (await teachers.refresh()).gone == ("phone",)
+
+
+async def test_a_disk_that_cannot_be_read_costs_nobody_his_teacher(
+    house: House, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    house.pair("phone")
+    teachers = house.start()
+
+    def broken(_: Path) -> os.stat_result:
+        raise OSError(5, "Input/output error")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Path, "stat", broken)
+        assert await teachers.refresh() == Change(came=(), gone=())
+        assert teachers.names == ("phone",)
+        assert "Input/output error" in teachers.trouble[0]
+    await teachers.refresh()
+    assert teachers.trouble == ()
+
+
+async def test_the_list_tells_to_the_minute_when_a_device_was_last_heard(house: House) -> None:
+    house.pair("phone")
+    teachers = house.start()
+    device = house.device("phone")
+    await teachers.refresh()
+    assert paired(house.teachers)[0].used_at is None
+    ask_until_fresh(device, teachers.find(header_of(device)), "forward")
+    await teachers.refresh()
+    used_at = paired(house.teachers)[0].used_at
+    assert used_at is not None
+    assert used_at >= paired(house.teachers)[0].made_at
+    used = house.teachers / "phone" / "used"
+    for passed_s, noted in ((59.0, False), (2.0, True)):
+        os.utime(used, (1e9, 1e9))
+        ask_until_fresh(device, teachers.find(header_of(device)), "forward")
+        house.clock.now_s += passed_s
+        await teachers.refresh()
+        noted_at = paired(house.teachers)[0].used_at
+        assert (noted_at != datetime.fromtimestamp(1e9, UTC)) is noted
+
+
+def test_with_this_machines_own_teachers_alone_nobody_is_paired(house: House) -> None:
+    teachers = house.start()
+    assert teachers.only_local
+    teachers.close()
+    local_pairing(house.teachers, house.devices)
+    local_pairing(house.teachers, house.devices, "auto")
+    teachers = house.start()
+    assert teachers.names == ("auto", "local")
+    assert teachers.only_local
+    teachers.close()
+    house.pair("phone")
+    assert not house.start().only_local
+
+
+def test_each_start_challenges_a_device_once(house: House) -> None:
+    house.pair("phone")
+    device = house.device("phone")
+    for text in ("first start", "second start"):
+        teachers = house.start()
+        with pytest.raises(oscore.ReplayErrorWithEcho):
+            ask(device, teachers.find(header_of(device)), text)
+        answer_challenge(device, teachers.find(header_of(device)))
+        assert ask(device, teachers.find(header_of(device)), text) == text
+        teachers.close()
+
+
+def test_a_folder_that_is_none_is_told(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(CredentialsError, match="cannot be read"):
+        Teachers(tmp_path / "file")

@@ -1,0 +1,268 @@
+import json
+import os
+import secrets
+import stat
+from collections.abc import Callable
+from itertools import count
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.channel.security.context_folder import CredentialsError
+from kurt2rt.channel.security.oscore_context import OscoreContext
+from kurt2rt.channel.security.pairing import Device, local_pairing, pair, paired, read_device, renew, revoke
+from kurt2rt.core.rla.programs import AUTO
+from tests.channel.sides import ask, ask_until_fresh
+
+
+@pytest.fixture
+def teachers(tmp_path: Path) -> Path:
+    return tmp_path / "var" / "teachers"
+
+
+@pytest.fixture
+def devices(tmp_path: Path) -> Path:
+    return tmp_path / "var" / "devices"
+
+
+def understood(teacher: Path, device: Path) -> bool:
+    with_device, with_robot = OscoreContext(device), OscoreContext(teacher)
+    try:
+        return ask_until_fresh(with_device, with_robot, "forward") == "forward"
+    finally:
+        with_device.close()
+        with_robot.close()
+
+
+def test_a_pairing_makes_both_sides_and_they_understand_each_other(teachers: Path, devices: Path) -> None:
+    pairing = pair(teachers, devices, "anna-phone", host="10.0.0.7", port=6000)
+    assert pairing.name == "anna-phone"
+    assert pairing.teacher == teachers / "anna-phone"
+    assert read_device(devices / "anna-phone") == pairing.device
+    assert pairing.device.host == "10.0.0.7"
+    assert pairing.device.port == 6000
+    assert len(pairing.device.token) == 32
+    assert understood(pairing.teacher, pairing.device.folder)
+
+
+def test_nobody_else_on_the_machine_reads_a_secret(teachers: Path, devices: Path) -> None:
+    before = os.umask(0)
+    try:
+        pair(teachers, devices, "phone")
+    finally:
+        os.umask(before)
+    for path in (teachers, devices, *teachers.rglob("phone/**"), *devices.rglob("phone/**")):
+        assert stat.S_IMODE(path.stat().st_mode) == (0o700 if path.is_dir() else 0o600), path
+    for path in (*teachers.rglob("*.json"), *devices.rglob("*.json")):
+        assert stat.S_IMODE(path.stat().st_mode) == 0o600, path
+
+
+def test_a_pairing_has_secrets_and_ids_of_its_own(teachers: Path, devices: Path) -> None:
+    texts, ids = [], []
+    for name in ("a", "b", "c"):
+        pairing = pair(teachers, devices, name)
+        texts.append((pairing.teacher / "secret.json").read_text(encoding="utf-8"))
+        settings = json.loads((pairing.teacher / "settings.json").read_text(encoding="utf-8"))
+        ids += [settings["sender-id_hex"], settings["recipient-id_hex"]]
+    assert len(set(texts)) == 3
+    assert len(set(ids)) == 6
+
+
+def test_an_id_that_is_taken_is_drawn_again(teachers: Path, devices: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pair(teachers, devices, "a")
+    taken = json.loads((teachers / "a" / "settings.json").read_text(encoding="utf-8"))["sender-id_hex"]
+    draws = iter([taken, "0a", "0a", taken, "0b", "5ec2e7", "5a17"])
+    monkeypatch.setattr(secrets, "token_hex", lambda _bytes: next(draws))
+    pair(teachers, devices, "b")
+    ids = json.loads((teachers / "b" / "settings.json").read_text(encoding="utf-8"))
+    assert (ids["sender-id_hex"], ids["recipient-id_hex"]) == ("0a", "0b")
+
+
+@pytest.mark.parametrize(
+    "name", ["", "Anna", "anna phone", "../x", ".", "a" * 25, "ann\N{LATIN SMALL LETTER A}\n", "é"]
+)
+def test_what_is_no_name_is_refused(teachers: Path, devices: Path, name: str) -> None:
+    for change in (pair, renew, revoke):
+        with pytest.raises(CredentialsError, match="give 1 to 24 of a-z, 0-9 and -"):
+            change(teachers, devices, name)
+    assert not teachers.exists()
+
+
+@pytest.mark.parametrize("name", ["local", "auto", "terminal"])
+def test_the_names_of_this_machine_are_not_paired(teachers: Path, devices: Path, name: str) -> None:
+    with pytest.raises(CredentialsError, match="choose another one"):
+        pair(teachers, devices, name)
+
+
+def test_the_critics_name_is_neither_paired_nor_renewed_but_revoked(teachers: Path, devices: Path) -> None:
+    for change in (pair, renew):
+        with pytest.raises(CredentialsError, match="critic: is the name of the robot's own critic; choose another one"):
+            change(teachers, devices, "critic")
+    assert not teachers.exists()
+    pairing = pair(teachers, devices, "phone")
+    pairing.teacher.rename(teachers / "critic")
+    revoke(teachers, devices, "critic")
+    assert not (teachers / "critic").exists()
+
+
+def test_paired_twice_is_refused_and_changes_nothing(teachers: Path, devices: Path) -> None:
+    pairing = pair(teachers, devices, "phone")
+    with pytest.raises(CredentialsError, match="kurt2rt pair phone --renew"):
+        pair(teachers, devices, "phone")
+    assert understood(pairing.teacher, pairing.device.folder)
+
+
+def test_a_device_that_was_moved_away_is_still_paired(teachers: Path, devices: Path, tmp_path: Path) -> None:
+    pairing = pair(teachers, devices, "phone")
+    moved = pairing.device.folder.rename(tmp_path / "phone")
+    with pytest.raises(CredentialsError, match="renew"):
+        pair(teachers, devices, "phone")
+    assert understood(pairing.teacher, moved)
+
+
+def test_renewed_it_has_other_keys_and_the_old_device_is_not_understood(
+    teachers: Path, devices: Path, tmp_path: Path
+) -> None:
+    old = pair(teachers, devices, "phone")
+    kept = old.device.folder.rename(tmp_path / "kept")
+    new = renew(teachers, devices, "phone")
+    assert new.name == "phone"
+    assert new.device.token != old.device.token
+    assert understood(new.teacher, new.device.folder)
+    with OscoreSides(new.teacher, kept) as (robot, device), pytest.raises(ValueError, match="Sender ID"):
+        ask(device, robot, "forward")
+
+
+class OscoreSides:
+    """Robot's and device's context for a block."""
+
+    def __init__(self, teacher: Path, device: Path) -> None:
+        self._contexts = (OscoreContext(teacher), OscoreContext(device))
+
+    def __enter__(self) -> tuple[OscoreContext, OscoreContext]:
+        return self._contexts
+
+    def __exit__(self, *_: object) -> None:
+        for context in self._contexts:
+            context.close()
+
+
+def test_revoked_both_sides_are_gone_whoever_uses_them(teachers: Path, devices: Path) -> None:
+    pairing = pair(teachers, devices, "phone")
+    robot = OscoreContext(pairing.teacher)
+    revoke(teachers, devices, "phone")
+    assert paired(teachers) == ()
+    assert list(teachers.glob("*phone*")) == []
+    assert list(devices.glob("*phone*")) == []
+    robot.close()
+    pair(teachers, devices, "phone")
+
+
+def test_revoke_takes_the_one_side_that_is_there(teachers: Path, devices: Path, tmp_path: Path) -> None:
+    pair(teachers, devices, "phone").device.folder.rename(tmp_path / "phone")
+    revoke(teachers, devices, "phone")
+    assert paired(teachers) == ()
+    with pytest.raises(CredentialsError, match="no such pairing; paired is: nothing"):
+        revoke(teachers, devices, "phone")
+    with pytest.raises(CredentialsError, match="no such pairing"):
+        renew(teachers, devices, "phone")
+
+
+class KilledError(BaseException):
+    """The process ends here."""
+
+
+STEPS = ((os, "fsync"), (os, "open"), (os, "rmdir"), (Path, "rename"), (Path, "mkdir"))
+"""What a change is made of, as seen from the disk."""
+
+
+def change_until_killed(teachers: Path, devices: Path, steps: int, patch: pytest.MonkeyPatch) -> bool:
+    """Renew one pairing and make another, killed after so many steps; returns whether it was."""
+    left = iter(range(steps))
+
+    def killable(step: Callable[..., object]) -> Callable[..., object]:
+        def stepped(*args: object, **kwargs: object) -> object:
+            if next(left, None) is None:
+                raise KilledError
+            return step(*args, **kwargs)
+
+        return stepped
+
+    with patch.context() as patched:
+        for where, name in STEPS:
+            patched.setattr(where, name, killable(getattr(where, name)))
+        try:
+            renew(teachers, devices, "tablet")
+            pair(teachers, devices, "phone")
+        except KilledError:
+            return True
+    return False
+
+
+def test_killed_at_any_step_a_pairing_is_whole_or_not_accepted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for steps in count():
+        teachers, devices = tmp_path / f"{steps}" / "teachers", tmp_path / f"{steps}" / "devices"
+        pair(teachers, devices, "tablet")
+        killed = change_until_killed(teachers, devices, steps, monkeypatch)
+        for each in paired(teachers):
+            assert understood(teachers / each.name, devices / each.name)
+        for name in ("tablet", "phone"):
+            there = any(os.path.lexists(side / name) for side in (teachers, devices))
+            (renew if there else pair)(teachers, devices, name)
+            assert understood(teachers / name, devices / name)
+        assert {path.name for path in (*teachers.iterdir(), *devices.iterdir())} == {".lock", "tablet", "phone"}
+        if not killed:
+            assert steps > 30
+            return
+
+
+def test_the_list_tells_names_and_when_they_were_made(teachers: Path, devices: Path) -> None:
+    assert paired(teachers) == ()
+    pair(teachers, devices, "phone")
+    local_pairing(teachers, devices)
+    os.utime(teachers / "phone" / "secret.json", (1e9, 1e9))
+    local, phone = paired(teachers)
+    assert (local.name, phone.name) == ("local", "phone")
+    assert phone.made_at.isoformat() == "2001-09-09T01:46:40+00:00"
+    assert phone.used_at is None
+
+
+def test_this_machine_needs_no_pairing(teachers: Path, devices: Path) -> None:
+    made = local_pairing(teachers, devices)
+    assert made.name == "local"
+    assert understood(made.teacher, made.device.folder)
+    again = local_pairing(teachers, devices, port=6000)
+    assert again.device == Device(made.device.folder, "local", "127.0.0.1", 6000, made.device.token)
+    assert local_pairing(teachers, devices, AUTO).name == "auto"
+
+
+@pytest.mark.parametrize("lost", ["teachers/local", "devices/local"])
+def test_this_machines_pairing_is_made_anew_when_a_side_is_lost(teachers: Path, devices: Path, lost: str) -> None:
+    local_pairing(teachers, devices)
+    (teachers.parent / lost).rename(teachers.parent / "lost")
+    made = local_pairing(teachers, devices)
+    assert understood(made.teacher, made.device.folder)
+
+
+def test_one_folder_for_both_sides_is_refused(teachers: Path) -> None:
+    with pytest.raises(CredentialsError, match="a folder of its own"):
+        pair(teachers, teachers, "phone")
+
+
+def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(CredentialsError, match="give folders that can be written"):
+        pair(tmp_path / "file", tmp_path / "devices", "phone")
+
+
+@pytest.mark.parametrize("text", ["", "[]", "{}", '{"name": 1, "host": "h", "port": 1, "token": "t"}'])
+def test_a_damaged_device_is_told(teachers: Path, devices: Path, text: str) -> None:
+    device = pair(teachers, devices, "phone").device
+    (device.folder / "device.json").write_text(text, encoding="utf-8")
+    with pytest.raises(CredentialsError, match=r"is damaged .*kurt2rt pair phone --renew"):
+        read_device(device.folder)
+
+
+def test_a_device_that_is_not_there_is_told(devices: Path) -> None:
+    with pytest.raises(CredentialsError, match="make one on the robot's machine: kurt2rt pair phone"):
+        read_device(devices / "phone")

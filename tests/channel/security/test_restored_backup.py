@@ -1,0 +1,159 @@
+"""A key folder that is put back from a backup uses no number twice, and lets no message be replayed."""
+
+import json
+import random
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from aiocoap import oscore
+
+from kurt2rt.channel.security.oscore_context import LAST_FLOOR, OscoreContext
+from kurt2rt.channel.security.pairing import Pairing, pair
+from tests.channel.clock import Clock
+from tests.channel.sides import answer_challenge, ask, carried, sequence_of
+
+_MOST_PER_S = 200
+"""A device says no more: the robot hears no more of one."""
+
+
+@pytest.fixture
+def pairing(tmp_path: Path) -> Pairing:
+    return pair(tmp_path / "teachers", tmp_path / "devices", "phone")
+
+
+def _paired_s(folder: Path) -> float:
+    return float(json.loads((folder / "settings.json").read_text(encoding="utf-8"))["paired-at"])
+
+
+def _without_stamp(folder: Path) -> None:
+    """As pairings of earlier versions are."""
+    settings = json.loads((folder / "settings.json").read_text(encoding="utf-8"))
+    del settings["paired-at"]
+    (folder / "settings.json").write_text(json.dumps(settings), encoding="utf-8")
+
+
+class Life:
+    """A folder in use over weeks: programs come, send, end or die; copies are kept and put back."""
+
+    def __init__(self, folder: Path, clock: Clock, backups: Path) -> None:
+        self.folder = folder
+        self.clock = clock
+        self.used: list[int] = []
+        self._backups = backups
+        self._count = 0
+
+    def run(self, seconds: float, per_s: int, *, dies: bool) -> None:
+        """A program, from its start to its end."""
+        context = OscoreContext(self.folder, now=self.clock)
+        for _ in range(10):
+            self.used += [context.new_sequence_number() for _ in range(round(seconds * per_s / 10))]
+            self.clock.now_s += seconds / 10
+        if dies:
+            context.abandon()
+        else:
+            context.close()
+
+    def back_up(self) -> None:
+        shutil.copytree(self.folder, self._backups / str(self._count))
+        self._count += 1
+
+    def restore(self, chance: random.Random) -> None:
+        """Any of the copies; its files are new ones, with a time of their own."""
+        shutil.rmtree(self.folder)
+        shutil.copytree(self._backups / str(chance.randrange(self._count)), self.folder, copy_function=shutil.copyfile)
+
+
+@pytest.mark.parametrize("stamped", [True, False])
+@pytest.mark.parametrize("side", ["robot", "device"])
+def test_put_back_a_hundred_times_no_number_is_used_twice(
+    pairing: Pairing, tmp_path: Path, side: str, stamped: bool
+) -> None:
+    folder = pairing.teacher if side == "robot" else pairing.device.folder
+    chance, clock = random.Random(f"{side} {stamped}"), Clock()
+    clock.now_s = _paired_s(folder)
+    if not stamped:
+        _without_stamp(folder)
+    life = Life(folder, clock, tmp_path / "backups")
+    life.back_up()
+    for _ in range(100):
+        for _ in range(chance.randrange(1, 4)):
+            life.run(chance.uniform(0.1, 5.0), chance.randrange(_MOST_PER_S), dies=chance.random() < 0.5)
+            clock.now_s += 1.0  # systemd's, or a person's
+        if chance.random() < 0.5:
+            life.back_up()
+        if chance.random() < 0.2:
+            clock.now_s += chance.uniform(0.0, 30 * 86_400.0)
+        life.restore(chance)
+    assert len(life.used) > 10_000
+    assert len(set(life.used)) == len(life.used)
+    assert life.used == sorted(life.used)
+
+
+def test_crashing_once_a_second_it_stays_behind_its_clock(pairing: Pairing, tmp_path: Path) -> None:
+    clock = Clock()
+    clock.now_s = _paired_s(pairing.teacher)
+    life = Life(pairing.teacher, clock, tmp_path / "backups")
+    for _ in range(300):
+        life.run(1.0, _MOST_PER_S, dies=True)
+    ahead = max(life.used) - 1000 * (clock.now_s - _paired_s(pairing.teacher))
+    assert ahead < 1000
+
+
+def test_a_clock_that_is_set_back_uses_no_number_twice(pairing: Pairing) -> None:
+    first_s = _paired_s(pairing.device.folder) + 3600.0
+    used = []
+    for now_s in (first_s, first_s - 86_400.0, 0.0, first_s + 1.0):
+        context = OscoreContext(pairing.device.folder, now=_at(now_s))
+        used += [context.new_sequence_number() for _ in range(5000)]
+        context.abandon()
+    assert used[0] == 3_600_000
+    assert used == sorted(set(used))
+
+
+@pytest.mark.parametrize("years", [20.0, 1e6])
+def test_a_clock_that_is_decades_ahead_leaves_half_of_all_numbers(pairing: Pairing, years: float) -> None:
+    paired_s = _paired_s(pairing.teacher)
+    for _ in range(2):
+        context = OscoreContext(pairing.teacher, now=_at(paired_s + years * 365 * 86_400.0))
+        assert LAST_FLOOR <= context.new_sequence_number() < LAST_FLOOR + 10
+        context.close()
+
+
+def test_put_back_a_robot_carries_out_no_request_that_was_recorded(pairing: Pairing, tmp_path: Path) -> None:
+    device, robot = OscoreContext(pairing.device.folder), OscoreContext(pairing.teacher)
+    answer_challenge(device, robot)
+    robot.close()
+    shutil.copytree(pairing.teacher, tmp_path / "backup")
+    robot = OscoreContext(pairing.teacher)
+    answer_challenge(device, robot)
+    number = device.sender_sequence_number
+    assert ask(device, robot, "recorded") == "recorded"
+    robot.close()
+
+    shutil.rmtree(pairing.teacher)
+    shutil.copytree(tmp_path / "backup", pairing.teacher)
+    robot = OscoreContext(pairing.teacher)
+    device.sender_sequence_number = number  # what was recorded is bit for bit what was sent
+    with pytest.raises(oscore.ReplayErrorWithEcho) as challenge:
+        ask(device, robot, "recorded")
+    # Its answer has a number of its own: with the request's it would be a second text under one nonce.
+    assert carried(challenge.value.to_message()).opt.oscore[0] & 0b111
+    device.sender_sequence_number = number + 1
+    answer_challenge(device, robot)
+    device.close()
+    robot.close()
+
+
+def test_a_pairing_is_stamped_and_begins_at_its_number_of_milliseconds(pairing: Pairing) -> None:
+    stamps = {_paired_s(folder) for folder in (pairing.teacher, pairing.device.folder)}
+    assert len(stamps) == 1
+    context = OscoreContext(pairing.teacher, now=_at(stamps.pop() + 12.5))
+    assert context.new_sequence_number() == 12_500
+    context.close()
+    assert json.loads(sequence_of(pairing.teacher))["next-to-send"] == 12_501
+
+
+def _at(now_s: float) -> Callable[[], float]:
+    return lambda: now_s

@@ -1,0 +1,105 @@
+import aiocoap
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurt2rt.channel.server.datagram_filter import Counters, Gate, Limits, SocketAddress, may_be_request
+from tests.channel.clock import Clock
+
+REQUEST = bytes([0x50, aiocoap.POST, 0, 1])
+
+
+def sender(number: int) -> SocketAddress:
+    return ("::ffff:10.0.0.7", number, 0, 0)
+
+
+class Door:
+    """A gate with a clock of its own."""
+
+    def __init__(self, limits: Limits) -> None:
+        self.clock = Clock()
+        self.counters = Counters()
+        self.gate = Gate(limits, self.counters, self.clock)
+
+    def let_in(self, number: int, tries: int, data: bytes = REQUEST) -> int:
+        return sum(self.gate.admits(data, sender(number)) for _ in range(tries))
+
+
+def test_strangers_share_one_rate_however_many_addresses_they_forge() -> None:
+    door = Door(Limits(strangers_at_once=40, strangers_per_s=40))
+    assert sum(door.let_in(number, tries=1) for number in range(1000)) == 40
+    assert door.counters == Counters(received=1000, dropped_by_bucket=960)
+    door.clock.now_s += 1
+    assert sum(door.let_in(number, tries=1) for number in range(1000)) == 40
+
+
+def test_who_proved_himself_is_let_in_while_strangers_flood() -> None:
+    door = Door(Limits(strangers_at_once=40, proven_at_once=200))
+    door.gate.proved(sender(1))
+    door.let_in(2, tries=1000)
+    assert door.let_in(1, tries=150) == 150
+
+
+def test_who_proved_himself_may_not_flood_either() -> None:
+    door = Door(Limits(proven_at_once=200, proven_per_s=200))
+    door.gate.proved(sender(1))
+    assert door.let_in(1, tries=1000) == 200
+    door.gate.proved(sender(1))  # proving it again fills nothing
+    assert door.let_in(1, tries=1000) == 0
+    door.clock.now_s += 0.5
+    assert door.let_in(1, tries=1000) == 100
+
+
+def test_of_too_many_the_one_not_heard_for_longest_is_a_stranger_again() -> None:
+    door = Door(Limits(strangers_at_once=0, strangers_per_s=0, proven_senders=3))
+    for number in (1, 2, 3):
+        door.gate.proved(sender(number))
+    assert door.let_in(1, tries=1) == 1
+    door.gate.proved(sender(4))
+    assert door.gate.proven_senders == 3
+    assert [door.let_in(number, tries=1) for number in (1, 2, 3, 4)] == [1, 0, 1, 1]
+
+
+def test_junk_takes_nobodys_turn() -> None:
+    door = Door(Limits(strangers_at_once=1))
+    assert door.let_in(1, tries=1000, data=b"hello robot") == 0
+    assert door.counters == Counters(received=1000, junk=1000)
+    assert door.let_in(1, tries=1) == 1
+
+
+@pytest.mark.parametrize(
+    ("data", "passes"),
+    [
+        (bytes([0x40, 1, 0, 1]), True),  # CON GET
+        (bytes([0x52, 2, 0, 1, 7, 7]), True),  # NON POST with a token
+        (bytes([0x40, 0, 0, 1]), True),  # ping
+        (bytes([0x60, 0, 0, 1]), True),  # ACK
+        (bytes([0x70, 0, 0, 1]), True),  # RST
+        (b"", False),
+        (bytes([0x40, 1, 0]), False),
+        (bytes([0x80, 1, 0, 1]), False),  # version 2
+        (bytes([0x50, 0, 0, 1]), False),  # an empty NON
+        (bytes([0x60, 0, 0, 1, 0]), False),  # an ACK that is empty, and yet is not
+        (bytes([0x61, 0, 0, 1]), False),
+        (bytes([0x60, 1, 0, 1]), False),  # a request in an ACK
+        (bytes([0x50, 69, 0, 1]), False),  # 2.05
+        (bytes([0x50, 8, 0, 1]), False),  # no method yet
+        (bytes([0x59, 1, 0, 1]) + bytes(9), False),  # token of 9
+        (bytes([0x50, 2, 0, 1, 0xFF]) + bytes(1495), True),
+        (bytes([0x50, 2, 0, 1, 0xFF]) + bytes(1496), False),
+    ],
+)
+def test_the_first_four_bytes_tell_what_may_be_a_request(data: bytes, passes: bool) -> None:
+    assert may_be_request(data) is passes
+
+
+@given(
+    code=st.sampled_from([aiocoap.GET, aiocoap.POST, aiocoap.FETCH]),
+    mtype=st.sampled_from([aiocoap.CON, aiocoap.NON]),
+    token=st.binary(max_size=8),
+    payload=st.binary(max_size=300),
+)
+def test_every_request_of_aiocoap_passes(code: int, mtype: int, token: bytes, payload: bytes) -> None:
+    message = aiocoap.Message(code=code, uri_path=("state",), payload=payload)
+    message.mid, message.mtype, message.token = 7, mtype, token
+    assert may_be_request(message.encode())

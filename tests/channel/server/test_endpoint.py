@@ -1,0 +1,333 @@
+"""The robot's UDP port, with real sockets on loopback."""
+
+import asyncio
+import gc
+import logging
+import random
+import weakref
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from typing import Any
+
+import aiocoap
+import pytest
+from aiocoap.messagemanager import MessageManager
+
+from kurt2rt.channel.protocol.schema import ChannelError
+from kurt2rt.channel.server.datagram_filter import Counters, Limits
+from kurt2rt.channel.server.endpoint import Endpoint, open_endpoint
+from tests.channel.clock import Clock
+from tests.channel.jumping_loop import run_jumping
+
+UNLIMITED = Limits(strangers_at_once=1e9)
+PING = bytes([0x40, 0, 0x12, 0x34])
+PONG = bytes([0x70, 0, 0x12, 0x34])
+
+
+class Site:
+    """Answers each request with what it was asked; /silence it does not answer, at /fault it fails."""
+
+    def __init__(self) -> None:
+        self.proved: Callable[[Any], None] | None = None
+        self.asked = asyncio.Event()
+        self.may_answer = asyncio.Event()
+        self.may_answer.set()
+        self.requests: list[weakref.ref[Any]] = []
+
+    async def render_to_pipe(self, pipe: Any) -> None:
+        self.requests.append(weakref.ref(pipe.request))
+        self.asked.set()
+        path = "/".join(pipe.request.opt.uri_path)
+        if path == "fault":
+            raise ZeroDivisionError("the site is wrong")
+        if path == "silence":
+            return
+        if path == "key" and self.proved is not None:
+            self.proved(pipe.request.remote)
+        await self.may_answer.wait()
+        pipe.add_response(aiocoap.Message(code=aiocoap.CHANGED, payload=pipe.request.payload), is_last=True)
+
+
+class Sender(asyncio.DatagramProtocol):
+    """One who sends datagrams to the robot, and reads what comes back."""
+
+    transport: asyncio.DatagramTransport
+
+    def __init__(self) -> None:
+        self.received: asyncio.Queue[bytes] = asyncio.Queue()
+        self.refused = asyncio.Event()
+        self._number = 0
+
+    def datagram_received(self, data: bytes, _: object) -> None:
+        self.received.put_nowait(data)
+
+    def error_received(self, _: Exception) -> None:
+        self.refused.set()
+
+    def send(self, data: bytes) -> None:
+        self.transport.sendto(data)
+
+    def post(self, path: str, payload: bytes = b"", kind: aiocoap.Type = aiocoap.NON) -> bytes:
+        """Send a request; return its token."""
+        self._number += 1
+        message = aiocoap.Message(code=aiocoap.POST, uri_path=(path,), payload=payload)
+        message.mid, message.mtype = self._number, kind
+        message.token = self._number.to_bytes(2, "big")
+        self.send(message.encode())
+        token: bytes = message.token
+        return token
+
+    async def answer(self) -> aiocoap.Message:
+        async with asyncio.timeout(5):
+            return aiocoap.Message.decode(await self.received.get())
+
+    async def ping(self) -> None:
+        """Until the robot has read all that was sent before."""
+        self.send(PING)
+        async with asyncio.timeout(5):
+            while await self.received.get() != PONG:
+                pass
+
+    def close(self) -> None:
+        self.transport.close()
+
+
+class Robot:
+    """A site on an open port."""
+
+    def __init__(self, site: Site, endpoint: Endpoint) -> None:
+        self.site = site
+        self.endpoint = endpoint
+        self._senders: list[Sender] = []
+
+    async def sender(self, host: str = "127.0.0.1") -> Sender:
+        transport, sender = await asyncio.get_running_loop().create_datagram_endpoint(
+            Sender, remote_addr=(host, self.endpoint.port)
+        )
+        sender.transport = transport
+        self._senders.append(sender)
+        return sender
+
+    async def close(self) -> None:
+        for sender in self._senders:
+            sender.close()
+        await self.endpoint.close()
+
+
+@asynccontextmanager
+async def robot_at(host: str = "127.0.0.1", **options: Any) -> AsyncIterator[Robot]:
+    site = Site()
+    robot = Robot(site, await open_endpoint(site, host, 0, **options))
+    site.proved = robot.endpoint.proved
+    try:
+        yield robot
+    finally:
+        await robot.close()
+
+
+@pytest.mark.parametrize(
+    ("listens", "asked"),
+    [("127.0.0.1", "127.0.0.1"), ("::1", "::1"), ("::", "127.0.0.1"), ("::", "::1"), ("::", "127.0.0.2")],
+)
+async def test_a_request_is_answered(listens: str, asked: str) -> None:
+    async with robot_at(listens) as robot:
+        sender = await robot.sender(asked)
+        token = sender.post("echo", b"forward")
+        answer = await sender.answer()
+        assert (answer.code, answer.token, answer.payload) == (aiocoap.CHANGED, token, b"forward")
+        assert robot.endpoint.counters == Counters(received=1)
+
+
+async def test_aiocoaps_own_client_is_answered() -> None:
+    async with robot_at() as robot:
+        client = await aiocoap.Context.create_client_context(transports=["udp6"])
+        uri = f"coap://127.0.0.1:{robot.endpoint.port}/echo"
+        answer = await client.request(aiocoap.Message(code=aiocoap.POST, uri=uri, payload=b"left")).response
+        assert answer.payload == b"left"
+        await client.shutdown()
+
+
+@pytest.mark.parametrize(("listens", "asked"), [("127.0.0.1", "127.0.0.2"), ("127.0.0.1", "::1"), ("::1", "127.0.0.1")])
+async def test_bound_to_one_address_it_is_not_there_at_others(listens: str, asked: str) -> None:
+    async with robot_at(listens) as robot:
+        sender = await robot.sender(asked)
+        sender.post("echo")
+        async with asyncio.timeout(5):
+            await sender.refused.wait()
+        assert robot.endpoint.counters.received == 0
+
+
+@pytest.mark.parametrize("second", ["127.0.0.1", "::"])
+async def test_a_second_robot_on_the_port_is_refused(second: str) -> None:
+    async with robot_at() as robot:
+        with pytest.raises(ChannelError, match=f"UDP port {robot.endpoint.port} is in use"):
+            await open_endpoint(Site(), second, robot.endpoint.port)
+
+
+async def test_closed_the_port_is_free_again() -> None:
+    async with robot_at() as robot:
+        port = robot.endpoint.port
+    await (await open_endpoint(Site(), "127.0.0.1", port)).close()
+
+
+@pytest.mark.parametrize(
+    ("host", "port", "why"),
+    [
+        ("192.0.2.1", 0, "192.0.2.1 is no address of this machine"),
+        ("kurt", 0, "'kurt' is no address"),
+        ("::", 70000, "UDP port 70000 at :: cannot be opened"),
+    ],
+)
+async def test_what_cannot_be_opened_is_told_in_one_line(host: str, port: int, why: str) -> None:
+    with pytest.raises(ChannelError, match=why) as refused:
+        await open_endpoint(Site(), host, port)
+    assert "\n" not in str(refused.value)
+
+
+def random_bytes(chance: random.Random) -> bytes:
+    return chance.randbytes(chance.randint(1, 100))
+
+
+def random_options(chance: random.Random) -> bytes:
+    """A request as far as the first four bytes tell."""
+    return bytes([0x50, aiocoap.POST]) + chance.randbytes(chance.randint(2, 60))
+
+
+def random_reply(chance: random.Random) -> bytes:
+    """An ACK or RST to something that was never sent."""
+    return bytes([chance.choice([0x60, 0x70]), 0]) + chance.randbytes(2)
+
+
+@pytest.mark.parametrize("make", [random_bytes, random_options, random_reply])
+async def test_no_datagram_brings_it_down(make: Callable[[random.Random], bytes]) -> None:
+    chance = random.Random(2004)
+    async with robot_at(limits=UNLIMITED) as robot:
+        sender = await robot.sender()
+        for _ in range(20):
+            for _ in range(50):
+                sender.send(make(chance))
+            await sender.ping()
+        token = sender.post("echo", b"still here")
+        while (answer := await sender.answer()).token != token:
+            pass
+        assert answer.payload == b"still here"
+        assert robot.endpoint.counters.received == 1000 + 20 + 1
+        assert robot.endpoint.newest_failure == ""
+
+
+async def test_strangers_share_one_rate_and_the_known_teacher_does_not_feel_it() -> None:
+    clock = Clock()
+    async with robot_at(limits=Limits(strangers_at_once=3, strangers_per_s=1), now=clock) as robot:
+        teacher, one, other = await robot.sender(), await robot.sender(), await robot.sender()
+        teacher.post("key")
+        await teacher.answer()
+        for _ in range(20):
+            one.post("echo")
+            other.post("echo")
+        await teacher.ping()
+        assert robot.endpoint.counters.dropped_by_bucket == 40 - 2
+        assert robot.endpoint.proven_senders == 1
+        teacher.post("echo", b"stop")
+        assert (await teacher.answer()).payload == b"stop"
+        clock.now_s += 1
+        other.post("echo", b"patience")
+        while (await other.answer()).payload != b"patience":
+            pass
+
+
+async def test_a_site_that_fails_is_counted_and_nothing_is_written(caplog: pytest.LogCaptureFixture) -> None:
+    async with robot_at() as robot:
+        sender = await robot.sender()
+        for _ in range(3):
+            sender.post("fault")
+            assert (await sender.answer()).code == aiocoap.INTERNAL_SERVER_ERROR
+        assert robot.endpoint.counters.failed == 3
+        assert "the site is wrong" in robot.endpoint.newest_failure
+        sender.post("echo")
+        assert (await sender.answer()).code == aiocoap.CHANGED
+    assert caplog.records == []
+
+
+async def test_of_single_messages_nothing_is_logged(caplog: pytest.LogCaptureFixture) -> None:
+    caplog.set_level(logging.DEBUG)
+    async with robot_at() as robot:
+        sender = await robot.sender()
+        caplog.clear()
+        sender.post("echo")
+        await sender.answer()
+        sender.send(b"junk")
+        await sender.ping()
+    assert caplog.records == []
+
+
+async def test_of_a_request_without_an_answer_nothing_is_left() -> None:
+    async with robot_at() as robot:
+        sender = await robot.sender()
+        for _ in range(10):
+            sender.post("silence")
+        await sender.ping()
+        sender.post("echo")
+        await sender.answer()
+        gc.collect()
+        assert [request for request in robot.site.requests if request() is not None] == []
+
+
+async def test_a_sender_who_is_gone_before_the_answer_disturbs_nobody() -> None:
+    async with robot_at("::") as robot:
+        for host in ("127.0.0.1", "::1"):
+            robot.site.may_answer.clear()
+            robot.site.asked.clear()
+            gone = await robot.sender(host)
+            gone.post("echo")
+            await robot.site.asked.wait()
+            gone.close()
+            await asyncio.sleep(0)  # the socket closes in the next round of the loop
+            robot.site.may_answer.set()
+            other = await robot.sender(host)
+            other.post("echo", b"me too")
+            assert (await other.answer()).payload == b"me too"
+            await other.ping()
+        assert robot.endpoint.counters.failed == 0
+
+
+async def test_what_fails_inside_the_library_is_counted_and_the_next_datagram_is_read(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def wrong(*_: object) -> None:
+        raise AssertionError("backlogs relation violated")
+
+    async with robot_at() as robot:
+        sender = await robot.sender()
+        with monkeypatch.context() as patch:
+            patch.setattr(MessageManager, "_process_request", wrong)
+            sender.post("echo")
+            await sender.ping()
+        assert robot.endpoint.counters.failed == 1
+        assert "backlogs relation violated" in robot.endpoint.newest_failure
+        sender.post("echo", b"still here")
+        assert (await sender.answer()).payload == b"still here"
+
+
+async def test_closing_ends_what_is_being_answered() -> None:
+    async with robot_at() as robot:
+        robot.site.may_answer.clear()
+        sender = await robot.sender()
+        sender.post("echo")
+        await robot.site.asked.wait()
+    assert asyncio.all_tasks() == {asyncio.current_task()}
+
+
+def test_close_with_unanswered_request_raises_nothing_later() -> None:
+    errors: list[dict[str, Any]] = []
+
+    async def story() -> None:
+        asyncio.get_running_loop().set_exception_handler(lambda _, context: errors.append(context))
+        async with robot_at() as robot:
+            robot.site.may_answer.clear()
+            sender = await robot.sender()
+            sender.post("echo", kind=aiocoap.CON)
+            await robot.site.asked.wait()
+        await asyncio.sleep(1.0)  # past aiocoap's EMPTY_ACK_DELAY
+
+    run_jumping(story)
+    assert errors == []

@@ -1,0 +1,163 @@
+"""A device gets through a flood from a fresh socket, also if the flood copies its key id, datagrams or address."""
+
+import random
+from collections.abc import Iterator
+from pathlib import Path
+
+import aiocoap
+import pytest
+
+from kurt2rt.channel.security.oscore_context import OscoreContext
+from kurt2rt.channel.security.pairing import pair
+from kurt2rt.channel.server.datagram_filter import Counters, Gate, Limits, SocketAddress
+from kurt2rt.channel.server.sealed_request import SealedRequest
+from tests.channel.clock import Clock
+
+HOME: SocketAddress = ("::ffff:10.0.0.7", 40_000, 0, 0)
+"""The device's proven address."""
+ACK = bytes([0x60, 0, 0, 1])
+_RESEND_S = 0.1
+
+
+def stranger(number: int) -> SocketAddress:
+    return (f"::ffff:10.{number >> 16 & 255}.{number >> 8 & 255}.{number & 255}", 1024 + number % 60_000, 0, 0)
+
+
+class Door:
+    """A gate that knows one key, with a clock of its own."""
+
+    def __init__(self, folder: Path, limits: Limits) -> None:
+        pairing = pair(folder / "teachers", folder / "devices", "phone")
+        self.device, self.robot = OscoreContext(pairing.device.folder), OscoreContext(pairing.teacher)
+        self.clock, self.counters = Clock(), Counters()
+        self.gate = Gate(limits, self.counters, self.clock, self._key_of)
+
+    def _key_of(self, sealed: SealedRequest) -> OscoreContext | None:
+        return self.robot if sealed.kid == self.robot.recipient_id else None
+
+    def stop(self) -> bytes:
+        """A new one of the device."""
+        outer, _ = self.device.protect(aiocoap.Message(code=aiocoap.POST, uri_path=("stop",), payload=b"\x82"))
+        outer.mid, outer.mtype, outer.token = 7, aiocoap.NON, b"t"
+        data: bytes = outer.encode()
+        return data
+
+    def forged(self, kid: bytes, number: int) -> bytes:
+        """What a stranger makes who has read a key id."""
+        option = b"\x0c" + number.to_bytes(4, "big") + kid
+        return bytes((0x50, 2, 0, 1, 0x90 | len(option))) + option + b"\xff" + bytes(30)
+
+    def admitted(self, data: bytes, senders: int = 1, first: int = 0) -> int:
+        return sum(self.gate.admits(data, stranger(first + number)) for number in range(senders))
+
+
+@pytest.fixture
+def door(tmp_path: Path) -> Iterator[Door]:
+    made = Door(tmp_path, Limits())
+    yield made
+    made.device.close()
+    made.robot.close()
+
+
+def test_a_fresh_socket_is_let_in_while_strangers_flood(door: Door) -> None:
+    request = bytes([0x50, aiocoap.POST, 0, 1])
+    assert door.admitted(request, senders=2000) == 40
+    assert door.gate.admits(door.stop(), stranger(9000))
+
+
+def test_a_key_that_nobody_has_takes_no_strangers_turn(door: Door) -> None:
+    assert door.admitted(door.forged(b"\x01\x02\x03", 5), senders=2000) == 0
+    assert door.counters == Counters(received=2000, forged=2000)
+    assert door.admitted(bytes([0x50, aiocoap.POST, 0, 1]), senders=50) == 40
+
+
+def test_a_copied_key_id_buys_nothing(door: Door) -> None:
+    kid = door.robot.recipient_id
+    assert sum(door.admitted(door.forged(kid, number), first=number) for number in range(400)) == 0
+    assert door.counters == Counters(received=400, forged=400)
+    assert door.gate.admits(door.stop(), stranger(9000))
+
+
+def test_a_copied_datagram_has_the_strangers_rate_and_not_the_keys(door: Door) -> None:
+    captured = door.stop()
+    assert door.gate.admits(captured, HOME)
+    assert door.admitted(captured, senders=300) == 40
+    assert all(door.gate.admits(door.stop(), stranger(9000 + number)) for number in range(150))
+
+
+def test_the_devices_own_address_forged_does_not_keep_the_device_out(door: Door) -> None:
+    door.gate.proved(HOME)
+    captured = door.stop()
+    flood = [captured, door.forged(door.robot.recipient_id, 2**31), bytes([0x50, aiocoap.POST, 0, 1]), ACK]
+    assert [door.gate.admits(data, HOME) for data in (captured, door.stop())] == [True, True]
+    for data in flood * 100:
+        door.gate.admits(data, HOME)
+    assert not door.gate.admits(ACK, HOME)  # the address has nothing left
+    assert all(door.gate.admits(door.stop(), HOME) for _ in range(150))
+
+
+def test_copied_key_ids_and_seals_cost_an_address_nothing(door: Door) -> None:
+    door.gate.proved(HOME)
+    for number in range(400):
+        door.gate.admits(door.forged(door.robot.recipient_id, number), HOME)
+    assert sum(door.gate.admits(ACK, HOME) for _ in range(250)) == 200
+
+
+def test_who_holds_the_key_may_not_flood_either(door: Door) -> None:
+    assert sum(door.gate.admits(door.stop(), stranger(number)) for number in range(300)) == 200
+    door.clock.now_s += 0.1
+    assert sum(door.gate.admits(door.stop(), stranger(number)) for number in range(50)) == 20
+
+
+def test_an_overtaken_request_has_the_rate_of_its_address(door: Door) -> None:
+    older, newer = door.stop(), door.stop()
+    door.gate.proved(HOME)
+    assert door.gate.admits(newer, HOME)
+    assert door.gate.admits(older, HOME)
+
+
+def test_no_more_tags_are_checked_than_the_limit_says(door: Door, monkeypatch: pytest.MonkeyPatch) -> None:
+    checked = 0
+
+    def check(_: SealedRequest, __: object) -> bool:
+        nonlocal checked
+        checked += 1
+        return False
+
+    monkeypatch.setattr(SealedRequest, "fits", check)
+    data = door.forged(door.robot.recipient_id, 5)
+    assert door.admitted(data, senders=10_000) == 0
+    assert checked == 500
+    assert door.counters == Counters(received=10_000, forged=500, dropped_by_bucket=9500)
+    door.clock.now_s += 0.02
+    door.admitted(data, senders=1000)
+    assert checked == 600
+
+
+def test_keys_that_were_paired_over_and_over_leave_no_memory(tmp_path: Path) -> None:
+    door = Door(tmp_path, Limits(proven_senders=3))
+    (sealed,) = filter(None, [SealedRequest.parse(door.stop())])
+    for number in range(10):
+        door.gate._is_newest(SealedRequest(bytes((number,)), None, sealed.partial_iv, sealed.ciphertext))
+    assert list(door.gate._keys) == [b"\x07", b"\x08", b"\x09"]
+    door.device.close()
+    door.robot.close()
+
+
+@pytest.mark.parametrize("per_s", [4_000, 10_000])
+def test_a_stop_is_let_in_within_half_a_second_of_a_flood_with_its_key_id(door: Door, per_s: int) -> None:
+    """A stop is sent again every 0.1 s from a socket that the robot never heard of; time is the gate's own."""
+    chance = random.Random(per_s)
+    forged = door.forged(door.robot.recipient_id, 2**31)
+    waits_s = []
+    for stop in range(10):
+        said_s = door.clock.now_s = door.clock.now_s + chance.random()
+        door.admitted(forged, senders=600)  # the flood has used up what was saved
+        for copy in range(1, 36):
+            if door.gate.admits(door.stop(), stranger(70_000 + stop)):
+                break
+            while door.clock.now_s < said_s + copy * _RESEND_S:
+                door.clock.now_s += chance.expovariate(per_s)
+                assert not door.gate.admits(forged, stranger(chance.randrange(60_000)))
+        waits_s.append(door.clock.now_s - said_s)
+    assert max(waits_s) < 0.5

@@ -1,0 +1,850 @@
+"""The rules by which the robot takes what its teachers send, on ticks that the test makes."""
+
+import hashlib
+from collections.abc import Callable
+
+import pytest
+
+from kurt2rt.channel.protocol.codec import PATHS, decode_answer, encode_answer
+from kurt2rt.channel.protocol.exam_status import EXAM, ExamStanding
+from kurt2rt.channel.protocol.facts_codec import facts_of_plain
+from kurt2rt.channel.protocol.health_codec import report_of
+from kurt2rt.channel.protocol.requests import (
+    PACKAGE,
+    PART_BYTES,
+    AnswerRequest,
+    AppraiseRequest,
+    BackToStartRequest,
+    BeAtRequest,
+    BehaviourRequest,
+    CommandRequest,
+    CorrectRequest,
+    DeleteRequest,
+    ExamRequest,
+    ExamStandingRequest,
+    ExportRequest,
+    FileRequest,
+    HealthRequest,
+    HelloRequest,
+    LessonsRequest,
+    LoadRequest,
+    MoveWallRequest,
+    NameRequest,
+    NextRunRequest,
+    PhaseRequest,
+    PlaceRequest,
+    PursueRequest,
+    ReleaseRequest,
+    ReplaceRequest,
+    ResumeRequest,
+    RewardRequest,
+    SaveRequest,
+    SeekLikeRequest,
+    SeekRequest,
+    SeekRlaRequest,
+    SessionRequest,
+    SimulationRequest,
+    SituationsRequest,
+    SpeedRequest,
+    StopRequest,
+    StreamRequest,
+    TakeRequest,
+    UndoRequest,
+    UploadRequest,
+    WhyRequest,
+    WorldRequest,
+)
+from kurt2rt.channel.protocol.simulation import SIMULATION
+from kurt2rt.channel.server.reply import Reply, Verdict, done
+from kurt2rt.channel.server.request_handler import COMMAND_TICKS, MOVING_TICKS, STREAM_TICKS
+from kurt2rt.channel.server.simulation import TeacherNow
+from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.rla.rla import CRITIC, Phase
+from kurt2rt.core.teaching.commands import Stop, Watch
+from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, outcome_of, reply_of, turns, why
+from tests.channel.grounds import Yard
+from tests.service.health.reports import ILL
+
+LAST_START = b"last"
+MOVING: dict[type[CommandRequest], tuple[object, ...]] = {
+    BehaviourRequest: ("forward", 10),
+    PursueRequest: ("turn_left",),
+    ResumeRequest: (),
+    TakeRequest: (),
+    SeekRequest: ("door",),
+    SeekRlaRequest: (1,),
+    SeekLikeRequest: ((("x_m", 1.0),), 0.1),
+}
+LASTING: dict[type[CommandRequest], tuple[object, ...]] = {
+    AnswerRequest: ("forward", None),
+    CorrectRequest: ("forward", None),
+    RewardRequest: (1, None),
+    AppraiseRequest: ("bad", None),
+    ReplaceRequest: (1, "forward"),
+    DeleteRequest: (1,),
+    UndoRequest: (None,),
+    NameRequest: ("door", None),
+    BeAtRequest: ("door",),
+    PhaseRequest: (Phase.CORRECTIONS,),
+    SessionRequest: ("morning",),
+    ReleaseRequest: (None,),
+    SaveRequest: ("label",),
+    ExportRequest: (),
+    MoveWallRequest: ("box", 0.1, 0.0),
+    PlaceRequest: (1.0, 1.0, 0.0),
+    ExamRequest: (),
+    NextRunRequest: (None, None, False),
+    SpeedRequest: (2,),
+    LoadRequest: (bytes(8), bytes(32)),
+    BackToStartRequest: (),
+}
+COMMANDS = {**MOVING, **LASTING}
+READING = {
+    ExamStandingRequest,
+    FileRequest,
+    HealthRequest,
+    HelloRequest,
+    LessonsRequest,
+    SimulationRequest,
+    SituationsRequest,
+    UploadRequest,
+    WhyRequest,
+    WorldRequest,
+}
+
+
+@pytest.fixture
+def desk() -> Desk:
+    return Desk()
+
+
+def test_every_path_has_a_rule_here() -> None:
+    streams = {kind for kind in PATHS.values() if issubclass(kind, StreamRequest)}
+    assert set(COMMANDS) | streams | READING | {StopRequest} == set(PATHS.values())
+
+
+# Streams.
+
+
+async def test_a_press_reaches_the_wheels_in_the_next_tick_and_is_answered_at_once(desk: Desk) -> None:
+    reply = await desk.stream(desk.press())
+    assert reply == Reply(Verdict.DONE, {"t": desk.tick})
+    assert desk.run().decision.cause is Cause.TEACHER
+
+
+async def test_watching_makes_the_teacher_be_there(desk: Desk) -> None:
+    await desk.ask(desk.answer())
+    assert desk.record.decision.cause is Cause.UNATTENDED
+    await desk.stream(desk.watch())
+    assert desk.run().decision.cause is Cause.RLA
+
+
+@pytest.mark.parametrize("kind", ["watch", "press"])
+@pytest.mark.parametrize(("age", "answer"), [(0, ""), (STREAM_TICKS, ""), (STREAM_TICKS + 1, "stale"), (-1, "stale")])
+async def test_a_stream_is_good_for_forty_ticks_and_not_for_the_future(
+    desk: Desk, kind: str, age: int, answer: str
+) -> None:
+    assert why(await desk.stream(desk.watch(age=age) if kind == "watch" else desk.press(age=age))) == answer
+
+
+async def test_an_old_picture_does_not_move_the_robot_though_it_is_accepted(desk: Desk) -> None:
+    """Accepted up to 40 ticks, good for 35: what comes between counts as an answered message and no more."""
+    assert why(await desk.stream(desk.press(age=STREAM_TICKS))) == ""
+    assert desk.run().decision.cause is not Cause.TEACHER
+
+
+async def test_a_message_for_another_start_of_the_program_is_refused(desk: Desk) -> None:
+    for request in (desk.watch(boot=LAST_START), desk.press(boot=LAST_START)):
+        assert why(await desk.stream(request)) == "boot"
+    assert desk.run().decision.cause is Cause.UNKNOWN
+
+
+async def test_only_the_newest_message_of_a_device_counts(desk: Desk) -> None:
+    assert why(await desk.stream(desk.press(), number=7)) == ""
+    assert why(await desk.stream(desk.press(), number=7)) == "old"
+    assert why(await desk.stream(desk.watch(), number=6)) == "old"
+    assert why(await desk.stream(desk.press(), number=8)) == ""
+
+
+async def test_each_device_counts_for_itself(desk: Desk) -> None:
+    await desk.stream(desk.watch(), "ann", number=1000)
+    assert why(await desk.stream(desk.watch(), "ben", number=1)) == ""
+
+
+async def test_a_renewed_pairing_begins_to_count_anew(desk: Desk) -> None:
+    await desk.stream(desk.watch(), number=1000)
+    assert why(await desk.stream(desk.watch(), number=1, pairing=b"renewed")) == ""
+    assert why(await desk.stream(desk.watch(), number=1, pairing=b"renewed")) == "old"
+
+
+async def test_a_message_that_was_refused_as_stale_says_nothing_about_the_next_one(desk: Desk) -> None:
+    assert why(await desk.stream(desk.watch(age=STREAM_TICKS + 1), number=7)) == "stale"
+    assert why(await desk.stream(desk.watch(), number=6)) == ""
+
+
+async def test_a_copy_of_a_stop_that_comes_late_is_not_taken_for_the_newest_message(desk: Desk) -> None:
+    await desk.stream(desk.watch(), number=20)
+    stop = await desk.send(desk.stop(), number=12)
+    desk.run()
+    await reply_of(stop)
+    assert why(await desk.stream(desk.watch(), number=20)) == "old"
+    assert why(await desk.stream(desk.watch(), number=21)) == ""
+
+
+async def test_what_was_sent_before_a_stop_and_comes_after_it_does_not_drive(desk: Desk) -> None:
+    """The first message of a press may be overtaken by the stop that ended it."""
+    stop = await desk.send(desk.stop(), number=12)
+    assert why(await desk.stream(desk.press(hold=1), number=11)) == "old"
+    assert desk.run().decision.cause is Cause.STOPPED
+    await reply_of(stop)
+    assert why(await desk.stream(desk.press(hold=2), number=13)) == ""
+
+
+async def test_a_press_that_a_stop_ended_is_told_so_and_a_new_one_drives(desk: Desk) -> None:
+    await desk.stream(desk.press(hold=1))
+    desk.run()
+    await desk.ask(desk.stop())
+    assert why(await desk.stream(desk.press(hold=1))) == "stopped"
+    assert why(await desk.stream(desk.watch())) == ""
+    assert why(await desk.stream(desk.press(hold=2))) == ""
+
+
+async def test_after_another_ones_stop_the_driver_has_to_say_resume(desk: Desk) -> None:
+    await desk.stream(desk.press(hold=1))
+    desk.run()
+    await desk.ask(desk.stop(), "ben")
+    refused = await desk.stream(desk.press(hold=2))
+    assert (why(refused), outcome_of(refused)) == ("stopped", Outcome.of(RefusalCode.STOPPED_BY, teachers=("ben",)))
+    await desk.ask(desk.command(ResumeRequest))
+    assert why(await desk.stream(desk.press(hold=2))) == ""
+
+
+async def test_who_is_not_the_teacher_is_told_who_is(desk: Desk) -> None:
+    await desk.stream(desk.press(), "ann")
+    desk.run()
+    for request in (desk.press(), desk.watch()):
+        refused = await desk.stream(request, "ben")
+        assert (why(refused), refused.verdict) == ("held", Verdict.CONFLICT)
+        assert outcome_of(refused) == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="ann")
+
+
+async def test_a_full_inbox_refuses_what_comes_and_forgets_nothing_of_what_waits(desk: Desk) -> None:
+    waiting = 0
+    while why(await desk.stream(desk.watch())) == "":
+        waiting += 1
+    refused = await desk.stream(desk.press())
+    assert (why(refused), outcome_of(refused)) == ("refused", Outcome(RefusalCode.TOO_MANY))
+    refused = await reply_of(await desk.send(desk.answer()))
+    assert (why(refused), outcome_of(refused)) == ("refused", Outcome(RefusalCode.TOO_MANY))
+    assert len(desk.runtime.inbox.take()) == waiting
+    assert why(await desk.stream(desk.watch())) == ""
+
+
+# Commands.
+
+
+@pytest.mark.parametrize("kind", COMMANDS)
+async def test_a_command_for_another_start_of_the_program_is_refused(desk: Desk, kind: type[CommandRequest]) -> None:
+    refused = await desk.ask(desk.command(kind, *COMMANDS[kind], boot=LAST_START))
+    assert (why(refused), refused.body["t"]) == ("boot", desk.tick)
+    assert desk.record.results == ()
+
+
+@pytest.mark.parametrize("kind", COMMANDS)
+async def test_how_old_the_picture_of_a_command_may_be(kind: type[CommandRequest]) -> None:
+    desk = Desk(ground=Yard())
+    longest = MOVING_TICKS if kind in MOVING else COMMAND_TICKS
+    for age in (longest + 1, -1):
+        assert why(await desk.ask(desk.command(kind, *COMMANDS[kind], age=age))) == "stale"
+        assert desk.record.results == ()
+    assert why(await desk.ask(desk.command(kind, *COMMANDS[kind], age=longest))) in ("", "refused", "held")
+
+
+@pytest.mark.parametrize("kind", [kind for kind in COMMANDS if kind is not TakeRequest])
+async def test_a_command_of_one_who_is_not_the_teacher_is_refused(kind: type[CommandRequest]) -> None:
+    desk = Desk(ground=Yard())
+    await desk.ask(desk.command(TakeRequest), "ann")
+    refused = await desk.ask(desk.command(kind, *COMMANDS[kind]), "ben")
+    assert why(refused) == "held"
+    assert outcome_of(refused) == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="ann")
+    assert desk.shelf.labels == []
+
+
+async def test_a_command_is_done_in_the_next_tick_and_answered_with_it(desk: Desk) -> None:
+    task = await desk.send(desk.command(PhaseRequest, Phase.CORRECTIONS))
+    assert not task.done()
+    tick = desk.run().tick
+    phase_set = Outcome.of(ResultCode.PHASE_SET, phase=2, name="corrections")
+    assert await reply_of(task) == done(tick, phase_set)
+
+
+async def test_the_name_of_a_command_in_the_journal_is_device_and_id(desk: Desk) -> None:
+    request = AnswerRequest(BOOT, bytes.fromhex("00ff00ff00ff00ff"), desk.tick, "forward", None)
+    await desk.ask(request, "ann-phone")
+    assert [event.origin.command_id for event in desk.notebook.events] == ["ann-phone-00ff00ff00ff00ff"]
+    assert desk.notebook.events[0].origin.teacher == "ann-phone"
+
+
+async def test_a_lesson_is_answered_only_when_it_is_durable(desk: Desk) -> None:
+    task = await desk.send(desk.answer())
+    desk.run(50)
+    await turns()
+    assert desk.runtime.level.system.rlas  # it acts already
+    assert not task.done()
+    desk.write()
+    reply = await reply_of(task)
+    assert reply == done(desk.tick, Outcome.of(ResultCode.RLA_TAUGHT, rla=1, action="forward"), row=1)
+
+
+async def test_what_changes_nothing_needs_no_disk(desk: Desk) -> None:
+    await desk.ask(desk.answer())
+    reply = await desk.ask(desk.answer(), write=False)
+    assert outcome_of(reply) == Outcome.of(ResultCode.RLA_AGREES, rla=1, action="forward")
+
+
+async def test_sent_again_while_it_is_under_way_it_gets_the_one_reply_and_counts_once(desk: Desk) -> None:
+    request = desk.answer()
+    first = await desk.send(request)
+    again = await desk.send(request)
+    desk.run()
+    late = await desk.send(request)
+    desk.run()
+    assert not any(task.done() for task in (first, again, late))
+    desk.write()
+    replies = [await reply_of(task) for task in (first, again, late)]
+    assert replies[0].verdict is Verdict.DONE
+    assert replies[1:] == [replies[0]] * 2
+    assert await reply_of(await desk.send(request)) == replies[0]
+    assert len(desk.notebook.events) == 1
+
+
+async def test_a_copy_that_comes_when_its_picture_is_old_gets_the_reply_as_well(desk: Desk) -> None:
+    request = desk.answer()
+    first = await desk.ask(request)
+    desk.run(COMMAND_TICKS + 100)
+    assert await reply_of(await desk.send(request)) == first
+
+
+async def test_a_command_of_an_earlier_start_that_counted_is_told_so_and_not_that_it_was_refused(desk: Desk) -> None:
+    request = desk.command(AnswerRequest, "forward", None, boot=LAST_START)
+    desk.runtime.school.learning.taken.add(f"ann-{request.command_id.hex()}")
+    reply = await desk.ask(request)
+    assert (reply.verdict, outcome_of(reply)) == (Verdict.DONE, Outcome(ResultCode.REPEATED))
+
+
+async def test_the_same_id_of_two_devices_is_two_commands(desk: Desk) -> None:
+    request = desk.command(PhaseRequest, Phase.CORRECTIONS)
+    assert (await desk.ask(request, "ann")).verdict is Verdict.DONE
+    assert why(await desk.ask(request, "ben")) == "held"
+
+
+async def test_a_refusal_of_the_robot_is_told_in_its_words_and_stays_the_reply(desk: Desk) -> None:
+    request = desk.command(DeleteRequest, 1)
+    refused = await desk.ask(request)
+    assert (why(refused), outcome_of(refused)) == ("refused", Outcome.of(RefusalCode.NO_RLA, rla=1))
+    await desk.ask(desk.answer())
+    assert await reply_of(await desk.send(request)) == refused
+    assert len(desk.runtime.level.system) == 1
+
+
+async def test_a_lesson_that_can_never_be_written_is_told_as_unsaved(desk: Desk) -> None:
+    task = await desk.send(desk.answer())
+    desk.run()
+    desk.write(error="the disk is full")
+    reply = await reply_of(task)
+    assert (reply.verdict, why(reply), reply.body["text"]) == (Verdict.UNSAVED, "unsaved", "the disk is full")
+
+
+async def test_a_lesson_that_is_not_durable_in_time_is_told_as_unsaved_and_counts_when_it_is() -> None:
+    desk = Desk(longest_wait_s=0.0)
+    request = desk.answer()
+    reply = await desk.ask(request, write=False)
+    assert (reply.verdict, why(reply)) == (Verdict.UNSAVED, "unsaved")
+    assert outcome_of(reply) == Outcome(RefusalCode.NOT_SAVED_YET)
+    desk.run()
+    desk.write()
+    assert outcome_of(await reply_of(await desk.send(request))) == Outcome.of(
+        ResultCode.RLA_TAUGHT, rla=1, action="forward"
+    )
+
+
+async def test_one_who_hangs_up_does_not_cost_the_next_copy_its_reply(desk: Desk) -> None:
+    for request in (desk.answer(), desk.stop()):
+        first = await desk.send(request)
+        again = await desk.send(request)
+        first.cancel()
+        await turns()
+        desk.run()
+        desk.write()
+        assert (await reply_of(again)).verdict is Verdict.DONE
+
+
+async def test_a_take_is_refused_while_the_other_one_drives_and_not_after(desk: Desk) -> None:
+    await desk.stream(desk.press(), "ann")
+    desk.run()
+    refused = await desk.ask(desk.command(TakeRequest), "ben")
+    assert (why(refused), outcome_of(refused)) == ("refused", Outcome.of(RefusalCode.DRIVES_BY_HAND, teacher="ann"))
+    await desk.ask(desk.stop(), "ben")
+    assert outcome_of(await desk.ask(desk.command(TakeRequest), "ben")) == Outcome.of(ResultCode.TAKEN, teacher="ben")
+
+
+async def test_a_reward_and_a_correction_mean_the_decision_of_the_picture(desk: Desk) -> None:
+    await desk.ask(desk.answer("forward"))
+    await desk.stream(desk.watch())
+    meant = desk.run(counts=100).tick
+    desk.run(20, counts=900)
+    reply = await desk.ask(desk.command(RewardRequest, 1, meant))
+    assert outcome_of(reply) == Outcome.of(ResultCode.RLA_REWARDED, rla=1)
+    reply = await desk.ask(desk.command(CorrectRequest, "back", meant))
+    assert outcome_of(reply) == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="back", was="forward")
+    refused = await desk.ask(desk.command(RewardRequest, 1, desk.tick + 50))
+    assert why(refused) == "refused"
+
+
+@pytest.mark.parametrize(
+    ("make", "outcome"),
+    [
+        (lambda desk: desk.command(SessionRequest, "morning"), Outcome.of(ResultCode.SESSION_BEGUN, session="morning")),
+        (lambda desk: desk.command(SessionRequest, None), Outcome(RefusalCode.NO_SESSION)),
+        (lambda desk: desk.command(ReleaseRequest, "ben"), Outcome.of(ResultCode.HANDED_OVER, teacher="ben")),
+        (lambda desk: desk.command(ReleaseRequest, None), Outcome(ResultCode.RELEASED)),
+        (lambda desk: desk.command(UndoRequest, None), Outcome(RefusalCode.NO_LESSON)),
+        (
+            lambda desk: desk.command(BehaviourRequest, "back", 7),
+            Outcome(RefusalCode.TEACHER_ABSENT),
+        ),
+        (lambda desk: desk.command(ResumeRequest), Outcome(ResultCode.RESUMED)),
+        (lambda desk: desk.command(ReplaceRequest, 3, "back"), Outcome.of(RefusalCode.NO_RLA, rla=3)),
+    ],
+)
+async def test_each_request_becomes_its_command(
+    desk: Desk, make: Callable[[Desk], CommandRequest], outcome: Outcome
+) -> None:
+    assert outcome_of(await desk.ask(make(desk))) == outcome
+
+
+# Stop.
+
+
+async def test_a_stop_needs_neither_start_nor_picture_nor_to_be_the_teacher(desk: Desk) -> None:
+    await desk.ask(desk.command(TakeRequest), "ann")
+    reply = await desk.ask(desk.stop(), "ben")
+    assert outcome_of(reply) == Outcome(ResultCode.STOPPED)
+    assert desk.run().decision.cause is Cause.STOPPED
+
+
+async def test_each_copy_of_a_stop_stops_again(desk: Desk) -> None:
+    stop = desk.stop()
+    first = await desk.ask(stop, "ben")
+    await desk.ask(desk.command(ResumeRequest), "ann")
+    assert desk.record.decision.cause is Cause.UNKNOWN
+    assert await desk.ask(stop, "ben") == first
+    assert desk.run().decision.cause is Cause.STOPPED
+
+
+async def test_a_stop_among_much_else_is_handed_to_the_next_tick(desk: Desk) -> None:
+    for _ in range(100):
+        await desk.stream(desk.watch())
+    task = await desk.send(desk.stop())
+    waiting = desk.runtime.inbox.take()
+    assert {type(command) for command in waiting} == {Watch, Stop}
+    for command in waiting:
+        desk.runtime.inbox.put(command)
+    desk.run()
+    assert (await reply_of(task)).verdict is Verdict.DONE
+
+
+# Copies of the knowledge.
+
+
+async def test_a_copy_is_made_once_and_answered_with_its_name_and_fingerprint(desk: Desk) -> None:
+    request = desk.command(SaveRequest, "before lunch")
+    desk.shelf.may_finish.clear()
+    first, again = await desk.send(request), await desk.send(request)
+    desk.run(20)
+    assert not first.done()
+    desk.shelf.may_finish.set()
+    reply = await reply_of(first)
+    assert reply.body == {
+        "t": desk.tick,
+        "ok": True,
+        "text": "lessons.knowledge, 4096 bytes",
+        "code": "copied",
+        "fields": {"name": "lessons.knowledge", "size": 4096},
+        "name": "lessons.knowledge",
+        "sha256": "ab" * 32,
+        "size": 4096,
+    }
+    assert await reply_of(again) == reply
+    assert desk.shelf.labels == ["before lunch"]
+
+
+async def test_an_export_likewise(desk: Desk) -> None:
+    reply = await desk.ask(desk.command(ExportRequest))
+    assert (reply.verdict, reply.body["name"]) == (Verdict.DONE, "lessons.csv")
+
+
+async def test_an_export_as_package_makes_the_archive(desk: Desk) -> None:
+    reply = await desk.ask(desk.command(ExportRequest, PACKAGE))
+    assert (reply.verdict, reply.body["name"]) == (Verdict.DONE, "lessons.zip")
+
+
+async def test_a_file_is_read_in_parts_and_an_unknown_one_is_refused(desk: Desk) -> None:
+    content = bytes(range(256)) * 80
+    desk.shelf.files["lessons.zip"] = content
+    parts = [await desk.ask(FileRequest("lessons.zip", offset)) for offset in (0, PART_BYTES, 2 * PART_BYTES)]
+    assert b"".join(each.body["part"] for each in parts) == content
+    assert [each.body["size"] for each in parts] == [len(content)] * 3
+    assert why(await desk.ask(FileRequest("../robot.key", 0))) == "refused"
+
+
+@pytest.mark.parametrize("kind", [SaveRequest, ExportRequest])
+async def test_a_copy_that_the_disk_does_not_take_is_told_with_the_reason(
+    desk: Desk, kind: type[CommandRequest]
+) -> None:
+    desk.shelf.problem = "saved: nothing can be saved there; give a folder that has room"
+    reply = await desk.ask(desk.command(kind, *COMMANDS[kind]))
+    assert (reply.verdict, reply.body["text"]) == (Verdict.UNSAVED, desk.shelf.problem)
+
+
+async def test_a_copy_that_takes_long_goes_on_and_is_told_to_whoever_asks_again() -> None:
+    desk = Desk(longest_wait_s=0.0)
+    desk.shelf.may_finish.clear()
+    request = desk.command(SaveRequest, "")
+    assert why(await desk.ask(request)) == "unsaved"
+    desk.shelf.may_finish.set()
+    await turns()
+    assert (await reply_of(await desk.send(request))).body["name"] == "lessons.knowledge"
+    assert desk.shelf.labels == [""]
+
+
+# Exams.
+
+
+async def test_an_exam_is_begun_by_the_teacher_alone_and_once() -> None:
+    desk = Desk(ground=Yard())
+    assert why(await desk.ask(desk.command(ExamRequest))) == "held"
+    await desk.ask(desk.command(TakeRequest), "bob")
+    assert why(await desk.ask(desk.command(ExamRequest))) == "held"
+    request = desk.command(ExamRequest)
+    first = await desk.ask(request, "bob")
+    assert (first.verdict, await desk.ask(request, "bob")) == (Verdict.DONE, first)
+    assert desk.shelf.examined == 1
+    desk.exam = ExamStanding(True, 0.25, "exam without teacher, world a")
+    assert why(await desk.ask(desk.command(ExamRequest), "bob")) == "refused"
+    told = (await desk.ask(ExamStandingRequest())).body["exam"]
+    assert EXAM.read(decode_answer(encode_answer(told))) == desk.exam
+
+
+async def test_a_real_robot_is_not_examined(desk: Desk) -> None:
+    await desk.ask(desk.command(TakeRequest))
+    for request in (desk.command(ExamRequest), ExamStandingRequest()):
+        assert (await desk.ask(request)).verdict is Verdict.NOT_HERE
+    assert desk.shelf.examined == 0
+
+
+# The simulation.
+
+
+async def test_the_next_run_is_its_teachers_to_begin_and_ends_this_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("kurt2rt.channel.server.off_tick_requests.LAST_ANSWER_S", 0.0)
+    desk = Desk(ground=Yard())
+    ended: list[bool] = []
+    monkeypatch.setattr(desk.runtime.scheduler, "end", lambda: ended.append(True))
+    assert why(await desk.ask(desk.command(NextRunRequest, "b", None, False))) == "held"
+    await desk.ask(desk.command(TakeRequest))
+    await desk.ask(desk.command(SessionRequest, "noon"))
+    assert why(await desk.ask(desk.command(NextRunRequest, "nowhere", None, False))) == "refused"
+    assert not ended
+    request = desk.command(NextRunRequest, "b", "eight", True)
+    reply = await desk.ask(request)
+    assert (reply.verdict, await desk.ask(request)) == (Verdict.DONE, reply)
+    assert desk.simulation.prepared == [("b", "eight", True, TeacherNow("ann", 1, "noon"))]
+    assert ended == [True]
+    assert why(await desk.ask(desk.command(NextRunRequest, "c", None, False))) == "refused"
+    told = (await desk.ask(SimulationRequest())).body["simulation"]
+    assert SIMULATION.read(decode_answer(encode_answer(told))) == await desk.simulation.view()
+
+
+async def test_no_next_run_begins_while_lessons_cannot_be_saved(monkeypatch: pytest.MonkeyPatch) -> None:
+    desk = Desk(ground=Yard())
+    monkeypatch.setattr(desk.runtime.scheduler, "end", lambda: pytest.fail("lessons that wait end with their run"))
+    await desk.ask(desk.command(TakeRequest))
+    desk.shelf.problem = "var/a.knowledge: the disk is full"
+    reply = await desk.ask(desk.command(NextRunRequest, "b", None, False))
+    assert (why(reply), reply.body["text"]) == ("refused", "var/a.knowledge: the disk is full")
+    assert not desk.simulation.prepared
+
+
+async def test_at_another_speed_the_teachers_leases_are_as_many_times_longer_in_robot_time() -> None:
+    desk = Desk(ground=Yard())
+    assert why(await desk.ask(desk.command(SpeedRequest, 4))) == "held"
+    await desk.ask(desk.command(TakeRequest))
+    assert why(await desk.stream(desk.watch(age=STREAM_TICKS + 1))) == "stale"
+    assert (await desk.ask(desk.command(SpeedRequest, 4))).verdict is Verdict.DONE
+    desk.run()
+    assert desk.speed.wanted == 4
+    assert why(await desk.stream(desk.watch(age=4 * STREAM_TICKS))) == ""
+    assert why(await desk.stream(desk.watch(age=4 * STREAM_TICKS + 1))) == "stale"
+    await desk.stream(desk.watch())
+    desk.run(4 * 24)
+    assert desk.runtime.school.authority.present(desk.tick)
+    desk.run(1)
+    assert not desk.runtime.school.authority.present(desk.tick)
+    told = SIMULATION.read((await desk.ask(SimulationRequest())).body["simulation"])
+    assert (told.speed, told.reached) == (4, 1.0)
+
+
+async def test_back_to_the_start_is_refused_after_a_stop_as_any_place_is() -> None:
+    yard = Yard()
+    desk = Desk(ground=yard)
+    await desk.ask(desk.command(TakeRequest))
+    assert (await desk.ask(desk.command(BackToStartRequest))).verdict is Verdict.DONE
+    request = desk.command(BackToStartRequest)
+    await desk.ask(desk.stop())
+    assert why(await desk.ask(request)) == "refused"
+    assert yard.changes == [("start",)]
+
+
+async def test_a_file_is_uploaded_by_the_teacher_in_parts_and_loaded_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("kurt2rt.channel.server.off_tick_requests.LAST_ANSWER_S", 0.0)
+    desk, content, upload = Desk(ground=Yard()), b"PK" + bytes(1000), b"12345678"
+    monkeypatch.setattr(desk.runtime.scheduler, "end", lambda: None)
+    parts = [UploadRequest(BOOT, upload, at, content[at : at + 896]) for at in (0, 896)]
+    assert why(await desk.ask(parts[0])) == "held"
+    await desk.ask(desk.command(TakeRequest))
+    assert why(await desk.ask(parts[1])) == "refused"
+    assert [(await desk.ask(each)).body["size"] for each in (parts[0], parts[0], parts[1])] == [896, 896, 1002]
+    assert why(await desk.ask(UploadRequest(LAST_START, upload, 0, b"PK"))) == "boot"
+    fingerprint = hashlib.sha256(content).digest()
+    assert why(await desk.ask(desk.command(LoadRequest, upload, bytes(32)))) == "refused"
+    assert (await desk.ask(desk.command(LoadRequest, upload, fingerprint))).verdict is Verdict.DONE
+    assert desk.simulation.prepared == [(content, TeacherNow("ann", 1, None))]
+
+
+async def test_a_real_robot_has_no_next_run(desk: Desk) -> None:
+    await desk.ask(desk.command(TakeRequest))
+    requests = (
+        desk.command(NextRunRequest, None, None, True),
+        desk.command(BackToStartRequest),
+        desk.command(LoadRequest, bytes(8), bytes(32)),
+        desk.command(SpeedRequest, 2),
+        UploadRequest(BOOT, bytes(8), 0, b"PK"),
+        SimulationRequest(),
+    )
+    for request in requests:
+        assert (await desk.ask(request)).verdict is Verdict.NOT_HERE
+
+
+# Looking.
+
+
+async def test_hello_tells_what_robot_this_is_and_survives_the_wire(desk: Desk) -> None:
+    reply = await desk.ask(HelloRequest())
+    told = decode_answer(encode_answer(reply.body))
+    assert told["boot"] == BOOT
+    assert told["tick"] == desk.tick
+    assert (told["robot"], told["task"], told["simulated"]) == (ROBOT.name, "wall_following", False)
+    assert told["actions"] == list(desk.runtime.level.repertoire)
+    assert len(told["sensors"]) == len(ROBOT.infrared.sensors)
+    assert told["period_s"] == 0.01
+
+
+async def test_health_is_the_report_of_the_last_second_and_anybody_with_a_key_may_ask(desk: Desk) -> None:
+    assert (await desk.ask(HealthRequest())).body == {"health": None}
+    desk.health = ILL
+    for device in ("ann", "bob"):
+        told = decode_answer(encode_answer((await desk.ask(HealthRequest(), device)).body))
+        assert report_of(told["health"]) == ILL
+
+
+async def test_who_asks_why_all_the_time_is_told_ten_times_a_second(desk: Desk) -> None:
+    """An answer takes a millisecond of the loop, so nobody may have as many as he likes."""
+    desk.run(1)
+    at_once = [(await desk.ask(WhyRequest(), "bob")).verdict for _ in range(20)]
+    assert at_once.count(Verdict.DONE) == 5
+    assert set(at_once[5:]) == {Verdict.CONFLICT}
+    assert (await desk.ask(WhyRequest(), "ann")).verdict is Verdict.DONE
+    answered = 0
+    for _ in range(100):
+        desk.run(1)
+        answered += (await desk.ask(WhyRequest(), "bob")).verdict is Verdict.DONE
+    assert answered == 10
+
+
+async def test_anybody_with_a_key_may_ask_why_the_robot_does_what_it_does(desk: Desk) -> None:
+    await desk.ask(desk.answer("forward"))
+    told = decode_answer(encode_answer((await desk.ask(WhyRequest(), "bob")).body))
+    facts = facts_of_plain(told["why"])
+    assert facts.tick == desk.tick
+    assert facts.basic.nearest is not None
+    (taught,) = facts.basic.nearest.acts
+    assert (taught.text, taught.teacher, taught.stamp) == ("RLA 1 taught: forward", "ann", STAMP)
+
+
+async def test_the_newest_lessons_come_first_with_who_when_and_whether_they_stand(desk: Desk) -> None:
+    assert (await desk.ask(LessonsRequest(20))).body == {"lessons": []}
+    await desk.ask(desk.answer("forward"))
+    taught_at = desk.tick
+    await desk.ask(desk.command(CorrectRequest, "back", None))
+    corrected_at = desk.tick
+    await desk.ask(desk.command(UndoRequest, None))
+    task = await desk.send(desk.command(CorrectRequest, "stand", None))
+    desk.run()
+    rows = (await desk.ask(LessonsRequest(20), "ben", write=False)).body["lessons"]
+    assert [row[1:] for row in rows] == [
+        ["RLA 1 corrected: stand instead of forward", "ann", 1, desk.tick, "", False],
+        ["RLA 1 corrected: back instead of forward", "ann", 1, corrected_at, STAMP, True],
+        ["RLA 1 taught: forward", "ann", 1, taught_at, STAMP, False],
+    ]
+    assert all(row[0].startswith("ann-") for row in rows)
+    assert (await desk.ask(LessonsRequest(1))).body["lessons"] == rows[:1]
+    assert (await desk.ask(LessonsRequest(0))).body["lessons"] == []
+    desk.write()
+    await reply_of(task)
+
+
+async def test_a_real_robot_has_no_world_to_tell_of(desk: Desk) -> None:
+    for request in (WorldRequest(), *(desk.command(kind, *COMMANDS[kind]) for kind in (MoveWallRequest, PlaceRequest))):
+        reply = await desk.ask(request)
+        assert (reply.verdict, outcome_of(reply)) == (Verdict.NOT_HERE, Outcome(RefusalCode.NOT_SIMULATED))
+
+
+async def test_a_simulated_world_is_told_and_changed() -> None:
+    yard = Yard()
+    desk = Desk(ground=yard)
+    world = (await desk.ask(WorldRequest())).body
+    assert decode_answer(encode_answer(world)) == {
+        "version": 0,
+        "name": "yard",
+        "size": [4.0, 4.0],
+        "outline": [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0], [0.0, 0.0]],
+        "walls": [["box", [[1.0, 1.0], [2.0, 1.0], [2.0, 2.0]]]],
+        "round": [["post", 3.0, 3.0, 0.1]],
+    }
+    move = desk.command(MoveWallRequest, "box", 0.5, -0.25)
+    reply = await desk.ask(move)
+    assert (reply.verdict, outcome_of(reply)) == (Verdict.DONE, Outcome.of(ResultCode.WALL_MOVED, name="box"))
+    assert await desk.ask(move) == reply  # sent again: it moves once
+    assert outcome_of(await desk.ask(desk.command(PlaceRequest, 1.0, 2.0, 0.5))) == Outcome(ResultCode.ROBOT_PLACED)
+    assert yard.changes == [("box", 0.5, -0.25), (1.0, 2.0, 0.5)]
+
+
+async def test_a_change_of_the_world_that_cannot_be_is_refused_in_the_worlds_words() -> None:
+    desk = Desk(ground=Yard())
+    for request in (
+        desk.command(MoveWallRequest, "tree", 0.5, 0.0),
+        desk.command(PlaceRequest, 50.0, 0.0, 0.0),
+    ):
+        refused = await desk.ask(request)
+        assert (why(refused), refused.body["text"]) == ("refused", "that cannot be")
+
+
+# The critic.
+
+
+async def test_the_robot_tells_what_its_critic_can_be_taught(desk: Desk) -> None:
+    hello = (await desk.ask(HelloRequest())).body
+    assert hello["appraisals"] == [["bad", -1], ["neutral", 0], ["good", 1]]
+    assert hello["trusted_from"] == load_critic().agreement.bound
+
+
+async def test_an_appraisal_is_about_the_picture_and_counts_once(desk: Desk) -> None:
+    meant = desk.run(400, counts=100).tick
+    desk.run(400, counts=700)
+    blame = desk.command(AppraiseRequest, "bad", meant)
+    assert outcome_of(await desk.ask(blame)) == Outcome.of(ResultCode.RLA_TAUGHT, rla=1, level=CRITIC, action="bad")
+    assert outcome_of(await desk.ask(blame)) == Outcome.of(ResultCode.RLA_TAUGHT, rla=1, level=CRITIC, action="bad")
+    assert opinion_at(desk, 700) is None
+    assert opinion_at(desk, 100) == -1
+    again = await desk.ask(desk.command(AppraiseRequest, "bad", desk.tick))
+    assert (again.verdict, outcome_of(again)) == (Verdict.DONE, Outcome.of(ResultCode.CRITIC_AGREED, appraisal="bad"))
+    lessons = (await desk.ask(LessonsRequest(5))).body["lessons"]
+    assert [text for _, text, *_ in lessons] == ["appraisal RLA 1 taught: bad"]  # that it agreed is no lesson
+
+
+async def test_an_appraisal_that_the_critic_has_no_word_for_is_refused(desk: Desk) -> None:
+    refused = await desk.ask(desk.command(AppraiseRequest, "lovely", None))
+    assert (why(refused), refused.body["text"]) == (
+        "refused",
+        "there is no appraisal 'lovely'; the critic knows: bad, neutral, good",
+    )
+
+
+def opinion_at(desk: Desk, counts: int) -> int | None:
+    """What the critic thinks where the sensors have shown the same for a while."""
+    return desk.telling.picture(desk.run(400, counts=counts)).opinion
+
+
+# Several taught behaviours.
+
+
+async def test_the_robot_tells_what_it_can_follow_and_follows_what_it_is_told() -> None:
+    desk = Desk(behaviours=("straight_on", "turn_left"))
+    assert (await desk.ask(HelloRequest())).body["behaviours"] == ["straight_on", "turn_left"]
+    reply = await desk.ask(desk.command(PursueRequest, "turn_left"))
+    assert (reply.verdict, outcome_of(reply)) == (
+        Verdict.DONE,
+        Outcome.of(ResultCode.BEHAVIOUR_WANTED, behaviour="turn_left"),
+    )
+    reply = await desk.ask(desk.command(PursueRequest, "fly"))
+    assert why(reply) == "refused"
+    assert outcome_of(reply) == Outcome.of(
+        RefusalCode.NO_BEHAVIOUR, behaviour="fly", known=("straight_on", "turn_left")
+    )
+    assert desk.runtime.wanted.behaviour == "turn_left"
+
+
+async def test_what_was_asked_for_before_a_stop_or_before_another_behaviour_and_comes_late_is_refused() -> None:
+    desk = Desk(behaviours=("straight_on", "turn_left"))
+    older = desk.command(PursueRequest, "straight_on")
+    desk.run(5)
+    await desk.ask(desk.command(PursueRequest, "turn_left"))
+    late = await desk.ask(older)
+    assert why(late) == "refused"
+    assert outcome_of(late) == Outcome.of(RefusalCode.BEHAVIOUR_SINCE, behaviour="turn_left")
+    before = desk.command(PursueRequest, "straight_on")
+    desk.run(5)
+    await desk.ask(StopRequest(b"stopstop"))
+    assert outcome_of(await desk.ask(before)) == Outcome(RefusalCode.STOPPED_SINCE)
+    assert desk.runtime.wanted.behaviour == "turn_left"
+
+
+async def test_a_lesson_on_an_old_picture_is_listed_under_what_was_wanted_then() -> None:
+    desk = Desk(behaviours=("straight_on", "turn_left"))
+    seen = desk.tick
+    await desk.ask(desk.command(PursueRequest, "turn_left"))
+    await desk.ask(desk.answer("forward", of=seen))
+    await desk.ask(desk.answer("forward"))
+    lessons = (await desk.ask(LessonsRequest(2))).body["lessons"]
+    assert [text for _, text, *_ in lessons] == [
+        "RLA 2 of turn_left taught: forward",
+        "RLA 1 of straight_on taught: forward",
+    ]
+
+
+async def test_a_copy_of_a_stop_on_its_way_when_go_is_said_lets_the_robot_drive_all_the_same() -> None:
+    desk = Desk()
+    stop = desk.stop()
+    answered = await desk.ask(stop, "ann")
+    go = desk.command(ResumeRequest)
+    desk.run(5)
+    assert await desk.ask(stop, "ann") == answered
+    assert outcome_of(await desk.ask(go)) == Outcome(ResultCode.RESUMED)
+    assert desk.run().decision.cause is not Cause.STOPPED
+
+
+async def test_a_robot_that_was_stopped_is_set_down_by_nothing_that_was_said_before() -> None:
+    yard = Yard()
+    desk = Desk(ground=yard)
+    before = desk.command(PlaceRequest, 1.0, 2.0, 0.5)
+    desk.run(5)
+    await desk.ask(desk.stop(), "ben")
+    refused = await desk.ask(before)
+    assert why(refused) == "refused"
+    assert outcome_of(refused) == Outcome(RefusalCode.STOPPED_SINCE)
+    assert yard.changes == []
+    await desk.ask(desk.command(PlaceRequest, 3.0, 1.0, 0.5))
+    assert yard.changes == [(3.0, 1.0, 0.5)]

@@ -1,0 +1,638 @@
+"""The robot's resources: what a stranger gets, what a key holder gets, and what a request leaves behind."""
+
+import asyncio
+import logging
+import socket
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+import aiocoap
+import cbor2
+import pytest
+from aiocoap import oscore
+from aiocoap.pipe import Pipe
+
+from kurt2rt.channel.protocol.codec import (
+    CONTENT_FORMAT,
+    PATHS,
+    decode_answer,
+    decode_state,
+    encode_request,
+    encode_state,
+)
+from kurt2rt.channel.protocol.requests import (
+    AnswerRequest,
+    HelloRequest,
+    LessonsRequest,
+    PhaseRequest,
+    Request,
+    StopRequest,
+    WorldRequest,
+)
+from kurt2rt.channel.security.oscore_context import OscoreContext
+from kurt2rt.channel.security.paired_devices import Teachers
+from kurt2rt.channel.security.pairing import local_pairing, pair, revoke
+from kurt2rt.channel.server.channel import Channel, Surroundings, open_channel
+from kurt2rt.channel.server.resources import RobotSite
+from kurt2rt.channel.server.state_builder import Safekeeping
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.rla.outcome import RefusalCode, ResultCode
+from kurt2rt.core.rla.rla import Phase
+from tests.channel.desk import BOOT, ROBOT, Desk, turns
+from tests.channel.sides import answer_challenge, carried, header_of
+from tests.channel.states import state
+
+CODES = (aiocoap.GET, aiocoap.POST, aiocoap.PUT, aiocoap.DELETE, aiocoap.FETCH)
+EVERYWHERE = (*PATHS, "/state", "/", "/nothing/here", "/.well-known/core")
+CORE = "/.well-known/core"
+
+
+def plain(path: str, code: Any = aiocoap.POST, payload: bytes = b"", **options: Any) -> Any:
+    message = aiocoap.Message(code=code, payload=payload, **options)
+    message.opt.uri_path = tuple(path.strip("/").split("/")) if path != "/" else ()
+    return message
+
+
+class Phone:
+    """A paired device without a socket: what it sends goes to the site as it would from the network."""
+
+    def __init__(self, site: RobotSite, keys: OscoreContext) -> None:
+        self.site = site
+        self.keys = keys
+
+    async def call(self, message: Any) -> Any:
+        """The answer to a protected request, read with the device's keys."""
+        protected, request_id = self.keys.protect(message)
+        (event,) = await answers(self.site, carried(protected))
+        assert event.is_last
+        answer, _ = self.keys.unprotect(carried(event.message), request_id)
+        return answer
+
+    async def post(self, request: Request) -> Any:
+        """The answer to a request of the wire."""
+        return await self.call(plain(request.path, payload=encode_request(request), content_format=CONTENT_FORMAT))
+
+
+class School:
+    """A robot at its desk, with two paired devices, ann and ben."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.pairings = {name: pair(folder / "teachers", folder / "devices", name) for name in ("ann", "ben")}
+        self.teachers = Teachers(folder / "teachers")
+        self.desk = Desk(keys=self.teachers)
+        self.site = self.desk.site
+        self._phones: list[OscoreContext] = []
+
+    def keys(self, name: str = "ann") -> OscoreContext:
+        keys = OscoreContext(self.pairings[name].device.folder)
+        self._phones.append(keys)
+        answer_challenge(keys, self.teachers.find(header_of(keys)))
+        return keys
+
+    def phone(self, name: str = "ann") -> Phone:
+        return Phone(self.site, self.keys(name))
+
+    def close(self) -> None:
+        for keys in self._phones:
+            keys.close()
+        self.teachers.close()
+
+
+async def answers(site: RobotSite, message: Any) -> list[Any]:
+    """What a request gets, as aiocoap hears it from the site."""
+    events: list[Any] = []
+    pipe = Pipe(message, logging.getLogger("aiocoap.test"))
+    pipe.on_event(_noting(events))
+    await site.render_to_pipe(pipe)
+    return events
+
+
+def _noting(events: list[Any]) -> Callable[[Any], bool]:
+    def note(event: Any) -> bool:
+        events.append(event)
+        return True
+
+    return note
+
+
+@pytest.fixture
+def school(tmp_path: Path) -> Iterator[School]:
+    school = School(tmp_path)
+    yield school
+    school.close()
+
+
+# Strangers.
+
+
+@pytest.mark.parametrize("code", CODES, ids=str)
+async def test_without_keys_everything_but_discovery_is_refused(school: School, code: Any) -> None:
+    for path in EVERYWHERE:
+        payload = cbor2.dumps([b"12345678", None]) if path == "/stop" else b""
+        (event,) = await answers(school.site, carried(plain(path, code, payload)))
+        assert event.is_last
+        if (code, path) == (aiocoap.GET, CORE):
+            assert event.message.code == aiocoap.CONTENT
+        else:
+            assert (event.message.code, event.message.payload) == (aiocoap.UNAUTHORIZED, b""), path
+    assert school.desk.run().decision.cause is Cause.UNKNOWN
+    assert school.site.observers == 0
+
+
+async def test_discovery_names_every_resource(school: School) -> None:
+    told, more = b"", True
+    while more:
+        request = plain(CORE, aiocoap.GET)
+        request.opt.block2 = (len(told) // 32, False, 1)
+        (event,) = await answers(school.site, carried(request))
+        told += event.message.payload
+        more = event.message.opt.block2.more
+        assert event.message.opt.content_format == 40
+    assert told.decode().split(",") == ["</state>;obs;osc;ct=60", *(f"<{path}>;osc" for path in PATHS)]
+    whole = await school.phone().call(plain(CORE, aiocoap.GET))
+    assert (whole.payload, whole.opt.block2) == (told, None)
+
+
+@pytest.mark.parametrize(
+    ("wanted", "given"),
+    [(None, (0, 0, 32)), ((0, False, 6), (0, 0, 32)), ((1, False, 2), (2, 64, 96)), ((3, False, 0), (3, 48, 64))],
+)
+async def test_discovery_without_keys_gives_small_blocks(
+    school: School, wanted: tuple[int, bool, int] | None, given: tuple[int, int, int]
+) -> None:
+    request = plain(CORE, aiocoap.GET)
+    request.opt.block2 = wanted
+    (event,) = await answers(school.site, carried(request))
+    number, begin, end = given
+    whole = await school.phone().call(plain(CORE, aiocoap.GET))
+    assert (event.message.opt.block2.block_number, event.message.payload) == (number, whole.payload[begin:end])
+
+
+async def test_a_block_behind_the_end_is_refused(school: School) -> None:
+    request = plain(CORE, aiocoap.GET)
+    request.opt.block2 = (1000, False, 1)
+    (event,) = await answers(school.site, carried(request))
+    assert (event.message.code, event.message.payload) == (aiocoap.BAD_REQUEST, b"")
+
+
+async def test_an_observation_without_keys_is_refused(school: School) -> None:
+    (event,) = await answers(school.site, carried(plain("/state", aiocoap.GET, observe=0)))
+    assert event.message.code == aiocoap.UNAUTHORIZED
+    assert school.site.observers == 0
+
+
+async def test_an_id_that_nobody_has_meets_silence(school: School, tmp_path: Path) -> None:
+    stranger = pair(tmp_path / "others", tmp_path / "other-devices", "mallory")
+    keys = OscoreContext(stranger.device.folder)
+    protected, _ = keys.protect(plain("/hello", payload=cbor2.dumps([])))
+    assert await answers(school.site, carried(protected)) == []
+    keys.close()
+
+
+async def test_every_bit_that_is_changed_on_the_way_meets_silence(school: School) -> None:
+    keys = school.keys()
+    await Phone(school.site, keys).post(HelloRequest())
+    protected, _ = keys.protect(plain("/stop", payload=encode_request(StopRequest(b"12345678"))))
+    for place in range(len(protected.payload)):
+        broken = carried(protected)
+        changed = bytearray(broken.payload)
+        changed[place] ^= 1 << place % 8
+        broken.payload = bytes(changed)
+        assert await answers(school.site, broken) == []
+    assert school.desk.run().decision.cause is Cause.UNKNOWN
+
+
+async def test_the_id_of_one_device_with_the_keys_of_another_meets_silence(school: School) -> None:
+    ann, ben = school.keys("ann"), school.keys("ben")
+    ann.sender_id = ben.sender_id
+    protected, _ = ann.protect(plain("/hello", payload=cbor2.dumps([])))
+    assert await answers(school.site, carried(protected)) == []
+
+
+@pytest.mark.parametrize("payload", [b"", b"\x00", b"\xff" * 8, bytes(13)])
+async def test_a_message_that_only_looks_protected_meets_silence(school: School, payload: bytes) -> None:
+    kid = school.keys().sender_id
+    for option in (b"", b"\x09\x00" + kid, b"\x0d" + bytes(5) + kid, b"\xff\xff", b"\x08" + kid):
+        message = plain("/hello", payload=payload, oscore=option)
+        assert await answers(school.site, carried(message)) == []
+
+
+async def test_a_request_that_was_recorded_is_not_carried_out_again(school: School) -> None:
+    keys = school.keys()
+    phone = Phone(school.site, keys)
+    await phone.post(HelloRequest())
+    protected, _ = keys.protect(plain("/hello", payload=cbor2.dumps([])))
+    assert len(await answers(school.site, carried(protected))) == 1
+    assert await answers(school.site, carried(protected)) == []
+
+
+# Key holders.
+
+
+async def test_a_request_is_answered_in_the_form_of_the_wire(school: School) -> None:
+    answer = await school.phone().post(HelloRequest())
+    assert (answer.code, answer.opt.content_format) == (aiocoap.CHANGED, CONTENT_FORMAT)
+    told = decode_answer(answer.payload)
+    assert told["boot"] == BOOT
+    assert told["phases"]
+
+
+async def test_a_device_teaches_under_its_own_name(school: School) -> None:
+    request = PhaseRequest(BOOT, b"12345678", school.desk.tick, Phase.CORRECTIONS)
+    call = asyncio.create_task(school.phone("ben").post(request))
+    await turns()
+    school.desk.run()
+    answer = await call
+    assert decode_answer(answer.payload)["code"] == ResultCode.PHASE_SET
+    assert school.desk.telling.picture(school.desk.record).teacher == "ben"
+
+
+@pytest.mark.parametrize("code", [code for code in CODES if code != aiocoap.POST], ids=str)
+async def test_every_path_takes_post_alone(school: School, code: Any) -> None:
+    phone = school.phone()
+    for path in PATHS:
+        answer = await phone.call(plain(path, code))
+        assert answer.code == aiocoap.METHOD_NOT_ALLOWED, path
+
+
+@pytest.mark.parametrize("code", CODES, ids=str)
+async def test_what_is_not_there_is_not_found(school: School, code: Any) -> None:
+    phone = school.phone()
+    for segments in ((), ("nothing", "here"), ("hello", "there"), ("world", ""), ("", "hello")):
+        message = aiocoap.Message(code=code)
+        message.opt.uri_path = segments
+        assert (await phone.call(message)).code == aiocoap.NOT_FOUND, segments
+
+
+@pytest.mark.parametrize("payload", [b"", b"\xff", b"\x81", cbor2.dumps({}), cbor2.dumps([1] * 9), bytes(2000)])
+async def test_what_is_not_understood_is_told_in_a_sentence(school: School, payload: bytes) -> None:
+    phone = school.phone()
+    for path in PATHS:
+        answer = await phone.call(plain(path, payload=payload))
+        assert (answer.code, answer.opt.content_format) == (aiocoap.BAD_REQUEST, CONTENT_FORMAT), path
+        told = decode_answer(answer.payload)
+        assert told["why"] == "malformed"
+        assert told["text"]
+    assert school.desk.runtime.inbox.take() == ()
+
+
+async def test_a_refusal_has_the_code_of_a_conflict_and_a_world_that_is_not_there_that_of_nothing(
+    school: School,
+) -> None:
+    phone = school.phone()
+    refused = await phone.post(PhaseRequest(b"last", b"12345678", 0, Phase.CORRECTIONS))
+    assert (refused.code, decode_answer(refused.payload)["why"]) == (aiocoap.CONFLICT, "boot")
+    nothing = await phone.post(WorldRequest())
+    assert nothing.code == aiocoap.NOT_FOUND
+    assert decode_answer(nothing.payload)["code"] == RefusalCode.NOT_SIMULATED
+
+
+async def test_a_fault_of_ours_is_counted_and_answered_and_the_next_request_is_fine(
+    school: School, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(_: object) -> None:
+        raise ZeroDivisionError
+
+    phone = school.phone()
+    with monkeypatch.context() as patch:
+        patch.setattr(school.desk.reception, "_lessons", fail)
+        answer = await phone.post(LessonsRequest(3))
+    assert (answer.code, school.site.failures) == (aiocoap.INTERNAL_SERVER_ERROR, 1)
+    assert (await phone.post(LessonsRequest(3))).code == aiocoap.CHANGED
+
+
+async def test_who_proves_his_key_is_told_to_the_doorkeeper_and_nobody_else(school: School) -> None:
+    class Doorkeeper:
+        proofs = 0
+
+        def proved(self, remote: Any) -> None:  # noqa: ARG002
+            self.proofs += 1
+
+    school.site.doorkeeper = doorkeeper = Doorkeeper()
+    await answers(school.site, carried(plain("/hello")))
+    assert doorkeeper.proofs == 0
+    await school.phone().post(HelloRequest())
+    assert doorkeeper.proofs == 1
+
+
+# Pictures.
+
+
+class Observer:
+    """A device that looks at the robot."""
+
+    def __init__(self, phone: Phone, message: Any) -> None:
+        self.keys = phone.keys
+        protected, self._request_id = phone.keys.protect(message)
+        self.events: list[Any] = []
+        pipe = Pipe(carried(protected), logging.getLogger("aiocoap.test"))
+        pipe.on_event(lambda event: _noting(self.events)(event))
+        self._task = asyncio.create_task(phone.site.render_to_pipe(pipe))
+
+    async def ticks(self) -> list[int]:
+        """Ticks of the pictures that came since the last call."""
+        await turns()
+        events, self.events = self.events, []
+        answers = [self.keys.unprotect(carried(event.message), self._request_id)[0] for event in events]
+        return [decode_state(answer.payload).tick for answer in answers]
+
+    async def gone(self) -> None:
+        """What aiocoap does when the other side is gone."""
+        self._task.cancel()
+        await asyncio.wait([self._task])
+
+
+def look(*, observe: int | None = 0) -> Any:
+    message = plain("/state", aiocoap.GET)
+    if observe is not None:
+        message.opt.observe = observe
+    return message
+
+
+def show(school: School, tick: int) -> None:
+    school.site.show(encode_state(state(tick=tick)))
+
+
+async def test_an_observer_gets_the_present_picture_and_each_one_that_follows(school: School) -> None:
+    show(school, 5)
+    observer = Observer(school.phone(), look())
+    assert await observer.ticks() == [5]
+    for tick in (10, 15):
+        show(school, tick)
+        assert await observer.ticks() == [tick]
+    assert school.site.observers == 1
+    await observer.gone()
+    assert school.site.observers == 0
+
+
+async def test_an_observer_who_is_early_waits_for_the_first_picture(school: School) -> None:
+    observer = Observer(school.phone(), look())
+    assert await observer.ticks() == []
+    show(school, 5)
+    assert await observer.ticks() == [5]
+    await observer.gone()
+
+
+async def test_an_observer_who_is_slow_gets_the_newest_one_and_no_older_one_after_it(school: School) -> None:
+    show(school, 5)
+    observer = Observer(school.phone(), look())
+    assert await observer.ticks() == [5]
+    for tick in (10, 15, 20):
+        show(school, tick)
+    assert await observer.ticks() == [20]
+    skipped = school.site.pictures_skipped
+    assert skipped > 0
+    await observer.gone()
+    assert school.site.pictures_skipped == skipped  # also of those who are gone
+
+
+async def test_a_picture_that_comes_just_as_the_one_before_is_taken_is_not_lost(school: School) -> None:
+    show(school, 5)
+    observer = Observer(school.phone(), look())
+    assert await observer.ticks() == [5]
+    show(school, 10)
+    asyncio.get_running_loop().call_soon(show, school, 15)
+    assert (await observer.ticks())[-1] == 15
+    await observer.gone()
+
+
+async def test_everyone_who_looks_gets_it(school: School) -> None:
+    show(school, 5)
+    observers = [Observer(school.phone(name), look()) for name in ("ann", "ben")]
+    await turns()
+    show(school, 10)
+    for observer in observers:
+        assert await observer.ticks() == [5, 10]
+        await observer.gone()
+
+
+@pytest.mark.parametrize("observe", [None, 1])
+async def test_who_wants_one_picture_gets_one(school: School, observe: int | None) -> None:
+    show(school, 5)
+    answer = await school.phone().call(look(observe=observe))
+    assert (answer.code, answer.opt.content_format) == (aiocoap.CONTENT, CONTENT_FORMAT)
+    assert decode_state(answer.payload).tick == 5
+    assert school.site.observers == 0
+
+
+async def test_who_wants_one_picture_before_there_is_any_waits_for_it(school: School) -> None:
+    call = asyncio.create_task(school.phone().call(look(observe=None)))
+    await turns()
+    assert not call.done()
+    show(school, 5)
+    assert decode_state((await call).payload).tick == 5
+    assert school.site.observers == 0
+
+
+async def test_numbers_of_pictures_differ_and_stay_within_24_bits(school: School) -> None:
+    phone = school.phone()
+    robot_keys = school.teachers.find({oscore.COSE_KID: phone.keys.sender_id})
+    robot_keys.sender_sequence_number = 2**24 - 3
+    robot_keys.sequence_number_persisted = 2**24 + 10_000
+    observer = Observer(phone, look())
+    for tick in (5, 10, 15, 20, 25):
+        show(school, tick)
+        await turns()
+    numbers = [event.message.opt.observe for event in observer.events]
+    assert len(set(numbers)) == 5
+    assert all(0 <= number < 2**24 for number in numbers)
+    await observer.gone()
+
+
+async def test_an_observer_who_is_silent_for_a_second_is_asked_whether_he_is_there(
+    school: School, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    loop = asyncio.get_running_loop()
+    later_s, time_of = 0.0, loop.time
+    monkeypatch.setattr(loop, "time", lambda: time_of() + later_s)
+    phone = school.phone()
+    observer = Observer(phone, look())
+
+    async def is_asked() -> bool:
+        observer.events.clear()
+        show(school, 5)
+        await turns()
+        (event,) = observer.events
+        confirmed: bool = event.message.transport_tuning.reliability
+        return confirmed
+
+    await is_asked()
+    assert not await is_asked()
+    later_s += 1.0
+    assert await is_asked()
+    assert not await is_asked()
+    later_s += 1.0
+    await phone.post(HelloRequest())  # he is there
+    assert not await is_asked()
+    await observer.gone()
+
+
+async def test_a_device_that_is_revoked_gets_no_picture_any_more_and_is_no_observer(school: School) -> None:
+    show(school, 5)
+    observer = Observer(school.phone(), look())
+    assert await observer.ticks() == [5]
+    revoke(school.folder / "teachers", school.folder / "devices", "ann")
+    assert (await school.teachers.refresh()).gone == ("ann",)
+    show(school, 10)
+    await turns()
+    assert school.site.observers == 0
+    assert observer.events == []
+    await observer.gone()
+
+
+# Over a real socket.
+
+
+class Line:
+    """A device on loopback with aiocoap's own socket."""
+
+    def __init__(self, coap: Any, port: int, keys: OscoreContext) -> None:
+        self._coap = coap
+        self._address = ("127.0.0.1", port)
+        self._host = f"127.0.0.1:{port}"
+        self._keys = keys
+
+    async def plain(self, path: str, code: Any) -> Any:
+        """The answer to a request without keys."""
+        return await self._response(plain(path, code))
+
+    async def call(self, request: Request) -> Any:
+        """The answer to a request of the wire; the robot's first wish for a proof is met."""
+        message = plain(request.path, payload=encode_request(request))
+        answer = await self._protected(message)
+        return answer if answer.opt.echo is None else await self._protected(message.copy(echo=answer.opt.echo))
+
+    def forge(self, count: int) -> None:
+        """Messages in the name of this device that were not made with its keys; nobody waits for an answer."""
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as forger:
+            for number in range(count):
+                outer, _ = self._keys.protect(plain("/hello"))
+                outer.payload = bytes(len(outer.payload))
+                outer.mid, outer.mtype, outer.token = number, aiocoap.NON, bytes([number])
+                forger.sendto(outer.encode(), self._address)
+
+    async def _protected(self, message: Any) -> Any:
+        outer, request_id = self._keys.protect(message)
+        answer, _ = self._keys.unprotect(await self._response(outer), request_id)
+        return answer
+
+    async def _response(self, message: Any) -> Any:
+        message.unresolved_remote = self._host
+        async with asyncio.timeout(10.0):
+            return await self._coap.request(message, handle_blockwise=False).response
+
+
+class OnLine:
+    """A robot that listens on loopback, and a paired device that talks to it."""
+
+    def __init__(self, desk: Desk, channel: Channel, line: Line) -> None:
+        self.desk = desk
+        self.channel = channel
+        self.line = line
+        desk.channel = channel
+        desk.run()  # before its first tick a robot has no picture on which anything could be said
+
+    async def call(self, request: Request) -> dict[str, Any]:
+        """The answer to a request, while the robot ticks as fast as it does; at most 0.4 s, for what was given on the
+        picture of the request before shall not grow old, a second, where a machine is slow."""
+        task = asyncio.create_task(self.line.call(request))
+        ticks = 0
+        while not (await asyncio.wait([task], timeout=ROBOT.can.cycle_s))[0]:
+            if ticks < 40:
+                self.desk.run()
+                ticks += 1
+            self.desk.write()
+        answer = await task
+        assert answer.code == aiocoap.CHANGED, answer.payload
+        return decode_answer(answer.payload)
+
+    @property
+    def remembered_requests(self) -> int:
+        """How many aiocoap keeps because they are not answered."""
+        (tokens,) = self.channel.endpoint._context.request_interfaces
+        return len(tokens.incoming_requests)
+
+
+@asynccontextmanager
+async def on_line(folder: Path) -> AsyncIterator[OnLine]:
+    pairing = pair(folder / "teachers", folder / "devices", "ann")
+    teachers = Teachers(folder / "teachers")
+    keys = OscoreContext(pairing.device.folder)
+    answer_challenge(keys, teachers.find(header_of(keys)))
+    desk = Desk()
+    safekeeping = Safekeeping(lambda: desk.unwritten, lambda: None, lambda _: "")
+    coap = await aiocoap.Context.create_client_context(transports=["udp6"])
+    surroundings = Surroundings(safekeeping, desk.shelf, lambda: "", None)
+    async with open_channel(desk.runtime, teachers, 0, surroundings) as channel:
+        yield OnLine(desk, channel, Line(coap, channel.endpoint.port, keys))
+    await coap.shutdown()
+    keys.close()
+    teachers.close()
+
+
+async def test_a_paired_device_teaches_the_robot_over_a_socket(tmp_path: Path) -> None:
+    async with on_line(tmp_path) as robot:
+        hello = await robot.call(HelloRequest())
+        answer = await robot.call(AnswerRequest(hello["boot"], b"12345678", hello["tick"], "forward", None))
+        assert (answer["code"], answer["fields"]["rla"], answer["row"]) == (ResultCode.RLA_TAUGHT, 1, 1)
+        (lesson,) = (await robot.call(LessonsRequest(20)))["lessons"]
+        assert lesson[:3] == ["ann-" + b"12345678".hex(), "RLA 1 taught: forward", "ann"]
+        stop = await robot.call(StopRequest(b"87654321"))
+        assert stop["code"] == ResultCode.STOPPED
+        assert robot.desk.record.decision.cause is Cause.STOPPED
+        assert robot.channel.failures == 0
+
+
+async def test_a_stranger_at_the_socket_is_told_that_he_is_one(tmp_path: Path) -> None:
+    async with on_line(tmp_path) as robot:
+        assert (await robot.line.plain("/hello", aiocoap.POST)).code == aiocoap.UNAUTHORIZED
+        assert (await robot.line.plain("/state", aiocoap.GET)).code == aiocoap.UNAUTHORIZED
+        assert b"</state>" in (await robot.line.plain(CORE, aiocoap.GET)).payload
+
+
+async def test_forged_messages_are_not_answered_and_leave_nothing_behind(tmp_path: Path) -> None:
+    async with on_line(tmp_path) as robot:
+        await robot.call(HelloRequest())
+        counters = robot.channel.endpoint.counters
+        before = counters.received
+        robot.line.forge(20)
+        assert (await robot.call(HelloRequest()))["boot"]  # datagrams on loopback come in the order they were sent
+        assert counters.received >= before + 20
+        assert robot.remembered_requests == 0
+        assert counters.failed == 0
+
+
+async def test_a_channel_with_a_paired_device_listens_to_more_than_this_machine(tmp_path: Path) -> None:
+    async with on_line(tmp_path) as robot:
+        (tokens,) = robot.channel.endpoint._context.request_interfaces
+        transport = tokens.token_interface.message_interface.transport
+        assert transport.get_extra_info("socket").getsockname()[0] == "::"
+
+
+async def test_with_nobody_paired_it_listens_on_this_machine_alone(tmp_path: Path) -> None:
+    local_pairing(tmp_path / "teachers", tmp_path / "devices")
+    teachers = Teachers(tmp_path / "teachers")
+    desk = Desk()
+    safekeeping = Safekeeping(lambda: 0, lambda: None, lambda _: "")
+    async with open_channel(desk.runtime, teachers, 0, Surroundings(safekeeping, desk.shelf, str, None)) as channel:
+        (tokens,) = channel.endpoint._context.request_interfaces
+        transport = tokens.token_interface.message_interface.transport
+        assert transport.get_extra_info("socket").getsockname()[0] == "::ffff:127.0.0.1"
+    teachers.close()
+
+
+async def test_a_damaged_pairing_keeps_nobody_else_out_and_is_told(tmp_path: Path) -> None:
+    local_pairing(tmp_path / "teachers", tmp_path / "devices")
+    damaged = pair(tmp_path / "teachers", tmp_path / "devices", "bob").teacher / "secret.json"
+    damaged.write_text("{}", encoding="utf-8")
+    desk = Desk()
+    teachers = Teachers(tmp_path / "teachers")
+    safekeeping = Safekeeping(int, lambda: None, str)
+    async with open_channel(desk.runtime, teachers, 0, Surroundings(safekeeping, desk.shelf, str, None)) as channel:
+        assert teachers.names == ("local",)
+        assert "the pairing is damaged" in channel.trouble
+        assert "kurt2rt pair bob --renew" in channel.trouble
+    teachers.close()

@@ -1,0 +1,303 @@
+"""What the picture says of a robot, tick by tick."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from hal.guard_reason import GuardReason
+from hal.simulation import SimulatedPlace
+from kurt2rt.channel.protocol.codec import decode_state, encode_state
+from kurt2rt.channel.protocol.health import Trouble
+from kurt2rt.channel.protocol.requests import (
+    AppraiseRequest,
+    BehaviourRequest,
+    PhaseRequest,
+    PursueRequest,
+    ResumeRequest,
+    RewardRequest,
+    SessionRequest,
+    TakeRequest,
+)
+from kurt2rt.channel.protocol.state import State
+from kurt2rt.channel.protocol.trouble_code import TroubleCode
+from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.standing import Standing, StandReason
+from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.rla.rla import ASK, CRITIC, Phase
+from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, outcome_of, reply_of
+from tests.channel.grounds import Yard
+from tests.service.health.reports import ILL, WELL
+
+LEAST = load_critic().agreement.least
+APART = round(load_critic().agreement.apart_s / ROBOT.can.cycle_s)
+COUNT = len(ROBOT.infrared.sensors)
+
+
+@pytest.fixture
+def desk() -> Desk:
+    return Desk()
+
+
+def picture(desk: Desk) -> State:
+    """The picture of the newest tick; what comes out of the wire is the same."""
+    told = desk.telling.picture(desk.record)
+    assert decode_state(encode_state(told)) == told
+    return told
+
+
+def test_lateness_is_the_health_reports_which_spares_the_loop_its_percentiles(desk: Desk) -> None:
+    assert picture(desk).late_p99_ms == 0.0
+    desk.health = WELL
+    assert [picture(desk).late_p99_ms for _ in range(9)] == [0.0] * 9  # looked up once a second, with 20 pictures
+    later = [picture(desk).late_p99_ms for _ in range(20)]
+    assert later[-1] == WELL.punctuality.p99_ms
+
+
+def test_what_is_urgent_in_the_health_report_is_told_as_trouble_unless_there_is_worse(desk: Desk) -> None:
+    full = Trouble(TroubleCode.LITTLE_ROOM, 3.0, True, "knowledge", (20.0,))
+    desk.health = replace(ILL, troubles=(*ILL.troubles, full))
+    assert picture(desk).trouble == f"{full.what}; {full.to_do}"
+    desk.bus_trouble = "the cable is out"
+    assert picture(desk).trouble == "the cable is out"
+    desk.bus_trouble, desk.health = "", ILL  # in which only the sensors are urgent: the cause says so
+    assert picture(desk).trouble == ""
+
+
+def test_a_robot_that_knows_nothing(desk: Desk) -> None:
+    desk.run(counts=120)
+    assert picture(desk) == State(
+        boot=BOOT,
+        tick=desk.tick,
+        phase=1,
+        infrared_counts=(120,) * COUNT,
+        infrared_age_s=0.0,
+        bumpers=0,
+        left_m_s=0.0,
+        right_m_s=0.0,
+        cause="unknown",
+        action=None,
+        rla=None,
+        nearest=None,
+        nearest_action=None,
+        distance=math.inf,
+        radius=desk.runtime.task.learning.radius,
+        taught_by="",
+        taught_at="",
+        question=(),
+        teacher=None,
+        by_hand=False,
+        stopped=None,
+        rlas=0,
+        lessons=0,
+        unsaved=0,
+        session=None,
+        clock_s=0.0,
+        guard=(),
+        trouble="",
+        late_p99_ms=0.0,
+        missed_ticks=0,
+        place=None,
+        signals_missing=(LEAST, LEAST),
+        standing=Standing(StandReason.ASKS, asks=True),
+    )
+
+
+async def test_a_robot_that_drives_by_what_it_was_taught(desk: Desk) -> None:
+    await desk.ask(desk.answer("forward"))
+    await desk.stream(desk.watch())
+    desk.run()
+    told = picture(desk)
+    assert (told.cause, told.action, told.rla) == ("rla", "forward", 1)
+    assert (told.left_m_s, told.right_m_s) == (0.3, 0.3)
+    assert (told.nearest, told.nearest_action, told.radius) == (1, "forward", desk.runtime.task.learning.radius)
+    assert told.distance < 1.0
+    assert (told.taught_by, told.taught_at, told.teacher) == ("ann", STAMP, "ann")
+    assert (told.rlas, told.lessons, told.unsaved, told.by_hand) == (1, 1, 0, False)
+
+
+async def test_a_lesson_has_no_time_and_counts_as_unsaved_until_it_is_durable(desk: Desk) -> None:
+    task = await desk.send(desk.answer())
+    desk.run()
+    assert (picture(desk).taught_at, picture(desk).unsaved) == ("", 1)
+    desk.write()
+    assert (picture(desk).taught_at, picture(desk).unsaved) == (STAMP, 0)
+    await reply_of(task)
+
+
+async def test_a_question_names_the_features_that_differ_most(desk: Desk) -> None:
+    await desk.ask(desk.answer())
+    desk.run(counts=900)
+    told = picture(desk)
+    assert (told.cause, told.nearest, told.rla) == ("unknown", 1, None)
+    assert told.distance > told.radius
+    assert len(told.question) == 5
+    assert all(each.here > each.in_condition for each in told.question)
+    desk.run(counts=100)
+    assert picture(desk).question == ()
+
+
+async def test_a_hand_on_the_wheels_and_the_stop_after_it(desk: Desk) -> None:
+    await desk.stream(desk.press())
+    desk.run()
+    told = picture(desk)
+    assert (told.cause, told.action, told.rla, told.by_hand, told.teacher) == ("teacher", "by hand", None, True, "ann")
+    assert (told.left_m_s, told.right_m_s) == (0.2, 0.1)
+    desk.run(30)
+    told = picture(desk)
+    assert (told.cause, told.by_hand, told.stopped) == ("stopped", False, ActiveStop(StopReason.LET_GO, "ann"))
+    assert (told.left_m_s, told.right_m_s) == (0.0, 0.0)
+
+
+async def test_a_behaviour_counts_as_the_hand(desk: Desk) -> None:
+    reply = await desk.ask(desk.command(BehaviourRequest, "back", 5))
+    assert outcome_of(reply) == Outcome(RefusalCode.TEACHER_ABSENT)
+    await desk.ask(desk.command(TakeRequest))
+    await desk.stream(desk.watch())
+    desk.run()
+    await desk.ask(desk.command(BehaviourRequest, "back", 5))
+    told = picture(desk)
+    assert (told.action, told.by_hand) == ("back", True)
+
+
+async def test_phase_session_and_clock(desk: Desk) -> None:
+    await desk.ask(desk.command(PhaseRequest, Phase.CORRECTIONS))
+    await desk.ask(desk.command(SessionRequest, "morning"))
+    desk.run(250)
+    told = picture(desk)
+    assert (told.phase, told.session) == (2, "morning")
+    assert told.clock_s == pytest.approx(2.5)
+    await desk.ask(desk.command(SessionRequest, None))
+    desk.run(100)
+    told = picture(desk)
+    assert told.session is None
+    assert told.clock_s == pytest.approx(2.51)
+    assert told.stopped == ActiveStop(StopReason.SESSION_OVER, "morning")
+    await desk.ask(desk.command(ResumeRequest))
+    assert picture(desk).stopped is None
+
+
+def test_trouble_with_the_disk_goes_before_trouble_with_the_bus(desk: Desk) -> None:
+    desk.bus_trouble = "the bus is off"
+    assert picture(desk).trouble == "the bus is off"
+    desk.notebook.trouble = "the disk is full"
+    assert picture(desk).trouble == "the disk is full"
+
+
+def test_what_the_robot_could_not_learn_is_told(desk: Desk) -> None:
+    desk.runtime.school.learning.trouble = "1 change was skipped"
+    assert picture(desk).trouble == "1 change was skipped"
+
+
+def test_blind_bumped_and_held_by_the_guard(desk: Desk) -> None:
+    desk.robot.infrared_age_s = math.inf
+    desk.robot.bumpers = 5
+    desk.robot.refuses = (GuardReason.INFRARED_STALE, GuardReason.FRONT_BUMPER)
+    desk.run()
+    told = picture(desk)
+    assert (told.infrared_age_s, told.bumpers, told.guard) == (math.inf, 5, desk.robot.refuses)
+    assert told.cause == "blind"
+
+
+def test_where_a_simulated_robot_is() -> None:
+    assert picture(Desk(ground=Yard())).place == SimulatedPlace(1.0, 2.0, 0.5, 0.25, 3, 0)
+
+
+def test_lateness_is_looked_at_once_a_second_and_missed_ticks_always(desk: Desk) -> None:
+    first = picture(desk)
+    ledger = desk.runtime.ledger
+    for _ in range(200):
+        ledger.begin(0.004)
+        ledger.end()
+    ledger.missed_ticks = 3
+    assert picture(desk) == replace(first, missed_ticks=3)
+    assert {picture(desk).late_p99_ms for _ in range(18)} == {0.0}
+    assert picture(desk).late_p99_ms == pytest.approx(4.0)
+
+
+async def test_it_tells_which_behaviour_is_wanted_and_what_the_robot_knows_of_it() -> None:
+    desk = Desk(behaviours=("straight_on", "turn_left"))
+    await desk.ask(desk.answer("forward"))
+    told = picture(desk)
+    assert (told.behaviour, told.nearest, told.cause) == ("straight_on", 1, "unattended")
+    await desk.ask(desk.command(PursueRequest, "turn_left"))
+    told = picture(desk)
+    assert (told.behaviour, told.nearest, told.cause) == ("turn_left", None, "unknown")
+
+
+async def drives(desk: Desk) -> None:
+    """The robot drives by what it was taught, and its teacher looks."""
+    await desk.ask(desk.answer("forward"))
+    await desk.stream(desk.watch())
+    desk.run()
+    assert picture(desk).cause == "rla"
+
+
+async def test_it_tells_what_the_critic_thinks_and_how_many_signals_are_missing(desk: Desk) -> None:
+    await drives(desk)
+    assert (picture(desk).opinion, picture(desk).opinion_of) == (None, None)
+    reply = await desk.ask(desk.command(AppraiseRequest, "bad", None))
+    assert outcome_of(reply) == Outcome.of(ResultCode.RLA_TAUGHT, rla=2, level=CRITIC, action="bad")
+    desk.run()
+    told = picture(desk)
+    assert (told.opinion, told.opinion_of, told.rla) == (-1, 2, 1)
+    assert (told.signals_missing, told.agreement, told.trusted) == ((LEAST - 1, LEAST), None, False)
+
+
+async def test_it_tells_how_well_the_critic_agrees_with_its_teacher(desk: Desk) -> None:
+    await drives(desk)
+    await desk.ask(desk.command(AppraiseRequest, "bad", None))
+    for each in ("bad",) * (LEAST - 1) + ("good",) * LEAST:
+        desk.run(APART)  # sooner it would only repeat what it was just told
+        await desk.ask(desk.command(AppraiseRequest, each, None))
+    told = picture(desk)
+    # Of each value the first one was news to the critic, and was learnt.
+    assert told.agreement == pytest.approx((LEAST - 1) / LEAST)
+    assert (told.trusted, told.signals_missing) == (True, (0, 0))
+    assert (told.role, told.bad_share) == ("listens", None)
+    await desk.ask(desk.command(PhaseRequest, Phase.AUTONOMOUS))
+    told = picture(desk)
+    assert (told.role, told.bad_share) == ("measures", 0.0)
+
+
+async def test_blame_shows_in_what_the_rla_that_drives_is_worth(desk: Desk) -> None:
+    assert picture(desk).value is None
+    await drives(desk)
+    before = picture(desk).value
+    assert before is not None
+    await desk.ask(desk.command(RewardRequest, -1, None))
+    after = picture(desk).value
+    assert after is not None
+    assert after < before
+
+
+async def test_worth_of_an_rla_whose_action_was_withdrawn_is_told(desk: Desk) -> None:
+    await drives(desk)
+    assert picture(desk).nearest_value is None
+    while picture(desk).nearest_action != ASK:
+        await desk.stream(desk.watch())
+        desk.run()
+        await desk.ask(desk.command(RewardRequest, -1, None))
+        desk.run()
+    told = picture(desk)
+    assert told.cause == "unknown"
+    assert told.nearest_value is not None
+    assert told.nearest_value < 0
+
+
+async def test_where_an_action_was_withdrawn_it_asks_again(desk: Desk) -> None:
+    await drives(desk)
+    while picture(desk).cause == "rla":
+        for _ in range(10):
+            await desk.stream(desk.watch())
+            desk.run(10)
+        await desk.ask(desk.command(RewardRequest, -1, None))
+        desk.run()
+    told = picture(desk)
+    assert (told.cause, told.action, told.nearest, told.nearest_action) == ("unknown", None, 1, "ask")
+    assert told.distance < told.radius
+    assert (await desk.ask(desk.answer("back"))).body["ok"]
+    await desk.stream(desk.watch())
+    desk.run()
+    assert (picture(desk).cause, picture(desk).action, picture(desk).rla) == ("rla", "back", 1)

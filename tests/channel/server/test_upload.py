@@ -1,0 +1,47 @@
+"""The file that a device uploads, part by part."""
+
+import hashlib
+
+import pytest
+
+from kurt2rt.channel.server.upload import Upload
+from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode
+
+ABC = hashlib.sha256(b"abc").digest()
+
+
+def add(upload: Upload, offset: int, part: bytes, device: str = "phone") -> Outcome | None:
+    """Add a part; return why it is refused."""
+    try:
+        upload.add(device, b"1", offset, part)
+    except CommandRefusedError as error:
+        return error.outcome
+    return None
+
+
+def test_parts_in_order_make_the_file_and_copies_change_nothing() -> None:
+    upload = Upload()
+    assert [upload.add("phone", b"1", at, part) for at, part in ((0, b"ab"), (0, b"ab"), (2, b"c"))] == [2, 2, 3]
+    assert upload.take("phone", b"1", ABC) == b"abc"
+    with pytest.raises(CommandRefusedError) as refused:
+        upload.take("phone", b"1", ABC)
+    assert refused.value.outcome == Outcome(RefusalCode.UPLOAD_INCOMPLETE)
+
+
+def test_what_does_not_fit_is_refused_with_the_reason() -> None:
+    upload = Upload(most_bytes=4)
+    assert add(upload, 2, b"c") == Outcome(RefusalCode.UPLOAD_UNKNOWN)
+    assert add(upload, 0, b"ab") is None
+    assert add(upload, 3, b"d") == Outcome.of(RefusalCode.UPLOAD_GAP, offset=3, size=2)
+    assert add(upload, 0, b"xb") == Outcome.of(RefusalCode.UPLOAD_DIFFERS, offset=0)
+    assert add(upload, 2, b"cde") == Outcome.of(RefusalCode.UPLOAD_TOO_LARGE, most_bytes=4)
+    with pytest.raises(CommandRefusedError) as refused:
+        upload.take("phone", b"1", ABC)
+    assert refused.value.outcome == Outcome(RefusalCode.UPLOAD_INCOMPLETE)
+
+
+def test_another_file_or_device_takes_the_place() -> None:
+    upload = Upload()
+    upload.add("phone", b"1", 0, b"ab")
+    assert upload.add("laptop", b"1", 0, b"x") == 1
+    assert add(upload, 2, b"c") == Outcome(RefusalCode.UPLOAD_UNKNOWN)

@@ -1,0 +1,16 @@
+"""Helper process that starts at once and has nothing to do: `python -m tests.checks.bench.idler`."""
+
+from typing import Any
+
+import anyio
+
+from kurt2rt.checks.bench.job_loop import do_jobs
+
+
+async def idle() -> dict[str, Any]:
+    """Nothing."""
+    return {}
+
+
+if __name__ == "__main__":
+    anyio.run(do_jobs, {"idle": idle})

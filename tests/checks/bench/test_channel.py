@@ -1,0 +1,59 @@
+"""The channel, measured for a moment: a real robot program, real processes beside it, real frames and lessons."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.checks.bench.channel import ChannelLengths
+from kurt2rt.checks.bench.channel_load import Shifts
+from kurt2rt.checks.bench.helper_process import PartnerLostError
+from kurt2rt.checks.bench.open_robot import open_robot
+from kurt2rt.checks.bench.robot_under_test import OnProgress, Subject
+from kurt2rt.checks.bench.suite import QUICK, Bench, run_suite
+from kurt2rt.knowledge.journal.loading import open_knowledge
+
+SHORT = replace(QUICK, learning_s=3.0, channel=ChannelLengths(presses=1, shifts=Shifts(rounds=1, ticks=20), lessons=2))
+
+
+@pytest.mark.deep
+async def test_presses_reach_the_wheels_and_lessons_the_file(untaught: Subject, tmp_path: Path) -> None:
+    told: dict[str, list[float]] = {}
+
+    def progress_of(what: str) -> OnProgress:
+        return told.setdefault(what, []).append
+
+    results = await run_suite({Bench.CHANNEL}, untaught, tmp_path, SHORT, progress_of)
+    pressed, on_page, late, work, picture, message, lesson = results
+    assert {result.bench for result in results} == {"channel"}
+    assert all(shares[-1] == 1.0 for shares in told.values())
+    assert len(told) == 5
+    for result in (pressed, on_page):
+        assert result.note.startswith("1 presses, 0 lost")
+        assert 0.0 < result.took.median_us <= result.took.worst_us
+    assert late.took.worst_us > 0.0
+    assert [each.what.strip() for each in (work, picture, message)] == ["channel, per second", "a picture", "a message"]
+    assert lesson.took.median_us > 0.0
+    with open_knowledge(tmp_path / "lessons" / "bench.knowledge", untaught.settings, untaught.task) as journal:
+        taught = [event.origin for event in journal.events()]
+    assert [origin.teacher for origin in taught[-5:]] == ["local"] * 5
+    assert [origin.command_id for origin in taught[-2:]] == ["bench-inside-0", "bench-inside-1"]
+
+
+async def test_an_open_robot_stands_until_a_teacher_comes_and_closes_when_one_fails(
+    subject: Subject, tmp_path: Path
+) -> None:
+    async def lose_a_partner() -> None:
+        async with open_robot(subject, tmp_path / "robot") as robot:
+            await robot.rounds.go_on_for(5)
+            assert robot.rounds.driving == 0
+            assert robot.witness.starts == []
+            number = robot.rounds.newest.tick if robot.rounds.newest is not None else 0
+            robot.pace.shift(0.004)
+            await robot.rounds.go_on_for(5)
+            assert robot.rounds.newest is not None
+            assert robot.rounds.newest.tick > number
+            raise PartnerLostError("gone")
+
+    with pytest.raises(PartnerLostError, match="gone"):
+        await lose_a_partner()

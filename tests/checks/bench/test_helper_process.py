@@ -1,0 +1,43 @@
+"""Processes beside the robot's: whatever happens, they end."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.checks.bench.helper_process import PartnerLostError, partner
+
+IDLER = "tests.checks.bench.idler"
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.fixture(autouse=True)
+def where_modules_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+
+
+def assert_gone(pid: int) -> None:
+    with pytest.raises(ProcessLookupError):
+        os.kill(pid, 0)
+
+
+async def test_a_partner_does_what_it_is_asked_to_and_ends_with_the_block() -> None:
+    async with partner(IDLER) as idler:
+        assert await idler.ask("idle") == {}
+        assert await idler.ask("idle") == {}
+    assert_gone(idler.pid)
+
+
+async def test_a_partner_that_fails_is_missed_and_says_why_itself(capfd: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(PartnerLostError, match=r"tests\.checks\.bench\.idler ended while it was asked to work"):
+        async with partner(IDLER) as idler:
+            await idler.ask("work")
+    assert_gone(idler.pid)
+    assert "KeyError: 'work'" in capfd.readouterr().err
+
+
+async def test_a_silent_partner_is_given_up_and_ended() -> None:
+    with pytest.raises(PartnerLostError, match="did not idle within 0 s"):
+        async with partner(IDLER) as idler:
+            await idler.ask("idle", patience_s=0.0)
+    assert_gone(idler.pid)

@@ -1,0 +1,32 @@
+"""Lessons that are measured are lessons: in the journal when the run is over."""
+
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.checks.bench.lesson import measure_lessons
+from kurt2rt.checks.bench.robot_under_test import Subject
+from kurt2rt.knowledge.journal.loading import open_knowledge
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+
+
+async def test_every_lesson_that_was_timed_is_in_the_file(subject: Subject, tmp_path: Path) -> None:
+    told: list[float] = []
+    result = await measure_lessons(subject, tmp_path, 4, told.append)
+    assert told == [0.25, 0.5, 0.75, 1.0]
+    with open_knowledge(tmp_path / "lesson.knowledge", subject.settings, subject.task) as journal:
+        taught = journal.events()[len(subject.events) :]
+    assert [event.origin.command_id for event in taught] == [f"bench-lesson-{number}" for number in range(4)]
+    assert 0.0 < result.took.median_us <= result.took.p99_us <= result.took.worst_us
+    assert result.reference is not None
+    assert result.reference.took_us > 0.0
+    assert [str(goal) for goal in result.goals] == ["p99 us <= 20000"]
+
+
+@pytest.mark.deep  # closing a writer whose disk fails takes its patience of 10 s
+async def test_a_disk_that_fails_ends_the_run_and_says_why(subject: Subject, tmp_path: Path) -> None:
+    def take_the_file_away(_: float) -> None:
+        (tmp_path / "lesson.knowledge").unlink()
+
+    with pytest.raises(KnowledgeError, match="moved, deleted or replaced"):
+        await measure_lessons(subject, tmp_path, 3, take_the_file_away, patience_s=0.5)

@@ -1,0 +1,64 @@
+"""No collection within, all as before after it."""
+
+import gc
+import weakref
+from collections.abc import Iterator
+
+import pytest
+
+from kurt2rt.platform.gc_control import quiet_gc
+
+
+class Loop:
+    """Holds itself, so that only the collector can free it."""
+
+    def __init__(self) -> None:
+        self.itself = self
+
+
+@pytest.fixture(autouse=True)
+def collector_as_it_was() -> Iterator[None]:
+    enabled = gc.isenabled()
+    yield
+    if enabled:
+        gc.enable()
+    else:
+        gc.disable()
+
+
+@pytest.fixture
+def nothing_set_aside() -> Iterator[None]:
+    """Nor what the suite set aside (tests/conftest.py), though every collection then walks it."""
+    gc.unfreeze()
+    yield
+    gc.freeze()
+
+
+@pytest.mark.usefixtures("nothing_set_aside")
+def test_garbage_from_before_is_gone_and_nothing_is_collected_until_the_end_of_the_outermost() -> None:
+    gone = weakref.ref(Loop())
+    gc.enable()
+    with quiet_gc():
+        assert gone() is None
+        assert not gc.isenabled()
+        assert gc.get_freeze_count() > 0
+        with quiet_gc():
+            pass
+        assert not gc.isenabled()
+        assert gc.get_freeze_count() > 0
+    assert gc.isenabled()
+    assert gc.get_freeze_count() == 0
+
+
+def test_an_error_is_an_end_too() -> None:
+    gc.enable()
+    with pytest.raises(KeyError), quiet_gc():
+        raise KeyError
+    assert gc.isenabled()
+
+
+def test_who_collects_by_hand_goes_on_doing_so() -> None:
+    gc.disable()
+    with quiet_gc():
+        pass
+    assert not gc.isenabled()

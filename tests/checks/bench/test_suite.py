@@ -1,0 +1,66 @@
+"""All benchmarks in one run, tiny."""
+
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.checks.bench.channel import ChannelLengths
+from kurt2rt.checks.bench.channel_load import Shifts
+from kurt2rt.checks.bench.match import Size
+from kurt2rt.checks.bench.real_time import Turns
+from kurt2rt.checks.bench.robot_under_test import OnProgress, Subject
+from kurt2rt.checks.bench.suite import FULL, QUICK, Bench, Lengths, run_suite
+
+TINY = Lengths(
+    learning_s=3.0,
+    turns=Turns(rounds=1, ticks=20, reference_ticks=2),
+    sizes=(Size(20, 10.0, 20),),
+    loop_blocks=1,
+    loop_block_s=1,
+    lessons=2,
+    channel=ChannelLengths(presses=1, shifts=Shifts(rounds=1, ticks=10), lessons=1),
+    recording=Shifts(rounds=1, ticks=20),
+)
+
+
+class Jobs:
+    """The names of the jobs that were begun."""
+
+    def __init__(self) -> None:
+        self.names: list[str] = []
+
+    def __call__(self, what: str) -> OnProgress:
+        self.names.append(what)
+        return lambda _: None
+
+
+@pytest.mark.deep
+async def test_everything_is_measured_in_order_with_one_lesson_and_one_drive(untaught: Subject, tmp_path: Path) -> None:
+    jobs = Jobs()
+    benches = [bench for bench in Bench if bench is not Bench.CHANNEL]  # its processes take seconds: test_channel.py
+    results = await run_suite(benches, untaught, tmp_path, TINY, jobs)
+    assert list(dict.fromkeys(result.bench for result in results)) == [bench.value for bench in benches]
+    assert len(jobs.names) == 6
+    assert all(result.goals for result in results if not result.what.startswith("  "))
+
+
+@pytest.mark.parametrize(
+    ("chosen", "jobs_begun"),
+    [
+        (Bench.MATCH, ["matching"]),
+        (Bench.TICK, ["teaching, to have something to drive with", "driving in real time"]),
+    ],
+)
+async def test_only_what_is_asked_for_is_measured(
+    chosen: Bench, jobs_begun: list[str], untaught: Subject, tmp_path: Path
+) -> None:
+    jobs = Jobs()
+    results = await run_suite({chosen}, untaught, tmp_path, TINY, jobs)
+    assert {result.bench for result in results} == {chosen}
+    assert jobs.names == jobs_begun
+
+
+def test_a_full_run_drives_a_minute_and_a_quick_one_five_seconds() -> None:
+    assert FULL.turns.rounds * FULL.turns.ticks == 6000
+    assert QUICK.turns.rounds * QUICK.turns.ticks == 500
+    assert FULL.loop_block_s == QUICK.loop_block_s == 20

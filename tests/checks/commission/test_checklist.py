@@ -1,0 +1,196 @@
+"""The checklist from end to end: a robot on a block, a person who does as he is asked, and what is kept of it."""
+
+from pathlib import Path
+
+import pytest
+
+from hal.robot_settings import SpeedMode
+from hal.settings import SettingsError
+from kurt2rt.checks.commission.checklist import STEPS, barring, open_steps, steps_to_take
+from kurt2rt.checks.commission.operator import SKIP, Asked, Question, Tone
+from kurt2rt.checks.commission.progress import Progress, load_progress
+from kurt2rt.checks.commission.report import passed
+from kurt2rt.checks.commission.step import Outcome
+from kurt2rt.checks.commission.test_stand_settings import MAXIMUM_SPEED_M_S
+from tests.checks.commission.wired_end import Wiring
+from tests.checks.commission.workshop import TODAY, Instead, Session, Workshop, leaves_at
+
+
+async def test_a_good_robot_passes_from_the_first_step_to_the_last(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        stood = workshop.robot.pose
+        session = Session(workshop, tmp_path)
+        progress = await session.walk()
+        assert workshop.robot.pose == stood
+    assert session.person.lines(Tone.BAD) == []
+    assert passed(progress, STEPS)
+    findings = progress.findings
+    assert findings.speed_mode is SpeedMode.SPEED_CM
+    assert findings.channels == {sensor.name: sensor.channel for sensor in workshop.true.infrared.sensors}
+    assert findings.bumper_bits == {bumper.name: bit for bit, bumper in enumerate(workshop.true.bumpers)}
+    assert findings.controller_watchdog_s == pytest.approx(0.2, abs=0.03)
+    assert findings.law is not None
+
+
+async def test_nothing_moves_before_the_words_were_typed_and_a_key_was_hit(tmp_path: Path) -> None:
+    moved: dict[Asked, float] = {}
+    asked_before = Asked.BEGIN
+
+    def note(question: Question) -> None:
+        """The fastest wheel since the question before, under what that one was about."""
+        nonlocal asked_before
+        fastest_m_s = max(map(abs, workshop.take_peaks()))
+        moved[asked_before] = max(moved.get(asked_before, 0.0), fastest_m_s)
+        asked_before = question.about
+
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path, note)
+        session.knows(speed_mode=SpeedMode.SPEED_CM)
+        await session.walk("identity", "stop", "bumpers")
+    assert {about for about, fastest_m_s in moved.items() if fastest_m_s > 0.0} == {Asked.MOVE}
+    assert moved[Asked.MOVE] <= MAXIMUM_SPEED_M_S
+
+
+async def test_without_the_words_no_control_frame_is_sent_at_all(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path, lambda question: SKIP if question.about is Asked.LIFTED else None)
+        await session.walk("identity", "modes", "wheels", "stop", "bumpers")
+        assert workshop.wiring.controls == 0
+    assert {session.outcome(step) for step in ("lifted", "modes", "wheels", "stop")} == {Outcome.SKIPPED}
+    assert session.measured("modes") == ("the wheels were not confirmed off the ground",)
+    assert session.outcome("bumpers") is Outcome.PASSED
+
+
+async def test_other_words_are_asked_for_again(tmp_path: Path) -> None:
+    words = iter(["yes", "", "wheels  up "])
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path, lambda question: next(words) if question.about is Asked.LIFTED else None)
+        await session.walk("lifted")
+    assert session.person.lines(Tone.BAD) == ["That was 'yes', not 'wheels up'.", "That was '', not 'wheels up'."]
+    assert session.outcome("lifted") is Outcome.PASSED
+
+
+async def test_whoever_leaves_goes_on_another_day_and_is_asked_about_the_block_anew(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        first = Session(workshop, tmp_path, leaves_at(Asked.SEEN))
+        await first.walk("identity", "modes", "wheels", "stop")
+        assert max(map(abs, workshop.robot.wheel_speeds)) == 0.0
+        kept = load_progress(first.path)
+        assert kept == first.progress
+        assert [step.name for step in steps_to_take(kept)] == ["wheels", "stop", "sensors", "bumpers", "infrared"]
+
+        second = Session(workshop, tmp_path)
+        second.progress = kept
+        await second.walk("wheels", "stop")
+    assert Asked.LIFTED in [question.about for question in second.person.asked]
+    assert [second.outcome(step) for step in ("identity", "modes", "wheels", "stop")] == [Outcome.PASSED] * 4
+
+
+async def test_the_robot_is_braked_when_somebody_leaves_while_it_stands(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path, leaves_at(Asked.SEEN))
+        session.knows(speed_mode=SpeedMode.SPEED)
+        await session.walk("wheels")
+        workshop.step()
+        assert workshop.robot.controller.commands == (0.0, 0.0, True, True)
+
+
+async def test_a_step_that_failed_can_be_repeated_at_once_when_it_is_mended(tmp_path: Path) -> None:
+    def mend(question: Question) -> str | None:
+        if question.about is not Asked.AFTER_FAILURE:
+            return None
+        workshop.wiring.reversed_motors = ()
+        return "r"
+
+    with Workshop(wiring=Wiring(reversed_motors=(1,))) as workshop:
+        session = Session(workshop, tmp_path, mend)
+        session.knows(speed_mode=SpeedMode.SPEED_CM)
+        await session.walk("wheels")
+    assert session.person.lines(Tone.TO_DO) == ["The right motor turns the wrong way: exchange its two leads"]
+    assert session.outcome("wheels") is Outcome.PASSED
+    assert barring(session.progress) == []
+
+
+async def test_a_step_that_passed_stays_passed_when_it_is_skipped_later(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path)
+        await session.walk("bumpers")
+        again = Session(workshop, tmp_path, lambda question: SKIP if question.about is Asked.BEGIN else None)
+        again.progress = session.progress
+        await again.walk("bumpers", "sensors")
+    assert again.outcome("bumpers") is Outcome.PASSED
+    assert again.outcome("sensors") is Outcome.SKIPPED
+
+
+def skips_what_failed(again: str) -> Instead:
+    """A person who skips a step that failed: when it is begun once more, or at once in another session."""
+    failed = not again
+
+    def skip(question: Question) -> str | None:
+        nonlocal failed
+        if question.about is Asked.AFTER_FAILURE:
+            failed = True
+            return again
+        return SKIP if failed and question.about is Asked.BEGIN else None
+
+    return skip
+
+
+async def test_a_step_that_failed_stays_failed_when_it_is_skipped_later(tmp_path: Path) -> None:
+    """Or a robot of which it is known that a wheel turns the wrong way would get its settings file."""
+    with Workshop(wiring=Wiring(reversed_motors=(1,))) as workshop:
+        session = Session(workshop, tmp_path, skips_what_failed(again="r"))
+        session.knows(speed_mode=SpeedMode.SPEED_CM)
+        await session.walk("wheels")
+        assert [step.name for step in barring(session.progress)] == ["wheels"]
+        another_day = Session(workshop, tmp_path, skips_what_failed(again=""))
+        another_day.progress = session.progress
+        await another_day.walk("wheels", "bumpers")
+    assert [step.name for step in barring(another_day.progress)] == ["wheels"]
+    assert another_day.person.lines(Tone.BAD) == [
+        f"Each wheel's side and direction: failed on {TODAY}, and that stands"
+    ]
+
+
+async def test_a_step_that_failed_is_passed_over_on_purpose_with_what_is_to_be_done(tmp_path: Path) -> None:
+    with Workshop(wiring=Wiring(reversed_motors=(1,))) as workshop:
+        session = Session(workshop, tmp_path)
+        session.knows(speed_mode=SpeedMode.SPEED_CM)
+        await session.walk("wheels")
+        await session.walk("bumpers", skipped=("wheels",))
+    assert barring(session.progress) == []
+    assert session.outcome("wheels") is Outcome.SKIPPED
+    assert session.to_do("wheels") == ("The right motor turns the wrong way: exchange its two leads",)
+
+
+async def test_what_was_found_on_the_simulated_robot_is_not_taken_for_another(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        rehearsal = Session(workshop, tmp_path)
+        await rehearsal.walk("identity", "modes")
+        real = Session(workshop, tmp_path)
+        real.progress = rehearsal.progress
+        real.knows(hardware_id=7)
+        with pytest.raises(
+            SettingsError, match=r"about a robot of hardware 7, but INFO_1 says hardware 21321 \(the sim"
+        ):
+            await real.walk("wheels", skipped=("sensors",))
+        assert real.person.asked == []
+        assert "sensors" not in real.progress.steps
+
+
+async def test_skipped_steps_are_noted_and_do_not_wait_any_longer(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path)
+        await session.walk("identity", skipped=("sensors", "infrared"))
+        await session.walk("lifted", skipped=("identity",))
+    assert session.outcome("identity") is Outcome.PASSED
+    assert [step.name for step in open_steps(session.progress)] == ["modes", "wheels", "stop", "bumpers"]
+    assert not passed(session.progress, STEPS)
+
+
+def test_a_damaged_progress_file_is_named(tmp_path: Path) -> None:
+    path = tmp_path / "robot.json"
+    Progress(name="tested", base="kurt2", bus="can0").save(path)
+    path.write_text(path.read_text()[:20])
+    with pytest.raises(SettingsError, match=r"robot.json: cannot be used .*begin anew with --anew"):
+        load_progress(path)

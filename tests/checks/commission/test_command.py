@@ -1,0 +1,166 @@
+"""`kurt2rt commission` as a person meets it: typed answers, in real time."""
+
+import signal
+from pathlib import Path
+
+import pytest
+
+from config import CONFIG_DIR
+from hal.control import Control, RawControl, SpeedControl, decode_control
+from hal.shared_bus import SharedBus
+from kurt2rt.checks.commission.progress import load_progress
+from tests.checks.commission.typed import PROGRESS, Type, Typed, commission_the_rest, earlier, live, typing
+from tests.checks.commission.workshop import Workshop
+from tests.cli.helpers import CommandLine, running
+
+
+@pytest.fixture
+def kurt2rt(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path: Path) -> CommandLine:
+    monkeypatch.chdir(tmp_path)
+    return CommandLine(monkeypatch, capfd)
+
+
+@pytest.fixture
+def type_at(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path: Path) -> Type:
+    return typing(monkeypatch, capfd, tmp_path)
+
+
+def test_a_person_types_and_the_file_is_written(type_at: Type, tmp_path: Path) -> None:
+    with Workshop() as workshop, live(workshop):
+        commission_the_rest(type_at, workshop.spec, tmp_path, "stop")
+
+
+@pytest.mark.parametrize("key", [signal.SIGINT, signal.SIGTSTP], ids=["Ctrl-C", "Ctrl-Z"])
+def test_ctrl_c_brakes_while_the_wheels_turn(tmp_path: Path, key: signal.Signals) -> None:
+    earlier(tmp_path, "stop")
+    bus = f"commission-{tmp_path.name}"
+    onlooker = SharedBus(bus)
+    onlooker.set_id_filter(frozenset({0x01}))
+    with Workshop(spec=f"shared:{bus}") as workshop, live(workshop):
+        with running("commission", f"shared:{bus}", "--name", "robbie", "--only", "stop", folder=tmp_path) as session:
+            for line in ("wheels up", "", ""):
+                session.type(line)
+            while not forward(next_control(onlooker)):
+                pass
+            said = session.end(key)
+        last = next_control(onlooker)
+        while (message := onlooker.recv(0)) is not None:
+            last = decode_control(message.data)
+    onlooker.shutdown()
+    assert isinstance(last, RawControl)
+    assert last.left.brake
+    assert last.right.brake
+    assert "stopped: the wheels are braked; the same command goes on from here" in said.out
+    assert said.err == ""
+    assert "stop" not in load_progress(tmp_path / PROGRESS).steps
+
+
+def next_control(onlooker: SharedBus) -> Control:
+    message = onlooker.recv(10.0)
+    assert message is not None, "no CONTROL is sent"
+    return decode_control(message.data)
+
+
+def forward(control: Control) -> bool:
+    return isinstance(control, SpeedControl) and control.left > 0
+
+
+def test_the_input_that_ends_leaves_the_rest_for_another_day(type_at: Type) -> None:
+    with Workshop() as workshop, live(workshop):
+        said = type_at(Typed(), workshop.spec, "--name", "robbie")
+    assert said.exit_code == 0
+    assert "left; the same command goes on from here" in said.out
+    assert (
+        "no settings file yet; steps not taken: identity, modes, wheels, stop, sensors, bumpers, infrared" in said.out
+    )
+
+
+def test_a_failed_step_is_the_exit_code_and_no_file_is_written(type_at: Type, tmp_path: Path) -> None:
+    earlier(tmp_path, "identity")
+    with Workshop() as workshop:  # switched off: nothing is heard
+        said = type_at(Typed("", ""), workshop.spec, "--name", "robbie")
+    assert said.exit_code == 1
+    assert "identity: Nothing was heard: is the robot on" in said.out
+    assert "no settings file is written while these fail: identity; mend, then run the same command again" in said.out
+    assert not (tmp_path / "var" / "robots").exists()
+
+
+def test_what_was_found_is_written_at_once_when_the_rest_is_skipped(type_at: Type, tmp_path: Path) -> None:
+    earlier(tmp_path, "sensors", "infrared")
+    with Workshop() as workshop:
+        said = type_at(
+            Typed(),
+            workshop.spec,
+            "--name",
+            "robbie",
+            "--skip",
+            "sensors,infrared",
+            "--out",
+            "mine.yaml",
+            "--who",
+            "ber\nt",
+        )
+    assert said.exit_code == 0
+    assert "robbie: not passed" in said.out
+    assert (tmp_path / "mine.yaml").read_text().startswith("# robbie, commissioned with ")
+    assert "NOT PASSED" in (tmp_path / "mine.yaml").read_text()
+    assert "# sensors: skipped, " in (tmp_path / "mine.yaml").read_text()
+    assert " UTC, ber t\n" in (tmp_path / "mine.yaml").read_text()
+
+
+@pytest.mark.parametrize("in_the_way", ["robbie.json", "robbie.json.new"])
+def test_progress_that_cannot_be_read_or_kept_is_said_in_one_line(
+    kurt2rt: CommandLine, tmp_path: Path, in_the_way: str
+) -> None:
+    (tmp_path / PROGRESS).with_name(in_the_way).mkdir(parents=True)
+    said = kurt2rt.refused("commission", "virtual:nobody", "--name", "robbie", "--skip", "modes")
+    assert f"Is a directory: 'var/commission/{in_the_way}'; give a path that can be written, on a disk" in said
+
+
+def test_on_another_bus_it_goes_on_only_where_it_is_known_which_robot_it_was(
+    kurt2rt: CommandLine, tmp_path: Path
+) -> None:
+    earlier(tmp_path)
+    kept = load_progress(tmp_path / PROGRESS)
+    unknown = kept.findings.model_copy(update={"hardware_id": None})
+    kept.model_copy(update={"findings": unknown}).save(tmp_path / PROGRESS)
+    said = kurt2rt.refused("commission", "shared:desk", "--name", "robbie")
+    assert "was begun on bus can0, and which robot that was is not known; go on there, give another --name" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (("can7",), "bus 'can7': no such network interface"),
+        (("virtual:x", "--robot-settings", "nope"), "nope: no such file in robots"),
+        (("virtual:x", "--name", "robbie", "--robot-settings", "other.yaml"), "was begun with --robot-settings kurt2"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
+)
+def test_what_cannot_be_begun_is_said_in_one_line(
+    kurt2rt: CommandLine, tmp_path: Path, words: tuple[str, ...], why: str
+) -> None:
+    earlier(tmp_path)
+    (tmp_path / "other.yaml").write_text((CONFIG_DIR / "robots" / "kurt2.yaml").read_text())
+    assert why in kurt2rt.refused("commission", *words)
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        (("can0", "--name", "My Robot"), "up to 40 of a-z, 0-9 and -"),
+        (("can0", "--only", "identity,dance"), "no step dance; there are: identity, lifted, modes, wheels, stop"),
+        (("can0", "--skip", "dance"), "no step dance"),
+        (("can0", "--who", "an\x1bna"), "a name on one line"),
+        (("can0", "--out", "mine.txt"), "a settings file ends in .yaml"),
+        (("can0", "--out", "mine.yaml"), "mine.yaml is there already; --force overwrites it"),
+        ((), "Missing argument"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
+)
+def test_an_option_that_makes_no_sense_is_named(
+    kurt2rt: CommandLine, tmp_path: Path, words: tuple[str, ...], why: str
+) -> None:
+    (tmp_path / "mine.yaml").write_text("my own: file")
+    assert why in kurt2rt.misused("commission", *words)
+    assert (tmp_path / "mine.yaml").read_text() == "my own: file"

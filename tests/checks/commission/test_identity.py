@@ -1,0 +1,127 @@
+"""Who is on the bus, and what is missing on it."""
+
+from pathlib import Path
+
+import can
+import pytest
+
+from hal.bus import open_bus
+from hal.codec import load_codec
+from hal.control import Mode, SpeedControl, control_frame
+from kurt2rt.checks.commission.checklist import barring
+from kurt2rt.checks.commission.operator import Asked, Question
+from kurt2rt.checks.commission.step import Outcome
+from tests.checks.commission.wired_end import Wiring
+from tests.checks.commission.workshop import Session, Workshop
+
+CODEC = load_codec()
+
+
+def frame_id(name: str) -> int:
+    return CODEC.message(name).frame_id
+
+
+async def listened(tmp_path: Path, wiring: Wiring) -> Session:
+    with Workshop(wiring=wiring) as workshop:
+        session = Session(workshop, tmp_path)
+        await session.walk("identity")
+    return session
+
+
+async def test_the_controller_is_known_by_its_name_and_each_frame_by_its_pace(tmp_path: Path) -> None:
+    session = await listened(tmp_path, Wiring())
+    info, *_ = session.measured("identity")
+    assert info.startswith("INFO_1: hardware 21321 (the simulated robot), firmware 1, loop counter at ")
+    quick, slow = [line for line in session.measured("identity") if line.startswith("every ")]
+    assert quick == "every 10 ms: ADC00_03, ADC04_07, ADC08_11, ENCODER, BUMPERC, BDC00_03, BDC04_07"
+    assert slow.startswith("every 100 ms: INFO_1, ")
+    assert session.progress.findings.hardware_id == 21321
+
+
+async def test_a_robot_that_is_switched_off_is_told_what_to_look_at(tmp_path: Path) -> None:
+    session = await listened(tmp_path, Wiring(silent_ids=range(0x800)))
+    (told,) = session.to_do("identity")
+    assert told.startswith("Nothing was heard: is the robot on")
+    assert barring(session.progress)
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("INFO_1", "INFO_1 (0x04) never came: this is not the KURT2 controller, or it has not started"),
+        ("ENCODER", "ENCODER (0x09) never came: check the frame's source, or take its sensors out of the table"),
+        (
+            "BDC04_07",
+            "BDC04_07 (0x16) with s9, s10, s12, s13 never came: check the frame's source of the second controller, "
+            "or take its sensors out of the table",
+        ),
+    ],
+)
+async def test_a_frame_that_never_comes_is_named(tmp_path: Path, name: str, told: str) -> None:
+    session = await listened(tmp_path, Wiring(silent_ids=[frame_id(name)]))
+    assert session.to_do("identity") == (told,)
+
+
+async def test_a_frame_at_half_its_pace_is_named_with_both_paces(tmp_path: Path) -> None:
+    session = await listened(tmp_path, Wiring(every_other=[frame_id("ADC04_07")]))
+    (told,) = session.to_do("identity")
+    assert told.startswith("ADC04_07 (0x06) with s16, s11, s15, s1: every 20.0 ms, the settings expect 10 ms")
+
+
+async def test_junk_strangers_and_another_sender_of_control_are_found(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        stranger = open_bus(workshop.spec)
+        port = stranger.telemetry_port()
+
+        def disturb(question: Question) -> None:
+            if question.about is not Asked.BEGIN:
+                return
+            port.send(can.Message(arbitration_id=0x123, is_extended_id=False, data=b"hello"))
+            port.send(can.Message(arbitration_id=0x12345, is_extended_id=True, data=b""))
+            port.send(CODEC.message("ADC00_03").pack(4000, 0, 0, 0))
+            stranger.control_port().send(control_frame(SpeedControl(Mode.SPEED_CM, 0, 0)))
+
+        session = Session(workshop, tmp_path, disturb)
+        await session.walk("identity")
+        stranger.shutdown()
+    assert session.outcome("identity") is Outcome.FAILED
+    assert session.to_do("identity") == (
+        "1 x ADC00 above 1023 counts: find who sends it, or the loose contact",
+        "1 x extended or remote frames: find who sends it, or the loose contact",
+        "1 CONTROL frames from somebody else: find that program and end it",
+    )
+    assert "not in the CAN database, ignored: 0x123" in session.measured("identity")
+
+
+async def test_two_robots_on_one_bus_are_found(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        other = open_bus(workshop.spec)
+
+        def join(question: Question) -> None:
+            if question.about is Asked.BEGIN:
+                other.telemetry_port().send(CODEC.message("INFO_1").pack(7, 1, 0))
+
+        session = Session(workshop, tmp_path, join)
+        await session.walk("identity")
+        other.shutdown()
+    assert session.to_do("identity") == (
+        "INFO_1 comes from hardware 7 and hardware 21321 (the simulated robot): two robots; take one off the bus",
+    )
+
+
+async def test_a_robot_without_its_second_controller_can_turn_its_wheels_all_the_same(tmp_path: Path) -> None:
+    second = [frame_id(name) for name in ("INFO_2", "BDC00_03", "BDC04_07", "BDC08_11", "BDC12_15", "GYRO_MC2")]
+    with Workshop(wiring=Wiring(silent_ids=second)) as workshop:
+        session = Session(workshop, tmp_path)
+        await session.walk("identity", "modes")
+    assert session.outcome("identity") is Outcome.FAILED
+    assert session.outcome("modes") is Outcome.PASSED
+    assert any("s3, s4, s7, s8" in line for line in session.to_do("identity"))
+
+
+async def test_the_wheels_turn_also_when_they_are_all_that_is_tried(tmp_path: Path) -> None:
+    second = [frame_id(name) for name in ("BDC00_03", "BDC04_07")]
+    with Workshop(wiring=Wiring(silent_ids=second)) as workshop:
+        session = Session(workshop, tmp_path)
+        await session.walk("modes")
+    assert session.outcome("modes") is Outcome.PASSED

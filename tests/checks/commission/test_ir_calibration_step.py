@@ -1,0 +1,206 @@
+"""The infra-red law, by a ruler."""
+
+import random
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hal.robot_settings import InfraredSettings, RobotSettings
+from kurt2rt.checks.commission.ir_calibration import Law, LawError, Reading, fit_law
+from kurt2rt.checks.commission.ir_calibration_step import DISTANCES_M
+from kurt2rt.checks.commission.operator import SKIP, Asked, Question
+from kurt2rt.checks.commission.step import Outcome
+from tests.checks.commission.workshop import BASE, Session, Workshop
+from tests.examples import examples
+
+USUAL = Law(86.016, 0.04, 64.4)
+
+
+def readings(law: Law, noise: float = 0.0, seed: int = 1) -> list[Reading]:
+    chance = random.Random(seed)
+    return [
+        Reading("s11", distance_m, law.counts_at(distance_m) * (1.0 + noise * chance.uniform(-1.0, 1.0)))
+        for distance_m in DISTANCES_M
+    ]
+
+
+# The fit
+
+
+def test_exact_readings_give_the_law_back() -> None:
+    fit = fit_law(readings(USUAL))
+    assert fit.law.numerator_counts_m == pytest.approx(86.016, rel=0.01)
+    assert fit.law.offset_m == pytest.approx(0.04, abs=0.001)
+    assert fit.law.bias_counts == pytest.approx(64.4, abs=2.0)
+    assert fit.outliers == ()
+    assert max(map(abs, fit.residuals)) < 0.5
+
+
+@examples(40)
+@given(
+    st.builds(Law, st.floats(70.0, 110.0), st.floats(0.02, 0.06), st.floats(30.0, 80.0)).filter(
+        lambda law: 260.0 < law.counts_at(0.10) < 990.0 and 20.0 < law.counts_at(0.60) < 0.35 * law.counts_at(0.10)
+    ),
+    st.integers(0, 9),
+)
+def test_any_plausible_law_is_found_from_noisy_readings(law: Law, seed: int) -> None:
+    """By what counts: the readings it predicts, a ruler's error apart."""
+    fit = fit_law(readings(law, 0.01, seed))
+    for distance_m in (0.12, 0.25, 0.35, 0.45):
+        assert fit.law.counts_at(distance_m) == pytest.approx(law.counts_at(distance_m), rel=0.03, abs=3.0)
+
+
+@pytest.mark.parametrize("at", range(len(DISTANCES_M)))
+def test_one_reading_with_the_board_elsewhere_is_left_out(at: int) -> None:
+    taken = readings(USUAL, 0.01)
+    taken[at] = taken[at]._replace(counts=taken[at].counts * 1.8)
+    fit = fit_law(taken)
+    assert fit.outliers == (at,)
+    for distance_m in (0.15, 0.25, 0.35, 0.45):
+        assert fit.law.counts_at(distance_m) == pytest.approx(USUAL.counts_at(distance_m), rel=0.06, abs=4.0)
+
+
+@pytest.mark.parametrize(
+    ("taken", "why"),
+    [
+        (
+            [Reading("s11", d, 70.0) for d in DISTANCES_M],
+            "70 counts at 0.10 m and 70 at 0.60 m: they hardly fall",
+        ),
+        ([Reading("s11", d, 400.0 - 100.0 * d) for d in DISTANCES_M], "they hardly fall with distance"),
+        (readings(USUAL)[::-1][:3], "4 distances at least"),
+        ([each for each in readings(USUAL) if each.distance_m >= 0.2], "4 distances at least, from 0.15 m or less"),
+        (readings(Law(25.0, 0.04, 0.0)), "179 counts at 0.10 m, plausible are 250 to 1000"),
+        (
+            [Reading("s11", d, c) for d, c in zip(DISTANCES_M, (540, 100, 500, 90, 300, 60, 200), strict=True)],
+            "scatter too much around any law",
+        ),
+        ([Reading("s11", d, USUAL.counts_at(0.7 - d)) for d in DISTANCES_M], "they hardly fall with distance"),
+    ],
+    ids=["dead", "flat", "too few", "too far", "too weak", "scatter", "upside down"],
+)
+def test_what_is_no_law_is_refused(taken: list[Reading], why: str) -> None:
+    with pytest.raises(LawError, match=why):
+        fit_law(taken)
+
+
+# The step
+
+
+def other_law(**changes: float) -> RobotSettings:
+    """A robot whose sensors have another law; its plateau and floor follow from it."""
+    law = BASE.infrared.model_copy(update=changes)
+    near, far = law.counts_at(law.near_m), law.counts_at(law.far_m)
+    update = {"plateau_counts": round(near), "floor_counts": round(far)}
+    return BASE.model_copy(update={"infrared": law.model_copy(update=update)})
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [pytest.param({"numerator_counts_m": 100.0}, marks=pytest.mark.deep), {"offset_m": 0.055, "bias_counts": 50.0}],
+    ids=str,
+)
+async def test_the_law_of_other_sensors_is_found(tmp_path: Path, changes: dict[str, float]) -> None:
+    true = other_law(**changes)
+    with Workshop(true, seed=4) as workshop:
+        session = Session(workshop, tmp_path, answer_which("s11 s1 s5"))
+        await session.walk("infrared")
+    assert session.outcome("infrared") is Outcome.PASSED
+    found = session.progress.findings.law
+    assert found is not None
+    fitted = InfraredSettings.model_construct(**{**BASE.infrared.model_dump(), **found.model_dump()})
+    for distance_m in (0.12, 0.2, 0.3, 0.45):
+        # Three sensors with gains of their own, 5 % either way.
+        assert fitted.counts_at(distance_m) == pytest.approx(true.infrared.counts_at(distance_m), rel=0.04)
+    assert found.far_m == pytest.approx(0.6, abs=0.03)
+    assert found.floor_counts == pytest.approx(true.infrared.floor_counts, abs=3)
+
+
+def answer_which(names: str) -> "Which":
+    return Which(names)
+
+
+class Which:
+    """Names sensors when asked."""
+
+    def __init__(self, names: str) -> None:
+        self._names = names
+
+    def __call__(self, question: Question) -> str | None:
+        return self._names if question.about is Asked.WHICH else None
+
+
+async def test_a_board_at_the_wrong_distance_is_asked_for_once_more(tmp_path: Path) -> None:
+    wrong = iter([True, False])
+
+    def err(question: Question) -> str | None:
+        if question.about is Asked.BOARD and question.distance_m == 0.30 and next(wrong, False):
+            workshop.hold_before(question.subject, 0.15)
+            return ""
+        return None
+
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path, err)
+        await session.walk("infrared")
+    (again,) = [question.text for question in session.person.asked if "do not fit" in question.text]
+    assert again.endswith("Once more: The board 0.30 m before front centre (s11).")
+    assert session.outcome("infrared") is Outcome.PASSED
+    assert not any("left out" in line for line in session.measured("infrared"))
+
+
+async def test_a_reading_that_stays_odd_is_left_out_and_shown(tmp_path: Path) -> None:
+    def err(question: Question) -> str | None:
+        if question.about is Asked.BOARD and question.distance_m == 0.30:
+            if question.text.startswith("The board"):
+                workshop.hold_before(question.subject, 0.15)
+                return ""
+            return SKIP
+        return None
+
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path, err)
+        await session.walk("infrared")
+    (odd,) = [line for line in session.measured("infrared") if "left out" in line]
+    assert odd.startswith("s11 at 0.30 m: 3")
+    assert session.outcome("infrared") is Outcome.PASSED
+
+
+async def test_no_law_is_made_from_a_board_that_was_never_there(tmp_path: Path) -> None:
+    def forget(question: Question) -> str | None:
+        return "" if question.about is Asked.BOARD else None
+
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path, forget)
+        await session.walk("infrared")
+    assert session.outcome("infrared") is Outcome.FAILED
+    assert session.progress.findings.law is None
+    assert session.to_do("infrared")[0].startswith("No law was fitted: ")
+
+
+async def test_a_room_that_was_not_clear_makes_no_law(tmp_path: Path) -> None:
+    def stand_in_the_way(question: Question) -> str | None:
+        if question.about is not Asked.CLEAR:
+            return None
+        workshop.hold_before("s11", 0.2)
+        return ""
+
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path, stand_in_the_way)
+        await session.walk("infrared")
+    (told,) = session.to_do("infrared")
+    assert told.startswith("With nothing in view the sensor says as much as before a board at 0.2")
+    assert session.progress.findings.law is None
+
+
+async def test_a_sensor_that_does_not_exist_is_asked_for_again(tmp_path: Path) -> None:
+    answers = iter(["s99", "s1"])
+
+    def choose(question: Question) -> str | None:
+        return next(answers) if question.about is Asked.WHICH else None
+
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path, choose)
+        await session.walk("infrared")
+    assert {question.subject for question in session.person.asked if question.about is Asked.BOARD} == {"s1"}

@@ -1,0 +1,147 @@
+"""The settings file that a commissioning writes, and the robot that is driven with it."""
+
+import re
+from pathlib import Path
+
+import pytest
+import yaml
+
+from config import CONFIG_DIR
+from hal.bus import open_bus
+from hal.kurt2 import Kurt2
+from hal.robot import WheelSpeeds
+from hal.robot_settings import RobotSettings, SpeedMode, load_robot
+from hal.settings import SettingsError
+from kurt2rt.checks.commission.checklist import STEPS
+from kurt2rt.checks.commission.findings import Findings, LawFound
+from kurt2rt.checks.commission.progress import Progress, StepRecord
+from kurt2rt.checks.commission.robot_file import commissioned, robot_file, write_robot_file
+from kurt2rt.checks.commission.step import Outcome
+from kurt2rt.service.settings import load_service
+from tests.checks.commission.wired_end import Wiring
+from tests.checks.commission.workshop import BASE, TODAY, Session, Workshop, with_channels
+
+LAW = LawFound(
+    numerator_counts_m=90.5,
+    offset_m=0.0405,
+    bias_counts=60.1,
+    near_m=0.1,
+    far_m=0.58,
+    floor_counts=86,
+    plateau_counts=584,
+)
+
+
+def progress(findings: Findings, outcome: Outcome = Outcome.PASSED, **other: StepRecord) -> Progress:
+    steps = {step.name: StepRecord(outcome=outcome, at=TODAY, who="anna") for step in STEPS}
+    return Progress(name="robbie", base="kurt2", bus="can0", findings=findings, steps={**steps, **other})
+
+
+async def test_the_file_makes_the_robot_sense_in_order_and_drive(tmp_path: Path) -> None:
+    """Two sensors on each other's channels, and firmware without SPEED_CM."""
+    true = with_channels(s1="ADC08", s2="ADC07")
+    out = tmp_path / "robbie.yaml"
+    with Workshop(true, Wiring(modes=[SpeedMode.SPEED, SpeedMode.RAW])) as workshop:
+        session = Session(workshop, tmp_path)
+        await session.walk("modes", "sensors")
+        loaded = write_robot_file(out, BASE, session.progress, STEPS)
+        assert loaded == load_robot(str(out))
+        assert [each.channel for each in loaded.infrared.sensors] == [each.channel for each in true.infrared.sensors]
+
+        workshop.hold_before("s1", 0.2)
+        kurt2 = Kurt2(loaded, open_bus(workshop.spec))
+        for _ in range(100):
+            workshop.step()
+            now_s = workshop.robot.time_s
+            senses = kurt2.sense(now_s)
+            kurt2.drive(WheelSpeeds(0.3, 0.3), now_s, now_s)
+        assert senses.infrared_counts == workshop.robot.infrared_counts
+        assert workshop.robot.wheel_speeds.left_m_s == pytest.approx(0.3, abs=0.01)
+        kurt2.close()
+
+
+def test_the_file_is_whole_and_says_what_was_measured_and_what_was_not() -> None:
+    findings = Findings(
+        speed_mode=SpeedMode.RAW,
+        controller_watchdog_s=0.12,
+        channels={"s1": "ADC08", "s2": "ADC07"},
+        dead_sensors=("s9",),
+        bumper_bits={"front left": 1, "front centre": 0},
+        law=LAW,
+    )
+    failed = StepRecord(outcome=Outcome.FAILED, at=TODAY, who="anna", to_do=("s9 answers on no channel",))
+    text = robot_file(BASE, progress(findings, sensors=failed), STEPS)
+    assert text.startswith("# robbie, commissioned with kurt2rt commission can0: NOT PASSED\n")
+    for line in (
+        "# identity: passed, 2026-11-21 15:00 UTC, anna",
+        "# sensors: failed, 2026-11-21 15:00 UTC, anna",
+        "#   to do: s9 answers on no channel",
+        "  speed_mode: RAW  # answered, 2026-11-21, anna",
+        "  controller_watchdog_s: 0.12  # measured, 2026-11-21, anna",
+        "  metres_per_tick: 0.00001727",
+        "  numerator_counts_m: 90.5  # fitted, 2026-11-21, anna",
+        "    - {name: s1, label: left front, channel: ADC08, x_m: 0.14, y_m: 0.165, heading_deg: 90.0}"
+        "  # by hand, was ADC07, 2026-11-21, anna",
+        "  - {name: front centre, end: front}  # bit 0 by hand, 2026-11-21, anna",
+    ):
+        assert line in text.splitlines()
+    assert re.search(r"name: s9,.*# DEAD, no channel answered, 2026-11-21, anna", text)
+    assert re.search(r"name: s3,.*# not tried", text)
+    assert RobotSettings.model_fields.keys() == yaml.safe_load(text).keys()
+
+
+def test_a_robot_like_the_one_it_began_with_gets_the_same_settings() -> None:
+    assert commissioned(BASE, BASE.name, Findings()) == BASE
+
+
+def test_all_that_was_found_is_in_the_settings() -> None:
+    robot = commissioned(
+        BASE,
+        "robbie",
+        Findings(
+            speed_mode=SpeedMode.SPEED,
+            full_speed_m_s=0.72,
+            controller_watchdog_s=0.1,
+            bumper_bits={"front left": 3, "rear left": 0},
+            law=LAW,
+        ),
+    )
+    assert robot.name == "robbie"
+    assert (robot.can.speed_mode, robot.motors.full_speed_m_s) == (SpeedMode.SPEED, 0.72)
+    assert robot.motors.controller_watchdog_s == 0.1
+    assert [bumper.name for bumper in robot.bumpers][0::3] == ["rear left", "front left"]
+    assert robot.infrared.counts_at(0.2) == pytest.approx(90.5 / 0.2405 - 60.1)
+    assert robot.infrared.distance_m(86) == 0.58
+
+
+def test_words_that_mean_something_to_yaml_survive(tmp_path: Path) -> None:
+    odd = "left, {front} #1: größer"
+    bumper = BASE.bumpers[0].model_copy(update={"name": odd})
+    robot = BASE.model_copy(update={"bumpers": (bumper, *BASE.bumpers[1:])})
+    loaded = write_robot_file(tmp_path / "robbie.yaml", robot, progress(Findings()), STEPS)
+    assert loaded == robot.model_copy(update={"name": "robbie"})
+
+
+def test_what_a_hundred_per_cent_are_matters_in_speed_mode_alone() -> None:
+    robot = commissioned(BASE, "robbie", Findings(speed_mode=SpeedMode.SPEED_CM, full_speed_m_s=0.72))
+    assert robot.motors.full_speed_m_s == BASE.motors.full_speed_m_s
+
+
+def test_a_channel_that_another_sensor_took_must_be_found_anew() -> None:
+    with pytest.raises(SettingsError, match="s2 has no channel: ADC08, which the table gives it, is s1's; find s2's"):
+        commissioned(BASE, "robbie", Findings(channels={"s1": "ADC08"}))
+
+
+def test_a_bumper_on_anothers_bit_must_be_found_anew() -> None:
+    with pytest.raises(SettingsError, match="bumper bits must be 0 to 5, each once, but are: front left 3, "):
+        commissioned(BASE, "robbie", Findings(bumper_bits={"front left": 3}))
+
+
+def test_the_runtime_settings_take_the_file_by_its_path(tmp_path: Path) -> None:
+    out = tmp_path / "robots" / "robbie.yaml"
+    write_robot_file(out, BASE, progress(Findings(speed_mode=SpeedMode.RAW)), STEPS)
+    default = (CONFIG_DIR / "runtime" / "default.yaml").read_text()
+    mine = tmp_path / "mine.yaml"
+    mine.write_text(default.replace("robot: kurt2 ", f"robot: {out} "))
+    assert load_robot(load_service(str(mine)).robot).can.speed_mode is SpeedMode.RAW
+    assert out.read_text().startswith("# robbie, commissioned with kurt2rt commission can0: PASSED\n")

@@ -1,0 +1,318 @@
+"""The steps that turn wheels, on robots with the mistakes that real ones have."""
+
+from pathlib import Path
+
+import pytest
+
+from hal.bus import open_bus
+from hal.guard_reason import GuardReason
+from hal.robot_settings import RobotSettings, SpeedMode
+from kurt2rt.checks.commission.checklist import barring
+from kurt2rt.checks.commission.moving import DRIVE_S
+from kurt2rt.checks.commission.operator import SKIP, Asked, Question, Tone
+from kurt2rt.checks.commission.step import Outcome
+from kurt2rt.checks.commission.test_stand import UNANSWERED
+from kurt2rt.checks.commission.wiring import Motion, Trial, parse_seen, what_to_rewire
+from tests.checks.commission.wired_end import Wiring
+from tests.checks.commission.workshop import BASE, Instead, Session, Workshop
+
+
+async def turned(
+    tmp_path: Path,
+    *steps: str,
+    wiring: Wiring | None = None,
+    true: RobotSettings = BASE,
+    instead: Instead = lambda _: None,
+) -> Session:
+    """A session; steps after `modes` begin with a mode that answers."""
+    with Workshop(true, wiring) as workshop:
+        session = Session(workshop, tmp_path, instead)
+        if "modes" not in steps:
+            session.knows(speed_mode=SpeedMode.SPEED_CM)
+        await session.walk(*steps)
+    return session
+
+
+# Which mode answers
+
+
+@pytest.mark.parametrize(
+    "modes", [pytest.param((SpeedMode.SPEED, SpeedMode.RAW), marks=pytest.mark.deep), (SpeedMode.RAW,)]
+)
+async def test_old_firmware_is_driven_in_the_mode_that_it_knows(tmp_path: Path, modes: tuple[SpeedMode, ...]) -> None:
+    session = await turned(tmp_path, "modes", wiring=Wiring(modes=modes))
+    assert session.outcome("modes") is Outcome.PASSED
+    assert session.progress.findings.speed_mode is modes[0]
+    assert session.measured("modes")[0] == "SPEED_CM: no answer"
+
+
+async def test_no_mode_answers_on_a_robot_without_its_motors_supply(tmp_path: Path) -> None:
+    session = await turned(tmp_path, "modes", "wheels", wiring=Wiring(modes=()))
+    assert session.to_do("modes") == (
+        "No speed mode answers: check the motors' supply, their fuses and the emergency switch",
+    )
+    assert session.measured("wheels") == ("no speed mode is known to answer: take the step modes first",)
+    assert [step.name for step in barring(session.progress)] == ["modes"]
+
+
+async def test_what_a_hundred_per_cent_are_is_measured(tmp_path: Path) -> None:
+    quicker = BASE.model_copy(update={"motors": BASE.motors.model_copy(update={"full_speed_m_s": 0.80})})
+    session = await turned(tmp_path, "modes", wiring=Wiring(modes=[SpeedMode.SPEED]), true=quicker)
+    assert session.progress.findings.full_speed_m_s == pytest.approx(0.80, abs=0.01)
+
+
+async def test_wheels_that_run_away_are_braked_at_once(tmp_path: Path) -> None:
+    with Workshop(wiring=Wiring(wild_modes=[SpeedMode.SPEED_CM])) as workshop:
+        session = Session(workshop, tmp_path)
+        await session.walk("modes")
+        assert max(map(abs, workshop.take_peaks())) < 0.6
+    (told,) = session.to_do("modes")
+    assert told.startswith("SPEED_CM: the wheels ran away and were braked; an encoder that counts the wrong way does ")
+
+
+async def test_an_encoder_that_makes_speed_loops_run_away_is_found_in_open_loop(tmp_path: Path) -> None:
+    closed = (SpeedMode.SPEED_CM, SpeedMode.SPEED)
+    session = await turned(tmp_path, "modes", "wheels", wiring=Wiring(wild_modes=closed, reversed_encoders=[0]))
+    assert session.progress.findings.speed_mode is SpeedMode.RAW
+    assert len(session.to_do("modes")) == 2
+    assert session.to_do("wheels") == ("The left encoder counts the wrong way: exchange its channels A and B",)
+
+
+async def test_wheels_with_other_encoders_seem_slow_and_the_settings_to_mend_are_named(tmp_path: Path) -> None:
+    """The high-speed variant has 5120 ticks in a turn, not 21950."""
+    coarse = BASE.model_copy(update={"geometry": BASE.geometry.model_copy(update={"metres_per_tick": 0.000074})})
+    session = await turned(tmp_path, "modes", true=coarse)
+    (told,) = session.to_do("modes")
+    assert told.startswith("SPEED_CM: 0.23 times as fast as told, by the encoders. Turn a wheel once by hand: 21938 ")
+    assert session.progress.findings.speed_mode is SpeedMode.SPEED_CM
+    assert [step.name for step in barring(session.progress)] == ["modes"]
+
+
+async def test_what_is_wrong_with_a_mode_that_is_not_needed_is_no_matter(tmp_path: Path) -> None:
+    session = await turned(tmp_path, "modes", wiring=Wiring(wild_modes=[SpeedMode.SPEED]))
+    assert session.outcome("modes") is Outcome.PASSED
+    assert "SPEED: not tried out, the wheels ran away" in session.measured("modes")
+
+
+async def test_a_mode_can_be_left_out(tmp_path: Path) -> None:
+    """Where it made the controller crash, for one."""
+
+    def leave_out(question: Question) -> str | None:
+        return SKIP if question.about is Asked.MOVE and "SPEED_CM" in question.text else None
+
+    session = await turned(tmp_path, "modes", instead=leave_out)
+    assert session.measured("modes")[0] == "SPEED_CM: left out"
+    assert session.progress.findings.speed_mode is SpeedMode.SPEED
+
+
+async def test_a_controller_that_crashes_is_not_driven_on(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+
+        def crash(question: Question) -> None:
+            if question.about is Asked.MOVE:
+                workshop.robot.controller.crashed = True
+
+        session = Session(workshop, tmp_path, crash)
+        await session.walk("modes")
+    (told,) = session.to_do("modes")
+    assert told.startswith("The wheels are not heard of any more after the brake: SWITCH THE MOTORS OFF")
+    assert [question.about for question in session.person.asked].count(Asked.MOVE) == 1
+
+
+async def test_somebody_else_on_the_bus_ends_a_drive(tmp_path: Path) -> None:
+    with Workshop() as workshop:
+        session = Session(workshop, tmp_path)
+        workshop.stranger = open_bus(workshop.spec)
+        await session.walk("modes")
+    assert any(GuardReason.FOREIGN_CONTROL in line for line in session.to_do("modes"))
+    assert session.outcome("modes") is Outcome.FAILED
+
+
+# Sides and directions
+
+MOTORS_EXCHANGED = "The motors are exchanged: exchange the left and the right motor's plugs at the controller"
+ENCODERS_EXCHANGED = "The encoders are exchanged: exchange the left and the right encoder's plugs at the controller"
+
+
+@pytest.mark.parametrize(
+    ("wiring", "told"),
+    [
+        pytest.param(Wiring(motors_exchanged=True), [MOTORS_EXCHANGED], id="motors exchanged"),
+        pytest.param(Wiring(encoders_exchanged=True), [ENCODERS_EXCHANGED], id="encoders exchanged"),
+        pytest.param(
+            Wiring(motors_exchanged=True, encoders_exchanged=True),
+            [MOTORS_EXCHANGED, ENCODERS_EXCHANGED],
+            id="both exchanged",
+            marks=pytest.mark.deep,
+        ),
+        pytest.param(
+            Wiring(reversed_motors=[0]),
+            ["The left motor turns the wrong way: exchange its two leads"],
+            id="left motor reversed",
+            marks=pytest.mark.deep,
+        ),
+        pytest.param(
+            Wiring(reversed_encoders=[1]),
+            ["The right encoder counts the wrong way: exchange its channels A and B"],
+            id="right encoder reversed",
+        ),
+        pytest.param(
+            Wiring(reversed_motors=[0], reversed_encoders=[0]),
+            [
+                "The left motor turns the wrong way: exchange its two leads",
+                "The left encoder counts the wrong way: exchange its channels A and B",
+            ],
+            id="left reversed twice",
+            marks=pytest.mark.deep,
+        ),
+        pytest.param(
+            Wiring(motors_exchanged=True, reversed_motors=[1]),
+            [MOTORS_EXCHANGED, "The right motor turns the wrong way: exchange its two leads"],
+            id="exchanged and reversed",
+        ),
+        pytest.param(
+            Wiring(dead_encoders=[0]),
+            ["The left encoder counts nothing while its wheels turn: check its plug and its supply"],
+            id="left encoder dead",
+        ),
+    ],
+)
+async def test_what_is_wired_wrong_is_told_by_its_name(tmp_path: Path, wiring: Wiring, told: list[str]) -> None:
+    session = await turned(tmp_path, "wheels", wiring=wiring)
+    assert list(session.to_do("wheels")) == told
+    assert [step.name for step in barring(session.progress)] == ["wheels"]
+
+
+async def test_a_side_that_nothing_is_counted_of_does_not_turn_for_long(tmp_path: Path) -> None:
+    """The speed loop of a real controller would turn it faster and faster."""
+    asked_s: dict[Asked, list[float]] = {}
+    with Workshop(wiring=Wiring(dead_encoders=[0])) as workshop:
+
+        def note(question: Question) -> None:
+            asked_s.setdefault(question.about, []).append(workshop.robot.time_s)
+
+        session = Session(workshop, tmp_path, note)
+        session.knows(speed_mode=SpeedMode.SPEED_CM)
+        await session.walk("wheels", "stop")
+    took_s = [seen_s - move_s for move_s, seen_s in zip(asked_s[Asked.MOVE], asked_s[Asked.SEEN], strict=False)]
+    assert max(took_s[:2]) < DRIVE_S < min(took_s[2:])
+    assert session.to_do("stop") == (f"The wheels did not turn, so nothing could stop them: {UNANSWERED}",)
+
+
+async def test_two_mistakes_that_hide_each_other_from_the_encoders_are_seen_by_the_person(tmp_path: Path) -> None:
+    """Motors and encoders exchanged: the counts look right, and the robot would turn the wrong way."""
+    wiring = Wiring(motors_exchanged=True, encoders_exchanged=True)
+    session = await turned(tmp_path, "wheels", wiring=wiring)
+    first = session.measured("wheels")[0]
+    assert first.startswith("ordered left forward, seen right forward, encoders left forward")
+
+
+async def test_enter_alone_is_no_answer_to_what_was_seen(tmp_path: Path) -> None:
+    hurried = iter(["", "y"])
+
+    def hurry(question: Question) -> str | None:
+        return next(hurried, None) if question.about is Asked.SEEN else None
+
+    session = await turned(tmp_path, "wheels", instead=hurry)
+    assert session.person.lines(Tone.BAD) == ["Two words, please, such as: left forward. Or: none, or y."]
+    assert session.outcome("wheels") is Outcome.PASSED
+
+
+async def test_where_encoders_disagree_yes_is_no_answer(tmp_path: Path) -> None:
+    hurried = iter(["y", "dunno", "left", "left forward"])
+
+    def hurry(question: Question) -> str | None:
+        return next(hurried, None) if question.about is Asked.SEEN else None
+
+    session = await turned(tmp_path, "wheels", wiring=Wiring(reversed_encoders=[0]), instead=hurry)
+    assert session.person.lines(Tone.BAD).count("Two words, please, such as: left forward. Or: none.") == 3
+    assert session.to_do("wheels") == ("The left encoder counts the wrong way: exchange its channels A and B",)
+
+
+@pytest.mark.parametrize(
+    ("answer", "seen"),
+    [
+        ("left forward", Motion(1, 0)),
+        ("r b", Motion(0, -1)),
+        ("both backward", Motion(-1, -1)),
+        ("none", Motion(0, 0)),
+        ("n", Motion(0, 0)),
+        ("", None),
+        ("left", None),
+        ("none forward", None),
+        ("left sideways", None),
+        ("up forward", None),
+    ],
+)
+def test_what_a_person_saw_is_two_words(answer: str, seen: Motion | None) -> None:
+    assert parse_seen(answer) == seen
+
+
+def test_an_order_that_turns_both_sides_is_a_matter_of_both_motors() -> None:
+    both = [
+        Trial(ordered, Motion(sign, sign), Motion(sign, sign))
+        for sign in (1, -1)
+        for ordered in (Motion(sign, 0), Motion(0, sign))
+    ]
+    assert what_to_rewire(both) == [
+        "The left motor's order turns both forward and both back: check the wiring of both motors",
+        "The right motor's order turns both forward and both back: check the wiring of both motors",
+    ]
+
+
+def test_a_motor_that_does_not_turn_is_no_matter_of_its_encoder() -> None:
+    still = Motion(0, 0)
+    trials = [
+        Trial(Motion(1, 0), still, still),
+        Trial(Motion(-1, 0), still, still),
+        Trial(Motion(0, 1), Motion(0, 1), Motion(0, 1)),
+        Trial(Motion(0, -1), Motion(0, -1), Motion(0, -1)),
+    ]
+    assert what_to_rewire(trials) == ["The left motor does not turn: check its plug, its fuse and its supply"]
+
+
+# Stopping
+
+
+async def test_brake_and_watchdog_are_timed(tmp_path: Path) -> None:
+    slow = BASE.model_copy(update={"motors": BASE.motors.model_copy(update={"controller_watchdog_s": 0.45})})
+    session = await turned(tmp_path, "stop", true=slow)
+    assert session.outcome("stop") is Outcome.PASSED
+    assert session.progress.findings.controller_watchdog_s == pytest.approx(0.45, abs=0.03)
+    braked, silent = session.measured("stop")
+    assert braked == "braked: the wheels stood 50 ms after the frame"
+    assert silent.startswith("without CONTROL: the drive dropped out after 4")
+
+
+async def test_a_controller_that_does_not_stop_by_itself_is_braked_and_bars_driving(tmp_path: Path) -> None:
+    endless = BASE.model_copy(update={"motors": BASE.motors.model_copy(update={"controller_watchdog_s": 9.0})})
+    with Workshop(endless) as workshop:
+        session = Session(workshop, tmp_path)
+        session.knows(speed_mode=SpeedMode.RAW)
+        await session.walk("stop")
+        assert tuple(workshop.robot.wheel_speeds) == (0.0, 0.0)
+    (told,) = session.to_do("stop")
+    assert told.startswith("Without CONTROL the wheels turned on for 1.5 s: this controller does not stop by itself.")
+    assert [step.name for step in barring(session.progress)] == ["stop"]
+
+
+async def test_a_brake_that_does_not_hold_says_to_switch_the_motors_off(tmp_path: Path) -> None:
+    never = BASE.model_copy(update={"motors": BASE.motors.model_copy(update={"controller_watchdog_s": 9.0})})
+    session = await turned(tmp_path, "modes", wiring=Wiring(brake_works=False), true=never)
+    assert session.person.lines(Tone.BAD)[0].startswith("The wheels still turn after the brake: SWITCH THE MOTORS OFF")
+    assert session.outcome("modes") is Outcome.FAILED
+
+
+async def test_an_alarm_that_brakes_while_nothing_is_sent_is_not_taken_for_the_controllers_watchdog(
+    tmp_path: Path,
+) -> None:
+    never = BASE.model_copy(update={"motors": BASE.motors.model_copy(update={"controller_watchdog_s": 9.0})})
+    with Workshop(never) as workshop:
+        session = Session(workshop, tmp_path)
+        session.knows(speed_mode=SpeedMode.SPEED_CM)
+        workshop.stranger = open_bus(workshop.spec)
+        workshop.stranger_waits_s = 2 * DRIVE_S + 0.2  # some cycles after the second drive
+        await session.walk("stop")
+    (told,) = session.to_do("stop")
+    assert GuardReason.FOREIGN_CONTROL in told
+    assert session.progress.findings.controller_watchdog_s is None

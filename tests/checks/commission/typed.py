@@ -1,0 +1,97 @@
+"""`kurt2rt commission` with a simulated robot in real time, and answers that are typed."""
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from hal.identity import SIMULATED_HARDWARE_ID
+from hal.robot_settings import SpeedMode, load_robot
+from kurt2rt.checks.commission.checklist import STEPS
+from kurt2rt.checks.commission.findings import Findings
+from kurt2rt.checks.commission.progress import Progress, StepRecord, load_progress
+from kurt2rt.checks.commission.step import Outcome
+from kurt2rt.cli.main import main
+from simbridge.realtime import RealtimeSimulation
+from tests.checks.commission.workshop import TODAY, Workshop
+from tests.cli.helpers import Said
+
+PROGRESS = Path("var", "commission", "robbie.json")
+
+
+class Typed:
+    """A keyboard at which one answer after the other is typed, each when it is asked for."""
+
+    def __init__(self, *lines: str) -> None:
+        self._lines = list(lines)
+
+    def readline(self) -> str:
+        return self._lines.pop(0) + "\n" if self._lines else ""
+
+
+Type = Callable[..., Said]
+
+
+def typing(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], folder: Path) -> Type:
+    """Runs the command in a folder with answers typed."""
+    monkeypatch.chdir(folder)
+
+    def run(keyboard: Typed, *words: str) -> Said:
+        monkeypatch.setattr(sys, "argv", ["kurt2rt", "commission", *words])
+        monkeypatch.setattr(sys, "stdin", keyboard)
+        exit_code: int | str | None = 0
+        try:
+            main()
+        except SystemExit as end:
+            exit_code = end.code
+        out, err = capfd.readouterr()
+        assert isinstance(exit_code, int | None)
+        return Said(exit_code or 0, out, err)
+
+    return run
+
+
+@contextmanager
+def live(workshop: Workshop) -> Iterator[None]:
+    """The workshop's robot in real time, on its block."""
+    workshop.robot.lifted = True
+    with RealtimeSimulation(workshop.robot):
+        yield
+
+
+def earlier(folder: Path, *but: str) -> None:
+    """A session before this one that passed all steps but some."""
+    steps = {
+        step.name: StepRecord(outcome=Outcome.PASSED, at=TODAY, who="anna") for step in STEPS if step.name not in but
+    }
+    found = Findings(hardware_id=SIMULATED_HARDWARE_ID, speed_mode=SpeedMode.SPEED)
+    Progress(name="robbie", base="kurt2", bus="can0", findings=found, steps=steps).save(folder / PROGRESS)
+
+
+def commission_the_rest(type_at: Type, spec: str, folder: Path, *steps: str) -> None:
+    """Steps that are missing, `stop` the last of them, and the file."""
+    earlier(folder, *steps)
+    begin = [""] if "identity" in steps else []
+    said = type_at(Typed(*begin, "wheels up", "", "", ""), spec, "--name", "robbie", "--who", "bert")
+    assert said.err == ""
+    assert said.exit_code == 0, said.out
+    for line in (
+        f"robbie on {spec}; progress is kept in var/commission/robbie.json; Ctrl-C brakes",
+        "  modes: passed on 2026-11-21 15:00, anna; again with --only modes",
+        f"{len(steps) + 1} of {len(steps) + 1}: Emergency stop and the controller's own watchdog  [stop]",
+        "  passed: Emergency stop and the controller's own watchdog",
+        "robbie: PASSED",
+        "written: var/robots/robbie.yaml",
+    ):
+        assert line in said.out.splitlines()
+    assert "stopped" not in said.out
+    robot = load_robot(str(folder / "var" / "robots" / "robbie.yaml"))
+    assert robot.can.speed_mode is SpeedMode.SPEED
+    assert 0.1 <= robot.motors.controller_watchdog_s <= 1.0
+    report = (folder / PROGRESS).with_suffix(".txt").read_text(encoding="utf-8")
+    assert report.startswith(f"robbie on {spec}, begun with kurt2: PASSED\n")
+    assert "    without CONTROL: the drive dropped out after " in report
+    kept = load_progress(folder / PROGRESS)
+    assert kept.steps["stop"].who == "bert"

@@ -1,0 +1,149 @@
+"""CAN: the kernel of this machine, and trees like /sys/class/net of other machines."""
+
+import socket
+from pathlib import Path
+
+import pytest
+
+from hal.robot_settings import load_robot
+from kurt2rt.checks.doctor.can_bus import BIT_RATE_BIT_S, check_can_interfaces, check_can_kernel, check_vcan
+from kurt2rt.checks.doctor.check_result import FindingCode, Status
+
+UP = "0x400c1"
+DOWN = "0x400c0"
+
+
+class Net:
+    """A tree like /sys/class/net."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.folder.mkdir()
+
+    def add(self, name: str, *, kind: int = 280, flags: str = UP, device: bool = True, carrier: str = "1") -> None:
+        interface = self.folder / name
+        interface.mkdir()
+        (interface / "type").write_text(f"{kind}\n")
+        (interface / "flags").write_text(f"{flags}\n")
+        if device:
+            (interface / "device").mkdir()
+        if flags == UP:  # of an interface that is down the kernel refuses to tell it
+            (interface / "carrier").write_text(f"{carrier}\n")
+
+
+@pytest.fixture
+def net(tmp_path: Path) -> Net:
+    net = Net(tmp_path / "net")
+    net.add("lo", kind=772, device=False)
+    net.add("eth0", kind=1)
+    (net.folder / "bonding_masters").write_text("")  # a file among the folders, as the kernel has it
+    return net
+
+
+@pytest.fixture
+def modules(tmp_path: Path) -> Path:
+    """A tree like /lib/modules/6.1.0: can-raw can be loaded, vcan is built in."""
+    folder = tmp_path / "modules"
+    folder.mkdir()
+    (folder / "modules.dep").write_text("kernel/net/can/can-raw.ko.xz: kernel/net/can/can.ko.xz\n")
+    (folder / "modules.builtin").write_text("kernel/drivers/net/can/vcan.ko\n")
+    return folder
+
+
+def no_can() -> socket.socket:
+    raise OSError(97, "Address family not supported by protocol")
+
+
+def test_the_bit_rate_to_copy_is_that_of_the_robot() -> None:
+    assert load_robot().can.bit_rate_bit_s == BIT_RATE_BIT_S
+
+
+def test_the_kernel_of_this_machine_speaks_can_or_we_are_told_how() -> None:
+    finding = check_can_kernel()
+    assert finding.status in (Status.OK, Status.MISSING)
+    assert (finding.code is FindingCode.CAN) == (finding.status is Status.OK)
+
+
+def test_the_socket_that_was_tried_is_closed_again() -> None:
+    tried = socket.socket()
+    assert check_can_kernel(lambda: tried).status is Status.OK
+    assert tried.fileno() == -1
+
+
+def test_a_kernel_that_only_lacks_the_module_is_told_to_load_it(modules: Path) -> None:
+    finding = check_can_kernel(no_can, modules)
+    assert finding.status is Status.MISSING
+    assert finding.code is FindingCode.CAN_UNLOADED
+
+
+def test_a_kernel_without_can_is_missing_it_but_may_run_the_simulation(tmp_path: Path) -> None:
+    finding = check_can_kernel(no_can, tmp_path)
+    assert finding.status is Status.MISSING
+    assert finding.code is FindingCode.CAN_MISSING
+    assert not finding.forbids_run
+
+
+def test_the_interfaces_of_this_machine_can_be_looked_at() -> None:
+    assert check_can_interfaces()
+    assert check_vcan().code.startswith("vcan")
+
+
+def test_no_can_interface_among_the_others(net: Net) -> None:
+    (finding,) = check_can_interfaces(net.folder)
+    assert finding.status is Status.MISSING
+    assert not finding.forbids_run
+    assert finding.code is FindingCode.CAN_INTERFACE_NONE
+    assert finding.values["up"] == "sudo ip link set can0 up type can bitrate 1000000"
+
+
+def test_a_machine_without_sysfs_has_no_interface(tmp_path: Path) -> None:
+    (finding,) = check_can_interfaces(tmp_path / "nowhere")
+    assert finding.status is Status.MISSING
+
+
+def test_each_interface_with_hardware_is_looked_at(net: Net) -> None:
+    net.add("can0")
+    net.add("can1", flags=DOWN)
+    net.add("vcan0", device=False)
+    up, down = check_can_interfaces(net.folder)
+    assert (up.code, up.status, up.values["name"]) == (FindingCode.CAN_INTERFACE, Status.OK, "can0")
+    assert (down.code, down.status) == (FindingCode.CAN_INTERFACE_DOWN, Status.WARNING)
+    assert down.values == {"name": "can1", "up": "sudo ip link set can1 up type can bitrate 1000000"}
+
+
+def test_an_interface_that_went_off_the_bus_points_to_the_wiring(net: Net) -> None:
+    net.add("can0", carrier="0")
+    (finding,) = check_can_interfaces(net.folder)
+    assert finding.status is Status.WARNING
+    assert finding.code is FindingCode.CAN_INTERFACE_OFF_BUS
+
+
+def test_a_serial_line_adapter_is_hardware_whose_bit_rate_ip_cannot_set(net: Net) -> None:
+    net.add("slcan0", flags=DOWN, device=False)
+    (finding,) = check_can_interfaces(net.folder)
+    assert finding.values["up"] == "sudo ip link set slcan0 up"
+
+
+def test_a_virtual_interface_that_is_up_will_do(net: Net) -> None:
+    net.add("vcan0", flags=DOWN, device=False)
+    net.add("vcan1", device=False)
+    finding = check_vcan(net.folder)
+    assert (finding.code, finding.values) == (FindingCode.VCAN, {"name": "vcan1"})
+
+
+def test_a_virtual_interface_that_is_down_is_to_be_set_up(net: Net) -> None:
+    net.add("vcan0", flags=DOWN, device=False)
+    finding = check_vcan(net.folder)
+    assert finding.status is Status.WARNING
+    assert (finding.code, finding.values) == (FindingCode.VCAN_DOWN, {"name": "vcan0"})
+
+
+def test_a_module_that_is_there_can_make_a_virtual_interface(net: Net, modules: Path) -> None:
+    net.add("can0")
+    assert check_vcan(net.folder, modules).code is FindingCode.VCAN_NONE
+
+
+def test_without_the_module_another_kernel_is_wanted(net: Net, tmp_path: Path) -> None:
+    finding = check_vcan(net.folder, tmp_path)
+    assert finding.status is Status.WARNING
+    assert finding.code is FindingCode.VCAN_NO_MODULE

@@ -1,0 +1,80 @@
+"""The folder where knowledge is kept, on this machine's real disk."""
+
+import math
+import os
+import stat
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.checks.doctor.check_result import Finding, FindingCode, Status
+from kurt2rt.checks.doctor.disk import check_disk, check_free_space, check_sync
+
+SPACE = {FindingCode.SPACE, FindingCode.SPACE_LOW}
+SYNC = {FindingCode.SYNC, FindingCode.SYNC_SLOW}
+
+
+def only(findings: tuple[Finding, ...]) -> Finding:
+    (finding,) = findings
+    return finding
+
+
+def test_a_folder_that_is_there_is_wholly_looked_at_and_left_as_it_was(tmp_path: Path) -> None:
+    (tmp_path / "knowledge.sqlite").write_bytes(b"not ours to touch")
+    findings = check_disk(tmp_path)
+    folder, space, sync, log = (finding.code for finding in findings)
+    assert (folder, log) == (FindingCode.FOLDER, FindingCode.SQLITE_LOG)
+    assert space in SPACE
+    assert sync in SYNC
+    assert not any(finding.forbids_run for finding in findings)
+    assert findings[0].status is Status.OK
+    assert [each.name for each in tmp_path.iterdir()] == ["knowledge.sqlite"]
+    assert (tmp_path / "knowledge.sqlite").read_bytes() == b"not ours to touch"
+
+
+def test_a_folder_that_is_not_there_is_judged_by_its_parent_and_not_made(tmp_path: Path) -> None:
+    folder = tmp_path / "robots" / "anna's"
+    findings = check_disk(folder)
+    assert len(findings) == 4
+    assert findings[0].status is Status.OK
+    assert findings[0].code is FindingCode.FOLDER_TO_MAKE
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["", "kurt2rt"], ids=["itself", "its parent"])
+def test_a_folder_that_cannot_be_written_forbids_to_run(name: str) -> None:
+    finding = only(check_disk(Path("/proc", name)))  # /proc refuses root too
+    assert finding.forbids_run
+    assert finding.code is FindingCode.FOLDER_UNWRITABLE
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write a read-only folder")
+def test_a_read_only_folder_forbids_to_run(tmp_path: Path) -> None:
+    tmp_path.chmod(stat.S_IRUSR | stat.S_IXUSR)
+    assert only(check_disk(tmp_path)).forbids_run
+
+
+def test_a_file_in_the_folders_place_forbids_to_run(tmp_path: Path) -> None:
+    (tmp_path / "var").write_text("")
+    assert only(check_disk(tmp_path / "var")).forbids_run
+    assert only(check_disk(tmp_path / "var" / "knowledge")).forbids_run
+
+
+def test_a_link_to_a_disk_that_is_not_mounted_forbids_to_run(tmp_path: Path) -> None:
+    (tmp_path / "var").symlink_to(tmp_path / "unmounted" / "var")
+    assert only(check_disk(tmp_path / "var")).forbids_run
+
+
+def test_room_is_asked_for_in_two_steps(tmp_path: Path) -> None:
+    enormous = 2**80
+    assert check_free_space(tmp_path, 0, 0).status is Status.OK
+    assert check_free_space(tmp_path, 0, enormous).status is Status.WARNING
+    assert check_free_space(tmp_path, enormous, enormous).forbids_run
+
+
+def test_a_disk_that_is_slow_to_sync_is_a_warning(tmp_path: Path) -> None:
+    assert check_sync(tmp_path, math.inf).status is Status.OK
+    finding = check_sync(tmp_path, limit_s=0.0)
+    assert finding.status is Status.WARNING
+    assert finding.code is FindingCode.SYNC_SLOW
+    assert not finding.forbids_run

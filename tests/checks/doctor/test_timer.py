@@ -1,0 +1,92 @@
+"""Timer and clock: really measured, and with clocks that are late by a known time."""
+
+from contextlib import AbstractContextManager, nullcontext
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.checks.doctor.check_result import FindingCode, Status
+from kurt2rt.checks.doctor.timer import Lateness, check_clock, check_timer, measure_lateness
+from kurt2rt.platform.clock import Clock, LockstepClock
+
+
+class LateClock:
+    """Simulated time in which every wait ends so much too late."""
+
+    def __init__(self, *late_s: float) -> None:
+        self._late_s = list(late_s)
+        self._now_s = 100.0
+
+    def now_s(self) -> float:
+        return self._now_s
+
+    async def wait_until(self, deadline_s: float) -> None:
+        self._now_s = deadline_s + self._late_s.pop(0)
+
+
+def late_by(*late_s: float) -> AbstractContextManager[Clock]:
+    return nullcontext(LateClock(*late_s))
+
+
+def refused() -> AbstractContextManager[Clock]:
+    raise OSError(38, "timerfd_create failed; the runtime needs Linux")
+
+
+async def test_lateness_is_median_and_worst_over_the_ticks() -> None:
+    lateness = await measure_lateness(LateClock(0.001, 0.002, 0.009), ticks=3, period_s=0.01)
+    assert lateness.median_s == pytest.approx(0.002)
+    assert lateness.worst_s == pytest.approx(0.009)
+
+
+async def test_deadlines_are_absolute_so_lateness_does_not_add_up() -> None:
+    lateness = await measure_lateness(LateClock(*[0.004] * 50), ticks=50, period_s=0.01)
+    assert lateness.worst_s == pytest.approx(0.004)
+
+
+async def test_simulated_time_is_never_late() -> None:
+    assert await measure_lateness(LockstepClock(lambda: None), ticks=20, period_s=0.01) == Lateness(0.0, 0.0)
+
+
+def test_the_timer_of_this_machine_is_there_and_both_ways_are_shown() -> None:
+    finding = check_timer(ticks=5, period_s=0.002)
+    assert finding.status in (Status.OK, Status.WARNING)
+    assert (finding.values["ticks"], finding.values["period_ms"]) == (5, 2.0)
+    assert float(finding.values["asyncio_worst_ms"]) >= float(finding.values["asyncio_median_ms"])
+
+
+def test_a_timer_that_is_a_little_late_will_do() -> None:
+    assert check_timer(3, 0.01, lambda: late_by(0.0001, 0.0001, 0.009)).status is Status.OK
+
+
+@pytest.mark.parametrize("late_s", [(0.002, 0.002, 0.002), (0.0001, 0.0001, 0.011)], ids=["always", "once a period"])
+def test_a_timer_that_is_often_late_or_late_by_a_period_is_a_warning(late_s: tuple[float, ...]) -> None:
+    finding = check_timer(3, 0.01, lambda: late_by(*late_s))
+    assert finding.status is Status.WARNING
+    assert finding.code is FindingCode.TIMER_LATE
+    assert not finding.forbids_run
+
+
+def test_without_a_timer_the_robot_cannot_run() -> None:
+    finding = check_timer(open_clock=refused)
+    assert finding.forbids_run
+    assert finding.code is FindingCode.TIMER_MISSING
+
+
+def test_the_clock_of_this_machine_is_shown_with_its_resolution() -> None:
+    assert float(check_clock().values["resolution_ns"]) > 0.0
+
+
+def test_a_clock_that_follows_jiffies_is_a_warning(tmp_path: Path) -> None:
+    finding = check_clock(0.004, tmp_path / "no clock source here")
+    assert finding.status is Status.WARNING
+    assert finding.code is FindingCode.CLOCK_COARSE
+    assert finding.values == {"resolution_ns": 4e6, "source": "unknown"}
+
+
+@pytest.mark.parametrize(("name", "status"), [("tsc", Status.OK), ("hpet", Status.WARNING)])
+def test_a_clock_source_that_is_slow_to_read_is_a_warning(name: str, status: Status, tmp_path: Path) -> None:
+    source = tmp_path / "current_clocksource"
+    source.write_text(f"{name}\n")
+    finding = check_clock(1e-9, source)
+    assert finding.status is status
+    assert finding.values == {"resolution_ns": 1.0, "source": name}

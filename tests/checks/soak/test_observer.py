@@ -1,0 +1,129 @@
+"""The witness would see a program that drives when it must not, and one that loses ticks or lessons."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import anyio
+import pytest
+
+from hal.robot import SensorReadings, WheelSpeeds
+from kurt2rt.checks.faults.complaint import ComplaintCode
+from kurt2rt.checks.soak.observer import SoakWitness
+from kurt2rt.checks.soak.program_run import Life
+from kurt2rt.checks.soak.teacher import SoakTeacher
+from kurt2rt.core import tick
+from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.level import Level
+from kurt2rt.core.perception.perception import Situation
+from simbridge.faults.long_run_rig import LongRunRig
+from tests.checks.soak.helpers import DAY, PATIENT, ROBOT, TABLE, TASK, recording_in, service_in
+
+AWAY = PATIENT.model_copy(update={"there": False})
+
+
+class Careless:
+    """A layer that drives whatever it is told (and the tick would not let it)."""
+
+    def __init__(self, behind: Level) -> None:
+        self._behind = behind
+
+    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
+        decision = self._behind.decide(situation, senses, stand_because)
+        return decision._replace(wheel_speeds=WheelSpeeds(0.1, 0.1), action="forward")
+
+
+@pytest.fixture
+def place() -> Iterator[LongRunRig]:
+    place = LongRunRig(ROBOT, "a", seed=1)
+    yield place
+    place.close()
+
+
+@pytest.fixture
+def witness(place: LongRunRig) -> SoakWitness:
+    return SoakWitness(place, TABLE.envelope)
+
+
+def started(folder: Path, place: LongRunRig, witness: SoakWitness, **moods: object) -> Life:
+    """A program with a teacher of one mood."""
+    soak = DAY.model_copy(update={"moods": moods})
+    teacher = SoakTeacher(soak, TASK, ROBOT, ("forward", "stand"), seed=1)
+    return Life(
+        place,
+        witness,
+        teacher,
+        ROBOT,
+        TASK,
+        service_in(folder),
+        recording=recording_in(folder),
+        number=1,
+        wire="none",
+        seed=1,
+    )
+
+
+def run(life: Life, place: LongRunRig, until_s: float) -> None:
+    anyio.run(life.run, lambda _: None, lambda: place.time.now_s() >= until_s)
+
+
+def test_a_robot_that_nobody_told_to_drive_stands(tmp_path: Path, place: LongRunRig, witness: SoakWitness) -> None:
+    life = started(tmp_path, place, witness, away=AWAY)
+    run(life, place, 1.0)
+    assert (witness.complaints.count, life.ended_by, life.close()) == (0, "", None)
+    assert witness.stands
+
+
+def test_one_that_drives_though_it_was_only_started_is_seen(
+    tmp_path: Path, place: LongRunRig, witness: SoakWitness, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tick, "standing", lambda decision, _: decision)
+    life = started(tmp_path, place, witness, away=AWAY)
+    assert life.level.behind is not None
+    life.level.behind = Careless(life.level.behind)
+    run(life, place, 1.0)
+    life.close()
+    assert witness.complaints.count > 80
+    assert witness.complaints.told[0].code is ComplaintCode.DROVE_UNTOLD
+
+
+def test_a_layer_that_drives_whatever_it_is_told_does_not_drive_a_program_that_was_only_started(
+    tmp_path: Path, place: LongRunRig, witness: SoakWitness
+) -> None:
+    life = started(tmp_path, place, witness, away=AWAY)
+    assert life.level.behind is not None
+    life.level.behind = Careless(life.level.behind)
+    run(life, place, 1.0)
+    assert (witness.complaints.count, life.ended_by, life.close()) == (0, "", None)
+    assert witness.stands
+
+
+def test_a_tick_that_is_not_accounted_for_is_seen(tmp_path: Path, place: LongRunRig, witness: SoakWitness) -> None:
+    life = started(tmp_path, place, witness, away=AWAY)
+    run(life, place, 0.5)
+    assert witness.complaints.count == 0
+    life.runtime.ledger.missed_ticks += 1
+    run(life, place, 0.6)
+    life.close()
+    (first, *_) = witness.complaints.told
+    assert (first.code, first.values["missed"]) == (ComplaintCode.TICKS_UNACCOUNTED, 1)
+
+
+def test_a_lesson_that_is_not_in_the_file_is_missed(tmp_path: Path, place: LongRunRig, witness: SoakWitness) -> None:
+    life = started(tmp_path, place, witness, patient=PATIENT)
+    run(life, place, 3.0)
+    life.knowledge.submitted.append("soak-999")
+    lost = life.close()
+    assert lost is not None
+    assert lost.code is ComplaintCode.LESSONS_NOT_STORED
+
+
+def test_an_error_in_the_loop_ends_the_program_and_says_where(
+    tmp_path: Path, place: LongRunRig, witness: SoakWitness
+) -> None:
+    life = started(tmp_path, place, witness, away=AWAY)
+    life.level.behind = None
+    run(life, place, 1.0)
+    assert life.ended_by.startswith("AssertionError() in failing_level.py, line ")
+    assert life.close() is None
+    place.time.run_until(1.0)
+    assert place.standing

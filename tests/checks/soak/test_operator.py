@@ -1,0 +1,107 @@
+"""Who looks after the robot of a soak picks it up where it is stuck, and knows when that is not all."""
+
+import random
+from collections.abc import Iterator
+from types import SimpleNamespace
+from typing import cast
+
+import pytest
+
+from hal.guard_reason import GuardReason
+from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
+from kurt2rt.checks.soak.operator import Person
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.rla.outcome import Outcome, ResultCode
+from kurt2rt.core.teaching.commands import CommandResult, Resume
+from kurt2rt.core.tick import TickRecord
+from simbridge.faults.long_run_rig import LongRunRig
+from tests.checks.soak.helpers import CYCLE_S, ROBOT
+
+AHEAD = WheelSpeeds(0.3, 0.3)
+PATIENCE_S = 1.5
+
+
+@pytest.fixture
+def place() -> Iterator[LongRunRig]:
+    place = LongRunRig(ROBOT, "a", seed=2)
+    place.start_driver("none")
+    yield place
+    place.close()
+
+
+def drive(place: LongRunRig, person: Person, until_s: float, wanted: WheelSpeeds = AHEAD) -> None:
+    """Tick by tick, with somebody who says *Go* at once whenever the robot stops itself; the person looks on."""
+    robot, time = place.robot, place.time
+    assert robot is not None
+    while time.now_s() < until_s:
+        time.run_until(time.now_s() + CYCLE_S)
+        robot.sense(time.now_s())
+        robot.release()
+        grant = robot.drive(wanted, time.now_s(), time.now_s())
+        person.sees(seen(grant))
+
+
+def seen(grant: GuardResult, *commands: Resume) -> TickRecord:
+    """A tick in which an RLA would drive, and in which these were carried out."""
+    results = tuple(CommandResult(each.command_id, Outcome(ResultCode.RESUMED)) for each in commands)
+    decision = SimpleNamespace(cause=Cause.RLA)
+    return cast(TickRecord, SimpleNamespace(grant=grant, decision=decision, commands=commands, results=results))
+
+
+def test_a_robot_that_makes_its_way_is_left_alone(place: LongRunRig) -> None:
+    person = Person(place, PATIENCE_S, CYCLE_S)
+    drive(place, person, 2.5)
+    assert (person.set_down, person.switched_on) == (0, 0)
+
+
+def test_one_that_makes_no_way_is_set_down_elsewhere(place: LongRunRig) -> None:
+    person = Person(place, PATIENCE_S, CYCLE_S)
+    drive(place, person, PATIENCE_S + 0.2, WheelSpeeds(0.1, -0.1))
+    assert (person.set_down, person.switched_on) == (1, 0)
+
+
+def test_one_whose_motors_were_switched_off_by_noise_is_switched_off_and_on(
+    place: LongRunRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """ACTUATOR_OFF (docs/the-robot.md#control-modes) holds through any number of programs."""
+    monkeypatch.setattr(random.Random, "randbytes", lambda _, count: b"\xff\x01".ljust(count, b"\0"))
+    place.begin("bus_out", "garbage", begin_s=0.1, end_s=0.2, period_s=1.0, delay_s=1.0)
+    person = Person(place, PATIENCE_S, CYCLE_S)
+    drive(place, person, 0.3)
+    place.end()
+    for until_s in (0.8, 1.3):
+        place.start_driver("none")
+        drive(place, person, until_s)
+        assert max(map(abs, place.simulation.wheel_speeds)) < 0.01
+    drive(place, person, 2 * PATIENCE_S + 0.5)
+    assert (person.set_down, person.switched_on) == (2, 1)
+    drive(place, person, 2 * PATIENCE_S + 1.5)
+    assert min(place.simulation.wheel_speeds) > 0.2
+
+
+def test_one_that_stopped_itself_waits_for_its_teacher_and_is_not_carried_about(place: LongRunRig) -> None:
+    person, robot, time = Person(place, PATIENCE_S, CYCLE_S), place.robot, place.time
+    assert robot is not None
+    robot.emergency_stop(GuardReason.WHEELS_DISOBEY)
+    while time.now_s() < 3 * PATIENCE_S:
+        time.run_until(time.now_s() + CYCLE_S)
+        robot.sense(time.now_s())
+        grant = robot.drive(AHEAD, time.now_s(), time.now_s())
+        person.sees(seen(grant))
+    assert person.set_down == 0
+
+
+def test_one_that_stops_itself_again_in_the_tick_of_every_go_is_set_down_elsewhere(place: LongRunRig) -> None:
+    person = Person(place, PATIENCE_S, CYCLE_S)
+    again = GuardResult(STANDSTILL, (GuardReason.WHEELS_DISOBEY,), latched=True)
+    go = Resume("go", "Ann")
+
+    def ticks(count: int) -> int:
+        return sum(person.sees(seen(again)) for _ in range(count))
+
+    patience = round(PATIENCE_S / CYCLE_S)
+    assert ticks(2 * patience) == 0, "nobody has said go yet"
+    assert not person.sees(seen(again, go))
+    assert ticks(patience) == 1
+    assert ticks(2 * patience) == 0, "it waits where it was set down"
+    assert person.set_down == 1

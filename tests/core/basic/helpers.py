@@ -1,0 +1,40 @@
+"""Knowledge files of a few lessons, and repertoires that stand beside them."""
+
+from pathlib import Path
+
+from behaviors.behaviour import Behaviour
+from kurt2rt.core.perception.definition import load_situation
+from kurt2rt.core.perception.perception import Perception
+from kurt2rt.core.rla.condition import Condition
+from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.knowledge.journal.entry import JournalEntry
+from kurt2rt.knowledge.journal.loading import open_knowledge
+from kurt2rt.knowledge.task_repertoire import repertoire_of
+from tests.behaviors.helpers import ROBOT, SENSORS, sensed
+
+STAMP = "2004-04-26T10:00:00.000+00:00"
+
+
+def keep(path: Path, task: TaskSettings, *events: TeachingEvent) -> None:
+    """A knowledge file with these lessons."""
+    with open_knowledge(path, ROBOT, task) as journal:
+        journal.append([JournalEntry(event, STAMP) for event in events])
+
+
+def repertoire(folder: Path, *actions: str) -> dict[str, Behaviour]:
+    """What a task has whose repertoire holds these actions, and stands in `folder`."""
+    return repertoire_of(with_repertoire(load_task("wall_following"), folder, *actions), ROBOT)
+
+
+def with_repertoire(task: TaskSettings, folder: Path, *actions: str) -> TaskSettings:
+    """The same task with these actions, in YAML, in a file in `folder`."""
+    path = folder / "repertoire.yaml"
+    path.write_text("\n".join(["name: complete", "actions:", *(f"  - {{{action}}}" for action in actions)]))
+    return task.model_copy(update={"repertoire": str(path)})
+
+
+def condition_at(infrared_counts: tuple[int, ...]) -> Condition:
+    """The basic situation of a robot that has just been switched on where it sees this."""
+    perception = Perception(load_situation("basic", SENSORS), SENSORS)
+    return tuple(perception.perceive(sensed(infrared_counts), history_frozen=True).vector.tolist())

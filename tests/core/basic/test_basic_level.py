@@ -1,0 +1,280 @@
+"""The basic level: the winner drives, at least for its minimum time, and an unknown situation stops at once."""
+
+import itertools
+
+import numpy as np
+import pytest
+
+from hal.robot import STANDSTILL, WheelSpeeds
+from kurt2rt.core.basic.basic_level import BasicLevel
+from kurt2rt.core.basic.epsilon_greedy import Choice
+from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
+from kurt2rt.core.rla.rla import CRITIC, RlaCreated
+from kurt2rt.core.rla.rla_system import RlaSystem
+from tests.core.helpers import MINIMUM_TICKS, RADIUS, Counted, SmallLevel, sensed, situation
+from tests.core.rla.helpers import created, deleted, replaced, withdrawn
+
+A_AT_0 = created(1, (0.0,), "a")
+B_AT_8 = created(2, (8.0,), "b")
+
+
+def test_untaught_it_stands_and_asks() -> None:
+    decision = SmallLevel().at(0.0)
+    assert decision.asking
+    assert not decision.driving
+    assert decision == Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
+
+
+def test_the_winner_drives_and_is_named_with_distance_and_runner_up() -> None:
+    decision = SmallLevel(A_AT_0, B_AT_8).at(3.0)
+    assert (decision.cause, decision.action, decision.rla_id) == (Cause.RLA, "a", 1)
+    assert decision.wheel_speeds == WheelSpeeds(0.001, 0.001)
+    assert decision.driving
+    assert decision.match is not None
+    assert decision.match.distance == 3.0
+    assert decision.match.runner_up is not None
+    assert decision.match.runner_up.rla_id == 2
+
+
+def test_an_action_goes_on_without_a_new_start_while_it_wins() -> None:
+    small = SmallLevel(A_AT_0)
+    speeds = [small.at(place).wheel_speeds.left_m_s for place in (0.0, 1.0, 2.0)]
+    assert speeds == pytest.approx([0.001, 0.002, 0.003])
+    assert small.actions["a"].starts == 1
+
+
+def test_an_action_holds_for_its_minimum_time_and_then_gives_way() -> None:
+    small = SmallLevel(A_AT_0, B_AT_8)
+    small.at(0.0)
+    held = [small.at(8.0) for _ in range(MINIMUM_TICKS - 1)]
+    after = small.at(8.0)
+    assert [(each.cause, each.action, each.rla_id) for each in held] == [(Cause.HELD, "a", 1)] * (MINIMUM_TICKS - 1)
+    assert {each.match.rla.rla_id for each in held if each.match is not None} == {2}  # who has won is told meanwhile
+    assert (after.cause, after.action, after.rla_id) == (Cause.RLA, "b", 2)
+
+
+def test_a_robot_between_two_neighbours_does_not_dither() -> None:
+    small = SmallLevel(A_AT_0, B_AT_8)
+    actions = [small.at(3.9 + 0.2 * (tick % 2)).action for tick in range(60)]
+    changes = sum(now != before for before, now in itertools.pairwise(actions))
+    assert 0 < changes <= 60 / MINIMUM_TICKS
+
+
+def test_an_unknown_situation_stops_in_the_same_tick_also_while_an_action_is_held() -> None:
+    small = SmallLevel(A_AT_0, B_AT_8)
+    small.at(0.0)
+    assert small.at(8.0).cause is Cause.HELD
+    assert small.at(18.0).driving  # the border itself is known
+    decision = small.at(18.000001)
+    assert (decision.wheel_speeds, decision.cause, decision.action) == (STANDSTILL, Cause.UNKNOWN, None)
+    assert decision.match is not None
+    assert decision.match.rla.rla_id == 2
+
+
+def test_after_standing_the_next_action_begins_at_once_and_anew() -> None:
+    small = SmallLevel(A_AT_0, B_AT_8)
+    small.at(0.0)
+    small.at(0.0)
+    small.at(100.0)
+    again = small.at(0.0)
+    assert again.wheel_speeds == WheelSpeeds(0.001, 0.001)
+    assert small.actions["a"].starts == 2
+    small.at(100.0)
+    assert small.at(8.0).action == "b"  # nothing is held over a stop
+
+
+@pytest.mark.parametrize("cause", [Cause.STOPPED, Cause.UNSAVED])
+def test_with_a_reason_to_stand_it_stands_and_still_tells_what_it_knows(cause: Cause) -> None:
+    small = SmallLevel(A_AT_0)
+    small.at(0.0)
+    decision = small.at(0.0, cause)
+    assert (decision.wheel_speeds, decision.cause, decision.action, decision.rla_id) == (STANDSTILL, cause, None, None)
+    assert decision.match is not None
+    assert decision.match.known
+    assert not decision.asking
+    assert small.at(0.0).action == "a"
+    assert small.actions["a"].starts == 2
+
+
+def test_a_correction_acts_in_the_next_decision_also_while_the_action_is_in_its_minimum_time() -> None:
+    small = SmallLevel(A_AT_0, B_AT_8)
+    small.at(0.0)
+    small.level.apply(replaced(1, "c", "a"))
+    decision = small.at(0.0)
+    assert (decision.cause, decision.action, decision.rla_id) == (Cause.RLA, "c", 1)
+    assert small.at(8.0).cause is Cause.HELD  # the corrected action has a minimum time of its own
+
+
+def test_a_correction_elsewhere_does_not_interrupt_the_action() -> None:
+    small = SmallLevel(A_AT_0, B_AT_8)
+    small.at(0.0)
+    small.level.apply(replaced(2, "c", "b"))
+    assert small.at(0.0).action == "a"
+    assert small.actions["a"].starts == 1
+
+
+def test_deleting_the_rla_that_drives_stops_the_robot_in_the_next_decision() -> None:
+    small = SmallLevel(A_AT_0)
+    small.at(0.0)
+    small.level.apply(deleted(1))
+    decision = small.at(0.0)
+    assert (decision.wheel_speeds, decision.cause) == (STANDSTILL, Cause.UNKNOWN)
+
+
+def test_deleting_the_held_rla_hands_over_to_the_winner_at_once() -> None:
+    small = SmallLevel(A_AT_0, B_AT_8)
+    small.at(0.0)
+    assert small.at(7.0).cause is Cause.HELD
+    small.level.apply(deleted(1))
+    assert small.at(7.0).action == "b"
+
+
+def test_a_neighbour_with_the_same_action_takes_over_without_a_break() -> None:
+    small = SmallLevel(A_AT_0, created(2, (8.0,), "a"))
+    small.at(0.0)
+    decision = small.at(8.0)
+    assert (decision.cause, decision.rla_id, decision.wheel_speeds.left_m_s) == (Cause.RLA, 2, 0.002)
+
+
+def test_knowledge_of_an_action_that_the_repertoire_lacks_is_refused() -> None:
+    system = RlaSystem(1, 10.0)
+    system.apply_all([A_AT_0, created(2, (8.0,), "fly")])
+    with pytest.raises(UnknownActionError, match=r"RLA 2 has the action fly, which the repertoire lacks; .*: a, b$"):
+        BasicLevel(system, {"a": Counted(), "b": Counted()}, 5, Wanted())
+
+
+TURNS = ("straight_on", "turn_left")
+STRAIGHT_AT_0 = created(1, (0.0,), "a", behaviour="straight_on")
+LEFT_AT_1 = created(2, (1.0,), "b", behaviour="turn_left")
+
+
+def test_rlas_of_another_taught_behaviour_never_answer_however_near_they_are() -> None:
+    small = SmallLevel(STRAIGHT_AT_0, LEFT_AT_1, behaviours=TURNS)
+    decision = small.at(1.0)
+    assert (decision.action, decision.rla_id) == ("a", 1)
+    assert decision.match is not None
+    assert decision.match.runner_up is None
+    small.wanted.pursue("turn_left")
+    decision = small.at(0.0)
+    assert (decision.action, decision.rla_id) == ("b", 2)
+
+
+def test_of_a_behaviour_that_was_never_taught_it_knows_nothing() -> None:
+    small = SmallLevel(STRAIGHT_AT_0, behaviours=TURNS)
+    assert small.at(0.0).driving
+    small.wanted.pursue("turn_left")
+    decision = small.at(0.0)
+    assert (decision.asking, decision.match) == (True, None)
+
+
+def test_a_held_action_yields_at_once_when_another_behaviour_is_wanted() -> None:
+    small = SmallLevel(STRAIGHT_AT_0, LEFT_AT_1, behaviours=TURNS)
+    small.at(0.0)
+    small.wanted.pursue("turn_left")
+    decision = small.at(0.0)
+    assert (decision.cause, decision.action, decision.rla_id) == (Cause.RLA, "b", 2)
+    small.wanted.pursue("straight_on")  # and back again, in the very next tick
+    assert small.at(0.0).action == "a"
+
+
+def test_to_want_the_same_again_does_not_cut_an_action_short() -> None:
+    small = SmallLevel(STRAIGHT_AT_0, created(2, (8.0,), "b", behaviour="straight_on"), behaviours=TURNS)
+    small.at(0.0)
+    small.wanted.pursue("straight_on")
+    assert small.at(8.0).cause is Cause.HELD
+
+
+@pytest.mark.parametrize(
+    ("events", "behaviours", "problem"),
+    [
+        (
+            (A_AT_0,),
+            TURNS,
+            "RLA 1 belongs to a behaviour without a name, the only one of its task, and this task teaches straight_on, "
+            "turn_left; give the task that this knowledge was taught with$",
+        ),
+        (
+            (STRAIGHT_AT_0, LEFT_AT_1),
+            ("straight_on",),
+            "RLA 2 belongs to the behaviour turn_left, and this task teaches straight_on; give the task",
+        ),
+        ((LEFT_AT_1,), ("",), "RLA 2 belongs to the behaviour turn_left, and this task teaches one without a name; "),
+    ],
+)
+def test_knowledge_of_a_behaviour_that_the_task_lacks_is_refused(
+    events: tuple[RlaCreated, ...], behaviours: tuple[str, ...], problem: str
+) -> None:
+    with pytest.raises(UnknownBehaviourError, match=problem):
+        SmallLevel(*events, behaviours=behaviours)
+
+
+def test_a_withdrawn_rla_asks_where_it_is_nearest_and_its_neighbours_answer_elsewhere() -> None:
+    small = SmallLevel(created(1, (0.0,), "a"), created(2, (6.0,), "b"), withdrawn(1, "a"))
+    assert small.at(1.0) == Decision(STANDSTILL, Cause.UNKNOWN, None, None, small.level.system.match(np.array([1.0])))
+    assert small.at(5.0).action == "b"
+
+
+def test_where_nobody_is_asked_the_neighbours_of_a_withdrawn_rla_answer_inside_their_radius() -> None:
+    small = SmallLevel(created(1, (0.0,), "a"), created(2, (6.0,), "b"), withdrawn(1, "a"))
+    small.level.nobody_is_asked = True
+    assert small.at(1.0).action == "b"
+    assert small.at(-5.0).asking  # farther than the radius of the neighbour
+
+
+def test_withdrawing_stops_at_once_whatever_was_being_held() -> None:
+    small = SmallLevel(created(1, (0.0,), "a"))
+    assert small.at(0.0).driving
+    small.level.apply(withdrawn(1, "a"))
+    assert small.at(0.0).wheel_speeds == STANDSTILL
+
+
+@pytest.mark.parametrize(("radius", "answers"), [(2.0, False), (3.0, True), (None, True)])
+def test_a_held_action_answers_only_inside_the_radius_of_its_rla(radius: float | None, answers: bool) -> None:
+    small = SmallLevel(created(1, (0.0,), "a", radius), created(2, (4.0,), "b"))
+    assert small.at(1.0).answers
+    held = small.at(3.0)
+    assert (held.cause, held.rla_id, held.answers) == (Cause.HELD, 1, answers)
+
+
+def test_standing_answers_nothing() -> None:
+    small = SmallLevel(created(1, (0.0,), "a"))
+    assert not small.at(0.0, Cause.STOPPED).answers
+    assert not small.at(50.0).answers
+
+
+def test_what_the_critic_is_taught_does_not_end_an_action_that_is_held() -> None:
+    small = SmallLevel(created(1, (0.0,), "a"), created(2, (4.0,), "b"))
+    small.at(1.0)
+    small.level.apply(created(3, (0.0,), "bad", level=CRITIC))
+    small.level.apply(replaced(3, "good", "bad"))
+    assert small.at(3.0).cause is Cause.HELD
+    small.level.apply(replaced(2, "c", "b"))
+    assert small.at(3.0).action == "c"
+
+
+def test_of_competitors_the_chosen_one_drives_and_the_oldest_where_nothing_chooses() -> None:
+    events = (created(1, (0.0,), "a"), created(2, (0.0,), "b"))
+    assert SmallLevel(*events).at(0.0).rla_id == 1
+    system = RlaSystem(1, RADIUS)
+    system.apply_all(events)
+    choice = Choice({1: -0.5, 2: 0.0}.__getitem__, epsilon=0.0, hold_ticks=100, seed=0)
+    level = BasicLevel(system, {name: Counted() for name in "abc"}, 5, Wanted(), choice)
+    decision = level.decide(situation(3.0), sensed(), None)
+    assert (decision.action, decision.rla_id, decision.answers) == ("b", 2, True)
+    assert decision.match is not None
+    assert decision.match.rla.rla_id == 1
+
+
+def test_a_competitor_that_is_held_while_another_one_is_chosen_is_inside_its_radius() -> None:
+    worths = {1: 0.5, 2: 0.0}
+    system = RlaSystem(1, RADIUS)
+    system.apply_all((created(1, (0.0,), "a"), created(2, (0.0,), "b")))
+    choice = Choice(worths.__getitem__, epsilon=0.0, hold_ticks=100, seed=0)
+    level = BasicLevel(system, {name: Counted() for name in "abc"}, 5, Wanted(), choice)
+    level.decide(situation(0.0), sensed(), None)
+    worths[1] = -1.0
+    choice.forget()
+    held = level.decide(situation(0.0), sensed(), None)
+    assert (held.cause, held.rla_id, held.answers) == (Cause.HELD, 1, True)

@@ -1,0 +1,91 @@
+"""An action that is a complete task: a mid level, and the basic level that it commands."""
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+from config import CONFIG_DIR
+from hal.robot import STANDSTILL, WheelSpeeds
+from hal.settings import SettingsError
+from kurt2rt.core.rla.rla import MID, TeachingEvent
+from kurt2rt.core.task_settings import load_task
+from tests.behaviors.helpers import counts, sensed
+from tests.core.basic.helpers import condition_at, keep, repertoire
+from tests.core.rla.helpers import created
+
+WALLS, FREE = counts(**dict.fromkeys(("s1", "s2", "s3", "s4", "s5", "s6", "s7", "s8"), 0.1)), counts()
+AT_FIRST = (0.0,) * 12
+LEFT, RIGHT = WheelSpeeds(-0.20, 0.20), WheelSpeeds(0.20, -0.20)
+BASIC_LEVEL = (
+    created(1, condition_at(WALLS), "spin_left", behaviour="turn_left"),
+    created(2, condition_at(WALLS), "spin_right", behaviour="turn_right"),
+)
+
+
+def patrol(folder: Path, *mid_level: TeachingEvent, mid: str | None = "turns") -> str:
+    """A task through streets in `folder`, and what was taught of it: an action."""
+    task = yaml.safe_load((CONFIG_DIR / "tasks" / "streets.yaml").read_text(encoding="utf-8"))
+    task["name"] = "patrol"
+    if mid is not None:
+        task["mid"] = mid
+    path = folder / "patrol.yaml"
+    path.write_text(yaml.safe_dump(task), encoding="utf-8")
+    keep(folder / "patrol.knowledge", load_task(str(path)), *BASIC_LEVEL, *mid_level)
+    return f"kind: task, name: patrol, task: {path}, knowledge: patrol.knowledge"
+
+
+@pytest.mark.parametrize(("behaviour", "drives"), [("turn_left", LEFT), ("turn_right", RIGHT)])
+def test_its_mid_level_says_which_behaviour_drives(behaviour: str, drives: WheelSpeeds, tmp_path: Path) -> None:
+    action = repertoire(tmp_path, patrol(tmp_path, created(3, AT_FIRST, behaviour, level=MID)))["patrol"]
+    action.start()
+    assert [action.step(sensed(WALLS)) for _ in range(20)] == [drives] * 20
+    assert not action.lost
+    assert not action.finished
+
+
+def test_it_is_lost_where_the_mid_level_knows_no_answer(tmp_path: Path) -> None:
+    action = repertoire(tmp_path, patrol(tmp_path, created(3, (9.0,) * 12, "turn_left", level=MID)))["patrol"]
+    action.start()
+    assert action.step(sensed(WALLS)) == STANDSTILL
+    assert action.lost
+
+
+def test_it_is_lost_where_the_behaviour_that_is_wanted_knows_no_answer(tmp_path: Path) -> None:
+    action = repertoire(tmp_path, patrol(tmp_path, created(3, AT_FIRST, "turn_left", level=MID)))["patrol"]
+    action.start()
+    assert action.step(sensed(FREE)) == STANDSTILL
+    assert action.lost
+    assert action.step(sensed(WALLS)) == LEFT
+
+
+def test_a_task_that_teaches_one_thing_needs_no_mid_level(tmp_path: Path) -> None:
+    keep(tmp_path / "walls.knowledge", load_task("wall_following"), created(1, condition_at(WALLS), "spin_left"))
+    action = repertoire(tmp_path, "kind: task, name: walls, task: wall_following, knowledge: walls.knowledge")["walls"]
+    action.start()
+    assert action.step(sensed(WALLS)) == LEFT
+
+
+def test_a_task_of_several_behaviours_is_not_complete_without_one(tmp_path: Path) -> None:
+    told = r"\(patrol\): the task patrol has no mid level that says which of straight_on, turn_left, turn_right is wan"
+    with pytest.raises(SettingsError, match=told):
+        repertoire(tmp_path, patrol(tmp_path, mid=None))
+
+
+def test_a_task_that_goes_by_places_is_no_action_for_none_of_it_says_where_it_begins(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match="goes by places, and an action does not know at which one it begins"):
+        repertoire(tmp_path, patrol(tmp_path, mid="places"))
+
+
+def test_mid_level_knowledge_of_other_junctions_is_refused(tmp_path: Path) -> None:
+    action = patrol(tmp_path, created(3, AT_FIRST, "turn_left", level=MID))
+    task = load_task(str(tmp_path / "patrol.yaml"))
+    mid = yaml.safe_load((CONFIG_DIR / "mid_levels" / "turns.yaml").read_text(encoding="utf-8"))
+    mid["junctions"]["wall_m"] += 0.05
+    (tmp_path / "mid.yaml").write_text(yaml.safe_dump(mid), encoding="utf-8")
+    content = yaml.safe_load((tmp_path / "patrol.yaml").read_text(encoding="utf-8"))
+    content["mid"] = mid
+    (tmp_path / "patrol.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
+    assert load_task(str(tmp_path / "patrol.yaml")) != task
+    with pytest.raises(SettingsError, match="its level mid was taught with other features"):
+        repertoire(tmp_path, action)

@@ -1,0 +1,48 @@
+"""The teacher's own drive: the policy decides, with the same minimum time per action."""
+
+from hal.robot import STANDSTILL, SensorReadings
+from kurt2rt.core.basic.policy_level import PolicyLevel
+from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.decision import Cause, Decision
+from tests.core.helpers import MINIMUM_TICKS, Counted, sensed, situation
+
+
+class NearIsB:
+    """Says b where the first count is high; for the behaviour `other` the other way round."""
+
+    def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:
+        return "b" if (infrared_counts[0] > 300) != (behaviour == "other") else "a"
+
+
+FAR, NEAR = sensed(100), sensed(500)
+
+
+def driven(level: PolicyLevel, senses: SensorReadings, stand_because: Cause | None = None) -> Decision:
+    return level.decide(situation(0.0), senses, stand_because)
+
+
+def test_it_drives_as_the_policy_says_after_the_minimum_time() -> None:
+    level = PolicyLevel(NearIsB(), {"a": Counted(), "b": Counted()}, MINIMUM_TICKS, Wanted())
+    assert driven(level, FAR)[1:5] == (Cause.TEACHER, "a", None, None)
+    assert [driven(level, NEAR).action for _ in range(MINIMUM_TICKS)] == ["a"] * (MINIMUM_TICKS - 1) + ["b"]
+
+
+def test_with_a_reason_to_stand_it_stands_and_begins_anew() -> None:
+    actions = {"a": Counted(), "b": Counted()}
+    level = PolicyLevel(NearIsB(), actions, MINIMUM_TICKS, Wanted())
+    driven(level, FAR)
+    assert driven(level, FAR, Cause.STOPPED) == Decision(STANDSTILL, Cause.STOPPED, None, None, None)
+    assert driven(level, NEAR).action == "b"
+    driven(level, FAR, Cause.STOPPED)
+    driven(level, NEAR)
+    assert (actions["a"].starts, actions["b"].starts) == (1, 2)
+
+
+def test_it_follows_the_behaviour_that_is_wanted_and_the_held_action_yields_at_once() -> None:
+    wanted = Wanted(("one", "other"))
+    level = PolicyLevel(NearIsB(), {"a": Counted(), "b": Counted()}, MINIMUM_TICKS, wanted)
+    assert driven(level, FAR).action == "a"
+    wanted.pursue("other")
+    assert [driven(level, FAR).action for _ in range(2 * MINIMUM_TICKS)] == ["b"] * 2 * MINIMUM_TICKS
+    wanted.pursue("one")
+    assert driven(level, FAR).action == "a"

@@ -1,0 +1,163 @@
+"""An action that is itself a taught RLA system."""
+
+from pathlib import Path
+
+import pytest
+
+from behaviors.repertoire import load_repertoire
+from hal.robot import STANDSTILL, WheelSpeeds
+from hal.settings import SettingsError
+from kurt2rt.core.basic.basic_level import BasicLevel
+from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.perception.definition import load_situation
+from kurt2rt.core.perception.perception import Perception
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.task_settings import load_task
+from tests.behaviors.helpers import ROBOT, SENSORS, counts, sensed
+from tests.core.basic.helpers import condition_at, keep, repertoire, with_repertoire
+from tests.core.rla.helpers import created
+
+FREE, WALL, CORNER = counts(), counts(s1=0.07, s2=0.07, s3=0.07, s4=0.07), counts(s9=0.1, s10=0.1, s11=0.1)
+FORWARD, SPIN_RIGHT = WheelSpeeds(0.30, 0.30), WheelSpeeds(0.20, -0.20)
+WALL_FOLLOWING = load_task("wall_following")
+FOLLOW = "kind: taught, name: follow_wall, task: wall_following, knowledge: taught.knowledge"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Beside a knowledge file: forward along a wall, spin right at a corner, and nothing is known of free space."""
+    along, off = created(1, condition_at(WALL), "forward"), created(2, condition_at(CORNER), "spin_right")
+    keep(tmp_path / "taught.knowledge", WALL_FOLLOWING, along, off)
+    return tmp_path
+
+
+def test_it_does_what_its_own_rlas_say(folder: Path) -> None:
+    follow = repertoire(folder, FOLLOW)["follow_wall"]
+    follow.start()
+    assert [follow.step(sensed(WALL)) for _ in range(20)] == [FORWARD] * 20
+    assert follow.step(sensed(CORNER)) == SPIN_RIGHT
+    assert not follow.finished
+    assert not follow.lost
+
+
+def test_an_action_inside_it_keeps_its_minimum_time(folder: Path) -> None:
+    follow = repertoire(folder, FOLLOW)["follow_wall"]
+    follow.start()
+    follow.step(sensed(WALL))
+    assert [follow.step(sensed(CORNER)) for _ in range(10)] == [FORWARD] * 9 + [SPIN_RIGHT]
+
+
+def test_where_it_knows_no_answer_it_stands_and_is_lost_until_it_knows_one_again(folder: Path) -> None:
+    follow = repertoire(folder, FOLLOW)["follow_wall"]
+    follow.start()
+    follow.step(sensed(WALL))
+    for _ in range(300):
+        assert follow.step(sensed(FREE)) == STANDSTILL
+        assert follow.lost
+    assert follow.step(sensed(WALL)) == FORWARD
+    assert not follow.lost
+
+
+def test_its_past_is_its_own_and_begins_where_it_is_started(tmp_path: Path) -> None:
+    past = load_task("wall_following", changes={"learning.past_weight": "1.0", "name": "with_past"})
+    path = tmp_path / "with_past.yaml"
+    path.write_text(past.model_dump_json(exclude_unset=True))
+    keep(tmp_path / "taught.knowledge", past, created(1, condition_at(WALL), "forward", radius=20.0))
+    follow = repertoire(tmp_path, f"kind: taught, name: follow, task: {path}, knowledge: taught.knowledge")["follow"]
+    follow.start()
+    follow.step(sensed(CORNER))
+    assert follow.step(sensed(WALL)) == STANDSTILL  # it comes from a corner
+    follow.start()
+    assert follow.step(sensed(WALL)) == FORWARD  # it comes from a wall
+
+
+def test_only_the_behaviour_that_is_named_acts(tmp_path: Path) -> None:
+    left = created(1, condition_at(WALL), "spin_left", behaviour="turn_left")
+    right = created(2, condition_at(WALL), "spin_right", behaviour="turn_right")
+    keep(tmp_path / "streets.knowledge", load_task("streets"), left, right)
+    street = "kind: taught, task: streets, knowledge: streets.knowledge"
+    actions = repertoire(
+        tmp_path, f"{street}, name: r, behaviour: turn_right", f"{street}, name: s, behaviour: straight_on"
+    )
+    for action in actions.values():
+        action.start()
+    assert actions["r"].step(sensed(WALL)) == SPIN_RIGHT
+    assert actions["s"].step(sensed(WALL)) == STANDSTILL  # nothing was taught of it
+    assert actions["s"].lost
+
+
+def test_the_layer_above_stands_and_asks_for_it_and_the_answer_drives(folder: Path) -> None:
+    perception = Perception(load_situation("basic", SENSORS), SENSORS)
+    system = RlaSystem(perception.definition.dimensions, 900.0)
+    system.apply(created(1, condition_at(WALL), "follow_wall", radius=100_000.0))
+    actions = repertoire(folder, FOLLOW, "kind: motor, name: back, left_m_s: -0.1, right_m_s: -0.1")
+    level = BasicLevel(system, actions, 10, Wanted())
+    at_wall = perception.perceive(sensed(WALL), history_frozen=True)
+    assert level.decide(at_wall, sensed(WALL), None).wheel_speeds == FORWARD
+    free = perception.perceive(sensed(FREE), history_frozen=True)
+    asks = level.decide(free, sensed(FREE), None)
+    assert (asks.wheel_speeds, asks.asking, asks.driving) == (STANDSTILL, True, False)
+    level.apply(created(2, tuple(free.vector.tolist()), "back"))
+    assert level.decide(free, sensed(FREE), None).wheel_speeds == WheelSpeeds(-0.1, -0.1)
+
+
+def test_a_taught_action_may_be_made_of_taught_ones(folder: Path) -> None:
+    outer = with_repertoire(WALL_FOLLOWING, folder, FOLLOW).model_copy(update={"name": "patrol"})
+    (folder / "patrol.yaml").write_text(outer.model_dump_json(exclude_unset=True))
+    keep(folder / "patrol.knowledge", outer, created(1, condition_at(WALL), "follow_wall", radius=100_000.0))
+    beyond = folder / "beyond"
+    beyond.mkdir()
+    patrol = f"kind: taught, name: patrol, task: {folder / 'patrol.yaml'}, knowledge: ../patrol.knowledge"
+    action = repertoire(beyond, patrol)["patrol"]
+    action.start()
+    assert action.step(sensed(WALL)) == FORWARD
+    assert action.step(sensed(FREE)) == STANDSTILL
+    assert action.lost
+
+
+def test_a_repertoire_that_is_a_part_of_itself_is_refused(folder: Path) -> None:
+    itself = f"kind: taught, name: again, task: {folder / 'loop.yaml'}, knowledge: loop.knowledge"
+    task = with_repertoire(WALL_FOLLOWING, folder, itself).model_copy(update={"name": "loop"})
+    (folder / "loop.yaml").write_text(task.model_dump_json(exclude_unset=True))
+    with pytest.raises(SettingsError, match=r"a part of itself: repertoire\.yaml -> repertoire\.yaml; give that task "):
+        repertoire(folder, itself)
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (("taught.knowledge", "gone.knowledge"), r"gone\.knowledge: there is no such file; teach the task wall_foll"),
+        (("taught.knowledge", "other.knowledge"), r"other\.knowledge: taught with other features: .*history"),
+        (("taught.knowledge", "repertoire.yaml"), r"repertoire\.yaml: .*no knowledge file|damaged"),
+        (("task: wall_following", "task: fleeing"), r"taught for the task 'wall_following', not for 'fleeing'"),
+        (("task: wall_following", "task: flying"), r"flying: no such file in tasks; give a path .* or one of: "),
+        (
+            ("name: follow_wall", "name: f, behaviour: turn"),
+            "no taught behaviour 'turn'; this task has: one, without a name",
+        ),
+        (("task: wall_following", "task: streets"), "no taught behaviour ''; this task has: straight_on, turn_left, "),
+    ],
+)
+def test_what_cannot_act_is_refused_with_its_place_and_the_reason(
+    change: tuple[str, str], told: str, folder: Path
+) -> None:
+    situation = load_situation("basic", SENSORS).model_copy(update={"history_steps": 7})
+    (folder / "situation.yaml").write_text(situation.model_dump_json(exclude_unset=True))
+    keep(folder / "other.knowledge", WALL_FOLLOWING.model_copy(update={"situation": str(folder / "situation.yaml")}))
+    with pytest.raises(SettingsError, match=told) as caught:
+        repertoire(folder, FOLLOW.replace(*change))
+    assert str(caught.value).startswith(f"{folder / 'repertoire.yaml'}: actions.0 (f")
+
+
+def test_knowledge_of_an_action_that_its_task_lacks_is_refused(tmp_path: Path) -> None:
+    keep(tmp_path / "taught.knowledge", WALL_FOLLOWING, created(1, condition_at(WALL), "fly"))
+    with pytest.raises(SettingsError, match=r"\(follow_wall\): RLA 1 has the action fly, which the repertoire lacks"):
+        repertoire(tmp_path, FOLLOW)
+
+
+def test_who_knows_no_rla_systems_refuses_them(folder: Path) -> None:
+    path = with_repertoire(WALL_FOLLOWING, folder, FOLLOW).repertoire
+    with pytest.raises(
+        SettingsError, match=r"actions\.0 \(follow_wall\): is of kind taught, and nothing taught can act"
+    ):
+        load_repertoire(path, ROBOT)

@@ -1,0 +1,205 @@
+"""What the critic looks at, told from what the robot senses."""
+
+import json
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from behaviors.judges.judge import AppraisalFeatures
+from hal.robot import SensorReadings
+from hal.settings import SettingsError
+from kurt2rt.core.critic.appraisal_features import CircumstancesPerception
+from kurt2rt.core.critic.settings import CriticSettings, load_critic
+from tests.behaviors.helpers import ROBOT, counts
+
+CRITIC = load_critic()
+TICKS_PER_M = 1 / ROBOT.geometry.metres_per_tick
+FAR_M = ROBOT.infrared.far_m
+
+
+def senses(
+    left_m_s: float = 0.0, right_m_s: float = 0.0, *, bumpers: int = 0, age_s: float = 0.0, **distances_m: float
+) -> SensorReadings:
+    """Of a tick in which the wheels turn at these speeds, with something at these distances from the named sensors."""
+    left, right = (round(speed * 0.01 * TICKS_PER_M) for speed in (left_m_s, right_m_s))
+    return SensorReadings(0.0, counts(0.7, **distances_m), age_s, left, right, 0.0, bumpers, 0.0)
+
+
+def perception() -> CircumstancesPerception:
+    return CircumstancesPerception(CRITIC, ROBOT)
+
+
+def after(
+    seconds: float, of: CircumstancesPerception, sensed: SensorReadings, *, driving: bool = True
+) -> AppraisalFeatures:
+    """AppraisalFeatures of the last tick of so many alike."""
+    for _ in range(round(seconds * 100)):
+        circumstances = of.perceive(sensed, driving=driving)
+    return circumstances
+
+
+def changed(**perception_values: object) -> CriticSettings:
+    content = CRITIC.model_dump(mode="json")
+    content["perception"].update(perception_values)
+    return CriticSettings.model_validate_json(json.dumps(content))
+
+
+# Distances and angles
+
+
+def test_the_nearest_thing_of_each_side_counts() -> None:
+    seen = senses(s4=0.2, s1=0.4, s10=0.3, s8=0.15, s13=0.5, s15=0.25, s16=0.35)
+    here = perception().perceive(seen, driving=False)
+    near = (here.left_m, here.front_m, here.right_m, here.rear_m, here.ahead_left_m, here.ahead_right_m)
+    assert near == pytest.approx((0.2, 0.3, 0.15, 0.5, 0.25, 0.35), abs=0.003)
+
+
+def test_where_nothing_is_seen_it_is_far_and_there_is_no_angle() -> None:
+    assert perception().perceive(senses(), driving=False) == AppraisalFeatures(*[FAR_M] * 6, *[0.0] * 7)
+
+
+def test_the_angle_is_that_by_which_the_nose_is_turned_away() -> None:
+    away = perception().perceive(senses(s1=0.34, s3=0.3, s4=0.25, s2=0.2, s5=0.15, s6=0.29), driving=False)
+    assert away.left_angle_rad == pytest.approx(math.atan(0.14 / 0.28), abs=0.02)
+    assert away.right_angle_rad == pytest.approx(-away.left_angle_rad, abs=0.03)
+
+
+def test_a_wall_that_one_end_of_the_side_sees_has_an_angle_and_one_that_only_its_middle_sees_has_none() -> None:
+    assert perception().perceive(senses(s2=0.3), driving=False).left_angle_rad > 0.7
+    assert perception().perceive(senses(s3=0.3), driving=False).left_angle_rad == 0.0
+
+
+# How it moves
+
+
+def test_speed_and_turn_rate_come_to_what_the_wheels_do() -> None:
+    moving = perception()
+    assert 0 < moving.perceive(senses(0.1, 0.3), driving=True).speed_m_s < 0.05
+    here = after(1.0, moving, senses(0.1, 0.3))
+    assert here.speed_m_s == pytest.approx(0.2, abs=0.001)
+    assert here.turn_rad_s == pytest.approx(0.2 / ROBOT.geometry.effective_track_m, abs=0.005)
+    here = after(1.0, moving, senses(-0.2, -0.2))
+    assert here.speed_m_s == pytest.approx(-0.2, abs=0.001)
+    assert here.turn_rad_s == pytest.approx(0.0, abs=0.001)
+
+
+def test_a_bump_is_remembered_for_a_second() -> None:
+    bumped = perception()
+    assert bumped.perceive(senses(bumpers=0b100), driving=True).bumped == 1.0
+    assert after(0.99, bumped, senses()).bumped == 1.0
+    assert after(0.01, bumped, senses()).bumped == 0.0
+
+
+# No progress
+
+
+def test_who_spins_makes_no_progress_after_three_seconds() -> None:
+    spinning = perception()
+    assert after(3.0, spinning, senses(0.2, -0.2)).no_progress == 0.0
+    assert after(0.01, spinning, senses(0.2, -0.2)).no_progress == 1.0
+
+
+def test_who_drives_to_and_fro_makes_none_and_who_creeps_on_does() -> None:
+    shuttling, creeping = perception(), perception()
+    for _ in range(5):
+        after(0.5, shuttling, senses(0.3, 0.3))
+        here = after(0.5, shuttling, senses(-0.3, -0.3))
+    assert here.no_progress == 1.0
+    assert after(20.0, creeping, senses(0.06, 0.06)).no_progress == 0.0
+    assert after(4.0, creeping, senses(0.04, 0.04)).no_progress == 1.0
+
+
+def test_who_waits_is_not_reproached_for_it_and_begins_anew() -> None:
+    waiting = perception()
+    assert after(20.0, waiting, senses(), driving=False).no_progress == 0.0
+    assert after(3.0, waiting, senses()).no_progress == 0.0
+    assert after(0.01, waiting, senses()).no_progress == 1.0
+    assert after(0.01, waiting, senses(), driving=False).no_progress == 0.0
+    assert after(3.0, waiting, senses()).no_progress == 0.0
+
+
+# No wall
+
+
+def test_the_wall_is_gone_after_two_seconds_without() -> None:
+    lost = perception()
+    assert after(1.99, lost, senses(0.3, 0.3)).no_wall == 0.0
+    assert after(0.01, lost, senses(0.3, 0.3)).no_wall == 1.0
+    assert lost.perceive(senses(s17=0.5), driving=True).no_wall == 0.0
+    assert after(5.0, lost, senses(s5=0.3, s11=0.3)).no_wall == 1.0  # what is elsewhere is not the wall that is meant
+
+
+def test_while_it_waits_the_time_without_a_wall_stands_still() -> None:
+    lost = perception()
+    after(1.5, lost, senses())
+    assert after(60.0, lost, senses(), driving=False).no_wall == 0.0
+    assert after(0.49, lost, senses()).no_wall == 0.0
+    assert after(0.01, lost, senses()).no_wall == 1.0
+
+
+# Beginning anew
+
+
+def test_a_robot_that_was_blind_begins_anew() -> None:
+    blinded = perception()
+    after(10.0, blinded, senses(0.2, -0.2, bumpers=1))
+    here = blinded.perceive(senses(age_s=0.06), driving=False)
+    assert here == AppraisalFeatures(*[FAR_M] * 6, *[0.0] * 7)
+    here = after(1.99, blinded, senses())
+    assert (here.bumped, here.no_progress, here.no_wall) == (0.0, 0.0, 0.0)
+
+
+def test_a_robot_that_never_saw_anything_begins_with_nothing() -> None:
+    unborn = SensorReadings(0.0, (0,) * 18, math.inf, 0, 0, math.inf, 0, math.inf)
+    assert after(5.0, perception(), unborn) == AppraisalFeatures(*[FAR_M] * 6, *[0.0] * 7)
+
+
+@given(
+    ticks=st.lists(
+        st.tuples(
+            st.lists(st.integers(0, 1023), min_size=18, max_size=18), *[st.integers(-500, 500)] * 2, st.booleans()
+        ),
+        max_size=30,
+    )
+)
+def test_the_same_senses_give_the_same_finite_circumstances(ticks: list[tuple[list[int], int, int, bool]]) -> None:
+    one, other = perception(), perception()
+    for seen, left, right, driving in ticks:
+        sensed = SensorReadings(0.0, tuple(seen), 0.0, left, right, 0.0, 0, 0.0)
+        here = one.perceive(sensed, driving=driving)
+        assert here == other.perceive(sensed, driving=driving)
+        assert all(map(math.isfinite, here))
+
+
+# Settings that do not fit
+
+
+def test_sensors_that_the_robot_does_not_have_are_named() -> None:
+    sensors = CRITIC.perception.sensors.model_dump(mode="json") | {"ahead_left": ["s15", "s99"]}
+    with pytest.raises(SettingsError, match=r"critic basic: perception.sensors: the robot has no sensor s99; allowed"):
+        CircumstancesPerception(changed(sensors=sensors), ROBOT)
+
+
+def test_a_side_the_wrong_way_round_has_no_angle() -> None:
+    sensors = CRITIC.perception.sensors.model_dump(mode="json") | {"right": ["s6", "s5"]}
+    with pytest.raises(SettingsError, match="s6 does not sit ahead of s5; give the sensors of a side from front"):
+        CircumstancesPerception(changed(sensors=sensors), ROBOT)
+
+
+# Surprise
+
+
+def test_a_surprise_is_a_circumstance_for_as_long_as_it_is_held() -> None:
+    of = CircumstancesPerception(changed(surprise_held_s=1.0), ROBOT)
+    assert of.perceive(senses(), driving=True).surprised == 0.0
+    of.be_surprised()
+    assert after(1.0, of, senses()).surprised == 1.0
+    assert of.perceive(senses(), driving=True).surprised == 0.0
+
+
+def test_a_critic_that_does_not_hold_surprises_sees_none() -> None:
+    of = perception()
+    of.be_surprised()
+    assert after(0.1, of, senses()).surprised == 0.0

@@ -1,0 +1,85 @@
+"""When the critic speaks."""
+
+from kurt2rt.core.critic.agreement import Agreement
+from kurt2rt.core.critic.autonomy import Autonomy, Signal
+from kurt2rt.core.critic.critic import Opinion
+from kurt2rt.core.critic.settings import AgreementSettings, NeedSettings, SignalEverySettings
+from kurt2rt.core.rla.rla import Appraised, RlaRewarded
+from tests.core.critic.helpers import SETTINGS, appraisal, origin
+
+BAD = Opinion(-1, "bad", 0.7, None, 0.1, 1.0, True)
+GOOD = Opinion(1, "good", 0.5, None, 0.1, 1.0, True)
+NEUTRAL = Opinion(0, "neutral", 0.7, None, 0.1, 1.0, True)
+UNKNOWN = Opinion(0, "", 0.0, None, 2.0, 1.0, False)
+ALWAYS = NeedSettings(bad_share=0.0, mean_s=1.0, first_s=0.0)
+RATES = SETTINGS.model_copy(
+    update={"signal_every_s": SignalEverySettings(bad=1.0, good=2.0), "patience_s": 0.0, "need": ALWAYS}
+)
+
+
+def agreement(*, trusted: bool = True) -> Agreement:
+    heard = Agreement(AgreementSettings(bound=0.8, window=2, least=1, apart_s=0.0), SETTINGS.values, 0.01)
+    heard.hear(Appraised("bad", -1, 0, origin()))
+    if trusted:
+        heard.hear(Appraised("good", 1, 0, origin()))
+    assert heard.trusted is trusted
+    return heard
+
+
+def test_what_a_trusted_critic_thinks_is_a_signal_about_this_tick() -> None:
+    speaking = Autonomy(RATES, agreement(), 0.01)
+    assert speaking.signal(40, BAD, True) == Signal(-1, "bad", 40, 0.7)
+    assert speaking.signal(41, GOOD, True) == Signal(1, "good", 41, 0.5)
+
+
+def test_it_says_the_same_no_more_often_than_a_person() -> None:
+    speaking = Autonomy(RATES, agreement(), 0.01)
+    assert [tick for tick in range(450) if speaking.signal(tick, BAD, True)] == [0, 100, 200, 300, 400]
+    assert [tick for tick in range(450) if speaking.signal(tick, GOOD, True)] == [0, 200, 400]
+
+
+def test_neutral_and_unknown_are_no_signals_and_a_robot_that_stands_gets_none() -> None:
+    speaking = Autonomy(RATES, agreement(), 0.01)
+    assert speaking.signal(1, NEUTRAL, True) is None
+    assert speaking.signal(2, UNKNOWN, True) is None
+    assert speaking.signal(3, None, True) is None
+    assert speaking.signal(4, BAD, False) is None
+    assert speaking.signal(5, BAD, True) is not None
+
+
+def test_it_holds_its_tongue_while_it_is_not_trusted() -> None:
+    heard = agreement(trusted=False)
+    speaking = Autonomy(RATES, heard, 0.01)
+    assert speaking.signal(1, BAD, True) is None
+    heard.hear(Appraised("good", 1, 0, origin()))
+    assert speaking.signal(2, BAD, True) is not None
+    heard.hear_all([appraisal(1, "bad"), RlaRewarded(9, -1, 0, origin(), said=1)])
+    assert speaking.signal(300, BAD, True) is None
+
+
+def test_what_it_thinks_for_a_moment_only_it_keeps_to_itself() -> None:
+    speaking = Autonomy(RATES.model_copy(update={"patience_s": 0.05}), agreement(), 0.01)
+    thought = [BAD, BAD, BAD, BAD, GOOD, BAD, BAD, BAD, BAD, BAD, BAD, BAD]
+    assert [tick for tick, opinion in enumerate(thought) if speaking.signal(tick, opinion, True)] == [10]
+
+
+def test_a_wait_or_a_gap_begins_the_thought_anew() -> None:
+    speaking = Autonomy(RATES.model_copy(update={"patience_s": 0.05}), agreement(), 0.01)
+    assert [tick for tick in range(20) if speaking.signal(tick, BAD, tick != 4)] == [10]
+    assert [tick for tick in range(200, 210) if speaking.signal(tick, BAD, True)] == [205]
+
+
+def test_what_drives_well_enough_is_left_alone() -> None:
+    need = NeedSettings(bad_share=0.05, mean_s=1.0, first_s=0.0)
+    listening = Autonomy(RATES.model_copy(update={"need": need}), agreement(), 0.01)
+    said = [tick for tick in range(2000) if listening.signal(tick, BAD if tick % 50 == 49 else GOOD, True)]
+    assert (said, listening.need.needed) == ([], False)
+    assert next(tick for tick in range(2000, 2100) if listening.signal(tick, BAD, True)) < 2010
+    assert listening.signal(2300, GOOD, True) is not None  # from then on it acts
+
+
+def test_while_it_is_told_to_listen_it_finds_out_whether_it_is_needed() -> None:
+    need = NeedSettings(bad_share=0.5, mean_s=1.0, first_s=0.0)
+    listening = Autonomy(RATES.model_copy(update={"need": need}), agreement(), 0.01)
+    assert not any(listening.signal(tick, BAD, True, listening=True) for tick in range(100))
+    assert listening.signal(100, GOOD, True) is not None

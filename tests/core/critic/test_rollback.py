@@ -1,0 +1,274 @@
+"""The guard that keeps the best knowledge, told window by window."""
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurt2rt.core.critic.rollback import BestKnowledge
+from kurt2rt.core.critic.settings import BestSettings
+from kurt2rt.core.rla.rla import (
+    CRITIC,
+    ActionReplaced,
+    LessonRedone,
+    LessonUndone,
+    Phase,
+    Rla,
+    RlaCreated,
+    RlaDeleted,
+    SessionBegun,
+    TeachingEvent,
+)
+from kurt2rt.core.rla.rla_system import RlaSystem
+from tests.core.critic.helpers import origin
+from tests.examples import examples
+
+
+def best(margin: float = 0.2) -> BestKnowledge:
+    """With windows of ten ticks."""
+    return BestKnowledge(BestSettings(window_s=0.1, margin=margin), 0.01)
+
+
+def window(kept: BestKnowledge, good: int, tick: int = 0) -> tuple[LessonUndone, ...]:
+    """Ten ticks of driving, so many of them good and the others neutral."""
+    undone: tuple[LessonUndone, ...] = ()
+    for place in range(10):
+        assert not undone
+        undone = kept.look(tick + place, 1 if place < good else None, True)
+    return undone
+
+
+def created(rla_id: int, command_id: str, teacher: str = CRITIC) -> RlaCreated:
+    by = origin(command_id, teacher, Phase.AUTONOMOUS)
+    return RlaCreated(Rla(rla_id, (float(rla_id),), "forward", None, by))
+
+
+def replaced(rla_id: int, command_id: str, teacher: str = CRITIC) -> ActionReplaced:
+    return ActionReplaced(rla_id, "back", "forward", origin(command_id, teacher, Phase.AUTONOMOUS))
+
+
+def test_what_made_it_worse_is_undone_newest_first() -> None:
+    kept = best()
+    assert window(kept, good=8) == ()
+    for event in (created(1, "first"), replaced(1, "second"), created(2, "third")):
+        kept.changed(event)
+    undone = window(kept, good=5, tick=990)
+    assert [each.lesson for each in undone] == ["third", "second", "first"]
+    assert {each.origin.teacher for each in undone} == {CRITIC}
+    assert {each.origin.phase for each in undone} == {Phase.AUTONOMOUS}
+    assert {each.origin.tick for each in undone} == {999}
+    assert len({each.origin.command_id for each in undone}) == 3
+
+
+def test_a_little_worse_is_chance_and_better_is_kept() -> None:
+    kept = best()
+    window(kept, good=5)
+    kept.changed(created(1, "first"))
+    assert window(kept, good=4) == ()
+    assert window(kept, good=7) == ()
+    assert (kept.best, kept.score) == (0.7, 0.7)
+    kept.changed(created(2, "second"))
+    assert [each.lesson for each in window(kept, good=2)] == ["second"]
+
+
+def test_nothing_is_undone_where_nothing_was_changed() -> None:
+    kept = best()
+    window(kept, good=9)
+    assert window(kept, good=0) == ()
+    assert kept.best == 0.9
+
+
+def test_time_in_which_it_stands_does_not_count() -> None:
+    kept = best()
+    for tick in range(1000):
+        assert kept.look(tick, -1, False) == ()
+    assert kept.score is None
+    window(kept, good=3)
+    assert kept.score == 0.3
+
+
+def test_a_robot_that_has_come_to_know_no_way_on_goes_back() -> None:
+    kept = best()
+    window(kept, good=1)
+    kept.changed(created(1, "first"))
+    undone = [event for tick in range(10) for event in kept.look(tick, 1, False, asking=True)]
+    assert [each.lesson for each in undone] == ["first"]
+    assert kept.score == -1.0
+
+
+def test_what_was_undone_by_hand_is_not_undone_again() -> None:
+    kept = best()
+    window(kept, good=9)
+    kept.changed(created(1, "first"))
+    kept.changed(created(2, "second"))
+    kept.changed(LessonUndone("second", origin()))
+    kept.changed(LessonRedone("second", origin()))  # by hand, too: a person wants it
+    kept.changed(SessionBegun("monday", origin()))
+    assert [each.lesson for each in window(kept, good=0)] == ["first"]
+
+
+def test_what_a_teacher_went_on_from_stays() -> None:
+    kept = best()
+    window(kept, good=9)
+    kept.changed(created(1, "first"))
+    kept.changed(created(2, "second"))
+    kept.changed(replaced(1, "by ada", teacher="ada"))
+    assert [each.lesson for each in window(kept, good=0)] == ["second"]
+
+
+def test_after_a_roll_back_the_restored_knowledge_is_scored_anew() -> None:
+    kept = best()
+    window(kept, good=10)  # by chance
+    kept.changed(created(1, "first"))
+    for undone in window(kept, good=5):
+        kept.changed(undone)
+    assert window(kept, good=5) == ()
+    assert kept.best == 0.5
+    kept.changed(created(2, "second"))
+    assert window(kept, good=6) == ()
+    assert window(kept, good=5) == ()
+    assert kept.best == 0.6
+
+
+def test_while_it_is_measured_nothing_is_to_be_changed() -> None:
+    kept = best()
+    assert kept.measures
+    window(kept, good=8)
+    assert not kept.measures
+    kept.changed(created(1, "first"))
+    window(kept, good=5)  # rolled back
+    assert kept.measures
+    window(kept, good=5)
+    assert not kept.measures
+    kept.begin()
+    assert kept.measures
+
+
+def test_what_was_changed_during_a_window_that_is_won_is_not_proven_by_it() -> None:
+    kept = best()
+    window(kept, good=5)
+    kept.changed(created(1, "before"))
+    for tick in range(8):
+        kept.look(tick, 1, True)
+    kept.changed(created(2, "late"))
+    for tick in range(2):
+        kept.look(tick, None, True)
+    assert kept.best == 0.8
+    assert [each.lesson for each in window(kept, good=3)] == ["late"]
+
+
+def test_what_is_left_to_be_proven_is_proven_by_the_next_window_that_is_won() -> None:
+    kept = best()
+    window(kept, good=5)
+    for tick in range(5):
+        kept.look(tick, 1, True)
+    kept.changed(created(1, "late"))
+    for tick in range(5):
+        kept.look(tick, None, True)
+    window(kept, good=6)
+    assert window(kept, good=0) == ()
+
+
+def test_knowledge_that_slowly_gets_worse_does_not_slip_through() -> None:
+    """Each window a little worse than the one before: none of them becomes what the next is held against."""
+    kept = best(margin=0.1)
+    window(kept, good=6)
+    scores: list[int] = []
+    for number in range(1, 20):
+        kept.changed(created(number, f"change-{number}"))
+        scores.append(6 - len(scores))
+        undone = window(kept, good=scores[-1])
+        if undone:
+            break
+    assert scores == [6, 5, 4]
+    assert [each.lesson for each in undone] == ["change-3", "change-2"]
+
+
+def test_the_time_before_it_was_alone_does_not_count() -> None:
+    kept = best()
+    for tick in range(9):
+        kept.look(tick, -1, True)
+    kept.begin()
+    window(kept, good=7)
+    assert kept.best == 0.7
+
+
+def test_alone_again_it_is_held_against_what_it_is_now_unless_something_is_to_be_proven() -> None:
+    kept = best()
+    window(kept, good=9)
+    kept.begin()
+    window(kept, good=3)
+    assert kept.best == 0.3
+    kept.changed(created(1, "first"))
+    kept.begin()
+    assert [each.lesson for each in window(kept, good=0)] == ["first"]
+
+
+def test_in_another_run_it_goes_on_from_the_best_window_and_what_was_changed_after_it() -> None:
+    kept = best()
+    events: list[TeachingEvent] = [
+        created(1, "proven"),
+        created(2, "late"),
+        created(3, "undone"),
+        LessonUndone("undone", origin()),
+    ]
+    kept.changed(events[0])
+    window(kept, good=8)
+    for event in events[1:]:
+        kept.changed(event)
+    assert (kept.best, kept.includes) == (0.8, 1)
+    again = best()
+    again.recall(events, kept.best, kept.includes)
+    assert again.measures
+    assert [each.lesson for each in window(again, good=2)] == ["late"]
+
+
+def test_without_a_best_another_run_begins_with_knowledge_as_it_is() -> None:
+    again = best()
+    again.recall([created(1, "first")], None, 0)
+    window(again, good=8)
+    again.begin()
+    assert window(again, good=0) == ()
+
+
+Act = tuple[str, int]
+
+
+@given(
+    windows=st.lists(
+        st.tuples(
+            st.lists(
+                st.tuples(st.sampled_from(("create", "replace", "delete", "teach", "undo")), st.integers(0, 5)),
+                max_size=6,
+            ),
+            st.integers(0, 10),
+        ),
+        max_size=12,
+    )
+)
+@examples(150)
+def test_whatever_is_changed_by_whom_a_roll_back_fits_the_knowledge(windows: list[tuple[list[Act], int]]) -> None:
+    kept, knowledge = best(margin=0.1), RlaSystem(1, 1.0)
+    commands = 0
+
+    def happens(event: TeachingEvent) -> None:
+        knowledge.apply(event)
+        kept.changed(event)
+
+    for acts, good in windows:
+        for act, which in acts:
+            commands += 1
+            name, living = f"command-{commands}", knowledge.rlas
+            by = origin(name, "ada" if act == "teach" else CRITIC, Phase.AUTONOMOUS)
+            if act == "create" or not living:
+                happens(RlaCreated(Rla(knowledge.next_id, (float(commands),), "forward", None, by)))
+                continue
+            rla = living[which % len(living)]
+            if act == "delete":
+                happens(RlaDeleted(rla.rla_id, by))
+            elif act == "undo":
+                last = knowledge.last_standing_lesson
+                if last is not None:
+                    happens(LessonUndone(last, by))
+            else:
+                happens(ActionReplaced(rla.rla_id, name, rla.action, by))
+        for undone in window(kept, good):
+            happens(undone)  # raises where it does not fit

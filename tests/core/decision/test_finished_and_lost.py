@@ -1,0 +1,64 @@
+"""What a layer does with an action that has finished, or does not know how to go on."""
+
+from hal.robot import STANDSTILL, WheelSpeeds
+from kurt2rt.core.decision.decision import Cause
+from tests.core.helpers import MINIMUM_TICKS, SmallLevel
+from tests.core.rla.helpers import created
+
+A_AT_0 = created(1, (0.0,), "a")
+B_AT_8 = created(2, (8.0,), "b")
+
+
+def test_an_action_that_has_finished_yields_at_once() -> None:
+    small = SmallLevel(A_AT_0, B_AT_8)
+    small.at(0.0)
+    small.actions["a"].finished = True
+    decision = small.at(8.0)
+    assert (decision.cause, decision.action, decision.rla_id) == (Cause.RLA, "b", 2)
+
+
+def test_an_action_that_has_finished_stays_at_the_wheels_and_does_not_begin_anew_while_its_rla_wins() -> None:
+    small = SmallLevel(A_AT_0, B_AT_8)
+    small.at(0.0)
+    small.actions["a"].finished = True
+    assert [small.at(0.0).action for _ in range(2 * MINIMUM_TICKS)] == ["a"] * 2 * MINIMUM_TICKS
+    assert small.actions["a"].starts == 1
+
+
+def test_an_action_that_is_lost_has_the_robot_stand_and_ask_though_the_rla_knows_the_situation() -> None:
+    small = SmallLevel(A_AT_0, B_AT_8)
+    small.at(0.0)
+    small.actions["a"].lost = True
+    decision = small.at(1.0)
+    assert (decision.wheel_speeds, decision.cause, decision.action) == (STANDSTILL, Cause.UNKNOWN, None)
+    assert decision.asking
+    assert decision.match is not None
+    assert decision.match.known
+
+
+def test_a_lost_action_that_finds_its_way_goes_on_where_it_was() -> None:
+    small = SmallLevel(A_AT_0)
+    small.at(0.0)
+    small.actions["a"].lost = True
+    small.at(0.0)
+    small.actions["a"].lost = False
+    assert small.at(0.0).wheel_speeds == WheelSpeeds(0.003, 0.003)
+    assert small.actions["a"].starts == 1
+
+
+def test_the_answer_to_a_lost_action_acts_at_once() -> None:
+    small = SmallLevel(A_AT_0)
+    small.at(0.0)
+    small.actions["a"].lost = True
+    assert small.at(1.0).asking
+    small.level.apply(created(2, (1.0,), "b"))
+    decision = small.at(1.0)
+    assert (decision.action, decision.rla_id) == ("b", 2)
+
+
+def test_a_lost_action_is_not_held() -> None:
+    small = SmallLevel(A_AT_0, B_AT_8)
+    small.at(0.0)
+    small.actions["a"].lost = True
+    small.at(0.0)
+    assert small.at(8.0).action == "b"

@@ -1,0 +1,244 @@
+"""Whatever has the robot stand, page, terminal, status line and status say the same of it, and what to do."""
+
+from dataclasses import replace
+
+import cbor2
+import pytest
+
+from hal.guard_reason import GuardReason
+from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
+from kurt2rt.channel.protocol.codec import decode_state, encode_state
+from kurt2rt.channel.protocol.state import State
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.standing import (
+    ASKS_AFTER_TICKS,
+    DRIVES,
+    HELD_TICKS,
+    LATCHED,
+    Standing,
+    StandingWatch,
+    StandReason,
+)
+from kurt2rt.core.decision.standing_text import (
+    GO_IN_TERMINAL,
+    GO_ON_PAGE,
+    headline_of,
+    in_short,
+    stop_of_text,
+    stop_text,
+    why_it_stands,
+)
+from kurt2rt.core.teaching.commands import Stop, Teach, Watch
+from kurt2rt.service.health.probes import Instruments
+from kurt2rt.service.health.snapshot import take_snapshot
+from kurt2rt.service.post_tick import Status
+from kurt2rt.service.status_line import doing
+from kurt2rt.teacher.client.link_quality import Link
+from kurt2rt.teacher.page.views import state_view
+from kurt2rt.teacher.scripted.channel_teacher import picture_in
+from kurt2rt.teacher.terminal.terminal_text import asks_in, question_in, sentence_of
+from tests.channel.desk import Desk
+from tests.channel.states import state
+
+FORWARD = WheelSpeeds(0.3, 0.3)
+BY_RLA = Decision(FORWARD, Cause.RLA, "forward", 1, None, True)
+ASKS = Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
+
+
+UNNAMED = (StopReason.STARTED, StopReason.NEXT_RUN)
+
+
+class LatchingDesk(Desk):
+    """A robot that drives forward by its first RLA, until the guard has a word for it to stand."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.runtime.school.authority.attended = False
+        self.runtime.inbox.put(Teach("t", "Ann", "forward"))
+        self.run(3)
+        assert self.record.standing == DRIVES
+
+    def latch(self, word: GuardReason) -> None:
+        drive = self.robot.drive
+
+        def latched(wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
+            drive(wanted, decided_at_s, now_s)
+            return GuardResult(STANDSTILL, (word,), latched=True)
+
+        self.robot.drive = latched  # type: ignore[method-assign]
+
+    def stall(self, ticks: int) -> None:
+        self._tick += ticks
+        self.run()
+
+    @property
+    def picture(self) -> State:
+        return decode_state(encode_state(self.telling.picture(self.record)))
+
+
+def page_of(picture: State) -> str:
+    text: str = state_view(picture, Link(None, None, 20.0), 0.0, "")["stands"]["text"]
+    return text
+
+
+def test_a_latched_stall_is_told_with_its_length_and_go_on_every_surface() -> None:
+    desk = LatchingDesk()
+    desk.latch(GuardReason.TICKS_CEASED)
+    desk.stall(11)
+    desk.run(5)  # what was measured stays
+    assert desk.record.decision.driving  # its layer goes on wanting to
+    stands = desk.record.standing
+    assert (stands.reason, stands.needs_go, stands.says) == (StandReason.COMPUTER_TOO_SLOW, True, "")
+    assert stands.stall_s == pytest.approx(0.12)
+    assert page_of(desk.picture) == "Stands: the computer was too slow for 0.1 s. GO lets it drive on"
+    assert sentence_of(desk.picture) == "Stands: the computer was too slow for 0.1 s. Type go to let it drive on"
+    short = "stands until Go: the computer was too slow for 0.1 s"
+    assert doing(Status(desk.record, desk.runtime, 0, None, "")) == short
+    snapshot = take_snapshot(desk.runtime, desk.record, _Keeping(), Instruments(), 0.0)
+    assert snapshot.doing == short
+
+
+class _Keeping:
+    unwritten = 0
+    trouble: str | None = None
+    last_write_s: float | None = None
+
+
+@pytest.mark.parametrize("word", LATCHED)
+def test_each_latch_of_the_guard_has_a_text_with_go(word: GuardReason) -> None:
+    desk = LatchingDesk()
+    desk.latch(word)
+    desk.run()
+    told = desk.record.standing
+    assert told.reason is not StandReason.HALTED
+    assert told.needs_go
+    assert page_of(desk.picture).startswith("Stands: ")
+    assert page_of(desk.picture).endswith(GO_ON_PAGE)
+    assert word not in (told.says, "")
+
+
+def test_every_word_of_the_guard_that_stops_the_robot_is_known() -> None:
+    alarms = {GuardReason.BUS_LOST, GuardReason.BUS_BLOCKED, GuardReason.BUS_OFF, GuardReason.FOREIGN_CONTROL}
+    assert alarms | {GuardReason.WHEELS_DISOBEY, GuardReason.INFRARED_FROZEN, GuardReason.TICKS_CEASED} == set(LATCHED)
+
+
+def test_a_stop_of_the_program_is_told_in_its_own_words() -> None:
+    desk = LatchingDesk()
+    desk.latch(GuardReason.SERVICE_ENDS)
+    desk.run()
+    assert page_of(desk.picture) == "Stands: the service ends. GO lets it drive on"
+
+
+def test_a_teachers_stop_waits_for_go() -> None:
+    desk = LatchingDesk()
+    desk.runtime.inbox.put(Stop("s", "Ann"))
+    desk.run()
+    assert page_of(desk.picture) == "Stands: Ann said stop. GO lets it drive on"
+    assert desk.picture.stands.needs_go
+
+
+def test_a_robot_without_its_teacher_waits_for_no_go() -> None:
+    desk = LatchingDesk()
+    desk.runtime.school.authority.attended = True
+    desk.runtime.school.stopped = None
+    desk.run()
+    desk.runtime.school.stopped = None  # that it lost its teacher on the way is another story
+    desk.run()
+    assert desk.record.standing == Standing(StandReason.UNATTENDED)
+    assert page_of(desk.picture) == "Stands: no teacher looks at it. Take the robot"
+    desk.runtime.inbox.put(Watch("Ann", desk.tick))
+    desk.run()
+    assert desk.record.standing == DRIVES
+
+
+@pytest.mark.parametrize("reason", list(StandReason))
+def test_every_reason_has_a_text_of_one_or_two_short_sentences(reason: StandReason) -> None:
+    for needs_go in (False, True):
+        standing = Standing(reason, needs_go, stop=ActiveStop(StopReason.SAID_STOP, "Ann"))
+        text = headline_of(standing, GO_ON_PAGE)
+        assert "{" not in text
+        assert len(text) < 100
+        if reason is not StandReason.DRIVES:
+            assert why_it_stands(standing) in text
+            assert (GO_ON_PAGE in text) is needs_go
+            assert in_short(standing) or (not needs_go and reason in (StandReason.ASKS, StandReason.ASKS_THE_WAY))
+
+
+def test_go_within_a_sentence_is_not_a_capital_of_the_terminal() -> None:
+    lost = Standing(StandReason.BUS_LOST, True)
+    assert headline_of(lost, GO_IN_TERMINAL).endswith("its power and CAN cable; then type go to let it drive on")
+    assert headline_of(lost, GO_ON_PAGE).endswith("its power and CAN cable; then GO lets it drive on")
+
+
+def test_one_late_tick_is_no_standing_and_many_are() -> None:
+    watch = StandingWatch()
+    late = GuardResult(STANDSTILL, (GuardReason.COMMAND_TOO_OLD,), latched=False)
+    told = [watch.update(BY_RLA, late, 0.01 * tick, None, None).reason for tick in range(HELD_TICKS + 1)]
+    assert told == [*[StandReason.DRIVES] * HELD_TICKS, StandReason.LATE]
+    assert watch.update(BY_RLA, GuardResult(FORWARD, (), latched=False), 0.2, None, None) == DRIVES
+    assert watch.update(BY_RLA, late, 0.21, None, None) == DRIVES
+
+
+def test_a_question_waits_while_the_guard_has_latched() -> None:
+    told = StandingWatch().update(ASKS, GuardResult(STANDSTILL, (GuardReason.BUS_LOST,), latched=True), 0.0, None, None)
+    assert told == Standing(StandReason.BUS_LOST, True, True)
+
+
+def test_an_older_robots_picture_is_read_and_told_from_its_cause() -> None:
+    picture = state(cause="rla", action="forward", rla=3, stopped=ActiveStop(StopReason.GUARD, "wheels disobey"))
+    old = cbor2.loads(encode_state(picture))
+    assert old["st"] == stop_text(picture.stopped)
+    del old["sd"], old["sr"]
+    read = decode_state(cbor2.dumps(old))
+    assert read.standing is None
+    assert read.stands == Standing(StandReason.STOPPED, True, stop=picture.stopped)
+    assert replace(read, stopped=None).stands == DRIVES
+    assert replace(read, by_hand=True).stands == DRIVES
+
+
+@pytest.mark.parametrize("reason", list(StopReason))
+def test_stop_of_text_any_reason_round_trips(reason: StopReason) -> None:
+    stop = ActiveStop(reason, "" if reason in (StopReason.NO_TEACHER, *UNNAMED) else "Ann B's 2nd")
+    assert stop_of_text(stop_text(stop)) == stop
+
+
+def test_stop_of_text_empty_is_none() -> None:
+    assert stop_of_text("") is None
+
+
+def test_decode_state_stop_of_newer_robot_is_other() -> None:
+    newer = cbor2.loads(encode_state(state(stopped=ActiveStop(StopReason.STARTED))))
+    newer["st"], newer["sr"] = "its battery is empty", ["battery empty", "12 V"]
+    assert decode_state(cbor2.dumps(newer)).stopped == ActiveStop(StopReason.OTHER, "its battery is empty")
+
+
+def test_decode_state_stands_stopped_keeps_the_code() -> None:
+    stop = ActiveStop(StopReason.LINK_LOST, "Ann")
+    stands = Standing(StandReason.STOPPED, True, stop=stop)
+    told = encode_state(state(stopped=stop, standing=stands))
+    assert cbor2.loads(told)["sd"] == ["stopped", True, False, None, stop_text(stop)]
+    assert decode_state(told).stands == stands
+
+
+def test_a_newer_robots_reason_stands_in_its_own_words() -> None:
+    newer = cbor2.loads(encode_state(state(standing=Standing(StandReason.LATE))))
+    newer["sd"][0] = "battery empty"
+    assert decode_state(cbor2.dumps(newer)).stands == Standing(StandReason.HALTED, says="battery empty")
+
+
+def test_a_robot_that_is_held_at_a_bumper_asks_on_every_surface() -> None:
+    desk = LatchingDesk()
+    desk.robot.touches_in_front = True
+    desk.run(ASKS_AFTER_TICKS)
+    picture = desk.picture
+    assert (picture.cause, picture.stands) == ("touches", Standing(StandReason.FRONT_BUMPER, asks=True))
+    question = "I touch something in front of me; what now?"
+    assert page_of(picture) == question
+    assert str(question_in(picture)) == f"{question} RLA 1 says forward"
+    short = f"stands: {question}"
+    assert doing(Status(desk.record, desk.runtime, 0, None, "")) == short
+    assert take_snapshot(desk.runtime, desk.record, _Keeping(), Instruments(), 0.0).doing == short
+    assert picture.question == ()  # the situation is known: nothing differs
+    assert not asks_in(picture)  # an action that is typed corrects the RLA
+    assert picture_in(picture).asking  # and so a scripted teacher answers

@@ -1,0 +1,197 @@
+"""What an RLA leads to is learned from what followed, and something else is surprising."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurt2rt.core.rla.expectation import pack
+from kurt2rt.core.rla.rla import MID
+from tests.core.expectations.helpers import Small
+from tests.core.rla.helpers import deleted, replaced, rewarded, undone
+
+PLACES = st.tuples(st.floats(-1000, 1000), st.floats(-1000, 1000))
+
+
+@given(st.lists(PLACES, min_size=2, max_size=50))
+def test_mean_and_spread_are_those_of_all_situations_that_followed(places: list[tuple[float, float]]) -> None:
+    small = Small()
+    for place in places:
+        small.ends(1, 2, *place)
+    expected = small.expected(1)
+    assert expected.count == len(places)
+    assert expected.mean == pytest.approx(np.mean(places, axis=0), abs=1e-9)
+    assert expected.spread == pytest.approx(np.std(places, axis=0, ddof=1), abs=1e-4)
+
+
+def test_how_long_it_drives_is_expected_too() -> None:
+    small = Small()
+    for ticks in (10, 20, 60):
+        small.ends(1, 2, 0.0, 0.0, ticks=ticks)
+    assert small.expected(1).ticks == pytest.approx(30.0)
+
+
+def test_nothing_is_expected_of_an_rla_that_was_never_seen_to_end() -> None:
+    small = Small()
+    small.ends(1, 2, 5.0, 5.0)
+    assert small.expectations.of(2) is None
+
+
+def test_what_comes_as_ever_is_no_surprise_and_what_lies_far_off_is_one() -> None:
+    small = Small()
+    for number in range(20):
+        small.ends(1, 2, 50.0 + number % 2, 20.0)
+    as_ever, off = small.ends(1, 2, 50.5, 20.0), small.ends(1, 2, 50.0, 80.0)
+    assert as_ever is not None
+    assert not as_ever.surprising
+    assert off is not None
+    assert off.surprising
+    assert off.distance == pytest.approx(60.0, abs=0.01)
+    assert off.multiple == pytest.approx(60.0 / 0.5, rel=0.05)
+    assert (off.rla_id, off.follow_up, off.ends) == (1, 2, 21)
+
+
+def test_who_has_seen_little_is_not_surprised() -> None:
+    small = Small()
+    assert [small.ends(1, 2, 1000.0 * number, 0.0) for number in range(5)] == [None] * 5
+    assert small.ends(1, 2, 0.0, 0.0) is not None
+
+
+def test_what_always_came_exactly_alike_may_vary_a_little() -> None:
+    small = Small()
+    for _ in range(10):
+        small.ends(1, 2, 50.0, 20.0)
+    near = small.ends(1, 2, 50.9, 20.0)  # R is 10
+    far = small.ends(1, 2, 52.0, 20.0)
+    assert near is not None
+    assert far is not None
+    assert [near.surprising, far.surprising] == [False, True]
+
+
+def test_a_follow_up_that_never_came_before_is_told() -> None:
+    small = Small()
+    for _ in range(5):
+        small.ends(1, 2, 50.0, 20.0)
+    new, again = small.ends(1, 3, 50.0, 20.0), small.ends(1, 3, 50.0, 20.0)
+    assert new is not None
+    assert again is not None
+    assert [new.new_follow_up, again.new_follow_up] == [True, False]
+    assert (again.seen, again.ends) == (1, 6)
+
+
+def test_of_symbols_the_most_frequent_ones_are_expected() -> None:
+    small = Small("hamming")
+    for symbols in [(4, 1, 2)] + 7 * [(1, 2, 2)] + [(3, 2, 4)]:
+        small.ends(1, 2, *map(float, symbols))
+    assert small.expected(1).mean.tolist() == [1.0, 2.0, 2.0]
+
+
+def test_of_symbols_another_one_than_ever_is_a_surprise() -> None:
+    small = Small("hamming")
+    for _ in range(8):
+        small.ends(1, 2, 1.0, 2.0, 2.0)
+    as_ever, other = small.ends(1, 2, 1.0, 2.0, 2.0), small.ends(1, 2, 3.0, 2.0, 2.0)
+    assert as_ever is not None
+    assert other is not None
+    assert (as_ever.surprising, as_ever.distance) == (False, 0.0)
+    assert (other.surprising, other.distance, other.level) == (True, 1.0, MID)
+
+
+def test_symbols_that_came_in_between_hold_up_no_majority() -> None:
+    small = Small("hamming")
+    for _ in range(20):
+        small.ends(1, 2, 3.0, 0.0, 0.0)
+        small.ends(1, 2, 1.0, 0.0, 0.0)
+        small.ends(1, 2, 1.0, 0.0, 0.0)
+    assert small.expected(1).mean.tolist() == [1.0, 0.0, 0.0]
+
+
+def test_an_rla_with_another_action_is_expected_to_do_nothing_that_the_old_one_did() -> None:
+    small = Small()
+    small.ends(1, 2, 5.0, 5.0)
+    small.ends(2, 1, 7.0, 7.0)
+    assert small.happens(replaced(1, "backward", "forward")) == 1
+    assert small.expectations.of(1) is None
+    assert small.expectations.of(2) is not None
+    small.ends(1, 2, 9.0, 9.0)
+    assert small.happens(undone("correction-1")) == 1
+    assert small.expectations.of(1) is None
+
+
+def test_what_was_deleted_comes_back_without_expectation() -> None:
+    small = Small()
+    small.ends(1, 2, 5.0, 5.0)
+    small.expectations.to_save()
+    small.happens(deleted(1))
+    assert small.expectations.to_save() == {}
+    assert small.ends(1, 2, 5.0, 5.0) is None
+    assert small.expectations.of(1) is None
+    small.happens(undone("deletion-1"))
+    assert small.expectations.of(1) is None
+    small.ends(1, 2, 6.0, 5.0)
+    assert small.expected(1).mean.tolist() == [6.0, 5.0]
+
+
+def test_a_lesson_that_is_undone_takes_its_expectation_with_it() -> None:
+    small = Small()
+    small.ends(3, 2, 5.0, 5.0)
+    assert small.happens(undone("lesson-3")) == 3
+    assert small.expectations.to_save() == {}
+
+
+def test_praise_changes_no_expectation() -> None:
+    small = Small()
+    small.ends(1, 2, 5.0, 5.0)
+    assert small.happens(rewarded(1)) is None
+    assert small.happens(undone("reward-1")) is None
+    assert small.expectations.of(1) is not None
+
+
+@pytest.mark.parametrize("metric", ["euclidean", "hamming"])
+def test_it_goes_on_from_what_was_saved(metric: str) -> None:
+    situations = [tuple(float((7 * step + place) % 3) for place in range(3)) for step in range(12)]
+    whole, first = Small("hamming"), Small("hamming")
+    if metric == "euclidean":
+        whole, first = Small(), Small()
+        situations = [situation[:2] for situation in situations]
+    for situation in situations:
+        whole.ends(1, 2, *situation)
+    for situation in situations[:7]:
+        first.ends(1, 2, *situation)
+    second = Small("hamming" if metric == "hamming" else "euclidean", first.expectations.to_save())
+    for situation in situations[7:]:
+        second.ends(1, 2, *situation)
+    assert second.expected(1) == whole.expected(1)  # to the last bit
+
+
+def test_what_was_saved_of_the_dead_or_of_another_action_is_left_behind() -> None:
+    before = Small()
+    for rla_id in (1, 2, 3):
+        before.ends(rla_id, 2, 5.0, 5.0)
+    saved = before.expectations.to_save()
+    again = Small()
+    again.system.apply(deleted(1))
+    again.system.apply(replaced(2, "backward", "forward"))
+    expectations = type(again.expectations)(again.level, again.system, again.space, {}, saved)
+    assert expectations.to_save() == {3: saved[3]}
+
+
+def test_only_what_has_changed_is_made_anew_to_be_saved() -> None:
+    small = Small()
+    for rla_id in (1, 2, 3):
+        small.ends(rla_id, 2, 5.0, 5.0)
+    first = small.expectations.to_save()
+    small.ends(2, 3, 6.0, 5.0)
+    second = small.expectations.to_save()
+    assert [second[rla_id] is first[rla_id] for rla_id in (1, 2, 3)] == [True, False, True]
+    assert first[2].count == 1  # what was handed over does not change any more
+
+
+def test_what_was_saved_of_other_features_is_refused_at_the_start() -> None:
+    small = Small()
+    small.ends(1, 2, 5.0, 5.0)
+    narrow = replace(small.expected(1), packed_mean=pack(np.zeros(1)))
+    with pytest.raises(ValueError, match="expected of RLA 1 has 1 values and 2 spreads, its level has 2 features"):
+        Small(saved={1: narrow})

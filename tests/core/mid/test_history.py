@@ -1,0 +1,127 @@
+"""The mid level's situation: the last symbols, newest first."""
+
+import math
+
+import numpy as np
+import pytest
+
+from hal.robot import STANDSTILL
+from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.mid.settings import MidSettings, load_mid
+from kurt2rt.core.mid.situation import MidSituation
+from tests.core.mid.walk import OPEN_M, ROBOT, STREET_M, sensed
+
+STANDS = Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
+
+
+def driven(action: str | None) -> Decision:
+    return STANDS._replace(cause=Cause.RLA, action=action)
+
+
+class Led:
+    """A robot that is led from junction to junction."""
+
+    def __init__(self, settings: MidSettings) -> None:
+        self.settings = settings
+        self.situation: MidSituation = settings.build(ROBOT)
+        self.changes = 0
+
+    def go(self, way_m: float, away_m: float = STREET_M, *, turn_deg: float = 0.0, before: Decision = STANDS) -> "Led":
+        steps = 100
+        for _ in range(steps):
+            senses = sensed(away_m, away_m, way_m / steps, math.radians(turn_deg) / steps)
+            self.changes += self.situation.perceive(senses, before)
+        return self
+
+    def over(self, *turns_deg: float) -> "Led":
+        """Over so many junctions, with a street behind each."""
+        for turn_deg in turns_deg:
+            self.go(0.8, OPEN_M, turn_deg=turn_deg).go(1.0)
+        return self
+
+    @property
+    def words(self) -> list[str]:
+        """What is remembered, newest first, as far as there is something."""
+        names = self.settings.situation.words(self.situation.vector)
+        return [each for each in names if each]
+
+
+def test_what_was_done_at_each_junction_newest_first() -> None:
+    led = Led(load_mid("turns")).go(0.5)
+    assert led.situation.dimensions == len(led.situation.features) == 12
+    assert led.situation.vector.tolist() == [0.0] * 12
+    led.over(90.0, 0.0, 0.0, -90.0)
+    assert led.words == ["right", "straight", "straight", "left"]
+    assert led.changes == 4
+    led.over(*[0.0] * 11)
+    assert led.words == ["straight"] * 11 + ["right"]
+
+
+def test_the_vector_of_an_earlier_moment_stays_as_it_was() -> None:
+    led = Led(load_mid("turns")).go(0.5)
+    before = led.situation.vector
+    led.over(90.0)
+    assert before.tolist() == [0.0] * 12
+    after = led.situation.vector
+    led.go(0.3)
+    assert led.situation.vector is after
+
+
+def test_a_junction_is_told_in_the_tick_in_which_it_has_been_passed_and_in_no_other() -> None:
+    situation = load_mid("turns").build(ROBOT)
+    seen = []
+    for away_m, steps in ((STREET_M, 100), (OPEN_M, 160), (STREET_M, 100)):
+        for _ in range(steps):
+            changed = situation.perceive(sensed(away_m, away_m, 0.005), STANDS)
+            assert changed == (situation.passed is not None)
+            seen.append(situation.passed)
+    assert [each.name for each in seen if each is not None] == ["straight"]
+
+
+def test_a_robot_that_was_set_down_has_no_past() -> None:
+    led = Led(load_mid("turns")).go(0.5).over(90.0, 0.0)
+    led.go(0.8, OPEN_M)
+    led.situation.restart()
+    assert led.situation.vector.tolist() == [0.0] * 12
+    assert led.go(0.5).words == []
+    assert led.over(-90.0).words == ["right"]
+
+
+def test_low_passed_symbols_tell_streets_crossings_and_turns_each_once_while_it_lasts() -> None:
+    led = Led(load_mid("low_passed")).go(1.0)
+    assert led.words == ["street"]
+    led.over(90.0, 90.0, 0.0)
+    assert led.words == ["street", "crossing", "street", "left", "street", "left", "street"]
+    led.go(0.4, turn_deg=12.0).go(0.4, turn_deg=-12.0)
+    assert len(led.words) == 7
+
+
+def test_turning_on_the_spot_is_a_turn_of_low_passed_symbols_too() -> None:
+    led = Led(load_mid("low_passed")).go(1.0).go(0.3, OPEN_M).go(0.0, OPEN_M, turn_deg=-90.0).go(1.0)
+    assert led.words == ["street", "right", "street"]
+
+
+def test_actions_of_the_basic_level_as_symbols_count_when_they_differ() -> None:
+    led = Led(load_mid("actions"))
+    for action in ("forward", "forward", None, "forward", "sharp_left", "stand", "sharp_left", "forward"):
+        led.situation.perceive(sensed(STREET_M, STREET_M), driven(action))
+    assert led.words == ["forward", "sharp_left", "forward"]
+    led.situation.restart()
+    led.situation.perceive(sensed(STREET_M, STREET_M), driven("forward"))
+    assert led.words == ["forward"]
+
+
+@pytest.mark.parametrize("name", ["turns", "low_passed", "actions"])
+def test_conditions_of_whatever_symbols_can_be_read(name: str) -> None:
+    situation = load_mid(name).situation
+    assert situation.words(np.array([1.0, 0.0, 2.0] + [0.0] * 9))[1] == ""
+    assert all(situation.words([1.0] * 12))
+
+
+def test_what_the_basic_level_expected_and_got_counts_and_what_came_by_chance_does_not() -> None:
+    mid = load_mid("expectations")
+    situation = mid.build(ROBOT, {(1, 2): 5, (1, 3): 2, (2, 3): 1, (3, 1): 4})
+    for rla_id in (1, 1, 2, 3, 1, 3, None, 2, 3):
+        situation.perceive(sensed(STREET_M, STREET_M), STANDS._replace(rla_id=rla_id))
+    # 1 is followed by 2, as ever, that by 3, that by 1; then 3 follows, which it seldom does; standing ends a chain.
+    assert [word for word in mid.situation.words(situation.vector) if word] == ["3", "1", "3", "2"]

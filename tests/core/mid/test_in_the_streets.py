@@ -1,0 +1,141 @@
+"""Junctions noticed at the real path: the simulated robot behind its CAN bus, with the policy at the wheels."""
+
+import math
+import random
+from collections.abc import Iterator
+
+import pytest
+
+from behaviors.metrics.junctions import Junctions
+from behaviors.metrics.streets import Junction, Side, StreetMap
+from behaviors.repertoire import load_repertoire
+from hal.robot import SensorReadings
+from hal.robot_settings import InfraredSettings, RobotSettings
+from hal.simulation import Pose
+from kurt2rt.core.basic.policy_level import PolicyLevel
+from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.junction_event import JunctionEvent
+from kurt2rt.core.mid.junction_detector import JunctionDetector
+from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.perception.perception import Situation
+from kurt2rt.core.task_settings import load_task
+from simbridge.simulation import Kurt2Simulation
+from tests.core.helpers import situation
+from tests.core.mid.walk import ROBOT
+
+TASK = load_task("streets")
+ANYWHERE: Situation = situation(0.0)  # the policy looks at the senses
+_IN_A_STREET_M = 0.35
+
+
+class Drive:
+    """The policy drives; what is wanted may change in every tick."""
+
+    def __init__(self, seed: int, robot: RobotSettings = ROBOT) -> None:
+        self.simulation = Kurt2Simulation(robot, "manhattan", seed, "test")
+        self.wanted = Wanted(TASK.behaviours)
+        self._level = PolicyLevel(
+            TASK.policy.build(robot.infrared), load_repertoire(TASK.repertoire, robot), 10, self.wanted
+        )
+        self._period_s = robot.can.cycle_s
+
+    def ticks(self, duration_s: float) -> Iterator[SensorReadings]:
+        """What the robot senses, tick by tick."""
+        for tick in range(round(duration_s / self._period_s)):
+            now_s = tick * self._period_s
+            self.simulation.step()
+            senses = self.simulation.robot.sense(now_s)
+            self.simulation.robot.drive(self._level.decide(ANYWHERE, senses, None).wheel_speeds, now_s, now_s)
+            yield senses
+        self.simulation.close()
+
+
+def test_corners_ts_and_crossings_each_tell_what_was_done_there_and_where_it_could_go() -> None:
+    drive = Drive(1)
+    drive.simulation.simulated_robot.place(Pose(0.4, 1.3, math.pi / 2))
+    detector = JunctionDetector(load_mid("turns").junctions, ROBOT)
+    way = iter(["straight_on", "turn_right", "straight_on", "turn_left", "turn_right", "turn_right", "straight_on"])
+    drive.wanted.pursue(next(way))
+    passed: list[JunctionEvent] = []
+    for senses in drive.ticks(39.0):
+        event = detector.perceive(senses)
+        if event is not None:
+            passed.append(event)
+            drive.wanted.pursue(next(way))
+    assert [(each.name, each.left_open, each.right_open) for each in passed] == [
+        ("straight", False, True),  # along a T, past its stem
+        ("right", False, True),  # out of it through its stem
+        ("straight", True, True),
+        ("left", True, True),
+        ("right", True, True),  # at the end of a stem
+        ("right", False, True),  # round a corner
+    ]
+
+
+class Truth:
+    """Which junctions the robot has really passed, seen from above: told when it is well in the next street."""
+
+    def __init__(self, streets: StreetMap) -> None:
+        self._streets = streets
+        self._inside: Junction | None = None
+        self._way = Side.EAST
+
+    def passed(self, drive: Drive) -> tuple[int, bool, bool] | None:
+        """Quarter turns, and whether there was a way to the left and to the right."""
+        pose = drive.simulation.pose
+        if self._inside is None:
+            self._inside = self._streets.junction_at(pose)
+            if self._inside is not None:
+                self._way = self._inside.side_of(pose).turned(2)
+            return None
+        junction = self._inside
+        if junction.holds(pose, _IN_A_STREET_M):
+            return None
+        self._inside = None
+        quarters = (junction.side_of(pose) - self._way) % 4
+        sides = (self._way.turned(1) in junction.arms, self._way.turned(-1) in junction.arms)
+        return (-1 if quarters == 3 else quarters, *sides)
+
+
+def random_drive(seed: int, duration_s: float, robot: RobotSettings) -> tuple[list[object], list[object]]:
+    """What was passed and what was told, by random commands."""
+    drive = Drive(seed, robot)
+    streets = StreetMap(drive.simulation.plan)
+    course = Junctions(streets, TASK.behaviours, random.Random(seed))
+    course.put(drive.simulation.pose)
+    truth, detector = Truth(streets), JunctionDetector(load_mid("turns").junctions, robot)
+    passed: list[object] = []
+    told: list[object] = []
+    for senses in drive.ticks(duration_s):
+        event = detector.perceive(senses)
+        if event is not None:
+            told.append((event.quarters, event.left_open, event.right_open))
+        course.follow(drive.simulation.pose)
+        drive.wanted.pursue(course.behaviour)
+        really = truth.passed(drive)
+        if really is not None:
+            passed.append(really)
+    # The last one may have been told and not be over, or be over and not be told.
+    both = min(len(passed), len(told))
+    assert max(len(passed), len(told)) - both <= 1
+    return passed[:both], told[:both]
+
+
+def noisy(robot: RobotSettings, **changes: float) -> RobotSettings:
+    infrared: InfraredSettings = robot.infrared.model_copy(update=changes)
+    return robot.model_copy(update={"infrared": infrared})
+
+
+def test_random_ways_are_told_as_they_were_gone() -> None:
+    passed, told = random_drive(3, 40.0, ROBOT)
+    assert len(passed) >= 6
+    assert told == passed
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("seed", range(4))
+def test_for_minutes_with_more_noise_and_more_unlike_sensors_junctions_are_told_as_they_were_passed(seed: int) -> None:
+    for robot in (ROBOT, noisy(ROBOT, noise_share=0.05), noisy(ROBOT, gain_spread_share=0.08)):
+        passed, told = random_drive(seed, 300.0, robot)
+        assert len(passed) >= 45
+        assert [each[0] for each in told] == [each[0] for each in passed]  # type: ignore[index]

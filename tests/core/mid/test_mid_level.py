@@ -1,0 +1,132 @@
+"""The mid level: which behaviour is wanted next, by the junctions that lie behind the robot."""
+
+import pytest
+
+from kurt2rt.core.decision.errors import UnknownBehaviourError
+from kurt2rt.core.rla.match import Match
+from kurt2rt.core.rla.rla_system import RlaSystem
+from tests.core.mid_helpers import BEHAVIOURS, STRAIGHT, SmallStack, taught
+from tests.core.rla.helpers import created, deleted, replaced, undone, withdrawn
+
+
+def test_before_its_first_lesson_it_asks_and_what_was_wanted_stays() -> None:
+    small = SmallStack()
+    first = small.commanded()
+    assert first == ("straight_on", None, None, True, False, None)
+    assert small.wanted.behaviour == "straight_on"
+
+
+def test_the_nearest_rla_commands_what_the_basic_level_is_to_follow() -> None:
+    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"), taught(5, (2.0, 1.0, 1.0), "turn_right"))
+    assert (small.commanded().behaviour, small.wanted.behaviour) == ("turn_left", "turn_left")
+    small.commanded(1.0)
+    small.commanded(1.0)
+    third = small.commanded(3.0)
+    assert (third.behaviour, third.rla_id, third.asks, third.event) == ("turn_right", 5, False, STRAIGHT)
+    assert third.match is not None
+    assert (third.match.distance, third.match.radius) == (1.0, 1.0)
+
+
+def test_a_junction_is_told_once() -> None:
+    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
+    assert [small.commanded(symbol).event for symbol in (None, 1.0, None)] == [None, STRAIGHT, None]
+
+
+def test_outside_every_radius_it_asks_and_tells_what_was_nearest() -> None:
+    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
+    assert not small.commanded(1.0).asks
+    asked = small.commanded(1.0)
+    assert asked.asks
+    assert asked.rla_id is None
+    assert asked.match is not None
+    assert (asked.match.rla.rla_id, asked.match.distance) == (4, 2.0)
+    assert asked.behaviour == small.wanted.behaviour == "turn_left"
+
+
+def test_a_lesson_counts_at_once_though_the_situation_is_the_same() -> None:
+    small = SmallStack()
+    assert small.commanded().asks
+    small.system.apply(taught(4, (0.0, 0.0, 0.0), "turn_left"))
+    assert small.commanded().behaviour == "turn_left"
+    small.system.apply(replaced(4, "turn_right", "turn_left"))
+    assert small.commanded().behaviour == "turn_right"
+    small.system.apply(deleted(4))
+    assert small.commanded().asks
+    small.system.apply(undone("deletion-4"))
+    small.system.apply(undone("correction-4"))
+    assert small.commanded().behaviour == "turn_left"
+
+
+def test_as_long_as_nothing_changes_nothing_is_looked_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
+    looked_up = 0
+    match = RlaSystem.match
+
+    def counting(*args: object, **options: object) -> Match | None:
+        nonlocal looked_up
+        looked_up += options.get("level") == "mid"
+        return match(*args, **options)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(RlaSystem, "match", counting)
+    decided = [small.commanded() for _ in range(50)]
+    assert looked_up == 1
+    assert all(each is decided[0] for each in decided)
+    small.commanded(1.0)
+    assert looked_up == 2
+
+
+def test_what_a_teacher_commands_counts_until_the_next_junction_has_been_passed() -> None:
+    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
+    small.commanded()
+    small.mid.override("turn_right")
+    overridden = [small.commanded() for _ in range(3)]
+    assert all((each.behaviour, each.overridden, each.rla_id) == ("turn_right", True, None) for each in overridden)
+    assert small.wanted.behaviour == "turn_right"
+    passed = small.commanded(1.0)
+    assert (passed.behaviour, passed.overridden, passed.event) == ("turn_left", False, STRAIGHT)
+    assert small.wanted.behaviour == "turn_left"
+
+
+def test_a_teacher_may_lead_on_where_the_mid_level_would_ask() -> None:
+    small = SmallStack(taught(4, (1.0, 0.0, 0.0), "turn_left"), radius=0.0)
+    assert small.commanded().asks
+    small.mid.override("straight_on")
+    led = small.commanded()
+    assert (led.behaviour, led.asks, led.overridden) == ("straight_on", False, True)
+    assert small.commanded(1.0).behaviour == "turn_left"
+    assert small.commanded(1.0).asks
+
+
+def test_nobody_else_changes_what_is_wanted_for_longer_than_a_tick() -> None:
+    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
+    small.commanded()
+    small.wanted.pursue("turn_right")
+    assert small.commanded().behaviour == small.wanted.behaviour == "turn_left"
+
+
+def test_a_teacher_cannot_command_what_is_not_taught() -> None:
+    small = SmallStack()
+    with pytest.raises(ValueError, match="no taught behaviour 'fly'"):
+        small.mid.override("fly")
+    assert small.commanded().asks
+
+
+def test_a_robot_that_was_set_down_begins_anew() -> None:
+    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"), taught(5, (1.0, 1.0, 0.0), "turn_right"), radius=0.0)
+    small.commanded(1.0)
+    assert small.commanded(1.0).behaviour == "turn_right"
+    small.stack.restart()
+    assert small.commanded().behaviour == "turn_left"
+
+
+def test_an_rla_whose_action_was_withdrawn_asks() -> None:
+    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
+    assert not small.commanded().asks
+    small.system.apply(withdrawn(4, "turn_left"))
+    assert small.commanded().asks
+
+
+def test_knowledge_that_commands_what_the_task_does_not_teach_is_refused() -> None:
+    with pytest.raises(UnknownBehaviourError, match="mid-level RLA 4 commands the behaviour dance"):
+        SmallStack(taught(4, (0.0, 0.0, 0.0), "dance"))
+    assert len(SmallStack(created(4, (5.0,), "a", behaviour=BEHAVIOURS[0])).system.rlas) == 4

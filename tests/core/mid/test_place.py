@@ -1,0 +1,150 @@
+"""Where the robot is, reckoned by its wheels from junction to junction and put right at places that it knows."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from behaviors.repertoire import load_repertoire
+from hal.robot import STANDSTILL, SensorReadings
+from hal.robot_settings import load_robot
+from hal.simulation import Pose
+from kurt2rt.core.basic.policy_level import PolicyLevel
+from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.mid.place import EAST, NORTH, WALL_LEFT, WALL_RIGHT, Place, X, Y
+from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.perception.perception import Situation
+from kurt2rt.core.rla.condition import Condition
+from kurt2rt.core.task_settings import load_task
+from simbridge.simulation import Kurt2Simulation
+
+ROBOT = load_robot()
+STREETS = load_task("streets")
+PLACES = load_mid("places")
+NOTHING = Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
+NOWHERE = Situation(np.zeros(1), history_frozen=False)
+
+
+def place() -> Place:
+    built = PLACES.build(ROBOT)
+    assert isinstance(built, Place)
+    return built
+
+
+class Drive:
+    """The robot in Manhattan, led by one who knows the streets, and what it reckons."""
+
+    def __init__(self, place: Place, start: Pose) -> None:
+        self.place = place
+        self.simulation = Kurt2Simulation(ROBOT, "manhattan", 1, "reckoning")
+        self.simulation.simulated_robot.place(start)
+        self._wanted = Wanted(STREETS.behaviours)
+        self._leader = PolicyLevel(
+            STREETS.policy.build(ROBOT.infrared), load_repertoire(STREETS.repertoire, ROBOT), 10, self._wanted
+        )
+        self._tick = 0
+
+    def lead(self, *behaviours: str) -> None:
+        """Through one junction after the other."""
+        for behaviour in behaviours:
+            self._wanted.pursue(behaviour)
+            while not self.step():
+                assert self._tick < 20_000, "no junction was noticed"
+
+    def step(self) -> bool:
+        """One tick; whether a junction was passed."""
+        self._tick += 1
+        now_s = self._tick * ROBOT.can.cycle_s
+        senses = self.simulation.robot.sense(now_s)
+        changed = self.place.perceive(senses, NOTHING)
+        decision = self._leader.decide(NOWHERE, senses, None)
+        self.simulation.robot.drive(decision.wheel_speeds, now_s, now_s)
+        self.simulation.step()
+        return changed and self.place.passed is not None
+
+    @property
+    def off_m(self) -> float:
+        """How far what it reckons is from where it is."""
+        pose, vector = self.simulation.pose, self.place.vector
+        return math.hypot(vector[X] - pose.x_m, vector[Y] - pose.y_m)
+
+
+NORTHWARD = Pose(2.2, 3.1, math.pi / 2)
+AT_START: Condition = (2.2, 3.1, 0.0, 1.0, 0.5, 0.5)
+
+
+@pytest.fixture
+def drive() -> Iterator[Drive]:
+    drives = Drive(place(), NORTHWARD)
+    drives.place.be_at(AT_START)
+    yield drives
+    drives.simulation.close()
+
+
+def heading(place: Place) -> tuple[float, float]:
+    return place.vector[EAST], place.vector[NORTH]
+
+
+def test_behind_each_junction_it_knows_where_it_is_and_where_it_looks(drive: Drive) -> None:
+    drive.lead("turn_right")
+    assert heading(drive.place) == (1.0, 0.0)
+    assert drive.off_m < 0.15
+    drive.lead("straight_on", "turn_left", "turn_left")
+    assert heading(drive.place) == (-1.0, 0.0)
+    assert drive.off_m < 0.3
+
+
+def test_what_stood_beside_it_in_the_junction_is_part_of_the_place(drive: Drive) -> None:
+    drive.lead("turn_right", "straight_on", "turn_left", "turn_left")  # the last in a corner of the town
+    assert (drive.place.vector[WALL_LEFT], drive.place.vector[WALL_RIGHT]) == (0.0, 1.0)
+
+
+def test_at_a_place_that_it_knows_the_reckoning_is_put_right(drive: Drive) -> None:
+    drive.lead("turn_right")
+    known: Condition = (3.0, 4.1, 1.0, 0.0, 0.0, 0.0)
+    drive.place.known = lambda vector: known if np.hypot(vector[X] - 4.9, vector[Y] - 4.1) < 0.6 else None
+    drive.lead("straight_on")
+    reckoned = drive.place.vector.copy()
+    assert math.hypot(reckoned[X] - 4.8, reckoned[Y] - 4.0) < 0.3  # it says what it found, not what it knew
+    drive.lead("turn_left")
+    assert drive.place.vector[X] - known[X] < 1.5  # but goes on from what it knew
+
+
+def test_between_junctions_nothing_changes_and_vectors_are_never_changed_in_place(drive: Drive) -> None:
+    before = drive.place.vector
+    while not drive.step():
+        pass
+    assert drive.place.vector is not before
+    assert tuple(before) == AT_START
+
+
+def test_set_down_elsewhere_it_is_lost_until_somebody_says_where_it_is(drive: Drive) -> None:
+    drive.lead("turn_right")
+    drive.place.restart()
+    assert drive.place.lost
+    assert drive.place.perceive(drive.simulation.robot.sense(0.0), NOTHING)
+    drive.simulation.simulated_robot.place(NORTHWARD)
+    while not drive.simulation.pose.y_m > 4.0:
+        drive.step()
+    assert drive.place.lost
+    drive.simulation.simulated_robot.place(NORTHWARD)
+    drive.place.be_at(AT_START)
+    drive.lead("turn_right")
+    assert drive.off_m < 0.15
+
+
+def test_a_robot_that_was_just_switched_on_reckons_from_there() -> None:
+    fresh = place()
+    assert tuple(fresh.vector) == (0.0, 0.0, 1.0, 0.0, 0.5, 0.5)
+    assert not fresh.lost
+    assert not fresh.perceive(SensorReadings(0.0, (0,) * 10, 0.0, 0, 0, 0.0, 0, 0.0), NOTHING)
+
+
+def test_places_at_one_point_with_opposite_headings_are_two() -> None:
+    space = PLACES.space
+    assert space.weights is not None
+    apart = np.array([0.0, 0.0, 2.0, 0.0, 1.0, 1.0]) * space.weights
+    assert np.linalg.norm(apart) > space.radius
+    assert PLACES.situation.words(AT_START)[:2] == ("x_m 2.20", "y_m 3.10")

@@ -1,0 +1,57 @@
+"""Settings of the mid level: the shipped ones, what they are bound to, and what is refused."""
+
+import json
+from typing import Any
+
+import pytest
+
+from hal.settings import SettingsError
+from kurt2rt.core.mid.settings import MidSettings, load_mid
+
+CONTENT: dict[str, Any] = load_mid("turns").model_dump(mode="json", serialize_as_any=True)
+
+
+def checked(**sections: dict[str, object]) -> MidSettings:
+    content = {name: CONTENT[name] | sections.get(name, {}) if name != "name" else "turns" for name in CONTENT}
+    return MidSettings.model_validate_json(json.dumps(content))
+
+
+def test_the_shipped_mid_level_is_the_papers_with_junctions_for_symbols() -> None:
+    mid = load_mid("turns")
+    assert (mid.space.dimensions, mid.space.radius, mid.space.metric) == (12, 6.0, "hamming")
+    assert mid.situation.kind == "history"
+    assert mid.features[0] == "symbol 1"
+    assert load_mid(mid) is mid
+
+
+def test_a_name_that_is_not_there_is_told() -> None:
+    with pytest.raises(SettingsError, match="no such file in mid_levels"):
+        load_mid("nowhere")
+
+
+def test_knowledge_is_bound_to_what_the_features_are_and_to_nothing_else() -> None:
+    bound = load_mid("turns").level_features
+    assert bound.feature_names == load_mid("turns").features
+    for same in (checked(learning={"radius": 3.0}), checked(situation={"distance": "edit"})):
+        assert same.level_features == bound
+    others = (
+        checked(junctions={"wall_m": 0.41}),
+        checked(situation={"length": 8}),
+        checked(situation={"symbols": {"kind": "actions", "actions": ["forward"]}}),
+    )
+    assert len({each.level_features.feature_hash for each in (load_mid("turns"), *others)}) == 4
+
+
+@pytest.mark.parametrize(
+    ("section", "changes", "told"),
+    [
+        ("situation", {"kind": "weather"}, "there is no kind 'weather'; give one of: history"),
+        ("situation", {"symbols": {"kind": "runes"}}, "there is no kind 'runes'; give one of: actions"),
+        ("situation", {"distance": "euclidean"}, "hamming"),
+        ("learning", {"radius": -1.0}, "greater than or equal to 0"),
+        ("junctions", {"left": ["s1"]}, "at least 2"),
+    ],
+)
+def test_what_does_not_fit_is_refused(section: str, changes: dict[str, object], told: str) -> None:
+    with pytest.raises(ValueError, match=told):
+        checked(**{section: changes})

@@ -1,0 +1,75 @@
+"""The definition that knowledge is bound to."""
+
+from pathlib import Path
+
+import pytest
+
+from config import CONFIG_DIR
+from hal.robot_settings import load_robot
+from hal.settings import SettingsError
+from kurt2rt.core.perception.definition import load_situation
+from tests.core.perception.helpers import ALL_KINDS, SENSORS, definition
+
+BASIC = (CONFIG_DIR / "situations" / "basic.yaml").read_text()
+ROBOT_SENSORS = load_robot().infrared.names
+
+
+def hash_of(text: str, folder: Path) -> str:
+    path = folder / "changed.yaml"
+    path.write_text(text)
+    return load_situation(str(path), ROBOT_SENSORS).hash(ROBOT_SENSORS)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("name: basic", "name: other"),
+        ("history_steps: 1000", "history_steps: 999"),
+        ("wheel_speed_counts_per_m_s: 0", "wheel_speed_counts_per_m_s: 1"),
+        ("{kind: reading, sensor: s1}", "{kind: reading, sensor: s2}"),
+        ("  - {kind: reading, sensor: s18}\n", ""),
+        ("{kind: maximum, heading: left", "{kind: minimum, heading: left"),
+        ("{kind: maximum, heading: left", "{kind: maximum, heading: right"),
+        ("sensors: [s12, s13, s14]", "sensors: [s12, s14, s13]"),
+        ("nearer: s1, farther: s2", "nearer: s1, farther: s3"),
+        ("side: left", "side: right"),
+    ],
+)
+def test_any_change_of_the_definition_changes_the_hash(old: str, new: str, tmp_path: Path) -> None:
+    assert old in BASIC
+    assert hash_of(BASIC.replace(old, new, 1), tmp_path) != hash_of(BASIC, tmp_path)
+
+
+def test_comments_and_the_way_numbers_are_written_do_not_change_the_hash(tmp_path: Path) -> None:
+    written_otherwise = "# taught in spring\n" + BASIC.replace("history_steps: 1000", "history_steps:   1_000")
+    assert hash_of(written_otherwise, tmp_path) == hash_of(BASIC, tmp_path)
+
+
+def test_the_order_of_features_and_of_the_robots_sensors_changes_the_hash() -> None:
+    small = definition()
+    swapped = definition((ALL_KINDS[1], ALL_KINDS[0], *ALL_KINDS[2:]))
+    hashes = {small.hash(SENSORS), small.hash(SENSORS[::-1]), small.hash((*SENSORS, "e")), swapped.hash(SENSORS)}
+    assert len(hashes) == 4
+
+
+def test_the_hash_is_the_same_in_every_run() -> None:
+    """Knowledge files hold it: a change here makes all of them unreadable for their robots."""
+    assert load_situation("basic", ROBOT_SENSORS).hash(ROBOT_SENSORS) == "ee983b9befe83baa"
+
+
+def test_names_come_in_the_order_of_the_vector() -> None:
+    assert definition().names[:9] == (
+        *("b", "a"),
+        *("maximum front", "minimum front", "maximum rear"),
+        *("orientation left a>b", "orientation left b>a"),
+        *("wheel speed right", "wheel speed left"),
+    )
+    assert definition().names[9] == "b (10 s average)"
+    assert definition().dimensions == 18
+
+
+def test_a_definition_for_another_robot_is_refused_with_the_sensors_it_wants() -> None:
+    with pytest.raises(
+        SettingsError, match=r"basic\.yaml: features: the robot has no sensor s17, s18; allowed: s1, s2"
+    ):
+        load_situation("basic", ROBOT_SENSORS[:16])

@@ -1,0 +1,56 @@
+"""The ring buffer against a plain list."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from kurt2rt.core.perception.history import History
+
+
+def average(history: History, width: int) -> NDArray[np.float64]:
+    out = np.full(width, np.nan)
+    history.average_into(out)
+    return out
+
+
+@pytest.mark.parametrize("steps", [1, 7, 1000])
+def test_thousands_of_random_steps_are_exact_at_every_step(steps: int) -> None:
+    chance = np.random.default_rng(steps)
+    rows = chance.integers(-1000, 1024, (3333, 5))
+    history = History(steps, 5)
+    assert average(history, 5).tolist() == [0.0] * 5
+    for taken, row in enumerate(rows, start=1):
+        history.push(row)
+        held = rows[max(0, taken - steps) : taken]
+        assert history.filled == len(held)
+        assert (average(history, 5) == held.sum(axis=0) / len(held)).all()
+
+
+@given(st.integers(1, 5), st.lists(st.integers(-(10**15), 10**15), max_size=30))
+def test_large_numbers_leave_nothing_behind_when_they_have_left(steps: int, values: list[int]) -> None:
+    history = History(steps, 1)
+    for value in [*values, *[7] * steps]:
+        history.push(np.array([value]))
+    assert average(history, 1).tolist() == [7.0]
+
+
+def test_a_ring_of_1000_forgets_the_first_step_with_the_1001st() -> None:
+    history = History(1000, 1)
+    history.push(np.array([1000]))
+    for _ in range(999):
+        history.push(np.array([0]))
+    assert average(history, 1).tolist() == [1.0]
+    history.push(np.array([0]))
+    assert average(history, 1).tolist() == [0.0]
+
+
+def test_what_was_pushed_may_change_afterwards() -> None:
+    history, row = History(2, 1), np.array([5])
+    history.push(row)
+    row[0] = 100
+    history.push(np.array([7]))
+    assert average(history, 1).tolist() == [6.0]
+    history.push(np.array([7]))
+    assert average(history, 1).tolist() == [7.0]

@@ -1,0 +1,95 @@
+"""What each feature counts in a distance."""
+
+import anyio
+import numpy as np
+import pytest
+
+from hal.settings import SettingsError
+from kurt2rt.core.perception.definition import load_situation
+from kurt2rt.core.perception.weights import weights_of
+from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.task_settings import FeatureWeight, load_task
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.experiments.lockstep.exam import NothingIsTaught
+from kurt2rt.platform.clock import LockstepClock
+from kurt2rt.runtime import build_runtime
+from tests.core.rla.helpers import created
+from tests.experiments.helpers import ROBOT, STAGE
+
+DEFINITION = load_situation("basic", ROBOT.infrared.names)
+NAMES = DEFINITION.names
+
+
+def test_all_recent_features_weigh_one_and_their_averages_a_share_of_it() -> None:
+    weights = weights_of(DEFINITION, (), 0.25, "mine")
+    assert weights.tolist() == [1.0] * 36 + [0.25] * 36
+
+
+def test_some_weigh_something_else_in_both_halves() -> None:
+    weights = dict(
+        zip(NAMES, weights_of(DEFINITION, [(("s15", "maximum front"), 3.0), (("s2",), 0.0)], 0.5, "mine"), strict=True)
+    )
+    assert weights["s15"] == weights["maximum front"] == 3.0
+    assert weights["s15 (10 s average)"] == 1.5
+    assert weights["s2"] == weights["s2 (10 s average)"] == 0.0
+    assert np.isclose(sum(weights.values()), (33 + 6) * 1.5)
+
+
+@pytest.mark.parametrize(
+    ("changed", "told"),
+    [
+        (
+            [(("s19",), 2.0)],
+            "task mine: learning.weights.0.features: situation basic has no feature 's19'; it has: s1, s2, ",
+        ),
+        ([(("s1 (10 s average)",), 2.0)], "has no feature 's1 (10 s average)'"),
+        ([(("s1", "s2"), 2.0), (("s2",), 3.0)], "task mine: learning.weights.1.features: 's2' is given two weights"),
+        (
+            [(tuple(each.name for each in DEFINITION.features), 0.0)],
+            "task mine: learning.weights: every feature weighs 0; leave one with more",
+        ),
+    ],
+)
+def test_a_feature_that_is_not_there_or_twice_is_refused(
+    changed: list[tuple[tuple[str, ...], float]], told: str
+) -> None:
+    with pytest.raises(SettingsError) as caught:
+        weights_of(DEFINITION, changed, 1.0, "mine")
+    assert told in str(caught.value)
+
+
+def first_tick(*taught: TeachingEvent, weights: tuple[FeatureWeight, ...] = ()) -> TickRecord:
+    """Of the same robot at the same place, whatever it was taught."""
+    task = load_task("fleeing")
+    task = task.model_copy(update={"learning": task.learning.model_copy(update={"weights": weights})})
+    simulation = STAGE.open("a", 1, "exam")
+    records: list[TickRecord] = []
+    try:
+        runtime = build_runtime(
+            simulation.robot, ROBOT, task, taught, NothingIsTaught(), LockstepClock(simulation.step)
+        )
+        anyio.run(runtime.scheduler.run, 1, records.append)
+    finally:
+        simulation.close()
+    return records[0]
+
+
+def test_a_weight_of_the_task_decides_which_rla_drives() -> None:
+    here = first_tick().situation.vector
+
+    def unlike_in(feature: str, counts: float) -> tuple[float, ...]:
+        condition = here.copy()
+        condition[NAMES.index(feature)] += counts
+        return tuple(condition.tolist())
+
+    taught = (created(1, unlike_in("s15", 100.0), "forward"), created(2, unlike_in("s2", 120.0), "back"))
+    assert first_tick(*taught).decision.action == "forward"
+    heavy = FeatureWeight(weight=2.0, features=("s15",))
+    assert first_tick(*taught, weights=(heavy,)).decision.action == "back"
+    light = FeatureWeight(weight=0.0, features=("s2",))
+    assert first_tick(*taught, weights=(light,)).decision.action == "back"
+
+
+def test_a_weight_for_what_the_situation_has_not_is_refused_before_the_robot_drives() -> None:
+    with pytest.raises(SettingsError, match="situation basic has no feature 's99'"):
+        first_tick(weights=(FeatureWeight(weight=2.0, features=("s99",)),))

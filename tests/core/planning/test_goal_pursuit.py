@@ -1,0 +1,248 @@
+"""On the way to a goal: following the plan, being surprised, arriving, and seeing no way."""
+
+import numpy as np
+import pytest
+
+from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
+from kurt2rt.core.decision.plan_step import Course
+from kurt2rt.core.planning.goal_pursuit import PIECES, Seeking
+from kurt2rt.core.planning.target import Target, Vector, target_of
+from kurt2rt.core.planning.topological_map import charting
+from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode
+from kurt2rt.core.rla.rla import MID, Rla
+from tests.core.planning.town import FEATURES, RADIUS, Town
+from tests.core.rla.helpers import deleted
+
+
+def grid() -> Town:
+    """Three places in a row and two above, with ways east and north."""
+    town = Town(a=(0.0, 0.0), b=(2.0, 0.0), c=(4.0, 0.0), d=(2.0, 2.0), e=(4.0, 2.0))
+    town.way("a", "straight_on", "b")
+    town.way("b", "straight_on", "c")
+    town.way("b", "turn_left", "d", ticks=900.0)
+    town.way("c", "turn_left", "e")
+    town.way("d", "turn_right", "e")
+    town.teach("e", "straight_on")
+    return town
+
+
+def target(town: Town, goal: Goal) -> Target:
+    door = {"door": tuple(town.at("e").tolist())} if "e" in town.places else {}
+    return target_of(
+        goal,
+        named=door,
+        rla=town.system.get,
+        level=MID,
+        features=FEATURES,
+        radius=RADIUS,
+        distance=town.distance,
+        group_at=town.group_at,
+    )
+
+
+DOOR = NamedGoal("door")
+
+
+def seeking(town: Town, goal: Goal = DOOR) -> Seeking:
+    seeks = Seeking(town.charting, town.group_at)
+    seeks.seek(goal, target(town, goal))
+    return seeks
+
+
+def think(seeks: Seeking) -> int:
+    """Until it is settled how it goes on; after how many ticks."""
+    ticks = 0
+    while seeks.course is Course.PLANNING:
+        seeks.think()
+        ticks += 1
+    return ticks
+
+
+def arrive(seeks: Seeking, situation: Vector) -> int:
+    seeks.arrive(situation)
+    return think(seeks)
+
+
+def course(seeks: Seeking) -> Course:
+    return seeks.course
+
+
+def chosen(town: Town, seeks: Seeking, place: str) -> str | None:
+    rla = seeks.choose(town.group_at(town.at(place)))
+    return None if rla is None else rla.action
+
+
+def test_the_plan_takes_the_robot_to_the_goal_place_by_place() -> None:
+    town = grid()
+    seeks = seeking(town)
+    arrive(seeks, town.at("a"))
+    assert seeks.text == "on the way to door: 3 ways left, now straight_on (RLA 1)"
+    assert chosen(town, seeks, "a") == "straight_on"
+    arrive(seeks, town.at("b"))
+    assert chosen(town, seeks, "b") == "straight_on"
+    arrive(seeks, town.at("c"))
+    assert chosen(town, seeks, "c") == "turn_left"
+    assert not seeks.stands
+    arrive(seeks, town.at("e"))
+    assert course(seeks) is Course.ARRIVED
+    assert seeks.stands
+    assert seeks.text == "arrived: door"
+    assert seeks.surprises == 0
+
+
+def test_who_comes_to_another_place_than_planned_is_surprised_and_plans_from_there() -> None:
+    town = grid()
+    seeks = seeking(town)
+    arrive(seeks, town.at("a"))
+    arrive(seeks, town.at("b"))
+    arrive(seeks, town.at("d"))  # the robot turned where it was to go straight on
+    assert seeks.surprises == 1
+    assert chosen(town, seeks, "d") == "turn_right"
+    arrive(seeks, town.at("e"))
+    assert course(seeks) is Course.ARRIVED
+
+
+def test_without_a_way_the_robot_stands_and_says_so() -> None:
+    town = grid()
+    seeks = seeking(town)
+    arrive(seeks, town.at("e"))
+    assert course(seeks) is Course.ARRIVED
+    back = RlaGoal(1)
+    seeks.seek(back, target(town, back))
+    arrive(seeks, town.at("e"))
+    assert seeks.stands
+    assert seeks.text == "no way from here to the situation of RLA 1: nothing taught leads there"
+
+
+def test_off_all_known_places_it_stands_and_is_lost() -> None:
+    town = grid()
+    seeks = seeking(town)
+    arrive(seeks, town.at("a"))
+    arrive(seeks, np.array([9.0, 9.0, 0.0]))
+    assert course(seeks) is Course.LOST
+    assert seeks.choose(town.group_at(town.at("a"))) is None
+    assert seeks.text.startswith("lost on the way to door")
+    arrive(seeks, town.at("b"))  # somebody led it back
+    assert course(seeks) is Course.UNDER_WAY
+
+
+def test_a_way_taught_meanwhile_is_taken_when_it_plans_anew() -> None:
+    town = grid()
+    seeks = seeking(town, RlaGoal(1))
+    arrive(seeks, town.at("e"))
+    assert course(seeks) is Course.NO_WAY
+    town.way("e", "turn_left", "a")
+    seeks.replan(town.at("e"))
+    assert seeks.text == "planning the way to the situation of RLA 1"
+    assert seeks.stands  # where it stood without a way it stands until there is one
+    think(seeks)
+    assert not seeks.stands
+    assert course(seeks) is Course.UNDER_WAY
+    assert chosen(town, seeks, "e") == "turn_left"
+
+
+def test_a_way_that_was_deleted_under_the_plan_is_planned_around() -> None:
+    town = grid()
+    seeks = seeking(town)
+    arrive(seeks, town.at("a"))
+    town.system.apply(deleted(2))  # from b straight on
+    arrive(seeks, town.at("b"))
+    assert chosen(town, seeks, "b") == "turn_left"
+    assert seeks.surprises == 0
+
+
+def test_a_place_that_only_looked_like_the_goal_is_not_gone_to_again() -> None:
+    town = grid()
+    town.walled = {"c", "d"}
+    fresh = Town(**town.places)
+    fresh.walled = town.walled
+    fresh.way("a", "straight_on", "b")
+    fresh.way("b", "straight_on", "c")
+    fresh.way("b", "turn_left", "d", ticks=900.0)
+    fresh.way("c", "turn_right", "a")
+    fresh.teach("d", "straight_on")
+    goal = PartialGoal((("wall_left", 1.0),), tolerance=0.1)
+    seeks = seeking(fresh, goal)
+    arrive(seeks, fresh.at("a"))
+    arrive(seeks, fresh.at("b"))
+    assert chosen(fresh, seeks, "b") == "straight_on"
+    without_wall = np.array([4.0, 0.0, 0.0])
+    arrive(seeks, without_wall)
+    assert course(seeks) is Course.UNDER_WAY
+    assert chosen(fresh, seeks, "c") == "turn_right"
+    arrive(seeks, fresh.at("a"))
+    arrive(seeks, fresh.at("b"))
+    assert chosen(fresh, seeks, "b") == "turn_left"
+    arrive(seeks, fresh.at("d"))
+    assert course(seeks) is Course.ARRIVED
+    assert seeks.text == "arrived: wall_left 1"
+
+
+def test_when_nobody_seeks_the_mid_level_commands_as_ever() -> None:
+    town = grid()
+    seeks = seeking(town)
+    arrive(seeks, town.at("a"))
+    seeks.stop()
+    arrive(seeks, town.at("b"))
+    assert course(seeks) is Course.NONE
+    assert seeks.text == ""
+    assert chosen(town, seeks, "b") is None
+    assert not seeks.stands
+
+
+@pytest.mark.parametrize(
+    ("goal", "outcome"),
+    [
+        (NamedGoal("attic"), Outcome.of(RefusalCode.NOT_NAMED, name="attic", known=("door",))),
+        (RlaGoal(99), Outcome.of(RefusalCode.NO_RLA, rla=99)),
+        (
+            PartialGoal((("smell", 1.0),)),
+            Outcome.of(RefusalCode.NO_FEATURE, features=("smell",), level=MID, known=FEATURES),
+        ),
+        (PartialGoal(()), Outcome.of(RefusalCode.NO_FEATURE, features=(), level=MID, known=FEATURES)),
+    ],
+)
+def test_a_goal_that_means_nothing_is_refused_with_what_there_is(goal: Goal, outcome: Outcome) -> None:
+    with pytest.raises(CommandRefusedError) as refused:
+        target(grid(), goal)
+    assert refused.value.outcome == outcome
+
+
+def test_a_plan_in_a_large_town_is_made_over_many_ticks_and_is_the_same_again() -> None:
+    row = Town(**{f"p{number}": (2.0 * number, 0.0) for number in range(200)})
+    for number in range(199):
+        row.way(f"p{number}", "straight_on", f"p{number + 1}")
+    last = PartialGoal((("x_m", 398.0),), tolerance=0.1)
+    matched = 0
+
+    def group_at(situation: Vector) -> tuple[Rla, ...]:
+        nonlocal matched
+        matched += 1
+        return row.group_at(situation)
+
+    took = []
+    for _ in range(2):
+        seeks = Seeking(lambda: charting(row.system.rlas_at(MID), group_at, row.followed, row.seen.get), group_at)
+        seeks.seek(last, target(row, last))
+        seeks.arrive(row.at("p0"))
+        ticks = most = 0
+        while seeks.course is Course.PLANNING:
+            matched = 0
+            seeks.think()
+            ticks, most = ticks + 1, max(most, matched)
+        assert most <= PIECES
+        took.append(ticks)
+    assert took[0] == took[1]
+    assert took[0] > 2 * 200 // PIECES
+    assert seeks.plan is not None
+    assert len(seeks.plan.ways) == 199
+
+
+def test_nowhere_is_no_goal() -> None:
+    town = grid()
+    nowhere = np.array([np.nan, np.nan, 1.0])
+    for goal in (DOOR, PartialGoal((("wall_left", 1.0),))):
+        assert not target(town, goal).met_by(nowhere)
+        seeks = seeking(town, goal)
+        arrive(seeks, nowhere)
+        assert course(seeks) is Course.LOST

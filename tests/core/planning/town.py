@@ -1,0 +1,76 @@
+"""A town for plans: places by name on a map, and ways between them, taught as RLAs of the mid level."""
+
+from collections import Counter
+from typing import NamedTuple
+
+import numpy as np
+
+from kurt2rt.core.planning.map_builder import Survey
+from kurt2rt.core.planning.target import Having, Vector
+from kurt2rt.core.planning.topological_map import Chart, Charting, charting
+from kurt2rt.core.rla.rla import MID, Rla
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.space import Space
+from tests.core.rla.helpers import created
+
+RADIUS = 0.5
+FEATURES = ("x_m", "y_m", "wall_left")
+
+
+class Seen(NamedTuple):
+    """Where an RLA was seen to end, and after how many ticks (kurt2rt.core.planning.topological_map.Forecast)."""
+
+    mean: Vector
+    ticks: float
+
+
+class Town:
+    """Places and ways."""
+
+    def __init__(self, **places: tuple[float, float]) -> None:
+        self.places = places
+        self.walled: set[str] = set()
+        self.system = RlaSystem(2, 1.0, others={MID: Space(3, RADIUS, np.array([1.0, 1.0, 0.0]))})
+        self.follow_ups: Counter[tuple[int, int]] = Counter()
+        self.seen: dict[int, Seen] = {}
+
+    def at(self, place: str) -> Vector:
+        """The situation there."""
+        return np.array([*self.places[place], float(place in self.walled)])
+
+    def teach(self, place: str, action: str) -> int:
+        """Something can be done at a place; the id of the new RLA."""
+        rla_id = self.system.next_id
+        self.system.apply(created(rla_id, tuple(self.at(place).tolist()), action, level=MID))
+        return rla_id
+
+    def way(self, start: str, action: str, end: str, ticks: float = 800.0) -> int:
+        """Taught, and gone once."""
+        rla_id = self.teach(start, action)
+        self.seen[rla_id] = Seen(self.at(end), ticks)
+        return rla_id
+
+    def group_at(self, situation: Vector) -> tuple[Rla, ...]:
+        """The RLAs on the place that a situation is at."""
+        match = self.system.match(situation, level=MID)
+        return self.system.competitors(match.rla) if match is not None and match.known else ()
+
+    def charting(self) -> Charting:
+        """Begin a chart of what is known now."""
+        return charting(self.system.rlas_at(MID), self.group_at, self.followed, self.seen.get)
+
+    def chart(self) -> Chart:
+        """As it is known now."""
+        survey = Survey(self.charting(), Having({}, 0.0))
+        while not survey.step(1):
+            pass
+        assert survey.chart is not None
+        return survey.chart
+
+    def followed(self, rla_id: int) -> dict[int, int]:
+        """How often each RLA followed one."""
+        return {after: times for (before, after), times in self.follow_ups.items() if before == rla_id}
+
+    def distance(self, a: Vector, b: Vector) -> float:
+        """In the mid level's space."""
+        return float(np.linalg.norm((a - b)[:2]))

@@ -1,0 +1,156 @@
+"""A robot on a line: its situation is one number, and all that learns goes on behind it, one tick in a call."""
+
+from behaviors.judges.judge import AppraisalFeatures
+from kurt2rt.core.basic.basic_level import BasicLevel
+from kurt2rt.core.critic.agreement import Agreement
+from kurt2rt.core.critic.critic import Critic
+from kurt2rt.core.critic.settings import (
+    AgreementSettings,
+    BestSettings,
+    CriticSettings,
+    NeedSettings,
+    SignalEverySettings,
+)
+from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.reinforcement.decision_history import RecentDecisions
+from kurt2rt.core.reinforcement.reinforcement import Reinforcement
+from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
+from kurt2rt.core.reinforcement.settings import LonelyWorths, ReinforcementSettings, TaughtWorths
+from kurt2rt.core.rla.rla import CRITIC, Appraised, Phase, RlaDeleted, RlaRewarded, TeachingEvent
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.space import Space
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.teaching.authority import Authority
+from kurt2rt.core.teaching.command_handler import School
+from kurt2rt.core.teaching.commands import Command, CommandResult, Drive, Reward, Watch
+from tests.core.critic.helpers import FREE, SETTINGS, appraisal, origin
+from tests.core.helpers import MINIMUM_TICKS, RADIUS, Counted, sensed, situation
+
+PERIOD_S = 0.01
+SIGNALS_ONLY = ReinforcementSettings(
+    step_s=100.0,
+    with_teacher=TaughtWorths(
+        first_value=0.5, highest_value=None, sunk_below=-0.2, well_above=-0.2, blamed_share=0.001
+    ),
+    alone=LonelyWorths(first_value=0.5, sunk_below=-0.2, well_above=-0.2, blamed_share=0.001),
+)
+"""Values change by signals alone, so that they can be told in one's head; three blames sink an RLA."""
+
+SHARE = 0.5
+"""Corrections, and answers to what was withdrawn, replace within this share of RADIUS."""
+
+CALM = FREE
+CRASHED = FREE._replace(front_m=0.05, bumped=1.0)
+
+QUICK = SETTINGS.model_copy(
+    update={
+        "think_every_ticks": 1,
+        "patience_s": 0.0,
+        "agreement": AgreementSettings(bound=0.8, window=5, least=2, apart_s=0.0),
+        "signal_every_s": SignalEverySettings(bad=0.1, good=0.2),
+        "need": NeedSettings(bad_share=0.0, mean_s=1.0, first_s=0.0),
+        "best": BestSettings(window_s=1.0, margin=0.1),
+    }
+)
+"""A critic that is trusted after two signals of each value, and speaks ten times a second."""
+
+
+def knows_good_from_bad(first_id: int = 100) -> list[TeachingEvent]:
+    """What a critic was taught that thinks well of CALM and ill of CRASHED, and is trusted."""
+    return [
+        appraisal(first_id, "good", CALM),
+        appraisal(first_id + 1, "bad", CRASHED),
+        *(Appraised(name, value, 1, origin()) for name, value in (("good", 1), ("bad", -1)) for _ in range(5)),
+    ]
+
+
+class Track:
+    """A level with the actions a, b and c, its school, and everything that learns."""
+
+    def __init__(
+        self,
+        *events: TeachingEvent,
+        reinforcement: ReinforcementSettings | None = None,
+        critic: CriticSettings = QUICK,
+        phase: Phase = Phase.REINFORCEMENT,
+        saved: Statistics | None = None,
+    ) -> None:
+        space = Space(len(critic.names), critic.learning.radius, critic.weight_vector)
+        self.system = RlaSystem(1, RADIUS, others={CRITIC: space})
+        self.recent = RecentDecisions(1)
+        self.reinforcement = Reinforcement(self.system, self.recent, reinforcement or SIGNALS_ONLY, PERIOD_S)
+        self.reinforcement.recall(events, saved)
+        actions = {name: Counted() for name in "abc"}
+        choice = self.reinforcement.choice
+        self.level = BasicLevel(self.system, actions, MINIMUM_TICKS, Wanted(), choice)
+        self.critic = Critic(self.system, critic)
+        self.agreement = Agreement(critic.agreement, critic.values, PERIOD_S)
+        self.agreement.hear_all(events)
+        self.self_teaching = SelfTeaching(self.reinforcement, self.system, critic, self.agreement, PERIOD_S)
+        self.self_teaching.recall(events, saved)
+        self.school = School(
+            self.level,
+            Authority(actions, attended=False),
+            insert_beyond_share=SHARE,
+            taken_command_ids=(event.origin.command_id for event in events),
+            reinforcement=self.reinforcement,
+            critic=self.critic,
+            agreement=self.agreement,
+            self_teaching=self.self_teaching,
+        )
+        self.school.phase = phase
+        self.events = list(events)
+        self.learnt: list[TeachingEvent] = []
+        """Of the last call of `go`."""
+        self.tick = 0
+        self._commands = 0
+
+    def go(
+        self, place: float, ticks: int = 1, seen: AppraisalFeatures = CALM, because: Cause | None = None
+    ) -> Decision:
+        """So many ticks in one place; returns the last decision."""
+        self.learnt = []
+        for _ in range(ticks):
+            self.tick += 1
+            opinion = self.critic.think(self.tick, seen)
+            decision = self.level.decide(situation(place), sensed(), because)
+            self.recent.remember(
+                self.tick, situation(place), decision, blind=False, circumstances=seen, opinion=opinion
+            )
+            self.learnt += self.school.learn(self.tick, decision, opinion)
+        self.events += self.learnt
+        return decision
+
+    def say(self, command: Command, place: float = 0.0) -> CommandResult:
+        """A command arrives before the next tick, which takes it."""
+        assert not isinstance(command, Watch | Drive)
+        result, event = self.school.attend(command, situation(place), self.tick + 1)
+        if event is not None:
+            self.events.append(event)
+        return result
+
+    def signal(self, value: int, about: int | None = None) -> RlaRewarded:
+        """The teacher praises or blames; the event that comes of it."""
+        self._commands += 1
+        result = self.say(Reward(f"signal-{self._commands}", "Ann", value, about))
+        assert result.accepted, result.outcome
+        event = self.events[-1]
+        assert isinstance(event, RlaRewarded)
+        return event
+
+    def worth(self, rla_id: int) -> float:
+        return self.reinforcement.worth(rla_id)
+
+    @property
+    def actions(self) -> dict[int, str]:
+        """Of the living RLAs at the wheels."""
+        return {rla.rla_id: rla.action for rla in self.system.rlas}
+
+    @property
+    def hash(self) -> str:
+        return self.system.knowledge_hash()
+
+
+def deleted_ids(events: list[TeachingEvent]) -> list[int]:
+    return [event.rla_id for event in events if isinstance(event, RlaDeleted)]

@@ -1,0 +1,96 @@
+"""Who is meant by a signal about a tick."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hal.robot import STANDSTILL
+from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.reinforcement.decision_history import RecentDecisions
+from kurt2rt.core.reinforcement.eligibility_trace import Trace, trace_of
+from tests.core.helpers import situation
+
+TRACE_TICKS = 70.0
+D = math.exp(-1 / TRACE_TICKS)
+
+
+def drives(*rlas: int | None, answers: bool = True, first_tick: int = 1) -> RecentDecisions:
+    """One RLA a tick; None: the robot stood."""
+    recent = RecentDecisions(1)
+    for tick, rla_id in enumerate(rlas, first_tick):
+        remember(recent, tick, rla_id, answers=answers)
+    return recent
+
+
+def remember(recent: RecentDecisions, tick: int, rla_id: int | None, *, answers: bool = True) -> None:
+    action = None if rla_id is None else "a"
+    decision = Decision(STANDSTILL, Cause.RLA, action, rla_id, None, answers and rla_id is not None)
+    recent.remember(tick, situation(0.0), decision, blind=False)
+
+
+def trace(recent: RecentDecisions, tick: int, since: dict[int, int] | None = None) -> Trace:
+    return trace_of(recent, tick, trace_ticks=TRACE_TICKS, most_transitions=3, since=since or {})
+
+
+def test_each_tick_counts_less_the_longer_it_is_ago() -> None:
+    shares = trace(drives(7, 7, 8), 3).shares
+    assert shares == {7: pytest.approx((1 - D) * (D + D * D)), 8: pytest.approx(1 - D)}
+
+
+def test_who_drove_for_long_has_nearly_all_of_it() -> None:
+    shares = trace(drives(*[7] * 1000), 1000).shares
+    assert shares == {7: pytest.approx(1.0, abs=0.002)}
+
+
+def test_a_late_signal_does_not_mean_the_one_that_drives_now() -> None:
+    recent = drives(*[7] * 100, *[8] * 100)
+    assert trace(recent, 100).shares.keys() == {7}
+    assert trace(recent, 101).shares[8] == pytest.approx(1 - D)
+
+
+def test_a_robot_that_stands_or_is_outside_the_radius_blames_nobody() -> None:
+    assert trace(drives(None, None, None), 3) == Trace({}, ())
+    assert trace(drives(7, 8, 7, answers=False), 3) == Trace({}, ())
+
+
+def test_while_the_robot_stands_what_was_before_fades() -> None:
+    shares = trace(drives(*[7] * 50, *[None] * 20), 70).shares
+    assert shares == {7: pytest.approx((1 - D**50) * D**20)}
+
+
+def test_what_an_rla_did_with_another_action_is_not_its_fault() -> None:
+    recent = drives(*[7] * 100)
+    assert trace(recent, 100, {7: 91, 8: 500}).shares == {7: pytest.approx(1 - D**10)}
+    assert trace(recent, 90, {7: 91}).shares == {}
+
+
+def test_ticks_that_are_forgotten_or_were_missed_count_for_nobody() -> None:
+    recent = drives(*[7] * 10)
+    remember(recent, 20, 8)
+    shares = trace(recent, 20).shares
+    assert shares == {7: pytest.approx((1 - D**10) * D**10), 8: pytest.approx(1 - D)}
+    assert trace(recent, 1015).shares == {}
+
+
+def test_the_last_transitions_are_told_newest_first_and_standing_ends_the_chain() -> None:
+    recent = drives(1, 1, 2, 3, None, 4, 4, 5, 6, 6, 7)
+    assert trace(recent, 11).transitions == ((6, 7), (5, 6), (4, 5))
+    assert trace(recent, 7).transitions == ((2, 3), (1, 2))
+    assert trace(recent, 2).transitions == ()
+
+
+@given(st.lists(st.sampled_from([None, 1, 2, 3]), min_size=1, max_size=200), st.integers(0, 199))
+def test_shares_are_what_the_sum_over_all_ticks_says(rlas: list[int | None], back: int) -> None:
+    tick = max(1, len(rlas) - back)
+    expected: dict[int, float] = {}
+    for k, rla_id in enumerate(rlas[:tick], 1):
+        if rla_id is not None:
+            expected[rla_id] = expected.get(rla_id, 0.0) + (1 - D) * D ** (tick - k)
+    shares = trace(drives(*rlas), tick).shares
+    assert sum(shares.values()) <= 1.0 + 1e-12
+    for rla_id, share in expected.items():
+        assert shares.get(rla_id, 0.0) == pytest.approx(share, abs=0.001)
+    assert not np.isnan(list(shares.values())).any()

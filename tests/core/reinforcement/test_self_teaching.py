@@ -1,0 +1,351 @@
+"""The critic in its teacher's place: what a trusted one may do, and what is taken back."""
+
+import pytest
+
+from behaviors.judges.judge import AppraisalFeatures
+from kurt2rt.core.critic.settings import BestSettings
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.rla.outcome import Outcome, ResultCode
+from kurt2rt.core.rla.rla import (
+    CRITIC,
+    MID,
+    LessonUndone,
+    Origin,
+    Phase,
+    RlaCreated,
+    RlaDeleted,
+    RlaRewarded,
+    TeachingEvent,
+)
+from kurt2rt.core.teaching.commands import Correct, Undo
+from tests.core.helpers import sensed, situation
+from tests.core.reinforcement.helpers import (
+    CALM,
+    CRASHED,
+    QUICK,
+    SIGNALS_ONLY,
+    Track,
+    deleted_ids,
+    knows_good_from_bad,
+)
+from tests.core.rla.helpers import created
+from tests.teacher.helpers import teach
+
+HERE, THERE = 0.0, 50.0
+KNOWN = (created(1, (HERE,), "a"), created(2, (THERE,), "b"))
+
+
+def alone(phase: Phase = Phase.AUTONOMOUS) -> Track:
+    """A robot that knows a little, with a critic that is trusted."""
+    robot = Track(*KNOWN, *knows_good_from_bad(), reinforcement=SIGNALS_ONLY, phase=phase)
+    assert robot.agreement.trusted
+    return robot
+
+
+def at_work() -> Track:
+    """The same one after its first window, in which it only looked."""
+    robot = alone()
+    robot.go(THERE, 50, CALM)
+    robot.go(HERE, 50, CALM)
+    return robot
+
+
+def lose_trust(robot: Track) -> None:
+    """A teacher comes and finds good what the critic thinks ill of."""
+    for number in range(5):
+        told = Origin(f"doubt-{number}", "Ann", Phase.AUTONOMOUS, robot.tick)
+        event = RlaRewarded(2, 1, robot.tick, told, (), said=-1)
+        robot.school.learning.apply(event)
+        robot.events.append(event)
+    assert not robot.agreement.trusted
+
+
+def changes(robot: Track) -> list[TeachingEvent]:
+    return [event for event in robot.events if event.origin.teacher == CRITIC]
+
+
+def test_what_the_critic_finds_bad_is_mended_without_a_teacher() -> None:
+    robot = alone()
+    while not changes(robot):
+        robot.go(HERE, 1, CRASHED)
+    (event,) = changes(robot)
+    assert isinstance(event, RlaCreated)
+    assert (event.rla.condition, event.rla.action) == ((HERE,), "b")
+    assert (event.origin.teacher, event.origin.phase) == (CRITIC, Phase.AUTONOMOUS)
+    assert robot.go(HERE).action == "b"
+
+
+def test_what_it_finds_good_is_worth_more() -> None:
+    robot = at_work()
+    robot.go(HERE, 100, CALM)
+    assert robot.worth(1) > 0.5
+    assert changes(robot) == []
+
+
+@pytest.mark.parametrize("phase", [Phase.SUPERVISED, Phase.CORRECTIONS, Phase.REINFORCEMENT, Phase.CRITIC])
+def test_while_there_is_a_teacher_the_critic_only_listens(phase: Phase) -> None:
+    robot = alone(phase)
+    robot.go(HERE, 300, CRASHED)
+    assert changes(robot) == []
+    assert robot.worth(1) == 0.5
+
+
+def test_a_critic_that_is_not_trusted_changes_nothing() -> None:
+    robot = Track(*KNOWN, *knows_good_from_bad()[:2], phase=Phase.AUTONOMOUS)
+    assert not robot.agreement.trusted
+    known = robot.hash
+    robot.go(HERE, 300, CRASHED)
+    robot.go(THERE, 300, CALM)
+    assert (robot.hash, robot.learnt, changes(robot)) == (known, [], [])
+    assert (robot.worth(1), robot.worth(2)) == (0.5, 0.5)
+
+
+def test_when_trust_is_lost_it_goes_back_to_listening() -> None:
+    robot = at_work()
+    robot.go(HERE, 10, CRASHED)
+    assert robot.worth(1) < 0.5
+    lose_trust(robot)
+    known, worth = robot.hash, robot.worth(1)
+    robot.go(HERE, 300, CRASHED)
+    assert (robot.hash, robot.worth(1), changes(robot)) == (known, worth, [])
+
+
+def test_it_says_nothing_of_a_robot_that_stands_or_asks() -> None:
+    robot = at_work()
+    robot.go(25.0, 300, CRASHED)
+    assert changes(robot) == []
+    assert (robot.worth(1), robot.worth(2)) == (0.5, 0.5)
+
+
+def crowded() -> Track:
+    """Many RLAs close together, and nothing that they do is right."""
+    known = (created(n, (3.0 * n,), "abc"[n % 3]) for n in range(1, 12))
+    robot = Track(*known, *knows_good_from_bad(), reinforcement=SIGNALS_ONLY, phase=Phase.AUTONOMOUS)
+    for turn in range(40):
+        robot.go(3.0 * (turn * 7 % 12), 80, CRASHED)
+    return robot
+
+
+def test_all_its_changes_have_ids_of_their_own_and_can_be_undone() -> None:
+    robot = crowded()
+    known = Track(*robot.events[: 11 + len(knows_good_from_bad())]).hash
+    made = changes(robot)
+    assert {type(event) for event in made} == {RlaCreated, RlaDeleted}
+    assert len(made) > 20
+    assert len({event.origin.command_id for event in robot.events}) == len(robot.events)
+    while any(record.event.origin.teacher == CRITIC and not record.undone for record in robot.system.lessons):
+        assert robot.say(Undo(f"undo-{len(robot.events)}", "Ann")).accepted
+    assert robot.hash == known
+
+
+def test_its_changes_are_the_same_when_the_journal_is_read_again() -> None:
+    robot = crowded()
+    again = Track(*robot.events, reinforcement=SIGNALS_ONLY, phase=Phase.AUTONOMOUS)
+    assert again.hash == robot.hash
+    for place, action in ((80.0, "a"), (85.0, "b")):
+        again.say(teach(action, f"t-{action}"), place)
+    again.go(80.0, 200, CRASHED)  # and what comes then has new ids, which the system would refuse otherwise
+    assert len({event.origin.command_id for event in again.events}) == len(again.events)
+    assert len(changes(again)) > len(changes(robot))
+
+
+def test_it_deletes_nothing_where_no_neighbour_would_answer() -> None:
+    robot = alone()
+    robot.go(HERE, 1500, CRASHED)
+    assert not robot.go(HERE).asking
+
+
+class Judged:
+    """A robot that does well for a while, and then badly."""
+
+    def __init__(self) -> None:
+        self.robot = alone()
+        self.robot.go(THERE, 100, CALM)  # a good window
+        self.known = self.robot.hash
+
+    def bad_window(self) -> None:
+        self.robot.go(HERE, 100, CRASHED)
+
+
+def test_when_its_score_falls_its_changes_are_undone_and_the_best_knowledge_is_back() -> None:
+    story = Judged()
+    robot = story.robot
+    robot.go(HERE, 99, CRASHED)
+    assert robot.hash != story.known
+    robot.go(HERE, 1, CRASHED)
+    undone = [event for event in robot.learnt if isinstance(event, LessonUndone)]
+    assert undone
+    assert {event.origin.teacher for event in undone} == {CRITIC}
+    assert robot.hash == story.known
+    assert robot.go(THERE).action == "b"
+
+
+def test_what_is_come_back_to_is_worth_what_it_was_in_the_best_window() -> None:
+    story = Judged()
+    robot, worth = story.robot, story.robot.worth(2)
+    while not changes(robot):
+        robot.go(HERE, 1, CRASHED)
+    (event,) = changes(robot)
+    assert isinstance(event, RlaCreated)
+    assert event.rla.condition == (THERE,)  # RLA 2 had sunk
+    assert robot.worth(2) < worth
+    while not robot.self_teaching.measures:  # a roll-back ends the window
+        robot.go(HERE, 1, CRASHED)
+    assert robot.worth(2) == worth
+
+
+def test_what_others_have_earned_meanwhile_and_what_a_teacher_said_outlasts_a_roll_back() -> None:
+    story = Judged()
+    robot = story.robot
+    robot.go(THERE, 10, CALM)
+    robot.signal(1)
+    of_teacher = dict(robot.reinforcement.rule.values)
+    assert of_teacher
+    while not any(isinstance(event, LessonUndone) for event in changes(robot)):
+        worths = [robot.worth(rla_id) for rla_id in (1, 2)]
+        robot.go(HERE, 1, CRASHED)
+    assert {event.rla.condition for event in changes(robot) if isinstance(event, RlaCreated)} == {(HERE,)}
+    assert robot.hash == story.known
+    assert dict(robot.reinforcement.rule.values) == of_teacher
+    assert deleted_ids(changes(robot)) == [1]  # it had sunk
+    assert worths[1] != 0.5
+    assert [robot.worth(rla_id) for rla_id in (1, 2)] == [0.5, worths[1]]  # nothing was changed at RLA 2's condition
+
+
+def test_a_teachers_own_lessons_are_not_rolled_back() -> None:
+    story = Judged()
+    robot = story.robot
+    while not changes(robot):
+        robot.go(HERE, 1, CRASHED)
+    (event,) = changes(robot)
+    assert isinstance(event, RlaCreated)
+    tried, (place,) = event.rla.rla_id, event.rla.condition
+    assert robot.go(place, 1, CRASHED).rla_id == tried
+    assert robot.say(Correct("c-1", "Ann", "c"), place).outcome == Outcome.of(
+        ResultCode.RLA_CORRECTED, rla=tried, action="c", was="a"
+    )
+    robot.go(HERE, 100, CRASHED)
+    assert robot.actions[tried] == "c"
+
+
+@pytest.mark.parametrize("seen", [CALM, CRASHED])
+def test_in_its_first_window_it_only_looks(seen: AppraisalFeatures) -> None:
+    robot = alone()
+    known = robot.hash
+    robot.go(HERE, 100, seen)
+    assert (robot.hash, robot.worth(1), changes(robot)) == (known, 0.5, [])
+    robot.go(HERE, 1, seen)
+    assert robot.worth(1) != 0.5
+
+
+def test_after_a_roll_back_it_only_looks_for_a_window() -> None:
+    story = Judged()
+    story.bad_window()
+    robot, known, told = story.robot, story.robot.hash, len(changes(story.robot))
+    assert isinstance(changes(robot)[-1], LessonUndone)
+    robot.go(HERE, 100, CRASHED)
+    assert (robot.hash, len(changes(robot))) == (known, told)
+    robot.go(HERE, 400, CRASHED)
+    assert len(changes(robot)) > told
+
+
+def test_what_a_hand_does_neither_proves_nor_disproves_the_knowledge() -> None:
+    robot = alone()
+    for _ in range(300):
+        robot.tick += 1
+        stands = robot.level.decide(situation(HERE), sensed(), Cause.TEACHER)
+        by_hand = stands._replace(action="b")
+        robot.school.learn(robot.tick, by_hand, robot.critic.think(robot.tick, CRASHED))
+    robot.go(HERE, 100, CRASHED)  # its first window, in which it only looks
+    assert robot.worth(1) == 0.5
+    robot.go(HERE, 1, CRASHED)
+    assert robot.worth(1) < 0.5
+
+
+def test_whenever_it_is_left_alone_again_it_looks_first() -> None:
+    robot = at_work()
+    robot.school.phase = Phase.SUPERVISED
+    robot.go(HERE, 10, CRASHED)
+    robot.school.phase = Phase.AUTONOMOUS
+    robot.go(HERE, 100, CRASHED)
+    assert changes(robot) == []
+    robot.go(HERE, 100, CRASHED)
+    assert changes(robot) != []
+
+
+def started_again(robot: Track) -> Track:
+    saved = robot.self_teaching.with_best(robot.reinforcement.to_save())
+    return Track(*robot.events, reinforcement=SIGNALS_ONLY, phase=Phase.AUTONOMOUS, saved=saved)
+
+
+def test_what_was_not_proven_when_the_robot_was_switched_off_is_to_be_proven_when_it_is_on_again() -> None:
+    story = Judged()
+    story.robot.go(HERE, 90, CRASHED)
+    assert story.robot.hash != story.known
+    robot = started_again(story.robot)
+    assert robot.hash == story.robot.hash
+    robot.go(HERE, 99, CRASHED)
+    assert robot.hash == story.robot.hash  # it only looks
+    robot.go(HERE, 1, CRASHED)
+    assert robot.hash == story.known
+    again = started_again(robot)  # and what is come back to is measured as it is
+    again.go(HERE, 100, CRASHED)
+    assert again.hash == story.known
+
+
+def test_what_was_proven_before_the_robot_was_switched_off_stays() -> None:
+    robot = alone()
+    robot.go(HERE, 100, CRASHED)  # what it is measured against
+    while not changes(robot):
+        robot.go(HERE, 1, CRASHED)
+    made = robot.hash
+    robot.go(THERE, 200, CALM)  # two good windows: in the first one it was changed
+    again = started_again(robot)
+    again.go(HERE, 100, CRASHED)
+    assert again.hash == robot.hash == made
+
+
+def test_a_score_that_falls_a_little_is_chance() -> None:
+    best = QUICK.model_copy(update={"best": BestSettings(window_s=1.0, margin=2.0)})
+    robot = Track(*KNOWN, *knows_good_from_bad(), reinforcement=SIGNALS_ONLY, critic=best, phase=Phase.AUTONOMOUS)
+    robot.go(THERE, 100, CALM)
+    known = robot.hash
+    robot.go(HERE, 100, CRASHED)
+    assert robot.hash != known
+
+
+def test_the_same_senses_give_the_same_changes() -> None:
+    def story() -> Track:
+        robot = alone()
+        for turn in range(10):
+            robot.go((HERE, THERE)[turn % 2], 120, (CRASHED, CALM, CRASHED)[turn % 3])
+        return robot
+
+    one, again = story(), story()
+    assert changes(one)
+    assert changes(one) == changes(again)
+    assert one.hash == again.hash
+
+
+def test_a_try_that_was_rolled_back_is_not_made_again() -> None:
+    known = (created(1, (HERE,), "a"), created(2, (THERE,), "b"), created(3, (-THERE,), "c"))
+    robot = Track(*known, *knows_good_from_bad(), reinforcement=SIGNALS_ONLY, phase=Phase.AUTONOMOUS)
+    for _ in range(10):
+        robot.go(THERE, 100, CALM)
+        robot.go(HERE, 100, CRASHED)
+    rolled_back = [event.lesson for event in robot.events if isinstance(event, LessonUndone)]
+    tries = [(event.rla.condition, event.rla.action) for event in changes(robot) if isinstance(event, RlaCreated)]
+    assert rolled_back
+    assert len(tries) == len(set(tries)), tries
+
+
+def test_a_way_that_the_mid_level_does_not_know_is_no_fault_of_what_was_changed() -> None:
+    robot = Judged().robot
+    while not changes(robot):
+        robot.go(HERE, 1, CRASHED)
+    known = robot.hash
+    for _ in range(300):
+        robot.tick += 1
+        stands = robot.level.decide(situation(HERE), sensed(), Cause.UNKNOWN)._replace(asks_at=MID)
+        assert robot.school.learn(robot.tick, stands, robot.critic.think(robot.tick, CALM)) == []
+    assert robot.hash == known

@@ -1,0 +1,103 @@
+"""RLAs on the very same condition, and those around them."""
+
+import numpy as np
+import pytest
+
+from kurt2rt.core.rla.rla import CRITIC, Rla, TeachingEvent
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.space import Space
+from tests.core.rla.helpers import created, deleted, replaced, undone, withdrawn
+
+
+def system_of(*events: TeachingEvent) -> RlaSystem:
+    system = RlaSystem(2, 5.0, others={CRITIC: Space(2, 1.0)})
+    system.apply_all(events)
+    return system
+
+
+def rla_of(system: RlaSystem, rla_id: int) -> Rla:
+    rla = system.get(rla_id)
+    assert rla is not None
+    return rla
+
+
+def competing(system: RlaSystem, rla_id: int) -> list[int]:
+    return [rla.rla_id for rla in system.competitors(rla_of(system, rla_id))]
+
+
+def around(system: RlaSystem, rla_id: int, count: int) -> list[int]:
+    return [rla.rla_id for rla in system.neighbours(rla_of(system, rla_id), count)]
+
+
+def test_an_rla_alone_on_its_condition_competes_with_nobody_but_itself() -> None:
+    system = system_of(created(1, (0.0, 0.0)), created(2, (0.0, 1e-300)))
+    assert system.competitors(rla_of(system, 1)) == (rla_of(system, 1),)
+    assert competing(system, 2) == [2]
+
+
+def test_competitors_are_of_the_same_level_behaviour_and_condition_the_oldest_first() -> None:
+    system = system_of(
+        created(1, (1.0, 2.0)),
+        created(2, (1.0, 2.0), behaviour="turn_left"),
+        created(3, (1.0, 2.0), "bad", level=CRITIC),
+        created(4, (1.0, 2.0), "back"),
+        created(5, (2.0, 1.0)),
+        created(6, (1.0, 2.0), "left"),
+    )
+    assert competing(system, 1) == competing(system, 4) == competing(system, 6) == [1, 4, 6]
+    assert (competing(system, 2), competing(system, 3)) == ([2], [3])
+
+
+def test_whoever_is_changed_deleted_or_brought_back_is_so_for_its_competitors() -> None:
+    system = system_of(created(1, (0.0, 0.0)), created(2, (0.0, 0.0)), created(3, (0.0, 0.0)))
+    system.apply(replaced(2, "back", "forward"))
+    system.apply(withdrawn(3))
+    assert [rla.action for rla in system.competitors(rla_of(system, 1))] == ["forward", "back", "ask"]
+    gone = rla_of(system, 1)
+    system.apply(deleted(1))
+    assert competing(system, 2) == [2, 3]
+    assert system.competitors(gone) == system.competitors(rla_of(system, 2))  # those on its place
+    system.apply(undone("deletion-1"))
+    assert competing(system, 3) == [1, 2, 3]
+
+
+def test_where_the_last_one_was_deleted_nobody_competes() -> None:
+    system = system_of(created(1, (0.0, 0.0)))
+    gone = rla_of(system, 1)
+    system.apply(deleted(1))
+    assert system.competitors(gone) == ()
+    system.apply(created(2, (0.0, 0.0)))
+    assert competing(system, 2) == [2]
+
+
+def test_neighbours_are_the_nearest_others_with_another_condition() -> None:
+    system = system_of(
+        created(1, (0.0, 0.0)),
+        created(2, (0.0, 0.0), "back"),
+        created(3, (3.0, 0.0)),
+        created(4, (-1.0, 0.0)),
+        created(5, (3.0, 0.0), "left"),
+        created(6, (0.0, 9.0)),
+        created(7, (0.1, 0.0), behaviour="turn_left"),
+        created(8, (0.1, 0.0), "bad", level=CRITIC),
+    )
+    assert around(system, 1, 9) == around(system, 2, 9) == [4, 3, 5, 6]  # of equally near ones the older first
+    assert around(system, 1, 2) == [4, 3]
+    assert around(system, 7, 9) == around(system, 8, 9) == around(system, 1, 0) == []
+
+
+def test_neighbours_of_one_that_was_deleted_are_those_around_its_place() -> None:
+    system = system_of(created(1, (0.0, 0.0)), created(2, (1.0, 0.0)))
+    gone = rla_of(system, 1)
+    system.apply(deleted(1))
+    assert [rla.rla_id for rla in system.neighbours(gone, 5)] == [2]
+
+
+@pytest.mark.parametrize(("weights", "nearest"), [((1.0, 1.0), 2), ((1.0, 0.1), 3)])
+def test_neighbours_are_near_by_the_weights_of_their_level(weights: tuple[float, float], nearest: int) -> None:
+    for level in ("basic", CRITIC):
+        space = Space(2, 1.0, np.array(weights))
+        system = RlaSystem(2, 1.0, space.weights, others={CRITIC: space})
+        for rla_id, condition in {1: (0.0, 0.0), 2: (3.0, 0.0), 3: (0.0, 9.0)}.items():
+            system.apply(created(rla_id, condition, level=level))
+        assert around(system, 1, 1) == [nearest]

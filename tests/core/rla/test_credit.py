@@ -1,0 +1,56 @@
+"""Packed credits are the tuple of them to everybody who looks."""
+
+import pickle
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurt2rt.core.rla.credit import Credit, PackedCredits, packed
+from kurt2rt.core.rla.rla import Origin, Phase, RlaRewarded
+
+_IDS = st.integers(1, 2**32 - 1)
+_CREDITS = st.lists(st.builds(Credit, _IDS, st.floats(allow_nan=False), st.none() | _IDS), min_size=1, max_size=20).map(
+    tuple
+)
+_ORIGIN = Origin("c-1", "Ann", Phase.REINFORCEMENT, 0)
+
+
+@given(_CREDITS, _CREDITS)
+def test_they_are_their_credits_to_the_last_bit(a: tuple[Credit, ...], b: tuple[Credit, ...]) -> None:
+    credits_ = packed(a)
+    assert isinstance(credits_, PackedCredits)
+    assert [(each.rla_id, each.change.hex(), each.before) for each in credits_] == [
+        (each.rla_id, each.change.hex(), each.before) for each in a
+    ]
+    assert (len(credits_), credits_[0], credits_[1:]) == (len(a), a[0], a[1:])
+    assert credits_ == a
+    assert a == credits_
+    assert (credits_ == packed(b)) == (a == b)
+    assert (hash(credits_), repr(credits_)) == (hash(a), repr(a))
+    assert pickle.loads(pickle.dumps(credits_)) == credits_
+
+
+@pytest.mark.parametrize(
+    "credit",
+    [
+        Credit(0, 1.0),
+        Credit(2**32, 1.0),
+        Credit(True, 1.0),
+        Credit(1, 1),
+        Credit(1, 1.0, 0),
+        Credit(1, 1.0, 2**32),
+    ],
+)
+def test_what_is_no_sound_credit_stays_for_others_to_refuse(credit: Credit) -> None:
+    credits_ = (Credit(1, 1.0), credit)
+    assert packed(credits_) is credits_
+
+
+def test_a_reward_keeps_its_credits_in_little_room() -> None:
+    credits_ = tuple(Credit(rla_id, 0.1, rla_id + 1) for rla_id in range(1, 41))
+    rewarded = RlaRewarded(1, 1, 7, _ORIGIN, credits_)
+    assert isinstance(rewarded.credits, PackedCredits)
+    assert len(rewarded.credits.packed) == 16 * len(credits_)
+    assert RlaRewarded(1, 1, 7, _ORIGIN).credits == ()
+    assert rewarded == RlaRewarded(1, 1, 7, _ORIGIN, packed(credits_))

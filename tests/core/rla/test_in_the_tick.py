@@ -1,0 +1,228 @@
+"""Both levels learn what follows while the robot drives, with and without a teacher, through the whole tick."""
+
+import numpy as np
+import pytest
+
+from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.core.expectations.surprise import Surprise
+from kurt2rt.core.rla.expectation import Expectation, pack
+from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.teaching.commands import (
+    BeAt,
+    Command,
+    Correct,
+    DeleteRla,
+    NameSituation,
+    Pursue,
+    Resume,
+    Stop,
+    Teach,
+    Undo,
+)
+from kurt2rt.core.tick import TickRecord
+from tests.core.rla.helpers import created
+from tests.core.test_tick_learning import TASK, Drive
+from tests.core.test_tick_with_mid_level import LENGTH, STREETS, Town, another_way, the_way
+
+NEAR, FAR = 400, 50
+
+
+@pytest.fixture
+def drive() -> Drive:
+    """Taught to go forward near things, and to bear left far from them; stands between two lessons."""
+    drive = Drive()
+    drive.run(Teach("near", "Ann", "forward"), counts=NEAR)
+    drive.run(Stop("s-0", "Ann"))
+    drive.run(Teach("far", "Ann", "bear_left"), counts=FAR)
+    drive.run(Resume("r-0", "Ann"), counts=NEAR)
+    return drive
+
+
+def going_on_from(drive: Drive) -> Drive:
+    """Another run of that robot's program."""
+    return Drive(drive.notebook.events, saved=drive.runtime.to_save())
+
+
+def comes_and_goes(drive: Drive, times: int = 1, far: int = FAR) -> None:
+    """Near things for a while, then away from them for two ticks."""
+    for _ in range(times):
+        drive.run(counts=NEAR, ticks=30)
+        drive.run(counts=far, ticks=12)
+
+
+def test_what_follows_an_rla_is_learned_in_phase_1_and_without_a_teacher(drive: Drive) -> None:
+    comes_and_goes(drive, times=3)
+    expected = drive.runtime.expecting.of(1)
+    assert expected is not None
+    assert expected.count == 3
+    assert 30 <= expected.ticks < 31
+    assert expected.mean[:18].tolist() == [float(FAR)] * 18  # the readings
+
+
+def test_the_tick_in_which_an_rla_ends_tells_how_surprising_that_is(drive: Drive) -> None:
+    comes_and_goes(drive, times=8)
+    drive.run(counts=NEAR, ticks=30)
+    as_ever = drive.run(counts=FAR)
+    assert as_ever.surprise is not None
+    assert (as_ever.surprise.rla_id, as_ever.surprise.follow_up, as_ever.surprise.surprising) == (1, 2, False)
+    assert drive.run(ticks=11).surprise is None
+    drive.run(counts=NEAR, ticks=30)
+    other = drive.run(counts=FAR + 60)
+    assert other.surprise is not None
+    assert other.surprise.surprising
+
+
+def test_a_critic_may_look_at_surprise(drive: Drive) -> None:
+    shipped = load_critic()
+    held = shipped.perception.model_copy(update={"surprise_held_s": 0.05})
+    task = TASK.model_copy(update={"critic": shipped.model_copy(update={"perception": held})})
+    again = Drive(drive.notebook.events, task=task)
+    again.run(Resume("r-1", "Ann"), counts=NEAR)
+    comes_and_goes(again, times=8)
+    again.run(counts=NEAR, ticks=30)
+    before = again.run(counts=FAR + 60)
+    assert before.surprise is not None
+    assert before.surprise.surprising
+    seen = [again.run().circumstances for _ in range(7)]
+    assert [each.surprised for each in seen if each is not None] == [1.0] * 5 + [0.0] * 2
+
+
+def test_a_robot_that_is_stopped_expects_nothing_of_it(drive: Drive) -> None:
+    drive.run(counts=NEAR, ticks=30)
+    drive.run(Stop("s", "Ann"), counts=FAR, ticks=5)
+    assert drive.runtime.expecting.of(1) is None
+
+
+def test_expectations_are_saved_and_gone_on_from(drive: Drive) -> None:
+    comes_and_goes(drive, times=8)
+    saved = drive.runtime.to_save()
+    assert {rla_id: each.count for rla_id, each in saved.expectations.items()} == {1: 8, 2: 7}
+    again = going_on_from(drive)
+    again.run(counts=NEAR, ticks=30)
+    record = again.run(counts=FAR + 60)
+    assert record.surprise is not None
+    assert record.surprise.surprising
+    assert again.runtime.to_save().expectations[1].count == 9
+
+
+def test_a_correction_a_deletion_and_an_undo_take_expectations_with_them(drive: Drive) -> None:
+    comes_and_goes(drive, times=3)
+    drive.run(Correct("c", "Ann", "curve_left"), counts=NEAR)
+    assert set(drive.runtime.to_save().expectations) == {2}
+    comes_and_goes(drive, times=2)
+    drive.run(Undo("u", "Ann", "c"))
+    assert set(drive.runtime.to_save().expectations) == {2}
+    drive.run(DeleteRla("d", "Ann", 2))
+    assert drive.runtime.to_save().expectations == {}
+    drive.run(Undo("v", "Ann", "d"))
+    assert drive.runtime.to_save().expectations == {}
+
+
+def test_what_is_expected_at_a_level_that_does_not_drive_here_is_kept() -> None:
+    place = created(3, (1.0,) * LENGTH, level=MID)
+    foreign = Expectation("lesson-3", 4, 800.0, pack(np.ones(LENGTH)), pack(np.zeros(LENGTH)))
+    drive = Drive([created(1, (0.0,) * 72), place], saved=Statistics(expectations={3: foreign, 9: foreign}))
+    assert drive.runtime.to_save().expectations == {3: foreign}
+
+
+@pytest.fixture
+def town() -> Town:
+    """Stands before its first junction and has been told to go straight on there; RLA 4 says so."""
+    town = Town()
+    town.way_to_the_first_junction()
+    town.run(the_way("straight_on", "first"))
+    return town
+
+
+def symbols(town: Town, rla_id: int) -> list[float]:
+    expected = town.runtime.expecting.of(rla_id)
+    assert expected is not None
+    mean: list[float] = expected.mean.tolist()
+    return mean
+
+
+def test_at_the_mid_level_the_history_behind_the_junction_is_expected(town: Town) -> None:
+    before = np.array(town.runtime.level.system.rlas_at(MID)[0].condition)
+    town.junction(1)
+    after = symbols(town, 4)
+    assert after[1:] == before[:-1].tolist()
+    assert after[0] != before[0]
+    expected = town.runtime.to_save().expectations[4]
+    assert expected.count == 1
+    assert 30 < expected.ticks < 60
+
+
+def test_what_is_taught_at_an_unknown_place_is_what_followed(town: Town) -> None:
+    for quarters in (1, 1, -1, 1, 1, -1, 1):
+        town.junction(quarters)
+    assert town.run().decision.asks_at == MID
+    assert town.runtime.to_save().expectations[4].count == 6
+    town.run(the_way("turn_right"))
+    assert town.runtime.to_save().expectations[4].count == 7
+
+
+def test_where_the_teacher_led_nothing_is_expected_of_it(town: Town) -> None:
+    town.run(Pursue("p", "Ann", "turn_left"))
+    town.junction(1)
+    assert town.runtime.expecting.of(4) is None
+
+
+def test_set_down_elsewhere_what_comes_next_follows_from_nothing(town: Town) -> None:
+    town.junction(1)
+    assert town.runtime.to_save().expectations[4].count == 1
+    town.runtime.set_down()
+    town.way_to_the_first_junction()
+    assert town.runtime.to_save().expectations[4].count == 1
+
+
+def test_who_is_told_where_it_stands_did_not_get_there_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tests.core.test_tick_with_mid_level.ROUTE", STREETS.model_copy(update={"mid": "places"}))
+    town = Town()
+    town.way_to_the_first_junction()
+    town.run(NameSituation("n", "Ann", "door"))
+    town.run(the_way("straight_on", "first"))
+    town.junction()
+    town.run(the_way("straight_on", "second"))  # RLA 5
+    assert town.runtime.to_save().expectations[4].count == 1
+    town.street()
+    (told,) = town.run(BeAt("b", "Ann", "door")).results
+    assert told.accepted, told.outcome
+    town.street()
+    saved = town.runtime.to_save()
+    assert 5 not in saved.expectations
+    assert saved.uses[4] == 1
+
+
+def test_a_correction_on_the_way_leaves_the_corrected_one_without_an_end(town: Town) -> None:
+    town.junction()
+    town.run(another_way("turn_left", "c-1"))  # RLA 5
+    town.junction(1)
+    counts = {rla_id: each.count for rla_id, each in town.runtime.to_save().expectations.items() if rla_id > 3}
+    assert counts == {4: 1, 5: 1}
+
+
+def test_a_junction_that_was_passed_otherwise_than_ever_is_a_surprise() -> None:
+    town = ToldOf()
+    town.way_to_the_first_junction()
+    for number in range(3 * LENGTH):
+        if town.run().decision.asks_at == MID:
+            town.run(the_way("straight_on", f"way-{number}"))
+        town.junction()
+    town.surprises.clear()
+    town.junction()
+    town.junction(1)
+    assert [(each.level, each.surprising) for each in town.surprises] == [(MID, False), (MID, True)]
+
+
+class ToldOf(Town):
+    """Keeps the surprises that its ticks tell."""
+
+    def __init__(self) -> None:
+        self.surprises: list[Surprise] = []
+        super().__init__()
+
+    def run(self, *commands: Command) -> TickRecord:
+        record = super().run(*commands)
+        self.surprises += [] if record.surprise is None else [record.surprise]
+        return record

@@ -1,0 +1,158 @@
+"""Levels: the critic's RLAs beside those that drive, in one history of lessons; and actions that were withdrawn."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurt2rt.core.rla.outcome import Outcome, RefusalCode
+from kurt2rt.core.rla.rla import ASK, CRITIC, Appraised, TeachingEvent, rla_title
+from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
+from kurt2rt.core.rla.space import Space
+from tests.core.rla.helpers import created, deleted, origin, replaced, undone, withdrawn
+from tests.examples import examples
+
+CRITICS = Space(3, 0.5, np.array([1.0, 1.0, 0.0]))
+
+
+def system_of(*events: TeachingEvent) -> RlaSystem:
+    system = RlaSystem(2, 5.0, others={CRITIC: CRITICS})
+    system.apply_all(events)
+    return system
+
+
+def test_each_level_answers_situations_of_its_own_in_its_own_space() -> None:
+    system = system_of(created(1, (0.0, 0.0)), created(2, (0.0, 0.0, 9.0), "bad", level=CRITIC))
+    driving = system.match(np.array([3.0, 4.0]))
+    appraising = system.match(np.array([0.3, 0.4, -9.0]), level=CRITIC)
+    assert driving is not None
+    assert appraising is not None
+    assert (driving.rla.rla_id, driving.distance, driving.radius, driving.known) == (1, 5.0, 5.0, True)
+    assert (appraising.rla.rla_id, appraising.distance, appraising.radius, appraising.known) == (2, 0.5, 0.5, True)
+    assert driving.runner_up is appraising.runner_up is None
+    assert system.match(np.zeros(3), "turn_left", CRITIC) is None
+
+
+@pytest.mark.parametrize("known", [1, 3])
+def test_from_a_situation_that_is_nowhere_everything_is_far(known: int) -> None:
+    system = RlaSystem(2, 5.0)
+    system.apply_all(created(number, (float(number), 0.0)) for number in range(1, known + 1))
+    match = system.match(np.array([np.nan, 0.0]))
+    assert match is not None
+    assert (match.rla.rla_id, match.distance, match.runner_up_distance, match.known) == (1, np.inf, np.inf, False)
+
+
+def test_ids_lessons_and_undo_run_through_all_levels_and_the_rest_is_the_basic_ones() -> None:
+    system = system_of(
+        created(1, (0.0, 0.0)),
+        created(2, (0.0, 0.0, 0.0), "good", level=CRITIC),
+        created(3, (1.0, 0.0)),
+        replaced(2, "bad", "good"),
+    )
+    assert (len(system), [rla.rla_id for rla in system.rlas], system.next_id) == (2, [1, 3], 4)
+    assert [(rla.rla_id, rla.action) for rla in system.rlas_at(CRITIC)] == [(2, "bad")]
+    assert system.rlas_at("reflexes") == ()
+    assert (system.standing_lessons, system.last_standing_lesson) == (4, "correction-2")
+    system.apply(deleted(2))
+    assert (system.rlas_at(CRITIC), len(system), system.get(2)) == ((), 2, None)
+    system.apply_all([undone("deletion-2"), undone("correction-2"), undone("lesson-1")])
+    assert [(rla.rla_id, rla.action) for rla in system.rlas_at(CRITIC)] == [(2, "good")]
+    assert len(system) == 1
+
+
+def test_a_condition_must_have_the_length_of_its_level() -> None:
+    system = system_of()
+    for event in (created(1, (0.0, 0.0), level=CRITIC), created(1, (0.0, 0.0, 0.0))):
+        with pytest.raises(InvalidEventError, match=r"RLA 1: condition has . values, this system matches"):
+            system.apply(event)
+    assert (system.next_id, system.lessons) == (1, ())
+
+
+def test_a_robot_without_a_critic_keeps_what_it_was_taught_and_answers_nothing_by_it() -> None:
+    system = RlaSystem(2, 5.0)
+    whole = system_of()
+    lessons = (created(1, (0.0,) * 3, "bad", level=CRITIC), created(2, (0.0, 0.0)), replaced(1, "good", "bad"))
+    for each in (system, whole):
+        each.apply_all(lessons)
+    (appraisal,) = system.rlas_at(CRITIC)
+    assert system.match(np.zeros(3), level=CRITIC) is None
+    assert (system.competitors(appraisal), system.neighbours(appraisal, 3)) == ((appraisal,), ())
+    assert system.knowledge_hash() == whole.knowledge_hash()
+    system.apply_all([deleted(1), undone("deletion-1"), undone("correction-1")])
+    assert [rla.action for rla in system.rlas_at(CRITIC)] == ["bad"]
+
+
+def test_the_knowledge_hash_tells_levels_and_withdrawn_actions_apart() -> None:
+    taught = [
+        system_of(created(1, (1.0, 2.0, 3.0), "bad", level=CRITIC)),
+        system_of(created(1, (1.0, 2.0, 3.0), "good", level=CRITIC)),
+        system_of(created(1, (1.0, 2.0), "bad")),
+        system_of(created(1, (1.0, 2.0), "bad"), withdrawn(1, "bad")),
+    ]
+    assert len({system.knowledge_hash() for system in taught}) == len(taught)
+
+
+def test_where_an_action_was_withdrawn_the_nearest_rla_is_told_and_nothing_is_known() -> None:
+    system = system_of(created(1, (0.0, 0.0)), created(2, (3.0, 0.0), "back"), withdrawn(1))
+    here = system.match(np.array([0.0, 0.0]))
+    beside = system.match(np.array([2.0, 0.0]))
+    assert here is not None
+    assert beside is not None
+    assert (here.rla.rla_id, here.rla.action, here.rla.asks, here.known) == (1, ASK, True, False)
+    assert here.rla.condition == (0.0, 0.0)
+    assert (beside.rla.rla_id, beside.known) == (2, True)
+    system.apply(replaced(1, "left", ASK))
+    again = system.match(np.array([0.0, 0.0]))
+    assert again is not None
+    assert (again.rla.action, again.known) == ("left", True)
+
+
+@pytest.mark.parametrize(
+    ("event", "why"),
+    [
+        (created(2, (1.0, 0.0), ASK), "'ask' is no action that can be taught"),
+        (replaced(1, ASK, "forward"), "'ask' is no action that can be taught"),
+        (withdrawn(7), "there is no RLA 7"),
+        (withdrawn(1, command_id="again"), "RLA 1 asks already; its action cannot be withdrawn twice"),
+    ],
+)
+def test_asking_is_no_action_and_comes_only_by_a_withdrawal(event: TeachingEvent, why: str) -> None:
+    system = system_of(created(1, (0.0, 0.0)), withdrawn(1))
+    before = system.knowledge_hash(), system.lessons, system.next_id
+    with pytest.raises(InvalidEventError, match=why):
+        system.apply(event)
+    assert (system.knowledge_hash(), system.lessons, system.next_id) == before
+
+
+def test_an_opinion_that_the_critic_shared_is_no_lesson_and_changes_nothing() -> None:
+    system = system_of(created(1, (0.0, 0.0)))
+    before = system.knowledge_hash(), system.lessons
+    system.apply(Appraised("good", 1, 99, origin("same", 100)))
+    assert (system.knowledge_hash(), system.lessons) == before
+    assert system.why_not_undo("same") == Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson="same")
+
+
+def test_how_an_rla_is_spoken_of() -> None:
+    assert rla_title(17, "") == "RLA 17"
+    assert rla_title(17, "turn_left") == "RLA 17 of turn_left"
+    assert rla_title(40, "", CRITIC) == created(40, (), level=CRITIC).rla.title == "appraisal RLA 40"
+    assert rla_title(3, "", "reflex") == "reflex RLA 3"
+
+
+@examples(60)
+@given(st.lists(st.tuples(st.integers(-5, 5), st.booleans()), min_size=1, max_size=12), st.integers(-6, 6))
+def test_passing_over_those_that_ask_is_as_if_they_were_not_there(taught: list[tuple[int, bool]], place: int) -> None:
+    every = [created(number, (float(x), 0.0)) for number, (x, _) in enumerate(taught, 1)]
+    asking = [number for number, (_, asks) in enumerate(taught, 1) if asks]
+    system = system_of(*every, *(withdrawn(number) for number in asking))
+    without = system_of(*every, *(deleted(number) for number in asking))
+    here = np.array([float(place), 1.0])
+    passed_over, expected = system.match(here, asking=False), without.match(here)
+    assert (passed_over is None) == (expected is None)
+    if passed_over is not None and expected is not None:
+        assert passed_over.rla == expected.rla
+        assert (passed_over.distance, passed_over.radius) == (expected.distance, expected.radius)
+        if not system.match(here).rla.asks:  # type: ignore[union-attr] # there is one
+            return  # who is behind the nearest is told as ever
+        assert passed_over.runner_up == expected.runner_up
+        assert passed_over.runner_up_distance == expected.runner_up_distance

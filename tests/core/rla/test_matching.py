@@ -1,0 +1,193 @@
+"""The match: whatever the conditions, the winner is the one that a float64 brute force names."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from kurt2rt.core.rla.matching import ConditionIndex, exact_distances, exact_square
+from tests.examples import examples
+
+Point = tuple[float, ...]
+
+
+def index_of(conditions: list[Point]) -> ConditionIndex:
+    index = ConditionIndex(len(conditions[0]))
+    for condition in conditions:
+        index.append(condition)
+    return index
+
+
+def assert_right(index: ConditionIndex, conditions: NDArray[np.float64], situation: NDArray[np.float64]) -> None:
+    """Compare the index with a brute force over all living conditions."""
+    nearest = index.nearest(situation)
+    if len(conditions) == 0:
+        assert nearest is None
+        return
+    assert nearest is not None
+    distances = exact_distances(conditions, situation)
+    assert nearest.position == int(distances.argmin())  # the first of equal ones is the older
+    assert nearest.distance == float(distances.min())  # bit for bit
+    if len(conditions) == 1:
+        assert (nearest.runner_up, nearest.runner_up_distance) == (-1, math.inf)
+        return
+    distances[nearest.position] = math.inf
+    others = np.delete(distances, nearest.position)
+    assert nearest.runner_up_distance == float(others.min())  # bit for bit, too
+    if math.isfinite(nearest.runner_up_distance):
+        assert nearest.runner_up == int(distances.argmin())
+
+
+_STEPS = st.integers(-3, 3).map(float)
+_SCALES = (1.0, 1e-150, 1e-22, 1e-19, 1e-7, 1e7, 1e18, 1e19, 1e25, 1e40, 1e150)
+KINDS_OF_VALUES: tuple[st.SearchStrategy[float], ...] = (
+    st.integers(0, 1023).map(float),  # what the sensors give
+    st.integers(0, 2).map(float),  # many duplicates
+    _STEPS.map(lambda step: 500.0 + step * 1e-9),  # float32 sees one point only
+    _STEPS.map(lambda step: 1e6 + step),  # far from the origin, close together
+    _STEPS.map(lambda step: 1e9 + step * 1e-6),
+    *(st.floats(-1.0, 1.0, width=16).map(scale.__mul__) for scale in _SCALES),
+    st.sampled_from((0.0, 1e-22, 1.0, 1e9, 1e17, 1e20)),  # all sizes in one set
+)
+"""One kind is drawn for a whole set of conditions: each hides a rounding trouble of its own."""
+
+
+@st.composite
+def worlds(draw: st.DrawFn) -> tuple[list[tuple[Point, int] | int], list[Point]]:
+    """Inserts (a point, and where), removals (which of the living), and situations to ask about."""
+    values = draw(st.sampled_from(KINDS_OF_VALUES))
+    points: st.SearchStrategy[Point] = st.tuples(*[values] * draw(st.integers(1, 6)))
+    at_the_end = st.tuples(points, st.just(-1))  # as lessons come; elsewhere, as deletions are undone
+    somewhere = st.tuples(points, st.integers(0, 1000))
+    steps = draw(st.lists(st.one_of(at_the_end, at_the_end, somewhere, st.integers(0, 1000)), max_size=40))
+    return steps, draw(st.lists(points, min_size=1, max_size=3))
+
+
+@given(worlds())
+@examples(400)
+@example(([((1.5e19,), -1), ((2.7e19,), -1)], [(1.3e19,)]))
+@example(([((0.3,), -1), ((0.6,), -1)], [(1e16,)]))
+@example(([((2.1e-22,), -1), ((1.2e-22,), -1)], [(1.7e-22,)]))
+@example(([((3e20, 0.0), -1), ((1.0, 0.0), -1)], [(2.0, 0.0)]))
+def test_winner_is_that_of_a_brute_force_after_any_inserts_and_removals(
+    world: tuple[list[tuple[Point, int] | int], list[Point]],
+) -> None:
+    steps, situations = world
+    index = ConditionIndex(len(situations[0]))
+    living: list[Point] = []
+    for step in steps:
+        if isinstance(step, tuple):
+            point, place = step
+            position = len(living) if place < 0 else place % (len(living) + 1)
+            index.insert(position, point)
+            living.insert(position, point)
+        elif living:
+            index.remove(step % len(living))
+            del living[step % len(living)]
+    assert len(index) == len(living)
+    conditions = np.array(living).reshape(len(living), len(situations[0]))
+    for point in [*situations, *living[:3]]:
+        assert_right(index, conditions, np.array(point))
+
+
+@given(st.integers(0, 2**32), st.sampled_from((3, 8, 9, 36, 72, 129, 200)), st.integers(1, 150))
+@examples(100)
+def test_winner_in_as_many_dimensions_as_a_situation_has(seed: int, dimensions: int, size: int) -> None:
+    """Half the values are whole counts, half are averages of up to 1000 counts, as Perception makes them."""
+    chance = np.random.default_rng(seed)
+    half = dimensions // 2
+    rows = np.concatenate(
+        (
+            chance.integers(60, 560, (size, dimensions - half)).astype(float),
+            chance.integers(60_000, 560_000, (size, half)) / 1000,
+        ),
+        axis=1,
+    )
+    rows[chance.integers(0, size, size // 3)] = rows[chance.integers(0, size, size // 3)]  # duplicates
+    index = index_of([tuple(row) for row in rows.tolist()])
+    between = 0.5 * (rows[0] + rows[-1])
+    for situation in (rows[size // 2], rows[0] + 1e-10, between, chance.uniform(0, 600, dimensions)):
+        assert_right(index, rows, situation)
+
+
+def clustered(count: int, spread: float) -> NDArray[np.float64]:
+    chance = np.random.default_rng(5)
+    centres = chance.uniform(70, 550, (12, 72))
+    rows: NDArray[np.float64] = centres[chance.integers(0, 12, count)] + chance.normal(0.0, spread, (count, 72))
+    return rows
+
+
+@pytest.mark.parametrize("spread", [30.0, 1e-10])
+def test_winner_among_5000_clustered_conditions(spread: float) -> None:
+    rows = clustered(5000, spread)
+    index = index_of([tuple(row) for row in rows.tolist()])
+    chance = np.random.default_rng(6)
+    for position in chance.integers(0, 5000, 20):
+        assert_right(index, rows, rows[position] + chance.normal(0.0, spread, 72))
+
+
+def test_of_duplicates_the_older_wins_also_when_the_oldest_was_removed() -> None:
+    index = index_of([(9.0, 9.0), (1.0, 2.0), (1.0, 2.0), (1.0, 2.0)])
+    situation = np.array([1.0, 2.0])
+    first = index.nearest(situation)
+    index.remove(1)
+    second = index.nearest(situation)
+    assert first is not None
+    assert second is not None
+    assert (first.position, first.runner_up) == (1, 2)
+    assert (second.position, second.runner_up) == (1, 2)
+    assert second.distance == second.runner_up_distance == 0.0
+
+
+def test_a_condition_that_comes_back_to_its_place_is_again_the_older_one() -> None:
+    index = index_of([(9.0, 9.0), (1.0, 2.0), (1.0, 2.0)])
+    index.remove(1)
+    index.insert(1, (1.0, 2.0))
+    assert index.nearest(np.array([1.0, 2.0])) == (1, 0.0, 2, 0.0)
+
+
+def test_a_far_condition_that_was_taken_out_leaves_no_trace() -> None:
+    near = clustered(200, 30.0)
+    rows = [tuple(row) for row in near.tolist()]
+    index, visited = index_of(rows), index_of(rows)
+    visited.append((1e30,) * 72)
+    visited.remove(200)
+    for situation in near[:20] + 1.0:
+        assert visited.nearest(situation) == index.nearest(situation)  # the runner-up's rough distance as well
+
+
+def test_a_situation_that_is_not_a_number_is_near_to_nothing() -> None:
+    nearest = index_of([(1.0, 2.0), (3.0, 4.0)]).nearest(np.array([math.nan, 0.0]))
+    assert nearest is not None
+    assert not nearest.distance <= 1e300
+
+
+@pytest.mark.parametrize(
+    ("condition", "problem"),
+    [((1.0,), "has 1 values, this system matches 2"), ((1.0, math.nan), "finite"), ((math.inf, 0.0), "finite")],
+)
+def test_a_condition_that_cannot_be_matched_is_refused_and_changes_nothing(condition: Point, problem: str) -> None:
+    index = index_of([(1.0, 2.0)])
+    with pytest.raises(ValueError, match=problem):
+        index.append(condition)
+    assert len(index) == 1
+    assert_right(index, np.array([[1.0, 2.0]]), np.array([1.0, 2.5]))
+
+
+@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=200), st.integers(1, 20))
+def test_a_sum_of_squares_is_the_same_alone_and_among_others(values: list[float], rows: int) -> None:
+    row = np.array(values)
+    distances = exact_distances(np.tile(row, (rows, 1)), np.zeros(len(row)))
+    assert set(distances.tolist()) == {math.sqrt(exact_square(row))}
+
+
+@pytest.mark.parametrize("dimensions", [1, 72, 10_000])
+def test_many_distances_are_those_of_each_alone(dimensions: int) -> None:
+    conditions = np.random.default_rng(1).normal(0.0, 100.0, (300, dimensions))
+    situation = conditions.mean(axis=0)
+    alone = [math.sqrt(exact_square(row - situation)) for row in conditions]
+    assert exact_distances(conditions, situation).tolist() == alone
+    assert exact_distances(conditions[:0], situation).shape == (0,)

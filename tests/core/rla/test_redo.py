@@ -1,0 +1,118 @@
+"""Redo: a lesson that was taken back stands again, where its RLA is as the lesson found it."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurt2rt.core.rla.outcome import Outcome, RefusalCode
+from kurt2rt.core.rla.reward_counts import Appraisal
+from kurt2rt.core.rla.rla import ASK, Appraised, KnowledgeMerged, LessonRedone, TeachingEvent
+from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
+from tests.core.rla.helpers import created, deleted, named, origin, replaced, rewarded, undone, withdrawn
+from tests.examples import examples
+
+FIRST = created(1, (0.0, 0.0))
+SECOND = created(2, (9.0, 0.0), "left")
+
+
+def redone(lesson: str) -> LessonRedone:
+    return LessonRedone(lesson, origin(f"redo-{lesson}", 4500))
+
+
+def system_of(*events: TeachingEvent) -> RlaSystem:
+    system = RlaSystem(2, 5.0)
+    system.apply_all(events)
+    return system
+
+
+@pytest.mark.parametrize(
+    "lesson",
+    [
+        created(3, (4.0, 0.0), command_id="it"),
+        replaced(1, "back", "forward", "it"),
+        withdrawn(1, command_id="it"),
+        deleted(1, "it"),
+        rewarded(1, -1, "it"),
+        named("door", (1.0, 2.0), command_id="it"),
+    ],
+)
+def test_what_was_undone_and_redone_is_as_if_nothing_had_been(lesson: TeachingEvent) -> None:
+    taught = system_of(FIRST, SECOND, lesson)
+    again = system_of(FIRST, SECOND, lesson, undone("it"), redone("it"))
+    assert again.knowledge_hash() == taught.knowledge_hash()
+    assert (again.rlas, again.lessons, again.next_id) == (taught.rlas, taught.lessons, taught.next_id)
+    assert again.named_at("basic") == taught.named_at("basic")
+    assert again.appraisal(1) == taught.appraisal(1)
+    assert again.last_standing_lesson == "it"
+    assert again.last_undone_lesson is None
+    again.apply(undone("it"))
+    assert again.knowledge_hash() == system_of(FIRST, SECOND).knowledge_hash()
+
+
+def test_several_come_back_in_the_order_in_which_they_were_taught() -> None:
+    system = system_of(FIRST, replaced(1, "back", "forward", "a"), replaced(1, "left", "back", "b"))
+    for lesson in ("b", "a", "lesson-1"):
+        system.apply(undone(lesson))
+    with pytest.raises(InvalidEventError, match=r"'b' was taught after 'a' \(RLA 1 corrected: back .*; redo that one"):
+        system.apply(redone("b"))
+    for lesson in ("lesson-1", "a", "b"):
+        assert system.last_undone_lesson == lesson
+        system.apply(redone(lesson))
+    assert [rla.action for rla in system.rlas] == ["left"]
+
+
+def test_where_another_lesson_has_taken_its_place_the_refusal_names_it() -> None:
+    system = system_of(FIRST, replaced(1, "back", "forward", "a"), undone("a"), replaced(1, ASK + "ed", "forward", "b"))
+    with pytest.raises(InvalidEventError, match=r"lesson 'b' came in the place of 'a' \(RLA 1 .*; undo that one first"):
+        system.apply(redone("a"))
+    system.apply(undone("b"))
+    system.apply(redone("a"))
+    assert [rla.action for rla in system.rlas] == ["back"]
+
+
+def test_what_stands_or_never_was_cannot_be_redone() -> None:
+    system = system_of(FIRST)
+    assert system.why_not_redo("lesson-1") == Outcome.of(RefusalCode.STANDS_ALREADY, lesson="lesson-1")
+    assert system.why_not_redo("lesson-9") == Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson="lesson-9")
+
+
+def test_a_reward_counts_again() -> None:
+    system = system_of(FIRST, rewarded(1, 1, "praise"), undone("praise"), redone("praise"))
+    assert system.appraisal(1) == Appraisal(rewards=1)
+
+
+def test_a_merge_changes_nothing_by_itself() -> None:
+    system = system_of(FIRST, KnowledgeMerged("b.knowledge", 7, "lesson-7", origin("merge-1")))
+    assert system.rlas == (FIRST.rla,)
+    assert len(system.lessons) == 1
+
+
+@examples(100)
+@given(st.lists(st.tuples(st.integers(0, 5), st.integers(0, 30)), max_size=40))
+def test_after_any_undoing_and_redoing_the_standing_lessons_alone_make_the_same_knowledge(
+    steps: list[tuple[int, int]],
+) -> None:
+    system = RlaSystem(2, 5.0)
+    for number, (what, which) in enumerate(steps):
+        living = [rla.rla_id for rla in system.rlas]
+        lessons = [record.event.origin.command_id for record in system.lessons]
+        event: TeachingEvent = Appraised("good", 1, 1, origin(f"nothing-{number}"))
+        if what == 0 or not living:
+            event = created(system.next_id, (float(which), 0.0), f"a{number}", command_id=f"c{number}")
+        elif what in (1, 2):
+            one = living[which % len(living)]
+            event = replaced(one, f"r{number}", "", f"c{number}") if what == 1 else deleted(one, f"c{number}")
+        elif what == 3 and lessons:
+            event = undone(lessons[which % len(lessons)])
+        elif lessons:
+            event = redone(lessons[which % len(lessons)])
+        try:
+            system.apply(event)
+        except InvalidEventError:
+            assert isinstance(event, type(undone("x")) | LessonRedone)
+    standing = RlaSystem(2, 5.0)
+    standing.apply_all(record.event for record in system.lessons if not record.undone)
+    assert system.rlas == standing.rlas
+    assert system.knowledge_hash() == standing.knowledge_hash()
+    assert system.last_standing_lesson == standing.last_standing_lesson
+    assert system.standing_lessons == standing.standing_lessons

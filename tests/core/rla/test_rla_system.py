@@ -1,0 +1,322 @@
+"""The RLA system: a fold of teaching events that answers situations."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurt2rt.core.rla.matching import exact_distances
+from kurt2rt.core.rla.rla import Phase, Rla, TeachingEvent
+from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
+from tests.core.rla.helpers import created, deleted, origin, replaced, rewarded, session, undone
+
+
+def system_of(*events: TeachingEvent, radius: float = 5.0) -> RlaSystem:
+    system = RlaSystem(2, radius)
+    system.apply_all(events)
+    return system
+
+
+def everything(system: RlaSystem) -> tuple[object, ...]:
+    """All that can be told of a system, to see that it did not change."""
+    return (
+        system.rlas,
+        system.next_id,
+        system.knowledge_hash(),
+        system.match(np.zeros(2)),
+        system.lessons,
+        system.standing_lessons,
+        system.last_standing_lesson,
+        system.appraisal(1),
+        system.appraisal(2),
+        system.teaching_ticks,
+    )
+
+
+def actions(system: RlaSystem) -> dict[int, str]:
+    return {rla.rla_id: rla.action for rla in system.rlas}
+
+
+def test_nothing_taught_matches_nothing() -> None:
+    system = system_of()
+    assert system.match(np.zeros(2)) is None
+    assert (len(system), system.next_id, system.rlas, system.get(1)) == (0, 1, (), None)
+
+
+def test_the_nearest_rla_answers_and_the_one_behind_it_is_named() -> None:
+    system = system_of(created(1, (0.0, 0.0), "back"), created(2, (10.0, 0.0)), created(3, (0.0, 30.0)))
+    match = system.match(np.array([7.0, 4.0]))
+    assert match is not None
+    assert match.rla.rla_id == 2
+    assert match.distance == 5.0
+    assert match.radius == 5.0
+    assert match.known  # the border belongs to the RLA
+    assert match.runner_up is not None
+    assert match.runner_up.rla_id == 1
+    assert match.runner_up_distance == pytest.approx(math.sqrt(65), rel=1e-6)
+
+
+def test_a_lone_rla_has_no_runner_up() -> None:
+    match = system_of(created(1, (0.0, 0.0))).match(np.array([100.0, 0.0]))
+    assert match is not None
+    assert (match.known, match.runner_up, match.runner_up_distance) == (False, None, math.inf)
+
+
+def test_an_own_radius_goes_before_that_of_the_system() -> None:
+    system = system_of(created(1, (0.0, 0.0), radius=2.0), created(2, (100.0, 0.0), radius=50.0))
+    near_first, near_second = system.match(np.array([3.0, 0.0])), system.match(np.array([140.0, 0.0]))
+    assert near_first is not None
+    assert near_second is not None
+    assert (near_first.radius, near_first.known) == (2.0, False)
+    assert (near_second.radius, near_second.known) == (50.0, True)
+
+
+@given(st.integers(0, 2**32))
+def test_a_situation_is_known_up_to_the_radius_and_not_a_bit_farther(seed: int) -> None:
+    chance = np.random.default_rng(seed)
+    rows = chance.integers(60, 560, (20, 72)) / chance.choice((1, 1000))
+    situation = rows[3] + chance.uniform(-9, 9, 72)
+    distance = float(exact_distances(rows, situation).min())
+    for radius, known in (
+        (distance, True),
+        (math.nextafter(distance, 0), False),
+        (math.nextafter(distance, 1e9), True),
+    ):
+        system = RlaSystem(72, radius)
+        system.apply_all(created(number, tuple(row)) for number, row in enumerate(rows.tolist(), start=1))
+        match = system.match(situation)
+        assert match is not None
+        assert (match.distance, match.known) == (distance, known)
+
+
+def test_a_replaced_action_keeps_id_condition_age_and_radius_and_has_a_new_origin() -> None:
+    system = system_of(created(1, (1.0, 2.0), "forward", radius=3.0), created(2, (1.0, 2.0), "back"))
+    correction = replaced(1, "spin_right", "forward")
+    system.apply(correction)
+    assert system.get(1) == Rla(1, (1.0, 2.0), "spin_right", 3.0, correction.origin)
+    match = system.match(np.array([1.0, 2.0]))
+    assert match is not None
+    assert match.rla.rla_id == 1  # still the older one
+
+
+def test_a_deleted_rla_is_gone_and_its_id_never_comes_back() -> None:
+    system = system_of(created(1, (0.0, 0.0)), created(2, (9.0, 0.0)), created(3, (9.5, 0.0)))
+    system.apply(deleted(3))
+    assert system.next_id == 4
+    assert system.get(3) is None
+    with pytest.raises(InvalidEventError, match="ids up to 3 are taken"):
+        system.apply(created(3, (9.5, 0.0), command_id="again"))
+    system.apply(deleted(1))
+    match = system.match(np.array([0.0, 0.0]))
+    assert match is not None
+    assert match.rla.rla_id == 2
+    system.apply(created(4, (0.0, 0.0), "back"))
+    assert actions(system) == {2: "forward", 4: "back"}
+    system.apply(replaced(4, "stand", "back"))  # positions have moved up, ids have not
+    assert actions(system) == {2: "forward", 4: "stand"}
+
+
+@pytest.mark.parametrize(
+    ("event", "problem"),
+    [
+        (created(2, (5.0, 5.0), command_id="again"), "RLA 2 cannot be created: ids up to 2 are taken"),
+        (created(0, (5.0, 5.0)), "RLA 0 cannot be created"),
+        (created(3, (5.0,)), "RLA 3: condition has 1 values, this system matches 2"),
+        (created(3, (5.0, 5.0, 5.0)), "RLA 3: condition has 3 values"),
+        (created(3, (5.0, math.nan)), "RLA 3: condition holds a value that is not finite"),
+        (replaced(1, "back", "forward"), "there is no RLA 1"),
+        (replaced(7, "back", "forward"), "there is no RLA 7"),
+        (deleted(1, "again"), "there is no RLA 1"),
+        (deleted(7), "there is no RLA 7"),
+        (rewarded(1), "there is no RLA 1"),
+        (rewarded(2, 0, "again"), "a reward of 0 for RLA 2: it must be 1 or -1"),
+        (created(3, (5.0, 5.0), command_id="lesson-2"), "command 'lesson-2' has taught a lesson already"),
+        (undone("lesson-9"), "there is no lesson 'lesson-9'"),
+        (undone("lesson-1"), r"lesson 'deletion-1' came after 'lesson-1' \(RLA 1 deleted\); undo that one first"),
+        (undone("reward-2"), "lesson 'reward-2' was undone already"),
+    ],
+)
+def test_an_event_that_does_not_fit_is_refused_and_changes_nothing(event: TeachingEvent, problem: str) -> None:
+    system = system_of(
+        created(1, (0.0, 0.0)), created(2, (9.0, 0.0)), deleted(1), rewarded(2), undone("reward-2"), *session(7)
+    )
+    before = everything(system)
+    with pytest.raises(InvalidEventError, match=problem):
+        system.apply(event)
+    assert everything(system) == before
+
+
+_ACTS = st.lists(
+    st.tuples(st.sampled_from("cccrd"), st.integers(0, 9), st.sampled_from(("forward", "back"))), max_size=40
+)
+
+
+@given(_ACTS, st.integers(0, 9))
+def test_any_lesson_folds_to_what_a_plain_dictionary_of_rlas_holds(acts: list[tuple[str, int, str]], at: int) -> None:
+    system, living, taught = system_of(radius=100.0), dict[int, tuple[float, str]](), 0
+    for count, (act, number, action) in enumerate(acts):
+        rla_id = number % (taught + 1) + 1
+        if act == "c":
+            taught += 1
+            system.apply(created(taught, (float(number), 0.0), action))
+            living[taught] = (float(number), action)
+        elif act == "r" and rla_id in living:
+            system.apply(replaced(rla_id, action, living[rla_id][1], f"act-{count}"))
+            living[rla_id] = (living[rla_id][0], action)
+        elif act == "d" and rla_id in living:
+            system.apply(deleted(rla_id))
+            del living[rla_id]
+    assert actions(system) == {rla_id: action for rla_id, (_, action) in living.items()}
+    assert [rla.rla_id for rla in system.rlas] == sorted(living)
+    assert system.next_id == taught + 1
+    match = system.match(np.array([float(at), 0.0]))
+    nearest = min(living, key=lambda rla_id: (abs(living[rla_id][0] - at), rla_id), default=None)
+    assert (None if match is None else match.rla.rla_id) == nearest
+
+
+def test_the_knowledge_hash_tells_every_difference_in_what_is_known() -> None:
+    first = created(1, (1.0, 2.0), "forward")
+    base = system_of(first)
+    others = [
+        system_of(),
+        system_of(created(2, (1.0, 2.0), "forward")),
+        system_of(created(1, (1.0, math.nextafter(2.0, 3.0)), "forward")),
+        system_of(created(1, (1.0, 2.0), "back")),
+        system_of(created(1, (1.0, 2.0), "forward", radius=5.0)),
+        system_of(created(1, (1.0, 2.0), "forward", behaviour="turn_left")),
+        system_of(created(1, (1.0, 2.0), "forward", behaviour="turn_right")),
+        system_of(first, created(2, (3.0, 4.0))),
+    ]
+    assert len({system.knowledge_hash() for system in (base, *others)}) == len(others) + 1
+
+
+def test_the_knowledge_hash_does_not_depend_on_who_taught_or_on_the_way_there() -> None:
+    direct = system_of(created(2, (1.0, 2.0), "back"))
+    by_bob = replace(origin("bobs"), teacher="Bob", phase=Phase.CORRECTIONS, tick=99)
+    detour = system_of(created(1, (5.0, 5.0)), created(2, (1.0, 2.0)), deleted(1))
+    detour.apply(replace(replaced(2, "back", "forward"), origin=by_bob))
+    assert detour.knowledge_hash() == direct.knowledge_hash()
+
+
+def test_the_knowledge_hash_is_of_numbers_not_of_how_they_were_written() -> None:
+    assert system_of(created(1, (1, 2))).knowledge_hash() == system_of(created(1, (1.0, 2.0))).knowledge_hash()
+
+
+def test_weights_say_how_much_each_feature_counts_and_leave_conditions_as_they_were_taught() -> None:
+    system = RlaSystem(2, 10.0, np.array([1.0, 0.5]))
+    system.apply(created(1, (0.0, 0.0)))
+    system.apply(created(2, (3.0, 40.0)))
+    match = system.match(np.array([3.0, 8.0]))
+    assert match is not None
+    assert match.rla.rla_id == 1
+    assert match.distance == 5.0
+    assert match.rla.condition == (0.0, 0.0)
+
+
+def test_a_weight_of_zero_leaves_a_feature_out() -> None:
+    system = RlaSystem(2, 10.0, np.array([1.0, 0.0]))
+    system.apply(created(1, (0.0, 1e9)))
+    match = system.match(np.array([4.0, -1e9]))
+    assert match is not None
+    assert match.distance == 4.0
+
+
+def test_the_knowledge_hash_of_a_task_without_named_behaviours_is_what_it_always_was() -> None:
+    system = system_of(created(1, (1.0, 2.0), "forward"), created(2, (3.0, 4.0), "back", radius=5.0))
+    assert system.knowledge_hash() == "b9a93b6acbee93fddd099ccc5652afdfc5d62e6f1f64db3d67a8c0b3e27715b9"
+
+
+def test_only_rlas_of_the_same_behaviour_compete() -> None:
+    system = system_of(
+        created(1, (0.0, 0.0), "forward", behaviour="straight_on"),
+        created(2, (0.0, 0.0), "back", behaviour="turn_left"),
+        created(3, (3.0, 0.0), "spin_left", behaviour="turn_left"),
+    )
+    match = system.match(np.array([0.0, 0.0]), "turn_left")
+    assert match is not None
+    assert match.runner_up is not None
+    assert (match.rla.rla_id, match.distance, match.runner_up.rla_id) == (2, 0.0, 3)
+    assert system.match(np.array([0.0, 0.0])) is None
+    assert system.match(np.array([0.0, 0.0]), "turn_right") is None
+    system.apply(deleted(2))
+    match = system.match(np.array([0.0, 0.0]), "turn_left")
+    assert match is not None
+    assert (match.rla.rla_id, match.runner_up) == (3, None)
+
+
+def test_a_corrected_rla_stays_what_it_belongs_to() -> None:
+    system = system_of(created(1, (0.0, 0.0), behaviour="turn_left"), replaced(1, "back", "forward"))
+    assert [(rla.action, rla.behaviour) for rla in system.rlas] == [("back", "turn_left")]
+    system.apply(undone("correction-1"))
+    assert [(rla.action, rla.behaviour) for rla in system.rlas] == [("forward", "turn_left")]
+
+
+_BEHAVIOURS = ("straight_on", "turn_left", "turn_right")
+_STEPS = st.lists(st.tuples(st.sampled_from("ccccrdu"), st.integers(0, 40), st.sampled_from(_BEHAVIOURS)), max_size=40)
+
+
+@given(_STEPS)
+def test_a_system_of_several_behaviours_is_as_good_as_a_system_for_each(steps: list[tuple[str, int, str]]) -> None:
+    together, alone = system_of(), {name: system_of() for name in _BEHAVIOURS}
+    for count, (act, number, behaviour) in enumerate(steps):
+        name, living, lessons = f"step-{count}", together.rlas, together.lessons
+        event: TeachingEvent
+        if act == "c":
+            point = (number % 5 / 3, number % 2 * 1e-9)  # few places, so that many are equally near
+            event = created(together.next_id, point, "forward", command_id=name, behaviour=behaviour)
+        elif act == "u" and lessons:
+            event = undone(lessons[-1 - number % len(lessons)].event.origin.command_id)
+            behaviour = lessons[-1 - number % len(lessons)].behaviour
+        elif living and act in "rd":
+            rla, behaviour = living[number % len(living)], living[number % len(living)].behaviour
+            event = replaced(rla.rla_id, "back", rla.action, name) if act == "r" else deleted(rla.rla_id, name)
+        else:
+            continue
+        try:
+            together.apply(event)
+        except InvalidEventError:  # an undo that may not be: nor may it there
+            with pytest.raises(InvalidEventError):
+                alone[behaviour].apply(event)
+        else:
+            alone[behaviour].apply(event)
+
+    for behaviour, system in alone.items():
+        assert tuple(rla for rla in together.rlas if rla.behaviour == behaviour) == system.rlas
+        for situation in ([0.0, 0.0], [1 / 3, 0.0], [0.4, 1e-9], [-7.0, 1e5]):
+            here = np.array(situation)
+            assert together.match(here, behaviour) == system.match(here, behaviour)  # bit for bit
+    assert together.standing_lessons == sum(system.standing_lessons for system in alone.values())
+    assert [rla.rla_id for rla in together.rlas] == sorted(rla.rla_id for rla in together.rlas)
+
+
+@pytest.mark.parametrize("most", [1, 2, 3, 5, 8, 20])
+def test_the_nearest_few_are_the_first_of_all_in_order_of_nearness_and_age(most: int) -> None:
+    places = (3.0, -3.0, 0.0, 7.0, 3.0, 1.0, -1.0, 3.0)
+    system = system_of(*(created(place, (at, 0.0)) for place, at in enumerate(places, start=1)))
+    assert system.competing() == len(places)
+    whole = system.nearest_first(np.array([0.0, 0.0]))
+    assert [rla_id for rla_id, _ in whole] == [3, 6, 7, 1, 2, 5, 8, 4]
+    assert system.nearest_first(np.array([0.0, 0.0]), most=most) == whole[:most]
+    lost = system.nearest_first(np.array([math.nan, 0.0]), most=most)
+    assert lost == tuple((rla_id, math.inf) for rla_id in range(1, 9))[:most]
+
+
+def test_the_lessons_about_one_rla_are_told_apart_from_all_others() -> None:
+    lessons = (
+        created(1, (0.0, 0.0)),
+        created(2, (1.0, 0.0)),
+        replaced(1, "back", "forward"),
+        rewarded(2, 1),
+        replaced(1, "stand", "back", "again"),
+    )
+    system = system_of(*lessons)
+    system.apply(undone(lessons[4].origin.command_id))
+    assert [(each.event, each.undone) for each in system.lessons_about(1)] == [
+        (lessons[0], False),
+        (lessons[2], False),
+        (lessons[4], True),
+    ]
+    assert system.lessons_about(3) == ()

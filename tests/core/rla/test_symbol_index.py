@@ -1,0 +1,150 @@
+"""Distances of symbols: whatever the histories, the winner is the one that a brute force names."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from kurt2rt.core.rla.rla import MID, TeachingEvent
+from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
+from kurt2rt.core.rla.space import Metric, Space
+from kurt2rt.core.rla.symbol_index import SymbolIndex, edit_distances, hamming_distances
+from tests.core.rla.helpers import created, deleted, replaced, undone
+
+Symbols = tuple[float, ...]
+
+HISTORIES = st.integers(1, 13).flatmap(
+    lambda length: st.lists(
+        st.tuples(*[st.integers(0, 4).map(float)] * length),
+        min_size=1,
+        max_size=12,
+    )
+)
+
+
+def edits(one: Symbols, other: Symbols) -> int:
+    """Levenshtein's distance, as the book has it."""
+    line = list(range(len(other) + 1))
+    for number, symbol in enumerate(one, start=1):
+        following = [number]
+        for place, theirs in enumerate(other):
+            following.append(min(line[place + 1] + 1, following[place] + 1, line[place] + (symbol != theirs)))
+        line = following
+    return line[-1]
+
+
+def index_of(histories: list[Symbols], *, by_edits: bool = False) -> SymbolIndex:
+    index = SymbolIndex(len(histories[0]), edits=by_edits)
+    for each in histories:
+        index.append(each)
+    return index
+
+
+@given(HISTORIES)
+def test_hamming_counts_the_places_that_differ(histories: list[Symbols]) -> None:
+    one, rows = histories[0], np.array(histories)
+    assert hamming_distances(rows, np.array(one)).tolist() == [
+        sum(a != b for a, b in zip(one, other, strict=True)) for other in histories
+    ]
+
+
+@given(HISTORIES)
+def test_edits_are_counted_for_all_rows_at_once_as_for_each_alone(histories: list[Symbols]) -> None:
+    one, rows = histories[0], np.array(histories)
+    assert edit_distances(rows, np.array(one)).tolist() == [edits(one, other) for other in histories]
+
+
+@given(HISTORIES, st.booleans())
+def test_the_oldest_of_the_nearest_wins_and_the_next_one_runs_up(histories: list[Symbols], by_edits: bool) -> None:
+    *taught, here = [*histories, histories[0]]
+    index = index_of(taught, by_edits=by_edits)
+    nearest = index.nearest(np.array(here))
+    assert nearest is not None
+    assert (nearest.position, nearest.distance) == (0, 0.0)
+    if len(taught) == 1:
+        assert (nearest.runner_up, nearest.runner_up_distance) == (-1, math.inf)
+    else:
+        others = index.distances(np.array(here))[1:].tolist()
+        assert nearest.runner_up_distance == min(others)
+        assert nearest.runner_up == 1 + others.index(min(others))
+
+
+def test_one_symbol_too_many_shifts_all_places_but_is_one_edit_and_one_at_the_end() -> None:
+    before, shifted = (1.0, 2.0, 3.0) * 4, (2.0, *(1.0, 2.0, 3.0) * 4)[:12]
+    here = np.array(shifted)
+    assert index_of([before]).distances(here).tolist() == [12.0]
+    assert index_of([before], by_edits=True).distances(here).tolist() == [2.0]
+
+
+def test_conditions_come_in_where_their_age_belongs_and_leave_again() -> None:
+    index = index_of([(1.0, 1.0), (3.0, 3.0)])
+    index.insert(1, (2.0, 2.0))
+    here = np.array([2.0, 3.0])
+    assert index.distances(here).tolist() == [2.0, 1.0, 1.0]
+    index.remove(0)
+    assert len(index) == 2
+    assert index.distances(here).tolist() == [1.0, 1.0]
+    assert SymbolIndex(2, edits=False).nearest(here) is None
+
+
+@pytest.mark.parametrize(("condition", "told"), [((1.0,), "1 values, this system matches 2"), ((1.0, math.nan), "fin")])
+def test_a_condition_that_does_not_fit_is_refused(condition: Symbols, told: str) -> None:
+    index = index_of([(1.0, 1.0)])
+    with pytest.raises(ValueError, match=told):
+        index.append(condition)
+    assert len(index) == 1
+
+
+def system_of(metric: Metric, *events: TeachingEvent) -> RlaSystem:
+    system = RlaSystem(2, 5.0, others={MID: Space(4, 1.0, None, metric)})
+    system.apply_all(events)
+    return system
+
+
+def matched(system: RlaSystem, *here: float) -> tuple[int, float, bool]:
+    at: NDArray[np.float64] = np.array(here)
+    match = system.match(at, level=MID)
+    assert match is not None
+    return match.rla.rla_id, match.distance, match.known
+
+
+def test_a_level_of_symbols_is_taught_undone_and_deleted_as_every_other() -> None:
+    system = system_of(
+        "hamming",
+        created(1, (1.0, 2.0, 3.0, 0.0), "turn_left", level=MID),
+        created(2, (3.0, 2.0, 1.0, 0.0), "straight_on", level=MID),
+    )
+    assert matched(system, 1.0, 2.0, 2.0, 0.0) == (1, 1.0, True)
+    assert matched(system, 3.0, 1.0, 2.0, 0.0) == (2, 2.0, False)
+    system.apply(replaced(1, "turn_right", "turn_left"))
+    system.apply(deleted(2))
+    assert matched(system, 3.0, 2.0, 1.0, 0.0) == (1, 2.0, False)
+    system.apply(undone("deletion-2"))
+    assert matched(system, 3.0, 2.0, 1.0, 0.0) == (2, 0.0, True)
+    assert system.rlas == ()
+    assert [rla.title for rla in system.rlas_at(MID)] == ["mid-level RLA 1", "mid-level RLA 2"]
+
+
+def test_by_edits_a_history_with_one_symbol_more_is_still_near() -> None:
+    taught = created(1, (1.0, 2.0, 3.0, 4.0), "turn_left", level=MID)
+    assert matched(system_of("hamming", taught), 4.0, 1.0, 2.0, 3.0) == (1, 4.0, False)
+    assert matched(system_of("edit", taught), 4.0, 1.0, 2.0, 3.0) == (1, 2.0, False)
+
+
+def test_every_event_that_is_applied_counts_as_a_change_and_one_that_does_not_fit_does_not() -> None:
+    system = system_of("hamming", created(1, (0.0,) * 4, level=MID))
+    before = system.changes
+    system.apply(replaced(1, "turn_left", "forward"))
+    assert system.changes == before + 1
+    with pytest.raises(InvalidEventError):
+        system.apply(deleted(7))
+    assert system.changes == before + 1
+
+
+def test_symbols_take_no_weights() -> None:
+    system = RlaSystem(2, 5.0, others={MID: Space(2, 1.0, np.ones(2), "hamming")})
+    with pytest.raises(ValueError, match="a space of metric hamming takes no weights"):
+        system.apply(created(1, (1.0, 1.0), level=MID))

@@ -1,0 +1,233 @@
+"""Undo: what a lesson made, changed, ended or rewarded is as it was before it."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurt2rt.core.rla.lesson_history import LessonRecord, rla_of
+from kurt2rt.core.rla.outcome import RefusalCode
+from kurt2rt.core.rla.reward_counts import Appraisal
+from kurt2rt.core.rla.rla import ASK, CRITIC, Lesson, RlaLesson, TeachingEvent
+from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
+from tests.core.rla.helpers import created, deleted, replaced, rewarded, session, undone, withdrawn
+from tests.examples import examples
+
+FIRST = created(1, (0.0, 0.0))
+SECOND = created(2, (0.0, 0.0), "back")
+THIRD = created(3, (9.0, 0.0), "left")
+
+
+def system_of(*events: TeachingEvent) -> RlaSystem:
+    system = RlaSystem(2, 5.0)
+    system.apply_all(events)
+    return system
+
+
+def winner(system: RlaSystem, x: float, y: float) -> tuple[int, str]:
+    match = system.match(np.array([x, y]))
+    assert match is not None
+    return match.rla.rla_id, match.rla.action
+
+
+def test_an_undone_creation_is_gone_and_its_id_is_never_given_again() -> None:
+    system = system_of(FIRST, SECOND, THIRD, undone("lesson-3"))
+    assert [rla.rla_id for rla in system.rlas] == [1, 2]
+    assert (system.get(3), system.next_id) == (None, 4)
+    assert winner(system, 9.0, 0.0) == (1, "forward")
+
+
+def test_an_undone_replacement_leaves_action_and_origin_as_they_were() -> None:
+    system = system_of(FIRST, replaced(1, "back", "forward", "a"), replaced(1, "left", "back", "b"), undone("b"))
+    rla = system.get(1)
+    assert rla is not None
+    assert (rla.action, rla.origin.command_id) == ("back", "a")
+    system.apply(undone("a"))
+    assert system.get(1) == FIRST.rla
+
+
+def test_an_undone_deletion_brings_the_rla_back_to_its_place_in_age_with_its_rewards() -> None:
+    system = system_of(FIRST, rewarded(1, 1, "r1"), rewarded(1, -1, "r2"), rewarded(1, 1, "r3"), SECOND, THIRD)
+    system.apply(deleted(1))
+    assert winner(system, 0.0, 0.0) == (2, "back")
+    system.apply(undone("deletion-1"))
+    assert winner(system, 0.0, 0.0) == (1, "forward")  # of two equally near ones the older
+    assert system.appraisal(1) == Appraisal(rewards=2, punishments=1)
+    assert system.rlas == (FIRST.rla, SECOND.rla, THIRD.rla)
+
+
+def test_an_undone_reward_is_not_counted() -> None:
+    system = system_of(FIRST, rewarded(1, 1, "praise"), rewarded(1, -1, "blame"))
+    assert system.appraisal(1) == (1, 1)
+    system.apply(undone("blame"))
+    assert system.appraisal(1) == (1, 0)
+    system.apply(undone("praise"))
+    assert system.appraisal(1) == system.appraisal(77) == (0, 0)
+
+
+def test_an_undone_withdrawal_gives_the_action_back() -> None:
+    system = system_of(FIRST, withdrawn(1), replaced(1, "back", ASK), undone("correction-1"))
+    rla = system.get(1)
+    assert rla is not None
+    assert (rla.action, rla.origin.command_id) == (ASK, "withdrawal-1")
+    system.apply(undone("withdrawal-1"))
+    assert system.rlas == (FIRST.rla,)
+    assert winner(system, 0.0, 0.0) == (1, "forward")
+
+
+def test_only_the_newest_lesson_of_an_rla_is_undone_and_the_refusal_names_it() -> None:
+    system = system_of(FIRST, replaced(1, "back", "forward", "phone-7"), SECOND)
+    with pytest.raises(InvalidEventError) as refused:
+        system.apply(undone("lesson-1"))
+    assert str(refused.value) == (
+        "lesson 'phone-7' came after 'lesson-1' (RLA 1 corrected: back instead of forward); undo that one first"
+    )
+    system.apply(undone("phone-7"))  # though the lesson of another RLA came after it
+    assert system.why_not_undo("lesson-1") is None
+    system.apply(undone("lesson-1"))
+    assert system.rlas == (SECOND.rla,)
+
+
+def test_a_lesson_is_undone_once() -> None:
+    system = system_of(FIRST, undone("lesson-1"))
+    with pytest.raises(InvalidEventError, match="lesson 'lesson-1' was undone already"):
+        system.apply(undone("lesson-1"))
+    with pytest.raises(InvalidEventError, match="there is no lesson 'undo-lesson-1'"):
+        system.apply(undone("undo-lesson-1"))
+
+
+def test_all_lessons_are_told_and_which_of_them_stand() -> None:
+    system = system_of()
+    assert (system.lessons, system.standing_lessons, system.last_standing_lesson) == ((), 0, None)
+    praise = rewarded(2)
+    system.apply_all([FIRST, SECOND, praise, *session(100), undone("lesson-1")])
+    assert system.lessons == (LessonRecord(FIRST, undone=True), LessonRecord(SECOND), LessonRecord(praise))
+    assert (system.standing_lessons, system.last_standing_lesson) == (2, "reward-2")
+    assert system.lesson("lesson-1") == LessonRecord(FIRST, undone=True)
+    assert system.lesson("begin") is None
+    system.apply(undone("reward-2"))
+    assert (system.standing_lessons, system.last_standing_lesson) == (1, "lesson-2")
+    system.apply(undone("lesson-2"))
+    assert (system.standing_lessons, system.last_standing_lesson) == (0, None)
+
+
+def test_sessions_change_no_rla_and_their_time_adds_up() -> None:
+    system = system_of(FIRST)
+    before = system.rlas, system.lessons
+    system.apply_all([*session(6000), *session(30)])
+    assert (system.rlas, system.lessons) == before
+    assert system.teaching_ticks == 6030
+
+
+@pytest.mark.parametrize(
+    ("lesson", "text"),
+    [
+        (FIRST, "RLA 1 taught: forward"),
+        (replaced(1, "back", "forward"), "RLA 1 corrected: back instead of forward"),
+        (withdrawn(1), "RLA 1 withdrawn: it asks again"),
+        (replaced(1, "back", ASK), "RLA 1 answered anew: back"),
+        (deleted(1), "RLA 1 deleted"),
+        (rewarded(1), "RLA 1 rewarded"),
+        (rewarded(1, -1), "RLA 1 punished"),
+    ],
+)
+def test_a_lesson_is_told_in_a_few_words(lesson: RlaLesson, text: str) -> None:
+    assert LessonRecord(lesson).text == text
+    assert rla_of(lesson) == 1
+
+
+@pytest.mark.parametrize(
+    ("event", "text"),
+    [
+        (replaced(1, "back", "forward"), "RLA 1 of turn_left corrected: back instead of forward"),
+        (deleted(1), "RLA 1 of turn_left deleted"),
+        (rewarded(1), "RLA 1 of turn_left rewarded"),
+    ],
+)
+def test_a_lesson_is_told_with_the_behaviour_that_it_is_about(event: Lesson, text: str) -> None:
+    system = system_of(created(1, (0.0, 0.0), behaviour="turn_left"), event)
+    assert [record.text for record in system.lessons] == ["RLA 1 of turn_left taught: forward", text]
+    problem = system.why_not_undo("lesson-1")
+    assert problem is not None
+    assert (problem.code, problem.fields["says"]) == (RefusalCode.TAUGHT_AFTER, text)
+    system.apply(undone(event.origin.command_id))
+    assert (system.lessons[-1].text, system.lessons[-1].undone) == (text, True)
+
+
+def test_a_lesson_of_the_critics_rlas_is_told_as_one() -> None:
+    system = system_of(created(1, (0.0, 0.0), "bad", level=CRITIC), replaced(1, "good", "bad"), deleted(1))
+    assert [record.text for record in system.lessons] == [
+        "appraisal RLA 1 taught: bad",
+        "appraisal RLA 1 corrected: good instead of bad",
+        "appraisal RLA 1 deleted",
+    ]
+
+
+_STEPS = st.lists(
+    st.tuples(st.sampled_from("ccrdwwaauuu"), st.integers(0, 30), st.sampled_from(("forward", "back"))), max_size=50
+)
+
+
+def lessons_and_undos(steps: list[tuple[str, int, str]], system: RlaSystem) -> Iterator[TeachingEvent]:
+    """Events that fit the system, and undos of any lesson, which may not."""
+    for number, (act, which, action) in enumerate(steps):
+        command_id = f"step-{number}"
+        living = system.rlas
+        if act == "u":
+            if system.lessons:
+                yield undone(system.lessons[-1 - which % len(system.lessons)].event.origin.command_id)
+        elif act == "c":
+            # Few places, so that many RLAs are equally near; one so far off that float32 gives up.
+            point = (1e20, 0.0) if which == 30 else (which % 3 / 3, which % 2 * 1e-9)
+            yield created(system.next_id, point, action, command_id=command_id)
+        elif living:
+            rla = living[which % len(living)]
+            if act == "r":
+                yield replaced(rla.rla_id, action, rla.action, command_id)
+            elif act == "d":
+                yield deleted(rla.rla_id, command_id)
+            elif act == "a":
+                yield withdrawn(rla.rla_id, rla.action, command_id)
+            else:
+                yield rewarded(rla.rla_id, 1 if which % 2 else -1, command_id)
+
+
+@given(_STEPS)
+@examples(400)
+def test_what_is_left_is_what_the_standing_lessons_alone_would_have_taught(steps: list[tuple[str, int, str]]) -> None:
+    system, standing, undos = system_of(), dict[str, Lesson](), 0
+    for event in lessons_and_undos(steps, system):
+        try:
+            system.apply(event)
+        except InvalidEventError:
+            continue
+        for record in system.lessons:
+            name = record.event.origin.command_id
+            if not record.undone:
+                standing[name] = record.event
+            elif name in standing:
+                del standing[name]
+                undos += 1
+    direct = system_of(*standing.values())
+
+    assert system.rlas == direct.rlas  # who taught it and when included
+    assert system.knowledge_hash() == direct.knowledge_hash()
+    assert [system.appraisal(rla.rla_id) for rla in system.rlas] == [
+        direct.appraisal(rla.rla_id) for rla in direct.rlas
+    ]
+    assert (system.standing_lessons, len(system.lessons)) == (len(standing), len(standing) + undos)
+    assert system.last_standing_lesson == (list(standing)[-1] if standing else None)
+    for situation in ([0.0, 0.0], [1 / 3, 0.0], [0.4, 1e-9], [3e19, 0.0], [-7.0, 1e5]):
+        assert system.match(np.array(situation)) == direct.match(np.array(situation))  # bit for bit
+    for rla in system.rlas:
+        assert system.competitors(rla) == direct.competitors(rla)
+        assert system.competitors(rla) == tuple(each for each in system.rlas if each.condition == rla.condition)
+
+
+def test_a_lesson_can_be_taught_again_after_its_undo_under_another_command() -> None:
+    system = system_of(FIRST, undone("lesson-1"), created(2, (0.0, 0.0)))
+    assert [rla.rla_id for rla in system.rlas] == [2]
+    with pytest.raises(InvalidEventError, match="command 'lesson-1' has taught a lesson already"):
+        system.apply(created(3, (1.0, 0.0), command_id="lesson-1"))

@@ -1,0 +1,234 @@
+"""Who teaches, whether he is there, and how long his hand stays on the wheels: the borders of each number."""
+
+import pytest
+
+from hal.robot import WheelSpeeds
+from kurt2rt.core.rla.outcome import Outcome, RefusalCode
+from kurt2rt.core.teaching.authority import Authority
+from kurt2rt.core.teaching.commands import Drive
+from tests.core.helpers import Counted, sensed
+
+LEASE, REACH = 24, 35
+NOW = 1000
+
+
+class Hands:
+    """An authority over a robot with one action, that Ann teaches."""
+
+    def __init__(self, *, attended: bool = True) -> None:
+        self.action = Counted()
+        self.authority = Authority({"a": self.action}, attended=attended)
+        self.authority.claim("Ann")
+
+    def drive(self, tick: int = NOW, *, seen: int | None = None, hold: int = 1) -> None:
+        self.authority.drive(press(hold, seen=tick if seen is None else seen), tick)
+
+    def driven_ticks(self, first: int = NOW, last: int = NOW + 100) -> list[int]:
+        """Return the ticks in which the teacher drives, each expired as the loop does."""
+        driven = []
+        for tick in range(first, last):
+            self.authority.expire(tick)
+            if self.authority.is_manual(tick):
+                driven.append(tick)
+        return driven
+
+
+def press(hold: int = 1, *, teacher: str = "Ann", seen: int = NOW) -> Drive:
+    return Drive(teacher, seen, hold, 0.2, 0.1)
+
+
+@pytest.fixture
+def hands() -> Hands:
+    return Hands()
+
+
+def test_one_message_drives_for_thirty_ticks_from_its_arrival(hands: Hands) -> None:
+    hands.drive(NOW)
+    assert hands.driven_ticks() == list(range(NOW, NOW + LEASE))
+
+
+def test_the_hand_does_what_the_newest_message_says(hands: Hands) -> None:
+    hands.drive(NOW)
+    assert hands.authority.is_manual(NOW)
+    assert hands.authority.step(sensed()) == ("by hand", WheelSpeeds(0.2, 0.1))
+    hands.authority.drive(Drive("Ann", NOW + 1, 1, -0.1, 0.3), NOW + 1)
+    assert hands.authority.step(sensed()) == ("by hand", WheelSpeeds(-0.1, 0.3))
+
+
+@pytest.mark.parametrize(
+    ("age", "driven"),
+    [(0, LEASE), (11, LEASE), (12, LEASE - 1), (34, 1), (35, 0), (40, 0)],
+    ids=lambda value: str(value),
+)
+def test_a_message_held_back_drives_no_longer_than_35_ticks_after_its_picture(age: int, driven: int) -> None:
+    hands = Hands()
+    hands.drive(NOW, seen=NOW - age)
+    assert hands.driven_ticks() == list(range(NOW, NOW + driven))
+
+
+def test_messages_that_keep_coming_keep_the_hand_on_the_wheels(hands: Hands) -> None:
+    for tick in range(NOW, NOW + 290, LEASE - 1):
+        assert not hands.authority.is_over(press())
+        hands.drive(tick)
+        assert hands.driven_ticks(tick, tick + LEASE - 1) == list(range(tick, tick + LEASE - 1))
+
+
+def test_a_picture_that_does_not_change_any_more_ends_the_drive_however_many_messages_come(hands: Hands) -> None:
+    for tick in range(NOW, NOW + REACH):
+        hands.drive(tick, seen=NOW)
+        assert hands.authority.is_manual(tick)
+    hands.drive(NOW + REACH, seen=NOW)
+    assert not hands.authority.is_manual(NOW + REACH)
+
+
+def test_a_press_that_ended_never_comes_back_and_the_next_one_does(hands: Hands) -> None:
+    hands.drive(NOW, hold=7)
+    hands.authority.expire(NOW + LEASE)
+    assert [hands.authority.is_over(press(hold)) for hold in (6, 7, 8)] == [True, True, False]
+
+
+def test_is_manual_after_the_lease_changes_nothing(hands: Hands) -> None:
+    hands.drive(NOW, hold=7)
+    assert not hands.authority.is_manual(NOW + LEASE)
+    assert not hands.authority.is_over(press(7))
+    assert hands.authority.is_manual(NOW + LEASE - 1)
+
+
+def test_is_manual_of_a_run_without_teacher_changes_nothing(hands: Hands) -> None:
+    hands.authority.run("a", NOW, 1000)
+    assert not hands.authority.is_manual(NOW)
+    hands.authority.watch("Ann", NOW, NOW)
+    assert hands.authority.is_manual(NOW)
+
+
+def test_expire_within_the_lease_keeps_the_press(hands: Hands) -> None:
+    hands.drive(NOW, hold=7)
+    hands.authority.expire(NOW + LEASE - 1)
+    assert hands.authority.is_manual(NOW + LEASE - 1)
+    assert not hands.authority.is_over(press(7))
+
+
+def test_a_press_is_over_only_when_the_loop_has_seen_it_end(hands: Hands) -> None:
+    hands.drive(NOW)
+    hands.drive(NOW + LEASE)  # the message came in the very tick in which the lease would have ended
+    assert hands.driven_ticks(NOW + LEASE) == list(range(NOW + LEASE, NOW + 2 * LEASE))
+
+
+def test_a_press_of_one_teacher_says_nothing_about_those_of_another(hands: Hands) -> None:
+    hands.drive(NOW, hold=7)
+    hands.authority.end_hand()
+    assert hands.authority.is_over(press(7))
+    assert not hands.authority.is_over(press(1, teacher="Ben"))
+
+
+def test_who_watches_is_there_for_thirty_ticks_and_not_beyond_35_after_his_picture(hands: Hands) -> None:
+    present = hands.authority.present
+    assert not present(NOW)
+    hands.authority.watch("Ann", NOW, NOW)
+    assert [present(NOW + LEASE - 1), present(NOW + LEASE)] == [True, False]
+    hands.authority.watch("Ann", NOW + 50, NOW + 30)
+    assert [present(NOW + 30 + REACH - 1), present(NOW + 30 + REACH)] == [True, False]
+
+
+def test_a_late_message_takes_nothing_from_a_newer_one(hands: Hands) -> None:
+    hands.authority.watch("Ann", NOW, NOW)
+    hands.authority.watch("Ann", NOW + 1, NOW - 30)
+    assert hands.authority.present(NOW + LEASE - 1)
+
+
+def test_who_drives_is_there(hands: Hands) -> None:
+    hands.drive(NOW)
+    assert [hands.authority.present(NOW + LEASE - 1), hands.authority.present(NOW + LEASE)] == [True, False]
+
+
+def test_only_the_teacher_is_anybody(hands: Hands) -> None:
+    hands.authority.watch("Ben", NOW, NOW)
+    assert not hands.authority.present(NOW)
+
+
+def test_nobody_has_to_be_there_where_the_robot_needs_nobody() -> None:
+    assert Hands(attended=False).authority.present(NOW)
+
+
+def test_who_speaks_first_teaches_and_the_next_one_has_to_ask() -> None:
+    authority = Authority({}, attended=True)
+    assert authority.held_by_another("Ann") is None
+    authority.claim("Ann")
+    authority.claim("Ben")
+    assert authority.teacher == "Ann"
+    assert authority.held_by_another("Ann") is None
+    assert authority.held_by_another("Ben") == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="Ann")
+
+
+def test_another_one_takes_the_robot_and_has_to_be_there_himself(hands: Hands) -> None:
+    hands.authority.watch("Ann", NOW, NOW)
+    assert hands.authority.take("Ben", NOW) is None
+    assert hands.authority.teacher == "Ben"
+    assert not hands.authority.present(NOW)
+
+
+def test_who_takes_what_he_has_loses_nothing(hands: Hands) -> None:
+    hands.drive(NOW)
+    assert hands.authority.take("Ann", NOW) is None
+    assert hands.authority.is_manual(NOW)
+    assert hands.authority.present(NOW)
+
+
+@pytest.mark.parametrize("behaviour", [False, True])
+def test_nobody_takes_the_robot_from_a_hand_on_the_wheels(behaviour: bool) -> None:
+    hands = Hands(attended=False)
+    if behaviour:
+        hands.authority.run("a", NOW, LEASE)
+    else:
+        hands.drive(NOW)
+    refusal = Outcome.of(RefusalCode.DRIVES_BY_HAND, teacher="Ann")
+    assert hands.authority.take("Ben", NOW + LEASE - 1) == refusal
+    assert hands.authority.teacher == "Ann"
+    assert hands.authority.take("Ben", NOW + LEASE) is None
+
+
+@pytest.mark.parametrize("to", ["Ben", None])
+def test_handing_over_ends_hand_and_presence(hands: Hands, to: str | None) -> None:
+    hands.drive(NOW, hold=3)
+    hands.authority.hand_over(to)
+    assert hands.authority.teacher == to
+    assert not hands.authority.is_manual(NOW)
+    assert not hands.authority.present(NOW)
+    assert hands.authority.is_over(press(3))
+
+
+def test_a_behaviour_drives_for_its_ticks_and_begins_anew_each_time() -> None:
+    hands = Hands(attended=False)
+    hands.authority.run("a", NOW, 3)
+    assert hands.driven_ticks() == [NOW, NOW + 1, NOW + 2]
+    hands.authority.run("a", NOW + 50, 3)
+    assert hands.authority.step(sensed()) == ("a", WheelSpeeds(0.001, 0.001))
+    assert hands.authority.step(sensed()) == ("a", WheelSpeeds(0.002, 0.002))
+    assert hands.action.starts == 2
+
+
+def test_a_behaviour_ends_for_good_when_its_teacher_is_gone(hands: Hands) -> None:
+    hands.authority.watch("Ann", NOW, NOW)
+    hands.authority.run("a", NOW, 1000)
+    assert hands.driven_ticks(NOW, NOW + 60) == list(range(NOW, NOW + LEASE))
+    hands.authority.watch("Ann", NOW + 60, NOW + 60)
+    assert not hands.authority.is_manual(NOW + 60)
+
+
+def test_a_hand_on_the_wheels_ends_a_behaviour_and_a_behaviour_the_hand() -> None:
+    hands = Hands(attended=False)
+    hands.authority.run("a", NOW, 1000)
+    hands.drive(NOW + 1)
+    assert hands.authority.step(sensed())[0] == "by hand"
+    hands.authority.run("a", NOW + 2, 1000)
+    assert hands.authority.step(sensed())[0] == "a"
+
+
+def test_a_device_with_new_keys_counts_its_presses_anew() -> None:
+    authority = Authority({}, attended=False)
+    authority.claim("Ann")
+    authority.drive(Drive("Ann", 0, 7, 0.1, 0.1), 0)
+    authority.end_hand()
+    assert authority.is_over(Drive("Ann", 0, 1, 0.1, 0.1))
+    authority.forget("Ann")
+    assert not authority.is_over(Drive("Ann", 0, 1, 0.1, 0.1))

@@ -1,0 +1,784 @@
+"""What becomes of a teacher's commands."""
+
+import math
+from collections.abc import Callable
+
+import pytest
+
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.rla.reward_counts import Appraisal
+from kurt2rt.core.rla.rla import (
+    ActionReplaced,
+    LessonUndone,
+    Origin,
+    Phase,
+    Rla,
+    RlaCreated,
+    RlaDeleted,
+    RlaRewarded,
+    SessionBegun,
+    SessionEnded,
+    TeachingEvent,
+)
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.teaching.authority import Authority
+from kurt2rt.core.teaching.command_handler import School
+from kurt2rt.core.teaching.commands import (
+    BeginSession,
+    Command,
+    CommandResult,
+    Correct,
+    Drive,
+    EndSession,
+    HandOver,
+    Pursue,
+    Resume,
+    Reward,
+    RunBehaviour,
+    SetPhase,
+    Stop,
+    Take,
+    Teach,
+    Undo,
+    Watch,
+)
+from tests.core.helpers import RADIUS, SmallLevel, situation
+from tests.core.reinforcement.helpers import Track
+from tests.core.rla.helpers import created
+from tests.teacher.helpers import correct, delete, pursue, replace_action, resume, set_phase, stop, teach
+
+SHARE = 0.5
+BORDER = SHARE * RADIUS
+
+
+class Lesson:
+    """A school over the actions a, b and c; each command comes one tick after the other."""
+
+    def __init__(
+        self, *events: TeachingEvent, taken: tuple[str, ...] = (), behaviours: tuple[str, ...] = ("",)
+    ) -> None:
+        self.small = SmallLevel(*events, behaviours=behaviours)
+        self.school = School(
+            self.small.level,
+            Authority(self.small.actions, attended=False),
+            insert_beyond_share=SHARE,
+            taken_command_ids=taken,
+        )
+        self.events: list[TeachingEvent] = list(events)
+        self.tick = 100
+
+    def say(self, command: Command, place: float = 0.0) -> CommandResult:
+        self.tick += 1
+        assert not isinstance(command, Watch | Drive)
+        result, event = self.school.attend(command, situation(place), self.tick)
+        assert result.command_id == command.command_id
+        if event is not None:
+            self.events.append(event)
+        return result
+
+    def go_on(self, place: float, ticks: int = 1, *, blind: bool = False) -> int:
+        """So many ticks in one place, decided as the robot would; returns the last of them."""
+        for _ in range(ticks):
+            self.tick += 1
+            decision = self.small.at(place, Cause.BLIND if blind else None)
+            behaviour = self.small.wanted.behaviour
+            self.school.recent.remember(self.tick, situation(place), decision, behaviour, blind=blind)
+        return self.tick
+
+    def drive(self, teacher: str = "Ann", hold: int = 1) -> Outcome | None:
+        """Have a press arrive in the next tick; return why it does not drive the robot."""
+        self.tick += 1
+        refusal = self.school.follow(Drive(teacher, self.tick, hold, 0.1, 0.1), self.tick)
+        assert (refusal is None) == self.school.authority.is_manual(self.tick)
+        return refusal
+
+    @property
+    def actions(self) -> dict[int, str]:
+        return {rla.rla_id: rla.action for rla in self.small.level.system.rlas}
+
+
+def test_teach_puts_an_rla_on_the_present_situation() -> None:
+    lesson = Lesson()
+    result = lesson.say(teach("a", "t-1"), place=2.5)
+    assert result == CommandResult("t-1", Outcome.of(ResultCode.RLA_TAUGHT, rla=1, action="a"), lesson=True)
+    assert lesson.events == [RlaCreated(Rla(1, (2.5,), "a", None, Origin("t-1", "Ann", Phase.SUPERVISED, 101)))]
+    assert lesson.small.at(2.5).action == "a"
+
+
+def test_teach_close_to_an_rla_inserts_another_one() -> None:
+    lesson = Lesson(created(1, (0.0,), "a"))
+    lesson.say(teach("b"), place=0.001)
+    assert lesson.actions == {1: "a", 2: "b"}
+
+
+def test_a_lesson_on_the_very_condition_of_an_rla_acts_as_well() -> None:
+    """A second RLA there would be accepted and never win, because the older one does."""
+    lesson = Lesson()
+    lesson.say(teach("a", "first"), place=2.5)
+    assert lesson.say(teach("a", "double click"), place=2.5).outcome == Outcome.of(
+        ResultCode.RLA_AGREES, rla=1, action="a"
+    )
+    result = lesson.say(teach("b", "another teacher"), place=2.5)
+    assert result.outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="b", was="a")
+    assert lesson.actions == {1: "b"}
+    assert lesson.small.at(2.5).action == "b"
+
+
+def test_a_correction_up_to_the_border_replaces_the_action_of_the_nearest() -> None:
+    lesson = Lesson(created(1, (0.0,), "a"))
+    result = lesson.say(correct("b", "c-1"), place=BORDER)
+    assert result.outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="b", was="a")
+    assert lesson.events[-1] == ActionReplaced(1, "b", "a", Origin("c-1", "Ann", Phase.SUPERVISED, 101))
+    assert lesson.actions == {1: "b"}
+
+
+def test_a_correction_beyond_the_border_inserts_a_new_rla() -> None:
+    lesson = Lesson(created(1, (0.0,), "a"))
+    result = lesson.say(correct("b"), place=math.nextafter(BORDER, 100))
+    assert result.outcome == Outcome.of(ResultCode.RLA_TAUGHT, rla=2, action="b")
+    assert lesson.actions == {1: "a", 2: "b"}
+
+
+def test_the_border_is_a_share_of_the_nearest_rlas_own_radius() -> None:
+    lesson = Lesson(created(1, (0.0,), "a", radius=2.0))
+    lesson.say(correct("b"), place=1.5)
+    assert lesson.actions == {1: "a", 2: "b"}
+
+
+def test_a_correction_before_the_first_lesson_teaches() -> None:
+    lesson = Lesson()
+    assert lesson.say(correct("b")).outcome == Outcome.of(ResultCode.RLA_TAUGHT, rla=1, action="b")
+
+
+def test_a_correction_to_what_it_says_already_changes_nothing() -> None:
+    lesson = Lesson(created(1, (0.0,), "a"))
+    result = lesson.say(correct("a"), place=1.0)
+    assert result.outcome == Outcome.of(ResultCode.RLA_AGREES, rla=1, action="a")
+    assert len(lesson.events) == 1
+
+
+def test_one_rla_is_corrected_or_deleted_by_its_id_wherever_the_robot_is() -> None:
+    lesson = Lesson(created(1, (0.0,), "a"), created(2, (50.0,), "b"))
+    assert lesson.say(replace_action(2, "c", "r-1"), place=999.0).outcome == Outcome.of(
+        ResultCode.RLA_CORRECTED, rla=2, action="c", was="b"
+    )
+    assert lesson.say(delete(1, "d-1"), place=999.0).outcome == Outcome.of(ResultCode.RLA_DELETED, rla=1)
+    assert lesson.events[2:] == [
+        ActionReplaced(2, "c", "b", Origin("r-1", "Ann", Phase.SUPERVISED, 101)),
+        RlaDeleted(1, Origin("d-1", "Ann", Phase.SUPERVISED, 102)),
+    ]
+    assert lesson.actions == {2: "c"}
+
+
+def test_stop_and_resume() -> None:
+    lesson = Lesson()
+    assert lesson.say(stop()).outcome == Outcome(ResultCode.STOPPED)
+    assert lesson.school.stopped
+    assert lesson.say(resume()).outcome == Outcome(ResultCode.RESUMED)
+    assert not lesson.school.stopped
+
+
+def test_a_phase_goes_into_the_origin_of_what_is_taught_from_then_on() -> None:
+    lesson = Lesson()
+    lesson.say(teach("a", "t-1"), place=0.0)
+    assert lesson.say(set_phase(Phase.CORRECTIONS)).outcome == Outcome.of(
+        ResultCode.PHASE_SET, phase=2, name="corrections"
+    )
+    lesson.say(teach("b", "t-2"), place=50.0)
+    assert [event.origin.phase for event in lesson.events] == [Phase.SUPERVISED, Phase.CORRECTIONS]
+
+
+@pytest.mark.parametrize("command", [teach("fly"), correct("fly"), replace_action(1, "fly")])
+def test_an_action_that_is_not_in_the_repertoire_is_refused_with_those_that_are(command: Command) -> None:
+    lesson = Lesson(created(1, (0.0,), "a"))
+    result = lesson.say(command, place=100.0)
+    assert result.outcome == Outcome.of(RefusalCode.NO_ACTION, action="fly", known=("a", "b", "c"))
+    assert lesson.actions == {1: "a"}
+    assert len(lesson.events) == 1
+    assert lesson.school.corrections == 0
+
+
+@pytest.mark.parametrize("command", [replace_action(1, "b"), delete(1), replace_action(9, "b"), delete(9), delete(0)])
+def test_an_rla_that_does_not_live_is_refused(command: Command) -> None:
+    lesson = Lesson(created(1, (0.0,), "a"), created(2, (50.0,), "b"))
+    lesson.say(delete(1, "before"))
+    result = lesson.say(command)
+    assert not result.accepted
+    assert result.code is RefusalCode.NO_RLA
+    assert lesson.actions == {2: "b"}
+
+
+@pytest.mark.parametrize(
+    "command",
+    [teach("b", "x"), correct("b", "x"), replace_action(1, "b", "x"), delete(1, "x"), set_phase(Phase.CRITIC, "x")],
+)
+def test_a_command_that_comes_twice_counts_once(command: Command) -> None:
+    lesson = Lesson(created(1, (0.0,), "a"))
+    assert lesson.say(command, place=100.0).accepted
+    known, corrections = lesson.actions, lesson.school.corrections
+    events = list(lesson.events)
+    for place in (100.0, 200.0):
+        assert lesson.say(command, place) == CommandResult("x", Outcome(ResultCode.REPEATED))
+    assert (lesson.actions, lesson.events, lesson.school.corrections) == (known, events, corrections)
+
+
+def test_a_stop_always_stops_and_a_late_copy_of_resume_does_not_act_again() -> None:
+    lesson = Lesson()
+    for command, stopped in ((stop("1"), True), (resume("2"), False), (stop("1"), True)):
+        lesson.say(command)
+        assert bool(lesson.school.stopped) == stopped
+    lesson.say(resume("2"))
+    assert lesson.school.stopped
+
+
+def test_a_command_of_an_earlier_run_counts_once_as_well() -> None:
+    lesson = Lesson(created(1, (0.0,), "a"), taken=("lesson-1",))
+    assert lesson.school.has_taken("lesson-1")
+    assert lesson.say(teach("b", "lesson-1"), place=100.0).outcome == Outcome(ResultCode.REPEATED)
+    assert lesson.actions == {1: "a"}
+
+
+def test_a_refused_command_may_come_again() -> None:
+    lesson = Lesson()
+    assert not lesson.say(delete(1, "x")).accepted
+    lesson.say(teach("a"))
+    assert lesson.say(delete(1, "x")).outcome == Outcome.of(ResultCode.RLA_DELETED, rla=1)
+
+
+def test_the_events_of_a_lesson_fold_to_the_same_knowledge() -> None:
+    lesson = Lesson()
+    commands: list[tuple[Command, float]] = [
+        (teach("a", "1"), 0.0),
+        (teach("b", "2"), 20.0),
+        (correct("c", "3"), 1.0),
+        (correct("b", "4"), 7.0),
+        (delete(2, "5"), 0.0),
+        (teach("a", "6"), 20.0),
+        (replace_action(3, "c", "7"), 0.0),
+    ]
+    for command, place in commands:
+        assert lesson.say(command, place).accepted
+    again = RlaSystem(1, RADIUS)
+    again.apply_all(lesson.events)
+    assert again.rlas == lesson.small.level.system.rlas
+    assert again.knowledge_hash() == lesson.small.level.system.knowledge_hash()
+    assert again.next_id == 5
+
+
+def test_a_correction_means_the_situation_of_the_tick_it_names() -> None:
+    lesson = Lesson(created(1, (0.0,), "a"), created(2, (50.0,), "b"))
+    wrong = lesson.go_on(0.0)
+    lesson.go_on(50.0, 20)
+    result = lesson.say(Correct("c-1", "Ann", "c", wrong), place=50.0)
+    assert result.outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="c", was="a")
+    assert lesson.actions == {1: "c", 2: "b"}
+    assert lesson.events[-1].origin.tick == lesson.tick  # of the tick that took it
+
+
+def test_an_answer_stands_where_the_robot_asked_though_it_was_put_elsewhere_since() -> None:
+    lesson = Lesson()
+    asked = lesson.go_on(2.5)
+    lesson.go_on(80.0)
+    lesson.say(Teach("t-1", "Ann", "a", asked), place=80.0)
+    assert lesson.small.at(2.5).action == "a"
+    assert lesson.small.at(80.0).asking
+    assert [rla.condition for rla in lesson.small.level.system.rlas] == [(2.5,)]
+
+
+def test_an_answer_that_is_kept_does_not_change_with_what_comes_after_it() -> None:
+    lesson = Lesson()
+    asked = lesson.go_on(2.5)
+    lesson.say(Teach("t-1", "Ann", "a", asked), place=80.0)
+    lesson.go_on(90.0, 1000)  # the place of that tick in memory is used anew
+    assert [rla.condition for rla in lesson.small.level.system.rlas] == [(2.5,)]
+
+
+@pytest.mark.parametrize("kind", ["teach", "correct", "reward"])
+@pytest.mark.parametrize("which", ["future", "present", "forgotten", "missed"])
+def test_a_decision_that_is_not_remembered_is_refused(kind: str, which: str) -> None:
+    lesson = Lesson(created(1, (0.0,), "a"))
+    first = lesson.go_on(0.0)
+    lesson.tick += 1  # a tick that was missed
+    if which == "forgotten":
+        lesson.go_on(0.0, 1000)
+    meant = {"future": lesson.tick + 50, "present": lesson.tick + 1, "forgotten": first, "missed": first + 1}[which]
+    commands: dict[str, Command] = {
+        "teach": Teach("x", "Ann", "b", meant),
+        "correct": Correct("x", "Ann", "b", meant),
+        "reward": Reward("x", "Ann", 1, meant),
+    }
+    result = lesson.say(commands[kind])
+    assert (result.accepted, result.lesson) == (False, False)
+    assert result.outcome == Outcome.of(RefusalCode.TICK_FORGOTTEN, tick=meant)
+    assert (lesson.actions, lesson.school.corrections) == ({1: "a"}, 0)
+    assert not lesson.school.has_taken("x")
+
+
+def test_the_oldest_decision_that_is_remembered_may_still_be_meant() -> None:
+    lesson = Lesson(created(1, (0.0,), "a"))
+    first = lesson.go_on(0.0)
+    lesson.go_on(50.0, 999)
+    assert lesson.say(Correct("x", "Ann", "b", first), place=50.0).outcome == Outcome.of(
+        ResultCode.RLA_CORRECTED, rla=1, action="b", was="a"
+    )
+
+
+def test_what_a_blind_robot_decided_is_no_situation_to_teach() -> None:
+    lesson = Lesson(created(1, (0.0,), "a"))
+    dark = lesson.go_on(33.0, blind=True)
+    lesson.go_on(0.0)
+    for command in (Teach("x", "Ann", "b", dark), Correct("x", "Ann", "b", dark)):
+        result = lesson.say(command)
+        assert (result.outcome, lesson.actions) == (Outcome(RefusalCode.WAS_BLIND), {1: "a"})
+
+
+@pytest.mark.parametrize(
+    ("value", "code", "appraisal"),
+    [(1, ResultCode.RLA_REWARDED, (1, 0)), (-1, ResultCode.RLA_PUNISHED, (0, 1))],
+)
+def test_a_reward_goes_to_the_rla_that_drove_in_the_tick_it_names(
+    value: int, code: ResultCode, appraisal: tuple[int, int]
+) -> None:
+    lesson = Lesson(created(1, (0.0,), "a"), created(2, (50.0,), "b"))
+    good = lesson.go_on(0.0)
+    lesson.go_on(50.0, 20)
+    result = lesson.say(Reward("r-1", "Ann", value, good), place=50.0)
+    assert (result.outcome, result.lesson) == (Outcome.of(code, rla=1), True)
+    assert lesson.events[-1] == RlaRewarded(1, value, good, Origin("r-1", "Ann", Phase.SUPERVISED, lesson.tick))
+    assert lesson.small.level.system.appraisal(1) == Appraisal(*appraisal)
+    assert lesson.small.level.system.appraisal(2) == Appraisal()
+
+
+def test_a_reward_without_a_tick_means_the_newest_decision_also_after_a_missed_tick() -> None:
+    lesson = Lesson(created(1, (0.0,), "a"))
+    newest = lesson.go_on(0.0)
+    lesson.tick += 5  # missed
+    assert lesson.say(Reward("r-1", "Ann", 1)).outcome == Outcome.of(ResultCode.RLA_REWARDED, rla=1)
+    event = lesson.events[-1]
+    assert isinstance(event, RlaRewarded)
+    assert event.decided_at_tick == newest
+
+
+def test_there_is_nothing_to_reward_where_no_rla_drove_or_it_is_gone() -> None:
+    lesson = Lesson(created(1, (0.0,), "a"))
+    assert not lesson.say(Reward("r-0", "Ann", 1)).accepted  # before the first decision
+    asked = lesson.go_on(50.0)
+    assert lesson.say(Reward("r-1", "Ann", 1, asked)).outcome == Outcome(RefusalCode.NO_RLA_DROVE)
+    drove = lesson.go_on(0.0)
+    lesson.say(delete(1))
+    assert lesson.say(Reward("r-2", "Ann", -1, drove)).outcome == Outcome.of(RefusalCode.NO_RLA, rla=1)
+
+
+def test_undo_takes_back_the_newest_lesson_that_stands_and_then_the_one_before() -> None:
+    lesson = Lesson()
+    lesson.say(teach("a", "1"), place=0.0)
+    lesson.say(correct("b", "2"), place=0.0)
+    assert lesson.say(Undo("u-1", "Ann")).lesson
+    assert lesson.actions == {1: "a"}
+    lesson.say(Undo("u-2", "Ann"))
+    assert lesson.actions == {}
+    undone = [event.lesson for event in lesson.events if isinstance(event, LessonUndone)]
+    assert undone == ["2", "1"]
+    result = lesson.say(Undo("u-3", "Ann"))
+    assert result.outcome == Outcome(RefusalCode.NO_LESSON)
+
+
+def test_undo_of_a_named_lesson_leaves_the_later_ones_of_other_rlas() -> None:
+    lesson = Lesson()
+    lesson.say(teach("a", "1"), place=0.0)
+    lesson.say(teach("b", "2"), place=50.0)
+    assert lesson.say(Undo("u-1", "Ann", "1")).accepted
+    assert lesson.actions == {2: "b"}
+
+
+def test_an_undo_says_what_it_took_back() -> None:
+    lesson = Lesson()
+    lesson.say(teach("a", "1"))
+    assert lesson.say(Undo("u-1", "Ann")).outcome == Outcome.of(ResultCode.LESSON_UNDONE, says="RLA 1 taught: a")
+
+
+def test_an_undo_that_cannot_be_is_refused_with_the_reason_and_changes_nothing() -> None:
+    lesson = Lesson()
+    lesson.say(teach("a", "1"), place=0.0)
+    lesson.say(correct("b", "2"), place=0.0)
+    refused = lesson.say(Undo("u-1", "Ann", "1"))
+    assert (refused.accepted, refused.lesson) == (False, False)
+    assert (refused.code, refused.outcome.fields["later"]) == (RefusalCode.TAUGHT_AFTER, "2")
+    assert not lesson.say(Undo("u-2", "Ann", "never was")).accepted
+    assert lesson.actions == {1: "b"}
+    assert not lesson.school.has_taken("u-1")
+
+
+def test_a_session_begins_and_ends_once_and_its_clock_runs_between() -> None:
+    lesson = Lesson()
+    school = lesson.school
+    assert lesson.say(EndSession("e-0", "Ann")).outcome == Outcome(RefusalCode.NO_SESSION)
+    assert school.teaching_ticks(lesson.tick) == 0
+    assert lesson.say(BeginSession("b-1", "Ann", "morning")).outcome == Outcome.of(
+        ResultCode.SESSION_BEGUN, session="morning"
+    )
+    began = lesson.tick
+    refused = lesson.say(BeginSession("b-2", "Ann", "noon"))
+    assert refused.outcome == Outcome.of(RefusalCode.SESSION_ON, session="morning")
+    assert (school.session, school.teaching_ticks(began + 70)) == ("morning", 70)
+
+    lesson.tick = began + 99
+    result = lesson.say(EndSession("e-1", "Ann"))
+    assert (result.outcome, result.lesson) == (Outcome.of(ResultCode.SESSION_ENDED, session="morning"), True)
+    assert school.stopped == ActiveStop(StopReason.SESSION_OVER, "morning")
+    assert school.teaching_ticks(began + 5000) == 100
+    assert lesson.say(EndSession("e-2", "Ann")).outcome == Outcome(RefusalCode.NO_SESSION)
+    assert lesson.events == [
+        SessionBegun("morning", Origin("b-1", "Ann", Phase.SUPERVISED, began)),
+        SessionEnded(100, Origin("e-1", "Ann", Phase.SUPERVISED, began + 100)),
+    ]
+    lesson.say(BeginSession("b-3", "Ann", "noon"))
+    assert school.teaching_ticks(lesson.tick) == 0
+
+
+def test_the_first_who_speaks_teaches_and_another_one_is_refused_by_name() -> None:
+    lesson = Lesson()
+    lesson.say(teach("a", "1"))
+    refused = lesson.say(Teach("2", "Ben", "b"), place=50.0)
+    assert refused.outcome == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="Ann")
+    assert lesson.drive("Ben") == refused.outcome
+    assert lesson.school.follow(Watch("Ben", lesson.tick), lesson.tick) == refused.outcome
+    assert lesson.say(Take("3", "Ben")).outcome == Outcome.of(ResultCode.TAKEN, teacher="Ben")
+    assert lesson.say(Teach("2", "Ben", "b"), place=50.0).accepted
+    assert not lesson.say(teach("c", "4"), place=90.0).accepted
+
+
+def test_to_be_there_is_not_to_speak() -> None:
+    lesson = Lesson()
+    assert lesson.school.follow(Watch("Ben", 100), 100) is None
+    assert lesson.school.authority.teacher is None
+
+
+def test_handing_over_to_a_name_and_to_nobody() -> None:
+    lesson = Lesson()
+    assert lesson.say(HandOver("1", "Ann", "Ben")).outcome == Outcome.of(ResultCode.HANDED_OVER, teacher="Ben")
+    assert not lesson.say(HandOver("2", "Ann")).accepted
+    assert lesson.say(HandOver("3", "Ben")).outcome == Outcome(ResultCode.RELEASED)
+    assert lesson.say(Teach("4", "Cleo", "a")).accepted
+    assert lesson.school.authority.teacher == "Cleo"
+
+
+def test_everybody_may_stop_and_nobody_becomes_the_teacher_by_it() -> None:
+    lesson = Lesson()
+    assert lesson.say(Stop("1", "Ben")).accepted
+    assert lesson.school.authority.held_by_another("Dora") is None
+    lesson.say(teach("a", "2"))
+    lesson.say(Stop("3", "Cleo"))
+    assert (lesson.school.stopped, lesson.school.authority.teacher) == (ActiveStop(StopReason.SAID_STOP, "Cleo"), "Ann")
+
+
+def test_a_stop_ends_the_press_and_his_own_next_one_drives_again() -> None:
+    lesson = Lesson()
+    assert lesson.drive(hold=1) is None
+    lesson.say(stop())
+    assert lesson.drive(hold=1) == Outcome(RefusalCode.PRESS_OVER)
+    assert lesson.drive(hold=2) is None
+
+
+def test_after_another_ones_stop_a_new_press_waits_for_resume() -> None:
+    lesson = Lesson()
+    assert lesson.drive(hold=1) is None
+    lesson.say(Stop("1", "Ben"))
+    assert lesson.drive(hold=2) == Outcome.of(RefusalCode.STOPPED_BY, teachers=("Ben",))
+    assert lesson.say(RunBehaviour("2", "Ann", "a", 10)).outcome == Outcome.of(
+        RefusalCode.STOPPED_BY, teachers=("Ben",)
+    )
+    lesson.say(resume())
+    assert lesson.drive(hold=2) is None
+
+
+@pytest.mark.parametrize("own", [Stop("2", "Ann"), EndSession("2", "Ann")])
+def test_an_own_stop_does_not_lift_that_of_another(own: Command) -> None:
+    """A copy of it may come late; the other one must not have stopped the robot for nothing."""
+    lesson = Lesson()
+    lesson.say(BeginSession("0", "Ann", "morning"))
+    lesson.say(Stop("1", "Ben"))
+    assert lesson.say(own).accepted
+    assert lesson.drive() == Outcome.of(RefusalCode.STOPPED_BY, teachers=("Ben",))
+    lesson.say(resume())
+    assert lesson.drive() is None
+
+
+def test_a_behaviour_runs_for_its_ticks_and_the_robot_stands_afterwards() -> None:
+    lesson = Lesson()
+    assert lesson.say(RunBehaviour("1", "Ann", "b", 10)).outcome == Outcome.of(
+        ResultCode.ACTION_RUNS, action="b", ticks=10
+    )
+    hand = lesson.school.authority.is_manual
+    assert [hand(lesson.tick + later) for later in (0, 9, 10)] == [True, True, False]
+    assert lesson.school.stopped == ActiveStop(StopReason.BEHAVIOUR_OVER, "b")
+
+
+def test_a_behaviour_that_the_repertoire_lacks_changes_nothing() -> None:
+    lesson = Lesson()
+    result = lesson.say(RunBehaviour("1", "Ann", "fly", 10))
+    assert result.outcome == Outcome.of(RefusalCode.NO_ACTION, action="fly", known=("a", "b", "c"))
+    assert not lesson.school.stopped
+
+
+def test_resume_ends_what_the_hand_was_doing() -> None:
+    lesson = Lesson()
+    lesson.drive(hold=4)
+    lesson.say(resume())
+    assert not lesson.school.authority.is_manual(lesson.tick)
+    assert lesson.drive(hold=4) == Outcome(RefusalCode.PRESS_OVER)
+
+
+def test_who_is_refused_has_not_become_the_teacher_by_it() -> None:
+    lesson = Lesson()
+    assert not lesson.say(teach("dance")).accepted
+    assert lesson.school.authority.teacher is None
+    assert lesson.say(Teach("2", "Ben", "a")).accepted
+
+
+def test_who_takes_over_from_one_who_stopped_it_may_drive_by_hand_at_once_but_not_from_a_bystander() -> None:
+    lesson = Lesson()
+    lesson.drive(hold=1)
+    lesson.say(stop("1"))
+    lesson.say(Take("2", "Ben"))
+    assert lesson.school.stopped
+    assert lesson.drive("Ben", hold=1) is None
+    lesson.say(Stop("3", "Cleo"))
+    lesson.say(Take("4", "Ann"))
+    assert lesson.drive(hold=9) == Outcome.of(RefusalCode.STOPPED_BY, teachers=("Cleo",))
+
+
+def test_a_release_that_comes_late_ends_its_own_press_only() -> None:
+    lesson = Lesson()
+    lesson.drive(hold=1)
+    release = Stop("1", "Ann", hold=1)
+    lesson.drive(hold=2)
+    assert lesson.say(release).outcome == Outcome(ResultCode.RELEASE_SUPERSEDED)
+    assert lesson.school.authority.is_manual(lesson.tick)
+    assert lesson.say(Stop("2", "Ann", hold=2)).accepted
+    assert not lesson.school.authority.is_manual(lesson.tick)
+    assert lesson.school.stopped == ActiveStop(StopReason.LET_GO, "Ann")
+    lesson.say(resume())
+    assert lesson.say(Stop("2", "Ann", hold=2)).outcome == Outcome(ResultCode.REPEATED)
+    assert not lesson.school.stopped
+
+
+@pytest.mark.parametrize(
+    "late",
+    [
+        lambda tick: Resume("2", "Ann", tick),
+        lambda tick: RunBehaviour("2", "Ann", "a", 10, tick),
+        lambda tick: SetPhase("2", "Ann", Phase.AUTONOMOUS, tick),
+        lambda tick: Pursue("2", "Ann", "", tick),
+    ],
+)
+def test_what_was_said_before_a_stop_and_comes_after_it_does_not_move_the_robot(
+    late: Callable[[int], Command],
+) -> None:
+    lesson = Lesson()
+    lesson.say(stop("1"))
+    refused = lesson.say(late(lesson.tick - 1))
+    assert refused.outcome == Outcome(RefusalCode.STOPPED_SINCE)
+    assert lesson.school.stopped
+    assert lesson.say(late(lesson.tick)).accepted
+
+
+def test_the_end_of_a_session_does_not_hide_that_somebody_said_stop() -> None:
+    lesson = Lesson()
+    lesson.say(BeginSession("1", "Ann", "monday"))
+    lesson.say(Stop("2", "Ben"))
+    lesson.say(EndSession("3", "Ann"))
+    assert lesson.school.stopped == ActiveStop(StopReason.SAID_STOP, "Ben")
+
+
+# Several taught behaviours.
+
+TURNS = ("straight_on", "turn_left", "turn_right")
+
+
+def test_a_lesson_is_about_the_behaviour_that_is_wanted() -> None:
+    lesson = Lesson(behaviours=TURNS)
+    assert lesson.say(teach("a", "t-1")).outcome == Outcome.of(
+        ResultCode.RLA_TAUGHT, rla=1, behaviour="straight_on", action="a"
+    )
+    assert lesson.say(pursue("turn_left", "p-1")) == CommandResult(
+        "p-1", Outcome.of(ResultCode.BEHAVIOUR_WANTED, behaviour="turn_left")
+    )
+    assert lesson.small.at(0.0).asking  # what it knows of straight_on is of no use here
+    assert lesson.say(teach("b", "t-2")).outcome == Outcome.of(
+        ResultCode.RLA_TAUGHT, rla=2, behaviour="turn_left", action="b"
+    )
+    assert lesson.say(correct("c", "c-1"), place=1.0).outcome == Outcome.of(
+        ResultCode.RLA_CORRECTED, rla=2, behaviour="turn_left", action="c", was="b"
+    )
+    assert [(rla.behaviour, rla.action) for rla in lesson.small.level.system.rlas] == [
+        ("straight_on", "a"),
+        ("turn_left", "c"),
+    ]
+    lesson.say(pursue("straight_on", "p-2"))
+    assert lesson.small.at(0.0).action == "a"
+
+
+def test_to_pursue_another_behaviour_is_no_lesson_and_counts_once() -> None:
+    lesson = Lesson(behaviours=TURNS)
+    lesson.say(pursue("turn_left", "p-1"))
+    lesson.say(pursue("turn_right", "p-2"))
+    assert lesson.say(pursue("turn_left", "p-1")).outcome == Outcome(ResultCode.REPEATED)
+    assert (lesson.small.wanted.behaviour, lesson.events) == ("turn_right", [])
+
+
+@pytest.mark.parametrize(("behaviours", "known"), [(TURNS, TURNS), (("",), ("",))])
+def test_a_behaviour_that_is_not_taught_is_refused_with_those_that_are(
+    behaviours: tuple[str, ...], known: tuple[str, ...]
+) -> None:
+    lesson = Lesson(behaviours=behaviours)
+    result = lesson.say(pursue("fly"))
+    assert result.outcome == Outcome.of(RefusalCode.NO_BEHAVIOUR, behaviour="fly", known=known)
+    assert lesson.small.wanted.behaviour == behaviours[0]
+    assert lesson.school.authority.teacher is None
+
+
+def test_only_the_teacher_says_what_the_robot_follows_and_a_stop_stays() -> None:
+    lesson = Lesson(behaviours=TURNS)
+    lesson.say(Take("take", "Bob"))
+    lesson.say(Stop("stop", "Bob"))
+    assert not lesson.say(pursue("turn_left")).accepted
+    assert lesson.small.wanted.behaviour == "straight_on"
+    lesson.say(Take("take it", "Ann"))
+    assert lesson.say(pursue("turn_left")).accepted
+    assert lesson.school.stopped == ActiveStop(StopReason.SAID_STOP, "Bob")
+
+
+def test_of_two_behaviours_the_one_that_was_asked_for_on_the_newer_picture_is_wanted() -> None:
+    lesson = Lesson(behaviours=TURNS)
+    lesson.say(Pursue("1", "Ann", "turn_left", 80))
+    assert lesson.say(Pursue("2", "Ann", "turn_right", 90)).accepted
+    late = lesson.say(Pursue("3", "Ann", "straight_on", 85))
+    assert late.outcome == Outcome.of(RefusalCode.BEHAVIOUR_SINCE, behaviour="turn_right")
+    assert not lesson.say(Pursue("4", "Ann", "fly", 95)).accepted  # and it is as if it had not been said
+    assert lesson.say(Pursue("5", "Ann", "turn_left", 90)).accepted
+    lesson.say(pursue("straight_on", "6"))  # by one who stands by
+    assert not lesson.say(Pursue("7", "Ann", "turn_left", 99)).accepted
+    assert lesson.small.wanted.behaviour == "straight_on"
+
+
+@pytest.mark.parametrize("kind", [Teach, Correct])
+def test_a_lesson_on_an_old_picture_goes_to_what_was_wanted_then(kind: type[Teach | Correct]) -> None:
+    lesson = Lesson(behaviours=TURNS)
+    asked = lesson.go_on(2.5)
+    lesson.say(pursue("turn_left"))
+    lesson.go_on(2.5, 20)
+    assert lesson.say(kind("late", "Ann", "a", asked), place=80.0).outcome == Outcome.of(
+        ResultCode.RLA_TAUGHT, rla=1, behaviour="straight_on", action="a"
+    )
+    assert lesson.small.at(2.5).asking
+    lesson.say(pursue("straight_on", "back"))
+    assert lesson.small.at(2.5).action == "a"
+
+
+def test_a_correction_of_an_old_picture_corrects_an_rla_of_what_was_wanted_then() -> None:
+    lesson = Lesson(
+        created(1, (0.0,), "a", behaviour="straight_on"),
+        created(2, (0.0,), "b", behaviour="turn_left"),
+        behaviours=TURNS,
+    )
+    wrong = lesson.go_on(0.0)
+    lesson.say(pursue("turn_left"))
+    praised = lesson.go_on(0.0, 20)
+    assert lesson.say(Correct("c-1", "Ann", "c", wrong)).outcome == Outcome.of(
+        ResultCode.RLA_CORRECTED, rla=1, behaviour="straight_on", action="c", was="a"
+    )
+    assert lesson.say(Reward("r-1", "Ann", 1, praised)).outcome == Outcome.of(
+        ResultCode.RLA_REWARDED, rla=2, behaviour="turn_left"
+    )
+    assert lesson.say(Undo("u-1", "Ann", "c-1")).outcome == Outcome.of(
+        ResultCode.LESSON_UNDONE, says="RLA 1 of straight_on corrected: c instead of a"
+    )
+    assert lesson.say(delete(1)).outcome == Outcome.of(
+        ResultCode.RLA_DELETED, rla=1, behaviour="straight_on"
+    )  # by its id, whatever is wanted
+    assert lesson.actions == {2: "b"}
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        Teach("x", "critic", "a"),
+        Correct("x", "critic", "a"),
+        Reward("x", "critic", 1),
+        Undo("x", "critic"),
+        SetPhase("x", "critic", Phase.AUTONOMOUS),
+        Resume("x", "critic"),
+        Take("x", "critic"),
+        HandOver("x", "Ann", "critic"),
+    ],
+)
+def test_nobody_teaches_in_the_critics_name(command: Command) -> None:
+    lesson = Lesson(created(1, (0.0,), "a"))
+    lesson.go_on(0.0)
+    result = lesson.say(command)
+    assert not result.accepted
+    assert result.outcome == Outcome.of(RefusalCode.CRITICS_NAME, name="critic")
+    assert lesson.school.authority.teacher != "critic"
+
+
+def test_the_critic_drives_nothing_by_hand_but_whoever_says_stop_is_heard() -> None:
+    lesson = Lesson()
+    assert lesson.drive("critic") == Outcome.of(RefusalCode.CRITICS_NAME, name="critic")
+    assert lesson.say(Stop("s", "critic")).accepted
+
+
+def test_a_change_of_the_robots_own_that_does_not_fit_is_skipped_and_told_and_the_robot_drives_on() -> None:
+    taken = Origin("signal-3/withdraw-1", "Ann", Phase.SUPERVISED, 1)  # an earlier kurt2rt took such ids
+    first = RlaCreated(Rla(1, (0.0,), "a", None, taken))
+    robot = Track(first, created(2, (50.0,), "b"), phase=Phase.REINFORCEMENT)
+    for _ in range(3):
+        robot.go(0.0, 200)
+        robot.signal(-1)
+    assert robot.school.learning.trouble == ""
+    assert robot.go(0.0).driving
+    assert robot.learnt == []
+    assert robot.school.learning.trouble == (
+        "changes that did not fit the knowledge were skipped: 1, the last: "
+        "command 'signal-3/withdraw-1' has taught a lesson already"
+    )
+    assert robot.go(0.0).action == "a"
+
+
+def test_a_command_id_as_the_robot_makes_them_is_refused() -> None:
+    lesson = Lesson()
+    result = lesson.say(teach("a", "t/withdraw-1"))
+    assert (result.accepted, lesson.actions) == (False, {})
+    assert result.outcome == Outcome.of(RefusalCode.RESERVED_ID, command_id="t/withdraw-1", sign="/")
+    assert lesson.say(Stop("s/1", "Ann")).accepted
+
+
+def test_a_late_copy_of_a_stop_brakes_but_is_no_newer_than_the_stop_it_is_a_copy_of() -> None:
+    lesson = Lesson()
+    lesson.say(stop("1"))
+    seen = lesson.tick
+    lesson.say(stop("1"))
+    assert lesson.say(Resume("2", "Ann", seen)).accepted
+    assert not lesson.school.stopped
+
+
+def test_a_copy_of_a_stop_that_ends_a_drive_has_to_be_seen_as_a_stop_has() -> None:
+    lesson = Lesson()
+    lesson.say(stop("1"))
+    lesson.say(resume("2"))
+    seen = lesson.tick
+    lesson.say(stop("1"))
+    assert lesson.school.stopped
+    assert not lesson.say(Resume("3", "Ann", seen)).accepted
+
+
+def test_another_stop_is_newer_than_the_copies_of_the_first() -> None:
+    lesson = Lesson()
+    lesson.say(stop("1"))
+    seen = lesson.tick
+    lesson.say(Stop("2", "Ben"))
+    lesson.say(stop("1"))
+    assert not lesson.say(Resume("3", "Ann", seen)).accepted
+    assert lesson.say(Resume("4", "Ann", seen + 1)).accepted

@@ -1,0 +1,53 @@
+"""Where commands wait for the next tick."""
+
+import pytest
+
+from kurt2rt.core.teaching.inbox import InboxFullError, TeacherInbox
+from kurt2rt.core.teaching.system_events import PressesForgotten, SetDown
+from tests.teacher.helpers import resume, stop, teach
+
+
+def test_commands_are_taken_once_and_in_the_order_they_came() -> None:
+    inbox = TeacherInbox()
+    commands = (teach("a"), stop(), resume())
+    for command in commands:
+        inbox.put(command)
+    assert inbox.take() == commands
+    assert inbox.take() == ()
+
+
+def test_a_full_inbox_refuses_the_newest_and_keeps_the_others() -> None:
+    inbox = TeacherInbox(capacity=2)
+    inbox.put(teach("a"))
+    inbox.put(stop())
+    with pytest.raises(InboxFullError, match="2 commands wait already"):
+        inbox.put(resume())
+    assert inbox.take() == (teach("a"), stop())
+    inbox.put(resume())
+    assert inbox.take() == (resume(),)
+
+
+def test_a_stop_finds_room_in_a_full_inbox() -> None:
+    inbox = TeacherInbox(capacity=1)
+    inbox.put(teach("a"))
+    inbox.put(stop())
+    with pytest.raises(InboxFullError):
+        inbox.put(teach("b"))
+    assert inbox.take() == (teach("a"), stop())
+
+
+def test_what_has_happened_goes_before_what_waits_and_always_finds_room() -> None:
+    inbox = TeacherInbox(capacity=1)
+    inbox.put(teach("a"))
+    inbox.put(SetDown())
+    inbox.put(PressesForgotten("Ann"))
+    assert inbox.take() == (PressesForgotten("Ann"), SetDown(), teach("a"))
+
+
+def test_a_replay_says_exactly_what_the_next_tick_takes() -> None:
+    inbox = TeacherInbox(capacity=1)
+    inbox.put(stop())
+    taken = (teach("a"), SetDown(), resume())
+    inbox.hold(taken)
+    assert inbox.take() == taken
+    assert inbox.take() == ()

@@ -1,0 +1,133 @@
+"""The robot's question."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from hal.robot_settings import load_robot
+from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.perception.sensor_words import words_for
+from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.space import Space
+from kurt2rt.core.teaching.question import Question, WayQuestion, ask, ask_the_way
+from tests.core.rla.helpers import created, withdrawn
+
+NAMES = ("s1", "s2", "s3", "s1 (10 s average)", "s2 (10 s average)", "s3 (10 s average)", "maximum left")
+
+
+def asked(condition: tuple[float, ...], here: tuple[float, ...], radius: float | None = None) -> Question:
+    system = RlaSystem(len(here), 300.0)
+    system.apply(created(1, condition, "curve_left", radius))
+    situation = np.array(here)
+    return ask(system.match(situation), situation, system.weights, NAMES)
+
+
+def test_it_names_the_nearest_rla_its_action_distance_radius_and_what_differs_most() -> None:
+    question = asked((100, 100, 100, 100, 100, 100, 100), (400, 90, 105, 100, 500, 101, 98))
+    assert (question.nearest_rla, question.action, question.radius) == (1, "curve_left", 300.0)
+    assert question.distance == math.sqrt(300**2 + 10**2 + 5**2 + 400**2 + 1 + 4)
+    assert [each.name for each in question.differing] == ["s2 (10 s average)", "s1", "s2", "s3", "maximum left"]
+    assert str(question) == (
+        "I don't know this situation, teach me: nearest is RLA 1 (curve_left) at 500 of 300; "
+        "s2 (10 s average): 500, was 100; s1: 400, was 100; s2: 90, was 100; s3: 105, was 100; "
+        "maximum left: 98, was 100"
+    )
+
+
+def test_question_with_words_tells_places_and_centimetres() -> None:
+    names = ("s9", "s14", "s9 (10 s average)", "maximum front", "orientation left s1>s2")
+    system = RlaSystem(5, 300.0)
+    system.apply(created(1, (108.0, 400.0, 70.0, 500.0, 0.0), "forward"))
+    here = np.array((441.0, 70.0, 72.0, 505.0, 42.0))
+    question = ask(system.match(here), here, system.weights, names, words=words_for(load_robot().infrared))
+    assert str(question).split("; ")[1:] == [
+        "front left: 13 cm, was 46 cm",
+        "rear centre: nothing within 60 cm, was 15 cm",
+        "left front nearer than left back: by 42 counts, was not",
+    ]  # the average and the nearest in front differ by less than a centimetre
+
+
+def test_it_names_an_own_radius() -> None:
+    assert asked((0,) * 7, (100,) * 7, radius=50.0).radius == 50.0
+
+
+def test_features_that_do_not_differ_are_not_named() -> None:
+    assert str(asked((0,) * 7, (0, 0, 400, 0, 0, 0, 0))).endswith("at 400 of 300; s3: 400, was 0")
+
+
+def test_of_features_that_differ_alike_the_first_come_first() -> None:
+    names = [each.name for each in asked((0,) * 7, (9, -9, 9, 9, 9, 9, 9)).differing]
+    assert names == ["s1", "s2", "s3", "s1 (10 s average)", "s2 (10 s average)"]
+
+
+def test_before_the_first_lesson_it_asks_without_comparison() -> None:
+    question = ask(None, np.zeros(7), np.ones(7), NAMES)
+    assert (question.nearest_rla, question.action, question.differing) == (None, None, ())
+    assert str(question) == "I know nothing yet, teach me"
+
+
+def test_where_behaviours_have_names_it_asks_about_the_one_that_is_wanted() -> None:
+    assert str(ask(None, np.zeros(7), np.ones(7), NAMES, "turn_left")) == "I know nothing of turn_left yet, teach me"
+    system = RlaSystem(7, 300.0)
+    system.apply(created(1, (0,) * 7, "curve_left", behaviour="turn_left"))
+    here = np.array((0, 0, 400, 0, 0, 0, 0))
+    question = ask(system.match(here, "turn_left"), here, system.weights, NAMES, "turn_left")
+    assert str(question) == (
+        "I don't know this situation, teach me: nearest is RLA 1 of turn_left (curve_left) at 400 of 300; "
+        "s3: 400, was 0"
+    )
+
+
+def test_a_withdrawn_action_is_told_in_words() -> None:
+    system = RlaSystem(7, 300.0)
+    for event in (created(1, (0,) * 7, "forward"), withdrawn(1)):
+        system.apply(event)
+    here = np.zeros(7)
+    question = ask(system.match(here), here, system.weights, NAMES)
+    assert str(question) == "RLA 1 was blamed, teach me again"
+    assert str(replace(question, worth=-0.3)) == "RLA 1 was blamed: worth -0.30 now, teach me again"
+    beyond = ask(system.match(here + 200), here + 200, system.weights, NAMES)
+    assert str(beyond).startswith(
+        "I don't know this situation, teach me: nearest is RLA 1 (its action was withdrawn) at 529 of 300"
+    )
+
+
+def test_where_the_action_itself_is_lost_it_says_so() -> None:
+    question = asked((100,) * 7, (110, *(100,) * 6))
+    assert str(question) == "RLA 1 says curve_left, which does not know how to go on here; teach me another action"
+
+
+def of_the_way(*conditions: tuple[float, ...]) -> WayQuestion:
+    system = RlaSystem(1, 1.0, others={MID: Space(3, 1.0, metric="hamming")})
+    for number, condition in enumerate(conditions, 1):
+        system.apply(created(number, condition, "turn_left", level=MID))
+    return ask_the_way(system.match(np.array([1.0, 2.0, 0.0]), level=MID), ("straight", "left", ""))
+
+
+def test_the_mid_level_asks_which_behaviour_to_follow_and_says_how_it_came_there() -> None:
+    question = of_the_way((2.0, 1.0, 0.0))
+    assert (question.nearest_rla, question.behaviour, question.distance, question.radius) == (1, "turn_left", 2.0, 1.0)
+    assert question.here == ("straight", "left")
+    assert str(question) == (
+        "I don't know the way from here, teach me which behaviour to follow: "
+        "nearest is mid-level RLA 1 (turn_left) at 2 of 1; I came by straight, left"
+    )
+
+
+def test_the_mid_level_knows_no_way_before_its_first_lesson() -> None:
+    assert str(of_the_way()) == (
+        "I don't know any way yet, teach me which behaviour to follow; I came by straight, left"
+    )
+    assert str(ask_the_way(None, ("", ""))) == "I don't know any way yet, teach me which behaviour to follow"
+
+
+def test_a_robot_that_does_not_know_where_it_is_asks_for_that() -> None:
+    system = RlaSystem(1, 1.0, others={MID: Space(3, 0.5)})
+    system.apply(created(1, (0.0, 0.0, 0.0), "straight_on", level=MID))
+    nowhere = np.array([math.nan, math.nan, 1.0])
+    words = load_mid("places").situation.words((math.nan, math.nan, 1.0, 0.0, 0.5, 0.5))
+    asked = ask_the_way(system.match(nowhere, level=MID), words)
+    assert asked.here == ()
+    assert str(asked) == "I don't know where I am: set me down at a place that has a name, and say at which one I am"

@@ -1,0 +1,52 @@
+"""The mid level's situations of the last junctions, by ticks."""
+
+import numpy as np
+
+from kurt2rt.core.teaching.recent_mid import MidMoment, RecentMid
+
+
+def remembered(*spells: tuple[int, int, int | None], capacity: int = 64) -> RecentMid:
+    """Of each (first tick, last tick, RLA) one situation, which is the number of its first tick."""
+    recent = RecentMid(capacity)
+    for first, last, rla_id in spells:
+        vector = np.array([float(first)])
+        for tick in range(first, last + 1):
+            recent.remember(tick, vector, rla_id)
+    return recent
+
+
+def told(moment: MidMoment | None) -> tuple[float, int | None] | None:
+    return None if moment is None else (moment.vector.item(), moment.rla_id)
+
+
+def test_nothing_is_remembered_before_the_first_tick_or_after_the_newest() -> None:
+    assert RecentMid().at(0) is None
+    assert RecentMid().newest is None
+    recent = remembered((5, 9, 1))
+    assert [told(recent.at(tick)) for tick in (4, 5, 9, 10)] == [None, (5.0, 1), (5.0, 1), None]
+
+
+def test_a_situation_lasts_from_junction_to_junction_however_many_ticks() -> None:
+    recent = remembered((1, 90_000, 4), (90_001, 90_001, 5), (90_002, 200_000, None), capacity=3)
+    assert [told(recent.at(tick)) for tick in (1, 90_000, 90_001, 90_002, 150_000)] == [
+        (1.0, 4),
+        (1.0, 4),
+        (90_001.0, 5),
+        (90_002.0, None),
+        (90_002.0, None),
+    ]
+    assert told(recent.newest) == (90_002.0, None)
+
+
+def test_another_rla_at_the_same_place_is_another_moment() -> None:
+    recent = RecentMid()
+    vector = np.zeros(1)
+    for tick, rla_id in enumerate((None, None, 7, 7, 8)):
+        recent.remember(tick, vector, rla_id)
+    assert [told(recent.at(tick)) for tick in range(5)] == [(0.0, each) for each in (None, None, 7, 7, 8)]
+
+
+def test_memory_does_not_grow_and_the_oldest_is_forgotten() -> None:
+    recent = remembered(*((tick, tick, tick) for tick in range(100)), capacity=10)
+    assert recent.at(89) is None
+    assert told(recent.at(90)) == (90.0, 90)

@@ -1,0 +1,80 @@
+"""The stack: the mid level's command comes down, and where it does not know the way the robot stands."""
+
+import pytest
+
+from hal.robot import STANDSTILL, WheelSpeeds
+from kurt2rt.core.basic.basic_level import BasicLevel
+from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.rla.rla import BASIC, MID
+from tests.core.mid_helpers import SmallStack, taught
+
+
+def test_the_basic_level_does_what_the_mid_level_commands() -> None:
+    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"), taught(5, (1.0, 1.0, 0.0), "turn_right"), radius=0.0)
+    decision = small.tick()
+    assert (decision.action, decision.rla_id, decision.cause, decision.asks_at) == ("b", 2, Cause.RLA, BASIC)
+    assert decision.mid is not None
+    assert (decision.mid.behaviour, decision.mid.rla_id) == ("turn_left", 4)
+
+
+def test_another_command_takes_over_in_the_very_tick_however_short_the_action_was_held() -> None:
+    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"), taught(5, (1.0, 0.0, 0.0), "turn_right"), radius=0.0)
+    assert [small.tick().action, small.tick(1.0).action, small.tick().action] == ["b", "c", "c"]
+
+
+def test_where_the_mid_level_asks_the_robot_stands_and_the_question_is_about_that_level() -> None:
+    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"), radius=0.0)
+    small.tick()
+    decision = small.tick(1.0)
+    assert (decision.wheel_speeds, decision.cause, decision.action) == (STANDSTILL, Cause.UNKNOWN, None)
+    assert decision.asking
+    assert decision.asks_at == MID
+    assert decision.match is not None
+    assert (decision.match.rla.rla_id, decision.match.distance) == (4, 1.0)
+    small.system.apply(taught(5, (1.0, 0.0, 0.0), "straight_on"))
+    assert (small.tick().action, small.actions["a"].starts) == ("a", 1)
+
+
+def test_where_only_the_basic_level_asks_the_question_is_about_that_one() -> None:
+    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
+    decision = small.tick(place=99.0)
+    assert (decision.cause, decision.asks_at) == (Cause.UNKNOWN, BASIC)
+    assert decision.match is not None
+    assert decision.match.rla.behaviour == decision.mid.behaviour == "turn_left"  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize("cause", [Cause.STOPPED, Cause.BLIND, Cause.TEACHER])
+def test_a_reason_to_stand_goes_before_all_and_junctions_are_noticed_all_the_same(cause: Cause) -> None:
+    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
+    decision = small.tick(1.0, cause)
+    assert (decision.wheel_speeds, decision.cause, decision.action) == (STANDSTILL, cause, None)
+    assert decision.mid is not None
+    assert decision.mid.event is not None
+    assert small.tick(1.0, cause).cause is cause  # also where the mid level would ask
+
+
+def test_the_mid_level_sees_what_was_decided_before() -> None:
+    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
+    first = small.tick()
+    small.tick()
+    assert [each.action for each in small.symbols.befores] == [None, "b"]
+    assert small.symbols.befores[1] is first
+
+
+def test_where_the_mid_level_asks_a_basic_level_that_fails_does_not_drive(monkeypatch: pytest.MonkeyPatch) -> None:
+    decide = BasicLevel.decide
+
+    def runs_away(level: BasicLevel, *words: object) -> Decision:
+        decision = decide(level, *words)  # type: ignore[arg-type]
+        return decision._replace(wheel_speeds=WheelSpeeds(5.0, 5.0), cause=Cause.RLA, action="a", rla_id=1)
+
+    small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"), radius=0.0)
+    small.tick()
+    monkeypatch.setattr(BasicLevel, "decide", runs_away)
+    decision = small.tick(1.0)
+    assert (decision.wheel_speeds, decision.cause, decision.action) == (STANDSTILL, Cause.UNKNOWN, None)
+    assert decision.asks_at == MID
+    small.tick(0.0, Cause.STOPPED)
+    assert small.symbols.befores[-1] is decision
+    small.tick(0.0, Cause.STOPPED)
+    assert small.symbols.befores[-1].action is None  # what stood has passed no junction

@@ -1,0 +1,81 @@
+"""Progress over the last minute, from the records of ticks."""
+
+import sys
+
+from kurt2rt.core.decision.standing import Standing, StandReason
+from kurt2rt.core.progress_meter import ProgressMeter
+from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
+from kurt2rt.core.tick import TickRecord
+from tests.channel.desk import Desk
+
+DESK = Desk()
+RECORD: TickRecord = DESK.run()
+DRIVES = RECORD._replace(decision=RECORD.decision._replace(action="forward", rla_id=1), standing=Standing())
+ASKS = RECORD._replace(standing=Standing(StandReason.ASKS, asks=True))
+STANDS = RECORD._replace(standing=Standing(StandReason.STOPPED, needs_go=True))
+HELD = DRIVES._replace(standing=Standing(StandReason.COMPUTER_TOO_SLOW, needs_go=True))
+TOUCHES = DRIVES._replace(standing=Standing(StandReason.FRONT_BUMPER, asks=True))
+
+
+class Run:
+    """Ticks of 10 ms, one after the other."""
+
+    def __init__(self) -> None:
+        self.meter = ProgressMeter(0.01)
+        self.tick = 0
+
+    def lasts(self, seconds: float, record: TickRecord) -> Progress:
+        for _ in range(round(seconds * 100)):
+            self.meter.follow(record._replace(tick=self.tick))
+            self.tick += 1
+        return self.meter.progress()
+
+
+def test_progress_before_the_first_tick_is_unknown() -> None:
+    assert ProgressMeter(0.01).progress() == NO_PROGRESS
+
+
+def test_progress_share_is_that_of_ticks_driven_by_an_rla() -> None:
+    run = Run()
+    run.lasts(5, ASKS)
+    assert run.lasts(15, DRIVES) == Progress(20, 75, 1)
+
+
+def test_progress_of_a_latched_guard_counts_as_not_driven() -> None:
+    assert Run().lasts(3, HELD) == Progress(3, 0, 0)
+
+
+def test_progress_of_a_robot_that_touches_something_is_a_question() -> None:
+    run = Run()
+    run.lasts(2, DRIVES)
+    assert run.lasts(2, TOUCHES) == Progress(4, 50, 1)
+
+
+def test_progress_forgets_what_is_older_than_a_minute() -> None:
+    run = Run()
+    run.lasts(10, ASKS)
+    assert run.lasts(50, DRIVES) == Progress(60, 83, 1)
+    assert run.lasts(10, DRIVES) == Progress(60, 100, 0)
+
+
+def test_progress_counts_a_flickering_question_once_a_second() -> None:
+    run = Run()
+    for _ in range(50):  # 3 s
+        run.lasts(0.03, ASKS)
+        progress = run.lasts(0.03, DRIVES)
+    assert (progress.asks, progress.driven_percent) == (3, 50)
+
+
+def test_progress_after_missed_ticks_forgets_by_time() -> None:
+    run = Run()
+    run.lasts(1, ASKS)
+    run.tick += 100 * 3600  # the program was held for an hour
+    assert run.lasts(1, STANDS) == Progress(60, 0, 0)
+
+
+def test_progress_meter_memory_does_not_grow() -> None:
+    run = Run()
+    run.lasts(61, ASKS)
+    before = [sys.getsizeof(each) for each in vars(run.meter).values()]
+    run.lasts(70, DRIVES)
+    assert [sys.getsizeof(each) for each in vars(run.meter).values()] == before

@@ -1,0 +1,417 @@
+"""The tick as a story: a robot in a corridor that knows nothing, and a teacher who tells it what to do."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+
+from behaviors.behaviour import Behaviour
+from behaviors.motor_primitive import MotorPrimitive
+from hal.guard_reason import GuardReason
+from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings, WheelSpeeds
+from kurt2rt.core.basic.basic_level import BasicLevel
+from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.perception.perception import Perception
+from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.rla.rla import Phase, TeachingEvent
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.teaching.authority import Authority
+from kurt2rt.core.teaching.command_handler import School
+from kurt2rt.core.teaching.commands import Command, Resume
+from kurt2rt.core.teaching.inbox import TeacherInbox
+from kurt2rt.core.tick import InMemoryEventStore, Tick, TickRecord
+from kurt2rt.platform.ledger import Ledger
+from tests.core.perception.helpers import READINGS, SENSORS, WHEELS, definition
+from tests.teacher.helpers import correct, delete, pursue, resume, set_phase, stop, teach
+
+FORWARD, BACK = WheelSpeeds(0.3, 0.3), WheelSpeeds(-0.15, -0.15)
+RADIUS = 50.0
+PAST_WEIGHT = 0.1  # little, so that the first seconds of a history are not another situation
+
+
+class CorridorRobot:
+    """A robot whose four sensors show one count that the test sets; its guard does as it is asked until it latches, but
+    drives toward nothing that touches a bumper.
+    """
+
+    def __init__(self) -> None:
+        self.counts = 100
+        self.infrared_age_s = 0.0
+        self.command_ages_s: list[float] = []
+        self.latched = self.relatches = False
+        self.driven: list[WheelSpeeds] = []
+        self.closed = False
+        self.touches_in_front = False
+
+    def sense(self, now_s: float) -> SensorReadings:
+        return SensorReadings(now_s, (self.counts,) * 4, self.infrared_age_s, 0, 0, 0.0, 0, 0.0)
+
+    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
+        self.command_ages_s.append(now_s - decided_at_s)
+        self.latched = self.latched or self.relatches
+        applied, reasons = (STANDSTILL, (GuardReason.OTHER,)) if self.latched else (wanted, ())
+        if self.touches_in_front and max(applied) > 0.0:
+            applied, reasons = WheelSpeeds(min(applied[0], 0.0), min(applied[1], 0.0)), (GuardReason.FRONT_BUMPER,)
+        self.driven.append(applied)
+        return GuardResult(applied, reasons, self.latched)
+
+    def emergency_stop(self, reason: GuardReason) -> None:
+        assert reason
+        self.latched = True
+
+    def release(self) -> None:
+        self.latched = False
+
+    def close(self) -> None:
+        self.closed = True
+
+
+class Corridor:
+    """All that stands round a Tick, and one tick in a call."""
+
+    def __init__(
+        self,
+        *,
+        attended: bool = False,
+        behaviours: tuple[str, ...] = ("",),
+        tolerates_stalls: bool = False,
+        asked: bool = True,
+        asks_when_held: bool = True,
+    ) -> None:
+        self.robot = CorridorRobot()
+        self.notebook = InMemoryEventStore()
+        self.held_up_s = 0.0
+        """How long a tick hangs between its senses and its frame."""
+        repertoire: dict[str, Behaviour] = {"forward": MotorPrimitive(FORWARD), "back": MotorPrimitive(BACK)}
+        small = definition((*READINGS, *WHEELS), scale=10)
+        self.system = RlaSystem(small.dimensions, RADIUS, np.repeat((1.0, PAST_WEIGHT), small.dimensions // 2))
+        self.level = BasicLevel(self.system, repertoire, minimum_action_ticks=3, wanted=Wanted(behaviours))
+        self.inbox = TeacherInbox()
+        self.statistics = StatisticsCounter()
+        self.ledger = Ledger()
+        authority = Authority(repertoire, attended=attended)
+        self.school = School(self.level, authority, insert_beyond_share=0.5, taken_command_ids=(), asked=asked)
+        robot: Robot = self.robot
+        self.tick = Tick(
+            robot,
+            Perception(small, SENSORS),
+            self.level,
+            self.school,
+            self.inbox,
+            self.notebook,
+            self.statistics,
+            self.ledger,
+            now=lambda: self.ticks * 0.01 + self.held_up_s,
+            stale_infrared_s=0.05,
+            tolerates_stalls=tolerates_stalls,
+            asks_when_held=asks_when_held,
+        )
+        self.ticks = 0
+
+    def run(self, counts: int | None = None, *commands: Command) -> TickRecord:
+        """One tick, in which the sensors show `counts` and these commands have just arrived."""
+        if counts is not None:
+            self.robot.counts = counts
+        for command in commands:
+            self.inbox.put(command)
+        self.ticks += 1
+        self.ledger.begin(0.0)
+        record = self.tick.run(self.ticks, self.ticks * 0.01)
+        self.ledger.end()
+        return record
+
+
+def averages(record: TickRecord) -> list[float]:
+    values: list[float] = (record.situation.vector[4:]).tolist()
+    return values
+
+
+@pytest.fixture
+def corridor() -> Corridor:
+    return Corridor()
+
+
+@pytest.fixture
+def driving() -> Corridor:
+    """A robot that was taught to drive forward where the counts are 100, and does."""
+    corridor = Corridor()
+    corridor.run(100, teach("forward", "first"))
+    for _ in range(10):
+        assert corridor.run().decision.action == "forward"
+    return corridor
+
+
+def test_untaught_it_asks_and_stands_with_its_history_frozen(corridor: Corridor) -> None:
+    records = [corridor.run(counts) for counts in (100, 150, 200)]
+    for record in records:
+        assert record.decision.asking
+        assert record.decision.cause is Cause.UNKNOWN
+        assert record.grant.wheel_speeds == STANDSTILL
+        assert record.situation.history_frozen
+        assert averages(record) == averages(records[0])
+    assert [record.situation.vector[0] for record in records] == [100, 150, 200]
+    assert corridor.robot.driven == [STANDSTILL] * 3
+
+
+def test_a_lesson_acts_in_the_very_tick_that_takes_it(corridor: Corridor) -> None:
+    corridor.run()
+    record = corridor.run(100, teach("forward", "t-1"))
+    assert [(result.command_id, result.accepted) for result in record.results] == [("t-1", True)]
+    assert (record.decision.cause, record.decision.action, record.decision.rla_id) == (Cause.RLA, "forward", 1)
+    assert corridor.robot.driven == [STANDSTILL, FORWARD]
+    assert corridor.system.rlas[0].condition == tuple(record.situation.vector.tolist())
+    assert [event.origin.command_id for event in corridor.notebook.events] == ["t-1"]
+    assert corridor.notebook.events[0].origin.tick == record.tick == 2
+    assert corridor.run().results == ()
+
+
+def test_history_goes_on_while_it_drives_and_stands_still_while_it_asks(driving: Corridor) -> None:
+    moving = [driving.run(110) for _ in range(4)]
+    assert not any(record.situation.history_frozen for record in moving)
+    assert averages(moving[-1])[0] == pytest.approx(110)
+    last_driven = driving.run(400)  # the step that brought it here still belongs to the journey
+    assert last_driven.decision.asking
+    assert not last_driven.situation.history_frozen
+    waiting = [driving.run(count) for count in (400, 500, 600)]
+    assert all(record.situation.history_frozen for record in waiting)
+    assert {tuple(averages(record)) for record in waiting} == {tuple(averages(last_driven))}
+
+
+def test_wheel_speeds_of_the_last_action_are_held_while_it_waits(driving: Corridor) -> None:
+    assert driving.run().situation.vector[2:4].tolist() == [3, 3]
+    for _ in range(3):
+        assert driving.run(400).situation.vector[2:4].tolist() == [3, 3]
+    driving.run(400, teach("back", "second"))
+    assert driving.run(400).situation.vector[2:4].tolist() == [-2, -2]  # -0.15 m/s at 10 counts, rounded to even
+
+
+def test_an_unknown_situation_stops_the_wheels_in_the_same_tick(driving: Corridor) -> None:
+    driving.run(400)
+    assert driving.robot.driven[-2:] == [FORWARD, STANDSTILL]
+
+
+def test_a_correction_acts_in_the_tick_that_takes_it(driving: Corridor) -> None:
+    record = driving.run(100, set_phase(Phase.CORRECTIONS), correct("back"))
+    assert (record.decision.action, record.grant.wheel_speeds) == ("back", BACK)
+    assert driving.notebook.events[-1].origin.phase is Phase.CORRECTIONS
+
+
+def test_commands_of_one_tick_are_carried_out_in_the_order_they_came(corridor: Corridor) -> None:
+    record = corridor.run(100, delete(1, "too early"), teach("forward", "t"), delete(1, "d"), teach("back", "t-2"))
+    assert [result.accepted for result in record.results] == [False, True, True, True]
+    assert (record.decision.rla_id, record.decision.action) == (2, "back")
+    assert [event.origin.command_id for event in corridor.notebook.events] == ["t", "d", "t-2"]
+
+
+def test_what_it_pursues_changes_what_it_does_in_the_very_tick_that_takes_it() -> None:
+    corridor = Corridor(behaviours=("straight_on", "turn_left"))
+    corridor.run(100, teach("forward", "1"))
+    record = corridor.run(100, pursue("turn_left", "2"))
+    assert (record.behaviour, record.decision.cause, record.grant.wheel_speeds) == (
+        "turn_left",
+        Cause.UNKNOWN,
+        STANDSTILL,
+    )
+    corridor.run(100, teach("back", "3"))
+    record = corridor.run(100, pursue("straight_on", "4"))
+    assert (record.behaviour, record.decision.action, record.decision.cause) == ("straight_on", "forward", Cause.RLA)
+    # What came before it in the same tick is about what was wanted before it.
+    corridor.run(900, teach("back", "5"), pursue("turn_left", "6"))
+    assert [rla.behaviour for rla in corridor.system.rlas] == ["straight_on", "turn_left", "straight_on"]
+
+
+def test_stop_holds_until_resume_and_history_waits(driving: Corridor) -> None:
+    stopped = driving.run(100, stop())
+    assert (stopped.decision.cause, stopped.grant.wheel_speeds) == (Cause.STOPPED, STANDSTILL)
+    for _ in range(5):
+        record = driving.run()
+        assert record.decision.cause is Cause.STOPPED
+        assert record.situation.history_frozen
+        assert not record.decision.asking
+    assert driving.run(100, resume()).grant.wheel_speeds == FORWARD
+
+
+def test_a_lesson_for_a_stopped_robot_is_taken_and_waits_for_resume(corridor: Corridor) -> None:
+    corridor.run(100, stop())
+    record = corridor.run(100, teach("back"))
+    assert record.results[0].accepted
+    assert record.decision.cause is Cause.STOPPED
+    assert corridor.run(100, resume()).decision.action == "back"
+
+
+def test_while_lessons_cannot_be_saved_it_stands_and_says_why(driving: Corridor) -> None:
+    driving.notebook.trouble = "disk full"
+    record = driving.run()
+    assert (record.decision.cause, record.grant.wheel_speeds) == (Cause.UNSAVED, STANDSTILL)
+    assert driving.run().situation.history_frozen
+    driving.run(100, correct("back", "while unsaved"))
+    assert driving.notebook.events[-1].origin.command_id == "while unsaved"  # not lost: it waits there
+    driving.notebook.trouble = None
+    assert driving.run().decision.action == "back"
+
+
+def test_a_teachers_stop_goes_before_trouble_with_saving(driving: Corridor) -> None:
+    driving.notebook.trouble = "disk full"
+    assert driving.run(100, stop()).decision.cause is Cause.STOPPED
+
+
+def test_an_emergency_stop_holds_until_resume_with_history_frozen(driving: Corridor) -> None:
+    driving.robot.emergency_stop(GuardReason.OTHER)
+    first = driving.run()
+    assert first.grant == GuardResult(STANDSTILL, (GuardReason.OTHER,), latched=True)
+    for _ in range(5):
+        record = driving.run()
+        assert record.grant.latched
+        assert record.situation.history_frozen
+    assert driving.run(100, resume()).grant.wheel_speeds == FORWARD
+    assert not driving.run().situation.history_frozen
+
+
+def test_a_late_copy_of_an_old_resume_does_not_end_a_new_emergency_stop(driving: Corridor) -> None:
+    driving.run(100, stop("s"))
+    driving.run(100, resume("again"))
+    driving.robot.emergency_stop(GuardReason.OTHER)
+    record = driving.run(100, resume("again"))
+    assert record.results[0].outcome == Outcome(ResultCode.REPEATED)
+    assert record.grant.latched
+    assert not driving.run(100, resume("after a look")).grant.latched
+
+
+def test_a_resume_that_was_said_before_an_emergency_stop_does_not_end_it(driving: Corridor) -> None:
+    said_on = driving.run(100).tick
+    driving.robot.emergency_stop(GuardReason.OTHER)
+    stopped_on = driving.run(100).tick
+    late = driving.run(100, Resume("on its way", "Ann", said_on))
+    assert late.results[0].outcome == Outcome(RefusalCode.STOPPED_SINCE)
+    assert late.grant.latched
+    assert not driving.run(100, Resume("after a look", "Ann", stopped_on)).grant.latched
+
+
+def test_a_resume_does_not_end_the_emergency_stop_of_its_own_tick(driving: Corridor) -> None:
+    driving.robot.emergency_stop(GuardReason.OTHER)  # as the senses of the next tick do
+    assert driving.run(100, resume("said before")).grant.latched
+    assert not driving.run(100, resume("after a look")).grant.latched
+
+
+def test_a_robot_that_stops_itself_in_the_tick_of_a_resume_wants_a_new_one(driving: Corridor) -> None:
+    driving.robot.emergency_stop(GuardReason.BUS_LOST)
+    seen = driving.run(100).tick
+    driving.robot.relatches = True
+    again = driving.run(100, Resume("1", "Ann", seen))
+    assert again.grant.latched
+    driving.robot.relatches = False
+    assert driving.run(100, Resume("2", "Ann", seen)).grant.latched
+    assert not driving.run(100, Resume("3", "Ann", again.tick)).grant.latched
+
+
+def test_uses_and_transitions_are_counted_and_standing_ends_a_chain(driving: Corridor) -> None:
+    driving.run(115, teach("back", "second"))
+    for counts in [115] * 10 + [100] * 10:
+        driving.run(counts)
+    assert driving.statistics.uses == {1: 2, 2: 1}
+    assert driving.statistics.transitions == {(1, 2): 1, (2, 1): 1}
+    driving.run(100, stop())
+    driving.run(100, resume())
+    assert driving.statistics.uses == {1: 3, 2: 1}
+    assert driving.statistics.transitions == {(1, 2): 1, (2, 1): 1}
+
+
+def test_every_tick_is_in_the_ledger(driving: Corridor) -> None:
+    assert driving.ledger.ticks == driving.ticks
+
+
+def journey(seed: int) -> tuple[list[TickRecord], str, Sequence[TeachingEvent]]:
+    """1000 ticks through changing counts with lessons, corrections, stops and deletions thrown in by chance."""
+    chance = np.random.default_rng(seed)
+    corridor = Corridor()
+    records = []
+    for number in range(1000):
+        commands: list[Command] = []
+        if number % 7 == 0:
+            name, action = f"{seed}-{number}", ("forward", "back")[int(chance.integers(2))]
+            rla_id = int(chance.integers(1, 20))
+            choices: list[Command] = [
+                *(teach(action, name), correct(action, name), delete(rla_id, name)),
+                *(stop(name), resume(name), resume(name)),
+            ]
+            commands = [choices[int(chance.integers(len(choices)))]]
+        walk = int(np.clip(corridor.robot.counts + chance.integers(-15, 16), 60, 560))
+        records.append(corridor.run(walk, *commands))
+    return records, corridor.system.knowledge_hash(), corridor.notebook.events
+
+
+def printed(records: Sequence[TickRecord]) -> list[str]:
+    """Records as text with all digits; situations are arrays, which do not compare as a whole."""
+    return [repr((record, record.situation.vector.tolist())) for record in records]
+
+
+def test_the_same_inputs_give_the_same_records_and_the_same_knowledge() -> None:
+    first, second, other = journey(1), journey(1), journey(2)
+    assert printed(first[0]) == printed(second[0])
+    assert first[1:] == second[1:]
+    assert first[1] != other[1]
+    causes = {record.decision.cause for record in first[0]}
+    assert causes == {Cause.RLA, Cause.HELD, Cause.UNKNOWN, Cause.STOPPED}  # the journey has seen it all
+
+
+def test_what_the_keeper_holds_folds_to_what_the_robot_knows() -> None:
+    _, knowledge_hash, events = journey(3)
+    system = RlaSystem(8, RADIUS)
+    system.apply_all(events)
+    assert system.knowledge_hash() == knowledge_hash
+
+
+def test_a_tick_that_was_held_up_tells_the_guard_how_old_its_decision_is(driving: Corridor) -> None:
+    driving.run(100)
+    driving.held_up_s = 0.09
+    driving.run(100)
+    assert driving.robot.command_ages_s[-2:] == pytest.approx([0.0, 0.09])
+
+
+def test_a_robot_that_sees_nothing_stands_asks_nothing_and_learns_nothing(driving: Corridor) -> None:
+    known = len(driving.system)
+    driving.robot.infrared_age_s = math.inf
+    record = driving.run(100, teach("back", "in the dark"))
+    assert record.decision.cause is Cause.BLIND
+    assert record.grant.wheel_speeds == STANDSTILL
+    (result,) = record.results
+    assert not result.accepted
+    assert result.outcome == Outcome(RefusalCode.BLIND)
+    assert len(driving.system) == known
+
+    driving.robot.infrared_age_s = 0.0
+    assert driving.run(100).decision.cause is Cause.RLA
+    assert driving.run(100, teach("back", "in the dark")).results[0].accepted
+
+
+def test_what_a_latched_robot_would_have_done_is_not_counted(driving: Corridor) -> None:
+    driving.run(100)
+    uses = dict(driving.statistics.uses)
+    driving.robot.latched = True
+    for _ in range(5):
+        driving.run(100)
+    assert driving.statistics.uses == uses
+
+
+@pytest.mark.parametrize("says_why", [False, True])
+def test_a_layer_that_fails_does_not_drive_a_robot_that_was_stopped(
+    driving: Corridor, monkeypatch: pytest.MonkeyPatch, says_why: bool
+) -> None:
+    decide = BasicLevel.decide
+
+    def runs_away(level: BasicLevel, *words: object) -> Decision:
+        decision = decide(level, *words)._replace(wheel_speeds=FORWARD)  # type: ignore[arg-type]
+        return decision._replace(cause=Cause.RLA, action="ahead", rla_id=1) if says_why else decision
+
+    driving.run(None, stop("enough"))
+    monkeypatch.setattr(BasicLevel, "decide", runs_away)
+    for _ in range(5):
+        record = driving.run()
+        assert record.decision.cause is Cause.STOPPED
+        assert not record.decision.driving
+        assert record.decision.wheel_speeds == record.grant.wheel_speeds == STANDSTILL
+    driving.run(None, resume("go on"))
+    assert driving.run().grant.wheel_speeds == FORWARD

@@ -1,0 +1,193 @@
+"""The tick as a story, continued: a robot that touches something, and is to drive on toward it, asks."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from hal.robot import STANDSTILL, WheelSpeeds
+from hal.simulation import Pose
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.standing import ASKS_AFTER_TICKS, DRIVES, Standing, StandReason
+from kurt2rt.core.rla.outcome import Outcome, ResultCode
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.teaching.commands import Command, Resume, Teach, Watch
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.runs.replay.comparison import compare
+from kurt2rt.runs.replay.reader import read_run
+from kurt2rt.runs.replay.replay import Replay
+from tests.core.test_tick import BACK, FORWARD, Corridor, averages
+from tests.core.test_tick_by_hand import press, watch
+from tests.runs.replay.stories import NAME, Scene, record_story
+from tests.teacher.helpers import correct, set_phase, teach
+
+
+def held(corridor: Corridor, ticks: int = ASKS_AFTER_TICKS) -> TickRecord:
+    """The robot drives by its first RLA into something, and is held there."""
+    corridor.run(100, teach("forward", "first"))
+    for _ in range(10):
+        assert corridor.run().decision.action == "forward"
+    corridor.robot.touches_in_front = True
+    for _ in range(ticks):
+        record = corridor.run()
+    return record
+
+
+@pytest.fixture
+def corridor() -> Corridor:
+    return Corridor()
+
+
+def test_a_robot_that_is_held_at_a_bumper_asks_after_half_a_second(corridor: Corridor) -> None:
+    before = held(corridor, ASKS_AFTER_TICKS - 1)
+    assert (before.decision.cause, before.standing) == (Cause.RLA, Standing(StandReason.FRONT_BUMPER))
+    record = corridor.run()
+    decision = record.decision
+    assert (decision.cause, decision.asking, decision.driving) == (Cause.TOUCHES, True, False)
+    assert (decision.wheel_speeds, record.grant.wheel_speeds) == (STANDSTILL, STANDSTILL)
+    assert record.standing == Standing(StandReason.FRONT_BUMPER, asks=True)
+    assert decision.match is not None
+    assert decision.match.rla.rla_id == 1  # who goes on toward it
+    assert all(corridor.run().decision.cause is Cause.TOUCHES for _ in range(100))
+
+
+def test_a_brush_is_no_question(corridor: Corridor) -> None:
+    held(corridor, ASKS_AFTER_TICKS - 1)
+    corridor.robot.touches_in_front = False
+    assert corridor.run().standing == DRIVES
+    corridor.robot.touches_in_front = True
+    assert corridor.run().decision.cause is Cause.TOUCHES  # it was only a bumper that sprang back
+    corridor.robot.touches_in_front = False
+    for _ in range(ASKS_AFTER_TICKS):
+        corridor.run()
+    corridor.robot.touches_in_front = True
+    assert corridor.run().decision.cause is Cause.RLA
+
+
+def test_it_drives_on_when_what_it_touched_is_gone(corridor: Corridor) -> None:
+    held(corridor)
+    corridor.robot.touches_in_front = False
+    record = corridor.run()
+    assert (record.decision.cause, record.grant.wheel_speeds) == (Cause.RLA, FORWARD)
+
+
+@pytest.mark.parametrize("say", [teach, correct])
+def test_an_answer_moves_the_robot_at_once_and_is_not_shadowed(
+    corridor: Corridor, say: Callable[[str, str], Command]
+) -> None:
+    held(corridor)
+    record = corridor.run(None, say("back", "answer"))
+    assert record.results[0].outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="back", was="forward")
+    assert (record.decision.cause, record.decision.action) == (Cause.RLA, "back")
+    assert record.grant.wheel_speeds == BACK
+    assert record.standing == DRIVES
+    assert len(corridor.system) == 1
+
+
+def test_an_answer_far_from_the_condition_inserts_an_rla_that_wins(corridor: Corridor) -> None:
+    held(corridor)
+    corridor.run(130)  # within R 50, farther than half of it
+    assert corridor.run().decision.cause is Cause.TOUCHES
+    record = corridor.run(None, teach("back", "answer"))
+    assert (record.decision.rla_id, record.grant.wheel_speeds) == (2, BACK)
+    assert len(corridor.system) == 2
+
+
+def test_an_answer_that_changes_nothing_leaves_the_question(corridor: Corridor) -> None:
+    held(corridor)
+    record = corridor.run(None, teach("forward", "answer"))
+    assert record.results[0].outcome == Outcome.of(ResultCode.RLA_AGREES, rla=1, action="forward")
+    assert record.decision.cause is Cause.TOUCHES
+
+
+def test_an_answer_about_a_question_of_before_is_a_correction_too(corridor: Corridor) -> None:
+    asked = held(corridor).tick
+    corridor.robot.touches_in_front = False
+    corridor.run()
+    record = corridor.run(None, Teach("answer", "Ann", "back", decision_tick=asked))
+    assert record.results[0].outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="back", was="forward")
+
+
+def test_history_stands_still_while_it_waits_for_its_teacher(corridor: Corridor) -> None:
+    held(corridor)
+    asked = averages(corridor.run(115))
+    assert averages(corridor.run(115)) == asked
+    corridor.run(100, set_phase(Phase.AUTONOMOUS))
+    corridor.run(100)
+    moved = averages(corridor.run(115))
+    assert averages(corridor.run(115)) != moved  # no teacher is waited for
+
+
+def test_what_pushes_may_be_blamed_for_it(corridor: Corridor) -> None:
+    for phase in (Phase.SUPERVISED, Phase.AUTONOMOUS):
+        corridor = Corridor()
+        corridor.run(100, set_phase(phase))
+        record = held(corridor)
+        assert record.decision.cause is Cause.TOUCHES  # in phase 5, too: it does not stand without saying why
+        assert corridor.school.recent.answering(record.tick) == 1
+
+
+def test_it_asks_nobody_in_an_exam_nor_in_a_run_of_before() -> None:
+    for other in (Corridor(asked=False), Corridor(asks_when_held=False)):
+        record = held(other)
+        assert (record.decision.cause, record.decision.rla_id) == (Cause.RLA, 1)
+        assert record.standing == Standing(StandReason.FRONT_BUMPER)
+
+
+def test_a_robot_that_is_held_and_loses_its_teacher_waits_for_go() -> None:
+    corridor = Corridor(attended=True)
+    corridor.run(100, teach("forward", "first"), watch(corridor))
+    corridor.robot.touches_in_front = True
+    for _ in range(ASKS_AFTER_TICKS):
+        record = corridor.run(None, watch(corridor))
+    assert record.decision.cause is Cause.TOUCHES
+    for _ in range(24):
+        record = corridor.run()
+    corridor.robot.touches_in_front = False
+    record = corridor.run(None, watch(corridor))
+    assert (record.decision.cause, record.standing.needs_go) == (Cause.STOPPED, True)
+
+
+def test_a_hand_that_pushes_is_told_and_asked_nothing(corridor: Corridor) -> None:
+    corridor.robot.touches_in_front = True
+    for _ in range(2 * ASKS_AFTER_TICKS):
+        record = corridor.run(100, press(corridor))
+    assert (record.decision.cause, record.standing) == (Cause.TEACHER, Standing(StandReason.FRONT_BUMPER))
+
+
+def test_a_latch_goes_before_the_question(corridor: Corridor) -> None:
+    held(corridor)
+    corridor.robot.latched = True
+    record = corridor.run()
+    assert (record.decision.cause, record.standing.needs_go) == (Cause.RLA, True)
+
+
+def drives_into_a_wall(scene: Scene, record: TickRecord) -> None:
+    """Taught to drive forward whatever it sees; two seconds after it asks what to do at the wall, to drive back."""
+    inbox, tick = scene.runtime.inbox, record.tick
+    if tick == 1:
+        scene.simulation.put(Pose(2.5, 2.0, 0.0))
+        inbox.put(Resume("go", NAME))
+    inbox.put(Watch(NAME, tick))
+    if record.decision.cause is Cause.UNKNOWN and tick % 20 == 0:
+        inbox.put(Teach(f"t{tick}", NAME, "forward"))
+    scene.presses += record.decision.cause is Cause.TOUCHES
+    if scene.presses == 200 and record.decision.cause is Cause.TOUCHES:
+        inbox.put(Teach("back", NAME, "back"))
+
+
+def test_a_run_into_a_wall_is_decided_again_as_it_was(tmp_path: Path) -> None:
+    run = read_run(record_story("walls", tmp_path, seconds=8, other=drives_into_a_wall))
+    asked, after = 0, WheelSpeeds(0.0, 0.0)
+    for entry, record in Replay(run):
+        assert list(compare(entry, record)) == []
+        if entry.decision.cause is Cause.TOUCHES:
+            asked += 1
+        elif asked:
+            after = min(after, entry.grant.wheel_speeds)
+    assert asked >= 200
+    assert after == BACK
+    run.head = replace(run.head, asks_when_held=False)  # as before it asked: nothing else had been recorded
+    entry, record = next(tick for tick in Replay(run) if list(compare(*tick)))
+    assert (entry.decision.cause, record.decision.cause) == (Cause.TOUCHES, Cause.RLA)

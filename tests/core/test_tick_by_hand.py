@@ -1,0 +1,475 @@
+"""The tick as a story, continued: teachers who are there or not, a hand on the wheels, and decisions of the past."""
+
+import itertools
+import math
+from collections.abc import Callable
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hal.guard_reason import GuardReason
+from hal.robot import STANDSTILL, WheelSpeeds
+from kurt2rt.core.basic.basic_level import BasicLevel
+from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.rla.rla import Phase, RlaRewarded
+from kurt2rt.core.teaching.commands import (
+    BeginSession,
+    Command,
+    Correct,
+    DeleteRla,
+    Drive,
+    EndSession,
+    HandOver,
+    Resume,
+    Reward,
+    RunBehaviour,
+    SetPhase,
+    Stop,
+    Take,
+    Teach,
+    Undo,
+    Watch,
+)
+from kurt2rt.core.tick import TickRecord
+from tests.core.test_tick import FORWARD, Corridor
+from tests.examples import examples
+from tests.teacher.helpers import correct, resume, set_phase, stop, teach
+
+LEASE, REACH = 24, 35
+BY_HAND = WheelSpeeds(0.21, 0.19)
+
+
+def press(corridor: Corridor, hold: int = 1, *, teacher: str = "Ann", age: int = 0) -> Drive:
+    """One message of a press that arrives in the next tick, on the picture of `age` ticks before that."""
+    return Drive(teacher, corridor.ticks + 1 - age, hold, *BY_HAND)
+
+
+def watch(corridor: Corridor, teacher: str = "Ann", *, age: int = 0) -> Watch:
+    return Watch(teacher, corridor.ticks + 1 - age)
+
+
+def causes(corridor: Corridor, ticks: int, counts: int | None = None) -> list[Cause]:
+    return [corridor.run(counts).decision.cause for _ in range(ticks)]
+
+
+def stands(record: TickRecord) -> bool:
+    return record.grant.wheel_speeds == STANDSTILL
+
+
+@pytest.fixture
+def driving() -> Corridor:
+    """A robot that needs nobody and drives forward where the counts are 100."""
+    corridor = Corridor()
+    corridor.run(100, teach("forward", "first"))
+    corridor.run(100)
+    return corridor
+
+
+@pytest.fixture
+def attended() -> Corridor:
+    """A robot that needs a teacher, was taught to drive forward at 100, and whose teacher is not there just now."""
+    corridor = Corridor(attended=True)
+    corridor.run(100, teach("forward", "first"))
+    return corridor
+
+
+def test_a_press_drives_for_its_lease_and_then_the_robot_stands_though_it_knows_the_way(driving: Corridor) -> None:
+    first = driving.run(100, press(driving))
+    assert (first.decision.cause, first.decision.action, first.decision.rla_id) == (Cause.TEACHER, "by hand", None)
+    assert first.grant.wheel_speeds == BY_HAND
+    assert first.decision.match is not None  # what the robot would have done stays to be seen
+    assert causes(driving, LEASE - 1) == [Cause.TEACHER] * (LEASE - 1)
+    assert causes(driving, 200) == [Cause.STOPPED] * 200
+    assert driving.run(100, resume()).grant.wheel_speeds == FORWARD
+
+
+def test_a_press_held_back_on_its_way_drives_until_35_ticks_after_its_picture(driving: Corridor) -> None:
+    driving.run(100, press(driving, age=20))
+    assert causes(driving, 20) == [Cause.TEACHER] * (REACH - 20 - 1) + [Cause.STOPPED] * 6
+
+
+def test_a_press_on_a_picture_35_ticks_old_does_not_move_the_robot(driving: Corridor) -> None:
+    assert stands(driving.run(100, press(driving, age=REACH)))
+    assert stands(driving.run(100, press(driving, 1)))  # and is over
+    assert driving.run(100, press(driving, 2)).grant.wheel_speeds == BY_HAND
+
+
+def test_the_same_press_never_comes_back_and_a_new_one_does(driving: Corridor) -> None:
+    driving.run(100, press(driving, hold=5))
+    causes(driving, LEASE)
+    assert driving.run(100, press(driving, hold=5)).decision.cause is Cause.STOPPED
+    assert driving.run(100, press(driving, hold=4)).decision.cause is Cause.STOPPED
+    assert driving.run(100, press(driving, hold=6)).decision.cause is Cause.TEACHER
+
+
+def test_an_older_press_that_comes_late_neither_drives_nor_lets_the_newer_one_come_back(driving: Corridor) -> None:
+    driving.run(100, press(driving, hold=1))
+    driving.run(100, press(driving, hold=4))
+    assert not stands(driving.run(100, press(driving, hold=1)))  # the newer one still drives
+    for _ in range(LEASE):
+        record = driving.run(100)
+    assert stands(record)
+    assert stands(driving.run(100, press(driving, hold=1)))
+    assert stands(driving.run(100, press(driving, hold=4)))
+    assert not stands(driving.run(100, press(driving, hold=5)))
+
+
+@pytest.mark.parametrize("by", ["Ann", "Ben"])
+def test_a_stop_of_anyone_ends_the_press_in_the_same_tick(driving: Corridor, by: str) -> None:
+    driving.run(100, press(driving))
+    record = driving.run(100, press(driving), Stop("s", by), press(driving))
+    assert (record.decision.cause, record.grant.wheel_speeds) == (Cause.STOPPED, STANDSTILL)
+    assert stands(driving.run(100, press(driving)))
+    assert (driving.run(100, press(driving, hold=2)).decision.cause is Cause.TEACHER) == (by == "Ann")
+    driving.run(100, resume())
+    assert driving.run(100, press(driving, hold=3)).decision.cause is Cause.TEACHER
+
+
+def test_what_is_driven_by_hand_goes_into_the_history_and_belongs_to_no_rla(driving: Corridor) -> None:
+    driving.run(100, press(driving))
+    uses = dict(driving.statistics.uses)
+    record = driving.run(110)
+    assert not record.situation.history_frozen
+    assert driving.statistics.uses == uses
+
+
+def test_what_the_hand_drives_belongs_to_no_rla_also_when_the_layer_fails(
+    driving: Corridor, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    decide = BasicLevel.decide
+
+    def runs_away(level: BasicLevel, *words: object) -> Decision:
+        decision = decide(level, *words)  # type: ignore[arg-type]
+        return decision._replace(wheel_speeds=FORWARD, cause=Cause.RLA, action="back", rla_id=1, answers=True)
+
+    uses = dict(driving.statistics.uses)
+    monkeypatch.setattr(BasicLevel, "decide", runs_away)
+    for _ in range(5):
+        record = driving.run(100, press(driving))
+        assert (record.decision.cause, record.decision.rla_id) == (Cause.TEACHER, None)
+        assert not record.decision.answers
+        assert record.grant.wheel_speeds == BY_HAND
+    assert driving.statistics.uses == uses
+
+
+def test_a_hand_moves_a_robot_that_knows_nothing() -> None:
+    corridor = Corridor()
+    assert corridor.run(100).decision.asking
+    assert corridor.run(100, press(corridor)).grant.wheel_speeds == BY_HAND
+
+
+def test_a_behaviour_drives_and_then_the_robot_stands(driving: Corridor) -> None:
+    record = driving.run(100, RunBehaviour("b", "Ann", "back", 5))
+    assert (record.decision.cause, record.decision.action) == (Cause.TEACHER, "back")
+    assert causes(driving, 6) == [Cause.TEACHER] * 4 + [Cause.STOPPED] * 2
+    assert driving.run(100, resume()).decision.action == "forward"
+
+
+def test_without_its_teacher_an_attended_robot_stands_where_it_knows_the_way_and_asks_where_not(
+    attended: Corridor,
+) -> None:
+    assert causes(attended, 5, 100) == [Cause.UNATTENDED] * 5
+    assert causes(attended, 5, 400) == [Cause.UNKNOWN] * 5
+    assert causes(attended, 5, 100) == [Cause.UNATTENDED] * 5
+    assert set(attended.robot.driven) == {STANDSTILL}
+
+
+def test_it_drives_while_its_teacher_is_there_and_stands_until_resume_when_it_lost_him(attended: Corridor) -> None:
+    attended.run(100, watch(attended))
+    assert causes(attended, LEASE - 1) == [Cause.RLA] * (LEASE - 1)
+    assert attended.run(100).decision.cause is Cause.STOPPED
+    assert causes(attended, 50) == [Cause.STOPPED] * 50
+    assert attended.run(100, watch(attended)).decision.cause is Cause.STOPPED
+    assert attended.run(100, watch(attended), resume()).decision.cause is Cause.RLA
+
+
+@pytest.mark.parametrize(("age", "there"), [(0, LEASE), (11, LEASE), (12, LEASE - 1), (34, 1), (35, 0)])
+def test_presence_is_counted_from_the_picture_as_the_press_is(attended: Corridor, age: int, there: int) -> None:
+    attended.ticks += 100
+    cause = [attended.run(100, watch(attended, age=age)).decision.cause, *causes(attended, LEASE)]
+    assert cause[:there] == [Cause.RLA] * there
+    assert set(cause[there:]) == {Cause.STOPPED if there else Cause.UNATTENDED}
+
+
+def test_who_watches_all_the_time_is_never_lost(attended: Corridor) -> None:
+    for _ in range(20):
+        assert attended.run(100, watch(attended, age=11)).decision.cause is Cause.RLA
+        assert causes(attended, REACH - 11 - 1) == [Cause.RLA] * (REACH - 11 - 1)
+
+
+def test_a_teacher_lost_while_it_stood_need_not_say_resume(attended: Corridor) -> None:
+    attended.run(400, watch(attended))
+    assert causes(attended, 60, 400) == [Cause.UNKNOWN] * 60
+    assert causes(attended, 2, 100) == [Cause.UNATTENDED] * 2
+    assert attended.run(100, watch(attended)).decision.cause is Cause.RLA
+
+
+def test_another_ones_watching_does_not_count(attended: Corridor) -> None:
+    assert attended.run(100, watch(attended, "Ben")).decision.cause is Cause.UNATTENDED
+
+
+def test_a_robot_taken_while_it_drives_waits_for_its_new_teacher(attended: Corridor) -> None:
+    attended.run(100, watch(attended))
+    record = attended.run(100, watch(attended), Take("take", "Ben"))
+    assert record.results[0].accepted
+    assert stands(record)
+    assert attended.run(100, watch(attended, "Ben"), Resume("r", "Ben")).decision.cause is Cause.RLA
+
+
+def test_in_the_fifth_phase_it_needs_nobody_and_leaving_it_stops_a_robot_that_is_alone(attended: Corridor) -> None:
+    attended.run(100, set_phase(Phase.AUTONOMOUS))
+    assert causes(attended, 200) == [Cause.RLA] * 200
+    assert attended.run(100, set_phase(Phase.CORRECTIONS, "back to 2")).decision.cause is Cause.STOPPED
+
+
+@pytest.mark.parametrize("phase", [phase for phase in Phase if phase is not Phase.AUTONOMOUS])
+def test_in_every_other_phase_it_needs_one(attended: Corridor, phase: Phase) -> None:
+    attended.run(100, set_phase(phase))
+    assert attended.run(100).decision.cause is Cause.UNATTENDED
+
+
+def test_a_robot_that_is_taught_inside_its_own_program_needs_nobody(driving: Corridor) -> None:
+    assert causes(driving, 200) == [Cause.RLA] * 200
+
+
+def test_a_press_makes_its_teacher_be_there_but_when_it_ends_the_robot_stands(attended: Corridor) -> None:
+    attended.run(100, press(attended))
+    assert causes(attended, LEASE) == [Cause.TEACHER] * (LEASE - 1) + [Cause.STOPPED]
+
+
+def test_a_behaviour_ends_with_the_presence_of_its_teacher(attended: Corridor) -> None:
+    attended.run(100, watch(attended), RunBehaviour("b", "Ann", "back", 500))
+    assert causes(attended, LEASE) == [Cause.TEACHER] * (LEASE - 1) + [Cause.STOPPED]
+    assert attended.run(100, watch(attended)).decision.cause is Cause.STOPPED
+
+
+def test_a_blind_robot_takes_no_lesson_of_now_but_one_of_the_time_when_it_saw(driving: Corridor) -> None:
+    seen = driving.run(400).tick
+    driving.robot.infrared_age_s = math.inf
+    dark = driving.run(400).tick
+    record = driving.run(
+        400,
+        Teach("now", "Ann", "back"),
+        Correct("dark", "Ann", "back", dark),
+        Teach("seen", "Ann", "back", seen),
+    )
+    assert [result.accepted for result in record.results] == [False, False, True]
+    assert record.results[0].code is RefusalCode.BLIND
+    assert record.results[1].code is RefusalCode.WAS_BLIND
+    driving.robot.infrared_age_s = 0.0
+    assert not driving.run(400, Correct("late", "Ann", "forward", dark)).results[0].accepted
+    assert driving.run(400).decision.action == "back"
+
+
+def test_in_the_dark_a_copy_of_a_lesson_that_counted_is_not_called_refused(driving: Corridor) -> None:
+    driving.robot.infrared_age_s = math.inf
+    (result,) = driving.run(100, teach("forward", "first")).results
+    assert result.outcome == Outcome(ResultCode.REPEATED)
+
+
+def test_a_correction_of_a_past_decision_acts_in_the_tick_that_takes_it(driving: Corridor) -> None:
+    wrong = driving.run(100).tick
+    driving.run(115, Teach("second", "Ann", "back"))
+    record = driving.run(115, Correct("c", "Ann", "back", wrong))
+    assert record.decision.rla_id == 2
+    assert driving.run(100, correct("back", "again")).results[0].outcome == Outcome.of(
+        ResultCode.RLA_AGREES, rla=1, action="back"
+    )
+    assert driving.run(100).decision.action == "back"
+
+
+def test_a_reward_for_a_past_decision_goes_to_its_rla_and_is_kept(driving: Corridor) -> None:
+    good = driving.run(100).tick
+    driving.run(115, Teach("second", "Ann", "back"))
+    for _ in range(20):
+        driving.run(115)
+    driving.run(115, Reward("r", "Ann", 1, good))
+    event = driving.notebook.events[-1]
+    assert isinstance(event, RlaRewarded)
+    assert (event.rla_id, event.decided_at_tick, event.origin.tick) == (1, good, driving.ticks)
+
+
+def test_what_the_hand_did_is_not_an_rlas_to_be_blamed_for(driving: Corridor) -> None:
+    by_hand = driving.run(100, press(driving)).tick
+    (result,) = driving.run(100, Reward("r", "Ann", -1, by_hand)).results
+    assert not result.accepted
+    assert result.code is RefusalCode.NO_RLA_DROVE
+
+
+def test_a_refused_resume_does_not_release_an_emergency_stop(driving: Corridor) -> None:
+    driving.robot.emergency_stop(GuardReason.OTHER)
+    record = driving.run(100, Resume("r", "Ben"))
+    assert not record.results[0].accepted
+    assert record.grant.latched
+
+
+def test_while_it_is_latched_the_lease_runs_out_and_the_press_is_over(driving: Corridor) -> None:
+    driving.run(100, press(driving))
+    driving.robot.emergency_stop(GuardReason.OTHER)
+    causes(driving, LEASE)
+    driving.robot.release()
+    assert stands(driving.run(100, press(driving)))
+
+
+def test_stop_and_resume_of_one_tick_count_in_their_order(driving: Corridor) -> None:
+    assert driving.run(100, resume("1"), stop("2")).decision.cause is Cause.STOPPED
+    assert driving.run(100, stop("3"), resume("4")).decision.cause is Cause.RLA
+
+
+NAMES = st.sampled_from(["Ann", "Ann", "Ben", "Cleo"])
+
+Kind = Callable[[str, str, int, int], Command]
+"""Makes a command of: command id, teacher, tick that is meant, a small number."""
+
+
+def drive(_: str, who: str, tick: int, number: int) -> Drive:
+    """The speed tells which press it was."""
+    return Drive(who, tick, number, 0.1 + number / 100, 0.1)
+
+
+KINDS: list[Kind] = [
+    *[drive] * 5,
+    *[lambda name, who, _, __: Stop(name, who)] * 3,
+    *[lambda name, who, _, __: Resume(name, who)] * 2,
+    *[lambda _, who, tick, __: Watch(who, tick)] * 2,
+    lambda name, who, _, __: Take(name, who),
+    lambda name, who, _, number: HandOver(name, who, [None, "Ann", "Ben", "Cleo", "nobody here"][number]),
+    lambda name, who, _, number: RunBehaviour(name, who, "back", 10 * number + 1),
+    lambda name, who, _, number: SetPhase(name, who, Phase(number + 1)),
+    lambda name, who, tick, number: Teach(name, who, "forward", tick if number else None),
+    lambda name, who, tick, number: Correct(name, who, "back", tick if number else None),
+    lambda name, who, tick, number: Reward(name, who, 1, tick if number else None),
+    lambda name, who, _, number: DeleteRla(name, who, number),
+    lambda name, who, _, __: Undo(name, who),
+    lambda name, who, _, __: BeginSession(name, who, "morning"),
+    lambda name, who, _, __: EndSession(name, who),
+]
+
+COURSES = st.lists(
+    st.tuples(
+        st.sampled_from([0, 1, 5, LEASE - 1, LEASE]),
+        st.lists(
+            st.tuples(
+                st.sampled_from(KINDS), NAMES, st.sampled_from([0, 0, 4, 20, REACH]), st.integers(0, 4), st.booleans()
+            ),
+            min_size=1,
+            max_size=3,
+        ),
+        st.sampled_from([100, 100, 100, 400]),
+    ),
+    max_size=20,
+)
+"""What arrives: after so many ticks these commands (kind, who, age of the picture, number, whether an older one comes
+once more in its place), and what the sensors show meanwhile."""
+
+
+class Witness:
+    """Knows the rules and nothing of the code."""
+
+    def __init__(self) -> None:
+        self.messages: list[tuple[str, int, int]] = []
+        """Of presses: teacher, tick of arrival, tick of the picture."""
+        self.stops: set[str] = set()
+        """Who said stop since the last resume; whoever takes the robot over from one may drive it by hand."""
+        self.teachers: set[str] = set()
+        """Who may have been the teacher by now, within this tick."""
+        self.lost = False
+        """Whether the robot drove and lost its teacher since the last resume."""
+        self.drove: set[tuple[str, float]] = set()
+        """Presses that moved the robot: teacher, and the speed that tells which it was."""
+        self.hand: str | None = None
+        """Whose hand drove in the tick before."""
+        self.drove_by_itself = False
+
+    def note(self, command: Command, tick: int, *, carried_out: bool) -> None:
+        """A command that arrived in this tick."""
+        match command:
+            case Drive(teacher=who, seen_tick=seen):
+                self.messages.append((who, tick, seen))
+            case Stop(teacher=who):
+                self.stops.add(who)
+            case Resume() if carried_out:
+                self.stops.clear()
+                self.lost = False
+            case Take() if carried_out:
+                self.stops -= self.teachers
+            case HandOver(teacher=who, to=to) if carried_out:
+                self.stops.discard(who)
+                self.teachers.update(() if to is None else (to,))
+        if carried_out or isinstance(command, Drive):
+            self.teachers.add(command.teacher)
+
+    def check(self, record: TickRecord, corridor: Corridor) -> None:
+        """The rules, after a tick."""
+        school, decision = corridor.school, record.decision
+        teacher, moves = school.authority.teacher, not stands(record)
+        alone = school.needs_a_teacher and not school.authority.present(record.tick)
+        if self.drove_by_itself and alone:
+            self.lost = True
+        hand = teacher if decision.action == "by hand" else None
+        if hand is not None:
+            assert any(
+                who == hand and record.tick - arrived < LEASE and record.tick - seen < REACH
+                for who, arrived, seen in self.messages
+            )
+            press = (hand, decision.wheel_speeds.left_m_s)
+            assert press not in self.drove or self.hand == hand
+            self.drove.add(press)
+        if moves:
+            assert not alone
+            assert self.stops <= {teacher}
+        self.drove_by_itself = moves and decision.cause is not Cause.TEACHER
+        if self.drove_by_itself:
+            assert not self.stops
+            assert not self.lost
+        self.hand = hand
+        self.teachers = set() if teacher is None else {teacher}
+
+
+@given(courses=COURSES, attended=st.booleans())
+@examples(300)
+def test_whatever_three_teachers_say_the_hand_and_the_stop_keep_their_rules(
+    courses: list[tuple[int, list[tuple[Kind, str, int, int, bool]], int]], attended: bool
+) -> None:
+    corridor = Corridor(attended=attended)
+    corridor.run(100, Teach("before", "Ann", "forward"), HandOver("free", "Ann"))
+    witness = Witness()
+    names = itertools.count()
+    said: list[Command] = []
+    for wait, messages, counts in courses:
+        for _ in range(wait):
+            witness.check(corridor.run(counts), corridor)
+        commands: list[Command] = []
+        for kind, who, age, number, old in messages:
+            command = kind(f"{next(names)}", who, max(0, corridor.ticks + 1 - age), number)
+            commands.append(said[len(said) // 2] if old and said else command)
+        said += commands
+        record = corridor.run(counts, *commands)
+        results = iter(record.results)
+        for command in commands:
+            result = None if isinstance(command, Drive | Watch) else next(results)
+            carried_out = result is not None and result.accepted and result.code is not ResultCode.REPEATED
+            witness.note(command, record.tick, carried_out=carried_out)
+        witness.check(record, corridor)
+
+
+@pytest.mark.parametrize(("trouble", "cause"), [("disk full", Cause.UNSAVED), (None, Cause.BLIND)])
+def test_a_hand_does_not_move_a_robot_that_is_blind_or_cannot_save(
+    driving: Corridor, trouble: str | None, cause: Cause
+) -> None:
+    assert not stands(driving.run(100, press(driving)))
+    driving.notebook.trouble = trouble
+    driving.robot.infrared_age_s = 0.0 if trouble else 1.0
+    record = driving.run(100, press(driving))
+    assert (record.decision.cause, record.decision.action, record.decision.wheel_speeds) == (cause, None, STANDSTILL)
+
+
+def test_a_reward_does_not_cut_an_action_short(driving: Corridor) -> None:
+    driving.run(200, replace := Teach("turn back", "Ann", "back"))
+    assert driving.run(200).decision.action == "back"
+    began = driving.ticks - 1
+    assert replace.action == "back"
+    held = driving.run(100, Reward("praise", "Ann", 1, began))
+    assert (held.decision.cause, held.decision.action) == (Cause.HELD, "back")

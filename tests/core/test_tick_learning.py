@@ -1,0 +1,241 @@
+"""Rewards, the critic and what comes of them, through the whole tick of the shipped robot."""
+
+from collections.abc import Sequence
+
+import pytest
+
+from kurt2rt.core.decision.active_stop import STARTED
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.rla.credit import Credit
+from kurt2rt.core.rla.outcome import Outcome, ResultCode
+from kurt2rt.core.rla.rla import (
+    CRITIC,
+    ActionWithdrawn,
+    Appraised,
+    Origin,
+    Phase,
+    RlaCreated,
+    RlaRewarded,
+    TeachingEvent,
+)
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.core.teaching.commands import Appraise, Command, Correct, Reward, SetPhase, Teach, Undo
+from kurt2rt.core.tick import InMemoryEventStore, TickRecord
+from kurt2rt.platform.clock import LockstepClock
+from kurt2rt.runtime import build_runtime
+from tests.channel.desk import ROBOT, WideRobot
+from tests.core.rla.helpers import created, withdrawn
+
+NEAR, FAR = 400, 50
+TASK = load_task("wall_following")
+
+
+class Drive:
+    """The shipped robot, all sensors of which show one count, and one tick in a call."""
+
+    def __init__(
+        self,
+        events: Sequence[TeachingEvent] = (),
+        *,
+        saved: Statistics | None = None,
+        asked: bool = True,
+        task: TaskSettings = TASK,
+    ) -> None:
+        self.robot = WideRobot()
+        self.notebook = InMemoryEventStore()
+        clock = LockstepClock(lambda: None)
+        self.runtime = build_runtime(self.robot, ROBOT, task, events, self.notebook, clock, saved=saved, asked=asked)
+        self.tick = 0
+
+    def run(self, *commands: Command, ticks: int = 1, counts: int | None = None) -> TickRecord:
+        """So many ticks; the first one takes the commands."""
+        if counts is not None:
+            self.robot.counts = counts
+        for command in commands:
+            self.runtime.inbox.put(command)
+        for _ in range(ticks):
+            self.tick += 1
+            self.runtime.ledger.begin(0.0)
+            record = self.runtime.tick.run(self.tick, self.tick * 0.01)
+            self.runtime.ledger.end()
+        return record
+
+    def blame_until_it_sinks(self) -> None:
+        """The tick that took the last blame is the newest one."""
+        number = 0
+        while not any(isinstance(event, ActionWithdrawn) for event in self.notebook.events):
+            number += 1
+            record = self.run(ticks=200)
+            assert record.decision.driving
+            result = self.run(Reward(f"r-{number}", "Ann", -1, record.tick)).results[0]
+            assert result.accepted, result.outcome
+
+
+@pytest.fixture
+def driving() -> Drive:
+    """Taught to go forward near things, and to bear left far from them."""
+    drive = Drive()
+    drive.run(Teach("near", "Ann", "forward"), counts=NEAR)
+    drive.run(Teach("far", "Ann", "bear_left"), counts=FAR)
+    assert drive.run(counts=NEAR, ticks=20).decision.action == "forward"
+    return drive
+
+
+def test_blame_withdraws_what_sank_and_the_next_tick_stands_and_asks(driving: Drive) -> None:
+    driving.blame_until_it_sinks()
+    assert driving.robot.driven[-1].left_m_s > 0  # the tick of the blame had told the wheels already
+    record = driving.run()
+    assert record.decision.asking
+    assert record.grant.wheel_speeds == (0.0, 0.0)
+    event = driving.notebook.events[-1]
+    assert isinstance(event, ActionWithdrawn)
+    assert (event.rla_id, event.origin.tick) == (1, driving.tick - 1)
+
+
+def test_its_answer_acts_in_the_tick_that_takes_it(driving: Drive) -> None:
+    driving.blame_until_it_sinks()
+    asked = driving.run()
+    record = driving.run(Teach("anew", "Ann", "spin_right", asked.tick))
+    assert record.results[0].outcome == Outcome.of(ResultCode.RLA_ANSWERED, rla=1, action="spin_right")
+    assert (record.decision.action, record.decision.rla_id) == ("spin_right", 1)
+    assert len(driving.runtime.level.system) == 2
+
+
+def test_a_robot_that_the_guard_has_stopped_is_not_blamed(driving: Drive) -> None:
+    driving.robot.latched = True
+    record = driving.run()
+    assert record.grant.latched
+    result = driving.run(Reward("r-1", "Ann", -1, record.tick)).results[0]
+    assert not result.accepted
+
+
+def test_a_blind_robot_has_neither_circumstances_nor_an_opinion(driving: Drive) -> None:
+    assert driving.run().circumstances is not None
+    driving.run(Appraise("x-1", "Ann", "good"))
+    assert driving.run(ticks=10).opinion is not None
+    driving.robot.infrared_age_s = 1.0
+    record = driving.run()
+    assert (record.decision.cause, record.circumstances, record.opinion) == (Cause.BLIND, None, None)
+    assert not driving.run(Appraise("x-2", "Ann", "bad")).results[0].accepted
+
+
+def test_the_critic_is_taught_while_the_robot_drives_and_says_it_from_then_on(driving: Drive) -> None:
+    bad = driving.run(Appraise("x-1", "Ann", "bad"), ticks=10)
+    assert bad.opinion is not None
+    assert (bad.opinion.appraisal, bad.opinion.value) == ("bad", -1)
+    assert bad.decision.driving
+    (event,) = (event for event in driving.notebook.events if event.origin.command_id == "x-1")
+    assert isinstance(event, RlaCreated)
+    assert event.rla.level == CRITIC
+    blame = driving.run(Reward("r-1", "Ann", -1, bad.tick))
+    assert blame.results[0].accepted
+    (reward,) = (event for event in driving.notebook.events if isinstance(event, RlaRewarded))
+    assert reward.said == -1
+
+
+def trusting(driving: Drive) -> Drive:
+    """The same robot started anew, with a critic that thinks ill of what it does near things, and is trusted."""
+    driving.run(Appraise("x-1", "Ann", "bad"), ticks=10)
+    taught = list(driving.notebook.events)
+    tick = 0
+    for number in range(30):
+        for name, value in (("bad", -1), ("good", 1)):
+            tick += 1000  # one signal in some seconds counts
+            taught.append(Appraised(name, value, tick, Origin(f"{name}-{number}", "Ann", Phase.CRITIC, tick)))
+    anew = Drive(taught)
+    assert anew.runtime.school.agreement is not None
+    assert anew.runtime.school.agreement.trusted
+    return anew
+
+
+def test_in_phase_five_a_trusted_critic_changes_the_knowledge_and_the_change_can_be_undone(driving: Drive) -> None:
+    drive = trusting(driving)
+    known = drive.runtime.level.system.knowledge_hash()
+    drive.run(counts=NEAR, ticks=500)
+    assert drive.notebook.events == []  # before phase 5 it listens
+    drive.run(SetPhase("phase", "Ann", Phase.AUTONOMOUS))
+    while not drive.notebook.events:
+        drive.run()
+    event = drive.notebook.events[0]
+    assert isinstance(event, RlaCreated)
+    assert (event.origin.teacher, event.origin.phase, event.rla.action) == (CRITIC, Phase.AUTONOMOUS, "bear_left")
+    assert drive.run().decision.action == "bear_left"
+    assert drive.run(Undo("u-1", "Ann")).results[0].accepted
+    assert drive.runtime.level.system.knowledge_hash() == known
+
+
+def test_in_phase_five_a_critic_that_is_not_trusted_changes_nothing(driving: Drive) -> None:
+    driving.run(Appraise("x-1", "Ann", "bad"), ticks=10)
+    driving.run(SetPhase("phase", "Ann", Phase.AUTONOMOUS))
+    taught = len(driving.notebook.events)
+    saved = driving.runtime.to_save()
+    driving.run(ticks=1000)
+    assert len(driving.notebook.events) == taught
+    assert driving.runtime.to_save().values == saved.values
+
+
+def test_no_reward_and_no_opinion_moves_a_robot_that_stands(driving: Drive) -> None:
+    drive = trusting(driving)
+    drive.runtime.school.stop(STARTED)
+    drive.run(SetPhase("phase", "Ann", Phase.AUTONOMOUS))
+    for number in range(300):
+        record = drive.run(Reward(f"r-{number}", "Ann", (-1, 1)[number % 2]), counts=(NEAR, FAR)[number // 150])
+        assert record.decision.cause is Cause.STOPPED
+        assert record.grant.wheel_speeds == (0.0, 0.0)
+    assert drive.notebook.events == []
+
+
+def beside() -> list[TeachingEvent]:
+    """An RLA on what the robot sees near things, whose action was withdrawn, and another one a little beside it."""
+    here = Drive().run(counts=NEAR).situation.vector
+    return [
+        created(1, tuple(here.tolist()), "forward"),
+        withdrawn(1),
+        created(2, tuple((here + 5.0).tolist()), "back"),
+    ]
+
+
+def test_where_nobody_is_asked_neighbours_answer_for_what_was_withdrawn() -> None:
+    events = beside()
+    assert Drive(events).run(counts=NEAR).decision.asking
+    assert Drive(events, asked=False).run(counts=NEAR).decision.action == "back"
+    assert Drive(events[:2], asked=False).run(counts=NEAR).decision.asking
+
+
+def test_in_phase_five_nobody_is_asked_and_after_it_somebody_is_again() -> None:
+    drive = Drive(beside())
+    assert drive.run(counts=NEAR).decision.asking
+    assert drive.run(SetPhase("alone", "Ann", Phase.AUTONOMOUS)).decision.action == "back"
+    assert drive.run(SetPhase("again", "Ann", Phase.CORRECTIONS)).decision.asking
+
+
+def test_values_go_on_from_what_was_saved_or_else_from_the_credits_in_the_journal() -> None:
+    origin = Origin("r-1", "Ann", Phase.REINFORCEMENT, 5)
+    events = (created(1, (float(NEAR),) * 72), RlaRewarded(1, -1, 4, origin, (Credit(1, -0.05),)))
+    assert Drive(events).runtime.reinforcement.worth(1) == -0.05
+    assert Drive(events, saved=Statistics(values={1: -0.08})).runtime.reinforcement.worth(1) == -0.08
+    assert Drive(events, saved=Statistics(uses={1: 7})).runtime.reinforcement.worth(1) == -0.05
+
+
+def story(drive: Drive) -> tuple[list[TeachingEvent], Statistics]:
+    drive.run(Teach("near", "Ann", "forward"), counts=NEAR)
+    drive.run(Teach("far", "Ann", "bear_left"), counts=FAR)
+    drive.run(SetPhase("phase", "Ann", Phase.REINFORCEMENT))
+    for turn in range(30):
+        record = drive.run(counts=(NEAR, FAR, NEAR - 20)[turn % 3], ticks=50)
+        drive.run(
+            Reward(f"r-{turn}", "Ann", (-1, 1)[turn % 4 == 0], record.tick),
+            Appraise(f"x-{turn}", "Ann", ("bad", "neutral", "good")[turn % 3], record.tick - 7),
+        )
+        if record.decision.asking:
+            drive.run(Teach(f"t-{turn}", "Ann", ("back", "forward")[turn % 2]))
+        elif turn % 7 == 0:
+            drive.run(Correct(f"c-{turn}", "Ann", "spin_left"))
+    return drive.notebook.events, drive.runtime.to_save()
+
+
+def test_the_same_senses_and_commands_give_the_same_events_and_values() -> None:
+    one, again = story(Drive()), story(Drive())
+    assert {type(event) for event in one[0]} >= {RlaRewarded, ActionWithdrawn, RlaCreated, Appraised}
+    assert one == again

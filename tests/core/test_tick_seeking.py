@@ -1,0 +1,418 @@
+"""The whole tick with a mid level of places: names, goals, plans, and what goes before them."""
+
+import math
+from collections.abc import Sequence
+
+import pytest
+
+from hal.robot import STANDSTILL
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
+from kurt2rt.core.decision.plan_step import Course, PlanStep
+from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.rla.rla import MID, SituationNamed, TeachingEvent
+from kurt2rt.core.teaching.commands import (
+    BeAt,
+    Correct,
+    NameSituation,
+    Pursue,
+    ReplaceAction,
+    Reward,
+    Seek,
+    Stop,
+    StopSeeking,
+    Teach,
+    Undo,
+)
+from kurt2rt.core.tick import InMemoryEventStore, TickRecord
+from kurt2rt.platform.clock import LockstepClock
+from kurt2rt.runtime import build_runtime
+from tests.channel.desk import ROBOT
+from tests.core.test_tick_with_mid_level import OPEN, STREETS, WALL, StreetRobot, Town, basic_knowledge, told
+
+PLACES = STREETS.model_copy(update={"mid": "places"})
+QUARTERS = {"straight_on": 0, "turn_left": 1, "turn_right": -1}
+DOOR = NamedGoal("door")
+
+
+class Block(Town):
+    """Streets round a block: four left turns lead back to where the first one began."""
+
+    def __init__(self, events: Sequence[TeachingEvent] | None = None) -> None:
+        self.robot = StreetRobot()
+        self.notebook = InMemoryEventStore()
+        self.taught_before = basic_knowledge() if events is None else list(events)
+        clock = LockstepClock(lambda: None)
+        self.runtime = build_runtime(self.robot, ROBOT, PLACES, self.taught_before, self.notebook, clock)
+        self.tick = self.passed = 0
+        self.said = len(self.taught_before)  # ids of commands are not given twice
+        self.street()
+
+    def go(self, behaviour: str | None = None) -> TickRecord:
+        """Through the next junction as the robot wants, or as it happens; to where it has noticed that."""
+        quarters = QUARTERS[self.runtime.wanted.behaviour if behaviour is None else behaviour]
+        passed = self.passed
+        self._go(WALL, 0.5, 0.0)
+        self._go(OPEN, 0.6, quarters * math.pi / 2)
+        while self.passed == passed:
+            record = self._go(WALL, 0.02, 0.0)
+        return record
+
+    def say(self, command: type, *what: object) -> TickRecord:
+        """As Ann."""
+        self.said += 1
+        return self.run(command(f"ann-{self.said}", "Ann", *what))
+
+    def teach(self, action: str, *, beside: bool = False) -> None:
+        outcome = told(self.say(Teach, action, None, MID, beside))
+        assert outcome.accepted, outcome
+
+    def seek(self, goal: Goal = DOOR) -> TickRecord:
+        return self.say(Seek, goal)
+
+    def plan(self) -> PlanStep:
+        """How it stands with the goal, once that is settled."""
+        while True:
+            step = self.run().decision.plan
+            assert step is not None
+            if step.course is not Course.PLANNING:
+                return step
+
+
+@pytest.fixture
+def block() -> Block:
+    """Led round the block once, to the left; what comes behind the second corner is called the door."""
+    town = Block()
+    for corner in range(4):
+        if corner == 2:
+            town.say(NameSituation, "door")
+        town.teach("turn_left")
+        town.go()
+    return town
+
+
+def test_the_way_round_the_block_comes_back_to_a_place_that_it_knows(block: Block) -> None:
+    assert block.ways == {4: "turn_left", 5: "turn_left", 6: "turn_left", 7: "turn_left"}
+    assert not block.run().decision.asking
+    expected = block.runtime.expecting.of(7)
+    assert expected is not None
+    system = block.runtime.level.system
+    match = system.match(expected.mean, level=MID)
+    assert match is not None
+    assert (match.rla.rla_id, match.known) == (4, True)
+
+
+def test_it_drives_to_the_door_and_stands_there(block: Block) -> None:
+    record = block.seek()
+    assert told(record) == Outcome.of(ResultCode.GOAL_SOUGHT, says="planning the way to door")
+    step = block.plan()
+    assert step.says == "on the way to door: 2 ways left, now turn_left (RLA 4)"
+    assert step.behaviours == ("turn_left", "turn_left")
+    record = block.go()
+    assert record.decision.driving
+    record = block.go()
+    plan = record.decision.plan
+    assert plan is not None
+    assert (plan.course, plan.says, plan.surprises) == (Course.ARRIVED, "arrived: door", 0)
+    assert (record.decision.cause, record.decision.wheel_speeds) == (Cause.AT_GOAL, STANDSTILL)
+    record = block.say(StopSeeking)
+    assert record.decision.plan is None
+    assert record.decision.driving
+
+
+def test_of_two_ways_from_a_place_it_takes_the_one_that_leads_to_the_goal(block: Block) -> None:
+    block.teach("straight_on", beside=True)
+    assert block.run().behaviour == "turn_left"  # of the ways on one place the mid level goes the oldest
+    block.say(Pursue, "straight_on")
+    block.go()
+    block.teach("straight_on")
+    block.say(NameSituation, "yard")
+    block.say(BeAt, "door")  # from here nobody ever led it to the yard in one piece
+    block.seek(NamedGoal("yard"))
+    assert block.plan().says == "on the way to yard: 3 ways left, now turn_left (RLA 6)"
+    block.go()
+    block.go()
+    assert block.run().behaviour == "straight_on"
+    block.go()
+    assert block.plan().course is Course.ARRIVED
+
+
+def test_surprised_it_plans_from_where_it_is(block: Block) -> None:
+    block.teach("straight_on", beside=True)
+    block.say(Pursue, "straight_on")
+    block.go()
+    for _ in range(3):  # round the next block, in which the far side is the near one's
+        block.teach("turn_left")
+        block.go()
+    assert not block.run().decision.asking
+    block.say(BeAt, "door")
+    block.seek(RlaGoal(4))
+    block.go()
+    block.go("straight_on")  # it was to turn
+    assert block.run().decision.asks_at == MID
+    step = block.plan()
+    assert (step.course, step.surprises) == (Course.LOST, 1)
+    block.say(BeAt, "door")
+    assert block.plan().course is Course.UNDER_WAY
+
+
+def test_where_no_way_leads_it_stands_and_says_so() -> None:
+    town = Block()
+    town.say(NameSituation, "home")
+    town.teach("straight_on")
+    town.go()
+    town.teach("straight_on")
+    assert told(town.seek(NamedGoal("home"))) == Outcome.of(ResultCode.GOAL_SOUGHT, says="planning the way to home")
+    assert town.plan().says == "no way from here to home: nothing taught leads there"
+    record = town.run()
+    assert (record.decision.cause, record.decision.wheel_speeds) == (Cause.NO_WAY, STANDSTILL)
+
+
+def test_where_it_stood_it_stands_until_the_plan_stands(block: Block) -> None:
+    block.say(NameSituation, "here")
+    block.seek(NamedGoal("here"))
+    record = block.seek(DOOR)
+    for _ in range(2):
+        plan = record.decision.plan
+        assert plan is not None
+        assert (plan.course, record.decision.wheel_speeds) == (Course.PLANNING, STANDSTILL)
+        record = block.run()
+    assert block.plan().course is Course.UNDER_WAY
+    assert block.run().decision.driving
+
+
+def test_one_that_is_under_way_drives_on_while_it_plans(block: Block) -> None:
+    record = block.seek(DOOR)
+    plan = record.decision.plan
+    assert plan is not None
+    assert (plan.course, plan.rla_id, record.decision.driving) == (Course.PLANNING, None, True)
+
+
+def test_a_plan_that_comes_too_late_for_the_next_junction_begins_behind_it(block: Block) -> None:
+    block.say(NameSituation, "here")
+    block.teach("straight_on", beside=True)
+    block.say(Pursue, "straight_on")
+    block.go()
+    block.teach("straight_on")
+    block.say(NameSituation, "yard")
+    block.say(BeAt, "here")
+    block.run()
+    block.robot.left_m = block.robot.right_m = 0.2  # so fast that it is far on before the plan stands
+    block.seek(NamedGoal("yard"))
+    step = block.plan()
+    block.robot.left_m = block.robot.right_m = 0.0
+    assert step.says == "on the way to yard: the plan begins behind the next junction"
+    assert block.run().behaviour == "turn_left"
+    block.go()
+    assert block.plan().behaviours == ("turn_left", "turn_left", "turn_left", "straight_on")
+
+
+def test_what_is_taught_of_the_basic_level_meanwhile_holds_no_plan_up(block: Block) -> None:
+    block.seek(DOOR)
+    ticks = 0
+    while (step := block.say(Reward, 1).decision.plan) is not None and step.course is Course.PLANNING:
+        ticks += 1
+    assert ticks < 5
+    assert block.plan().course is Course.UNDER_WAY
+
+
+def test_what_is_taught_of_places_meanwhile_begins_the_plan_anew_once_in_a_while(block: Block) -> None:
+    block.say(NameSituation, "here")
+    block.seek(NamedGoal("here"))
+    block.seek(DOOR)
+    changes = 0
+    while (step := block.run().decision.plan) is not None and step.course is Course.PLANNING:
+        changes += 1
+        block.teach(("straight_on", "turn_right")[changes % 2], beside=True) if changes < 3 else None
+    assert 2 < changes < 30
+    assert block.plan().says == "on the way to door: 2 ways left, now turn_left (RLA 4)"
+
+
+def test_a_name_that_is_given_again_is_sought_where_it_is_now(block: Block) -> None:
+    block.seek(DOOR)
+    assert len(block.plan().behaviours) == 2
+    block.go()
+    block.say(NameSituation, "door", None)  # here, where the first way leads
+    step = block.plan()
+    assert (step.course, step.says) == (Course.ARRIVED, "arrived: door")
+
+
+def test_a_goal_whose_name_is_undone_is_given_up_with_words(block: Block) -> None:
+    block.seek(DOOR)
+    block.plan()
+    (name,) = (event.origin.command_id for event in block.notebook.events if isinstance(event, SituationNamed))
+    record = block.say(Undo, name)
+    step = block.plan()
+    assert step.says == "door cannot be gone to any more: nothing was named 'door'; named were: nothing"
+    assert (step.course, record.decision.wheel_speeds) == (Course.NO_WAY, STANDSTILL)
+    block.go()
+    block.say(NameSituation, "door")
+    assert block.plan().course is Course.ARRIVED
+    assert told(block.say(StopSeeking)).accepted
+    assert block.run().decision.driving
+
+
+def test_a_lost_robot_arrives_nowhere(block: Block) -> None:
+    block.runtime.set_down()
+    assert block.run().decision.asks_at == MID
+    block.seek(PartialGoal((("east", 1.0),)))  # that is how a reckoning begins
+    step = block.plan()
+    assert step.course is Course.LOST
+
+
+def test_switched_on_anew_it_is_lost_until_it_is_told_where_it_is(block: Block) -> None:
+    known = [*block.taught_before, *block.notebook.events]
+    again = Block(known)
+    assert again.run().decision.asks_at == MID
+    assert told(again.say(Teach, "turn_left", None, MID)) == Outcome(RefusalCode.PLACE_UNKNOWN)
+    assert told(again.say(BeAt, "door")).accepted
+    assert again.run().behaviour == "turn_left"
+    assert not again.run().decision.asking
+
+
+def test_where_no_place_has_a_name_the_rla_that_knows_it_names_it() -> None:
+    town = Block()
+    town.teach("turn_left")
+    again = Block([*town.taught_before, *town.notebook.events])
+    assert told(again.say(BeAt, "door")) == Outcome.of(RefusalCode.NO_PLACE, name="door", known=())
+    assert told(again.say(BeAt, "RLA 4")) == Outcome.of(ResultCode.LOCATED, name="RLA 4")
+    assert not again.run().decision.asking
+
+
+def test_the_teachers_word_goes_before_the_plan_until_the_next_junction(block: Block) -> None:
+    block.teach("straight_on", beside=True)
+    block.seek()
+    assert block.run().behaviour == "turn_left"
+    assert block.say(Pursue, "straight_on").behaviour == "straight_on"
+    block.go()
+    assert block.plan().course is Course.LOST
+
+
+def test_his_word_drives_also_where_the_robot_has_arrived(block: Block) -> None:
+    block.say(NameSituation, "here")
+    assert block.seek(NamedGoal("here")).decision.cause is Cause.AT_GOAL
+    record = block.say(Pursue, "turn_left")
+    assert record.decision.driving
+    assert block.go().decision.cause is Cause.AT_GOAL  # once he has had his way it stands again
+
+
+def test_a_stop_goes_before_all(block: Block) -> None:
+    block.seek()
+    assert block.say(Stop).decision.cause is Cause.STOPPED
+    late = block.run(Seek("late", "Ann", DOOR, block.tick - 1))
+    assert not told(late).accepted
+    assert late.decision.cause is Cause.STOPPED
+
+
+def test_a_goal_given_far_behind_a_junction_changes_nothing_in_the_next_one(block: Block) -> None:
+    block.teach("straight_on", beside=True)
+    block.say(Pursue, "straight_on")
+    block.street(0.5)
+    record = block.seek()
+    assert record.behaviour == "straight_on"
+    assert told(record).fields["says"] == "on the way to door: the plan begins behind the next junction"
+
+
+def test_a_goal_may_be_what_stood_beside_the_robot(block: Block) -> None:
+    goal = PartialGoal((("x_m", 0.0), ("wall_left", 0.0)), tolerance=0.8)
+    record = block.seek(goal)
+    assert told(record).accepted
+    assert "x_m 0 and wall_left 0" in str(told(record).fields["says"])
+
+
+def test_names_are_lessons(block: Block) -> None:
+    named = [event for event in block.notebook.events if isinstance(event, SituationNamed)]
+    assert [(event.name, event.level, len(event.situation)) for event in named] == [("door", MID, 6)]
+    undone = told(block.say(Undo, named[0].origin.command_id))
+    assert undone == Outcome.of(ResultCode.LESSON_UNDONE, says="situation named: door")
+    assert told(block.seek()) == Outcome.of(RefusalCode.NOT_NAMED, name="door", known=())
+
+
+@pytest.mark.parametrize("name", ["", " door", "a\nb", "x" * 65])
+def test_what_is_no_name_is_refused(block: Block, name: str) -> None:
+    assert told(block.say(NameSituation, name)) == Outcome.of(RefusalCode.BAD_NAME, name=name, longest=64)
+
+
+def test_nobody_can_be_at_a_place_without_a_name(block: Block) -> None:
+    assert told(block.say(BeAt, "attic")) == Outcome.of(RefusalCode.NO_PLACE, name="attic", known=("door",))
+
+
+def test_without_places_nobody_can_say_where_it_is() -> None:
+    town = Town()
+    town.street()
+    assert told(town.run(BeAt("1", "Ann", "door"))) == Outcome(RefusalCode.NO_PLACES)
+
+
+def test_set_down_elsewhere_it_is_lost_until_it_is_told_where_it_is(block: Block) -> None:
+    block.runtime.set_down()
+    assert block.run().decision.asks_at == MID
+    for nowhere in (block.say(Teach, "turn_left", None, MID), block.say(NameSituation, "nowhere")):
+        assert told(nowhere) == Outcome(RefusalCode.PLACE_UNKNOWN)
+    block.say(BeAt, "door")
+    assert not block.run().decision.asking
+    assert block.run().behaviour == "turn_left"
+
+
+def test_a_goal_that_was_held_up_on_its_way_does_not_go_before_a_newer_one(block: Block) -> None:
+    block.seek()
+    seen = block.tick
+    block.run()
+    assert told(block.run(StopSeeking("new", "Ann", block.tick))).accepted
+    late = block.run(Seek("late", "Ann", DOOR, seen))
+    assert told(late) == Outcome(RefusalCode.GOAL_SINCE)
+    assert late.decision.plan is None
+    assert told(block.run(Seek("again", "Ann", DOOR, block.tick))).accepted
+
+
+def test_who_said_where_it_was_before_a_junction_does_not_say_where_it_is_behind_it(block: Block) -> None:
+    seen = block.tick
+    block.go()
+    assert block.runtime.mid is not None
+    here = block.runtime.mid.vector
+    late = block.run(BeAt("late", "Ann", "door", seen))
+    assert told(late) == Outcome(RefusalCode.JUNCTION_PASSED)
+    assert block.runtime.mid.vector is here
+    assert told(block.run(BeAt("again", "Ann", "door", block.tick))).accepted
+
+
+def test_one_goal_is_planned_for_in_a_tick_however_many_are_sent(block: Block) -> None:
+    record = block.run(*(Seek(f"seek-{number}", "Ann", DOOR) for number in range(200)))
+    assert [result.accepted for result in record.results] == [True] + [False] * 199
+    assert record.results[-1].outcome == Outcome(RefusalCode.GOAL_IN_SAME_TICK)
+    assert told(block.seek()).accepted
+
+
+def test_at_a_place_that_is_known_a_lesson_makes_another_way_and_no_second_place(block: Block) -> None:
+    assert block.runtime.mid is not None
+    known = block.runtime.level.system.get(4)
+    assert known is not None
+    assert tuple(block.runtime.mid.vector) != known.condition  # not quite where it was the first time
+    record = block.say(Teach, "straight_on", None, MID)
+    assert told(record) == Outcome.of(ResultCode.RLA_ADDED, rla=8, level=MID, action="straight_on", next_to=4)
+    added = block.runtime.level.system.get(8)
+    assert added is not None
+    assert added.condition == known.condition
+    assert record.behaviour == "straight_on"  # so it goes now, as it was told
+    assert record.mid is not None
+    assert (record.mid.rla_id, record.mid.overridden) == (8, False)
+
+
+def test_a_correction_to_what_is_taught_there_already_teaches_it_no_second_time_and_has_it_go_there(
+    block: Block,
+) -> None:
+    block.teach("straight_on", beside=True)
+    assert block.run().behaviour == "turn_left"
+    record = block.say(Correct, "straight_on", None, MID)
+    assert told(record) == Outcome.of(ResultCode.RLA_CONFLICTS, rla=8, level=MID, action="straight_on")
+    assert block.ways == {4: "turn_left", 5: "turn_left", 6: "turn_left", 7: "turn_left", 8: "straight_on"}
+    assert record.mid is not None
+    assert (record.behaviour, record.mid.rla_id) == ("straight_on", 8)
+    refused = block.say(ReplaceAction, 4, "straight_on")
+    assert told(refused) == Outcome.of(RefusalCode.SAYS_SO, rla=8, level=MID, action="straight_on", delete=4)
+
+
+def test_a_correction_to_another_way_changes_the_one_that_was_gone(block: Block) -> None:
+    block.teach("straight_on", beside=True)
+    record = block.say(Correct, "turn_right", None, MID)
+    assert told(record) == Outcome.of(ResultCode.RLA_CORRECTED, rla=4, level=MID, action="turn_right", was="turn_left")
+    assert record.behaviour == "turn_right"

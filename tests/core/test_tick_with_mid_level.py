@@ -1,0 +1,511 @@
+"""The whole tick with a mid level: a robot in streets is asked, taught, corrected and overridden about the way."""
+
+import math
+from collections.abc import Sequence
+
+import pytest
+
+from hal.robot import STANDSTILL, SensorReadings
+from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.rla.outcome import Field, Outcome, RefusalCode, ResultCode
+from kurt2rt.core.rla.rla import (
+    BASIC,
+    CRITIC,
+    MID,
+    ActionReplaced,
+    LessonUndone,
+    Phase,
+    RlaCreated,
+    RlaDeleted,
+    RlaRewarded,
+    TeachingEvent,
+)
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.teaching.commands import (
+    Command,
+    Correct,
+    DeleteRla,
+    Drive,
+    HandOver,
+    Pursue,
+    ReplaceAction,
+    Resume,
+    Reward,
+    SetPhase,
+    Stop,
+    Take,
+    Teach,
+    Undo,
+)
+from kurt2rt.core.tick import InMemoryEventStore, TickRecord
+from kurt2rt.platform.clock import LockstepClock
+from kurt2rt.runtime import build_runtime
+from tests.channel.desk import ROBOT, WideRobot
+from tests.core.rla.helpers import created, deleted, replaced
+
+STREETS = load_task("streets")
+ROUTE = STREETS.model_copy(update={"mid": "turns"})
+BEHAVIOURS = STREETS.behaviours
+WALL, OPEN = 250, 60
+"""Counts of all sensors between walls, and where nothing is near."""
+STEP_M = 0.02
+LENGTH = 12
+EVERYWHERE = 1e6
+"""Radius of the basic RLAs: whatever is wanted, the basic level knows what to do."""
+
+
+def basic_knowledge() -> list[TeachingEvent]:
+    place = (0.0,) * 72
+    return [
+        created(number, place, "forward", EVERYWHERE, behaviour=behaviour)
+        for number, behaviour in enumerate(BEHAVIOURS, 1)
+    ]
+
+
+class StreetRobot(WideRobot):
+    """Between walls, or in the open; its wheels turn as the test says, whatever they are told."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.counts = WALL
+        self.left_m = self.right_m = 0.0
+
+    def sense(self, now_s: float) -> SensorReadings:
+        per_m = 1 / ROBOT.geometry.metres_per_tick
+        left, right = round(self.left_m * per_m), round(self.right_m * per_m)
+        return super().sense(now_s)._replace(encoder_left_ticks=left, encoder_right_ticks=right)
+
+
+class Town:
+    """The shipped robot in streets, and one tick in a call."""
+
+    def __init__(self, events: Sequence[TeachingEvent] | None = None, *, attended: bool = False) -> None:
+        self.robot = StreetRobot()
+        self.notebook = InMemoryEventStore()
+        self.taught_before = basic_knowledge() if events is None else list(events)
+        clock = LockstepClock(lambda: None)
+        self.runtime = build_runtime(
+            self.robot, ROBOT, ROUTE, self.taught_before, self.notebook, clock, attended=attended
+        )
+        self.tick = 0
+        self.passed = 0
+
+    def run(self, *commands: Command) -> TickRecord:
+        self.tick += 1
+        for command in commands:
+            self.runtime.inbox.put(command)
+        self.runtime.ledger.begin(0.0)
+        record = self.runtime.tick.run(self.tick, self.tick * 0.01)
+        self.runtime.ledger.end()
+        self.passed += record.mid is not None and record.mid.event is not None
+        return record
+
+    def street(self, way_m: float = 0.4) -> TickRecord:
+        return self._go(WALL, way_m, 0.0)
+
+    def junction(self, quarters: int = 0) -> TickRecord:
+        """Drive through a junction, with so many quarter turns to the left, and on to where it is noticed."""
+        passed = self.passed
+        self._go(OPEN, 0.6, quarters * math.pi / 2)
+        record = self.street()
+        assert self.passed == passed + 1
+        return record
+
+    def way_to_the_first_junction(self) -> TickRecord:
+        return self.street()
+
+    def _go(self, counts: int, way_m: float, turn_rad: float) -> TickRecord:
+        self.robot.counts = counts
+        steps = round(way_m / STEP_M)
+        off_m = turn_rad * ROBOT.geometry.effective_track_m / 2 / steps
+        self.robot.left_m, self.robot.right_m = STEP_M - off_m, STEP_M + off_m
+        for _ in range(steps):
+            record = self.run()
+        self.robot.left_m = self.robot.right_m = 0.0
+        return record
+
+    @property
+    def ways(self) -> dict[int, str]:
+        return {rla.rla_id: rla.action for rla in self.runtime.level.system.rlas_at(MID)}
+
+    @property
+    def history(self) -> tuple[str, ...]:
+        assert self.runtime.mid is not None
+        words = self.runtime.mid.settings.situation.words(self.runtime.mid.vector)
+        return tuple(word for word in words if word)
+
+
+def told(record: TickRecord) -> Outcome:
+    (result,) = record.results
+    return result.outcome
+
+
+def the_way(action: str, command_id: str = "way", of: int | None = None, *, beside: bool = False) -> Teach:
+    return Teach(command_id, "Ann", action, of, MID, beside)
+
+
+def another_way(action: str, command_id: str = "other", of: int | None = None) -> Correct:
+    return Correct(command_id, "Ann", action, of, MID)
+
+
+@pytest.fixture
+def town() -> Town:
+    """Stands before its first junction and has been told to go straight on there; RLA 4 says so."""
+    town = Town()
+    town.way_to_the_first_junction()
+    town.run(the_way("straight_on", "first"))
+    return town
+
+
+def test_where_the_mid_level_asks_the_wheels_stand_in_that_very_tick_and_its_answer_drives() -> None:
+    town = Town()
+    record = town.run()
+    decision = record.decision
+    assert (decision.wheel_speeds, decision.cause, decision.asks_at) == (STANDSTILL, Cause.UNKNOWN, MID)
+    assert town.robot.driven[-1] == STANDSTILL
+
+    record = town.run(the_way("turn_left"))
+    assert told(record) == Outcome.of(ResultCode.RLA_TAUGHT, rla=4, level=MID, action="turn_left")
+    assert (record.behaviour, record.decision.rla_id, record.decision.action) == ("turn_left", 2, "forward")
+    assert record.mid is not None
+    assert (record.mid.behaviour, record.mid.rla_id) == ("turn_left", 4)
+    (event,) = town.notebook.events
+    assert isinstance(event, RlaCreated)
+    assert (event.rla.level, event.rla.behaviour, event.rla.condition) == (MID, "", (0.0,) * LENGTH)
+
+
+def test_the_first_of_three_differing_questions_is_the_mid_level_s() -> None:
+    town = Town([])
+    assert town.run().decision.asks_at == MID
+    record = town.run(the_way("turn_left"))
+    assert (record.decision.cause, record.decision.asks_at) == (Cause.UNKNOWN, BASIC)
+    record = town.run(Teach("t", "Ann", "forward"))
+    assert told(record) == Outcome.of(ResultCode.RLA_TAUGHT, rla=2, behaviour="turn_left", action="forward")
+    assert record.decision.driving
+
+
+def test_a_robot_whose_teacher_is_away_asks_the_way_all_the_same() -> None:
+    decision = Town(attended=True).run().decision
+    assert (decision.cause, decision.asks_at, decision.driving) == (Cause.UNKNOWN, MID, False)
+
+
+def test_what_was_taught_counts_while_the_histories_are_alike(town: Town) -> None:
+    record = town.junction(1)
+    assert (town.history, record.decision.asking) == (("left",), False)
+    assert record.mid is not None
+    assert record.mid.match is not None
+    assert (record.mid.rla_id, record.mid.match.distance, record.mid.match.radius) == (4, 1.0, 6.0)
+
+
+def test_a_correction_is_inserted_where_the_history_is_another_one_and_replaces_where_it_is_the_same(
+    town: Town,
+) -> None:
+    assert told(town.run(another_way("turn_left", "c-1"))) == Outcome.of(
+        ResultCode.RLA_CORRECTED, rla=4, level=MID, action="turn_left", was="straight_on"
+    )
+    town.junction(1)
+    record = town.run(another_way("turn_right", "c-2"))
+    assert told(record) == Outcome.of(ResultCode.RLA_TAUGHT, rla=5, level=MID, action="turn_right")
+    assert record.behaviour == "turn_right"
+    record = town.run(another_way("straight_on", "c-3"))
+    assert told(record) == Outcome.of(
+        ResultCode.RLA_CORRECTED, rla=5, level=MID, action="straight_on", was="turn_right"
+    )
+    assert record.behaviour == "straight_on"
+    assert town.ways == {4: "turn_left", 5: "straight_on"}
+    assert isinstance(town.notebook.events[-1], ActionReplaced)
+    assert (town.runtime.school.corrections_at(MID), town.runtime.school.corrections) == (3, 0)
+
+
+def test_a_lesson_on_the_very_history_of_an_rla_changes_that_one(town: Town) -> None:
+    assert told(town.run(the_way("straight_on", "twice"))) == Outcome.of(
+        ResultCode.RLA_AGREES, rla=4, level=MID, action="straight_on"
+    )
+    assert told(town.run(the_way("turn_right", "again"))).accepted
+    assert town.ways == {4: "turn_right"}
+
+
+def test_the_teacher_may_mean_a_junction_that_was_passed_long_ago(town: Town) -> None:
+    meant = town.tick
+    for quarters in (1, 0, -1):
+        town.junction(quarters)
+    for _ in range(1500):
+        town.run()
+    assert not town.runtime.school.recent.knows(meant)
+    record = town.run(another_way("turn_left", of=meant))
+    assert told(record) == Outcome.of(ResultCode.RLA_CORRECTED, rla=4, level=MID, action="turn_left", was="straight_on")
+    assert told(town.run(another_way("turn_left", "never", of=town.tick + 100))) == Outcome.of(
+        RefusalCode.TICK_FORGOTTEN, tick=town.tick + 99
+    )
+
+
+def test_the_teacher_goes_before_the_mid_level_until_the_next_junction_has_been_passed(town: Town) -> None:
+    record = town.run(Pursue("p", "Ann", "turn_left"))
+    assert told(record) == Outcome.of(ResultCode.BEHAVIOUR_WANTED_TO_JUNCTION, behaviour="turn_left")
+    assert record.mid is not None
+    assert (record.behaviour, record.mid.overridden, record.mid.rla_id) == ("turn_left", True, None)
+    record = town.street(1.0)
+    assert record.behaviour == "turn_left"
+    record = town.junction(1)
+    assert record.mid is not None
+    assert (record.behaviour, record.mid.overridden, record.mid.rla_id) == ("straight_on", False, 4)
+
+
+def test_who_is_asked_the_way_may_also_just_say_it_without_teaching() -> None:
+    town = Town()
+    record = town.run(Pursue("p", "Ann", "turn_left"))
+    assert record.decision.driving
+    assert town.ways == {}
+    town.way_to_the_first_junction()
+    decision = town.junction(1).decision
+    assert (decision.asking, decision.asks_at) == (True, MID)
+
+
+def test_what_was_said_before_a_junction_does_not_decide_about_the_next_one(town: Town) -> None:
+    seen = town.tick
+    town.junction()
+    record = town.run(Pursue("late", "Ann", "turn_left", seen))
+    assert told(record) == Outcome(RefusalCode.JUNCTION_PASSED)
+    assert record.behaviour == "straight_on"
+
+
+def test_a_lesson_about_the_present_goes_before_what_was_commanded_for_it(town: Town) -> None:
+    town.run(Pursue("p", "Ann", "turn_left"))
+    record = town.run(another_way("turn_right"))
+    assert record.mid is not None
+    assert (record.behaviour, record.mid.overridden, town.ways) == ("turn_right", False, {4: "turn_right"})
+
+
+def test_a_lesson_about_the_past_leaves_the_teacher_s_command_alone(town: Town) -> None:
+    past = town.tick
+    town.junction()
+    town.run(Pursue("p", "Ann", "turn_left"))
+    assert town.run(another_way("turn_right", of=past)).behaviour == "turn_left"
+
+
+def test_beside_what_is_known_another_way_is_possible_at_the_same_place(town: Town) -> None:
+    town.junction()
+    town.run(Pursue("p", "Ann", "turn_left"))
+    record = town.run(the_way("turn_left", beside=True))
+    assert told(record) == Outcome.of(ResultCode.RLA_ADDED, rla=5, level=MID, action="turn_left", next_to=4)
+    assert record.behaviour == "turn_left"  # as was commanded; what is possible is no command
+    system = town.runtime.level.system
+    first, second = system.rlas_at(MID)
+    assert first.condition == second.condition
+    again = town.run(the_way("turn_left", "again", beside=True))
+    assert told(again) == Outcome.of(ResultCode.RLA_AGREES, rla=5, level=MID, action="turn_left")
+
+
+def test_beside_nothing_the_first_way_is_taught() -> None:
+    town = Town()
+    assert told(town.run(the_way("turn_left", beside=True))) == Outcome.of(
+        ResultCode.RLA_TAUGHT, rla=4, level=MID, action="turn_left"
+    )
+    assert town.run().behaviour == "turn_left"
+
+
+def test_a_way_is_replaced_deleted_and_each_of_it_undone_as_every_rla_is(town: Town) -> None:
+    assert told(town.run(ReplaceAction("r", "Ann", 4, "turn_right"))).accepted
+    assert town.run().behaviour == "turn_right"
+    record = town.run(DeleteRla("d", "Ann", 4))
+    assert told(record) == Outcome.of(ResultCode.RLA_DELETED, rla=4, level=MID)
+    assert (record.decision.wheel_speeds, record.decision.asks_at) == (STANDSTILL, MID)
+    assert told(town.run(Undo("u-1", "Ann"))) == Outcome.of(ResultCode.LESSON_UNDONE, says="mid-level RLA 4 deleted")
+    assert town.run().behaviour == "turn_right"
+    town.run(Undo("u-2", "Ann"))
+    assert town.run().behaviour == "straight_on"
+    town.run(Undo("u-3", "Ann"))
+    assert town.run().decision.asks_at == MID
+    kinds = [type(event) for event in town.notebook.events]
+    assert kinds == [RlaCreated, ActionReplaced, RlaDeleted, LessonUndone, LessonUndone, LessonUndone]
+
+
+@pytest.mark.parametrize(
+    ("command", "code"),
+    [
+        (the_way("forward"), RefusalCode.NO_BEHAVIOUR),
+        (ReplaceAction("x", "Ann", 4, "forward"), RefusalCode.NO_BEHAVIOUR),
+        (Teach("x", "Ann", "turn_left"), RefusalCode.NO_ACTION),
+        (Teach("x", "Ann", "forward", None, "top"), RefusalCode.NO_LEVEL),
+        (Correct("x", "Ann", "bad", None, CRITIC), RefusalCode.NO_LEVEL),
+        (Teach("x", "Ann", "forward", beside=True), RefusalCode.NO_OTHER_WAY),
+        (Pursue("x", "Ann", "turn_back"), RefusalCode.NO_BEHAVIOUR),
+    ],
+)
+def test_what_a_level_does_not_have_is_refused_and_changes_nothing(
+    town: Town, command: Command, code: RefusalCode
+) -> None:
+    before = town.runtime.level.system.knowledge_hash()
+    assert told(town.run(command)).code is code
+    assert town.runtime.level.system.knowledge_hash() == before
+    assert town.run().behaviour == "straight_on"
+
+
+def test_where_the_robot_has_no_mid_level_there_is_none_to_teach() -> None:
+    runtime = build_runtime(
+        StreetRobot(), ROBOT, STREETS, basic_knowledge(), InMemoryEventStore(), LockstepClock(lambda: None)
+    )
+    runtime.inbox.put(the_way("turn_left"))
+    runtime.ledger.begin(0.0)
+    record = runtime.tick.run(1, 0.01)
+    assert told(record) == Outcome(RefusalCode.NO_MID_LEVEL)
+    assert (record.mid, record.decision.asks_at) == (None, BASIC)
+
+
+def test_a_blind_robot_still_knows_how_it_came_there(town: Town) -> None:
+    town.robot.infrared_age_s = 60.0
+    record = town.run(another_way("turn_left"), Correct("c", "Ann", "forward"))
+    assert [result.accepted for result in record.results] == [True, False]
+    assert record.decision.cause is Cause.BLIND
+
+
+def test_stop_is_stop_whatever_the_mid_level_knows_and_a_new_teacher_finds_the_same_way(town: Town) -> None:
+    record = town.run(Stop("s", "Ann"))
+    assert (record.decision.wheel_speeds, record.decision.cause) == (STANDSTILL, Cause.STOPPED)
+    assert told(town.run(another_way("turn_left"))).accepted
+    assert town.run().decision.cause is Cause.STOPPED
+    town.run(HandOver("h", "Ann"))
+    town.run(Take("take", "Bob"))
+    assert town.run().decision.cause is Cause.STOPPED
+    record = town.run(Resume("go", "Bob"))
+    assert (record.behaviour, record.decision.driving) == ("turn_left", True)
+
+
+def test_a_robot_that_is_driven_by_hand_knows_what_it_passed_and_nobody_is_counted_for_it(town: Town) -> None:
+    uses = dict(town.runtime.statistics.uses)
+    town.robot.counts = OPEN
+    for counts, steps in ((OPEN, 30), (WALL, 20)):
+        town.robot.counts = counts
+        town.robot.left_m = town.robot.right_m = STEP_M
+        for _ in range(steps):
+            record = town.run(Drive("Ann", town.tick, 1, 0.1, 0.1))
+            assert record.decision.cause is Cause.TEACHER
+    assert town.history == ("straight",)
+    assert town.runtime.statistics.uses == uses
+
+
+def test_praise_and_blame_are_for_those_who_moved_the_wheels(town: Town) -> None:
+    town.run(SetPhase("phase", "Ann", Phase.REINFORCEMENT))
+    for _ in range(300):
+        record = town.run()
+    town.run(Reward("blame", "Ann", -1, record.tick))
+    (reward,) = (event for event in town.notebook.events if isinstance(event, RlaRewarded))
+    assert reward.rla_id == 1
+    assert {credit.rla_id for credit in reward.credits} == {1}
+
+
+def test_each_junction_that_an_rla_led_through_is_a_use_and_follow_ups_are_counted(town: Town) -> None:
+    town.junction()
+    town.junction()
+    town.run(another_way("turn_left", "c-1"))  # RLA 5, in place of RLA 4 that had not come to anything there
+    town.run(Stop("s", "Ann"))
+    town.run(Resume("go", "Ann"))
+    town.junction(1)
+    saved = town.runtime.to_save()
+    assert (saved.uses[4], saved.uses[5]) == (2, 1)
+    assert {edge: saved.transitions[edge] for edge in saved.transitions if min(edge) > 3} == {(4, 4): 1, (4, 5): 1}
+    assert all((before < 4) == (after < 4) for before, after in saved.transitions)  # each level by itself
+
+
+def test_what_the_mid_level_was_told_when_it_asked_follows_what_led_there(town: Town) -> None:
+    for quarters in (1, 1, -1, 1, 1, -1, 1):
+        town.junction(quarters)
+    assert town.run().decision.asks_at == MID
+    town.run(the_way("turn_right"))
+    town.junction(-1)
+    assert town.runtime.to_save().transitions[4, 5] == 1
+
+
+def test_with_another_action_an_rla_leads_elsewhere_and_what_followed_is_counted_anew(town: Town) -> None:
+    for _ in range(3):
+        town.junction()
+    assert town.runtime.to_save().transitions[4, 4] == 2
+    town.run(ReplaceAction("r", "Ann", 4, "turn_right"))
+    town.junction(-1)
+    town.junction(-1)
+    assert town.runtime.to_save().transitions[4, 4] == 1
+    assert town.runtime.to_save().uses[4] == 5
+
+
+def test_nothing_follows_where_the_teacher_led(town: Town) -> None:
+    town.junction()
+    town.run(Pursue("p", "Ann", "turn_left"))
+    town.junction(1)
+    town.junction()
+    saved = town.runtime.to_save()
+    assert saved.uses[4] == 2
+    assert (4, 4) not in saved.transitions
+
+
+def test_set_down_elsewhere_it_came_by_nothing(town: Town) -> None:
+    town.junction(1)
+    town.runtime.set_down()
+    town.run()
+    assert not town.history
+    town.way_to_the_first_junction()
+    record = town.junction()
+    assert record.mid is not None
+    assert record.mid.rla_id == 4
+    assert town.history == ("straight",)
+    assert town.runtime.to_save().uses[4] == 2
+    assert (4, 4) not in town.runtime.to_save().transitions
+
+
+def test_another_run_goes_on_with_the_ways_that_were_taught(town: Town) -> None:
+    town.junction(1)
+    town.run(another_way("turn_right"))
+    again = Town([*town.taught_before, *town.notebook.events])
+    again.way_to_the_first_junction()
+    assert again.run().behaviour == "straight_on"
+    assert again.junction(1).behaviour == "turn_right"
+    assert told(again.run(the_way("turn_left", "way", beside=True))).accepted
+    assert max(again.ways) == 6  # ids run through
+
+
+@pytest.mark.parametrize(
+    ("of_an_older_task", "lesson", "fields"),
+    [
+        ((created(9, (0.0,) * LENGTH, "fly", level=MID), deleted(9)), "deletion-9", {"rla": 9, "level": MID}),
+        (
+            (created(9, (0.0,) * LENGTH, "fly", level=MID), replaced(9, "turn_left", "fly")),
+            "correction-9",
+            {"rla": 9, "level": MID},
+        ),
+        (
+            (created(9, (0.0,) * 72, "fly", behaviour="turn_left"), deleted(9)),
+            "deletion-9",
+            {"rla": 9, "behaviour": "turn_left"},
+        ),
+        (
+            (created(9, (0.0,) * 72, "fly", behaviour="soaring"), deleted(9)),
+            "deletion-9",
+            {"rla": 9, "behaviour": "soaring"},
+        ),
+    ],
+)
+def test_an_undo_brings_nothing_back_that_this_task_cannot_follow(
+    of_an_older_task: tuple[TeachingEvent, ...], lesson: str, fields: dict[str, Field]
+) -> None:
+    town = Town([*basic_knowledge(), *of_an_older_task])
+    outcome = told(town.run(Undo("u", "Ann", lesson)))
+    assert outcome == Outcome(RefusalCode.ACTION_NOT_IN_TASK, {**fields, "action": "fly"})
+    assert not town.notebook.events
+    town.run()
+
+
+def test_without_a_mid_level_its_rlas_are_kept_and_unused(town: Town) -> None:
+    events = [*town.taught_before, *town.notebook.events]
+    runtime = build_runtime(StreetRobot(), ROBOT, STREETS, events, InMemoryEventStore(), LockstepClock(lambda: None))
+    runtime.inbox.put(Pursue("p", "Ann", "turn_left"))
+    runtime.ledger.begin(0.0)
+    record = runtime.tick.run(1, 0.01)
+    assert told(record) == Outcome.of(ResultCode.BEHAVIOUR_WANTED, behaviour="turn_left")
+    assert (record.decision.rla_id, record.mid) == (2, None)
+    assert [rla.action for rla in runtime.level.system.rlas_at(MID)] == ["straight_on"]
+
+
+def test_a_tick_tells_what_the_mid_level_commanded_also_where_it_stands(town: Town) -> None:
+    town.run(Stop("s", "Ann"))
+    decision: Decision = town.run().decision
+    assert decision.mid is not None
+    assert (decision.mid.behaviour, decision.mid.rla_id, decision.driving) == ("straight_on", 4, False)

@@ -1,0 +1,84 @@
+"""The guard stops the robot for good in the middle of a lesson, or of an exam."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import anyio
+
+from hal.guard_reason import GuardReason
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams, run_lesson
+from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
+from kurt2rt.experiments.lockstep.lesson import LessonResult
+from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
+from kurt2rt.experiments.lockstep.report import render_exams
+from simbridge.simulation import Kurt2Simulation, Kurt2SimulationFactory
+from tests.experiments.helpers import ROBOT, short_task
+from tests.experiments.lockstep.test_report import printed
+
+TASK = short_task(exam_s=20.0)
+ALARM_CYCLE = 500
+
+
+@dataclass(frozen=True)
+class StageWithAnAlarm(Kurt2SimulationFactory):
+    """The guard latches in the 500th cycle, as it does when the bus is lost."""
+
+    def open(self, world: str, seed: int, purpose: str) -> Kurt2Simulation:
+        simulation = super().open(world, seed, purpose)
+        step, cycles = simulation.step, 0
+
+        def step_on() -> None:
+            nonlocal cycles
+            cycles += 1
+            if cycles == ALARM_CYCLE:
+                simulation.robot.emergency_stop(GuardReason.BUS_LOST)
+            step()
+
+        simulation.step = step_on  # type: ignore[method-assign]
+        return simulation
+
+
+STAGE = StageWithAnAlarm(ROBOT)
+
+
+def test_the_teacher_says_go_and_the_lesson_goes_on(tmp_path: Path) -> None:
+    async def lesson() -> LessonResult:
+        result, _ = await run_lesson(STAGE, ROBOT, TASK, tmp_path / "knowledge", seed=1, report=lambda *_: None)
+        return result
+
+    result = anyio.run(lesson)
+    assert result.alarms == sum(minute.go for minute in result.load) == 1
+    at_the_alarm, a_second_later, end = (result.trail[at] for at in (52, 59, -1))
+    assert at_the_alarm == a_second_later
+    assert abs(end.x_m - a_second_later.x_m) + abs(end.y_m - a_second_later.y_m) > 0.2
+
+
+def test_an_alarm_that_the_end_of_what_was_shown_lifts_is_one_all_the_same(tmp_path: Path) -> None:
+    async def lesson() -> LessonResult:
+        # Shown from 4.5 s on; the alarm comes at 5 s, and Resume before the second is over after which he says Go.
+        plan = LessonPlan(((Phase.CRITIC, 8.0),), signs="judge", set_down_every_s=4.5, shown_s=1.0)
+        result, _ = await run_lesson(
+            STAGE, ROBOT, TASK, tmp_path / "knowledge", seed=1, report=lambda *_: None, plan=plan
+        )
+        return result
+
+    result = anyio.run(lesson)
+    assert [(minute.shown, minute.go) for minute in result.load] == [(1, 1)]
+    assert result.alarms == 1
+
+
+def test_an_exam_ends_and_says_why() -> None:
+    async def exam() -> tuple[WorldResult, ...]:
+        return await run_exams(STAGE, ROBOT, TASK, [], ("a",), seed=1, report=lambda *_: None)
+
+    (result,) = anyio.run(exam)
+    drive = result.teacher
+    assert drive.alarm == GuardReason.BUS_LOST
+    assert drive.duration_s == ALARM_CYCLE / 100
+    assert not drive.stuck
+    # The teacher was stopped after a quarter of the time: that is no measure.
+    assert result.verdict is ExamVerdict.NOT_JUDGED
+    assert replace(drive, least_progress=0.0).verdict(drive.progress, TASK.exam.success) is ExamVerdict.FAILED
+    rows = printed(render_exams([WorldResult(drive, drive, ExamVerdict.FAILED)], TASK))
+    assert any("bus lost after 5 s" in row for row in rows)

@@ -1,0 +1,69 @@
+"""A lesson or an exam in which the robot refuses what it is told ends with the reason, and is not measured."""
+
+import random
+from pathlib import Path
+
+import anyio
+import pytest
+import yaml
+
+from behaviors.metrics.task_metric import Course, CourseSettings
+from behaviors.metrics.way import WaySettings
+from config import CONFIG_DIR
+from hal.simulation import Simulation
+from kurt2rt.core.decision.errors import UnknownActionError
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.curriculum import run_exams
+from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
+from tests.experiments.helpers import ROBOT, STAGE, short_task, teach
+
+
+def without(tmp_path: Path, *actions: str) -> TaskSettings:
+    """A short task whose repertoire lacks these actions."""
+    content = yaml.safe_load((CONFIG_DIR / "repertoires" / "basic.yaml").read_text(encoding="utf-8"))
+    content["actions"] = [each for each in content["actions"] if each["name"] not in actions]
+    file = tmp_path / "small.yaml"
+    file.write_text(yaml.safe_dump(content), encoding="utf-8")
+    return short_task(3.0, 0.0, 3.0).model_copy(update={"repertoire": str(file)})
+
+
+def examined(task: TaskSettings) -> None:
+    async def exams() -> None:
+        await run_exams(STAGE, ROBOT, task, [], ("a",), seed=1, report=lambda *_: None)
+
+    anyio.run(exams)
+
+
+class FlySettings(CourseSettings):
+    """Wants what no task teaches."""
+
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:
+        course = WaySettings(kind="way").build(simulation, behaviours, chance)
+        course.behaviour = "fly"  # type: ignore[misc]
+        return course
+
+
+FLYING = short_task(3.0, 0.0, 3.0).model_copy(update={"course": FlySettings(kind="fly")})
+
+
+def test_an_answer_that_the_repertoire_lacks_ends_the_lesson(tmp_path: Path) -> None:
+    task = without(tmp_path, "forward", "along_left_wall", "curve_left")
+    with pytest.raises(
+        LessonLostError,
+        match=r"task wall_following, tick \d+: the robot refused lesson-1-after-0-1: there is no action '\w+'; the "
+        r"repertoire has: bear_left, .*; make policy wall_following, course laps and repertoire .*small.yaml fit",
+    ):
+        teach(tmp_path / "knowledge", task)
+
+
+def test_the_teachers_own_drive_names_the_action_that_the_repertoire_lacks(tmp_path: Path) -> None:
+    task = without(tmp_path, "forward", "along_left_wall", "curve_left")
+    with pytest.raises(UnknownActionError, match=r"the policy says '\w+', which the repertoire lacks; .*: bear_left, "):
+        examined(task)
+
+
+def test_a_behaviour_that_the_task_does_not_teach_ends_lesson_and_exam(tmp_path: Path) -> None:
+    with pytest.raises(LessonLostError, match=r"lesson-1-after-0-1: there is no taught behaviour 'fly'; .* course fly"):
+        teach(tmp_path / "knowledge", FLYING)
+    with pytest.raises(LessonLostError, match="the robot refused exam-1: there is no taught behaviour 'fly'"):
+        examined(FLYING)

@@ -1,0 +1,32 @@
+import pytest
+
+from hal.settings import SettingsError
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.experiments.lockstep.compatibility import require_course
+from tests.experiments.helpers import STAGE
+
+
+@pytest.mark.parametrize(
+    ("task", "worlds", "why"),
+    [
+        ("circle", ("one_object", "a"), "task circle: course rounds: world A has 0 round obstacles"),
+        ("eight", ("two_objects", "one_object"), "task eight: course eights: world .* has 1 round obstacles"),
+        ("streets", ("streets-3", "rooms-3"), "task streets: course junctions: world rooms-3 has no streets that meet"),
+    ],
+)
+def test_a_course_that_a_world_cannot_give_is_refused(task: str, worlds: tuple[str, str], why: str) -> None:
+    fits, does_not = worlds
+    require_course(STAGE, load_task(task), [fits])
+    with pytest.raises(SettingsError, match=why):
+        require_course(STAGE, load_task(task), [fits, does_not])
+
+
+def test_behaviours_that_mean_no_way_through_a_junction_are_refused() -> None:
+    task = load_task("streets").model_copy(update={"behaviours": ("fly",)})
+    with pytest.raises(SettingsError, match="behaviours must be among straight_on"):
+        require_course(STAGE, task, ["manhattan"])
+
+
+@pytest.mark.parametrize("task", ["wall_following", "fleeing"])
+def test_laps_and_way_are_made_anywhere(task: str) -> None:
+    require_course(STAGE, load_task(task), ["a", "one_object", "manhattan"])

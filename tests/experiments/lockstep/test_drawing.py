@@ -1,0 +1,39 @@
+from pathlib import Path
+
+import pytest
+from matplotlib.figure import Figure
+from matplotlib.image import imread
+
+from kurt2rt.experiments.lockstep.drawing import draw_curriculum
+from tests.experiments.helpers import STAGE, short_task
+from tests.experiments.results import curriculum_result, exam_result
+
+
+@pytest.mark.parametrize(("worlds", "panels"), [((), 2), (("a", "b", "c"), 5)], ids=["lesson", "three exams"])
+def test_the_picture_holds_the_lesson_its_growth_and_each_exam(
+    worlds: tuple[str, ...], panels: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[Figure] = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
+    exams = [exam_result(world, stuck=world == "b") for world in worlds]
+    draw_curriculum(curriculum_result(1, 20, *exams), short_task(), STAGE, Path("never.png"))
+    axes = [each for each in drawn[0].axes if each.axison]
+    assert len(axes) == panels
+    titles = [each.get_title() for each in axes]
+    assert titles[:2] == ["Lesson in world A: 345 s, 20 RLAs", "Growth of the RLA system"]
+    assert titles[2:] == [
+        f"Exam in world {world.upper()}: 8.0 laps, 0 collisions, {'failed' if world == 'b' else 'success'}"
+        for world in worlds
+    ]
+    for each in axes:
+        legend = each.get_legend()
+        assert legend is not None
+        assert each.lines
+
+
+def test_it_is_large_enough_to_be_read(tmp_path: Path) -> None:
+    picture = tmp_path / "lesson.png"
+    draw_curriculum(curriculum_result(1, 20, exam_result("a")), short_task(), STAGE, picture)
+    height, width, _ = imread(picture).shape
+    assert width > 500
+    assert height > 500

@@ -1,0 +1,138 @@
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.core.rla.rla import Phase, RlaCreated
+from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
+from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
+from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.loading import read_lessons
+from kurt2rt.knowledge.journal.writer import JournalWriter
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from tests.experiments.helpers import ROBOT, Taught, short_task, teach
+
+
+def test_a_robot_that_knows_nothing_asks_is_taught_and_drives(taught: Taught) -> None:
+    result = taught.result
+    assert result.growth[0] == 0  # the teacher thinks for a second
+    assert result.asks >= 2
+    assert list(result.growth) == sorted(result.growth)
+    assert len(result.growth) == 15
+    assert result.growth[-1] == len(result.rlas) > 3
+    first, last = result.trail[0], result.trail[-1]
+    assert abs(last.x_m - first.x_m) + abs(last.y_m - first.y_m) > 0.5
+    assert len(result.trail) == 150
+    assert len(result.ask_positions) == result.asks
+    assert (result.seed, result.world, result.teaching_s, result.rescues) == (1, "a", 15.0, 0)
+    assert taught.reported_s == [*map(float, range(1, 16)), 15.0]
+
+
+def test_what_the_result_says_is_what_stands_in_the_file(taught: Taught) -> None:
+    result = taught.result
+    with Journal.read_only(taught.knowledge) as journal:
+        assert check_knowledge(journal) == []
+        system = fold_journal(journal, taught.task.learning.radius)
+        assert journal.events() == taught.events
+        statistics = journal.statistics()
+    assert system.rlas == result.rlas
+    assert system.knowledge_hash() == result.knowledge_hash
+    assert statistics.uses == result.statistics.uses
+    assert statistics.transitions == result.statistics.transitions
+    assert read_lessons(taught.knowledge, ROBOT, taught.task) == taught.events
+
+
+def test_the_teacher_only_answers_at_first_and_then_corrects_as_well(taught: Taught) -> None:
+    origins = [event.origin for event in taught.events]
+    assert [each.phase for each in origins] == sorted(each.phase for each in origins)
+    assert all((each.phase is Phase.SUPERVISED) is (each.tick <= 900) for each in origins)
+    assert {each.phase for each in origins} == {Phase.SUPERVISED, Phase.CORRECTIONS}
+    answers = sum(each.phase is Phase.SUPERVISED for each in origins)
+    assert answers + taught.result.corrections >= len(origins)
+
+
+def test_it_is_told_of_every_lesson_that_is_saved(taught: Taught) -> None:
+    assert [each.command_id for each in taught.saved] == [event.origin.command_id for event in taught.events]
+    assert [each.sequence for each in taught.saved] == list(range(1, len(taught.events) + 1))
+
+
+def test_it_is_told_of_a_lesson_that_is_saved_after_the_last_progress(tmp_path: Path) -> None:
+    taught = teach(tmp_path / "knowledge", short_task(1.5, 0.0))
+    assert len(taught.events) == 1
+    assert [each.sequence for each in taught.saved] == [1]
+
+
+def test_the_same_seed_gives_the_same_knowledge_and_the_same_trail(taught: Taught, tmp_path: Path) -> None:
+    again = teach(tmp_path / "again")
+    # Counters are compared by what they counted.
+    assert replace(again.result, statistics=taught.result.statistics) == taught.result
+    assert again.result.statistics.uses == taught.result.statistics.uses
+    assert again.events == taught.events
+
+
+def test_another_seed_gives_another_lesson(taught: Taught, tmp_path: Path) -> None:
+    other = teach(tmp_path / "other", short_task(5.0, 0.0), seed=2)
+    assert other.events != taught.events[: len(other.events)]
+    assert other.result.trail != taught.result.trail[: len(other.result.trail)]
+
+
+def test_a_lesson_goes_on_from_what_the_file_holds(tmp_path: Path) -> None:
+    task = short_task(2.5, 1.5)
+    first = teach(tmp_path / "knowledge", task)
+    second = teach(tmp_path / "knowledge", task, seed=2)
+    again = teach(tmp_path / "knowledge", task)
+
+    assert second.events[: len(first.events)] == first.events
+    assert again.events[: len(second.events)] == second.events
+    assert len(second.events) > len(first.events)
+    assert second.result.growth[0] == len(first.result.rlas)
+    command_ids = [event.origin.command_id for event in again.events]
+    assert len(set(command_ids)) == len(command_ids)
+    created = [event.rla.rla_id for event in again.events if isinstance(event, RlaCreated)]
+    assert created == list(range(1, len(created) + 1))
+    # Counts too: each lesson adds to what was counted before it.
+    with Journal.read_only(tmp_path / "knowledge") as journal:
+        assert journal.statistics().uses == again.result.statistics.uses
+    for before, after in ((first, second), (second, again)):
+        uses = after.result.statistics.uses
+        assert all(uses[rla_id] >= count for rla_id, count in before.result.statistics.uses.items())
+        assert uses.total() > before.result.statistics.uses.total()
+
+
+def test_a_robot_that_makes_no_way_is_set_down_elsewhere(tmp_path: Path) -> None:
+    task = short_task(3.0, 0.0)
+    impatient = task.teaching.model_copy(update={"rescue_after_s": 1.0})
+    rescued = teach(tmp_path / "knowledge", task.model_copy(update={"teaching": impatient})).result
+    assert rescued.rescues > 0
+
+
+def test_a_robot_that_is_held_at_a_bumper_is_set_down_elsewhere(tmp_path: Path) -> None:
+    # This robot's first answers lead it into a wall.
+    lesson = teach(tmp_path / "100.knowledge", short_task(supervised_s=26.0, corrections_s=1.0), seed=100).result
+    assert lesson.rescues == 1
+    assert lesson.asks == 1
+
+
+def test_lessons_that_cannot_be_saved_are_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def on_a_dead_disk(self: Journal, entries: object) -> object:  # noqa: ARG001
+        raise KnowledgeError(f"{self.path}: the disk is full; make room on it")
+
+    def without_patience(self: JournalWriter, timeout_s: float) -> bool:  # noqa: ARG001
+        return flush(self, 0.05)
+
+    flush = JournalWriter.flush
+    monkeypatch.setattr(JournalWriter, "flush", without_patience)
+    monkeypatch.setattr(Journal, "append", on_a_dead_disk)
+    with pytest.raises((LessonLostError, KnowledgeError), match="the disk is full; make room on it"):
+        teach(tmp_path / "knowledge", short_task(2.0, 0.0))
+
+
+def test_a_lesson_that_the_journal_refuses_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(self: Journal, entries: Sequence[JournalEntry]) -> list[Receipt]:  # noqa: ARG001
+        return [Receipt(each.event.origin.command_id, 7, each.stamped_at, new=False, agrees=False) for each in entries]
+
+    monkeypatch.setattr(Journal, "append", refuse)
+    with pytest.raises(LessonLostError, match="knowledge: command 'lesson-1-after-0-1': another lesson of this id"):
+        teach(tmp_path / "knowledge", short_task(2.0, 0.0))

@@ -1,0 +1,171 @@
+"""Lessons of phases 3 to 5, and exams that go on where a robot is stuck, on the simulated robot."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import anyio
+import pytest
+
+from hal.settings import SettingsError
+from kurt2rt.core.rla.rla import CRITIC, Appraised, Phase, RlaCreated, RlaRewarded, TeachingEvent
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.curriculum import run_lesson
+from kurt2rt.experiments.lockstep.exam import examine
+from kurt2rt.experiments.lockstep.lesson import LessonResult
+from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, SignalTimes, plan_of
+from kurt2rt.knowledge.journal.journal import Journal
+from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task
+from tests.experiments.lockstep.test_exam import knows_only
+
+
+def go_on(
+    taught: Taught, folder: Path, plan: LessonPlan, task: TaskSettings | None = None
+) -> tuple[LessonResult, list[TeachingEvent]]:
+    """Another lesson behind the first one; the events that it brought."""
+    knowledge = folder / "knowledge"
+    knowledge.write_bytes(taught.knowledge.read_bytes())
+
+    async def lesson() -> tuple[LessonResult, list[TeachingEvent]]:
+        return await run_lesson(STAGE, ROBOT, task or taught.task, knowledge, seed=1, report=lambda *_: None, plan=plan)
+
+    result, events = anyio.run(lesson)
+    assert events[: len(taught.events)] == taught.events
+    return result, events[len(taught.events) :]
+
+
+def of_phase(phase: Phase, lasts_s: float = 6.0, **more: object) -> LessonPlan:
+    return LessonPlan(((phase, lasts_s),), purpose="another lesson", **more)  # type: ignore[arg-type]
+
+
+def test_the_plan_of_a_task_is_its_own_lesson() -> None:
+    task = short_task(9.0, 6.0)
+    assert plan_of(task) == LessonPlan(((Phase.SUPERVISED, 9.0), (Phase.CORRECTIONS, 6.0)))
+    assert plan_of(task).duration_s == task.teaching.duration_s
+
+
+def test_in_phase_3_rewards_are_lessons_and_what_they_made_is_saved(taught: Taught, tmp_path: Path) -> None:
+    result, events = go_on(taught, tmp_path, of_phase(Phase.REINFORCEMENT, signs="judge"))
+    rewards = [event for event in events if isinstance(event, RlaRewarded)]
+    assert len(rewards) == result.praise + result.blame - result.refused_signals > 0
+    assert {event.origin.phase for event in rewards} == {Phase.REINFORCEMENT}
+    assert sum(minute.rewards for minute in result.load) == result.praise + result.blame
+    assert sum(minute.corrections for minute in result.load) == 0
+    with Journal.read_only(tmp_path / "knowledge") as journal:
+        assert journal.statistics().values == result.saved.values
+
+
+def test_in_phase_4_the_critic_is_taught_where_the_robot_is_set_down(taught: Taught, tmp_path: Path) -> None:
+    times = SignalTimes(good_every_s=1.0)
+    plan = of_phase(Phase.CRITIC, 12.0, signs="judge", times=times, set_down_every_s=4.0, shown_s=1.0)
+    result, events = go_on(taught, tmp_path, plan)
+    assert result.repositions == 3
+    assert [(minute.set_down, minute.shown) for minute in result.load] == [(3, 3)]
+    critics = [event for event in events if isinstance(event, RlaCreated) and event.rla.level == CRITIC]
+    assert critics
+    assert all(isinstance(event, RlaCreated | Appraised) or event.origin.phase is Phase.CRITIC for event in events)
+    assert sum(minute.appraisals for minute in result.load) >= len(critics)
+    assert len(result.agreement) == 1
+
+
+def test_in_phase_5_nobody_answers_and_a_robot_that_knows_nothing_is_set_down_elsewhere(tmp_path: Path) -> None:
+    task = short_task()
+    task = task.model_copy(update={"teaching": task.teaching.model_copy(update={"rescue_after_s": 1.5})})
+
+    async def lesson() -> tuple[LessonResult, list[TeachingEvent]]:
+        plan = of_phase(Phase.AUTONOMOUS)
+        return await run_lesson(STAGE, ROBOT, task, tmp_path / "k", seed=1, report=lambda *_: None, plan=plan)
+
+    result, events = anyio.run(lesson)
+    assert events == []
+    assert result.rescues == result.unknown_rescues == sum(minute.rescued for minute in result.load) == 3
+    assert result.share_unknown > 0.99
+
+
+def test_blame_by_chance_needs_no_judge_and_the_judge_s_does(taught: Taught, tmp_path: Path) -> None:
+    blind = taught.task.model_copy(update={"judge": None})
+    plan = of_phase(Phase.REINFORCEMENT, signs="chance", blame_by_chance=3)
+    result, _ = go_on(taught, tmp_path, plan, blind)
+    assert result.blame == 3
+    assert result.praise == 0
+    with pytest.raises(SettingsError, match="there is no judge, so nobody can praise or blame; add `judge:`"):
+        go_on(taught, tmp_path, of_phase(Phase.REINFORCEMENT, signs="judge"), blind)
+
+
+def test_the_same_lesson_twice_is_the_same_bit_for_bit(taught: Taught, tmp_path: Path) -> None:
+    plan = of_phase(Phase.REINFORCEMENT, signs="judge", reposition_every_s=2.5)
+    folders = [tmp_path / name for name in ("one", "two")]
+    for folder in folders:
+        folder.mkdir()
+    (one, events), (two, again) = (go_on(taught, folder, plan) for folder in folders)
+    assert events == again
+    assert (one.knowledge_hash, one.saved, one.trail, one.load) == (two.knowledge_hash, two.saved, two.trail, two.load)
+
+
+def rival(action: str) -> RlaCreated:
+    """Another RLA on the condition of `knows_only`."""
+    first = knows_only("stand").rla
+    return RlaCreated(replace(first, rla_id=2, action=action, origin=replace(first.origin, command_id="rival")))
+
+
+@pytest.mark.parametrize(
+    ("alone", "drives"),
+    [
+        (None, False),  # what its teacher had said of the newer one
+        (Statistics(), True),  # of equals the newest
+        (Statistics(values={1: -0.3}), True),  # of the other one phase 5 had nothing to say yet
+        (Statistics(values={1: 0.4, 2: 0.6}), True),
+        (Statistics(values={2: 0.4}), False),
+    ],
+)
+def test_an_exam_after_phase_5_asks_the_competitor_that_phase_5_held_best(
+    alone: Statistics | None, drives: bool
+) -> None:
+    task = short_task(exam_s=2.0, radius=1e5)
+
+    async def drive() -> float:
+        simulation = STAGE.open("a", 1, "exam")
+        events = [knows_only("stand"), rival("forward")]
+        # What a teacher had said of them does not count there.
+        saved = Statistics(values={2: -0.05})
+        try:
+            exam = await examine(
+                simulation, ROBOT, task, "a", events, seed=1, on_progress=lambda _: None, saved=saved, alone=alone
+            )
+        finally:
+            simulation.close()
+        return exam.way_m
+
+    assert (anyio.run(drive) > 0.3) is drives
+
+
+def test_a_lesson_that_ends_in_phase_5_tells_what_that_held_rlas_to_be_worth(taught: Taught, tmp_path: Path) -> None:
+    assert taught.result.alone is None
+    result, _ = go_on(taught, tmp_path, of_phase(Phase.AUTONOMOUS, 2.0))
+    assert result.alone == Statistics()  # nobody was trusted
+
+
+@pytest.mark.parametrize("stuck_ends", [True, False])
+def test_a_stuck_robot_ends_its_exam_or_is_set_down_and_goes_on(stuck_ends: bool) -> None:
+    task = short_task(exam_s=5.0, stuck_after_s=1.5, radius=1e5)
+
+    async def drive() -> tuple[bool, int, float]:
+        simulation = STAGE.open("a", 1, "exam")
+        try:
+            exam = await examine(
+                simulation,
+                ROBOT,
+                task,
+                "a",
+                [knows_only("stand")],
+                seed=1,
+                on_progress=lambda _: None,
+                stuck_ends=stuck_ends,
+            )
+        finally:
+            simulation.close()
+        return exam.stuck, exam.rescues, exam.duration_s
+
+    stuck, rescues, duration_s = anyio.run(drive)
+    assert stuck
+    assert (rescues, round(duration_s, 1)) == ((0, 1.5) if stuck_ends else (3, 5.0))

@@ -1,0 +1,180 @@
+import re
+import statistics
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rich.console import Console, RenderableType
+
+from kurt2rt.experiments.lockstep.report import (
+    exams_as_data,
+    quartiles,
+    render_curriculum,
+    render_exams,
+    render_seeds,
+    verdict_of,
+    wilson_interval,
+)
+from tests.experiments.helpers import short_task
+from tests.experiments.results import curriculum_result, exam_result, world_result
+
+
+def printed(what: RenderableType) -> list[list[str]]:
+    """Rows as they are read: the cells of each line."""
+    console = Console(width=200, no_color=True)
+    with console.capture() as capture:
+        console.print(what)
+    return [re.split(r"\s{2,}", line.strip()) for line in capture.get().split("\n")]
+
+
+@pytest.mark.parametrize(
+    ("successes", "trials", "low", "high"),
+    [  # as published: Newcombe 1998, table I, method 3, and R's prop.test(correct = FALSE)
+        (81, 263, 0.2553, 0.3662),
+        (15, 148, 0.0624, 0.1605),
+        (0, 20, 0.0, 0.1611),
+        (1, 29, 0.0061, 0.1718),
+        (10, 10, 0.7225, 1.0),
+        (20, 20, 0.8389, 1.0),
+        (1, 1, 0.2065, 1.0),
+    ],
+)
+def test_the_interval_of_a_share_is_wilsons(successes: int, trials: int, low: float, high: float) -> None:
+    assert wilson_interval(successes, trials) == pytest.approx((low, high), abs=6e-5)
+
+
+@given(st.integers(1, 500).flatmap(lambda trials: st.tuples(st.integers(0, trials), st.just(trials))))
+def test_the_interval_holds_the_share_and_mirrors(counted: tuple[int, int]) -> None:
+    successes, trials = counted
+    low, high = wilson_interval(successes, trials)
+    share, rounding = successes / trials, 1e-12
+    assert 0.0 <= low <= share + rounding
+    assert share - rounding <= high <= 1.0
+    failures_low, failures_high = wilson_interval(trials - successes, trials)
+    assert (1 - high, 1 - low) == pytest.approx((failures_low, failures_high))
+
+
+@pytest.mark.parametrize(
+    ("values", "expected"),
+    [([7.0], (7.0, 7.0, 7.0)), ([4, 1, 3, 2], (1.75, 2.5, 3.25)), ([5, 1, 3], (2.0, 3.0, 4.0))],
+)
+def test_quartiles_by_hand(values: list[float], expected: tuple[float, float, float]) -> None:
+    assert quartiles(values) == expected
+
+
+@given(st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=50))
+def test_quartiles_are_those_of_the_standard_library(values: list[float]) -> None:
+    assert quartiles(values) == pytest.approx(statistics.quantiles(values, n=4, method="inclusive"), abs=1e-6)
+
+
+def test_a_lesson_stands_beside_the_paper() -> None:
+    rows = printed(render_curriculum(curriculum_result(7, 88, exam_result()), short_task()))
+    assert ["Lesson: wall_following in world a, seed 7"] in rows
+    assert ["RLAs", "88", "91"] in rows
+    assert ["teaching, s of robot time", "345", "345"] in rows
+    assert ["asks", "41"] in rows
+    assert ["corrections", "52"] in rows
+    assert ["rescues by hand", "3"] in rows
+    assert ["A", "8.00", "9.00", "0", "no", "3.4%", "yes"] in rows
+    assert ["distance error, m", "0.0321"] in rows
+
+
+def test_deletions_and_repositions_are_told_where_there_were_any() -> None:
+    result = curriculum_result(7, 88)
+    rows = printed(render_curriculum(result, short_task()))
+    assert not any(row[0] in ("deletions", "set down elsewhere") for row in rows)
+    lesson = replace(result.lesson, deletions=4, repositions=11)
+    rows = printed(render_curriculum(replace(result, lesson=lesson), short_task()))
+    assert ["deletions", "4"] in rows
+    assert ["set down elsewhere", "11"] in rows
+
+
+def test_tables_speak_of_what_the_task_counts() -> None:
+    streets = replace(exam_result(), unit="junctions", findings={"junctions": 12.0, "junctions right": 11.0})
+    rows = printed(render_exams([world_result(streets)], short_task()))
+    words = " ".join(word for row in rows for word in row)
+    assert "teacher's own junctions" in words
+    assert ["junctions right", "11 of 12"] in rows
+    assert "laps" not in words
+
+
+def test_a_lesson_without_exams_is_a_table_of_its_own() -> None:
+    rows = printed(render_curriculum(curriculum_result(7, 88), short_task()))
+    assert not any("Exams" in row[0] for row in rows)
+
+
+def test_each_exam_is_a_row_with_its_verdict() -> None:
+    exams = [exam_result("b", laps=2.0), exam_result("kitchen", collisions=2), exam_result("c", stuck=True)]
+    rows = printed(render_exams([world_result(each) for each in exams], short_task(exam_s=300.0)))
+    assert ["Exams without teacher, 300 s each"] in rows
+    assert ["B", "2.00", "9.00", "0", "no", "3.4%", "no"] in rows
+    assert ["kitchen", "8.00", "9.00", "2", "no", "3.4%", "no"] in rows
+    assert ["C", "8.00", "9.00", "0", "after 123 s", "3.4%", "no"] in rows
+
+
+def test_a_comparison_with_a_teacher_who_did_not_do_well_is_shown_as_such() -> None:
+    def told(**teacher: Any) -> str:
+        compared = world_result(exam_result())
+        rows = printed(render_exams([replace(compared, teacher=replace(compared.teacher, **teacher))], short_task()))
+        return next(row[2] for row in rows if row[0] == "A")
+
+    assert told() == "9.00"
+    assert told(progress=-0.5) == "-0.50 (got nowhere)"
+    assert told(least_progress=9.0) == "9.00 (got nowhere)"
+    assert told(collisions=1) == told(alarm="bus lost") == told(stuck=True) == "9.00 (failed)"
+
+
+def test_render_exams_with_a_teacher_that_gets_nowhere_is_not_judged() -> None:
+    exams = [world_result(exam_result("b")), world_result(exam_result("cave", collisions=2), teachers_laps=0.0)]
+    rows = printed(render_exams(exams, short_task()))
+    assert ["B", "8.00", "9.00", "0", "no", "3.4%", "yes"] in rows
+    assert ["cave", "8.00", "0.00 (got nowhere)", "2", "no", "3.4%", "not judged"] in rows
+    assert ["Not judged: the policy itself gets nowhere here."] in rows
+    assert ["Not judged: the policy itself gets nowhere here."] not in printed(render_exams(exams[:1], short_task()))
+    assert verdict_of(exams[1]) == "not judged: the policy itself gets nowhere here (0.00 laps)"
+    told = [(each["succeeded"], each["verdict"]) for each in exams_as_data(exams, short_task())["exams"]]
+    assert told == [(True, "passed"), (False, "not_judged")]
+
+
+def test_render_seeds_counts_an_exam_that_is_not_judged_neither_way() -> None:
+    results = [
+        replace(
+            curriculum_result(seed, 80),
+            exams=(world_result(exam_result("a", seed), laps), world_result(exam_result("b", seed), 0.0)),
+        )
+        for seed, laps in ((100, 9.0), (101, 0.0), (102, 20.0))
+    ]
+    rows = printed(render_seeds(results, short_task()))
+    of_101 = next(row for row in rows if row[0] == "101")
+    assert of_101[5:] == ["8.0 of 0.0 (got nowhere), 0, not judged"] * 2
+    assert ["A", "1 of 2, 1 not judged", "9% to 91%", "0", "0", "8.00", "3.4%"] in rows
+    assert ["B", "0 of 0, 3 not judged", "none", "0", "0", "8.00", "3.4%"] in rows
+
+
+def test_many_seeds_come_to_medians_quartiles_and_intervals() -> None:
+    results = [
+        curriculum_result(100, 80, exam_result("a", 100), exam_result("b", 100, laps=8.5)),
+        curriculum_result(101, 90, exam_result("a", 101), exam_result("b", 101, laps=1.0, stuck=True)),
+        curriculum_result(102, 100, exam_result("a", 102), exam_result("b", 102, laps=7.5, collisions=1)),
+    ]
+    rows = printed(render_seeds(results, short_task()))
+    assert ["101", "90", "41", "52", "3", "8.0 of 9.0, 0", "1.0 of 9.0, 0, stuck at 123 s"] in rows
+    assert ["102", "100", "41", "52", "3", "8.0 of 9.0, 0", "7.5 of 9.0, 1"] in rows
+    assert ["RLAs", "90", "85 to 95", "91"] in rows
+    assert ["teaching, s of robot time", "345", "345 to 345", "345"] in rows
+    assert ["A", "3 of 3", "44% to 100%", "0", "0", "8.00", "3.4%"] in rows
+    assert ["B", "1 of 3", "6% to 79%", "1", "1", "7.50", "3.4%"] in rows
+
+
+def test_junctions_of_many_seeds_are_added_up() -> None:
+    drives = [
+        replace(
+            exam_result("manhattan", seed), unit="junctions", findings={"junctions": 20.0, "junctions right": right}
+        )
+        for seed, right in ((100, 20.0), (101, 17.0), (102, 19.0))
+    ]
+    rows = printed(render_seeds([curriculum_result(drive.seed, 90, drive) for drive in drives], short_task()))
+    assert ["manhattan", "3 of 3", "44% to 100%", "0", "0", "8.00", "3.4%"] in rows
+    assert ["junctions right", "56 of 60"] in rows

@@ -1,0 +1,129 @@
+"""Every shipped task: its teacher can drive it, its course measures it, and it can be taught."""
+
+from pathlib import Path
+
+import anyio
+import pytest
+
+from behaviors.repertoire import load_repertoire
+from config import CONFIG_DIR
+from hal.settings import SettingsError
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.experiments.lockstep.curriculum import run_lesson
+from kurt2rt.experiments.lockstep.lesson import LessonResult
+from tests.experiments.helpers import ROBOT, STAGE, teachers_drive
+
+TASKS = sorted(path.stem for path in (CONFIG_DIR / "tasks").glob("*.yaml"))
+UNITS = {
+    "wall_following": "laps",
+    "fleeing": "m",
+    "circle": "rounds",
+    "circle_repositioned": "rounds",
+    "eight": "eights",
+}
+
+
+def lasting(name: str, supervised_s: float = 4.0, corrections_s: float = 4.0, exam_s: float = 7.0) -> TaskSettings:
+    task = load_task(name)
+    teaching = task.teaching.model_copy(update={"supervised_s": supervised_s, "corrections_s": corrections_s})
+    exam = task.exam.model_copy(update={"duration_s": exam_s})
+    return task.model_copy(update={"teaching": teaching, "exam": exam})
+
+
+def lesson(task: TaskSettings, folder: Path) -> LessonResult:
+    async def teach() -> LessonResult:
+        result, _ = await run_lesson(STAGE, ROBOT, task, folder / "knowledge", seed=1, report=lambda *_: None)
+        return result
+
+    return anyio.run(teach)
+
+
+@pytest.mark.parametrize("name", ["wall_following", "fleeing", "circle", "eight", "streets"])  # others: the same
+def test_the_teacher_drives_what_he_teaches(name: str) -> None:
+    drive = teachers_drive(lasting(name))
+    assert drive.unit == UNITS.get(name, "junctions")
+    assert (drive.collisions, drive.stuck, drive.alarm) == (0, False, "")
+    assert 1.0 < drive.way_m < 4.0
+    if name != "eight":  # of which the first half takes longer
+        assert drive.progress > 0.0
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_files_fit_together(name: str) -> None:
+    task = load_task(name)
+    assert task.name == name
+    assert load_repertoire(task.repertoire, ROBOT)
+    STAGE.require_worlds(task.teaching.world, *task.exam.worlds)
+
+
+@pytest.mark.parametrize("name", ["streets", "straight_on", "turn_left", "turn_right"])
+def test_in_the_streets_success_is_junctions_too(name: str) -> None:
+    assert load_task(name).exam.success.right_at_least == 0.95
+
+
+@pytest.mark.parametrize("name", TASKS)
+def test_every_task_has_a_plain_reading_of_the_paper(name: str) -> None:
+    task, plain = load_task(name), load_task(name, plain=True)
+    learning = plain.learning
+    assert (learning.past_weight, learning.weights) == (1.0, ())
+    assert (learning.insert_beyond_share, learning.minimum_action_s) == (1.0, 0.0)
+    assert plain == task.model_copy(update={"learning": task.plain})
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"plain.past_weight": "0.5"},
+        {"plain.weights": "[{weight: 2.0, features: [s1]}]"},
+        {"plain.insert_beyond_share": "0.1"},
+        {"plain.minimum_action_s": "0.1"},
+    ],
+    ids=str,
+)
+def test_another_reading_of_the_paper_is_not_called_the_plain_one(change: dict[str, str]) -> None:
+    (key,) = change
+    with pytest.raises(SettingsError, match=rf"circle\.yaml: {key}: "):
+        load_task("circle", changes=change)
+
+
+@pytest.mark.parametrize("name", ["../circle", "my circle", "a/b", "''"])
+def test_a_name_that_is_no_name_of_a_file_is_refused(name: str) -> None:
+    with pytest.raises(SettingsError, match=r"circle\.yaml: name: String should match pattern"):
+        load_task("circle", changes={"name": name})
+
+
+def test_three_behaviours_are_taught_in_one_lesson_into_one_file(tmp_path: Path) -> None:
+    result = lesson(lasting("streets", 30.0, 0.0), tmp_path)
+    assert {rla.behaviour for rla in result.rlas} == {"straight_on", "turn_left", "turn_right"}
+    assert result.unit == "junctions"
+    assert result.findings["junctions"] >= 1.0
+
+
+def test_the_robot_is_set_down_anew_where_the_task_says_so(tmp_path: Path) -> None:
+    task = lasting("circle_repositioned", 4.0, 4.5)
+    often = task.teaching.model_copy(update={"reposition_every_s": 1.0})
+    result = lesson(task.model_copy(update={"teaching": often}), tmp_path)
+    assert result.repositions == 8
+    places = {(round(each.x_m, 1), round(each.y_m, 1)) for each in result.trail}
+    assert len(places) > 8
+
+
+def test_a_robot_that_can_only_go_straight_is_set_down_elsewhere_at_the_end_of_its_street() -> None:
+    drive = teachers_drive(lasting("straight_on", exam_s=16.0))
+    steps_m = [abs(b.x_m - a.x_m) + abs(b.y_m - a.y_m) for a, b in zip(drive.trail, drive.trail[1:], strict=False)]
+    assert max(steps_m) > 0.5  # through the air
+    assert drive.way_m < 5.5
+    assert drive.findings["junctions"] == drive.findings["junctions right"] > 0.0
+
+
+def test_what_is_replaced_too_often_is_deleted(tmp_path: Path) -> None:
+    task = lasting("wall_following", 5.0, 10.0)
+    strict = task.teaching.teacher.model_copy(update={"delete_after": 1, "error_rate": 0.3})
+    replacing = task.learning.model_copy(update={"insert_beyond_share": 1.0})
+    task = task.model_copy(
+        update={"learning": replacing, "teaching": task.teaching.model_copy(update={"teacher": strict})}
+    )
+    result = lesson(task, tmp_path)
+    assert result.deletions > 0
+    # Numbers are not used again: gaps are what was deleted.
+    assert max(rla.rla_id for rla in result.rlas) > len(result.rlas)

@@ -1,0 +1,90 @@
+"""From the streets to errands, their tables and pictures, on the simulated robot."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from matplotlib.image import imread
+
+from hal.settings import SettingsError
+from kurt2rt.core.rla.rla import MID, RlaCreated, SituationNamed
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.experiments.navigation.figures import draw_errands
+from kurt2rt.experiments.navigation.lesson import errands_of
+from kurt2rt.experiments.navigation.outcome import ErrandsOutcome
+from kurt2rt.experiments.navigation.plan import Programme, conduct, plan, read_outcomes, robot_time_s
+from kurt2rt.experiments.navigation.tables import sheets
+from kurt2rt.experiments.study.results import Results
+from kurt2rt.knowledge.journal.journal import Journal
+from tests.experiments.helpers import ROBOT, STAGE
+
+
+def short(name: str, teaching_s: float, exam_s: float) -> TaskSettings:
+    task = load_task(name, changes={"teaching.supervised_s": "0", "teaching.corrections_s": str(teaching_s)})
+    return task.model_copy(update={"exam": task.exam.model_copy(update={"duration_s": exam_s})})
+
+
+def a_programme(results: Results, streets_s: float, errands_s: float, exam_s: float) -> Programme:
+    errands, streets = short("errands", errands_s, exam_s), short("streets", streets_s, 6.0)
+    return plan(errands, streets, (1,), STAGE, ROBOT, results, controls=True, source_of=lambda _: "tested")
+
+
+@dataclass(frozen=True)
+class Done:
+    results: Results
+    programme: Programme
+    outcome: ErrandsOutcome
+
+
+def carried_out(folder: Path, streets_s: float, errands_s: float, exam_s: float) -> Done:
+    results = Results(folder)
+    programme = a_programme(results, streets_s, errands_s, exam_s)
+    with results.held():
+        conduct(programme, results, 1, lambda _: None)
+    (outcome,) = read_outcomes(programme, results)
+    return Done(results, programme, outcome)
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
+    return carried_out(tmp_path_factory.mktemp("errands"), 10.0, 10.0, 1.0)
+
+
+def test_streets_and_errands_are_one_robots_knowledge(done: Done) -> None:
+    (job,) = done.programme.jobs
+    with Journal.read_only(job.knowledge) as journal:
+        events = journal.events()
+        assert MID in journal.binding.levels
+    assert next(event.name for event in events if isinstance(event, SituationNamed)) == "home"
+    ways = [event for event in events if isinstance(event, RlaCreated) and event.rla.level == MID]
+    assert len(ways) == done.outcome.mid_rlas >= 1
+
+
+def test_what_is_done_is_not_done_again(done: Done) -> None:
+    assert robot_time_s(done.programme, done.results) == 0.0
+
+
+def test_plan_and_controls_are_sent_to_the_same_goals(done: Done) -> None:
+    assert [run.how for run in done.outcome.runs] == ["planning", "chance", "first taught"]
+    assert len({tuple(errand.goal for errand in run.errands) for run in done.outcome.runs}) == 1
+
+
+def test_it_is_told_and_drawn(done: Done, tmp_path: Path) -> None:
+    assert len(list(sheets([done.outcome], errands_of(done.programme.task)))) == 3
+    picture = tmp_path / "robot.png"
+    draw_errands(STAGE, "manhattan", done.outcome, picture)
+    assert imread(picture).shape[0] > 400
+
+
+def test_a_task_without_errands_has_none_to_run() -> None:
+    with pytest.raises(SettingsError, match="task route: to run errands it needs the course errands"):
+        errands_of(load_task("route"))
+
+
+@pytest.mark.deep
+def test_a_robot_that_was_led_about_reaches_what_it_was_never_led_to(tmp_path: Path) -> None:
+    done = carried_out(tmp_path, 1165.0, 800.0, 120.0)
+    planned, by_chance, _ = done.outcome.runs
+    assert len(planned.errands) == 20
+    assert planned.good(2.0) >= 16
+    assert planned.good(1.3) > by_chance.good(1.3) + 8

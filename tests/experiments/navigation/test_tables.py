@@ -1,0 +1,86 @@
+"""What is told of errands."""
+
+from kurt2rt.experiments.navigation.outcome import ErrandDone, ErrandsOutcome, ErrandsRun, How
+from kurt2rt.experiments.navigation.tables import asked_sheet, robots_sheet, runs_sheet
+from tests.experiments.navigation.test_goals import settings
+
+
+def errand(
+    detour: float = 0.9, why_not: str = "", *, collisions: int = 0, demonstrated: float | None = 3.0
+) -> ErrandDone:
+    return ErrandDone(
+        goal="place 7",
+        why_not=why_not,
+        seconds=30.0,
+        way_m=9.0 * detour,
+        shortest_m=9.0,
+        junctions=5,
+        demonstrated=demonstrated,
+        surprises=0,
+        collisions=collisions,
+    )
+
+
+def run(*errands: ErrandDone, how: How = "planning") -> ErrandsRun:
+    return ErrandsRun(how=how, errands=errands, trail=())
+
+
+def robot(seed: int, *runs: ErrandsRun) -> ErrandsOutcome:
+    return ErrandsOutcome(
+        seed=seed,
+        teaching_s=1165.0,
+        ways=100,
+        ways_in_all=104,
+        mid_rlas=100,
+        basic_rlas=150,
+        mid_asks=48,
+        missed_junctions=0,
+        corrections=30,
+        rescues=0,
+        named={"home": (0.4, 1.3)},
+        led=(),
+        knowledge_hash="",
+        runs=runs,
+    )
+
+
+GOOD = run(*[errand()] * 20)
+
+
+def test_a_goal_counts_where_the_way_was_short_and_nothing_was_touched() -> None:
+    mixed = run(errand(), errand(1.4), errand(why_not="stuck"), errand(collisions=1))
+    assert mixed.good(1.3) == 1
+    assert len(mixed.reached) == 2
+
+
+def test_robots_that_nobody_has_seen_before_are_judged() -> None:
+    outcomes = [robot(seed, GOOD) for seed in range(100, 118)]
+    outcomes += [robot(seed, run(*[errand()] * 17, *[errand(why_not="no way")] * 3)) for seed in (118, 119)]
+    sheet = asked_sheet(outcomes, settings())
+    assert [(row[1], row[2], row[3]) for row in sheet.rows] == [
+        ("360 of 400", "394 of 400", "met"),
+        ("18 of 20", "18 of 20", "met"),
+        ("at most 1.3 times the shortest", "0.90", "met"),
+    ]
+
+
+def test_robots_that_settings_were_chosen_on_are_not() -> None:
+    sheet = asked_sheet([robot(1, GOOD)], settings())
+    assert {row[3] for row in sheet.rows} == {"not judged"}
+    assert "20" in sheet.note
+
+
+def test_controls_stand_beside_the_plan_and_what_replay_would_come_to() -> None:
+    by_chance = run(errand(why_not="astray"), errand(1.2), how="chance")
+    sheet = runs_sheet([robot(1, run(errand(demonstrated=None), errand(demonstrated=2.0)), by_chance)], settings())
+    assert [row[:2] for row in sheet.rows] == [
+        ("by a plan", "2 of 2"),
+        ("control: any way taught, by chance", "1 of 2"),
+    ]
+    assert "mean 2.0, least 2.00 times the shortest; for 1 goals there is no such piece" in sheet.note
+
+
+def test_each_robot_tells_what_it_did_not_reach_and_why() -> None:
+    sheet = robots_sheet([robot(3, run(errand(), errand(why_not="time"), errand(collisions=2)))], settings())
+    assert sheet.rows[0][0] == "3"
+    assert sheet.rows[0][-1] == "place 7: time, place 7: 2 collisions"

@@ -1,0 +1,114 @@
+"""What is done to a set before a branch: wrong actions, and a critic from elsewhere."""
+
+from collections import Counter
+
+import pytest
+
+from kurt2rt.core.critic.agreement import Agreement
+from kurt2rt.core.critic.settings import NAMES, load_critic
+from kurt2rt.core.rla.rla import CRITIC, ActionReplaced, Appraised, Origin, Phase, Rla, RlaCreated, TeachingEvent
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.space import Space
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.experiments.lockstep.primitives import primitives
+from kurt2rt.experiments.phases.corruption import corrupt, critics_lessons, shuffled
+from kurt2rt.experiments.phases.steps import CRITIC_ALONE, PHASE_4, REWARDS, SHUFFLED, steps_of
+
+PERIOD_S = 0.01
+
+ACTIONS = ("forward", "back", "stand")
+SETTINGS = load_critic()
+
+
+def origin(name: str) -> Origin:
+    return Origin(name, "Ann", Phase.CORRECTIONS, 1)
+
+
+def taught(rla_id: int, action: str, level: str = "basic") -> RlaCreated:
+    condition = (float(rla_id),) * (1 if level == "basic" else len(NAMES))
+    return RlaCreated(Rla(rla_id, condition, action, None, origin(f"t{rla_id}"), level=level))
+
+
+def system(*events: TeachingEvent) -> RlaSystem:
+    made = RlaSystem(1, 900.0, others={CRITIC: Space(len(NAMES), 1.0, None)})
+    made.apply_all(events)
+    return made
+
+
+SET = [taught(number, "forward") for number in range(1, 51)]
+CRITICS = [
+    *(taught(number, "bad", CRITIC) for number in range(60, 70)),
+    *(taught(number, "good", CRITIC) for number in range(70, 100)),
+]
+
+
+def test_the_share_that_was_asked_for_gets_another_action() -> None:
+    wrong = list(corrupt(system(*SET).rlas, ACTIONS, 0.18, seed=7, purpose="repair"))
+    assert len({each.rla_id for each in wrong}) == 9
+    assert all(each.action in ("back", "stand") and each.instead_of == "forward" for each in wrong)
+    system(*SET, *wrong)
+
+
+def test_the_same_seed_spoils_the_same_and_another_one_others() -> None:
+    rlas = system(*SET).rlas
+    assert list(corrupt(rlas, ACTIONS, 0.18, 7, purpose="repair")) == list(
+        corrupt(rlas, ACTIONS, 0.18, 7, purpose="repair")
+    )
+    assert list(corrupt(rlas, ACTIONS, 0.18, 7, purpose="repair")) != list(
+        corrupt(rlas, ACTIONS, 0.18, 8, purpose="repair")
+    )
+
+
+def test_what_the_critic_was_shown_is_not_what_it_is_examined_on() -> None:
+    rlas, steps = system(*SET).rlas, {step.name: step for step in steps_of(load_task("wall_following"))}
+
+    def wrong_at(name: str, seed: int) -> set[tuple[int, str]]:
+        step = steps[name]
+        wrong = corrupt(rlas, primitives("basic"), step.corrupted, seed, step.mistakes)
+        return {(each.rla_id, each.action) for each in wrong}
+
+    for seed in range(20):
+        shown, examined = wrong_at(PHASE_4, seed), wrong_at(CRITIC_ALONE, seed)
+        assert len(shown) == len(examined) == 9
+        assert len(shown & examined) <= 1  # what little is alike is so by chance
+        assert examined == wrong_at(SHUFFLED, seed) == wrong_at(REWARDS, seed)
+
+
+@pytest.mark.parametrize(("rlas", "wrong"), [(0, 0), (1, 1), (2, 1), (11, 2)])
+def test_of_a_small_set_at_least_one_is_wrong(rlas: int, wrong: int) -> None:
+    assert len(list(corrupt(system(*SET[:rlas]).rlas, ACTIONS, 0.18, 1, purpose="repair"))) == wrong
+
+
+def test_wrong_actions_are_motor_primitives_of_the_repertoire() -> None:
+    assert "spin_left" in primitives("basic")
+    assert "quarter_turn_left" not in primitives("basic")
+    assert len(primitives("basic")) == 14
+
+
+def test_a_critic_goes_over_to_another_set_with_what_it_agreed_with() -> None:
+    corrected = ActionReplaced(60, "good", "bad", origin("c"))
+    agreed = Appraised("good", 1, 5, origin("a"))
+    history: list[TeachingEvent] = [
+        *SET,
+        *CRITICS,
+        corrected,
+        ActionReplaced(1, "back", "forward", origin("r")),
+        agreed,
+    ]
+    lessons = list(critics_lessons(history))
+    assert lessons == [*CRITICS, corrected, agreed]
+    there = system(*SET, *lessons)
+    assert [rla.action for rla in there.rlas_at(CRITIC)] == ["good", *["bad"] * 9, *["good"] * 30]
+    assert {rla.action for rla in there.rlas} == {"forward"}
+
+
+def test_a_shuffled_critic_has_the_same_opinions_elsewhere_and_is_trusted_all_the_same() -> None:
+    appraisals = system(*SET, *CRITICS).rlas_at(CRITIC)
+    lessons = list(shuffled(appraisals, SETTINGS, seed=3, period_s=PERIOD_S))
+    dealt = system(*SET, *lessons).rlas_at(CRITIC)
+    assert [rla.condition for rla in dealt] == [rla.condition for rla in appraisals]
+    assert Counter(rla.action for rla in dealt) == Counter(rla.action for rla in appraisals)
+    assert [rla.action for rla in dealt] != [rla.action for rla in appraisals]
+    agreement = Agreement(SETTINGS.agreement, SETTINGS.values, PERIOD_S)
+    agreement.hear_all(lessons)
+    assert agreement.trusted

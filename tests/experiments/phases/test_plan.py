@@ -1,0 +1,98 @@
+"""What is planned before anything runs."""
+
+from pathlib import Path
+
+from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.experiments.phases.job import StepJob
+from kurt2rt.experiments.phases.outcome import JobOutcome
+from kurt2rt.experiments.phases.plan import DECIDING, Programme, plan
+from kurt2rt.experiments.phases.steps import BLAME_BY_CHANCE, CRITIC_ALONE, LONG_RUN, PHASE_2, PHASE_4, PHASE_5, REWARDS
+from kurt2rt.experiments.study.import_graph import modules_needed
+from kurt2rt.experiments.study.results import Results
+from tests.experiments.helpers import ROBOT, STAGE
+from tests.experiments.phases.outcomes import stage, teaching
+
+TASK = load_task("wall_following")
+
+
+def planned(task: TaskSettings = TASK, seeds: tuple[int, ...] = (100, 101), *, quick: bool = False) -> Programme:
+    results = Results(Path("never-made"))
+    return plan(task, seeds, STAGE, ROBOT, results, quick=quick, source_of=lambda _: "s")
+
+
+def with_phases(**changed: float) -> TaskSettings:
+    assert TASK.phases is not None
+    return TASK.model_copy(update={"phases": TASK.phases.model_copy(update=changed)})
+
+
+def test_jobs_come_in_waves_of_which_each_needs_only_those_before() -> None:
+    waves = [{job.step for job in wave} for wave in planned().waves]
+    assert waves[0] == {PHASE_2}
+    place = {step: number for number, wave in enumerate(waves) for step in wave}
+    assert place[REWARDS] < place[PHASE_4] < place[CRITIC_ALONE] == place[PHASE_5] < place[LONG_RUN]
+    assert all(len(wave) % 2 == 0 for wave in planned().waves)  # as many of each seed
+
+
+def test_every_job_keeps_its_result_in_a_file_of_its_own() -> None:
+    jobs = planned().jobs
+    assert len({job.file for job in jobs}) == len(jobs) == 2 * 14
+
+
+def test_who_blames_by_chance_blames_each_robot_as_often_as_its_rewards_did(tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    jobs = {(job.step, job.file): job for job in plan(TASK, (100, 101), STAGE, ROBOT, results, source_of=str).jobs}
+    by_step = {step: [job for (name, _), job in jobs.items() if name == step] for step in (REWARDS, BLAME_BY_CHANCE)}
+    for job, seed, blame in zip(by_step[REWARDS], (100, 101), (37, 5), strict=True):
+        (tmp_path / job.file).parent.mkdir(parents=True, exist_ok=True)
+        stages = (stage(REWARDS, taught=teaching(blame=blame)),)
+        results.write(job, JobOutcome(made_of=job.made_of, seed=seed, stages=stages))
+    told = [job.plan() for job in by_step[BLAME_BY_CHANCE] if isinstance(job, StepJob)]
+    assert [each.blame_by_chance for each in told if each] == [37, 5]
+
+
+def test_another_time_of_one_step_makes_only_what_follows_from_it_anew() -> None:
+    before = {job.file: job.made_of for job in planned().jobs}
+    after = {job.file: job.made_of for job in planned(with_phases(autonomy_s=77.0)).jobs}
+    changed = {Path(file).parent.name for file in before if before[file] != after[file]}
+    assert changed == {PHASE_5, LONG_RUN}
+
+
+def test_another_time_of_phase_4_makes_all_critics_anew_and_no_rewards() -> None:
+    before = {job.step: job.made_of for job in planned().jobs}
+    after = {job.step: job.made_of for job in planned(with_phases(critic_s=77.0)).jobs}
+    assert before[CRITIC_ALONE].differences(after[CRITIC_ALONE]) == ["task"]
+    assert before[REWARDS] == after[REWARDS]
+
+
+def test_deciding_modules_hold_the_steps_not_the_report() -> None:
+    names = {name.rpartition(".")[2] for name in modules_needed(each.__module__ for each in DECIDING)}
+    assert {
+        "corruption",
+        "exams",
+        "event_replay",
+        "scoring",
+        "steps",
+        "lesson_summary",
+        "lesson_plan",
+        "agreement",
+    } <= names
+    assert not {"html_report", "table", "table_rows", "figures"} & names
+
+
+def test_quick_is_every_step_for_seconds() -> None:
+    quick = planned(quick=True)
+    assert [len(wave) for wave in quick.waves] == [len(wave) for wave in planned().waves]
+    assert sum(job.robot_time_s for job in quick.jobs) < 1200
+
+
+def test_what_is_done_every_so_often_and_what_has_to_be_heard_first_is_less_in_a_quick_run() -> None:
+    quick, whole = planned(quick=True).task, TASK
+    assert quick.phases is not None
+    assert whole.phases is not None
+    assert quick.phases.signals.bad_every_s == 0.2 * whole.phases.signals.bad_every_s
+    assert quick.phases.set_down_every_s == 0.2 * whole.phases.set_down_every_s
+    heard, critic = load_critic(quick.critic), load_critic(whole.critic)
+    assert heard.agreement.least < critic.agreement.least
+    assert heard.best.window_s * 4 <= quick.phases.repair_alone_s
+    assert heard.feature_hash == critic.feature_hash

@@ -1,0 +1,149 @@
+"""Who failed at a junction: what was noticed of the ones before, the mid level, or the basic level."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+
+from behaviors.metrics.route import FixedRoute, Passage
+from behaviors.metrics.task_metric import WayAhead
+from hal.robot import STANDSTILL, GuardResult
+from kurt2rt.core.decision.decision import Cause, Decision, MidDecision
+from kurt2rt.core.decision.junction_event import JunctionEvent
+from kurt2rt.core.perception.perception import Situation
+from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.experiments.route.outcome import Layer
+from kurt2rt.experiments.route.route_monitor import Watching
+from tests.behaviors.metrics.test_route import a_route, streets
+from tests.core.helpers import sensed
+
+NAMES = {0: "straight_on", 1: "turn_left", -1: "turn_right"}
+
+
+class ARoute(FixedRoute):
+    """Stands where it is told to stand."""
+
+    def __init__(self) -> None:
+        super().__init__(streets(), a_route(), tuple(NAMES.values()))
+        self.inside = False
+
+    @property
+    def ahead(self) -> WayAhead:
+        return WayAhead(len(self.passages), self.inside, "straight_on", "straight_on")
+
+
+@dataclass
+class Watched:
+    """A drive, junction by junction."""
+
+    watching: Watching = field(default_factory=Watching)
+    course: ARoute = field(default_factory=ARoute)
+    tick: int = 0
+
+    def look(self, wanted: int, event: int | None = None, *, asks: bool = False, mid: bool = True) -> None:
+        self.tick += 1
+        noticed = None if event is None else JunctionEvent(event, True, False, 0.0, 1.0)
+        behaviour = NAMES[wanted]
+        decided = MidDecision(behaviour, 1, None, asks, False, noticed) if mid else None
+        cause = Cause.UNKNOWN if asks else Cause.RLA
+        decision = Decision(STANDSTILL, cause, None, None, None, asks_at=MID if asks else BASIC, mid=decided)
+        situation = Situation(np.zeros(1), history_frozen=False)
+        grant = GuardResult(STANDSTILL, (), latched=False)
+        record = TickRecord(self.tick, 0.01 * self.tick, sensed(100), situation, decision, grant, (), behaviour)
+        self.watching.look(record, self.course)
+
+    def junction(
+        self, right: int, wanted: int, taken: int | None, noticed: int | None, within: int | None = None
+    ) -> None:
+        """Through one junction, and noticed behind it; `within`: what is wanted before it is out."""
+        self.look(wanted)
+        self.course.inside = True
+        self.look(wanted)
+        if within is not None:
+            self.look(within)
+        self.course.inside = False
+        self.course.passages.append(Passage(0, right, taken, 1.0, 2.0))
+        self.look(wanted if within is None else within)
+        if noticed is not None:
+            self.look(wanted, noticed)
+
+    @property
+    def blamed(self) -> list[Layer]:
+        return [wrong.layer for wrong in self.watching.wrong]
+
+
+def test_what_is_right_is_nobodys_fault() -> None:
+    watched = Watched()
+    for turn in (0, 1, -1) * 6:
+        watched.junction(turn, turn, turn, turn)
+    watched.watching.end()
+    assert watched.blamed == []
+
+
+def test_the_basic_level_that_was_told_right_and_did_otherwise_is_to_blame() -> None:
+    watched = Watched()
+    watched.junction(1, 1, 0, 0)
+    watched.junction(0, 0, 0, 0)
+    assert watched.blamed == ["basic"]
+    (wrong,) = watched.watching.wrong
+    assert (wrong.leg, wrong.x_m, wrong.y_m) == (0, 1.0, 2.0)
+
+
+def test_the_mid_level_that_had_noticed_everything_and_wanted_otherwise_is_to_blame() -> None:
+    watched = Watched()
+    watched.junction(0, 0, 0, 0)
+    watched.junction(1, -1, -1, -1)
+    assert watched.blamed == ["mid"]
+
+
+@pytest.mark.parametrize("noticed", [None, 1])
+def test_where_it_had_missed_a_junction_or_mistaken_it_the_symbols_are_to_blame(noticed: int | None) -> None:
+    watched = Watched()
+    watched.junction(0, 0, 0, noticed)
+    watched.junction(1, -1, -1, -1)
+    assert watched.blamed == ["symbols"]
+
+
+def test_told_something_else_on_the_way_through_the_symbols_are_to_blame() -> None:
+    watched = Watched()
+    watched.junction(1, 1, -1, -1, within=-1)
+    assert watched.blamed == ["symbols"]
+
+
+def test_an_unknown_history_in_the_street_is_the_mid_levels_fault_a_stuck_robot_the_basic_levels() -> None:
+    watched = Watched()
+    watched.junction(0, 0, 0, 0)
+    watched.look(0, asks=True)
+    watched.course.passages.append(Passage(1, 1, None, 1.0, 2.0))
+    watched.watching.end()
+    assert watched.blamed == ["mid"]
+    watched = Watched()
+    watched.look(1)
+    watched.course.passages.append(Passage(0, 1, None, 1.0, 2.0))
+    watched.watching.end()
+    assert watched.blamed == ["basic"]
+
+
+def test_stuck_just_behind_a_junction_that_it_is_still_to_notice_is_the_basic_levels_fault() -> None:
+    watched = Watched()
+    for turn in (0, 1, -1) * 5:
+        watched.junction(turn, turn, turn, turn)
+    watched.junction(1, 1, 1, None)
+    watched.course.passages.append(Passage(1, 0, None, 1.0, 2.0))
+    watched.watching.end()
+    assert watched.blamed == ["basic"]
+
+
+def test_without_a_mid_level_it_is_always_the_basic_one() -> None:
+    watched = Watched()
+    watched.look(0, mid=False)
+    watched.course.passages.append(Passage(0, 1, 0, 1.0, 2.0))
+    watched.look(0, mid=False)
+    assert watched.blamed == ["basic"]
+
+
+def test_a_drive_that_never_began_has_nothing_to_blame() -> None:
+    watching = Watching()
+    watching.end()
+    assert watching.wrong == []

@@ -1,0 +1,125 @@
+"""From the streets to a route, its drive, tables, pictures and a report, on the simulated robot, in seconds."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from matplotlib.image import imread
+
+from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.experiments.route.plan import Programme, basic_file, basic_task_of, plan
+from kurt2rt.experiments.route.report import draw_pictures, write_report
+from kurt2rt.experiments.route.summary import Study, conduct, read_study, robot_time_s
+from kurt2rt.experiments.route.tables import sheets
+from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT
+from kurt2rt.experiments.study.figure import Picture
+from kurt2rt.experiments.study.pool import Standing
+from kurt2rt.experiments.study.results import Results, StudyError
+from kurt2rt.knowledge.journal.fold import fold_journal
+from kurt2rt.knowledge.journal.journal import Journal
+from tests.experiments.helpers import ROBOT, STAGE
+from tests.experiments.study.page import Page
+
+COMMAND = "kurt2rt lesson route --seeds 1"
+VARIANTS = (TAUGHT, next(each for each in CONTROLS if each.name == "commanded"))
+
+
+def short(task: TaskSettings, teaching_s: float) -> TaskSettings:
+    teaching = task.teaching.model_copy(update={"supervised_s": 0.0, "corrections_s": teaching_s})
+    exam = task.exam.model_copy(update={"duration_s": 3.0})
+    return task.model_copy(update={"teaching": teaching, "exam": exam})
+
+
+def a_programme(results: Results, basic_folder: Path | None = None, teaching_s: float = 8.0) -> Programme:
+    route, streets = short(load_task("route"), teaching_s), short(load_task("streets"), 10.0)
+    return plan(
+        route,
+        streets,
+        (1,),
+        (4,),
+        VARIANTS,
+        STAGE,
+        ROBOT,
+        results,
+        basic_folder=basic_folder,
+        source_of=lambda _: "tested",
+    )
+
+
+@dataclass(frozen=True)
+class Done:
+    results: Results
+    programme: Programme
+    study: Study
+    pictures: list[Picture]
+    report: Path
+    standings: list[Standing]
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
+    results = Results(tmp_path_factory.mktemp("routes"))
+    programme = a_programme(results)
+    standings: list[Standing] = []
+    with results.held():
+        conduct(programme, results, 1, standings.append)
+    study = read_study(programme, results)
+    pictures = list(draw_pictures(study, STAGE, results.folder))
+    report = results.folder / "report.html"
+    write_report(study, pictures, COMMAND, report)
+    return Done(results, programme, study, pictures, report, standings)
+
+
+def test_the_streets_are_taught_once_and_every_way_of_teaching_goes_on_from_them(done: Done) -> None:
+    (basic,) = done.programme.basic_jobs
+    assert basic.knowledge.is_file()
+    taught, commanded = (summary.outcomes[0] for summary in done.study.summaries)
+    assert (taught.teaching_s, commanded.teaching_s) == (8.0, 8.0)
+    assert taught.mid_rlas == taught.mid_asks > 0 == commanded.mid_rlas
+    assert done.results.missing(done.programme.jobs) == []
+    assert done.standings[-1].done_s == 10.0 + 2 * (8.0 + 3.0)
+
+
+def test_what_the_mid_level_was_taught_stands_in_its_file(done: Done) -> None:
+    job = done.programme.experiments[0].jobs[0]
+    with Journal.read_only(job.knowledge) as journal:
+        system = fold_journal(journal, job.task.learning.radius)
+        assert journal.binding.system == "streets"
+        assert journal.binding.levels[MID].feature_names[0] == "symbol 1"
+    outcome = done.study.summaries[0].outcomes[0]
+    assert len(system.rlas_at(MID)) == outcome.mid_rlas
+    assert len(system.rlas) == outcome.basic_rlas
+    assert system.knowledge_hash() == outcome.knowledge_hash
+
+
+def test_done_again_nothing_is_left_to_do_and_other_settings_are_refused(done: Done) -> None:
+    again = a_programme(done.results)
+    assert robot_time_s(again, done.results) == 0.0
+    with pytest.raises(StudyError, match="made with other settings"):
+        done.results.missing(a_programme(done.results, teaching_s=13.0).jobs)
+
+
+def test_robots_that_know_the_streets_already_are_taught_the_route_only(done: Done, tmp_path: Path) -> None:
+    folder = done.programme.basic_jobs[0].knowledge.parent
+    programme = a_programme(Results(tmp_path), folder)
+    assert programme.basic_jobs == ()
+    assert programme.experiments[0].jobs[0].basic == folder / "streets-1.knowledge"
+    assert basic_file(folder / "streets-1.knowledge", programme.basic, 1) == folder / "streets-1.knowledge"
+    with pytest.raises(StudyError, match=r"streets-2\.knowledge: there is no such file; teach the streets with"):
+        basic_file(folder, programme.basic, 2)
+
+
+def test_pictures_and_report_show_every_way_of_teaching(done: Done) -> None:
+    assert [each.path.name for each in done.pictures] == ["route-taught-4.png", "route-commanded-4.png"]
+    for each in done.pictures:
+        assert imread(each.path).std() > 0.01
+    text = done.report.read_text(encoding="utf-8")
+    assert Page(text).images == [each.title for each in done.pictures]
+    assert COMMAND in text
+    for sheet in sheets(done.study):
+        assert sheet.title in text
+
+
+def test_the_streets_are_the_task_whose_knowledge_the_route_goes_on_in() -> None:
+    assert basic_task_of(load_task("route")).name == "streets"

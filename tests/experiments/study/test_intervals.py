@@ -1,0 +1,97 @@
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurt2rt.experiments.study.intervals import difference_of, fall_of, poisson_interval, rate_of
+from tests.examples import examples
+
+
+def test_where_nothing_happened_the_upper_end_is_poissons() -> None:
+    # The exact upper limit of a count of 0 is 3.689 (Garwood 1936).
+    rate = rate_of([0, 0, 0, 0], [0.5, 0.5, 0.5, 0.5])
+    assert (rate.value, rate.low) == (0.0, 0.0)
+    assert rate.high == pytest.approx(3.689 / 2.0, abs=1e-3)
+
+
+def test_collisions_of_one_bad_robot_are_less_sure_than_those_of_many() -> None:
+    clustered = rate_of([20, *[0] * 19], [1.0] * 20)
+    spread = rate_of([1] * 20, [1.0] * 20)
+    assert clustered.value == spread.value == 1.0
+    # Those are all alike, and Poisson's interval of 20 is left; this one is drawn three times or not at all.
+    assert (spread.low, spread.high) == pytest.approx((12.217 / 20, 30.888 / 20), abs=1e-4)
+    assert clustered.low == 0.0
+    assert clustered.high >= 3.0
+
+
+@pytest.mark.parametrize(
+    ("events", "low", "high"),
+    [(0, 0.0, 3.6889), (1, 0.0253, 5.5716), (2, 0.2422, 7.2247), (10, 4.7954, 18.3904), (100, 81.3637, 121.6273)],
+)
+def test_poissons_interval_is_garwoods(events: int, low: float, high: float) -> None:
+    # As chi-square tables have it.
+    assert poisson_interval(events) == pytest.approx((low, high), abs=1e-3)
+
+
+def test_a_single_collision_makes_nobody_surer() -> None:
+    none = rate_of([0] * 20, [1.0] * 20)
+    one = rate_of([1, *[0] * 19], [1.0] * 20)
+    assert none.high == pytest.approx(0.1844, abs=1e-4)
+    assert one.high == pytest.approx(0.2786, abs=1e-4)
+
+
+def test_one_robot_says_nothing_of_others() -> None:
+    assert rate_of([3], [0.5]) == (6.0, 0.0, math.inf)
+
+
+def test_the_interval_is_the_same_every_time() -> None:
+    assert rate_of([3, 0, 1], [0.5, 0.4, 0.5]) == rate_of([3, 0, 1], [0.5, 0.4, 0.5])
+
+
+@examples(40)  # each draws 10 000 samples
+@given(st.lists(st.tuples(st.integers(0, 9), st.floats(0.1, 2.0)), min_size=1, max_size=20))
+def test_an_interval_holds_its_ends_in_order(robots: list[tuple[int, float]]) -> None:
+    counts, exposures = [count for count, _ in robots], [exposure for _, exposure in robots]
+    rate = rate_of(counts, exposures)
+    assert rate.value == pytest.approx(sum(counts) / sum(exposures))
+    assert 0.0 <= rate.low <= rate.value <= rate.high
+
+
+@examples(40)
+@given(st.lists(st.tuples(st.integers(0, 3), st.floats(0.1, 2.0)), min_size=2, max_size=20), st.data())
+def test_one_more_event_moves_both_ends_up_or_not_at_all(robots: list[tuple[int, float]], data: st.DataObject) -> None:
+    counts, exposures = [count for count, _ in robots], [exposure for _, exposure in robots]
+    rate = rate_of(counts, exposures)
+    counts[data.draw(st.integers(0, len(counts) - 1))] += 1
+    more = rate_of(counts, exposures)
+    assert more.low >= rate.low
+    assert more.high >= rate.high
+
+
+def test_the_same_change_in_every_robot_is_sure_and_one_robot_says_nothing() -> None:
+    assert difference_of([0.5, 0.5, 0.5]) == (0.5, 0.5, 0.5)
+    assert difference_of([0.5]) == (0.5, -math.inf, math.inf)
+
+
+def test_changes_to_both_sides_leave_it_open() -> None:
+    change = difference_of([-1.0, 1.0, -2.0, 2.0, 0.5])
+    assert change.value == pytest.approx(0.1)
+    assert change.low < 0.0 < change.high
+
+
+@examples(40)
+@given(st.lists(st.floats(-100, 100), min_size=2, max_size=20))
+def test_the_interval_of_a_change_turns_round_with_it(changes: list[float]) -> None:
+    there, back = difference_of(changes), difference_of([-change for change in changes])
+    assert there.low <= there.value <= there.high
+    assert (back.low, back.value, back.high) == pytest.approx((-there.high, -there.value, -there.low), abs=1e-9)
+
+
+def test_a_fall_is_told_with_an_interval_over_pairs() -> None:
+    certain = fall_of([2.0, 4.0, 6.0] * 7, [1.0, 2.0, 3.0] * 7)
+    assert certain == pytest.approx((0.5, 0.5, 0.5))  # robots differ, the fall is the same in all
+    unsure = fall_of([4.0] * 20, [8.0, 0.0] * 10)
+    assert unsure.value == 0.0
+    assert -0.6 < unsure.low < -0.2 < 0.2 < unsure.high < 0.6
+    assert fall_of([0.0, 0.0], [0.0, 0.0]) == (0.0, 0.0, 0.0)

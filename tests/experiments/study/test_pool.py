@@ -1,0 +1,154 @@
+"""Many jobs: in this process, and in others."""
+
+import os
+import signal
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.experiments.study.pool import JobKilledError, Standing, Tell, run_jobs
+
+
+@dataclass(frozen=True)
+class Job:
+    name: str
+    robot_time_s: float
+    fails: bool = False
+
+    def run(self, tell: Tell) -> str:
+        if self.fails:
+            raise RuntimeError(f"{self.name} fails")
+        tell(self.robot_time_s / 2)
+        return f"{self.name} done"
+
+
+JOBS = [Job("short", 10.0), Job("long", 40.0), Job("middle", 20.0)]
+
+
+def test_the_longest_job_comes_first_and_results_keep_their_order() -> None:
+    done: list[int] = []
+    assert run_jobs(JOBS, 1, on_done=done.append) == ["short done", "long done", "middle done"]
+    assert done == [1, 2, 0]
+
+
+def test_how_far_it_is_is_told_in_robot_time() -> None:
+    told: list[Standing] = []
+    run_jobs(JOBS, 1, on_standing=told.append)
+    assert told == [
+        (0.0, ("long",)),
+        (20.0, ("long",)),
+        (40.0, ("middle",)),
+        (50.0, ("middle",)),
+        (60.0, ("short",)),
+        (65.0, ("short",)),
+        (70.0, ()),
+    ]
+
+
+def test_what_a_job_raises_ends_the_others() -> None:
+    done: list[int] = []
+    with pytest.raises(RuntimeError, match="middle fails") as caught:
+        run_jobs([JOBS[0], JOBS[1], Job("middle", 20.0, fails=True)], 1, on_done=done.append)
+    assert done == [1]
+    assert caught.value.__notes__ == ["middle"]
+
+
+def test_no_jobs_are_no_work() -> None:
+    assert run_jobs([], 2) == []
+
+
+@pytest.mark.deep
+def test_other_processes_come_to_the_same() -> None:
+    told: list[Standing] = []
+    done: list[int] = []
+    assert run_jobs(JOBS, 2, on_done=done.append, on_standing=told.append) == run_jobs(JOBS, 1)
+    assert sorted(done) == [0, 1, 2]
+    assert told[-1] == (70.0, ())
+
+
+@pytest.mark.deep
+def test_what_a_job_raises_in_another_process_names_it_too() -> None:
+    with pytest.raises(RuntimeError, match="middle fails") as caught:
+        run_jobs([JOBS[0], Job("middle", 20.0, fails=True)], 2)
+    assert caught.value.__notes__ == ["middle"]
+
+
+@dataclass(frozen=True)
+class Killed:
+    """Kills its own process, as the system does where memory runs out."""
+
+    name: str = "greedy, seed 7"
+    robot_time_s: float = 30.0
+
+    def run(self, tell: Tell) -> str:
+        del tell
+        os.kill(os.getpid(), signal.SIGKILL)
+        return "never"
+
+
+@pytest.mark.deep
+def test_a_job_whose_process_is_killed_is_named() -> None:
+    jobs: list[Job | Killed] = [*JOBS, Killed()]
+    with pytest.raises(JobKilledError, match=r"^greedy, seed 7: its process was killed"):
+        run_jobs(jobs, 2)
+
+
+@dataclass(frozen=True)
+class Waiting:
+    """Says that it runs, then waits for what never comes."""
+
+    name: str
+    file: Path
+    robot_time_s: float = 1.0
+
+    def run(self, tell: Tell) -> None:
+        del tell
+        self.file.write_text(str(os.getpid()))
+        os.write(1, b"begun\n")  # one piece, whoever else writes
+        signal.pause()
+
+
+_WAITS = """
+import sys
+from pathlib import Path
+from kurt2rt.experiments.study.pool import run_jobs
+from tests.experiments.study.test_pool import Waiting
+
+if __name__ == "__main__":
+    folder = Path(sys.argv[1])
+    run_jobs([Waiting(str(number), folder / str(number)) for number in range(6)], 2)
+"""
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL], ids=["Ctrl-C", "killed"])
+def test_no_job_outlives_its_parent(number: signal.Signals, tmp_path: Path) -> None:
+    script = tmp_path / "waits.py"
+    script.write_text(_WAITS)
+    root = Path(__file__).parents[3]
+    begun = tmp_path / "begun"
+    begun.mkdir()
+    with subprocess.Popen(
+        [sys.executable, script, begun],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env={**os.environ, "PYTHONPATH": str(root)},
+        start_new_session=True,
+        text=True,
+    ) as parent:
+        assert parent.stdout is not None
+        try:
+            assert [parent.stdout.readline() for _ in range(2)] == ["begun\n"] * 2
+        except BaseException:
+            parent.kill()
+            raise
+        parent.send_signal(number)
+        # The end of file comes when the last of them is gone, who all hold the other end.
+        assert parent.stdout.read() == ""
+        said = parent.communicate()[1]
+    assert len(list(begun.iterdir())) == 2
+    if number is signal.SIGINT:
+        assert said.rstrip().endswith("KeyboardInterrupt")

@@ -1,0 +1,92 @@
+"""The folder of results: goes on where it was, mixes nothing."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.experiments.paper.outcome import TaughtOutcome
+from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.study.results import Results, StudyError
+from tests.experiments.paper.outcomes import MADE_OF, drive, robot
+
+
+@dataclass(frozen=True)
+class Job:
+    file: str
+    made_of: MadeOf = MADE_OF
+    outcome: type[TaughtOutcome] = TaughtOutcome
+
+
+JOBS = [Job("results/shipped/one-1.json"), Job("results/shipped/one-2.json"), Job("results/plain/one-1.json")]
+
+
+def test_a_result_comes_back_as_it_was_kept(tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    kept = robot(7, 90, drive(collisions=2), drive("b", stuck=True))
+    results.write(JOBS[0], kept)
+    assert results.read(JOBS[0], TaughtOutcome) == kept
+
+
+def test_only_what_is_not_there_yet_is_missing(tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    assert results.missing(JOBS) == [0, 1, 2]
+    results.write(JOBS[1], robot(2, 90))
+    assert results.missing(JOBS) == [0, 2]
+
+
+@pytest.mark.parametrize("what", list(MadeOf.model_fields))
+def test_results_of_another_make_are_refused_with_what_differs(what: str, tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    results.write(JOBS[0], robot(1, 90))
+    results.write(JOBS[1], robot(2, 90))
+    other = [Job(job.file, MADE_OF.model_copy(update={what: "changed"})) for job in JOBS]
+    with pytest.raises(StudyError) as caught:
+        results.missing(other)
+    assert str(caught.value) == (
+        f"{tmp_path}: results/shipped/one-1.json and 1 more were made with other settings or another program "
+        f"(what differs: {what}); give a new folder with --out, or delete the results in this one"
+    )
+
+
+def test_a_file_that_is_no_result_is_named(tmp_path: Path) -> None:
+    (tmp_path / "results" / "shipped").mkdir(parents=True)
+    (tmp_path / JOBS[0].file).write_text("{}")
+    with pytest.raises(StudyError, match=r"one-1\.json: is no result of this program; give a new folder with --out"):
+        Results(tmp_path).missing(JOBS)
+
+
+def test_a_result_that_lacks_something_is_found_before_anything_runs(tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    results.write(JOBS[0], robot(1, 90, drive()))
+    content = json.loads((tmp_path / JOBS[0].file).read_text())
+    del content["drives"][0]["teachers_stuck"]
+    (tmp_path / JOBS[0].file).write_text(json.dumps(content))
+    with pytest.raises(StudyError, match=r"one-1\.json: is no result of this program; give a new folder with --out"):
+        results.missing(JOBS)
+
+
+def test_two_runs_do_not_write_into_one_folder(tmp_path: Path) -> None:
+    with (
+        Results(tmp_path).held(),
+        pytest.raises(StudyError, match="another run writes here; wait for its end"),
+        Results(tmp_path).held(),
+    ):
+        pass
+    with Results(tmp_path).held():
+        pass
+
+
+def test_what_an_interrupted_run_had_begun_is_cleared_away(tmp_path: Path) -> None:
+    results = Results(tmp_path / "new")
+    with results.held(), results.scratch() as scratch:
+        begun = scratch / "knowledge"
+        begun.write_text("")
+        results.keep(begun, "knowledge/shipped/one-1.knowledge")
+    left_over = tmp_path / "new" / "unfinished-xyz"
+    left_over.mkdir()
+    (left_over / "knowledge").write_text("half")
+    with results.held():
+        assert not left_over.exists()
+    assert [path.name for path in (tmp_path / "new").rglob("*") if path.is_file()] == [".lock", "one-1.knowledge"]

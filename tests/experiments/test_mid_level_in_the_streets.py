@@ -1,0 +1,124 @@
+"""A mid level on the real path: simulated robot, bus, journal and service; the policy drives what it commands."""
+
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from behaviors.repertoire import load_repertoire
+from hal.health import Health
+from kurt2rt.core.basic.policy_level import PolicyLevel
+from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.teaching.commands import Command, Correct, Teach
+from kurt2rt.core.teaching.question import Question, WayQuestion
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.knowledge.journal.loading import go_on_teaching
+from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
+from kurt2rt.platform.clock import LockstepClock
+from kurt2rt.runtime import build_runtime
+from kurt2rt.service.post_tick import Rounds, Screen, Status
+from kurt2rt.service.settings import load_service
+from kurt2rt.service.status_line import status_line
+from simbridge.simulation import Kurt2Simulation
+from tests.channel.desk import STAMP
+from tests.experiments.helpers import ROBOT
+
+STREETS = load_task("streets")
+ROUTE = STREETS.model_copy(update={"name": "route", "system": "streets", "mid": "turns"})
+
+
+class Service:
+    """The robot in Manhattan and its knowledge file, from when the program is started until it ends."""
+
+    def __init__(self, simulation: Kurt2Simulation, clock: LockstepClock, path: Path) -> None:
+        opened = go_on_teaching(path, ROBOT, ROUTE)
+        self.writer = JournalWriter(opened.journal, lambda: STAMP)
+        self.settled: list[Acknowledgement] = []
+        self.questions: list[Question | WayQuestion] = []
+        wanted = Wanted(ROUTE.behaviours)
+        driver = PolicyLevel(ROUTE.policy.build(ROBOT.infrared), load_repertoire(ROUTE.repertoire, ROBOT), 10, wanted)
+        self.runtime = build_runtime(
+            simulation.robot,
+            ROBOT,
+            ROUTE,
+            opened.events,
+            self.writer,
+            clock,
+            statistics=opened.counter,
+            level_override=driver,
+            wanted=wanted,
+            saved=opened.saved,
+        )
+        screen = Screen(status=lambda _: None, question=self.questions.append, settled=self.settled.append)
+        self.rounds = Rounds(self.runtime, self.writer, opened.stamps, load_service(), screen, None, None)
+        self.record: TickRecord
+        self.health: Health = simulation.robot.health
+
+    async def run(self, seconds: float, *commands: Command) -> TickRecord:
+        """For so long, or until a junction has been passed."""
+        for command in commands:
+            self.runtime.inbox.put(command)
+
+        def after_tick(record: TickRecord) -> None:
+            self.rounds(record)
+            self.record = record
+            if record.mid is not None and record.mid.event is not None:
+                self.runtime.scheduler.end()
+
+        await self.runtime.scheduler.run(round(seconds / ROBOT.can.cycle_s), after_tick)
+        return self.record
+
+    @property
+    def line(self) -> str:
+        return status_line(Status(self.record, self.runtime, 0, None, ""), self.health)
+
+    def close(self) -> None:
+        self.rounds.save_statistics()
+        self.writer.close()
+
+
+@pytest.fixture
+def simulation() -> Iterator[Kurt2Simulation]:
+    with closing(Kurt2Simulation(ROBOT, "manhattan", 1, "exam")) as simulation:
+        yield simulation
+
+
+async def test_it_asks_the_way_is_taught_a_few_junctions_and_another_day_goes_on_by_what_it_knows(
+    simulation: Kurt2Simulation, tmp_path: Path
+) -> None:
+    path, clock = tmp_path / "streets.knowledge", LockstepClock(simulation.step)
+    where_it_began = simulation.simulated_robot.pose
+    with closing(Service(simulation, clock, path)) as first:
+        await first.run(0.5)
+        (question,) = first.questions
+        assert str(question) == "I don't know any way yet, teach me which behaviour to follow"
+        assert "stands and asks the way" in first.line
+
+        record = await first.run(20.0, Teach("way-1", "Ann", "straight_on", level=MID))
+        assert record.mid is not None
+        assert record.mid.event is not None
+        assert record.mid.event.quarters == 0
+        assert "sent by mid-level RLA 1" in first.line
+
+        record = await first.run(20.0, Correct("way-2", "Ann", "turn_left", level=MID))
+        assert record.mid is not None
+        assert record.mid.event is not None
+        assert record.mid.event.quarters == 1
+        assert first.writer.flush(30.0)
+        await first.run(0.05)
+        assert [(each.command_id, each.error) for each in first.settled] == [("way-1", None), ("way-2", None)]
+
+    simulation.simulated_robot.place(where_it_began)
+    with closing(Service(simulation, clock, path)) as second:
+        events = []
+        for _ in range(2):
+            record = await second.run(20.0)
+            assert record.mid is not None
+            assert record.mid.event is not None
+            events.append((record.mid.event.quarters, record.mid.behaviour))
+        assert events[0] == (0, "turn_left")
+        assert events[1][0] == 1
+        assert not second.runtime.to_save().uses  # the policy drove, as a teacher would

@@ -1,0 +1,50 @@
+"""Files from elsewhere stay in the folder that they are laid out in."""
+
+from pathlib import Path
+
+import pytest
+
+from hal.settings import find_beside, find_config
+from kurt2rt.knowledge.exchange.attachment_files import LARGEST_BYTES, MOST_FILES, laid_out, trouble_of
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "",
+        "..",
+        "settings/../../x",
+        "settings/..",
+        "settings/./x",
+        "settings//x",
+        "settings/",
+        "/etc/x",
+        "C:/x",
+        "c:x",
+        "settings\\..\\x",
+        "settings/nul",
+        "settings/COM1.yaml",
+        "settings/a\nb",
+        "settings/a\0b",
+        "settings/\ud800",
+        "settings/" + "x" * 256,
+        "x/" * 600 + "x",
+    ],
+)
+def test_a_name_that_leads_elsewhere_is_told(name: str) -> None:
+    assert "which is none that kurt2rt gives" in trouble_of({"settings/task.json": 1, name: 1})
+
+
+def test_too_much_is_told() -> None:
+    assert "files, 1000 are taken at most" in trouble_of({f"settings/{number}": 1 for number in range(MOST_FILES + 1)})
+    assert "holds more than 256 MB" in trouble_of({"a": LARGEST_BYTES, "b": 1})
+    assert trouble_of({"a": 1, "a/b": 1}) == "holds 'a' as a file and as a folder"
+    assert trouble_of({"settings/situations/Ann's own é.yaml": LARGEST_BYTES}) == ""
+
+
+def test_while_they_are_laid_out_nothing_else_is_found() -> None:
+    with laid_out({"settings/tasks/mine.yaml": b"name: mine\n", "settings/files/x": b""}):
+        path = find_config("tasks", "mine")
+        assert path.read_bytes() == b"name: mine\n"
+        assert find_beside(Path("anywhere"), "x").is_relative_to(path.parents[1])
+    assert not path.exists()

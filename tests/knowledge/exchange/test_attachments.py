@@ -1,0 +1,121 @@
+"""What a replay needs stands in the run: settings as they were in force, and what was known."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from config import CONFIG_DIR
+from hal.robot_settings import RobotSettings, load_robot
+from hal.settings import SettingsError, find_config, kept_name, settings_override
+from kurt2rt.core.rla.expectation import Expectation
+from kurt2rt.core.rla.rla import Origin, Phase, Rla, RlaCreated
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.knowledge.exchange.attachments import (
+    KNOWLEDGE,
+    ROBOT,
+    TASK,
+    KnownLesson,
+    attachments_of,
+    decode_statistics,
+    encode_statistics,
+    fingerprints_of,
+    read_lessons_of,
+)
+from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.runs.recording.run_head import RunHead, decode_head, encode_head
+
+TASKS = sorted(path.stem for path in (CONFIG_DIR / "tasks").glob("*.yaml"))
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_a_task_comes_back_as_it_was_in_force(task: str) -> None:
+    settings = load_task(task, changes={"learning.radius": "123.25"})
+    robot = load_robot()
+    attached = attachments_of(robot, settings)
+    assert TaskSettings.model_validate_json(attached[TASK]) == settings
+    assert RobotSettings.model_validate_json(attached[ROBOT]) == robot
+
+
+def test_values_that_come_from_a_default_are_in_force_too() -> None:
+    """Or a replay by a kurt2rt with other defaults would go by those."""
+    task = load_task("wall_following")
+    assert {"reinforcement", "critic", "mid", "behaviours"}.isdisjoint(task.model_fields_set)
+    kept = json.loads(attachments_of(load_robot(), task)[TASK])
+    assert kept["reinforcement"] == task.reinforcement.model_dump(mode="json", exclude_none=True)
+    assert kept["critic"] == task.critic
+    assert kept.keys().isdisjoint({"mid", "behaviours"})  # which must not be there where they mean nothing
+
+
+def test_settings_are_found_where_the_run_has_kept_them_and_nowhere_else(tmp_path: Path) -> None:
+    for name, data in attachments_of(load_robot(), load_task("errands")).items():
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data)
+    with settings_override(tmp_path / "settings"):
+        assert find_config("mid_levels", "places").is_relative_to(tmp_path)
+        with pytest.raises(SettingsError, match="kept with the run"):
+            find_config("worlds", "circle")
+    assert find_config("mid_levels", "places").is_relative_to(CONFIG_DIR)
+
+
+def test_a_file_that_a_task_names_by_its_path_is_kept_under_a_name_of_its_own(tmp_path: Path) -> None:
+    mine = tmp_path / "basic.yaml"
+    mine.write_bytes(find_config("situations", "basic").read_bytes())
+    task = load_task("wall_following").model_copy(update={"situation": str(mine)})
+    for name, data in attachments_of(load_robot(), task).items():
+        path = tmp_path / "kept" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data)
+    mine.unlink()
+    with settings_override(tmp_path / "kept" / "settings"):
+        assert find_config("situations", str(mine)).is_file()
+
+
+@pytest.mark.parametrize(
+    "name", ["", ".", "..", "../../secret", "/etc/secret", "~/secret", "a/b", "/etc/secret.yaml", "x/"]
+)
+def test_whatever_a_recording_names_is_looked_for_in_its_own_folder(name: str) -> None:
+    kept = kept_name(name)
+    assert "/" not in kept
+    assert kept not in (".", "..")
+    assert kept_name(name) != kept_name(f"{name}/other")
+    assert kept_name("walls") == "walls.yaml"
+
+
+def test_lessons_come_back_with_their_stamps() -> None:
+    origin = Origin("ann-1", "Ann", Phase.SUPERVISED, 7)
+    lesson = KnownLesson(RlaCreated(Rla(1, (0.1, 1 / 3), "forward", None, origin)), "2026-11-22T03:00:00Z")
+    attached = attachments_of(load_robot(), load_task("wall_following"), [lesson])
+    assert read_lessons_of(attached[KNOWLEDGE]) == [lesson]
+    with pytest.raises(ValueError, match=r"knowledge\.jsonl"):
+        read_lessons_of(attached[KNOWLEDGE][:-9])
+
+
+def test_statistics_come_back_to_the_last_bit_and_in_their_order() -> None:
+    expectation = Expectation("ann-1", 3, 0.1, b"\x00\xff", b"")
+    saved = Statistics({7: 1, 2: 3}, {(7, 2): 1}, {2: 1 / 3}, {(2, 7): -0.1}, {"best score": 0.3}, {2: expectation})
+    again = decode_statistics(encode_statistics(saved))
+    assert repr(again) == repr(saved)
+    with pytest.raises(ValueError, match="statistics"):
+        decode_statistics(b"{}")
+
+
+def test_a_head_comes_back_and_one_of_a_newer_program_is_refused() -> None:
+    head = RunHead(
+        "0.1", "00ff", "2026-11-22T03:00:00Z", "wall_following", "kurt2", "sim", "", True, True, "", "", {"a": "b"}
+    )
+    metadata = encode_head(head)
+    assert all(isinstance(value, str) for value in metadata.values())
+    assert decode_head(metadata) == head
+    old = {key: value for key, value in metadata.items() if key != "tolerates_stalls"}
+    assert decode_head(old) == head  # of a program that did not know it
+    with pytest.raises(RecordingError, match="newer kurt2rt"):
+        decode_head({**metadata, "version": "99"})
+    with pytest.raises(RecordingError, match="boot"):
+        decode_head({key: value for key, value in metadata.items() if key != "boot"})
+
+
+def test_fingerprints_tell_contents_apart() -> None:
+    assert fingerprints_of({"a": b"1"})["a"] != fingerprints_of({"a": b"2"})["a"]

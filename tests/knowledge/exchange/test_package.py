@@ -1,0 +1,367 @@
+"""Knowledge is given away as one file, and taken as it was or not at all."""
+
+import json
+import shutil
+import zipfile
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import yaml
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from config import CONFIG_DIR
+from hal.robot_settings import load_robot
+from kurt2rt.core.rla.credit import Credit
+from kurt2rt.core.rla.rla import RlaCreated, RlaRewarded
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.knowledge.exchange.archive import MANIFEST, SIGNATURE, pack, unpack
+from kurt2rt.knowledge.exchange.package import Taken, export_knowledge, import_knowledge, read_given
+from kurt2rt.knowledge.exchange.signing import make_key, read_private_key, read_public_key
+from kurt2rt.knowledge.journal.entry import JournalEntry, StoredEntry
+from kurt2rt.knowledge.journal.event_codec import encode_event
+from kurt2rt.knowledge.journal.fold import check_knowledge
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.loading import open_knowledge
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from tests.knowledge.journal.test_writer import largest_file
+from tests.knowledge.lessons import STAMP, created, deleted, origin, replaced, undone
+
+ROBOT = load_robot()
+TASK = load_task("wall_following")
+NOW = "2026-11-22T03:10:05.000+00:00"
+
+
+@pytest.fixture(scope="module")
+def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("taught") / "mine.knowledge"
+    with open_knowledge(path, ROBOT, TASK) as journal:
+        first, second = (
+            RlaCreated(replace(created(number).rla, condition=tuple(number / 3 + 0.1 * place for place in range(72))))
+            for number in (1, 2)
+        )
+        blame = RlaRewarded(1, -1, 390, origin("blame"), (Credit(1, -0.1 - 0.2),))
+        events = (first, second, replaced(1, "left", "forward"), blame, undone("create-2"))
+        journal.append([JournalEntry(event, STAMP) for event in events])
+        journal.checkpoint(Statistics({1: 5}, {(1, 2): 3}, {1: 0.1 + 0.2}, {(1, 2): 1e-17}, {"first value": 0.5}))
+    return path
+
+
+def export(path: Path, out: Path, key: Path | None = None) -> Path:
+    private = None if key is None else read_private_key(key)
+    size = export_knowledge(path, out, ROBOT, TASK, private, stamp=NOW)
+    assert out.stat().st_size == size
+    return out
+
+
+def take(path: Path, into: Path, task: TaskSettings = TASK, trusted: Path | None = None) -> Taken:
+    return import_knowledge(path, into, ROBOT, task, None if trusted is None else read_public_key(trusted), stamp=NOW)
+
+
+@pytest.fixture(scope="module")
+def exported(taught: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("exported")
+    make_key(folder / "ann")
+    return export(taught, folder / "mine.zip", folder / "ann")
+
+
+def test_there_and_back_all_is_the_same_to_the_last_bit(taught: Path, exported: Path, tmp_path: Path) -> None:
+    taken = take(exported, tmp_path / "theirs.knowledge")
+    assert taken.other_settings == ()
+    with Journal.read_only(taught) as old, Journal.read_only(tmp_path / "theirs.knowledge") as new:
+        assert new.entries() == old.entries()
+        assert repr(new.statistics()) == repr(old.statistics())
+        assert new.binding == old.binding
+        assert check_knowledge(new) == []
+        assert new.notes() == {"imported from": f"mine.zip, exported {NOW}, imported {NOW}"}
+    export(tmp_path / "theirs.knowledge", tmp_path / "again.zip", exported.parent / "ann")
+    assert (tmp_path / "again.zip").read_bytes() == exported.read_bytes()
+
+
+def test_any_zip_program_shows_what_is_in_it(exported: Path) -> None:
+    with zipfile.ZipFile(exported) as archive:
+        manifest = json.loads(archive.read(MANIFEST))
+        assert {"knowledge.jsonl", "statistics.json", "settings/task.json", SIGNATURE} <= set(archive.namelist())
+    assert (manifest["format"], manifest["system"], manifest["rlas"]) == (1, "wall_following", 1)
+    assert manifest["features"]["names"][0] == "s1"
+
+
+def test_a_file_that_was_cut_or_changed_is_refused_or_says_the_same(exported: Path, tmp_path: Path) -> None:
+    whole, unchanged = exported.read_bytes(), read_given(exported)
+    other = tmp_path / "other.zip"
+    for place in range(0, len(whole), 97):
+        other.write_bytes(whole[:place])
+        with pytest.raises(KnowledgeError):
+            read_given(other)
+        other.write_bytes(whole[:place] + bytes([whole[place] ^ 0x41]) + whole[place + 1 :])
+        try:
+            found = read_given(other)
+        except KnowledgeError:
+            continue
+        assert replace(found, path=exported) == unchanged  # a byte that means nothing: a file's date, for instance
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.binary(max_size=300))
+def test_nonsense_is_refused_in_one_line(tmp_path: Path, nonsense: bytes) -> None:
+    (tmp_path / "nonsense.zip").write_bytes(nonsense)
+    with pytest.raises(KnowledgeError, match=r"nonsense\.zip: is torn or changed") as refused:
+        read_given(tmp_path / "nonsense.zip")
+    assert "\n" not in str(refused.value)
+
+
+def rewritten(exported: Path, out: Path, **changes: bytes | None) -> Path:
+    """The archive with other files in it, its sums of ZIP in order."""
+    with zipfile.ZipFile(exported) as archive, zipfile.ZipFile(out, "w") as other:
+        content: dict[str, bytes | None] = {name: archive.read(name) for name in archive.namelist()}
+        for name, data in (content | {each.replace("__", "/"): data for each, data in changes.items()}).items():
+            if data is not None:
+                other.writestr(name, data)
+    return out
+
+
+def test_what_somebody_changed_on_purpose_is_named(exported: Path, tmp_path: Path) -> None:
+    manifest = unpack(exported).manifest
+    cases: tuple[tuple[dict[str, bytes | None], str], ...] = (
+        ({"knowledge.jsonl": b""}, "knowledge.jsonl was changed after it was exported"),
+        ({"knowledge.jsonl": None}, "knowledge.jsonl is missing in it"),
+        ({"virus.exe": b"!"}, "virus.exe was changed after it was exported"),
+        ({MANIFEST: None}, "has no manifest.json"),
+        ({MANIFEST: b"{}"}, "is none of kurt2rt"),
+        ({MANIFEST: b"{"}, "its manifest.json is damaged"),
+        ({MANIFEST: json.dumps({**manifest, "format": 2}).encode()}, "format 2 of a newer kurt2rt"),
+        ({MANIFEST: json.dumps({**manifest, "task": "eight"}).encode()}, "its signature does not fit"),
+        ({SIGNATURE: b"{}"}, "its signature.json is damaged"),
+    )
+    for number, (changes, why) in enumerate(cases):
+        with pytest.raises(KnowledgeError, match=why):
+            read_given(rewritten(exported, tmp_path / f"{number}.zip", **changes))
+    assert read_given(rewritten(exported, tmp_path / "bare.zip", **{SIGNATURE: None})).signed_by is None
+    (tmp_path / "empty.zip").write_bytes(pack({}, {}, None))
+    with pytest.raises(KnowledgeError, match="cannot be understood"):
+        read_given(tmp_path / "empty.zip")
+
+
+def made_over(
+    exported: Path, out: Path, files: Mapping[str, bytes] | None = None, about: Mapping[str, object] | None = None
+) -> Path:
+    """An archive of somebody who means ill, or whose program is another: all its sums are in order."""
+    whole = unpack(exported)
+    manifest = {name: value for name, value in whole.manifest.items() if name not in ("format", "files")}
+    out.write_bytes(pack({**manifest, **(about or {})}, {**whole.files, **(files or {})}, None))
+    return out
+
+
+@pytest.mark.parametrize(
+    "name", ["settings/../../escaped", "/escaped", "settings\\..\\escaped", "settings/task.json/x"]
+)
+def test_what_would_be_written_elsewhere_is_not_even_read(exported: Path, tmp_path: Path, name: str) -> None:
+    other = {"features": {**unpack(exported).manifest["features"], "hash": "another"}}
+    evil = made_over(exported, tmp_path / "evil.zip", {name: b"!"}, other)
+    with pytest.raises(KnowledgeError, match=r"evil\.zip: holds "):
+        take(evil, tmp_path / "k")
+    assert [each.name for each in tmp_path.iterdir()] == ["evil.zip"]
+
+
+def test_an_archive_that_would_fill_the_memory_is_not_unpacked(tmp_path: Path) -> None:
+    bomb = tmp_path / "bomb.zip"
+    quick, megabyte = zipfile.ZipFile(bomb, "w", zipfile.ZIP_DEFLATED, compresslevel=1), bytes(10**6)
+    with quick as archive, archive.open("manifest.json", "w") as part:
+        for _ in range(257):
+            part.write(megabyte)
+    assert bomb.stat().st_size < 2 * 10**6
+    with pytest.raises(KnowledgeError, match="holds more than 256 MB"):
+        read_given(bomb)
+    with zipfile.ZipFile(bomb, "w", zipfile.ZIP_LZMA) as archive:
+        archive.writestr("manifest.json", b"{}")
+    with pytest.raises(KnowledgeError, match="is packed in a way"):
+        read_given(bomb)
+    with zipfile.ZipFile(bomb, "w") as archive:
+        archive.writestr("settings/a", b"")
+        archive.writestr("settings/A", b"")
+    with pytest.raises(KnowledgeError, match="holds a file twice"):
+        read_given(bomb)
+    with pytest.raises(KnowledgeError, match="is a folder or device"):
+        read_given(tmp_path)
+
+
+def test_lessons_that_do_not_fit_are_not_taken(exported: Path, tmp_path: Path) -> None:
+    lines = unpack(exported).files["knowledge.jsonl"].decode().splitlines()
+    stranger = json.dumps({"stamped_at": STAMP, "event": json.loads(encode_event(deleted(77)))})
+    short = json.loads(lines[0])
+    short["event"]["condition"] = [1.0]
+    cases = (
+        ([*lines, stranger], r"knowledge file can be made of it: row 6: does not fit .* there is no RLA 77"),
+        ([json.dumps(short), *lines[1:]], r"row 1: does not fit the lessons before it: RLA 1: condition has 1 values"),
+        ([*lines, lines[0]], r"row 6: has the command id 'create-1' of row 1"),
+    )
+    for rows, why in cases:
+        unfit = made_over(exported, tmp_path / "unfit.zip", {"knowledge.jsonl": "\n".join(rows).encode()})
+        with pytest.raises(KnowledgeError, match=rf"unfit\.zip: .*{why}") as refused:
+            take(unfit, tmp_path / "k")
+        assert "/tmp/tmp" not in str(refused.value)
+    assert [each.name for each in tmp_path.iterdir()] == ["unfit.zip"]
+
+
+NOTHING: dict[str, object] = {
+    "uses": [], "transitions": [], "values": [], "edge_weights": [], "numbers": {}, "expectations": []
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "counts",
+    [
+        [1],
+        {"uses": []},
+        {**NOTHING, "uses": [["x", 2]]},
+        {**NOTHING, "uses": [[1, -2.5]]},
+        {**NOTHING, "uses": [[1, 2**70]]},
+        {**NOTHING, "uses": [[1, True]]},
+        {**NOTHING, "transitions": [[1, 2]]},
+        {**NOTHING, "values": [[1, "a"]]},
+        {**NOTHING, "values": [[1, float("nan")]]},
+        {**NOTHING, "edge_weights": [[1, 2, 10**400]]},
+        {**NOTHING, "numbers": []},
+        {**NOTHING, "numbers": {"\ud800": 1.0}},
+        {**NOTHING, "expectations": [[1, "create-1", 1, 0.5, "AAAA", ""]]},
+    ],
+)
+def test_counts_of_a_wrong_type_are_refused(exported: Path, tmp_path: Path, counts: object) -> None:
+    odd = made_over(exported, tmp_path / "odd.zip", {"statistics.json": json.dumps(counts).encode()})
+    with pytest.raises(KnowledgeError, match=r"odd\.zip: cannot be understood .*statistics\.json"):
+        read_given(odd)
+
+
+@pytest.mark.parametrize(
+    "about",
+    [
+        {"features": 5},
+        {"levels": []},
+        {"levels": {"mid": {}}},
+        {"exported_at": None},
+        {"task": 1},
+        {"system": "\ud800"},
+    ],
+)
+def test_a_manifest_of_a_wrong_type_is_refused(exported: Path, tmp_path: Path, about: Mapping[str, object]) -> None:
+    (key,) = about
+    with pytest.raises(KnowledgeError, match=rf"odd\.zip: cannot be understood \(its manifest: {key}"):
+        read_given(made_over(exported, tmp_path / "odd.zip", None, about))
+
+
+@pytest.mark.parametrize("stamp", [5, None, "", "yesterday", "2026-11-22T03:10:05"])
+def test_a_lesson_without_a_time_is_refused(exported: Path, tmp_path: Path, stamp: object) -> None:
+    lines = unpack(exported).files["knowledge.jsonl"].decode().splitlines()
+    lesson = json.dumps({**json.loads(lines[0]), "stamped_at": stamp})
+    with pytest.raises(KnowledgeError, match=r"odd\.zip: cannot be understood \(knowledge\.jsonl"):
+        read_given(made_over(exported, tmp_path / "odd.zip", {"knowledge.jsonl": lesson.encode()}))
+
+
+def test_json_that_nests_without_end_is_refused(exported: Path, tmp_path: Path) -> None:
+    deep = b"[" * 100_000
+    for name in (MANIFEST, SIGNATURE):
+        with pytest.raises(KnowledgeError, match="is damaged"):
+            read_given(rewritten(exported, tmp_path / "deep.zip", **{name: deep}))
+    for name in ("knowledge.jsonl", "statistics.json"):
+        with pytest.raises(KnowledgeError, match="cannot be understood"):
+            read_given(made_over(exported, tmp_path / "deep.zip", {name: deep}))
+
+
+def test_lessons_and_counts_of_an_export_are_of_one_moment(
+    taught: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = Path(shutil.copy(taught, tmp_path / "mine.knowledge"))
+    with Journal.read_only(path) as look:
+        before = look.read_all()
+    with open_knowledge(path, ROBOT, TASK) as robot:
+
+        def taught_meanwhile(journal: Journal) -> Iterator[StoredEntry]:
+            yield from each_entry(journal)
+            praise = RlaRewarded(1, 1, 390, origin("praise"), (Credit(1, 0.1),))
+            robot.append_and_checkpoint([JournalEntry(praise, STAMP)], Statistics({1: 6}))
+
+        each_entry = Journal.each_entry
+        monkeypatch.setattr(Journal, "each_entry", taught_meanwhile)
+        export(path, tmp_path / "out.zip")
+    found = read_given(tmp_path / "out.zip")
+    assert ([lesson.event for lesson in found.lessons], found.statistics) == (
+        [entry.event for entry in before[0]],
+        before[1],
+    )
+
+
+def test_only_whom_one_trusts_is_believed(exported: Path, taught: Path, tmp_path: Path) -> None:
+    make_key(tmp_path / "bob")
+    unsigned = export(taught, tmp_path / "unsigned.zip")
+    with pytest.raises(KnowledgeError, match=r"is signed by [0-9a-f]{16}, not by [0-9a-f]{16}; nothing was imported"):
+        take(exported, tmp_path / "k", trusted=tmp_path / "bob.pub")
+    with pytest.raises(KnowledgeError, match="is signed by nobody"):
+        take(unsigned, tmp_path / "k", trusted=tmp_path / "bob.pub")
+    assert not (tmp_path / "k").exists()
+    take(exported, tmp_path / "k", trusted=exported.parent / "ann.pub")
+
+
+def test_a_key_is_for_its_owner_alone_and_is_never_overwritten(tmp_path: Path) -> None:
+    make_key(tmp_path / "keys" / "ann")
+    assert (tmp_path / "keys" / "ann").stat().st_mode & 0o777 == 0o600
+    with pytest.raises(KnowledgeError, match="no key can be made there"):
+        make_key(tmp_path / "keys" / "ann")
+    (tmp_path / "keys" / "bob.pub").write_bytes(b"another's")
+    with pytest.raises(KnowledgeError, match="no key can be made there"):
+        make_key(tmp_path / "keys" / "bob")
+    assert sorted(each.name for each in (tmp_path / "keys").iterdir()) == ["ann", "ann.pub", "bob.pub"]
+    (tmp_path / "keys" / "bob.pub").rename(tmp_path / "keys" / "bob")
+    with pytest.raises(KnowledgeError, match="no key can be made there"):
+        make_key(tmp_path / "keys" / "bob")
+    assert sorted(each.name for each in (tmp_path / "keys").iterdir()) == ["ann", "ann.pub", "bob"]
+    assert (tmp_path / "keys" / "bob").read_bytes() == b"another's"
+    with pytest.raises(KnowledgeError, match="is no key that can sign"):
+        read_private_key(tmp_path / "keys" / "ann.pub")
+    with pytest.raises(KnowledgeError, match="is no public key"):
+        read_public_key(tmp_path / "keys" / "ann")
+
+
+def test_other_features_are_refused_by_their_names(exported: Path, tmp_path: Path) -> None:
+    basic = yaml.safe_load((CONFIG_DIR / "situations" / "basic.yaml").read_text(encoding="utf-8"))
+    basic["history_steps"] = 500
+    basic["features"][18]["sensors"] = ["s9", "s10"]
+    other = tmp_path / "basic.yaml"
+    other.write_text(yaml.safe_dump(basic), encoding="utf-8")
+    with pytest.raises(
+        KnowledgeError,
+        match=r"was taught with other features: maximum front \(made of other sensors\), "
+        r"all \(10 s average\): over 1000 steps there, 500 here; import it with the task",
+    ):
+        take(exported, tmp_path / "k", TASK.model_copy(update={"situation": str(other)}))
+    del basic["features"][0]
+    other.write_text(yaml.safe_dump(basic), encoding="utf-8")
+    with pytest.raises(KnowledgeError, match=r"s1 \(only there\), maximum front"):
+        take(exported, tmp_path / "k", TASK.model_copy(update={"situation": str(other)}))
+    with pytest.raises(KnowledgeError, match="taught for the task 'wall_following', not for 'eight'"):
+        take(exported, tmp_path / "k", load_task("eight"))
+    assert not (tmp_path / "k").exists()
+
+
+def test_other_settings_round_the_same_features_are_told(exported: Path, tmp_path: Path) -> None:
+    wider = load_task("wall_following", changes={"learning.radius": "800.0"})
+    assert take(exported, tmp_path / "k", wider).other_settings == ("settings/task.json",)
+
+
+def test_nothing_is_overwritten(exported: Path, taught: Path, tmp_path: Path) -> None:
+    there = Path(shutil.copy(taught, tmp_path / "there"))
+    with pytest.raises(KnowledgeError, match="is there already"):
+        take(exported, there)
+    with pytest.raises(KnowledgeError, match="is there already"):
+        export(taught, exported)
+
+
+def test_on_a_disk_without_room_there_is_a_whole_file_or_none(taught: Path, exported: Path, tmp_path: Path) -> None:
+    for room in range(0, exported.stat().st_size, 1000):
+        with largest_file(room), pytest.raises(KnowledgeError):
+            export(taught, tmp_path / "out.zip")
+        with largest_file(room), pytest.raises(KnowledgeError):
+            take(exported, tmp_path / "k")
+    assert [each.name for each in tmp_path.iterdir() if not each.name.endswith(".lock")] == []

@@ -1,0 +1,31 @@
+"""What waits for the disk before a run may end."""
+
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.knowledge.files.atomic_write import SavedCopy
+from kurt2rt.knowledge.files.backup import Safe
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.writer import JournalWriter
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from tests.knowledge.lessons import BINDING, STAMP, created
+
+
+def never(path: Path, folder: Path, stamp: str) -> SavedCopy:
+    raise AssertionError((path, folder, stamp))
+
+
+async def test_lessons_are_durable_once_settled_and_a_failing_disk_is_told_at_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "a.knowledge"
+    with JournalWriter(Journal.open(path, BINDING), lambda: STAMP) as writer:
+        safe = Safe(path, writer, never)
+        writer.submit(created(1))
+        await safe.settle()
+        assert writer.unwritten == 0
+        monkeypatch.setattr(JournalWriter, "trouble", property(lambda _: "the disk is full"))
+        with pytest.raises(KnowledgeError, match="the disk is full"):
+            await safe.settle()
+        monkeypatch.undo()

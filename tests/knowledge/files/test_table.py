@@ -1,0 +1,135 @@
+"""The RLAs as a table."""
+
+import csv
+import hashlib
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.core.rla.rla import RlaCreated, TeachingEvent
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.knowledge.files.table import export_table
+from kurt2rt.knowledge.journal.entry import JournalEntry
+from kurt2rt.knowledge.journal.journal import Journal
+from tests.knowledge.lessons import (
+    BINDING,
+    STAMP,
+    WITH_CRITIC,
+    appraisal,
+    created,
+    deleted,
+    entry,
+    replaced,
+    rewarded,
+    undone,
+    withdrawn,
+)
+
+LATER = "2004-04-27T08:00:00.000+00:00"
+
+
+def exported(path: Path, folder: Path) -> list[list[str]]:
+    saved = export_table(path, folder, STAMP)
+    assert saved.name == "wall-following-20040426T100000-rlas.csv"
+    content = (folder / saved.name).read_bytes()
+    assert (saved.sha256, saved.size_bytes) == (hashlib.sha256(content).hexdigest(), len(content))
+    with (folder / saved.name).open(newline="", encoding="utf-8") as file:
+        return list(csv.reader(file))
+
+
+def test_a_row_for_each_rla_that_stands(path: Path, tmp_path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        events: list[TeachingEvent] = [
+            *(created(number) for number in (1, 2, 3, 4)),
+            rewarded(1, 1, "r1"),
+            rewarded(1, 1, "r2"),
+            rewarded(1, -1, "r3"),
+            deleted(3),
+            undone("create-4"),
+        ]
+        journal.append([JournalEntry(event, STAMP) for event in events])
+        journal.append([JournalEntry(replaced(2, "left", "forward"), LATER)])
+        journal.checkpoint(Statistics({1: 41, 3: 7}, values={1: -0.1 - 0.2, 3: 0.5}))
+        heading, *rows = exported(path, tmp_path / "out")  # while it is written
+
+    assert heading == [
+        *("id", "action", "radius", "teacher", "phase", "tick", "taught_at"),
+        *("uses", "rewards", "punishments", "value", "level"),
+        *("s1", "s2", "maximum front", "wheel speed left"),
+    ]
+    assert rows == [
+        [
+            *("1", "forward", "", "Hertha", "1", "1", STAMP, "41", "2", "1", "-0.30000000000000004", "basic"),
+            *("0.3333333333333333", "0.1", "81.0", "-5.0"),
+        ],
+        [
+            *("2", "left", "", "Hertha", "2", "200", LATER, "0", "0", "0", "", "basic"),
+            *("0.6666666666666666", "0.2", "82.0", "-5.0"),
+        ],
+    ]
+
+
+def test_numbers_and_names_come_back_exactly(path: Path, tmp_path: Path) -> None:
+    condition = (0.1 + 0.2, 1 / 3, -0.0, 5e-324)
+    rla = replace(created(1).rla, condition=condition, action='left, "hard"\n;', radius=1e300)
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(RlaCreated(rla), STAMP)])
+    (_, row) = exported(path, tmp_path)
+
+    assert (row[1], float(row[2])) == (rla.action, rla.radius)
+    assert tuple(float(number) for number in row[12:]) == condition
+    assert row[14] == "-0.0"
+
+
+def test_where_nothing_was_taught_there_is_a_heading(path: Path, tmp_path: Path) -> None:
+    Journal.open(path, BINDING).close()
+
+    assert len(exported(path, tmp_path)) == 1
+
+
+def test_where_taught_behaviours_have_names_there_is_a_column_for_them(path: Path, tmp_path: Path) -> None:
+    left = RlaCreated(replace(created(2).rla, behaviour="turn_left"))
+    with Journal.open(path, BINDING) as journal:
+        journal.append([entry(1), JournalEntry(left, STAMP)])
+        heading, first, second = exported(path, tmp_path)
+
+    column = heading.index("behaviour")
+    assert (heading[column - 1], heading[column + 1]) == ("level", "s1")
+    assert (first[column], second[column]) == ("", "turn_left")
+
+
+def test_appraisal_rlas_come_behind_the_others_with_columns_of_their_own(path: Path, tmp_path: Path) -> None:
+    with Journal.open(path, WITH_CRITIC) as journal:
+        journal.append([entry(1)])
+        assert len(exported(path, tmp_path / "before")[0]) == len(exported(path, tmp_path / "again")[1])
+        journal.append([JournalEntry(appraisal(2), STAMP), entry(3), JournalEntry(withdrawn(3), STAMP)])
+        heading, *rows = exported(path, tmp_path / "out")
+
+    assert heading[12:] == [*BINDING.feature_names, "critic: left_m", "critic: speed_m_s", "critic: bumped"]
+    assert [(row[0], row[1], row[11]) for row in rows] == [
+        ("1", "forward", "basic"),
+        ("3", "ask", "basic"),
+        ("2", "good", "critic"),
+    ]
+    assert rows[0][16:] == ["", "", ""]
+    assert rows[2][12:] == ["", "", "", "", "0.4", "0.2", "0.0"]
+
+
+@pytest.mark.parametrize("begin", ["=", "+", "-", "@", "\t", "\r", "\uff1d"])
+def test_text_that_begins_as_a_formula_is_quoted(path: Path, tmp_path: Path, begin: str) -> None:
+    rla = replace(created(1).rla, action=f"{begin}HYPERLINK(A1)", behaviour=f"{begin}1+1")
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(RlaCreated(rla), STAMP)])
+    (heading, row) = exported(path, tmp_path)
+
+    assert row[1] == f"'{begin}HYPERLINK(A1)"
+    assert row[heading.index("behaviour")] == f"'{begin}1+1"
+    assert row[-1] == "-5.0"
+
+
+def test_text_that_is_a_number_is_not_quoted(path: Path, tmp_path: Path) -> None:
+    rla = replace(created(1).rla, action="-1.5e3")
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(RlaCreated(rla), STAMP)])
+    assert exported(path, tmp_path)[1][1] == "-1.5e3"

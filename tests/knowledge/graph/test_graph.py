@@ -1,0 +1,124 @@
+"""Which RLA followed which, as a graph."""
+
+from pathlib import Path
+
+import networkx as nx
+import numpy as np
+import pytest
+
+from kurt2rt.core.rla.expectation import Expectation, pack
+from kurt2rt.core.rla.rla import BASIC, MID
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.space import Space
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.knowledge.graph.file import write_network
+from kurt2rt.knowledge.graph.graph import RlaNetwork, network_of, read_network, without_rare
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from tests.core.rla.helpers import created
+from tests.knowledge.lessons import begun
+
+ENDS = Expectation("lesson-1", 7, 25.0, pack(np.zeros(2)), pack(np.zeros(2)))
+DROVE = Statistics(
+    uses={1: 20, 2: 9, 3: 1},
+    transitions={(1, 2): 9, (1, 3): 1, (2, 1): 8, (3, 3): 1, (2, 9): 2},
+    expectations={1: ENDS, 2: ENDS},
+)
+
+
+def system() -> RlaSystem:
+    taught = RlaSystem(2, 10.0, others={MID: Space(2, 1.0)})
+    for rla_id, behaviour in ((1, "left"), (2, "left"), (3, "right"), (4, "right")):
+        taught.apply(created(rla_id, (float(rla_id), 0.0), behaviour=behaviour))
+    for rla_id, place in ((5, (3.0, 4.0)), (6, (5.0, 4.0))):
+        taught.apply(created(rla_id, place, action="left", level=MID))
+    return taught
+
+
+def edges(network: RlaNetwork) -> dict[tuple[int, int], tuple[int, float]]:
+    found = {edge: network.edges[edge] for edge in network.edges}
+    return {edge: (each["times"], each["percent"]) for edge, each in found.items()}
+
+
+def test_edges_have_the_share_of_all_that_followed() -> None:
+    network = network_of(system(), DROVE)
+    assert edges(network) == {(1, 2): (9, 90.0), (1, 3): (1, 10.0), (2, 1): (8, 80.0), (3, 3): (1, 100.0)}
+
+
+def test_a_node_says_what_the_rla_does_how_often_and_for_how_long() -> None:
+    network = network_of(system(), DROVE)
+    assert network.nodes[1] == {
+        "level": BASIC,
+        "behaviour": "left",
+        "action": "forward",
+        "uses": 20,
+        "ends": 7,
+        "ticks": 25.0,
+    }
+    assert "ends" not in network.nodes[2]  # of another lesson: it has another action by now
+
+
+def test_one_behaviour_is_shown_with_shares_among_all() -> None:
+    network = network_of(system(), DROVE, behaviour="left")
+    assert edges(network) == {(1, 2): (9, 90.0), (2, 1): (8, 80.0)}
+
+
+def test_a_level_is_shown_by_itself_with_the_places_it_is_about() -> None:
+    network = network_of(system(), Statistics(transitions={(5, 6): 2}), level=MID, features=("x_m", "y_m"))
+    assert edges(network) == {(5, 6): (2, 100.0)}
+    assert [(network.nodes[rla_id]["x_m"], network.nodes[rla_id]["y_m"]) for rla_id in network] == [(3, 4), (5, 4)]
+
+
+def test_what_is_rare_can_be_left_out_and_with_it_who_never_drove() -> None:
+    network = without_rare(network_of(system(), DROVE), 20.0)
+    assert edges(network) == {(1, 2): (9, 90.0), (2, 1): (8, 80.0), (3, 3): (1, 100.0)}
+    assert sorted(network) == [1, 2, 3]
+
+
+def test_graphml_is_read_back_as_it_was(tmp_path: Path) -> None:
+    network = network_of(system(), DROVE)
+    write_network(network, "a title", tmp_path / "made" / "network.graphml")
+    again = nx.read_graphml(tmp_path / "made" / "network.graphml", node_type=int)
+    assert (dict(again.nodes), dict(again.edges), again.graph["title"]) == (
+        dict(network.nodes),
+        dict(network.edges),
+        "a title",
+    )
+
+
+@pytest.mark.parametrize("kind", ["svg", "png"])
+def test_the_picture_is_the_same_each_time(tmp_path: Path, kind: str) -> None:
+    pictures = [tmp_path / f"{name}.{kind}" for name in ("first", "second")]
+    for picture in pictures:
+        write_network(network_of(system(), DROVE), "RLAs", picture)
+    first, second = (picture.read_bytes() for picture in pictures)
+    assert first == second
+    assert len(first) > 5000
+
+
+def test_the_picture_has_a_panel_for_each_behaviour_percentages_and_the_actions(tmp_path: Path) -> None:
+    write_network(network_of(system(), DROVE), "the title", tmp_path / "network.svg")
+    text = (tmp_path / "network.svg").read_text(encoding="utf-8")
+    for shown in ("the title", "left: 2 RLAs", "right: 2 RLAs", ">90<", ">80<", ">forward<", ">4<"):
+        assert shown in text, shown
+    assert ">10<" not in text  # from the one behaviour to the other a command led
+
+
+def test_rlas_that_never_drove_are_a_picture_too(tmp_path: Path) -> None:
+    write_network(network_of(system(), Statistics()), "just taught", tmp_path / "network.svg")
+    assert ">3<" in (tmp_path / "network.svg").read_text(encoding="utf-8")
+
+
+def test_a_file_without_such_rlas_is_refused(path: Path) -> None:
+    with Journal.read_only(begun(path)) as journal:
+        assert sorted(read_network(journal)) == [1, 2, 3]
+        with pytest.raises(KnowledgeError, match="no RLA of the level 'mid'; it has RLAs of: basic"):
+            read_network(journal, level=MID)
+        with pytest.raises(KnowledgeError, match="no RLA of the behaviour 'left'; it has: one without a name"):
+            read_network(journal, behaviour="left")
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    """Where a knowledge file may be begun."""
+    return tmp_path / "knowledge.db"

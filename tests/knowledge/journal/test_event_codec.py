@@ -1,0 +1,230 @@
+import json
+import struct
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurt2rt.core.rla.condition import Condition
+from kurt2rt.core.rla.credit import Credit
+from kurt2rt.core.rla.rla import (
+    CRITIC,
+    MID,
+    ActionReplaced,
+    ActionWithdrawn,
+    Appraised,
+    KnowledgeMerged,
+    LessonRedone,
+    LessonUndone,
+    Origin,
+    Phase,
+    Rla,
+    RlaCreated,
+    RlaDeleted,
+    RlaRewarded,
+    SessionBegun,
+    SessionEnded,
+    SituationNamed,
+    TeachingEvent,
+)
+from kurt2rt.knowledge.journal.event_codec import decode_event, encode_event
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from tests.knowledge.lessons import (
+    as_written_by,
+    created,
+    deleted,
+    origin,
+    replaced,
+    rewarded,
+    session,
+    undone,
+    withdrawn,
+)
+
+texts = st.text(st.characters(codec="utf-8"), max_size=20)
+numbers = st.floats(allow_nan=False, allow_infinity=False)
+ids = st.integers(1, 2**62)
+origins = st.builds(Origin, texts, texts, st.sampled_from(Phase), st.integers(0, 2**62))
+opinions = st.sampled_from((-1, 0, 1))
+conditions = st.lists(numbers, max_size=80).map(tuple)
+rlas = st.builds(Rla, ids, conditions, texts, st.none() | numbers, origins, texts, texts)
+events = st.one_of(
+    st.builds(RlaCreated, rlas),
+    st.builds(ActionReplaced, ids, texts, texts, origins),
+    st.builds(RlaDeleted, ids, origins),
+    st.builds(ActionWithdrawn, ids, texts, origins),
+    st.builds(
+        RlaRewarded,
+        *(ids, st.sampled_from((1, -1)), st.integers(0, 2**62), origins),
+        st.lists(st.builds(Credit, ids, numbers, st.none() | ids), max_size=5).map(tuple),
+        st.none() | opinions,
+    ),
+    st.builds(Appraised, texts, opinions, st.integers(0, 2**62), origins),
+    st.builds(LessonUndone, texts, origins),
+    st.builds(LessonRedone, texts, origins),
+    st.builds(KnowledgeMerged, texts, st.integers(0, 2**62), texts, origins),
+    st.builds(SituationNamed, texts, conditions, texts, origins),
+    st.builds(SessionBegun, texts, origins),
+    st.builds(SessionEnded, st.integers(0, 2**62), origins),
+)
+
+NAMED = SituationNamed("door", (1.0, 2.0), MID, origin("name-1", 500))
+REDONE = LessonRedone("create-1", origin("redo-1", 510))
+MERGED = KnowledgeMerged("other.knowledge", 7, "create-7", origin("merge-1", 520))
+APPRAISED = Appraised("good", 1, 390, origin("appraise-1", 400, Phase.CRITIC))
+
+
+def bits(numbers: Condition) -> bytes:
+    return struct.pack(f"{len(numbers)}d", *numbers)
+
+
+@given(events)
+def test_an_event_comes_back_exactly_as_it_was(event: TeachingEvent) -> None:
+    text = encode_event(event)
+    again = decode_event(text, "here")
+
+    assert again == event
+    assert text.isascii()
+    assert "\n" not in text
+    if isinstance(event, RlaCreated) and isinstance(again, RlaCreated):
+        assert bits(again.rla.condition) == bits(event.rla.condition)  # also the sign of a zero
+
+
+def test_a_condition_straight_from_numpy_comes_back_too() -> None:
+    condition = tuple(np.array([0.1, 1 / 3, -0.0, 5e-324]))
+    event = RlaCreated(Rla(1, condition, "forward", None, Origin("c", "t", Phase.SUPERVISED, 0)))
+
+    assert decode_event(encode_event(event), "here") == event
+
+
+@given(st.text() | st.recursive(st.none() | st.booleans() | st.integers() | st.text(), st.lists).map(json.dumps))
+def test_foreign_text_is_refused_with_its_place(text: str) -> None:
+    with pytest.raises(KnowledgeError, match=r"^k\.db: row 7: not a teaching event: .*; keep the file"):
+        decode_event(text, "k.db: row 7")
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "problem"),
+    [
+        ("version", 7, "its version 7 is of a newer kurt2rt"),
+        ("version", True, "version must be a whole number"),
+        (
+            "kind",
+            "dreamt",
+            "kind is 'dreamt', known are created, replaced, .*, session ended",
+        ),
+        ("rla_id", 0, "rla_id must be a whole number from 1"),
+        ("rla_id", 1.0, "rla_id must be a whole number"),
+        ("tick", -1, "tick must be a whole number from 0"),
+        ("phase", 6, "6 is not a valid Phase"),
+        ("action", None, "action must be a text"),
+        ("action", "\ud800", "surrogates not allowed"),
+        ("condition", "1, 2", "condition must be a list"),
+        ("condition", [1, "2"], "condition must be made of finite numbers"),
+        ("condition", [True], "condition must be made of finite numbers"),
+        ("condition", [float("nan")], "condition must be made of finite numbers"),
+        ("condition", [10**400], "too large"),
+        ("radius", "wide", "radius must be made of finite numbers"),
+        ("behaviour", None, "behaviour must be a text"),
+        ("version", 2, "created has no 'behaviour' in version 2"),
+        ("level", 1, "level must be a text"),
+        ("version", 3, "created has no 'level' in version 3"),
+        ("mood", "good", "created has no 'mood'"),
+    ],
+)
+def test_each_field_is_checked(key: str, value: object, problem: str) -> None:
+    content = json.loads(encode_event(created(1))) | {key: value}
+
+    with pytest.raises(KnowledgeError, match=problem):
+        decode_event(json.dumps(content), "row 1")
+
+
+@pytest.mark.parametrize(
+    ("event", "key", "value", "problem"),
+    [
+        (rewarded(1), "value", 0, "value must be 1 or -1, not 0"),
+        (rewarded(1), "value", 2, "value must be 1 or -1, not 2"),
+        (rewarded(1), "value", True, "value must be a whole number"),
+        (rewarded(1), "decided_at_tick", -1, "decided_at_tick must be a whole number from 0"),
+        (rewarded(1), "version", 3, "rewarded has no 'credits' in version 3"),
+        (rewarded(1), "said", 2, "said must be -1, 0 or 1, not 2"),
+        (rewarded(1), "credits", None, "credits must be a list of pairs"),
+        (rewarded(1), "credits", [[1, 0.5, 2, 3]], "credits must be a list of pairs"),
+        (rewarded(1), "credits", [[1, 0.5, 0]], "rla_id of a credit must be a whole number from 1"),
+        (rewarded(1), "credits", [[0, 0.5]], "rla_id of a credit must be a whole number from 1"),
+        (rewarded(1), "credits", [[1, "much"]], "credits must be made of finite numbers"),
+        (APPRAISED, "value", 2, "value must be -1, 0 or 1, not 2"),
+        (APPRAISED, "appraisal", 1, "appraisal must be a text"),
+        (APPRAISED, "decided_at_tick", -1, "decided_at_tick must be a whole number from 0"),
+        (withdrawn(1), "instead_of", None, "instead_of must be a text"),
+        (withdrawn(1), "action", "ask", "withdrawn has no 'action'"),
+        (undone("create-1"), "lesson", 1, "lesson must be a text"),
+        (undone("create-1"), "rla_id", 1, "undone has no 'rla_id'"),
+        (NAMED, "name", None, "name must be a text"),
+        (NAMED, "situation", "here", "situation must be a list of numbers"),
+        (NAMED, "situation", [float("nan")], "situation must be made of finite numbers"),
+        (NAMED, "level", 1, "level must be a text"),
+        (NAMED, "rla_id", 1, "named has no 'rla_id'"),
+        (NAMED, "version", 4, "there was no named in version 4"),
+        (REDONE, "lesson", 1, "lesson must be a text"),
+        (REDONE, "version", 5, "there was no redone in version 5"),
+        (MERGED, "rows", -1, "rows must be a whole number from 0"),
+        (MERGED, "version", 5, "there was no merged in version 5"),
+        (session(10)[0], "name", None, "name must be a text"),
+        (session(10)[1], "lasted_ticks", -1, "lasted_ticks must be a whole number from 0"),
+    ],
+)
+def test_each_field_of_the_other_events_is_checked(event: TeachingEvent, key: str, value: object, problem: str) -> None:
+    content = json.loads(encode_event(event)) | {key: value}
+
+    with pytest.raises(KnowledgeError, match=problem):
+        decode_event(json.dumps(content), "row 1")
+
+
+@pytest.mark.parametrize("version", [1, 2, 3])
+@pytest.mark.parametrize("event", [created(1), replaced(1, "left", "forward"), deleted(1), rewarded(1, -1)])
+def test_the_events_of_older_versions_are_still_read(event: TeachingEvent, version: int) -> None:
+    text = as_written_by(version, event)
+    assert ("behaviour" in text) == (version == 3 and isinstance(event, RlaCreated))
+    assert not any(field in text for field in ("level", "credits", "said"))
+
+    assert decode_event(text, "row 1") == event
+
+
+@pytest.mark.parametrize("event", [created(1), replaced(1, "left", "forward"), deleted(1), rewarded(1, -1)])
+def test_the_events_of_version_4_are_read_as_they_are(event: TeachingEvent) -> None:
+    assert decode_event(as_written_by(4, event), "row 1") == event
+
+
+def test_what_an_rla_belongs_to_is_kept() -> None:
+    event = RlaCreated(replace(created(1).rla, behaviour="turn_left", level=CRITIC))
+
+    assert decode_event(encode_event(event), "here") == event
+
+
+@pytest.mark.parametrize(
+    "event",
+    [
+        *(created(1), replaced(1, "left", "forward"), withdrawn(1), deleted(1), rewarded(1), APPRAISED),
+        *(undone("create-1"), REDONE, MERGED, NAMED, *session(10)),
+    ],
+)
+def test_a_missing_field_is_named(event: TeachingEvent) -> None:
+    whole = json.loads(encode_event(event))
+    for key in whole:
+        part = {name: value for name, value in whole.items() if name != key}
+        with pytest.raises(KnowledgeError, match=f"{key} is missing"):
+            decode_event(json.dumps(part), "row 1")
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), "1", None])
+def test_what_could_not_be_read_back_is_never_written(value: float) -> None:
+    event = RlaCreated(Rla(1, (0.0, value), "forward", None, Origin("c-9", "t", Phase.SUPERVISED, 0)))
+    reward = RlaRewarded(1, 1, 5, Origin("c-10", "t", Phase.REINFORCEMENT, 9), (Credit(1, value),))
+
+    with pytest.raises(KnowledgeError, match=r"command 'c-10': cannot be written: credits .*; teach it again"):
+        encode_event(reward)
+    with pytest.raises(KnowledgeError, match=r"command 'c-9': cannot be written: condition .*; teach it again"):
+        encode_event(event)

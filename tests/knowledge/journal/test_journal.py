@@ -1,0 +1,287 @@
+import shutil
+import sqlite3
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+
+from kurt2rt.core.rla.rla import RlaCreated, TeachingEvent
+from kurt2rt.core.rla.statistics import BEST_SCORE, Statistics
+from kurt2rt.knowledge.journal import journal_file
+from kurt2rt.knowledge.journal.entry import JournalEntry, checksum
+from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.statistics_tables import LATER_TABLES
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from tests.cli.helpers import ROOT, started
+from tests.knowledge.lessons import (
+    BINDING,
+    STAMP,
+    WITH_CRITIC,
+    as_written_by,
+    begun,
+    created,
+    deleted,
+    entry,
+    replaced,
+    tamper,
+)
+
+
+def test_what_was_taught_is_there_after_closing(path: Path) -> None:
+    lessons: list[TeachingEvent] = [created(1), created(2), replaced(1, "left", instead_of="forward"), deleted(2)]
+    with Journal.open(path, BINDING) as journal:
+        receipts = journal.append([JournalEntry(lesson, STAMP) for lesson in lessons])
+        assert [(receipt.sequence, receipt.new) for receipt in receipts] == [(n, True) for n in (1, 2, 3, 4)]
+
+    with Journal.open(path, BINDING) as journal:
+        assert journal.events() == lessons
+        assert [stored.sequence for stored in journal.entries()] == [1, 2, 3, 4]
+        assert {stored.stamped_at for stored in journal.entries()} == {STAMP}
+        assert journal.check() == []
+        assert journal.binding == BINDING
+
+
+def test_a_command_that_comes_twice_is_written_once(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        journal.append([entry(1)])
+        again, fresh, twice = journal.append([entry(1), entry(2), entry(2)])
+
+        assert (again.sequence, again.new, again.agrees) == (1, False, True)
+        assert (fresh.sequence, fresh.new, fresh.agrees) == (2, True, True)
+        assert (twice.sequence, twice.new, twice.agrees) == (2, False, True)
+        assert journal.events() == [created(1), created(2)]
+
+
+def test_another_lesson_under_a_known_command_is_not_passed_off_as_written(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        journal.append([entry(1)])
+        (receipt,) = journal.append([JournalEntry(created(2, command_id="create-1"), STAMP)])
+
+        assert (receipt.sequence, receipt.new, receipt.agrees) == (1, False, False)
+        assert journal.events() == [created(1)]
+
+
+def test_a_receipt_tells_the_stamp_of_the_row_not_that_of_a_command_that_comes_again(path: Path) -> None:
+    later = "2004-04-27T08:00:00.000+00:00"
+    with Journal.open(begun(path, lessons=1), BINDING) as journal:
+        known, fresh = journal.append([JournalEntry(created(1), later), JournalEntry(created(2), later)])
+
+        assert (known.stamped_at, known.new, known.agrees) == (STAMP, False, True)
+        assert (fresh.stamped_at, fresh.new, fresh.agrees) == (later, True, True)
+
+
+def test_a_command_that_an_older_kurt2rt_wrote_is_not_written_twice(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        written_as_version_1(journal, created(1))
+        again, another = journal.append([entry(1), JournalEntry(created(2, command_id="create-1"), STAMP)])
+
+        assert (again.sequence, again.new, again.agrees) == (1, False, True)
+        assert (another.sequence, another.new, another.agrees) == (1, False, False)
+
+
+def test_an_old_journal_is_read_and_taught_on_with(path: Path) -> None:
+    left = RlaCreated(replace(created(4).rla, behaviour="turn_left"))
+    with Journal.open(path, BINDING) as journal:
+        written_as_version_1(journal, created(1))
+        written_by(2, journal, created(2))
+        written_by(2, journal, replaced(1, "left", "forward"))
+        journal.append([entry(3), JournalEntry(left, STAMP)])
+
+    with Journal.read_only(path) as journal:
+        assert check_knowledge(journal) == []
+        system = fold_journal(journal, radius=1.0)
+    assert [(rla.rla_id, rla.action, rla.behaviour) for rla in system.rlas] == [
+        (1, "left", ""),
+        (2, "forward", ""),
+        (3, "forward", ""),
+        (4, "forward", "turn_left"),
+    ]
+
+
+def written_as_version_1(journal: Journal, event: TeachingEvent) -> None:
+    """A row as the first kurt2rt wrote it."""
+    written_by(1, journal, event)
+
+
+def written_by(version: int, journal: Journal, event: TeachingEvent) -> None:
+    """A row as an older kurt2rt wrote it."""
+    text = as_written_by(version, event)
+    command_id = event.origin.command_id
+    row = (command_id, STAMP, text, checksum(command_id, STAMP, text))
+    journal._connection.execute("INSERT INTO lesson (command_id, stamped_at, event, checksum) VALUES (?, ?, ?, ?)", row)
+
+
+def test_a_batch_is_written_whole_or_not_at_all(path: Path) -> None:
+    unwritable = replace(created(2).rla, condition=(float("nan"),))
+    with Journal.open(path, BINDING) as journal:
+        with pytest.raises(KnowledgeError, match="finite"):
+            journal.append([entry(1), JournalEntry(replace(created(2), rla=unwritable), STAMP)])
+
+        assert journal.events() == []
+        journal.append([entry(1)])
+        assert journal.events() == [created(1)]
+
+
+def test_every_commit_is_synced_to_the_disk(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        assert journal._connection.execute("PRAGMA synchronous").fetchone() == (2,)
+        assert journal._connection.execute("PRAGMA journal_mode").fetchone() == ("wal",)
+
+
+def test_lessons_are_neither_changed_nor_deleted(path: Path) -> None:
+    begun(path)
+    for statement in ("DELETE FROM lesson", "UPDATE lesson SET stamped_at = ''"):
+        with pytest.raises(sqlite3.IntegrityError, match="lessons are never"):
+            tamper(path, statement)
+
+
+def test_statistics_are_those_of_the_last_checkpoint(path: Path) -> None:
+    first = Statistics({1: 5, 2: 7}, {(1, 2): 4, (2, 1): 3}, {1: 0.5, 2: -1 / 3}, {(1, 2): 90.0, (2, 1): 0.1 + 0.2})
+    second = Statistics({1: 6, 3: 1}, {(1, 2): 4, (1, 3): 1}, {1: 0.5, 3: 5e-324}, {(1, 2): 81.0, (1, 3): 1e300})
+    with Journal.open(path, BINDING) as journal:
+        assert journal.statistics() == Statistics()
+        journal.checkpoint(first)
+        assert journal.statistics() == first  # to the last bit
+        journal.checkpoint(second)
+        journal.checkpoint(second)
+    with Journal.read_only(path) as journal:
+        assert journal.statistics() == second
+
+
+def test_the_tables_are_not_read_again_for_each_checkpoint(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        journal.checkpoint(Statistics({1: 5}, numbers={BEST_SCORE: 0.25}))
+        statements: list[str] = []
+        journal._connection.set_trace_callback(statements.append)
+        journal.checkpoint(Statistics({1: 6}, numbers={BEST_SCORE: 0.25}))
+        journal.checkpoint(Statistics({1: 6}, numbers={BEST_SCORE: 0.25}))
+        assert statements == ["BEGIN IMMEDIATE", "INSERT OR REPLACE INTO uses VALUES (1, 6)", "COMMIT"]
+
+
+def test_what_a_checkpoint_could_not_write_is_written_by_the_next_one(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        journal.checkpoint(Statistics({1: 5}))
+        journal._connection.execute("PRAGMA query_only = ON")
+        with pytest.raises(KnowledgeError):
+            journal.checkpoint(Statistics({1: 6}))
+        journal._connection.execute("PRAGMA query_only = OFF")
+        journal.checkpoint(Statistics({1: 6}))
+        assert journal.statistics() == Statistics({1: 6})
+
+
+def test_lessons_and_what_the_statistics_become_by_them_are_written_together(path: Path) -> None:
+    unwritable = replace(created(2).rla, condition=(float("nan"),))
+    with Journal.open(path, BINDING) as journal:
+        with pytest.raises(KnowledgeError, match="finite"):
+            journal.append_and_checkpoint(
+                [JournalEntry(replace(created(2), rla=unwritable), STAMP)], Statistics({1: 1})
+            )
+        assert journal.statistics() == Statistics()
+        journal.append_and_checkpoint([entry(1)], Statistics(values={1: 0.25}))
+        assert journal.statistics() == Statistics(values={1: 0.25})
+
+
+def before_phase_3(path: Path) -> Path:
+    """A knowledge file as a kurt2rt wrote it that learnt nothing from rewards and had no critic."""
+    tamper(begun(path), *(f"DROP TABLE {name}" for name in LATER_TABLES), "INSERT INTO uses VALUES (1, 5)")
+    return path
+
+
+def test_a_file_from_before_values_is_read_as_having_none_and_gets_them_when_it_is_taught_on_with(path: Path) -> None:
+    with Journal.read_only(before_phase_3(path)) as look:
+        assert look.statistics() == Statistics({1: 5})
+        assert check_knowledge(look) == []
+        assert look.binding == BINDING
+    learnt = Statistics({1: 5}, {}, {1: 0.75}, {(1, 2): 95.0}, {BEST_SCORE: 0.5})
+    with Journal.open(path, WITH_CRITIC) as journal:
+        assert journal.binding == WITH_CRITIC
+        journal.checkpoint(learnt)
+        assert journal.statistics() == learnt
+    with Journal.read_only(path) as look:
+        assert (look.statistics(), look.binding) == (learnt, WITH_CRITIC)
+
+
+def test_a_missing_table_that_every_file_had_is_damage(path: Path) -> None:
+    tamper(begun(path), "DROP TABLE uses")
+    with Journal.read_only(path) as look, pytest.raises(KnowledgeError, match="no such table: uses"):
+        look.statistics()
+
+
+def test_a_look_at_the_file_while_the_robot_writes_it(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal, Journal.read_only(path) as look:
+        assert look.binding == BINDING
+        journal.append([entry(1)])
+        assert look.events() == [created(1)]
+        journal.append([entry(2)])
+        assert look.events() == [created(1), created(2)]
+        assert look.check() == []
+        with pytest.raises(KnowledgeError, match="may not be written"):
+            look.append([entry(3)])
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {each.name: each.read_bytes() for each in folder.iterdir()}
+
+
+def test_a_look_leaves_nothing_behind_and_changes_nothing(path: Path) -> None:
+    before = contents(begun(path).parent)
+    with Journal.read_only(path) as look, Journal.read_only(path) as another:
+        assert look.check() == []
+        assert look.events() == another.events()
+        with pytest.raises(KnowledgeError, match="may not be written"):
+            look.append([entry(4)])
+    assert contents(path.parent) == before
+
+
+def test_a_look_leaves_the_log_of_a_robot_and_of_one_that_was_killed(tmp_path: Path, path: Path) -> None:
+    killed = tmp_path / "killed"
+    with Journal.open(path, BINDING) as journal:
+        journal.append([entry(1)])
+        with Journal.read_only(path) as look:
+            assert look.events() == [created(1)]
+        assert journal_file.log_of(path).stat().st_size > 0
+        journal.append([entry(2)])
+        shutil.copytree(path.parent, killed, ignore=shutil.ignore_patterns(killed.name))
+    before = contents(killed)
+    with Journal.read_only(killed / path.name) as look:
+        assert look.events() == [created(1), created(2)]
+    after = contents(killed)
+    for each in (path.name, f"{path.name}-wal"):
+        assert after[each] == before[each]
+
+
+def test_a_robot_that_begins_and_ends_while_somebody_looks_loses_nothing(path: Path) -> None:
+    with Journal.read_only(begun(path)) as look:
+        with Journal.open(path, BINDING) as journal:
+            journal.append([entry(4)])
+        assert len(look.events()) == 4
+    assert set(contents(path.parent)) == {path.name, f"{path.name}.lock"}
+    with Journal.open(path, BINDING) as journal:
+        assert len(journal.events()) == 4
+
+
+def seen_by_nobody(path: Path) -> tuple[str, str]:
+    """What one who has no rights is told, and of what went wrong."""
+    with started("tests.knowledge.look_as_nobody", str(path), folder=ROOT) as look:
+        return look.communicate()
+
+
+def test_a_look_at_a_file_in_a_folder_that_may_not_be_written() -> None:
+    with TemporaryDirectory() as folder:  # not tmp_path: its parents let nobody else in
+        path = begun(Path(folder) / "knowledge.db")
+        Path(folder).chmod(0o555)
+        assert seen_by_nobody(path) == ("3\n", "")
+        Path(folder).chmod(0o755)
+        assert set(contents(Path(folder))) == {path.name, f"{path.name}.lock"}
+
+
+def test_a_look_at_a_file_that_may_not_be_written_in_a_folder_that_may() -> None:
+    with TemporaryDirectory() as folder:
+        path = begun(Path(folder) / "knowledge.db")
+        Path(folder).chmod(0o777)
+        path.chmod(0o444)
+        before = contents(Path(folder))
+        assert seen_by_nobody(path) == ("3\n", "")
+        assert contents(Path(folder)) == before

@@ -1,0 +1,158 @@
+"""Knowledge with a mid level: in the same file, opened by every task of the same system, shown in words."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.rla.rla import CRITIC, MID, Rla, RlaCreated, SituationNamed, TeachingEvent
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.knowledge.journal.entry import JournalEntry
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.loading import go_on_teaching, open_knowledge, read_lessons
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.show.knowledge import render_knowledge, render_lessons
+from tests.experiments.helpers import ROBOT
+from tests.knowledge.lessons import BINDING, STAMP, created, origin, replaced, undone
+from tests.knowledge.show.test_knowledge import printed, rows
+
+STREETS = load_task("streets")
+TURNS = load_mid("turns")
+ROUTE = STREETS.model_copy(update={"name": "route", "system": "streets", "mid": "turns"})
+ERRANDS = load_task("errands")
+
+
+def basic(rla_id: int) -> RlaCreated:
+    return RlaCreated(Rla(rla_id, (0.0,) * 72, "forward", None, origin(f"create-{rla_id}"), "turn_left"))
+
+
+def way(rla_id: int, *symbols: int, action: str = "turn_left") -> RlaCreated:
+    """After these symbols, the newest first."""
+    condition = tuple(map(float, symbols)) + (0.0,) * (12 - len(symbols))
+    return RlaCreated(Rla(rla_id, condition, action, None, origin(f"create-{rla_id}"), level=MID))
+
+
+def write(path: Path, *events: TeachingEvent) -> None:
+    with go_on_teaching(path, ROBOT, ROUTE).journal as journal:
+        journal.append([JournalEntry(event, STAMP) for event in events])
+
+
+def test_knowledge_of_the_streets_is_gone_on_with_on_a_route(path: Path) -> None:
+    with open_knowledge(path, ROBOT, STREETS) as journal:
+        assert journal.binding.levels.keys() == {CRITIC}
+        journal.append([JournalEntry(basic(1), STAMP)])
+    assert read_lessons(path, ROBOT, ROUTE) == [basic(1)]
+    write(path, way(2, 1))
+    with Journal.read_only(path) as journal:
+        assert journal.binding.system == "streets"
+        assert journal.binding.levels[MID] == TURNS.level_features
+
+
+def test_knowledge_of_a_route_is_good_for_the_streets(path: Path) -> None:
+    write(path, basic(1), way(2, 1, 2))
+    opened = go_on_teaching(path, ROBOT, STREETS)
+    with opened.journal as journal:
+        assert opened.events == [basic(1), way(2, 1, 2)]
+        assert journal.binding.levels[MID] == TURNS.level_features  # stays for who comes with a mid level
+
+
+def test_a_route_that_nobody_taught_yet_leaves_the_file_free_for_places(path: Path) -> None:
+    write(path, basic(1))
+    assert read_lessons(path, ROBOT, ERRANDS) == [basic(1)]
+    place = RlaCreated(Rla(2, (0.0,) * 6, "turn_left", None, origin("create-2"), level=MID))
+    with go_on_teaching(path, ROBOT, ERRANDS).journal as journal:
+        journal.append([JournalEntry(place, STAMP)])
+    with go_on_teaching(path, ROBOT, ERRANDS).journal as journal:
+        assert journal.binding.levels[MID] == load_mid("places").level_features
+        assert journal.events() == [basic(1), place]
+    with pytest.raises(KnowledgeError, match="its level mid was taught with other features"):
+        open_knowledge(path, ROBOT, ROUTE)
+
+
+def test_a_way_that_was_undone_still_was_taught_in_its_features(path: Path) -> None:
+    write(path, basic(1), way(2, 1), undone("create-2"))
+    with pytest.raises(KnowledgeError, match="its level mid was taught with other features"):
+        open_knowledge(path, ROBOT, ERRANDS)
+    with pytest.raises(KnowledgeError, match="its level mid was taught with other features"):
+        read_lessons(path, ROBOT, ERRANDS)
+
+
+def test_ways_are_not_told_from_other_junctions(path: Path) -> None:
+    write(path, way(1, 1))
+    junctions = TURNS.junctions.model_copy(update={"wall_m": 0.3})
+    other = ROUTE.model_copy(update={"mid": TURNS.model_copy(update={"junctions": junctions})})
+    with pytest.raises(KnowledgeError, match=r"its level mid was taught with other features: the names are the same, "):
+        go_on_teaching(path, ROBOT, other)
+
+
+def test_another_radius_or_distance_is_no_other_situation(path: Path) -> None:
+    write(path, way(1, 1))
+    situation = TURNS.situation.model_copy(update={"distance": "edit"})
+    learning = TURNS.learning.model_copy(update={"radius": 0.0})
+    other = TURNS.model_copy(update={"situation": situation, "learning": learning})
+    assert read_lessons(path, ROBOT, ROUTE.model_copy(update={"mid": other})) == [way(1, 1)]
+
+
+def test_knowledge_of_a_task_that_names_no_system_stays_that_task_s_own(path: Path) -> None:
+    open_knowledge(path, ROBOT, STREETS).close()
+    with pytest.raises(KnowledgeError, match=r"taught for the task 'streets', not for 'lanes'"):
+        open_knowledge(path, ROBOT, STREETS.model_copy(update={"name": "lanes"}))
+
+
+def test_ways_are_shown_apart_in_words_with_who_taught_them_and_what_follows(path: Path) -> None:
+    write(
+        path,
+        *(basic(1), way(2), way(3, 2, 1), way(4, 3, 3, 4, action="straight_on")),
+        replaced(4, "turn_right", instead_of="straight_on"),
+    )
+    with go_on_teaching(path, ROBOT, ROUTE).journal as journal:
+        journal.checkpoint(Statistics({1: 7, 2: 3, 3: 1}, {(2, 3): 1, (2, 4): 3}))
+        lines = printed(render_knowledge(journal))
+        lessons = "\n".join(printed(render_lessons(journal)))
+
+    when = STAMP[:19].replace("T", " ") + ", Hertha"
+    assert lines[1].startswith("1 RLAs and 3 mid-level RLAs from 5 lessons ")
+    ways = [row for row in rows(lines) if row[0] in {"2", "3", "4"}]
+    assert ways == [
+        ["2", "turn_left", when, "3", "at the beginning", "4 (75 %), 3 (25 %)"],
+        ["3", "turn_left", when, "1", "left, straight"],
+        ["4", "turn_right", "straight_on", when, "0", "right, right, back"],
+    ]
+    assert "mid-level RLA 4 corrected: turn_right instead of straight_on" in lessons
+
+
+def test_a_way_that_was_taken_back_is_shown_no_more_and_listed_as_undone(path: Path) -> None:
+    write(path, basic(1), way(2, 1), undone("create-2"))
+    with Journal.read_only(path) as journal:
+        shown = "\n".join(printed(render_knowledge(journal)))
+        (listed,) = (line for line in printed(render_lessons(journal)) if "mid-level" in line)
+    assert "mid-level" not in shown
+    assert listed.rstrip().endswith("Joachim")
+
+
+def test_situations_that_have_a_name_are_shown_with_what_they_mean_now(path: Path) -> None:
+    def named(name: str, *symbols: float, as_lesson: str) -> SituationNamed:
+        return SituationNamed(name, symbols + (0.0,) * (12 - len(symbols)), MID, origin(as_lesson))
+
+    write(path, named("door", 1.0, as_lesson="n-1"), named("attic", 2.0, 3.0, as_lesson="n-2"))
+    write(path, named("door", 3.0, as_lesson="n-3"), named("yard", 1.0, as_lesson="n-4"), undone("n-4"))
+    with Journal.read_only(path) as journal:
+        lines = [line.split("  ") for line in printed(render_knowledge(journal))]
+    cells = [[cell.strip() for cell in line if cell.strip()] for line in lines]
+    assert cells[cells.index(["named", "where: the newest first"]) + 2 :][:2] == [
+        ["attic", "left, right"],
+        ["door", "right"],
+    ]
+    assert not any("yard" in line for line in cells)
+
+
+def test_ways_in_features_that_nobody_here_knows_are_shown_in_numbers(path: Path) -> None:
+    with Journal.open(
+        path, replace(BINDING, levels={MID: replace(TURNS.level_features, feature_hash="0123")})
+    ) as journal:
+        journal.append([JournalEntry(event, STAMP) for event in (created(1), way(2, 3, 1))])
+        lines = printed(render_knowledge(journal, wide=False))
+    assert any(re.search(r"^ +2 +turn_left .* symbol 1 3, symbol 2 1\s*$", line) for line in lines)

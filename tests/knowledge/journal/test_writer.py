@@ -1,0 +1,257 @@
+import resource
+import sqlite3
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager
+from dataclasses import replace
+from itertools import count
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.core.rla.rla import RlaCreated, TeachingEvent
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.knowledge.journal import journal_file
+from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter, RetryDelays, utc_now
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from tests.knowledge.lessons import BINDING, STAMP, begun, created, rewarded, session, undone
+
+SOON = RetryDelays(first_s=0.001, longest_s=0.004)
+
+
+def writer_of(path: Path) -> JournalWriter:
+    return JournalWriter(Journal.open(path, BINDING), now=lambda: STAMP, retry=SOON)
+
+
+def settled(writer: JournalWriter) -> list[Acknowledgement]:
+    """Acknowledgements of all that was submitted."""
+    assert writer.flush(timeout_s=60)
+    return writer.acknowledged()
+
+
+def wait_for_trouble(writer: JournalWriter) -> str:
+    """The line that the tick reads, and the robot stands; the suite's own time limit ends a wait in vain."""
+    while writer.trouble is None:
+        writer.flush(timeout_s=0.001)
+    return writer.trouble
+
+
+def stored(path: Path) -> list[RlaCreated]:
+    with Journal.read_only(path) as journal:
+        assert journal.check() == []
+        return [event for event in journal.events() if isinstance(event, RlaCreated)]
+
+
+def test_lessons_are_acknowledged_in_order_when_they_are_durable(path: Path) -> None:
+    lessons = [created(number) for number in range(1, 31)]
+    with writer_of(path) as writer:
+        for lesson in lessons:
+            writer.submit(lesson)
+        acknowledged = settled(writer)
+        assert stored(path) == lessons
+        assert writer.unwritten == 0
+        assert writer.trouble is None
+
+    assert acknowledged == [Acknowledgement(f"create-{number}", number, None, STAMP) for number in range(1, 31)]
+
+
+class HangingJournal(Journal):
+    """Its disk does not come back from a write before it is let go."""
+
+    let_go: threading.Event
+
+    def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
+        self.let_go.wait()
+        return super().append(entries)
+
+
+def test_a_write_that_hangs_is_trouble_until_it_comes_back(path: Path) -> None:
+    journal = HangingJournal.open(path, BINDING)
+    journal.let_go = threading.Event()
+    now_s = 100.0
+    with JournalWriter(journal, now=lambda: STAMP, retry=SOON, clock=lambda: now_s) as writer:
+        now_s += 10.0  # with nothing to keep a disk may rest
+        assert writer.trouble is None
+        writer.submit(created(1))
+        now_s += 2.0
+        writer.submit(created(2))
+        now_s += 1.0
+        assert writer.trouble is None
+        now_s += 0.1
+        assert writer.trouble == f"{path}: the disk does not answer; 2 lessons wait; look at its health"
+        journal.let_go.set()
+        assert [each.command_id for each in settled(writer)] == ["create-1", "create-2"]
+        assert writer.trouble is None
+        writer.submit(created(3))
+        assert writer.trouble is None
+
+
+def test_every_lesson_is_stamped_with_the_wall_clock_it_is_given(path: Path) -> None:
+    ticking = count(1)
+    with JournalWriter(Journal.open(path, BINDING), now=lambda: f"stamp {next(ticking)}") as writer:
+        writer.submit(created(1))
+        writer.submit(created(2))
+    with Journal.read_only(path) as journal:
+        assert [entry.stamped_at for entry in journal.entries()] == ["stamp 1", "stamp 2"]
+    assert utc_now().endswith("+00:00")
+
+
+def test_an_acknowledgement_tells_when_the_lesson_was_first_written_not_when_it_came_again(path: Path) -> None:
+    later = "2004-04-27T08:00:00.000+00:00"
+    with JournalWriter(Journal.open(begun(path, lessons=1), BINDING), now=lambda: later) as writer:
+        writer.submit(created(1))
+        writer.submit(created(2))
+        assert [each.stamped_at for each in settled(writer)] == [STAMP, later]
+
+
+def test_every_kind_of_event_is_written(path: Path) -> None:
+    events: list[TeachingEvent] = [created(1), rewarded(1), undone("reward-1"), *session(6000)]
+    with writer_of(path) as writer:
+        for event in events:
+            writer.submit(event)
+        assert [each.sequence for each in settled(writer)] == [1, 2, 3, 4, 5]
+    with Journal.read_only(path) as journal:
+        assert journal.events() == events
+
+
+def test_a_command_sent_again_is_acknowledged_again_with_its_row(path: Path) -> None:
+    with writer_of(begun(path, lessons=2)) as writer:
+        writer.submit(created(2))
+        assert settled(writer) == [Acknowledgement("create-2", 2, None, STAMP)]
+    assert stored(path) == [created(1), created(2)]
+
+
+def test_a_lesson_that_can_never_be_written_does_not_hold_up_the_others(path: Path) -> None:
+    broken = RlaCreated(replace(created(1).rla, condition=(float("nan"),)))
+    with writer_of(path) as writer:
+        writer.submit(broken)
+        writer.submit(created(1, command_id="once more"))
+        writer.submit(created(2, command_id="once more"))
+        refused, written, clashing = settled(writer)
+
+    assert refused.error is not None
+    assert "condition must be made of finite numbers; teach it again" in refused.error
+    assert (written.sequence, written.error) == (1, None)
+    assert clashing.error is not None
+    assert [each.stamped_at for each in (refused, written, clashing)] == ["", STAMP, ""]
+    assert "another lesson of this id stands in row 1" in clashing.error
+    assert stored(path) == [created(1, command_id="once more")]
+
+
+def test_a_full_disk_makes_lessons_wait_in_order_until_there_is_room(path: Path) -> None:
+    connection = journal_file.connect(begun(path), "mode=rw")
+    journal_file.make_durable(connection, path)
+    (pages,) = connection.execute("PRAGMA page_count").fetchone()
+    connection.execute(f"PRAGMA max_page_count = {pages + 2}")  # SQLite's own full disk
+    acknowledged = []
+    with JournalWriter(Journal(path, connection), lambda: STAMP, SOON) as writer:
+        for number in count(4):
+            writer.submit(created(number))
+            writer.flush(timeout_s=0.005)  # not all in one batch: some still fit
+            acknowledged += writer.acknowledged()
+            if writer.trouble is not None:
+                break
+        assert writer.trouble is not None
+        assert writer.trouble.startswith(f"{path}: the disk is full; make room on it")
+        waiting = writer.unwritten
+        assert len(stored(path)) == number - waiting
+        for later in range(number + 1, number + 51):
+            writer.submit(created(later))
+        assert not writer.flush(timeout_s=0.05)
+        assert writer.acknowledged() == []
+        assert writer.unwritten == waiting + 50
+        assert len(stored(path)) == number - waiting
+
+        connection.execute("PRAGMA max_page_count = 100000")
+        acknowledged += settled(writer)
+        assert writer.trouble is None
+
+    assert [each.sequence for each in acknowledged] == list(range(4, later + 1))
+    assert stored(path) == [created(each) for each in range(1, later + 1)]
+
+
+@contextmanager
+def largest_file(size_bytes: int) -> Iterator[None]:
+    """No file of this process may grow beyond: writes fail for real (EFBIG), as they do on a broken disk."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size_bytes, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+def test_a_failing_disk_makes_lessons_wait_in_order_until_it_works(path: Path) -> None:
+    with writer_of(path) as writer:
+        writer.submit(created(1))
+        assert len(settled(writer)) == 1
+        log = journal_file.log_of(path)
+        with largest_file(log.stat().st_size):
+            for number in range(2, 20):
+                writer.submit(created(number))
+            trouble = wait_for_trouble(writer)
+        acknowledged = settled(writer)
+        assert writer.trouble is None
+
+    assert trouble.startswith(f"{path}: the disk fails; look at its health and room")
+    assert [each.sequence for each in acknowledged] == list(range(2, 20))
+    assert stored(path) == [created(number) for number in range(1, 20)]
+
+
+def test_a_locked_file_makes_lessons_wait_until_it_is_free(path: Path) -> None:
+    with writer_of(path) as writer, closing(sqlite3.connect(path, isolation_level=None)) as other:
+        other.execute("BEGIN IMMEDIATE")
+        writer.submit(created(1))
+        assert wait_for_trouble(writer).startswith(f"{path}: another program holds it locked; close that program")
+        other.execute("ROLLBACK")
+        assert settled(writer) == [Acknowledgement("create-1", 1, None, STAMP)]
+
+
+def test_nothing_is_acknowledged_into_a_file_that_was_moved_away(path: Path) -> None:
+    aside = path.with_name("aside.db")
+    with writer_of(path) as writer:
+        path.rename(aside)
+        writer.submit(created(1))
+        assert "was moved, deleted or replaced while in use; put the same files back" in wait_for_trouble(writer)
+        assert writer.acknowledged() == []
+        aside.rename(path)
+        assert settled(writer) == [Acknowledgement("create-1", 1, None, STAMP)]
+    assert stored(path) == [created(1)]
+
+
+def test_of_statistics_that_wait_the_newest_is_written(path: Path) -> None:
+    with writer_of(path) as writer:
+        for uses in range(1, 50):
+            writer.submit_statistics(Statistics({1: uses}, {(1, 1): uses}))
+    with Journal.read_only(path) as journal:
+        assert journal.statistics() == Statistics({1: 49}, {(1, 1): 49})
+
+
+def test_closing_says_when_lessons_could_not_be_written(path: Path) -> None:
+    writer = writer_of(path)
+    with closing(sqlite3.connect(path, isolation_level=None)) as other:
+        other.execute("BEGIN IMMEDIATE")
+        writer.submit(created(1))
+        writer.submit(created(2))
+        with pytest.raises(KnowledgeError, match=r"holds it locked.*; closed with 2 lessons not written"):
+            writer.close(timeout_s=0.5)
+        assert writer.acknowledged() == []
+    writer.close()
+    with pytest.raises(KnowledgeError, match="its writer is closed; open the journal again"):
+        writer.submit(created(3))
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_a_writer_that_dies_says_so(path: Path) -> None:
+    def stopped_clock() -> str:
+        raise OSError("no clock")
+
+    writer = JournalWriter(Journal.open(path, BINDING), now=stopped_clock)
+    writer.submit(created(1))
+    assert "its writer ended by OSError('no clock'); stop the robot program" in wait_for_trouble(writer)
+    assert not writer.flush(timeout_s=60)
+    with pytest.raises(KnowledgeError, match="closed with 1 lessons not written"):
+        writer.close()
+    Journal.open(path, BINDING).close()

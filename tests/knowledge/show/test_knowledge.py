@@ -1,0 +1,226 @@
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from rich.console import Console, RenderableType
+
+from kurt2rt.core.rla.rla import CRITIC, Appraised, Phase, RlaCreated, TeachingEvent
+from kurt2rt.core.rla.statistics import Statistics, follow_ups
+from kurt2rt.knowledge.journal.entry import JournalEntry
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.show.knowledge import render_knowledge, render_lessons
+from tests.knowledge.lessons import (
+    BINDING,
+    STAMP,
+    WITH_CRITIC,
+    appraisal,
+    created,
+    deleted,
+    origin,
+    replaced,
+    rewarded,
+    session,
+    undone,
+    withdrawn,
+)
+
+
+def printed(what: RenderableType) -> list[str]:
+    console = Console(width=250, color_system=None)
+    with console.capture() as capture:
+        console.print(what)
+    return capture.get().splitlines()
+
+
+def rows(lines: list[str]) -> list[list[str]]:
+    """Cells of each RLA's row, empty ones left out."""
+    return [re.split(r"\s{2,}", line.strip()) for line in lines if re.match(r"\s+\d+ ", line)]
+
+
+def test_every_rla_is_shown_with_who_taught_it_when_and_instead_of_what(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        lessons: list[TeachingEvent] = [
+            created(1),
+            created(2),
+            created(3),
+            replaced(2, "left", instead_of="forward"),
+            deleted(3),
+        ]
+        journal.append([JournalEntry(lesson, STAMP) for lesson in lessons])
+        journal.checkpoint(Statistics({1: 41, 2: 7}, {(1, 2): 3, (1, 1): 1}))
+        lines = printed(render_knowledge(journal))
+
+    assert "knowledge of wall following, first taught on kurt2, 4 features, definition 0123456789abcdef" in lines[0]
+    assert lines[1].startswith("2 RLAs from 5 lessons (1 corrections, 1 deletions) by Hertha")
+    first, second = rows(lines)
+    when = STAMP[:19].replace("T", " ") + ", Hertha"
+    assert first == [
+        "1",
+        "forward",
+        when,
+        "1",
+        "1",
+        "41",
+        "maximum front 81, wheel speed left -5, s1 0",
+        "2 (75 %), 1 (25 %)",
+    ]
+    assert second[:7] == ["2", "left", "forward", when, "2", "200", "7"]
+
+
+def test_rewards_undone_lessons_and_sessions_are_shown(path: Path) -> None:
+    events: list[TeachingEvent] = [
+        *session(6000, "morning"),
+        *(created(number) for number in (1, 2, 3, 4)),
+        rewarded(1, -1, "blame"),
+        *(rewarded(1, 1, f"praise-{number}") for number in range(3)),
+        rewarded(2, -1),
+        *session(1234, "evening"),
+        deleted(3),
+        undone("praise-2"),
+        undone("delete-3", teacher="Ann"),
+        undone("create-4"),
+    ]
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(event, STAMP) for event in events])
+        lines = printed(render_knowledge(journal))
+
+    assert lines[1].startswith(
+        "3 RLAs from 10 lessons (0 corrections, 1 deletions, 5 rewards, 3 undone by Ann, Joachim) by Hertha, "
+    )
+    assert lines[1].endswith("; 2 sessions, 1 min 12 s of teaching")
+    assert [row[6] for row in rows(lines)[:2]] == ["+2 -1", "-1"]
+
+
+def test_withdrawn_actions_values_and_appraisals_are_shown(path: Path) -> None:
+    critics = replace(rewarded(1, -1), origin=replace(rewarded(1).origin, teacher=CRITIC))
+    events: list[TeachingEvent] = [
+        *(created(number) for number in (1, 2, 3)),
+        appraisal(4, (0.4, 0.2, 0.0)),
+        appraisal(5, (0.0, 0.0, 1.0), "bad"),
+        appraisal(6, (0.0, 0.0, 0.0), "neutral"),
+        Appraised("good", 1, 395, origin("same-1", 400, Phase.CRITIC)),
+        critics,
+        withdrawn(1),
+    ]
+    with Journal.open(path, WITH_CRITIC) as journal:
+        journal.append([JournalEntry(event, STAMP) for event in events])
+        before = printed(render_knowledge(journal))
+        journal.checkpoint(Statistics({1: 3}, values={1: -0.301, 3: 0.5}))
+        lines = printed(render_knowledge(journal))
+        fewer = printed(render_knowledge(journal, limit=2))
+        lessons = "\n".join(printed(render_lessons(journal)))
+        of_critic = printed(render_lessons(journal, taught_by=CRITIC))
+
+    assert not any(re.search(r"rewards\s+value", line) for line in before)  # no reward has made one
+    assert lines[1].startswith(
+        "3 RLAs, 1 of which ask again, and 3 appraisal RLAs from 8 lessons "
+        "(0 corrections, 0 deletions, 1 withdrawals, 1 rewards, 1 agreements) by Hertha, critic, "
+    )
+    when = STAMP[:19].replace("T", " ") + ", Hertha"
+    first, second, third, *appraisals = rows(lines)
+    assert first[:9] == ["1", "asks again", "forward", when, "3", "450", "3", "-1", "-0.30"]
+    assert second[5] == "0"
+    assert third[6] == "0.50"
+    assert appraisals == [
+        ["4", "good", when, "left_m 0.40, speed_m_s 0.20"],
+        ["5", "bad", when, "bumped 1.00"],
+        ["6", "neutral", when, "all 0"],
+    ]
+    assert "and 1 more of the level critic" in fewer
+    assert "appraisal RLA 5 taught: bad" in lessons
+    assert "RLA 1 withdrawn: it asks again" in lessons
+    assert [line.strip().split("  ")[0] for line in of_critic if "RLA" in line] == ["RLA 1 punished"]
+
+
+def narrow(journal: Journal) -> tuple[str, list[str]]:
+    """Headings on 80 columns, and the cells of the only RLA."""
+    console = Console(width=80, color_system=None)
+    with console.capture() as capture:
+        console.print(render_knowledge(journal, wide=False))
+    lines = capture.get().splitlines()
+    assert max(len(line) for line in lines) <= 80
+    (row,) = rows(lines)
+    headings = next(number for number, line in enumerate(lines) if line.startswith("RLA"))
+    return " ".join(" ".join(lines[headings : headings + 2]).split()), row
+
+
+def test_a_narrow_screen_shows_every_column_that_counts(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(event, STAMP) for event in (created(1, action="spin_right"), rewarded(1))])
+        headings, row = narrow(journal)
+        journal.checkpoint(Statistics(values={1: 0.5}))
+        with_value, valued_row = narrow(journal)
+
+    assert headings == "RLA action instead taught (UTC), by phase tick uses rewards of"
+    assert with_value == "RLA action instead taught (UTC), by phase uses rewards value of"
+    assert (row[1], row[-1]) == ("spin_right", "+1")
+    assert (valued_row[1], valued_row[-2:]) == ("spin_right", ["+1", "0.50"])
+
+
+def test_lessons_are_listed_newest_first_with_their_ids_and_who_undid_them(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        events = (created(1), replaced(1, "left", "forward"), *session(10), created(2), undone("create-2"))
+        journal.append([JournalEntry(event, STAMP) for event in events])
+        lines = [re.split(r"\s{2,}", line.strip()) for line in printed(render_lessons(journal, limit=2))]
+
+    when = STAMP[:19].replace("T", " ") + ", Hertha"
+    assert ["RLA 2 taught: forward", "create-2", when, "Joachim"] in lines
+    assert ["RLA 1 corrected: left instead of forward", "replace-1-left", when] in lines
+    assert lines[-1] == ["and 1 older lessons"]
+
+
+def test_the_rest_is_counted_where_a_limit_is_given(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(created(number), STAMP) for number in range(1, 6)])
+        lines = printed(render_knowledge(journal, limit=2))
+
+    assert len(rows(lines)) == 2
+    assert lines[-1] == "and 3 more RLAs"
+
+
+def test_nothing_was_taught_yet(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        assert printed(render_knowledge(journal))[1] == "Nothing was taught yet."
+
+
+def test_names_cannot_command_the_terminal(path: Path) -> None:
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(created(1, action="\x1b[2J[red]forward[/]"), STAMP)])
+        text = "\n".join(printed(render_knowledge(journal)))
+
+    assert "\N{REPLACEMENT CHARACTER}[2J[red]forward[/]" in text
+    assert "\x1b" not in text
+
+
+def test_follow_ups_are_shares_of_the_transitions() -> None:
+    shares = follow_ups(Statistics({}, {(1, 2): 1, (1, 3): 3, (2, 2): 5, (4, 1): 0}))
+
+    assert shares == {1: {3: 75.0, 2: 25.0}, 2: {2: 100.0}}
+    assert list(shares[1]) == [3, 2]
+    assert sum(shares[1].values()) == pytest.approx(100)
+
+
+def test_averages_are_not_among_the_telling_features(path: Path) -> None:
+    binding = replace(BINDING, feature_names=("s1", "s2", "s1 (10 s average)", "s2 (10 s average)"))
+    with Journal.open(path, binding) as journal:
+        journal.append([JournalEntry(created(1), STAMP)])
+        (row,) = rows(printed(render_knowledge(journal)))
+
+    assert "s1 " in row[-1]
+    assert "average" not in row[-1]
+
+
+def test_where_taught_behaviours_have_names_there_is_a_column_for_them(path: Path) -> None:
+    left = RlaCreated(replace(created(1).rla, behaviour="turn_left"))
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(left, STAMP), JournalEntry(deleted(1), STAMP), JournalEntry(created(2), STAMP)])
+        before = printed(render_knowledge(journal))  # none that stands has a name
+        journal.append([JournalEntry(undone("delete-1"), STAMP)])
+        lines = printed(render_knowledge(journal))
+        told = printed(render_lessons(journal))
+
+    assert any(re.match(r"\s*RLA\s+action", line) for line in before)
+    assert any(re.match(r"\s*RLA\s+behaviour\s+action", line) for line in lines)
+    assert [row[:3] for row in rows(lines)] == [["1", "turn_left", "forward"], ["2", "forward", rows(lines)[1][2]]]
+    assert any("RLA 1 of turn_left deleted" in line for line in told)

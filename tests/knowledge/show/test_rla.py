@@ -1,0 +1,60 @@
+"""One RLA, whole."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from kurt2rt.core.rla.expectation import Expectation, pack
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.show.rla import render_rla
+from tests.knowledge.lessons import BINDING, begun
+
+
+def shown(path: Path, rla_id: int, limit: int | None = None) -> str:
+    console = Console(width=100)
+    with console.capture() as capture, Journal.read_only(path) as journal:
+        console.print(render_rla(journal, rla_id, limit))
+    return capture.get()
+
+
+def taught(path: Path, lesson: str = "create-1") -> Path:
+    """Its first RLA was seen to end; in it the condition is 1/3, 0.1, 81, -5."""
+    mean, squares = np.array([0.5, 300.0, 81.0, -5.0]), np.array([0.0, 3 * 40.0**2, 0.0, 0.0])
+    with Journal.open(begun(path), BINDING) as journal:
+        ends = Expectation(lesson, 4, 35.0, pack(mean), pack(squares))
+        journal.checkpoint(Statistics({1: 5}, {(1, 2): 3, (1, 3): 1}, expectations={1: ends}))
+    return path
+
+
+def test_what_it_says_what_followed_and_what_is_expected(path: Path) -> None:
+    text = shown(taught(path), 1)
+    assert "RLA 1: forward, taught by Hertha in phase 1, used 5 times" in text
+    assert "followed by 2 (75 %), 3 (25 %)" in text
+    assert "expected, of 4 ends seen, 0.35 s after it began" in text
+    rows = [line.split() for line in text.splitlines()]
+    assert ["s2", "0.1", "300", "±40"] in rows
+    assert ["wheel", "speed", "left", "-5", "-5", "±0"] in rows
+
+
+def test_the_features_that_change_most_come_first(path: Path) -> None:
+    text = shown(taught(path), 1, limit=1)
+    assert "s2" in text
+    assert "s1" not in text
+    assert "and 3 more features" in text
+
+
+def test_one_that_never_ended_expects_nothing_yet(path: Path) -> None:
+    assert "Nothing is expected yet" in shown(taught(path), 2)
+
+
+def test_what_was_expected_of_another_action_is_not_shown(path: Path) -> None:
+    assert "Nothing is expected yet" in shown(taught(path, lesson="of its first action"), 1)
+
+
+def test_an_rla_that_is_not_there_is_refused(path: Path) -> None:
+    with pytest.raises(KnowledgeError, match="holds no RLA 9; kurt2rt knowledge show lists them"):
+        shown(begun(path), 9)

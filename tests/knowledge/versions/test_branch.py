@@ -1,0 +1,140 @@
+"""A branch begins as another file was, and knows whence it came."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.core.rla.statistics import FIRST_VALUE, VALUES_INCLUDE, Statistics
+from kurt2rt.knowledge.journal.entry import JournalEntry, StoredEntry
+from kurt2rt.knowledge.journal.fold import check_knowledge
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.versions.branch import Branched, Whence, branch, whence_of
+from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, replaced
+
+LATER = "2004-04-26T11:00:00.000+00:00"
+NOW = "2026-11-22T03:10:05.000+00:00"
+COUNTED = Statistics(
+    {1: 5, 2: 7, 3: 1},
+    {(1, 2): 3, (2, 3): 1},
+    {1: 0.25},
+    {(1, 2): 95.0},
+    {FIRST_VALUE: 0.5, VALUES_INCLUDE: 4.0},
+)
+
+
+@pytest.fixture
+def taught(path: Path) -> Path:
+    """Three RLAs, and an hour later the second one corrected."""
+    with Journal.open(begun(path), BINDING) as journal:
+        journal.append([JournalEntry(replaced(2, "left", "forward"), LATER)])
+        journal.checkpoint(COUNTED)
+    return path
+
+
+def test_a_branch_of_all_holds_the_same_lessons_and_counts(taught: Path, tmp_path: Path) -> None:
+    told = branch(taught, tmp_path / "b.knowledge", None, stamp=NOW).whence
+    with Journal.read_only(taught) as old, Journal.read_only(tmp_path / "b.knowledge") as new:
+        assert new.entries() == old.entries()
+        assert new.statistics() == old.statistics()
+        assert new.binding == old.binding
+        assert check_knowledge(new) == []
+        assert whence_of(new) == told == Whence("knowledge.db", 4, "replace-2-left", NOW)
+        assert whence_of(old) is None
+
+
+@pytest.mark.parametrize("at", ["create-2", "2004-04-26T10:30+00:00"])
+def test_a_branch_ends_with_a_lesson_or_at_a_time(taught: Path, tmp_path: Path, at: str) -> None:
+    rows = 2 if at == "create-2" else 3
+    branch(taught, tmp_path / "b", at, stamp=NOW)
+    with Journal.read_only(tmp_path / "b") as new:
+        assert new.events() == [created(number) for number in range(1, rows + 1)]
+        counted = new.statistics()
+        assert check_knowledge(new) == []
+    uses = {1: 5} if rows == 2 else {1: 5, 3: 1}  # the second has another action since
+    assert counted == replace(Statistics(), uses=uses, numbers={FIRST_VALUE: 0.5})
+
+
+def test_where_the_clock_was_set_back_a_branch_ends_with_the_first_later_date_and_tells_of_the_others(
+    taught: Path, tmp_path: Path
+) -> None:
+    with Journal.open(taught, BINDING) as journal:
+        journal.append([JournalEntry(created(4), "2004-04-26T10:01:00.000+00:00"), JournalEntry(created(5), LATER)])
+    made = branch(taught, tmp_path / "b", "2004-04-26T10:30+00:00", stamp=NOW)
+    assert (made.whence.rows, made.left_earlier) == (3, 1)
+    assert branch(taught, tmp_path / "c", "2004-04-26T11:00+00:00", stamp=NOW).left_earlier == 0
+    assert branch(taught, tmp_path / "d", "create-4", stamp=NOW) == Branched(Whence(taught.name, 5, "create-4", NOW), 0)
+
+
+def test_a_date_that_is_none_is_told(taught: Path, tmp_path: Path) -> None:
+    with Journal.open(taught, BINDING) as journal:
+        journal.append([JournalEntry(created(4), "yesterday")])
+    with pytest.raises(KnowledgeError, match="the stamp of a lesson is no time"):
+        branch(taught, tmp_path / "b", "2004-04-26T10:30+00:00", stamp=NOW)
+
+
+def test_what_is_taught_while_a_branch_is_made_is_in_it_whole_or_not_at_all(
+    taught: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with Journal.open(taught, BINDING) as robot:
+
+        def taught_meanwhile(journal: Journal) -> Iterator[StoredEntry]:
+            yield from each_entry(journal)
+            robot.append_and_checkpoint([JournalEntry(created(4), LATER)], replace(COUNTED, uses={4: 1}))
+
+        each_entry = Journal.each_entry
+        with monkeypatch.context() as meanwhile:
+            meanwhile.setattr(Journal, "each_entry", taught_meanwhile)
+            branch(taught, tmp_path / "b", None, stamp=NOW)
+    with Journal.read_only(tmp_path / "b") as new:
+        assert (len(new.entries()), new.statistics()) == (4, COUNTED)
+
+
+def test_a_file_whose_lessons_do_not_fit_is_not_branched(taught: Path, tmp_path: Path) -> None:
+    with Journal.open(taught, BINDING) as journal:
+        journal.append([JournalEntry(deleted(77), LATER)])
+    with pytest.raises(
+        KnowledgeError, match=r"knowledge\.db: no knowledge file can be made of it: row 5: does not fit"
+    ):
+        branch(taught, tmp_path / "b", None, stamp=NOW)
+    assert not (tmp_path / "b").exists()
+
+
+def test_before_the_first_lesson_nothing_is_known(taught: Path, tmp_path: Path) -> None:
+    assert branch(taught, tmp_path / "b", "1999-12-31", stamp=NOW).whence.rows == 0
+
+
+def test_nothing_is_overwritten_and_nonsense_is_refused(taught: Path, tmp_path: Path) -> None:
+    with pytest.raises(KnowledgeError, match="is there already; give the path of a new file"):
+        branch(taught, taught, None, stamp=NOW)
+    with pytest.raises(KnowledgeError, match="holds no lesson 'create-9', and that is no time either"):
+        branch(taught, tmp_path / "b", "create-9", stamp=NOW)
+    (tmp_path / "c-wal").write_bytes(b"lessons")
+    with pytest.raises(KnowledgeError, match="a log c-wal of another file is beside it"):
+        branch(taught, tmp_path / "c", None, stamp=NOW)
+    assert not (tmp_path / "b").exists()
+    assert not (tmp_path / "c").exists()
+
+
+def test_a_branch_is_made_while_a_robot_runs_on_the_file_and_can_be_taught_on(taught: Path, tmp_path: Path) -> None:
+    with Journal.open(taught, BINDING):
+        branch(taught, tmp_path / "b", None, stamp=NOW)
+    with Journal.open(tmp_path / "b", BINDING) as journal:
+        journal.append([JournalEntry(created(4), STAMP)])
+        assert len(journal.events()) == 5
+
+
+def test_what_a_killed_program_left_half_is_in_nobodys_way(taught: Path, tmp_path: Path) -> None:
+    (tmp_path / ".b.unborn").write_bytes(b"half a file")
+    branch(taught, tmp_path / "b", None, stamp=NOW)
+    assert not (tmp_path / ".b.unborn").exists()
+    with Journal.read_only(tmp_path / "b") as journal:
+        assert check_knowledge(journal) == []
+
+
+def test_a_branch_where_nothing_can_be_written_is_refused_in_a_sentence(taught: Path, tmp_path: Path) -> None:
+    (tmp_path / "file").write_bytes(b"")
+    with pytest.raises(KnowledgeError, match="cannot be made"):
+        branch(taught, tmp_path / "file" / "b", None, stamp=NOW)

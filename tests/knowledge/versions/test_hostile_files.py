@@ -1,0 +1,91 @@
+"""Knowledge files made to hang, to fill the memory or to lose lessons: refused before a table is read."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.versions.branch import whence_of
+from tests.knowledge.lessons import BINDING, begun, entry, tamper
+
+ENDLESS = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n)"
+DEEP = "[" * 100_000
+
+
+@pytest.mark.parametrize(
+    ("statements", "named"),
+    [
+        (
+            (
+                "DROP TABLE lesson",
+                f"CREATE VIEW lesson AS {ENDLESS} "
+                "SELECT i AS sequence, i AS command_id, '' AS stamped_at, '' AS event, 0 AS checksum FROM n",
+            ),
+            "view 'lesson'",
+        ),
+        (
+            ("DROP TABLE binding", f"CREATE VIEW binding AS {ENDLESS} SELECT i AS key, i AS value FROM n"),
+            "view 'binding'",
+        ),
+        (
+            ("CREATE TRIGGER extra AFTER INSERT ON lesson BEGIN UPDATE binding SET value = '' ; END",),
+            "trigger 'extra'",
+        ),
+        (
+            (
+                "DROP TRIGGER lesson_stays",
+                "CREATE TRIGGER lesson_stays BEFORE DELETE ON lesson BEGIN SELECT 1; END",
+            ),
+            "trigger 'lesson_stays'",
+        ),
+        (("CREATE INDEX mine ON lesson (length(event))",), "index 'mine'"),
+        (("CREATE VIRTUAL TABLE words USING fts5(text)",), "table 'words'"),
+    ],
+    ids=["endless lessons", "endless binding", "foreign trigger", "changed trigger", "index", "virtual table"],
+)
+def test_a_foreign_schema_is_refused_on_reading_and_writing(
+    path: Path, statements: tuple[str, ...], named: str
+) -> None:
+    tamper(begun(path), *statements)
+    with pytest.raises(KnowledgeError, match=f"holds a {named} that kurt2rt did not make"):
+        Journal.open(path, BINDING)
+    with pytest.raises(KnowledgeError, match=f"holds a {named} that kurt2rt did not make"):
+        Journal.read_only(path)
+
+
+def test_a_table_of_a_newer_kurt2rt_is_left_alone(path: Path) -> None:
+    tamper(begun(path, lessons=1), "CREATE TABLE route (name TEXT PRIMARY KEY) STRICT, WITHOUT ROWID")
+    with Journal.open(path, BINDING) as journal:
+        journal.append([entry(2)])
+        assert len(journal.events()) == 2
+
+
+def test_a_deeply_nested_binding_is_refused(path: Path) -> None:
+    tamper(begun(path), f"UPDATE binding SET value = '{DEEP}' WHERE key = 'feature_names'")
+    with pytest.raises(KnowledgeError, match="table binding is damaged"):
+        Journal.read_only(path)
+
+
+@pytest.mark.parametrize("note", [DEEP, "3", '["a", "b", "c", "d"]'], ids=["nested", "number", "no row"])
+def test_a_damaged_note_on_the_branch_is_told(path: Path, note: str) -> None:
+    with Journal.open(begun(path), BINDING) as journal:
+        journal.note("branch of", note)
+        with pytest.raises(KnowledgeError, match="its note on where it was branched from is damaged"):
+            whence_of(journal)
+
+
+def test_a_second_name_of_a_file_in_use_is_refused_and_no_lesson_is_lost(path: Path) -> None:
+    second = path.with_name("second.knowledge")
+    with Journal.open(path, BINDING) as journal:
+        journal.append([entry(1)])
+        os.link(path, second)
+        with pytest.raises(KnowledgeError, match=r"has 2 names \(hard links\), allowed is 1"):
+            Journal.open(second, BINDING)
+        with pytest.raises(KnowledgeError, match=r"has 2 names \(hard links\), allowed is 1"):
+            Journal.read_only(second)
+        journal.append([entry(2)])
+    second.unlink()
+    with Journal.open(path, BINDING) as journal:
+        assert len(journal.events()) == 2

@@ -1,0 +1,303 @@
+"""Lessons are taken back in a file that no robot runs on."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.core.reinforcement.settings import ReinforcementSettings
+from kurt2rt.core.rla.credit import Credit
+from kurt2rt.core.rla.lesson_history import LessonRecord
+from kurt2rt.core.rla.rla import CRITIC, Lesson, LessonRedone, LessonUndone, Phase, Rla, RlaCreated, RlaRewarded
+from kurt2rt.core.rla.statistics import FIRST_VALUE, Statistics
+from kurt2rt.core.teaching.commands import Undo
+from kurt2rt.knowledge.journal.binding import KnowledgeBinding
+from kurt2rt.knowledge.journal.entry import JournalEntry
+from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.versions.undo import carry_out, plan_redo, plan_undo
+from tests.core.reinforcement.helpers import SIGNALS_ONLY, Track
+from tests.core.rla.helpers import created as known_at
+from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, origin, replaced, rewarded
+from tests.teacher.helpers import teach
+
+
+def rlas(path: Path) -> tuple[Rla, ...]:
+    with Journal.read_only(path) as journal:
+        assert check_knowledge(journal) == []
+        return fold_journal(journal, radius=1.0).rlas
+
+
+def undo(path: Path, lesson: str | None = None) -> LessonRecord:
+    planned = plan_undo(path, lesson, teacher="command line")
+    carry_out(planned, STAMP)
+    (record,) = planned.lessons
+    return record
+
+
+def undo_all_of(path: Path, of: str) -> tuple[LessonRecord, ...]:
+    planned = plan_undo(path, of=of, teacher="command line")
+    carry_out(planned, STAMP)
+    return planned.lessons
+
+
+def redo(path: Path, lesson: str | None = None) -> LessonRecord:
+    planned = plan_redo(path, lesson, teacher="command line")
+    carry_out(planned, STAMP)
+    (record,) = planned.lessons
+    return record
+
+
+def test_the_last_lesson_that_stands_is_undone_and_the_one_before_it_next(path: Path) -> None:
+    begun(path, lessons=2)
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(deleted(1), STAMP)])
+
+    assert undo(path) == LessonRecord(deleted(1), undone=True)
+    assert rlas(path) == (created(1).rla, created(2).rla)
+    assert undo(path) == LessonRecord(created(2), undone=True)
+    assert undo(path) == LessonRecord(created(1), undone=True)
+    assert rlas(path) == ()
+    with pytest.raises(KnowledgeError, match=f"^{path}: holds no lesson that stands; there is nothing to undo$"):
+        undo(path)
+
+
+def test_what_was_undone_last_is_redone_first_with_what_its_reward_was_worth(path: Path) -> None:
+    with Journal.open(begun(path, lessons=2), BINDING) as journal:
+        blame = RlaRewarded(1, -1, 390, origin("blame-1"), (Credit(1, -0.25),))
+        journal.append([JournalEntry(blame, STAMP), JournalEntry(replaced(2, "left", "forward"), STAMP)])
+        journal.checkpoint(Statistics(values={1: 0.25}, numbers={FIRST_VALUE: 0.5}))
+    undo(path, "blame-1")
+    undo(path)
+    assert redo(path) == LessonRecord(replaced(2, "left", "forward"))
+    assert rlas(path)[1].action == "left"
+    assert redo(path) == LessonRecord(blame)
+    with Journal.read_only(path) as journal:
+        assert journal.statistics().values == {1: 0.25}
+    with pytest.raises(KnowledgeError, match=f"^{path}: holds no lesson that was undone; there is nothing to redo$"):
+        redo(path)
+
+
+def test_a_lesson_whose_place_is_taken_is_not_redone(path: Path) -> None:
+    begun(path)
+    undo(path, "create-3")
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(replaced(1, "left", "forward"), STAMP)])
+    undo(path)
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(replaced(1, "right", "forward"), STAMP)])
+    for lesson, why in {
+        "replace-1-left": "'replace-1-right' came in the place of 'replace-1-left' .*; undo that one first; kurt2rt",
+        "create-1": "lesson 'create-1' stands; there is nothing to redo; kurt2rt knowledge lessons shows their ids",
+    }.items():
+        with pytest.raises(KnowledgeError, match=why):
+            redo(path, lesson)
+    with Journal.open(path, BINDING), pytest.raises(KnowledgeError, match="another kurt2rt is writing it"):
+        redo(path, "create-3")
+
+
+def test_what_was_planned_is_made_as_it_was_planned_or_not_at_all(path: Path) -> None:
+    begun(path, lessons=2)
+    planned = plan_undo(path, teacher="command line")
+    assert [record.event for record in planned.lessons] == [created(2)]
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(created(3), STAMP)])
+    carry_out(planned, STAMP)  # not the lesson that came meanwhile
+    assert rlas(path) == (created(1).rla, created(3).rla)
+    with pytest.raises(KnowledgeError, match=f"^{path}: nothing was changed: lesson 'create-2' was undone already"):
+        carry_out(planned, STAMP)
+    assert rlas(path) == (created(1).rla, created(3).rla)
+
+
+def redo_all_of(path: Path, of: str) -> tuple[tuple[LessonRecord, ...], tuple[str, ...]]:
+    planned = plan_redo(path, of=of, teacher="command line")
+    carry_out(planned, STAMP)
+    return planned.lessons, planned.stay
+
+
+def test_all_that_was_undone_of_one_teacher_stands_again(path: Path) -> None:
+    with Journal.open(begun(path), BINDING) as journal:
+        taught = (
+            replaced(1, "left", "forward"),
+            deleted(1),
+            rewarded(2, command_id="praise"),
+            replaced(2, "left", "forward"),
+        )
+        journal.append([JournalEntry(event, STAMP) for event in taught])
+    before = rlas(path)
+    undo_all_of(path, "Hertha")
+    assert rlas(path) == ()
+    redone, reasons = redo_all_of(path, "Hertha")
+    assert [record.event for record in redone] == [*(created(number) for number in (1, 2, 3)), *taught]
+    assert reasons == ()
+    assert rlas(path) == before
+    with pytest.raises(KnowledgeError, match=r"holds no undone lesson by Hertha that can stand again$"):
+        redo_all_of(path, "Hertha")
+
+
+def test_what_came_in_the_place_of_an_undone_lesson_stays_there(path: Path) -> None:
+    begun(path, lessons=2)
+    undo(path)
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(replaced(1, "left", "forward"), STAMP)])
+    undo(path)
+    with Journal.open(path, BINDING) as journal:
+        instead = replace(replaced(1, "right", "forward"), origin=replace(origin("instead"), teacher="Joachim"))
+        journal.append([JournalEntry(instead, STAMP)])
+    redone, (reason,) = redo_all_of(path, "Hertha")
+    assert [record.event for record in redone] == [created(2)]
+    assert reason.startswith("lesson 'instead' came in the place of 'replace-1-left'")
+    with pytest.raises(KnowledgeError, match="holds no undone lesson by Hertha that can stand again: lesson 'instead'"):
+        redo_all_of(path, "Hertha")
+
+
+@pytest.mark.parametrize("rule", ["td_lambda", "edge_weights"])
+def test_a_robot_that_goes_on_counts_a_redone_praise_again(rule: str) -> None:
+    settings = ReinforcementSettings(rule=rule)  # type: ignore[arg-type]
+    robot = Track(known_at(1, (0.0,), "a"), known_at(2, (50.0,), "b"), reinforcement=settings)
+    robot.go(50.0, 20)
+    robot.go(0.0, 20)
+    praise = robot.signal(1).origin.command_id
+    before = robot.worth(1)
+    for change in (LessonUndone(praise, origin("u")), LessonRedone(praise, origin("r"))):
+        robot.school.learning.apply(change)
+    assert robot.worth(1) == pytest.approx(before)
+
+
+def test_the_journal_tells_who_undid_what(path: Path) -> None:
+    undo(begun(path), "create-2")
+    with Journal.read_only(path) as journal:
+        *_, last = journal.entries()
+
+    assert isinstance(last.event, LessonUndone)
+    assert (last.event.lesson, last.event.origin.teacher, last.stamped_at) == ("create-2", "command line", STAMP)
+
+
+def test_a_lesson_that_cannot_be_undone_is_refused_and_nothing_is_written(path: Path) -> None:
+    begun(path)
+    with Journal.open(path, BINDING) as journal:
+        journal.append([JournalEntry(replaced(1, "left", "forward"), STAMP)])
+    for lesson, why in {
+        "create-1": "'replace-1-left' came after 'create-1' .*; undo that one first; kurt2rt knowledge lessons shows",
+        "create-9": "there is no lesson 'create-9'; kurt2rt knowledge lessons shows their ids",
+    }.items():
+        with pytest.raises(KnowledgeError, match=why):
+            undo(path, lesson)
+    with Journal.read_only(path) as journal:
+        assert len(journal.events()) == 4
+
+
+def test_nothing_is_undone_under_a_running_robot(path: Path) -> None:
+    begun(path)
+    with Journal.open(path, BINDING), pytest.raises(KnowledgeError, match="another kurt2rt is writing it"):
+        undo(path)
+
+
+def by_critic(*events: Lesson) -> list[JournalEntry]:
+    """What the critic did on its own."""
+    return [
+        JournalEntry(replace(each, origin=replace(each.origin, teacher=CRITIC, phase=Phase.AUTONOMOUS)), STAMP)
+        for each in events
+        if not isinstance(each, RlaCreated)
+    ]
+
+
+def with_a_critics_work(path: Path) -> Path:
+    """Three RLAs by Hertha; the critic blamed two and had one deleted and one answered anew."""
+    with Journal.open(begun(path), BINDING) as journal:
+        blame = RlaRewarded(1, -1, 390, origin("blame-1"), (Credit(1, -0.25), Credit(2, -0.125), Credit(9, -1.0)))
+        journal.append(by_critic(blame, deleted(2), rewarded(3, 1, "praise-3"), replaced(3, "left", "forward")))
+        journal.checkpoint(Statistics({1: 5}, {(1, 2): 3}, {1: 0.25, 3: 0.625}, {(1, 2): 95.0}, {FIRST_VALUE: 0.5}))
+    return path
+
+
+def test_all_of_the_critic_is_undone_newest_first_and_what_teachers_taught_stays(path: Path) -> None:
+    told = undo_all_of(with_a_critics_work(path), CRITIC)
+
+    assert [record.event.origin.command_id for record in told] == ["replace-3-left", "praise-3", "delete-2", "blame-1"]
+    assert all(record.undone for record in told)
+    assert rlas(path) == (created(1).rla, created(2).rla, created(3).rla)
+    with Journal.read_only(path) as journal:
+        undos = [event for event in journal.events() if isinstance(event, LessonUndone)]
+        assert [event.lesson for event in undos] == [record.event.origin.command_id for record in told]
+        assert len({event.origin.command_id for event in undos}) == 4
+    with pytest.raises(KnowledgeError, match=r"holds no lesson by critic that stands; those that stand are by Hertha$"):
+        undo_all_of(path, CRITIC)
+
+
+def test_an_undone_reward_takes_its_credits_off_the_values(path: Path) -> None:
+    undo_all_of(with_a_critics_work(path), CRITIC)
+    with Journal.read_only(path) as journal:
+        statistics = journal.statistics()
+    assert statistics.values == {1: 0.5, 2: 0.5}  # the third one has the action again of which nothing was said
+    assert replace(statistics, values={}, numbers={}) == Statistics({1: 5}, {(1, 2): 3}, {}, {(1, 2): 95.0})
+
+
+LINE = KnowledgeBinding("0123", ("place",), "wall following", "kurt2")
+
+
+@pytest.mark.parametrize("saved_late", [True, False])
+def test_a_file_is_undone_in_as_a_robot_undoes(path: Path, *, saved_late: bool) -> None:
+    """Blamed until it asks, answered anew, and the answer blamed as well: then all of it is taken back."""
+    robot = Track(known_at(1, (0.0,), "a"), known_at(2, (50.0,), "b"), reinforcement=SIGNALS_ONLY)
+    saved = robot.reinforcement.to_save()
+    for _ in range(3):
+        robot.go(0.0, 400)
+        robot.signal(-1)
+    robot.go(0.0)
+    assert robot.say(teach("c", "again")).accepted
+    robot.go(0.0, 400)
+    robot.signal(-1)
+    robot.go(0.0)
+    if saved_late:
+        saved = robot.reinforcement.to_save()
+    with Journal.open(path, LINE) as journal:
+        journal.append([JournalEntry(event, STAMP) for event in robot.events])
+        journal.checkpoint(saved)
+
+    for number, lesson in enumerate(("signal-4", "again", "signal-3/withdraw-1", "signal-3", "signal-2")):
+        assert robot.say(Undo(f"u-{number}", "Ann", lesson)).accepted
+        assert undo(path, lesson).undone
+        with Journal.read_only(path) as journal:
+            statistics, events = journal.statistics(), journal.events()
+        assert statistics.values == pytest.approx(robot.reinforcement.to_save().values)
+        again = Track(*events, reinforcement=SIGNALS_ONLY, saved=statistics)
+        assert again.worth(1) == pytest.approx(robot.worth(1))
+    assert robot.worth(1) == pytest.approx(0.2, abs=0.01)
+
+
+def test_where_only_weights_of_edges_were_saved_they_follow_at_the_next_start(path: Path) -> None:
+    settings = ReinforcementSettings(rule="edge_weights")
+    robot = Track(known_at(1, (0.0,), "a"), known_at(2, (50.0,), "b"), reinforcement=settings)
+    robot.go(50.0, 20)
+    robot.go(0.0, 20)
+    praise = robot.signal(1)
+    saved = robot.reinforcement.to_save()
+    with Journal.open(path, LINE) as journal:
+        journal.append([JournalEntry(event, STAMP) for event in robot.events])
+        journal.checkpoint(saved)
+    undo(path, praise.origin.command_id)
+    with Journal.read_only(path) as journal:
+        assert journal.statistics() == saved
+        again = Track(*journal.events(), reinforcement=settings, saved=journal.statistics())
+    assert (robot.worth(1), again.worth(1)) == pytest.approx((0.1, 0.0))
+
+
+def test_where_somebody_elses_later_lesson_stands_in_the_way_nothing_is_undone(path: Path) -> None:
+    with Journal.open(with_a_critics_work(path), BINDING) as journal:
+        journal.append([JournalEntry(rewarded(1, 1, "praise-of-hertha"), STAMP)])
+        before = journal.events(), journal.statistics()
+    with pytest.raises(
+        KnowledgeError,
+        match=f"^{path}: nothing was undone: lesson 'praise-of-hertha' came after 'blame-1' .*; undo that one first",
+    ):
+        undo_all_of(path, CRITIC)
+    with Journal.read_only(path) as journal:
+        assert (journal.events(), journal.statistics()) == before
+
+
+def test_in_a_file_without_lessons_there_is_nothing_to_undo_of_anybody(path: Path) -> None:
+    Journal.open(path, BINDING).close()
+    with pytest.raises(KnowledgeError, match=r"holds no lesson by Ann that stands; there is nothing to undo$"):
+        undo_all_of(path, "Ann")

@@ -1,0 +1,38 @@
+"""Simulated time."""
+
+import anyio
+
+from kurt2rt.platform.clock import LockstepClock
+
+
+async def test_world_and_runtime_alternate_and_time_jumps_to_each_deadline() -> None:
+    seen_s: list[float] = []
+    clock = LockstepClock(lambda: seen_s.append(clock.now_s()))
+    assert clock.now_s() == 0.0
+    for number in range(1, 4):
+        await clock.wait_until(number * 0.01)
+        assert clock.now_s() == number * 0.01
+    assert seen_s == [0.0, 0.01, 0.02]  # one step of the world before each deadline
+
+
+async def test_time_never_goes_back() -> None:
+    clock = LockstepClock(lambda: None)
+    await clock.wait_until(5.0)
+    await clock.wait_until(3.0)
+    assert clock.now_s() == 5.0
+
+
+async def test_others_get_their_turn_every_so_often() -> None:
+    clock = LockstepClock(lambda: None, steps_per_checkpoint=10)
+    turns_at_s: list[float] = []
+
+    async def other() -> None:
+        while clock.now_s() < 40:
+            turns_at_s.append(clock.now_s())
+            await anyio.lowlevel.checkpoint()
+
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(other)
+        for number in range(1, 41):
+            await clock.wait_until(float(number))
+    assert turns_at_s == [10.0, 20.0, 30.0]

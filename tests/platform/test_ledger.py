@@ -1,0 +1,43 @@
+"""The ledger of time; only sums and bounds are checked, for the durations in it are real."""
+
+import pytest
+
+from kurt2rt.platform.ledger import Ledger, Share, Stage
+
+
+def tick(ledger: Ledger, lateness_s: float) -> None:
+    ledger.begin(lateness_s)
+    for stage in Stage:
+        ledger.mark(stage)
+    ledger.end()
+
+
+def test_before_the_first_tick_all_shares_are_zero() -> None:
+    ledger = Ledger()
+    assert ledger.tick() == ledger.lateness() == ledger.stage(Stage.DECIDE) == Share(0.0, 0.0, 0.0)
+
+
+def test_shares_are_median_99th_percentile_and_worst() -> None:
+    ledger = Ledger()
+    for microseconds in range(1, 101):
+        tick(ledger, microseconds * 1e-6)
+    share = ledger.lateness()
+    assert (share.median_us, share.p99_us, share.worst_us) == pytest.approx((50.5, 99.01, 100.0), abs=0.01)
+
+
+def test_the_stages_make_up_the_tick() -> None:
+    ledger = Ledger()
+    tick(ledger, 0.0)
+    assert ledger.tick().worst_us == pytest.approx(sum(ledger.stage(stage).worst_us for stage in Stage))
+    assert all(ledger.stage(stage).worst_us >= 0 for stage in Stage)
+
+
+def test_only_the_last_ticks_are_kept() -> None:
+    ledger = Ledger(capacity=10)
+    tick(ledger, 1.0)
+    for _ in range(9):
+        tick(ledger, 0.001)
+    assert ledger.lateness().worst_us == pytest.approx(1e6)
+    tick(ledger, 0.002)
+    assert ledger.lateness().worst_us == pytest.approx(2e3)
+    assert ledger.ticks == 11

@@ -1,0 +1,27 @@
+"""What a start needs for a moment is not what its program takes for as long as it runs."""
+
+import subprocess
+import sys
+
+_STORY = """
+import os
+from pathlib import Path
+from kurt2rt.platform.malloc import give_back_large_pieces
+
+def resident_mb():
+    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+give_back_large_pieces()
+first = bytearray(8_000_000)
+del first
+before_mb = resident_mb()
+large = bytearray(b"x" * 4_000_000)
+small = [bytes(1000) for _ in range(10)]
+del large
+print(resident_mb() - before_mb)
+"""
+
+
+def test_what_was_large_leaves_no_gap_behind_what_came_after_it() -> None:
+    told = subprocess.run([sys.executable, "-c", _STORY], capture_output=True, text=True, check=True, timeout=60)
+    assert float(told.stdout) < 2.0

@@ -1,0 +1,66 @@
+"""Signals are heard for a while, and then by whoever heard them before."""
+
+import signal
+import threading
+from types import FrameType
+
+import pytest
+
+from kurt2rt.platform.signal_handlers import Hearing
+
+
+class Ear:
+    def __init__(self) -> None:
+        self.heard: list[int] = []
+
+    def hear(self, number: int, _frame: FrameType | None) -> None:
+        self.heard.append(number)
+
+
+def test_who_heard_a_signal_before_hears_it_again_afterwards() -> None:
+    first, second = Ear(), Ear()
+    with Hearing({signal.SIGUSR1: first.hear}):
+        with Hearing({signal.SIGUSR1: second.hear, signal.SIGUSR2: second.hear}):
+            signal.raise_signal(signal.SIGUSR1)
+            signal.raise_signal(signal.SIGUSR2)
+        signal.raise_signal(signal.SIGUSR1)
+    assert second.heard == [signal.SIGUSR1, signal.SIGUSR2]
+    assert first.heard == [signal.SIGUSR1]
+    assert signal.getsignal(signal.SIGUSR1) is signal.getsignal(signal.SIGUSR2) is signal.SIG_DFL
+
+
+def test_who_gives_it_back_when_he_hears_it_hears_it_once() -> None:
+    always, once = Ear(), Ear()
+
+    def hear(number: int, frame: FrameType | None) -> None:
+        hearing.give_back()
+        once.hear(number, frame)
+
+    with Hearing({signal.SIGUSR1: always.hear}), (hearing := Hearing({signal.SIGUSR1: hear})):
+        for _ in range(3):
+            signal.raise_signal(signal.SIGUSR1)
+    assert once.heard == [signal.SIGUSR1]
+    assert always.heard == [signal.SIGUSR1] * 2
+
+
+def test_it_is_given_back_by_who_fails() -> None:
+    before = signal.getsignal(signal.SIGINT)
+    with pytest.raises(ZeroDivisionError), Hearing({signal.SIGINT: signal.SIG_IGN}):
+        raise ZeroDivisionError
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_other_threads_hear_no_signals() -> None:
+    problems: list[ValueError] = []
+
+    def try_to() -> None:
+        try:
+            Hearing({signal.SIGUSR1: signal.SIG_IGN}).hear()
+        except ValueError as error:
+            problems.append(error)
+
+    thread = threading.Thread(target=try_to)
+    thread.start()
+    thread.join()
+    assert len(problems) == 1
+    assert signal.getsignal(signal.SIGUSR1) is signal.SIG_DFL

@@ -1,0 +1,73 @@
+"""Real time: that it waits at all, and not how exactly; how exactly is measured by the benchmark."""
+
+import asyncio
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.platform.timerfd_clock import TimerfdClock
+
+
+def open_files() -> int:
+    return len(list(Path("/proc/self/fd").iterdir()))
+
+
+async def test_it_returns_at_the_deadline_and_not_before() -> None:
+    with TimerfdClock() as clock:
+        for _ in range(5):
+            deadline_s = clock.now_s() + 0.003
+            await clock.wait_until(deadline_s)
+            assert clock.now_s() >= deadline_s
+
+
+async def test_a_deadline_that_has_passed_returns_but_gives_others_a_turn() -> None:
+    turns: list[int] = []
+    with TimerfdClock() as clock:
+        waiting = asyncio.ensure_future(asyncio.sleep(0))
+        waiting.add_done_callback(lambda _: turns.append(1))
+        for _ in range(5):
+            await clock.wait_until(clock.now_s() - 1.0)
+        assert turns == [1]
+
+
+async def test_others_run_while_it_waits() -> None:
+    with TimerfdClock() as clock:
+        order: list[str] = []
+        deadline_s = clock.now_s() + 0.02
+        asyncio.get_running_loop().call_soon(order.append, "other")
+        await clock.wait_until(deadline_s)
+        order.append("deadline")
+        assert order == ["other", "deadline"]
+
+
+async def test_a_wait_that_was_given_up_does_not_disturb_the_next_one() -> None:
+    with TimerfdClock() as clock:
+        far = asyncio.ensure_future(clock.wait_until(clock.now_s() + 3600.0))
+        await asyncio.sleep(0)
+        far.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await far
+        deadline_s = clock.now_s() + 0.003
+        await clock.wait_until(deadline_s)
+        assert clock.now_s() >= deadline_s
+
+
+async def test_a_wait_that_was_given_up_at_its_deadline_does_not_end_the_next_one_early() -> None:
+    with TimerfdClock() as clock:
+        near_s = clock.now_s() + 0.002
+        near = asyncio.ensure_future(clock.wait_until(near_s))
+        await asyncio.sleep(0)
+        while clock.now_s() < near_s:
+            pass  # the timer fires while the loop is busy, so nobody has read it yet
+        near.cancel()
+        deadline_s = clock.now_s() + 0.01
+        await clock.wait_until(deadline_s)
+        assert clock.now_s() >= deadline_s
+
+
+async def test_it_gives_its_file_descriptor_back() -> None:
+    before = open_files()
+    for _ in range(3):
+        with TimerfdClock() as clock:
+            await clock.wait_until(clock.now_s() + 0.001)
+    assert open_files() == before

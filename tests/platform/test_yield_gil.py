@@ -1,0 +1,39 @@
+import threading
+import time
+from collections.abc import Callable
+
+import pytest
+
+from kurt2rt.platform.yield_gil import BITE_S, PAUSE_S, politely
+
+
+@pytest.fixture
+def slept(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+    """How long somebody slept; each look at the clock finds a bite over."""
+    slept: list[float] = []
+    looks = iter(range(1_000_000))
+    monkeypatch.setattr(time, "sleep", slept.append)
+    monkeypatch.setattr(time, "perf_counter", lambda: next(looks) * BITE_S)
+    return slept
+
+
+def in_a_thread(work: Callable[[], object]) -> None:
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join()
+
+
+def test_the_items_are_the_same() -> None:
+    assert list(politely(iter(range(10_000)))) == list(range(10_000))
+    assert list(politely([])) == []
+    found: list[int] = []
+    in_a_thread(lambda: found.extend(politely(range(10))))
+    assert found == list(range(10))
+
+
+def test_a_thread_beside_the_loop_pauses_and_the_loops_own_does_not(slept: list[float]) -> None:
+    list(politely(range(10)))
+    assert slept == []
+    in_a_thread(lambda: list(politely(range(10))))
+    assert len(slept) > 5
+    assert set(slept) == {PAUSE_S}

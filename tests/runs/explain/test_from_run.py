@@ -1,0 +1,67 @@
+"""A decision of a recorded run, and when what it went by was taught."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.knowledge.journal.writer import Acknowledgement
+from kurt2rt.runs.explain.from_run import explain_run
+from kurt2rt.runs.recording.recorder import open_run_recorder
+from kurt2rt.runs.recording.run_files import budget_of
+from kurt2rt.runs.recording.run_folder import segments_in
+from kurt2rt.runs.replay.reader import read_run
+from tests.runs.explain.helpers import ROBOT, Lesson
+from tests.runs.recording.desk_recording import ATTACHMENTS, HEAD, NAME
+from tests.runs.replay.stored_runs import STORED
+from tests.teacher.helpers import teach
+
+WRITTEN = "2026-11-22T03:10:07.250+00:00"
+
+
+def taught_run(folder: Path, *, acknowledged: bool) -> Path:
+    """A lesson in the first second of a run; its row was written some seconds later, for the disk was slow."""
+    lesson, command = Lesson(), teach("forward")
+    names = lesson.runtime.definition.names
+    head = replace(HEAD, attended=False)
+    recorder = open_run_recorder(folder, head, ATTACHMENTS, budget_of(100), ROBOT, names, name=NAME)
+    recorder.tend()
+    lesson.go_on(20)
+    lesson.go_on(80, command)
+    for record in lesson.records:
+        recorder.note(record)
+    recorder.write_waiting()
+    if acknowledged:
+        recorder.acknowledged(Acknowledgement(command.command_id, 1, None, WRITTEN))
+    recorder.write_waiting()
+    recorder.close()
+    lesson.close()
+    return folder / NAME
+
+
+@pytest.mark.parametrize(
+    ("acknowledged", "stamp"), [(True, WRITTEN), (False, "2026-11-22T03:10:05+00:00")], ids=["kept", "never written"]
+)
+def test_a_lesson_of_the_run_has_the_date_of_its_row_in_the_journal(
+    tmp_path: Path, acknowledged: bool, stamp: str
+) -> None:
+    run = read_run(taught_run(tmp_path, acknowledged=acknowledged))
+    nearest = explain_run(run, 1.0).facts.basic.nearest
+    assert nearest is not None
+    (act,) = nearest.acts
+    assert act.stamp == stamp
+
+
+def test_what_is_said_of_a_torn_run_is_still_said(tmp_path: Path) -> None:
+    (segment,) = segments_in(taught_run(tmp_path, acknowledged=True))
+    torn = tmp_path / "torn.mcap"
+    torn.write_bytes(segment.read_bytes()[:-40])
+    run = read_run(torn)
+    explain_run(run, 60.0)
+    assert "torn.mcap" in run.trouble
+
+
+def test_a_run_in_which_nothing_was_acknowledged_says_when_the_tick_was() -> None:
+    nearest = explain_run(read_run(STORED / "walls.mcap"), 8.0).facts.basic.nearest
+    assert nearest is not None
+    assert nearest.acts[0].stamp.startswith("2026-03-20T09:46:4")

@@ -1,0 +1,180 @@
+"""A simulated robot is taught, and its decisions are looked into."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.perception.features import FeatureExtractor
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.runs.explain.collect import facts_of
+from kurt2rt.runs.explain.counterfactual import tips
+from kurt2rt.runs.explain.picture import draw_why
+from kurt2rt.runs.explain.reasons import headline
+from kurt2rt.runs.explain.sentences import taught
+from tests.runs.explain.helpers import ROBOT, Lesson
+from tests.teacher.helpers import correct, set_phase, stop, teach
+
+PNG = b"\x89PNG"
+FORWARD = 100
+"""Ticks."""
+
+
+@pytest.fixture
+def lesson() -> Iterator[Lesson]:
+    lesson = Lesson(seed=7)
+    yield lesson
+    lesson.close()
+
+
+def give(lesson: Lesson) -> Lesson:
+    """It knows forward then and, farther on, where a wall comes near, a bow to the right."""
+    lesson.go_on(20)
+    lesson.go_on(FORWARD, teach("forward"))
+    lesson.go_on(1, set_phase(Phase.CORRECTIONS))
+    lesson.go_on(20, correct("bear_right"))
+    return lesson
+
+
+@pytest.fixture(scope="module")
+def taught_lesson() -> Iterator[Lesson]:
+    """One that was given; to be looked at."""
+    lesson = Lesson(seed=7)
+    yield give(lesson)
+    lesson.close()
+
+
+def test_before_the_first_lesson_there_is_nothing_to_compare_with(lesson: Lesson, tmp_path: Path) -> None:
+    lesson.go_on(20)
+    facts = lesson.facts
+    assert (facts.cause, facts.basic.nearest, facts.basic.count) == (Cause.UNKNOWN, None, 0)
+    assert lesson.tips == ()
+    draw_why(facts, (), ROBOT, "nothing yet", tmp_path / "why.png")
+    assert (tmp_path / "why.png").read_bytes().startswith(PNG)
+
+
+def test_the_facts_are_those_of_the_decision(taught_lesson: Lesson) -> None:
+    record, facts = taught_lesson.records[-1], taught_lesson.facts
+    match = record.decision.match
+    assert match is not None
+    nearest = facts.basic.nearest
+    assert nearest is not None
+    assert (nearest.rla_id, nearest.distance, nearest.radius) == (match.rla.rla_id, match.distance, match.radius)
+    runner_up = facts.basic.runner_up
+    assert runner_up is not None
+    assert match.runner_up is not None
+    assert runner_up.rla_id == match.runner_up.rla_id
+    assert runner_up.distance == pytest.approx(match.runner_up_distance, rel=1e-4)
+    assert facts.basic.vector == tuple(record.situation.vector)
+    assert headline(facts) == record.decision.action
+
+
+def test_who_taught_it_when_and_how_often_it_was_used(taught_lesson: Lesson) -> None:
+    story = taught_lesson.facts.basic.driver
+    assert story is not None
+    assert story.action == "bear_right"
+    assert taught(story) == "RLA 2 taught: bear_right; 2026-11-22 03:10:05 UTC (tick 122), by Ann in phase 2."
+    assert (story.uses, story.uses_since) == (1, 1)
+
+
+def test_an_rla_whose_action_was_replaced_tells_instead_of_what(lesson: Lesson) -> None:
+    lesson.go_on(20)
+    lesson.go_on(1, teach("forward"))
+    lesson.go_on(1, set_phase(Phase.CORRECTIONS))
+    lesson.go_on(1, correct("back"))
+    story = lesson.facts.basic.nearest
+    assert story is not None
+    assert [act.text for act in story.acts] == ["RLA 1 taught: forward", "RLA 1 corrected: back instead of forward"]
+    assert story.uses_since is None  # its uses are counted over both actions
+
+
+def test_the_reading_that_would_have_changed_it_does_change_it_and_a_smaller_change_does_not(
+    taught_lesson: Lesson,
+) -> None:
+    facts, runtime = taught_lesson.facts, taught_lesson.runtime
+    extract = FeatureExtractor(runtime.definition, ROBOT.infrared.names)
+
+    def says(sensor: str, counts: int) -> str | None:
+        place = ROBOT.infrared.names.index(sensor)
+        changed = (*facts.infrared_counts[:place], counts, *facts.infrared_counts[place + 1 :])
+        vector = np.array(facts.basic.vector)
+        vector[: len(vector) // 2] = extract(changed, facts.decided)
+        match = runtime.level.system.match(vector)
+        return match.rla.action if match is not None and match.known else None
+
+    found = taught_lesson.tips
+    assert found
+    for tip in found:
+        step = 1 if tip.needed_counts > tip.counts else -1
+        assert says(tip.sensor, tip.counts) == facts.action
+        assert says(tip.sensor, tip.needed_counts) == (None if tip.rla is None else tip.rla.action)
+        assert says(tip.sensor, tip.needed_counts - step) == facts.action
+    changes = [abs(tip.needed_counts - tip.counts) for tip in found]
+    assert changes == sorted(changes)
+
+
+def test_of_those_on_one_condition_only_the_chosen_one_may_answer(taught_lesson: Lesson) -> None:
+    facts = taught_lesson.facts
+    driver = facts.basic.driver
+    assert driver is not None
+    twin = replace(driver, rla_id=3, action="spin_left")
+    crowd = replace(facts, basic=replace(facts.basic, others=(twin, *facts.basic.others)))
+    found = tips(crowd, taught_lesson.runtime.definition, ROBOT.infrared)
+    assert found == taught_lesson.tips
+
+
+def test_where_a_stop_decided_no_reading_would_have_changed_it(lesson: Lesson) -> None:
+    give(lesson).go_on(2, stop())
+    assert lesson.facts.stopped
+    assert lesson.tips == ()
+
+
+def test_lessons_that_cannot_be_saved_are_among_the_facts(lesson: Lesson) -> None:
+    give(lesson).notebook.trouble = "the disk is full"
+    lesson.go_on(1)
+    assert (lesson.facts.cause, lesson.facts.trouble) == (Cause.UNSAVED, "the disk is full")
+
+
+def test_only_the_nearest_are_told_where_few_are_asked_for(taught_lesson: Lesson) -> None:
+    few = facts_of(taught_lesson.runtime, taught_lesson.records[-1], lambda _: "", most=0)
+    assert few.basic.others == ()
+    assert few.basic.count == 2
+
+
+@pytest.mark.parametrize("ending", [pytest.param("png", marks=pytest.mark.deep), "svg"])
+def test_the_picture_shows_the_decision_and_is_the_same_each_time(
+    taught_lesson: Lesson, tmp_path: Path, ending: str
+) -> None:
+    facts, tips = taught_lesson.facts, taught_lesson.tips
+    for name in ("one", "two"):
+        draw_why(facts, tips, ROBOT, "a title", tmp_path / f"{name}.{ending}")
+    drawn = (tmp_path / f"one.{ending}").read_bytes()
+    assert drawn == (tmp_path / f"two.{ending}").read_bytes()
+    if ending == "svg":
+        for words in ("a title", "Now: tick 141", "As taught: RLA 2, bear_right", "Why not RLA 1, forward"):
+            assert words.encode() in drawn
+
+
+def test_what_is_said_of_who_taught_it_does_not_run_into_what_is_near(
+    taught_lesson: Lesson, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """However much there is to say."""
+    facts = taught_lesson.facts
+    driver = facts.basic.driver
+    assert driver is not None
+    act = replace(driver.acts[-1], text="RLA 1416 of turn_right corrected: quarter_turn_right instead of spin_left")
+    much = replace(driver, acts=(act,), uses=1204, uses_since=0, rewards=12, punishments=31, value=0.51)
+    drawn: list[Figure] = []
+    monkeypatch.setattr("kurt2rt.runs.explain.picture.save", lambda figure, _path: drawn.append(figure))
+    crowd = replace(facts, basic=replace(facts.basic, driver=much, nearest=much))
+    draw_why(crowd, taught_lesson.tips, ROBOT, "a title", Path("never.png"))
+    (figure,) = drawn
+    figure.draw_without_rendering()
+    caption = next(text for axes in figure.axes for text in axes.texts if "RLA 1416" in text.get_text())
+    strip = next(axes for axes in figure.axes for text in axes.texts if text.get_text() == "how near each RLA is")
+    assert caption.get_text().count("\n") >= 3
+    assert caption.get_window_extent().y0 > strip.get_window_extent().y1

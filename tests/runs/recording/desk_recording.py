@@ -1,0 +1,97 @@
+"""A robot's mind on ticks that the test makes, and a recorder beside it."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from hal.simulation import SimulatedWorld
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.knowledge.exchange.attachments import attachments_of, fingerprints_of
+from kurt2rt.runs.recording.disk import Disk
+from kurt2rt.runs.recording.live_view import LiveView
+from kurt2rt.runs.recording.recorder import RunRecorder, open_run_recorder
+from kurt2rt.runs.recording.run_files import Budget, budget_of
+from kurt2rt.runs.recording.run_head import RunHead
+from tests.channel.desk import ROBOT, TASK, Desk
+
+BEGAN_AT_NS = 1_795_318_200_000_000_000
+NAME = "20261122T031005Z-wall_following"
+ATTACHMENTS = attachments_of(ROBOT, TASK)
+HEAD = RunHead(
+    kurt2rt="0.1.0",
+    boot="626f6f74",
+    started_at="2026-11-22T03:10:05+00:00",
+    task="wall_following",
+    robot=ROBOT.name,
+    bus="sim",
+    knowledge="",
+    attended=True,
+    asked=True,
+    stopped="",
+    behaviour="",
+    fingerprints=fingerprints_of(ATTACHMENTS),
+)
+
+
+class RecordedDesk:
+    """Whoever uses it says when the recorder writes, unless it is started."""
+
+    def __init__(
+        self,
+        recordings: Path | None,
+        *,
+        disk: Disk | None = None,
+        budget: Budget | None = None,
+        ground: SimulatedWorld | None = None,
+        capacity: int = 3000,
+        name: str = NAME,
+        live: tuple[str, int] | None = None,
+        opened: Callable[[LiveView], None] = lambda _: None,
+        began_at_ns: int | None = BEGAN_AT_NS,
+    ) -> None:
+        self.desk = Desk()
+        self.recorder: RunRecorder = open_run_recorder(
+            recordings,
+            HEAD,
+            ATTACHMENTS,
+            budget or budget_of(100),
+            ROBOT,
+            self.desk.runtime.definition.names,
+            name=name,
+            live=live,
+            opened=opened,
+            ground=ground,
+            began_at_ns=began_at_ns,
+            disk=disk,
+            capacity=capacity,
+        )
+        self.records: list[TickRecord] = []
+
+    def run(self, ticks: int, counts: int | None = None) -> None:
+        for _ in range(ticks):
+            record = self.desk.run(1, counts)
+            self.records.append(record)
+            self.recorder.note(record)
+
+    def second(self, counts: int | None = None) -> None:
+        """A second of ticks, and what the recorder's thread would do in it."""
+        self.run(100, counts)
+        self.recorder.write_waiting()
+        self.recorder.tend()
+
+
+def late_run(recordings: Path) -> Path:
+    """A run whose first files had to make room for later ones, as those of a robot that is never switched off."""
+    desk = RecordedDesk(recordings, budget=Budget(75_000, segment_bytes=20_000))
+    desk.recorder.tend()
+    for second in range(15):
+        desk.second(counts=200 + second)
+    desk.recorder.close()
+    return recordings / NAME
+
+
+def empty_run(recordings: Path) -> Path:
+    """A run that ended before its first tick."""
+    desk = RecordedDesk(recordings)
+    desk.recorder.tend()
+    desk.recorder.close()
+    return recordings / NAME

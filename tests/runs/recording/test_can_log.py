@@ -1,0 +1,155 @@
+"""The CAN log keeps what passed on the bus, and the robot never waits for it."""
+
+import threading
+from collections.abc import Sequence
+
+import can
+import pytest
+
+from hal.bus import open_bus
+from hal.control import encode_brake
+from kurt2rt.runs.recording.can_log import CanLog
+from tests.hal.helpers import CODEC, bus_pair, send
+
+ENCODER = CODEC.message("ENCODER").frame_id
+
+
+class Shelf:
+    """A writer that keeps everything, unless it is told to fail."""
+
+    def __init__(self) -> None:
+        self.frames: list[can.Message] = []
+        self.closed = False
+        self.failure: Exception | None = None
+
+    def write(self, frames: Sequence[can.Message]) -> None:
+        if self.failure is not None:
+            raise self.failure
+        self.frames += frames
+
+    def close(self) -> None:
+        self.closed = True
+
+
+class Stuck(Shelf):
+    """A writer on a disk that does not answer, until it is set free."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.hangs = threading.Event()
+        self.free = threading.Event()
+
+    def write(self, frames: Sequence[can.Message]) -> None:
+        self.hangs.set()
+        self.free.wait()
+        super().write(frames)
+
+
+def encoder(left: int) -> can.Message:
+    return CODEC.message("ENCODER").pack(left, 0)
+
+
+def lefts(shelf: Shelf) -> list[int]:
+    return [CODEC.message("ENCODER").unpack(frame.data)[0] for frame in shelf.frames]
+
+
+def test_what_came_and_went_is_written_in_order_with_direction_and_bus() -> None:
+    robot_end, far_end = bus_pair()
+    shelf = Shelf()
+    with CanLog(shelf, "x.log", robot_end.name) as log:
+        robot_end.tap = log
+        send(far_end, [encoder(1), encoder(2)])
+        robot_end.drain()
+        robot_end.control_port().send(encode_brake())
+    assert [(frame.arbitration_id, frame.is_rx) for frame in shelf.frames] == [
+        (ENCODER, True),
+        (ENCODER, True),
+        (0x01, False),
+    ]
+    assert {frame.channel for frame in shelf.frames} == {"can0"}
+    assert (shelf.closed, log.written, log.lost, log.trouble) == (True, 3, 0, "")
+    for end in (robot_end, far_end):
+        end.shutdown()
+
+
+def test_stamps_are_when_the_bus_carried_the_frame_and_one_frame_sent_twice_has_two() -> None:
+    shelf = Shelf()
+    log = CanLog(shelf, "x.log", "can1")
+    brake = encode_brake()
+    log.on_rx(encoder(1), 0.5)
+    log.on_tx(brake)
+    log.on_tx(brake)
+    log.write_waiting()
+    old, first, second = (frame.timestamp for frame in shelf.frames)
+    assert first - old >= 0.5
+    assert first <= second
+    assert brake.timestamp == 0.0
+    assert shelf.frames[0].channel == "can1"
+
+
+def test_a_writer_that_hangs_costs_frames_but_no_time() -> None:
+    stuck = Stuck()
+    log = CanLog(stuck, "x.log", "can0", capacity_frames=10)
+    log.start()
+    log.on_rx(encoder(0), 0.0)
+    assert stuck.hangs.wait(30.0)
+    for left in range(1, 16):
+        log.on_rx(encoder(left), 0.0)
+    assert (log.written, log.lost) == (0, 5)
+    assert log.trouble == "CAN log x.log: 5 frames lost"
+    stuck.free.set()
+    log.close(30.0)
+    assert lefts(stuck) == list(range(11))
+    assert (log.written, log.lost, stuck.closed) == (11, 5, True)
+
+
+def test_the_end_of_the_run_gives_a_writer_up_that_hangs() -> None:
+    stuck = Stuck()
+    log = CanLog(stuck, "x.log", "can0")
+    log.start()
+    log.on_rx(encoder(0), 0.0)
+    assert stuck.hangs.wait(30.0)
+    log.close(0.0)
+    assert log.trouble == "CAN log x.log: the disk does not answer; the end is missing"
+    stuck.free.set()
+
+
+@pytest.mark.parametrize("failure", [OSError(28, "No space left on device"), ValueError("a bug in a writer")])
+def test_a_writer_that_fails_is_told_of_and_tried_again(failure: Exception) -> None:
+    shelf = Shelf()
+    log = CanLog(shelf, "x.log", "can0")
+    shelf.failure = failure
+    log.on_rx(encoder(1), 0.0)
+    log.on_rx(encoder(2), 0.0)
+    log.write_waiting()
+    assert log.trouble == f"CAN log x.log: writing failed ({failure}), 2 frames lost"
+    shelf.failure = None
+    log.on_rx(encoder(3), 0.0)
+    log.write_waiting()
+    assert (lefts(shelf), log.written, log.lost) == ([3], 1, 2)
+    assert log.trouble == "CAN log x.log: 2 frames lost"
+
+
+def test_a_file_that_cannot_be_closed_is_told_of() -> None:
+    class Unclosable(Shelf):
+        def close(self) -> None:
+            raise OSError(5, "Input/output error")
+
+    with CanLog(Unclosable(), "x.log", "can0") as log:
+        pass
+    assert log.trouble == "CAN log x.log: closing failed ([Errno 5] Input/output error)"
+
+
+def test_the_log_of_a_robot_without_an_interface_can_be_played_on_one() -> None:
+    for bus, channel in (("sim", "can0"), ("shared:desk", "can0"), ("virtual:x", "can0"), ("vcan7", "vcan7")):
+        shelf = Shelf()
+        log = CanLog(shelf, "x.log", bus)
+        log.on_rx(encoder(1), 0.0)
+        log.write_waiting()
+        assert [frame.channel for frame in shelf.frames] == [channel]
+
+
+def test_a_bus_without_a_log_has_nobody_who_looks_on() -> None:
+    bus = open_bus("virtual:nobody looks on")
+    assert bus.tap is None
+    bus.shutdown()

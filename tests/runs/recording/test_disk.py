@@ -1,0 +1,59 @@
+"""The disk under a recording, when its calls fail: nothing stays open, nothing half made stays behind."""
+
+import errno
+import fcntl
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.runs.recording.disk import HeldFolder, RealDisk, is_held
+
+
+def open_files() -> int:
+    return len(list(Path("/proc/self/fd").iterdir()))
+
+
+def fails_with(number: int) -> Callable[..., None]:
+    def fail(*_: object) -> None:
+        raise OSError(number, os.strerror(number))
+
+    return fail
+
+
+def test_a_folder_is_held_until_it_is_let_go(tmp_path: Path) -> None:
+    assert not is_held(tmp_path)
+    held = HeldFolder(tmp_path)
+    assert is_held(tmp_path)
+    with pytest.raises(BlockingIOError):
+        HeldFolder(tmp_path)
+    held.close()
+    assert not is_held(tmp_path)
+
+
+@pytest.mark.parametrize("number", [errno.ENOLCK, errno.EOPNOTSUPP])
+def test_a_disk_without_locks_does_without(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int) -> None:
+    monkeypatch.setattr(fcntl, "flock", fails_with(number))
+    HeldFolder(tmp_path).close()
+    assert not is_held(tmp_path)
+
+
+def test_what_fails_leaves_nothing_open_and_nothing_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    disk, before = RealDisk(), open_files()
+    monkeypatch.setattr(fcntl, "flock", fails_with(errno.EIO))
+    for look in (HeldFolder, is_held):
+        with pytest.raises(OSError, match="Input/output"):
+            look(tmp_path)
+    monkeypatch.setattr(os, "fsync", fails_with(errno.EIO))
+    with pytest.raises(OSError, match="Input/output"):
+        disk.make_folder(tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+    with pytest.raises(OSError, match="Input/output"):
+        disk.create(tmp_path / "0001.mcap")
+    assert open_files() == before
+
+
+def test_room_is_that_of_the_disk_where_a_folder_is_going_to_be(tmp_path: Path) -> None:
+    there = os.statvfs(tmp_path)
+    assert RealDisk().free_bytes(tmp_path / "not" / "yet") == pytest.approx(there.f_bavail * there.f_frsize, rel=0.05)

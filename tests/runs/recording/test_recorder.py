@@ -1,0 +1,491 @@
+"""A run is recorded beside the loop: all that happened is there again, and a bad disk costs no tick."""
+
+import errno
+import json
+import shutil
+import threading
+import time
+from pathlib import Path
+
+from foxglove.messages import Log, LogLevel
+from mcap.reader import make_reader
+
+from hal.guard_reason import GuardReason
+from hal.odometry import PlanePose
+from hal.simulation import Post, SimulatedPlace, Wall, WorldPlan
+from kurt2rt.channel.protocol.health_codec import plain_of, report_of
+from kurt2rt.core.rla.fingerprint import knowledge_hash_of
+from kurt2rt.core.teaching.commands import Teach
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.knowledge.exchange.attachments import KNOWLEDGE, ROBOT, TASK
+from kurt2rt.knowledge.journal.writer import Acknowledgement
+from kurt2rt.runs.recording.disk import RealDisk, WritableFile
+from kurt2rt.runs.recording.entries import TickEntry, tick_entry_of
+from kurt2rt.runs.recording.foxglove_scene import ROBOT as ROBOT_FRAME
+from kurt2rt.runs.recording.foxglove_scene import START, WORLD, timestamp, transforms
+from kurt2rt.runs.recording.run_files import Budget
+from kurt2rt.runs.recording.run_folder import runs_in, segments_in
+from kurt2rt.runs.recording.run_head import RUN_METADATA, decode_head
+from kurt2rt.runs.recording.segment_reader import LoggedMessage, SegmentReader
+from kurt2rt.runs.recording.tick_json import decode_tick
+from kurt2rt.runs.recording.topics import GROUND, HEALTH, LESSON, LOG, POSE, SCAN, SCENE, SITUATION, TF, TICK, TRUTH
+from tests.runs.recording.desk_recording import ATTACHMENTS, BEGAN_AT_NS, HEAD, NAME, RecordedDesk
+from tests.runs.recording.test_segment import FailingDisk
+from tests.service.health.reports import WELL
+
+
+def messages_of(run: Path, *topics: str) -> list[LoggedMessage]:
+    return [each for segment in segments_in(run) for each in SegmentReader(segment).messages(topics or None)]
+
+
+def entries_of(run: Path) -> list[TickEntry]:
+    return [decode_tick(each.data) for each in messages_of(run, TICK)]
+
+
+def entry_of(record: TickRecord) -> TickEntry:
+    known = record.knowledge
+    hashed = None if known is None else knowledge_hash_of(sorted(known, key=lambda rla: rla.rla_id))
+    return tick_entry_of(record, saved=False, knowledge=hashed)
+
+
+def test_every_tick_is_there_again_to_the_last_bit(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path)
+    desk.recorder.tend()
+    desk.second(counts=200)
+    desk.desk.runtime.inbox.put(Teach("t-1", "Ann", "forward"))
+    desk.second(counts=203)
+    desk.recorder.close()
+    assert desk.recorder.trouble == ""
+    assert desk.recorder.written == 200
+    assert entries_of(tmp_path / NAME) == [entry_of(record) for record in desk.records]
+    lessons = [json.loads(each.data) for each in messages_of(tmp_path / NAME, LESSON)]
+    assert [each["event"]["command_id"] for each in lessons] == ["t-1"]
+
+
+def test_the_run_says_what_it_was_and_holds_what_a_replay_needs(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path)
+    desk.recorder.tend()
+    desk.recorder.close()
+    (segment,) = segments_in(tmp_path / NAME)
+    head = SegmentReader(segment).head()
+    assert decode_head(head.metadata[RUN_METADATA]) == HEAD
+    assert head.attachments == ATTACHMENTS
+    assert KNOWLEDGE in head.attachments
+
+
+def test_foxglove_has_scans_poses_scenes_and_a_log_by_its_own_schemas(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path)
+    desk.recorder.tend()
+    desk.second(counts=200)
+    desk.recorder.asked("I know nothing yet, teach me")
+    desk.recorder.acknowledged(Acknowledgement("t-1", 1, None, "2026-11-22T03:10:05.000+00:00"))
+    desk.recorder.close()
+    said = messages_of(tmp_path / NAME)
+    times = {topic: sum(each.topic == topic for each in said) for topic in (SCAN, POSE, TF, SCENE, SITUATION)}
+    assert times == {SCAN: 20, POSE: 20, TF: 20, SCENE: 10, SITUATION: 10}
+    schemas = {each.topic: each.schema for each in said}
+    assert schemas[SCAN] == "foxglove.LaserScan"
+    assert schemas[POSE] == "foxglove.PoseInFrame"
+    assert schemas[TF] == "foxglove.FrameTransforms"
+    assert schemas[SCENE] == "foxglove.SceneUpdate"
+    assert schemas[LOG] == "foxglove.Log"
+    assert b"I know nothing yet, teach me" in b"".join(each.data for each in said if each.topic == LOG)
+    first = desk.records[0]
+    assert said[0].time_ns == BEGAN_AT_NS + round(first.now_s * 1e9)
+
+
+def test_a_run_goes_on_in_the_next_file_when_one_is_full_and_each_opens_alone(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path, budget=Budget(10_000_000, segment_bytes=20_000))
+    desk.recorder.tend()
+    for second in range(8):
+        desk.second(counts=200 + second)
+    desk.recorder.close()
+    segments = segments_in(tmp_path / NAME)
+    assert len(segments) > 2
+    for segment in segments:
+        with segment.open("rb") as file:
+            summary = make_reader(file, validate_crcs=True).get_summary()
+        assert summary is not None
+        assert summary.chunk_indexes
+        assert {channel.topic for channel in summary.channels.values()} >= {TICK, SCAN, SCENE}
+        assert decode_head(SegmentReader(segment).head().metadata[RUN_METADATA]) == HEAD
+    settings = {name: ATTACHMENTS[name] for name in (ROBOT, TASK)}  # with which a later one can be understood alone
+    assert SegmentReader(segments[1]).head().attachments == settings
+    assert [each.tick for each in entries_of(tmp_path / NAME)] == [record.tick for record in desk.records]
+
+
+def test_older_runs_make_room_then_the_oldest_files_of_this_one(tmp_path: Path) -> None:
+    older = RecordedDesk(tmp_path, name="20251231T235959Z-wall_following")
+    older.recorder.tend()
+    older.second()
+    older.recorder.close()
+    desk = RecordedDesk(tmp_path, budget=Budget(75_000, segment_bytes=20_000))
+    desk.recorder.tend()
+    for second in range(15):
+        desk.second(counts=200 + second)
+    desk.recorder.close()
+    (run,) = runs_in(tmp_path)
+    assert run.name == NAME
+    segments = segments_in(run)
+    assert sum(segment.stat().st_size for segment in segments) <= 100_000
+    assert segments[0].name != "0001.mcap"
+    assert entries_of(run)[-1].tick == desk.records[-1].tick
+
+
+def test_another_budget_is_kept_to_from_then_on(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path)
+    desk.recorder.tend()
+    desk.second()
+    desk.recorder.take(Budget(75_000, segment_bytes=20_000))
+    for second in range(15):
+        desk.second(counts=200 + second)
+    desk.recorder.close()
+    assert sum(segment.stat().st_size for segment in segments_in(tmp_path / NAME)) <= 100_000
+    assert entries_of(tmp_path / NAME)[-1].tick == desk.records[-1].tick
+
+
+def test_a_run_that_another_program_records_is_left_alone(tmp_path: Path) -> None:
+    other = RecordedDesk(tmp_path, name="20251231T235959Z-wall_following")
+    other.recorder.tend()
+    other.second()
+    desk = RecordedDesk(tmp_path, budget=Budget(20_000, segment_bytes=10_000))
+    desk.recorder.tend()
+    desk.second()
+    other.second()
+    desk.recorder.close()
+    other.recorder.close()
+    assert len(entries_of(tmp_path / "20251231T235959Z-wall_following")) == 200
+
+
+def test_a_disk_that_fails_once_costs_nothing(tmp_path: Path) -> None:
+    for failing in range(6):
+        failures = iter([*[None] * failing, OSError(errno.EIO, "input/output error")])
+        desk = RecordedDesk(tmp_path / str(failing), disk=FailingDisk(failures))
+        for _ in range(3):
+            desk.second()
+        desk.recorder.close()
+        assert list(failures) == []  # it did fail
+        assert desk.recorder.trouble == ""
+        assert [each.tick for each in entries_of(tmp_path / str(failing) / NAME)] == [
+            each.tick for each in desk.records
+        ]
+
+
+class AbsentDisk(RealDisk):
+    """A disk that is not there yet."""
+
+    def __init__(self) -> None:
+        self.there = False
+
+    def make_folder(self, path: Path) -> None:
+        if not self.there:
+            raise OSError(errno.ENOENT, "no such device")
+        super().make_folder(path)
+
+
+def test_a_disk_that_comes_later_gets_what_waited_for_it(tmp_path: Path) -> None:
+    disk = AbsentDisk()
+    desk = RecordedDesk(tmp_path, disk=disk)
+    desk.recorder.tend()
+    desk.second()
+    assert "no such device" in desk.recorder.trouble
+    disk.there = True
+    desk.second()
+    desk.second()
+    desk.recorder.close()
+    assert desk.recorder.trouble == ""
+    assert len(entries_of(tmp_path / NAME)) == 300
+
+
+def test_what_finds_no_room_is_counted_and_the_run_shows_the_gap(tmp_path: Path) -> None:
+    disk = AbsentDisk()
+    desk = RecordedDesk(tmp_path, disk=disk, capacity=150)
+    desk.recorder.tend()
+    desk.second()
+    desk.second()
+    assert desk.recorder.dropped == 50
+    disk.there = True
+    desk.recorder.tend()
+    desk.recorder.write_waiting()
+    desk.second()
+    desk.recorder.close()
+    assert "50 of its ticks and notes lost" in desk.recorder.trouble
+    ticks = [each.tick for each in entries_of(tmp_path / NAME)]
+    assert ticks == [each.tick for each in desk.records[:150]] + [each.tick for each in desk.records[200:]]
+
+
+class FullDisk(RealDisk):
+    """A disk with so much room."""
+
+    def __init__(self, free: int) -> None:
+        self.free = free
+
+    def free_bytes(self, path: Path) -> int:  # noqa: ARG002 - it has this one disk
+        return self.free
+
+
+def test_the_last_room_on_the_disk_is_left_for_lessons(tmp_path: Path) -> None:
+    disk = FullDisk(1_000_000_000)
+    desk = RecordedDesk(tmp_path, disk=disk)
+    desk.recorder.tend()
+    desk.second()
+    assert desk.recorder.trouble == ""
+    disk.free = 100_000_000
+    desk.recorder.tend()
+    desk.second()
+    assert "100 MB are free" in desk.recorder.trouble
+    disk.free = 1_000_000_000
+    desk.second()
+    desk.second()
+    desk.recorder.close()
+    assert desk.recorder.trouble == ""
+    assert len(entries_of(tmp_path / NAME)) == len(desk.records)
+
+
+class HangingDisk(RealDisk):
+    """A disk that does not answer, until it is set free."""
+
+    def __init__(self) -> None:
+        self.hangs = threading.Event()
+        self.free = threading.Event()
+
+    def create(self, path: Path) -> WritableFile:
+        self.hangs.set()
+        self.free.wait()
+        return super().create(path)
+
+
+def test_the_loop_goes_on_while_the_disk_hangs(tmp_path: Path) -> None:
+    disk = HangingDisk()
+    desk = RecordedDesk(tmp_path, disk=disk, capacity=120)
+    desk.recorder.start()
+    desk.run(1)
+    assert disk.hangs.wait(10.0)
+    desk.run(129)
+    assert desk.recorder.dropped == 10
+    desk.recorder.close(patience_s=0.01)
+    assert desk.recorder.dropped == 130
+    assert "the disk does not answer" in desk.recorder.trouble
+    disk.free.set()
+
+
+def test_the_thread_writes_all_that_was_noted(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path)
+    with desk.recorder:
+        desk.run(250)
+    assert desk.recorder.trouble == ""
+    assert [each.tick for each in entries_of(tmp_path / NAME)] == [each.tick for each in desk.records]
+
+
+def test_two_runs_of_one_second_have_a_folder_each(tmp_path: Path) -> None:
+    for _ in range(2):
+        desk = RecordedDesk(tmp_path)
+        desk.recorder.tend()
+        desk.recorder.close()
+    assert [run.name for run in runs_in(tmp_path)] == [NAME, f"{NAME}-2"]
+
+
+def test_a_run_that_is_deleted_while_it_is_recorded_begins_anew(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path / "runs")
+    desk.recorder.tend()
+    desk.second()
+    shutil.rmtree(tmp_path / "runs")
+    desk.second()
+    desk.second()
+    desk.recorder.close()
+    assert [each.tick for each in entries_of(tmp_path / "runs" / NAME)] == [each.tick for each in desk.records[200:]]
+    (segment,) = segments_in(tmp_path / "runs" / NAME)
+    assert SegmentReader(segment).head().attachments == ATTACHMENTS
+    assert "200 of its ticks and notes lost" in desk.recorder.trouble
+
+
+def test_a_run_that_is_deleted_while_it_rests_begins_anew_too(tmp_path: Path) -> None:
+    disk = FullDisk(1_000_000_000)
+    desk = RecordedDesk(tmp_path, disk=disk)
+    desk.recorder.tend()
+    desk.second()
+    disk.free = 100_000_000
+    desk.recorder.tend()
+    shutil.rmtree(tmp_path / NAME)
+    disk.free = 1_000_000_000
+    desk.second()
+    desk.second()
+    desk.recorder.close()
+    assert [each.tick for each in entries_of(tmp_path / NAME)] == [each.tick for each in desk.records[100:]]
+    (segment,) = segments_in(tmp_path / NAME)
+    assert SegmentReader(segment).head().attachments == ATTACHMENTS
+    assert "100 of its ticks and notes lost" in desk.recorder.trouble
+
+
+def test_a_run_that_rests_is_left_alone_too(tmp_path: Path) -> None:
+    disk = FullDisk(1_000_000_000)
+    other = RecordedDesk(tmp_path, disk=disk, name="20251231T235959Z-wall_following")
+    other.recorder.tend()
+    other.second()
+    disk.free = 100_000_000
+    other.second()
+    assert "100 MB are free" in other.recorder.trouble
+    desk = RecordedDesk(tmp_path, disk=disk)
+    desk.recorder.tend()
+    desk.recorder.close()
+    disk.free = 1_000_000_000
+    other.second()
+    other.recorder.close()
+    assert other.recorder.trouble == ""
+    assert len(entries_of(tmp_path / "20251231T235959Z-wall_following")) == 300
+
+
+def test_where_there_is_no_room_no_folder_is_left(tmp_path: Path) -> None:
+    empty = tmp_path / "runs" / "20251231T235959Z-wall_following"
+    empty.mkdir(parents=True)
+    desk = RecordedDesk(tmp_path / "runs", disk=FullDisk(100))
+    desk.recorder.tend()
+    desk.second()
+    desk.recorder.close()
+    assert "0 MB are free" in desk.recorder.trouble
+    assert desk.recorder.dropped == 100
+    assert runs_in(tmp_path / "runs") == []
+
+
+class WithoutNames(RealDisk):
+    """A disk that cannot keep the names of new files."""
+
+    def create(self, path: Path) -> WritableFile:
+        super().create(path).close()
+        raise OSError(errno.EIO, f"input/output error: {path.name}")
+
+
+def test_a_run_of_which_no_file_could_be_made_leaves_no_folder(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path, disk=WithoutNames())
+    desk.recorder.tend()
+    desk.second()
+    desk.recorder.close()
+    assert "input/output error" in desk.recorder.trouble
+    assert desk.recorder.run is None
+    assert runs_in(tmp_path) == []
+
+
+def test_a_start_that_fails_leaves_no_run(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path / "runs")
+    with desk.recorder:
+        desk.recorder.asked("is anybody there?")
+    assert desk.recorder.trouble == ""
+    assert desk.recorder.run is None
+    assert not (tmp_path / "runs").exists()
+
+
+def test_the_end_that_the_disk_does_not_take_is_counted(tmp_path: Path) -> None:
+    failures = iter([None, None, *[OSError(errno.ENOSPC, "no space left on device")] * 9])
+    desk = RecordedDesk(tmp_path, disk=FailingDisk(failures))
+    desk.recorder.tend()
+    desk.second()
+    desk.recorder.close()
+    assert (desk.recorder.written, desk.recorder.dropped) == (0, 100)
+    assert "the end of the recording is missing" in desk.recorder.trouble
+    assert "100 of its ticks and notes lost" in desk.recorder.trouble
+
+
+class Unsayable:
+    """A question that cannot be said."""
+
+    def __str__(self) -> str:
+        raise ZeroDivisionError("unsayable")
+
+
+def test_a_note_that_cannot_be_written_is_counted_and_all_others_are_kept(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path)
+    with desk.recorder:
+        desk.run(50)
+        desk.recorder.asked(Unsayable())
+        desk.run(50)
+    assert len(entries_of(tmp_path / NAME)) == 100
+    assert (desk.recorder.written, desk.recorder.dropped) == (100, 1)
+    assert "a note cannot be written: ZeroDivisionError('unsayable')" in desk.recorder.trouble
+
+
+def test_what_is_noted_before_the_first_tick_has_the_time_of_the_start(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path, began_at_ns=None)
+    started_ns = time.time_ns()
+    desk.recorder.asked("I know nothing yet, teach me")
+    desk.recorder.tend()
+    desk.second()
+    desk.recorder.close()
+    times = [each.time_ns for each in messages_of(tmp_path / NAME)]
+    assert min(times) >= started_ns - 60_000_000_000  # the wall clock may be set
+    assert times == sorted(times)
+
+
+def test_the_health_report_is_kept_beside_the_ticks(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path)
+    desk.recorder.tend()
+    desk.run(1)
+    desk.recorder.healthy(plain_of(WELL))
+    desk.recorder.close()
+    (told,) = messages_of(tmp_path / NAME, HEALTH)
+    assert report_of(json.loads(told.data)) == WELL
+
+
+class Elsewhere:
+    """The ground under a simulated robot."""
+
+    def place(self) -> SimulatedPlace:
+        return SimulatedPlace(1.0, 2.0, 0.0, 0.0, 0, 0)
+
+    def world(self) -> WorldPlan:
+        corners = ((0.0, 0.0), (3.0, 0.0), (3.0, 0.1))
+        return WorldPlan(0, "a", (3.0, 3.0), corners, (Wall("north", corners),), (Post("post", 1.0, 1.0, 0.1),))
+
+    def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
+        raise AssertionError(name, dx_m, dy_m)
+
+    def put_robot(self, x_m: float, y_m: float, heading_rad: float) -> None:
+        raise AssertionError(x_m, y_m, heading_rad)
+
+    def put_robot_back(self) -> None:
+        raise AssertionError
+
+
+def test_of_a_simulated_robot_its_true_place_and_its_world_are_kept(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path, ground=Elsewhere())
+    desk.recorder.tend()
+    for _ in range(6):
+        desk.second()
+    desk.recorder.close()
+    assert len(messages_of(tmp_path / NAME, TRUTH)) == 120
+    assert len(messages_of(tmp_path / NAME, GROUND)) == 2
+
+
+def test_the_log_warns_of_what_the_guard_changed_but_not_of_the_slew_limit_where_each_turn_begins(
+    tmp_path: Path,
+) -> None:
+    desk = RecordedDesk(tmp_path)
+    desk.recorder.tend()
+    desk.second()
+    for reasons in ((GuardReason.SLEW_LIMIT,), (GuardReason.FRONT_BUMPER, GuardReason.SLEW_LIMIT)):
+        desk.desk.robot.refuses = reasons
+        desk.second()
+    desk.recorder.close()
+    lines = [each for each in messages_of(tmp_path / NAME, LOG) if b"guard: " in each.data]
+    said = [
+        Log(timestamp=timestamp(each.time_ns), level=level, message=message, name="kurt2rt").encode()
+        for each, level, message in zip(
+            lines,
+            (LogLevel.Debug, LogLevel.Warning),
+            ("guard: slew limit", "guard: front bumper, slew limit"),
+            strict=True,
+        )
+    ]
+    assert [each.data for each in lines] == said
+
+
+def test_each_transform_message_holds_the_whole_tree_of_frames_as_a_viewer_seeks_to_one(tmp_path: Path) -> None:
+    desk = RecordedDesk(tmp_path, ground=Elsewhere())
+    desk.recorder.tend()
+    desk.second()
+    desk.recorder.close()
+    standing, began = PlanePose(0.0, 0.0, 0.0), PlanePose(1.0, 2.0, 0.0)
+    said = messages_of(tmp_path / NAME, TF)
+    assert len(said) == 20
+    for each in said:
+        tree = transforms([(WORLD, START, began), (START, ROBOT_FRAME, standing)], each.time_ns)
+        assert each.data == tree.encode()

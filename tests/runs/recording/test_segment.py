@@ -1,0 +1,172 @@
+"""A file of a recording: what a power cut leaves of it, and a disk that fails for a while."""
+
+import errno
+import random
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import zstandard
+from foxglove import Channel, Context
+from mcap.data_stream import RecordBuilder
+from mcap.records import Chunk, Header
+from mcap.writer import MCAP0_MAGIC
+
+from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.runs.recording.disk import RealDisk, WritableFile
+from kurt2rt.runs.recording.segment import KEPT_BYTES, Segment
+from kurt2rt.runs.recording.segment_reader import SegmentReader
+
+
+class FailingDisk(RealDisk):
+    """A real disk of which calls fail, in turn, as `failures` says: None succeeds."""
+
+    def __init__(self, failures: Iterator[OSError | None]) -> None:
+        self.failures = failures
+
+    def create(self, path: Path) -> WritableFile:
+        return FailingFile(super().create(path), self.failures)
+
+
+class FailingFile:
+    def __init__(self, file: WritableFile, failures: Iterator[OSError | None]) -> None:
+        self._file = file
+        self._failures = failures
+
+    def write_at(self, offset: int, data: bytes | bytearray) -> None:
+        failure = next(self._failures, None)
+        if failure is not None:
+            self._file.write_at(offset, data[: len(data) // 2])  # a disk that is full takes a part
+            raise failure
+        self._file.write_at(offset, data)
+
+    def sync(self) -> None:
+        failure = next(self._failures, None)
+        if failure is not None:
+            raise failure
+        self._file.sync()
+
+    def close(self) -> None:
+        self._file.close()
+
+
+def said(path: Path) -> list[int]:
+    return [int(message.data) for message in SegmentReader(path).messages()]
+
+
+@pytest.mark.parametrize("every_bytes", [4000, pytest.param(1000, marks=pytest.mark.deep)])
+def test_what_was_saved_survives_a_cut_at_any_place(tmp_path: Path, every_bytes: int) -> None:
+    context = Context()
+    channel = Channel("/number", message_encoding="json", context=context)
+    segment = Segment(tmp_path / "0001.mcap", context, RealDisk())
+    segment.describe("run", {"task": "wall_following"})
+    segment.attach("settings/x.yaml", b"a: 1\n", 5)
+    saved: list[tuple[int, int]] = []
+    for number in range(1, 2001):
+        channel.log(b"%d" % number, log_time=number)
+        if number % 25 == 0:
+            segment.save()
+            saved.append((segment.path.stat().st_size, number))
+    segment.close()
+    whole = segment.path.read_bytes()
+    assert said(segment.path) == list(range(1, 2001))
+    cut = tmp_path / "0002.mcap"
+    for length in (*range(0, len(whole), every_bytes), len(whole) - 1):
+        cut.write_bytes(whole[:length])
+        reader = SegmentReader(cut)
+        numbers = [int(message.data) for message in reader.messages()]
+        assert numbers == list(range(1, len(numbers) + 1))
+        assert len(numbers) >= max((number for size, number in saved if size <= length), default=0)
+        assert str(cut) in reader.torn
+
+
+def test_a_file_with_holes_is_read_up_to_the_first(tmp_path: Path) -> None:
+    """After a power cut a file may have its length, and zeros where the last data should be."""
+    context = Context()
+    channel = Channel("/number", message_encoding="json", context=context)
+    segment = Segment(tmp_path / "0001.mcap", context, RealDisk())
+    for number in range(1, 201):
+        channel.log(b"%d" % number, log_time=number)
+        if number == 100:
+            segment.save()
+            kept = segment.path.stat().st_size
+    segment.close()
+    whole = segment.path.read_bytes()
+    for hole in range(kept, len(whole), 97):
+        segment.path.write_bytes(whole[:hole] + bytes(len(whole) - hole))
+        assert said(segment.path)[:100] == list(range(1, 101))
+
+
+def test_metadata_and_attachments_come_before_the_first_message(tmp_path: Path) -> None:
+    context = Context()
+    channel = Channel("/number", message_encoding="json", context=context)
+    segment = Segment(tmp_path / "0001.mcap", context, RealDisk())
+    segment.describe("run", {"task": "wall_following"})
+    segment.attach("statistics.json", b"{}", 5)
+    segment.save()
+    channel.log(b"1", log_time=1)
+    segment.save()
+    head = SegmentReader(segment.path).head()
+    assert head.metadata["run"] == {"task": "wall_following"}
+    assert head.attachments == {"statistics.json": b"{}"}
+    segment.close()
+
+
+@pytest.mark.parametrize("error", [errno.ENOSPC, errno.EIO, errno.EINTR])
+def test_a_call_that_fails_costs_nothing(tmp_path: Path, error: int) -> None:
+    for failing in range(8):
+        context = Context()
+        channel = Channel("/number", message_encoding="json", context=context)
+        failures = iter([*[None] * failing, OSError(error, "as the test says")])
+        segment = Segment(tmp_path / f"{failing + 1:04d}.mcap", context, FailingDisk(failures))
+        failed = 0
+        for number in range(1, 101):
+            channel.log(b"%d" % number, log_time=number)
+            if number % 20 == 0:
+                try:
+                    segment.save()
+                except OSError:
+                    failed += 1
+        segment.close()
+        assert failed == 1
+        assert said(segment.path) == list(range(1, 101))
+
+
+def test_a_disk_that_fails_for_long_is_given_up(tmp_path: Path) -> None:
+    context = Context()
+    channel = Channel("/noise", message_encoding="json", context=context)
+    full = iter(lambda: OSError(errno.ENOSPC, "no space left on device"), None)
+    segment = Segment(tmp_path / "0001.mcap", context, FailingDisk(full))
+    chance = random.Random(1)
+    while not segment.is_beyond_hope:
+        channel.log(chance.randbytes(KEPT_BYTES // 10), log_time=1)
+        with pytest.raises(OSError, match="no space"):
+            segment.save()
+    segment.give_up()
+    assert segment.size_bytes < 2 * KEPT_BYTES
+
+
+def with_chunk(path: Path, data: bytes, uncompressed_size: int, compression: str = "zstd") -> Path:
+    """Write a file with one chunk whose header says `uncompressed_size`."""
+    builder = RecordBuilder()
+    Header(profile="", library="test").write(builder)
+    Chunk(compression, data, 0, 0, 0, uncompressed_size).write(builder)
+    path.write_bytes(MCAP0_MAGIC + bytes(builder.end()))  # type: ignore[no-untyped-call]
+    return path
+
+
+MANY = 100_000_000
+
+
+@pytest.mark.parametrize("told", [MANY, 10], ids=["chunk tells its size", "only zstd's header does"])
+def test_a_chunk_that_would_fill_the_memory_is_refused(tmp_path: Path, told: int) -> None:
+    packed = zstandard.compress(bytes(MANY))
+    path = with_chunk(tmp_path / "0001.mcap", packed, told)
+    with pytest.raises(RecordingError, match=f"a chunk of {len(packed)} bytes unpacks to {MANY}, allowed are"):
+        SegmentReader(path).head()
+
+
+def test_a_chunk_of_a_compression_without_limit_is_refused(tmp_path: Path) -> None:
+    path = with_chunk(tmp_path / "0001.mcap", bytes(100), 100, "lz4")
+    with pytest.raises(RecordingError, match="a chunk is packed with 'lz4', allowed is zstd"):
+        SegmentReader(path).head()

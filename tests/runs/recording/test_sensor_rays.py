@@ -1,0 +1,42 @@
+"""Where the distance sensors see something, from the robot's centre."""
+
+import math
+
+import pytest
+
+from hal.robot_settings import load_robot
+from kurt2rt.runs.recording.sensor_rays import SCAN_RAYS, SensorRays
+
+INFRARED = load_robot().infrared
+NOTHING = [INFRARED.floor_counts] * len(INFRARED.sensors)
+
+
+def seen_by(name: str, distance_m: float) -> list[int]:
+    """Counts of a robot that sees something with one sensor alone."""
+    counts = list(NOTHING)
+    counts[INFRARED.names.index(name)] = round(INFRARED.counts_at(distance_m))
+    return counts
+
+
+def test_a_wall_ahead_stands_at_its_distance_from_the_centre() -> None:
+    rays = SensorRays(INFRARED)
+    counts = seen_by("s11", 0.3)
+    scan = rays.scan_m(counts)
+    assert scan[0] == pytest.approx(0.217 + 0.3, abs=0.005)
+    assert sum(math.isfinite(each) for each in scan) == 1
+    ray = rays.of(counts)[INFRARED.names.index("s11")]
+    assert (ray.from_x_m, ray.from_y_m, ray.to_y_m) == (0.217, 0.0, 0.0)
+    assert ray.seen
+
+
+def test_a_wall_to_the_left_is_a_quarter_turn_on() -> None:
+    scan = SensorRays(INFRARED).scan_m(seen_by("s3", 0.2))
+    (place,) = [number for number, each in enumerate(scan) if math.isfinite(each)]
+    assert place == round(SCAN_RAYS * math.degrees(math.atan2(0.365, 0.047)) / 360)
+    assert scan[place] == pytest.approx(math.hypot(0.047, 0.365), abs=0.005)
+
+
+def test_where_nothing_is_seen_the_scan_is_empty_and_rays_end_far_away() -> None:
+    rays = SensorRays(INFRARED)
+    assert all(math.isinf(each) for each in rays.scan_m(NOTHING))
+    assert not any(ray.seen for ray in rays.of(NOTHING))

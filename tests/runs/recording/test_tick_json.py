@@ -1,0 +1,161 @@
+"""Every tick comes back from its entry as it was, to the last bit."""
+
+from typing import get_args
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as some
+
+from hal.guard_reason import GuardReason
+from hal.robot import GuardResult, SensorReadings, WheelSpeeds
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
+from kurt2rt.core.decision.junction_event import JunctionEvent
+from kurt2rt.core.decision.plan_step import Course, PlanStep
+from kurt2rt.core.expectations.surprise import Surprise
+from kurt2rt.core.rla.credit import Credit
+from kurt2rt.core.rla.rla import LessonUndone, Origin, Phase, Rla, RlaCreated, RlaRewarded
+from kurt2rt.core.teaching.commands import Command, Seek, SetPhase
+from kurt2rt.core.teaching.system_events import Happening
+from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.runs.recording.command_json import decode_command, encode_command
+from kurt2rt.runs.recording.entries import DecisionEntry, MatchEntry, MidEntry, OpinionEntry, ResultEntry, TickEntry
+from kurt2rt.runs.recording.tick_json import decode_tick, encode_tick
+
+KINDS = (*get_args(Command), *get_args(Happening))
+
+number = some.floats(allow_nan=False)
+text = some.text(some.characters(codec="utf-8"), max_size=8)
+maybe_id = some.none() | some.integers(1, 2**40)
+wheels = some.builds(WheelSpeeds, number, number)
+senses = some.builds(
+    SensorReadings,
+    number,
+    some.lists(some.integers(0, 1023), max_size=18).map(tuple),
+    number,
+    some.integers(),
+    some.integers(),
+    number,
+    some.integers(0, 255),
+    number,
+)
+grants = some.builds(
+    GuardResult, wheels, some.lists(some.sampled_from(GuardReason), max_size=2).map(tuple), some.booleans()
+)
+matches = some.builds(MatchEntry, some.integers(1), number, number, some.booleans(), maybe_id, number)
+junctions = some.builds(JunctionEvent, some.integers(-1, 2), some.booleans(), some.booleans(), number, number)
+mids = some.builds(
+    MidEntry, text, maybe_id, some.none() | matches, some.booleans(), some.booleans(), some.none() | junctions
+)
+plans = some.builds(
+    PlanStep, text, some.sampled_from(Course), some.lists(text).map(tuple), maybe_id, text, some.integers(0)
+)
+decisions = some.builds(
+    DecisionEntry,
+    wheels,
+    some.sampled_from(Cause),
+    some.none() | text,
+    maybe_id,
+    some.none() | matches,
+    some.booleans(),
+    some.sampled_from(("basic", "mid")),
+    some.none() | mids,
+    some.none() | plans,
+)
+opinions = some.builds(OpinionEntry, some.integers(-1, 1), text, number, maybe_id, number, number, some.booleans())
+surprises = some.builds(
+    Surprise,
+    text,
+    some.integers(1),
+    some.integers(1),
+    number,
+    number,
+    some.integers(0),
+    some.integers(0),
+    some.booleans(),
+)
+# Half a surrogate pair cannot stand in a journal, so no teacher's command has one.
+commands = some.sampled_from(KINDS).flatmap(some.from_type).filter(lambda command: "nan" not in repr(command))
+origins = some.builds(Origin, text, text, some.sampled_from(Phase), some.integers(0, 2**40))
+finite = some.floats(allow_nan=False, allow_infinity=False)
+rlas = some.builds(
+    Rla,
+    some.integers(1, 2**40),
+    some.lists(finite, max_size=4).map(tuple),
+    text,
+    some.none() | finite,
+    origins,
+    text,
+    text,
+)
+credits_ = some.lists(
+    some.builds(Credit, some.integers(1, 99), finite, some.none() | some.integers(1, 99)), max_size=3
+).map(tuple)
+events = (
+    some.builds(RlaCreated, rlas)
+    | some.builds(LessonUndone, text, origins)
+    | some.builds(
+        RlaRewarded, some.integers(1), some.sampled_from((1, -1)), some.integers(0), origins, credits_, some.none()
+    )
+)
+entries = some.builds(
+    TickEntry,
+    some.integers(1),
+    some.integers(0),
+    number,
+    senses,
+    grants,
+    some.lists(commands, max_size=3).map(tuple),
+    some.none() | text,
+    some.booleans(),
+    decisions,
+    text,
+    some.none() | opinions,
+    some.none() | surprises,
+    some.lists(
+        some.builds(ResultEntry, text, some.booleans(), text, some.booleans(), some.none() | text), max_size=2
+    ).map(tuple),
+    some.lists(events, max_size=2).map(tuple),
+    some.integers(0, 2**32 - 1),
+    some.none() | text,
+)
+
+
+@given(entries)
+def test_a_tick_comes_back_as_it_was(entry: TickEntry) -> None:
+    again = decode_tick(encode_tick(entry))
+    assert again == entry
+    assert repr(again) == repr(entry)  # 0.0 is equal to -0.0, and 1 to 1.0
+
+
+@given(commands)
+def test_every_command_comes_back_as_it_was(command: object) -> None:
+    assert decode_command(encode_command(command)) == command  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("goal", [NamedGoal("door"), RlaGoal(3), PartialGoal((("wall_left", 1.0), ("x", 0.1)), 0.5)])
+def test_a_goal_keeps_its_kind(goal: NamedGoal | RlaGoal | PartialGoal) -> None:
+    seek = Seek("s", "Ann", goal, 7)
+    assert decode_command(encode_command(seek)) == seek
+
+
+def test_a_phase_comes_back_as_one() -> None:
+    again = decode_command(encode_command(SetPhase("p", "Ann", Phase.CRITIC)))
+    assert isinstance(again, SetPhase)
+    assert again.phase is Phase.CRITIC
+
+
+def test_what_is_no_tick_is_refused_in_a_sentence() -> None:
+    for data in (b"", b"[]", b"{}", b'{"tick": 1}', b"\xff"):
+        with pytest.raises(RecordingError, match="not a tick"):
+            decode_tick(data)
+
+
+def test_a_command_of_a_newer_program_is_named() -> None:
+    with pytest.raises(RecordingError, match="there is no command 'Dance'"):
+        decode_command({"is": "Dance"})
+
+
+def test_a_command_with_a_wrong_field_names_it() -> None:
+    with pytest.raises(RecordingError, match="Drive: hold"):
+        decode_command({"is": "Drive", "teacher": "Ann", "seen_tick": 1, "hold": "x", "left_m_s": 0, "right_m_s": 0})

@@ -1,0 +1,48 @@
+"""What waits for a writing thread is bound and counted, and a writer that hangs is not waited for."""
+
+import threading
+
+from kurt2rt.runs.recording.writer_thread import WritingThread
+
+
+def test_what_finds_no_room_is_lost_and_counted() -> None:
+    thread = WritingThread[int]("writer", 3, lambda: None)
+    thread.put(1, held=2)
+    thread.put(2, held=2)  # with those that were taken and wait still, that is one too many
+    for number in (3, 4, 5):
+        thread.put(number)
+    assert (len(thread), thread.without_room) == (3, 2)
+    assert list(thread.take()) == [1, 3, 4]
+    thread.put(6)
+    assert (list(thread.take()), thread.without_room) == ([6], 2)
+
+
+def test_at_the_end_the_writer_looks_once_more() -> None:
+    written = list[int]()
+
+    def write() -> None:
+        ended = False
+        while not ended:
+            ended = thread.pause()
+            written.extend(thread.take())
+
+    thread = WritingThread[int]("writer", 10, write)
+    assert not thread.started
+    thread.start()
+    assert thread.started
+    thread.put(1)
+    assert thread.end(60.0)
+    assert written == [1]
+
+
+def test_a_writer_that_hangs_is_left_behind() -> None:
+    disk_answers = threading.Event()
+    thread = WritingThread[int]("writer", 10, lambda: hang(disk_answers))
+    thread.start()
+    assert not thread.end(0.0)
+    disk_answers.set()
+    assert thread.end(60.0)
+
+
+def hang(until: threading.Event) -> None:
+    until.wait()

@@ -1,0 +1,27 @@
+"""The stored runs, which tests.runs.replay.stories made: a robot that was taught, recorded tick by tick."""
+
+import math
+from functools import cache
+from itertools import islice
+from pathlib import Path
+
+from kurt2rt.runs.recording.entries import TickEntry
+from kurt2rt.runs.replay.reader import read_run
+from kurt2rt.runs.replay.run import Run
+
+STORED = Path(__file__).parent / "runs"
+NAMES = ("walls", "errand")
+
+
+def stored(name: str, seconds: float = math.inf) -> Run:
+    """A stored run, or what stood in so many seconds of it from its beginning; its file is decoded once."""
+    whole = read_run(STORED / f"{name}.mcap")
+    if math.isinf(seconds):
+        return Run(whole.name, whole.head, whole._attachments, lambda: iter(_entries(name)))
+    ticks = round(seconds * 100)
+    return Run(f"the beginning of {name}", whole.head, whole._attachments, lambda: islice(_entries(name), ticks))
+
+
+@cache
+def _entries(name: str) -> tuple[TickEntry, ...]:
+    return tuple(read_run(STORED / f"{name}.mcap").entries())

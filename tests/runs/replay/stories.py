@@ -1,0 +1,274 @@
+"""Runs to be recorded and replayed: some minutes of a robot that is taught, in lockstep.
+
+`python -m tests.runs.replay.stories` makes the stored ones anew.
+"""
+
+import asyncio
+import math
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from itertools import islice
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from mcap.writer import CompressionType, Writer
+
+from hal.robot_settings import load_robot
+from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_stop import STARTED, ActiveStop
+from kurt2rt.core.decision.goal import NamedGoal
+from kurt2rt.core.decision.standing_text import stop_text
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.core.teaching.commands import (
+    Appraise,
+    BeginSession,
+    Command,
+    Drive,
+    EndSession,
+    Resume,
+    Reward,
+    RunBehaviour,
+    Seek,
+    SetPhase,
+    Stop,
+    Undo,
+    Watch,
+)
+from kurt2rt.core.teaching.system_events import PressesForgotten
+from kurt2rt.core.tick import InMemoryEventStore, TickRecord
+from kurt2rt.experiments.navigation.guided_tour import HOME, Guide
+from kurt2rt.experiments.navigation.lesson import errands_of
+from kurt2rt.knowledge.exchange.attachments import attachments_of, fingerprints_of
+from kurt2rt.platform.clock import LockstepClock
+from kurt2rt.runs.recording.recorder import RunRecorder, open_run_recorder
+from kurt2rt.runs.recording.run_files import budget_of
+from kurt2rt.runs.recording.run_head import RUN_METADATA, RunHead
+from kurt2rt.runs.recording.segment_reader import SegmentReader
+from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.teacher.scripted.teacher import ScriptedTeacher, picture_of, teacher_of
+from simbridge.simulation import Kurt2Simulation
+from tests.runs.replay.stored_runs import STORED
+
+NAME = "scripted teacher"
+_STARTED_NS = 1_774_000_000_000_000_000
+_SAVED_EVERY = 100
+"""Ticks from one save of the statistics to the next."""
+
+
+@dataclass
+class Scene:
+    """A robot that runs, and whoever is about it."""
+
+    simulation: Kurt2Simulation
+    runtime: Runtime
+    notebook: InMemoryEventStore
+    teacher: ScriptedTeacher
+    said: int = 0
+    presses: int = 0
+    home: list[object] = field(default_factory=list)
+
+    def say(self, make: Callable[[str], Command]) -> None:
+        """A command with an id of its own."""
+        self.said += 1
+        self.runtime.inbox.put(make(f"story-{self.said}"))
+
+
+Story = Callable[[Scene, TickRecord], None]
+
+
+def at(second: float) -> int:
+    """The tick of a second."""
+    return round(second * 100)
+
+
+def walls(scene: Scene, record: TickRecord) -> None:
+    """Along a wall through all five phases, with what a nervous teacher does in between."""
+    tick, runtime, say = record.tick, scene.runtime, scene.say
+    if tick % 5 == 0 and not at(20) < tick < at(21):  # for a second his line is dead
+        runtime.inbox.put(Watch(NAME, tick))
+    if tick < at(35):
+        command = scene.teacher.watch(picture_of(record))
+        if command is not None:
+            runtime.inbox.put(command)
+    scene.notebook.trouble = "the disk is full" if at(14) <= tick < at(14.4) else None
+    if at(22) <= tick < at(23):
+        runtime.inbox.put(Drive(NAME, tick, 1, 0.1, 0.2))
+    match tick:
+        case 10:
+            say(lambda name: BeginSession(name, NAME, "walls"))
+        case 600 | 2150 | 2350 | 2900:
+            say(lambda name: Resume(name, NAME))
+        case 570:
+            say(lambda name: Stop(name, NAME))
+        case 1000:
+            runtime.inbox.put(scene.teacher.enter(Phase.CORRECTIONS))
+        case 1700 | 1900:
+            say(lambda name: Undo(name, NAME))
+        case 2400:
+            runtime.inbox.put(PressesForgotten(NAME))
+        case 2800:
+            say(lambda name: RunBehaviour(name, NAME, "curve_left", 60))
+        case 3000:
+            say(lambda name: SetPhase(name, NAME, Phase.REINFORCEMENT))
+        case 3100 | 3200 | 3250 | 3300:
+            say(lambda name: Reward(name, NAME, -1 if tick > 3150 else 1, tick - 30))
+        case 3500:
+            say(lambda name: SetPhase(name, NAME, Phase.CRITIC))
+        case 3850:
+            say(lambda name: SetPhase(name, NAME, Phase.AUTONOMOUS))
+        case 4350:
+            say(lambda name: EndSession(name, NAME))
+    if at(35) <= tick < at(38.5) and tick % 25 == 0:
+        opinions = ("bad", "neutral", "good")
+        say(lambda name: Appraise(name, NAME, opinions[tick // 25 % 3], tick - 10))
+
+
+class Errand:
+    """Led about in a town, and then sent home."""
+
+    def __init__(self, scene: Scene, task: TaskSettings) -> None:
+        self._walk = errands_of(task).walk_in(scene.simulation.plan, task.behaviours)
+        self._guide = Guide(self._walk, 5, task.teaching.teacher, period_s=0.01, seed=3, session="errand")
+        self._walk.put(scene.simulation.pose)
+        self._guide.begin()
+        scene.runtime.inbox.put(scene.teacher.enter(Phase.CORRECTIONS))
+        self._home = scene.simulation.pose
+
+    def __call__(self, scene: Scene, record: TickRecord) -> None:
+        tick, inbox = record.tick, scene.runtime.inbox
+        self._walk.follow(scene.simulation.pose)
+        said = self._guide.watch(record) if tick < at(34) else None
+        if said is not None:
+            inbox.put(said)
+        lesson = scene.teacher.watch(picture_of(record))
+        if lesson is not None:
+            inbox.put(lesson)
+        if tick == at(22):
+            scene.simulation.put(self._home)
+            scene.runtime.set_down()
+            self._walk.put(self._home)
+            self._guide.set_down_at_home()
+        if tick == at(34):
+            scene.say(lambda name: Seek(name, NAME, NamedGoal(HOME)))
+
+
+@dataclass(frozen=True)
+class Told:
+    """What a story is made of."""
+
+    task: str
+    seconds: float
+    attended: bool = False
+    stopped: ActiveStop | None = None
+
+
+STORIES = {
+    "walls": Told("wall_following", 44, attended=True, stopped=STARTED),
+    "errand": Told("errands", 44),
+}
+
+
+def record_story(
+    name: str,
+    recordings: Path,
+    *,
+    seconds: float | None = None,
+    task: TaskSettings | None = None,
+    other: Story | None = None,
+) -> Path:
+    """Let a story happen, or an`other` one in its place, and record it; the run's folder."""
+    told = STORIES[name]
+    settings, task = load_robot(), task or load_task(told.task)
+    simulation = Kurt2Simulation(settings, task.teaching.world, 3, f"story {name}")
+    notebook = InMemoryEventStore()
+    clock = LockstepClock(simulation.step)
+    attachments = attachments_of(settings, task)
+    head = RunHead(
+        kurt2rt="story",
+        boot="00",
+        started_at="2026-03-20T09:46:40Z",
+        task=task.name,
+        robot=settings.name,
+        bus="sim",
+        knowledge="",
+        attended=told.attended,
+        asked=True,
+        stopped=stop_text(told.stopped),
+        behaviour=task.behaviours[0],
+        fingerprints=fingerprints_of(attachments),
+    )
+    wanted = Wanted(task.behaviours)
+    runtime = build_runtime(
+        simulation.robot, settings, task, (), notebook, clock, attended=told.attended, wanted=wanted
+    )
+    if told.stopped:
+        runtime.school.stop(told.stopped)
+    teacher = teacher_of(task, settings, tuple(runtime.level.repertoire), seed=3, session=name)
+    scene = Scene(simulation, runtime, notebook, teacher)
+    story: Story = other or (walls if name == "walls" else Errand(scene, task))
+    recorder = open_run_recorder(
+        recordings,
+        head,
+        attachments,
+        budget_of(1000),
+        settings,
+        runtime.definition.names,
+        name=f"story-{name}",
+        began_at_ns=_STARTED_NS,
+    )
+    _go(scene, story, recorder, round((seconds or told.seconds) * 100))
+    assert recorder.run is not None
+    assert not recorder.trouble
+    return recorder.run
+
+
+def _go(scene: Scene, story: Story, recorder: RunRecorder, ticks: int) -> None:
+    runtime = scene.runtime
+    recorder.tend()
+
+    def after_tick(record: TickRecord) -> None:
+        story(scene, record)
+        saved = record.tick % _SAVED_EVERY == 0
+        if saved:
+            runtime.to_save()
+            recorder.write_waiting()
+            recorder.tend()
+        recorder.note(record, saved=saved)
+
+    try:
+        asyncio.run(runtime.scheduler.run(ticks, after_tick))
+    finally:
+        scene.simulation.close()
+    recorder.close()
+
+
+def slim(segment: Path, to: Path, seconds: float = math.inf) -> None:
+    """Only what a replay needs of a run's first segment, of so many seconds of it, in one file."""
+    with to.open("wb") as file:
+        writer = Writer(file, compression=CompressionType.ZSTD, chunk_size=1 << 24)
+        writer.start(profile="kurt2rt")
+        reader = SegmentReader(segment)
+        head = reader.head()
+        writer.add_metadata(RUN_METADATA, head.metadata[RUN_METADATA])
+        for name, data in head.attachments.items():
+            writer.add_attachment(0, 0, name, "application/octet-stream", data)
+        channel = writer.register_channel("/tick", "json", 0)
+        for message in islice(reader.messages({"/tick"}), None if math.isinf(seconds) else at(seconds)):
+            writer.add_message(channel, message.time_ns, message.data, message.time_ns)
+        writer.finish()  # type: ignore[no-untyped-call]
+
+
+def main() -> None:
+    """Make the stored runs anew."""
+    STORED.mkdir(exist_ok=True)
+    for name in sys.argv[1:] or STORIES:
+        with TemporaryDirectory() as folder:
+            run = record_story(name, Path(folder))
+            slim(run / "0001.mcap", STORED / f"{name}.mcap")
+        sys.stdout.write(f"{name}: {(STORED / name).with_suffix('.mcap').stat().st_size} bytes\n")
+
+
+if __name__ == "__main__":
+    main()

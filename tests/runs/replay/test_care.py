@@ -1,0 +1,512 @@
+"""Changes of knowledge are tried on a recorded run before anything is changed."""
+
+import io
+import os
+import re
+import shutil
+import sys
+import weakref
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from mcap.records import McapRecord, Message, Metadata
+
+from hal.robot_settings import load_robot
+from kurt2rt.cli.main import main
+from kurt2rt.core.rla.rla import Origin, Phase, Rla, RlaCreated, RlaDeleted, TeachingEvent
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.teaching.commands import BeginSession, Resume, Watch
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.knowledge.journal.entry import JournalEntry
+from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.loading import open_knowledge
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.versions.undo import carry_out, plan_redo, plan_undo
+from kurt2rt.runs.recording.entries import TickEntry
+from kurt2rt.runs.recording.recover import _copy as copy_records
+from kurt2rt.runs.recording.run_head import RUN_METADATA
+from kurt2rt.runs.recording.segment_reader import SegmentReader
+from kurt2rt.runs.recording.tick_json import decode_tick
+from kurt2rt.runs.replay import reader, trial
+from kurt2rt.runs.replay.compaction import TEACHER, Compaction, compact
+from kurt2rt.runs.replay.reader import read_run
+from kurt2rt.runs.replay.replay import Replay
+from kurt2rt.runs.replay.run import Run
+from kurt2rt.runs.replay.trial import Known, answers, newest_to_try, runs_to_try
+from kurt2rt.runs.replay.undo_preview import preview, preview_on_newest
+from kurt2rt.teacher.scripted.teacher import picture_of
+from tests.cli.helpers import CommandLine
+from tests.runs.replay.stories import NAME, Scene, record_story
+
+STAMP = "2026-11-22T03:10:05.000+00:00"
+FAR = (-5000.0,) * 72
+
+
+def nobody(scene: Scene, record: TickRecord) -> None:
+    """Says nothing to the robot."""
+
+
+def taught_at_once(scene: Scene, record: TickRecord) -> None:
+    """Told to go on as soon as it runs, and answered whenever it asks."""
+    if record.tick % 5 == 0:
+        scene.runtime.inbox.put(Watch(NAME, record.tick))
+    answer = scene.teacher.watch(picture_of(record))
+    if answer is not None:
+        scene.runtime.inbox.put(answer)
+    if record.tick == 10:
+        scene.say(lambda name: BeginSession(name, NAME, "walls"))
+        scene.say(lambda name: Resume(name, NAME))
+
+
+def quietly(run: str, done_s: float, whole_s: float) -> None:
+    """Nobody watches the progress."""
+
+
+@pytest.fixture(scope="module")
+def recordings(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with one run of five seconds, in which a robot was taught to follow a wall."""
+    folder = tmp_path_factory.mktemp("runs")
+    record_story("walls", folder, seconds=5, other=taught_at_once).rename(folder / "20260320T094640Z-wall_following")
+    return folder
+
+
+@pytest.fixture(scope="module")
+def lessons(recordings: Path) -> list[TeachingEvent]:
+    """What it knew at its end."""
+    (path,) = recordings.iterdir()
+    replay = Replay(read_run(path))
+    for entry in replay.run.entries():
+        replay.step(entry)
+    return [record.event for record in replay.runtime.level.system.lessons if not record.undone]
+
+
+def unneeded(lessons: list[TeachingEvent], number: int = 1) -> RlaCreated:
+    """An RLA so far off that nothing ever came near it."""
+    new_id = max(event.rla.rla_id for event in lessons if isinstance(event, RlaCreated)) + number
+    return RlaCreated(Rla(new_id, FAR, "forward", None, Origin(f"far-{number}", "Ann", Phase.SUPERVISED, 1)))
+
+
+@pytest.fixture
+def knowledge(tmp_path: Path, lessons: list[TeachingEvent]) -> Path:
+    """What was taught in the run, and two RLAs that nobody needs."""
+    path = tmp_path / "walls.knowledge"
+    with open_knowledge(path, load_robot(), load_task("wall_following")) as journal:
+        far = unneeded(lessons), unneeded(lessons, 2)
+        journal.append([JournalEntry(event, STAMP) for event in (*lessons, *far)])
+    return path
+
+
+def folded(path: Path) -> RlaSystem:
+    with Journal.read_only(path) as journal:
+        assert check_knowledge(journal) == []
+        return fold_journal(journal, radius=1.0)
+
+
+def compacted(path: Path, recordings: Path, *, dry_run: bool = False) -> Compaction:
+    return compact(path, recordings, stamp=STAMP, dry_run=dry_run, report=quietly)
+
+
+def test_what_no_decision_needs_is_deleted_and_every_decision_comes_out_the_same(
+    knowledge: Path, recordings: Path
+) -> None:
+    before = folded(knowledge)
+    done = compacted(knowledge, recordings, dry_run=True)
+    assert folded(knowledge).rlas == before.rlas
+
+    assert compacted(knowledge, recordings) == done
+    after = folded(knowledge)
+    assert {"far-1", "far-2"} <= {rla.origin.command_id for rla in done.deleted}
+    assert len(after) == done.kept == len(before) - len(done.deleted)
+    assert done.kept > 0
+    assert (done.runs, done.ticks, done.notes, done.other_behaviours) == (1, 500, (), ())
+    assert 100 < done.driven_ticks < done.ticks
+
+    again = compacted(knowledge, recordings)
+    assert (again.deleted, again.kept) == ((), done.kept)
+    carry_out(plan_undo(knowledge, of=TEACHER, teacher="command line"), STAMP)
+    assert folded(knowledge).rlas == before.rlas
+
+
+def test_each_rla_that_is_left_is_needed(knowledge: Path, recordings: Path) -> None:
+    compacted(knowledge, recordings)
+    with Journal.read_only(knowledge) as journal:
+        known = Known(tuple(journal.events()), Statistics())
+        (run,) = runs_to_try(recordings, journal.binding).runs
+    nearest = {answered.basic.nearest for _, (answered,) in answers(run, (known,), quietly)}
+    assert {rla.rla_id for rla in nearest if rla is not None} == {rla.rla_id for rla in folded(knowledge).rlas}
+
+
+def test_a_robot_that_only_stood_proves_nothing(knowledge: Path, recordings: Path, tmp_path: Path) -> None:
+    before = folded(knowledge)
+    folder = tmp_path / "runs"
+    stood = record_story("walls", folder, seconds=1, other=nobody)
+    stood.rename(folder / "20260320T084640Z-wall_following")
+    with pytest.raises(KnowledgeError, match=r"in none of its 1 runs .* anything drove \(0 s\).* nothing was deleted"):
+        compacted(knowledge, folder)
+    assert folded(knowledge).rlas == before.rlas
+
+    shutil.copytree(recordings, folder, dirs_exist_ok=True)
+    done = compacted(knowledge, folder, dry_run=True)
+    assert done.runs == 1
+    (note,) = done.notes
+    assert note.endswith("20260320T084640Z-wall_following: nothing drove in it, so it proves nothing")
+
+
+def test_a_robot_that_runs_and_a_folder_without_runs_change_nothing(
+    knowledge: Path, recordings: Path, tmp_path: Path
+) -> None:
+    with Journal.read_only(knowledge) as look:
+        binding = look.binding
+    with Journal.open(knowledge, binding), pytest.raises(KnowledgeError, match="another kurt2rt is writing it"):
+        compacted(knowledge, recordings)
+    for folder in (tmp_path, tmp_path / "nowhere"):
+        with pytest.raises(KnowledgeError, match="holds no recorded run"):
+            compacted(knowledge, folder)
+    other = replace(binding, feature_hash="another")
+    with pytest.raises(KnowledgeError, match=r"none of its runs can be tried: .* other features"):
+        runs_to_try(recordings, other)
+    with Journal.read_only(knowledge) as journal:
+        assert not any(isinstance(event, RlaDeleted) for event in journal.events())
+
+
+def test_an_undo_is_tried_before_it_is_made(knowledge: Path, recordings: Path, lessons: list[TeachingEvent]) -> None:
+    before = folded(knowledge)
+    planned = plan_undo(knowledge, "far-2", teacher="Ann")
+    assert [record.text for record in planned.lessons] == [f"RLA {before.rlas[-1].rla_id} taught: forward"]
+    shown = preview(planned, recordings, quietly)
+    (tried,) = shown.runs
+    assert tried.found.same
+    assert (tried.from_s, tried.found.ticks, shown.notes) == (0.0, 500, ())
+    assert preview_on_newest(planned, recordings, quietly) == shown
+
+    first = next(event for event in lessons if isinstance(event, RlaCreated))
+    planned = plan_undo(knowledge, of=first.origin.teacher, teacher="Ann")
+    assert len(planned.lessons) == len(lessons)
+    (tried,) = preview(planned, recordings, quietly).runs
+    # nothing would be left but what is far off
+    assert (tried.found.other_action, tried.found.would_drive) == (0, 0)
+    assert 0 < tried.found.would_ask <= tried.found.decided
+    assert any(each.was.rla == folded(knowledge).get(first.rla.rla_id) for each in tried.found.stretches)
+    assert folded(knowledge).rlas == before.rlas
+    with pytest.raises(KnowledgeError, match="there is no lesson 'far-9'"):
+        plan_undo(knowledge, "far-9", teacher="Ann")
+
+    carry_out(planned, STAMP)
+    (back,) = preview(plan_redo(knowledge, of=first.origin.teacher, teacher="Ann"), recordings, quietly).runs
+    assert (back.found.would_ask, back.found.would_drive) == (0, tried.found.would_ask)
+
+
+@pytest.fixture
+def runs(recordings: Path, tmp_path: Path) -> Path:
+    """A folder of recordings of one's own, which holds the run."""
+    return Path(shutil.copytree(recordings, tmp_path / "runs"))
+
+
+def test_the_newest_run_is_tried_that_can_be(knowledge: Path, runs: Path) -> None:
+    with Journal.read_only(knowledge) as journal:
+        binding = journal.binding
+    assert newest_to_try(runs / "nowhere", binding, knowledge).runs == ()
+    assert newest_to_try(runs, replace(binding, feature_hash="another"), knowledge).runs == ()
+    stood = record_story("walls", runs, seconds=1, other=nobody).rename(runs / "20260321T094640Z-wall_following")
+    torn = runs / "20260322T114640Z-torn"
+    torn.mkdir()
+    (torn / "0001.mcap").write_bytes(b"nonsense")
+
+    found = newest_to_try(runs, binding, knowledge)
+    assert [run.name for run in found.runs] == [str(stood)]
+    (note,) = found.notes
+    assert torn.name in note
+    shown = preview_on_newest(plan_undo(knowledge, teacher="Ann"), runs, quietly)
+    assert [tried.run for tried in shown.runs] == [str(stood)]
+    assert shown.notes == (note,)
+
+
+def test_a_run_of_another_kurt2rt_stands_in_no_undos_way(knowledge: Path, runs: Path) -> None:
+    (own,) = runs.iterdir()
+    newer = Path(shutil.copytree(own, runs / "20260321T094640Z-wall_following"))
+    (segment,) = newer.iterdir()
+    segment.write_bytes(segment.read_bytes().replace(b"settings/situations/basic", b"settings/situations/later"))
+    planned = plan_undo(knowledge, teacher="Ann")
+    for shown in (preview_on_newest(planned, runs, quietly), preview(planned, runs, quietly)):
+        assert [tried.run for tried in shown.runs] == [str(own)]
+        (note,) = shown.notes
+        assert note.startswith(f"{newer}: its settings cannot be used by this kurt2rt: ")
+
+
+def test_of_a_long_run_the_end_is_tried_and_of_a_very_long_one_nothing(knowledge: Path, recordings: Path) -> None:
+    planned = plan_undo(knowledge, of="scripted teacher", teacher="Ann")
+    (whole,) = preview(planned, recordings, quietly).runs
+    (end,) = preview_on_newest(planned, recordings, quietly, last_s=1.0).runs
+    assert end.from_s == pytest.approx(3.99)
+    assert end.found.ticks == 101
+    assert 0 < end.found.would_ask < whole.found.would_ask
+    assert all(each.from_s >= end.from_s for each in end.found.stretches)
+
+    very_long = preview_on_newest(planned, recordings, quietly, longest_s=4.0)
+    assert very_long.runs == ()
+    (note,) = very_long.notes
+    assert "lasts 0 min, which takes long; name it with --runs to try it" in note
+
+
+class Lossy(SegmentReader):
+    """Reads a file in which these messages, counted from 1 in each topic, are missing."""
+
+    def __init__(self, path: Path, lost: range) -> None:
+        super().__init__(path)
+        self._lost = lost
+
+    def records(self) -> Iterator[McapRecord]:
+        seen = Counter[int]()
+        for record in super().records():
+            if isinstance(record, Message):
+                seen[record.channel_id] += 1
+                if seen[record.channel_id] in self._lost:
+                    continue
+            yield record
+
+
+def read_anew(run: Path, reader: Callable[[Path], SegmentReader]) -> None:
+    """Put in the place of a run that is one file what a reader reads of it."""
+    (segment,) = run.iterdir()
+    whole = segment.rename(run / "whole")
+    with segment.open("xb") as file:
+        copy_records(reader(whole), file)
+    whole.unlink()
+
+
+def test_of_a_run_with_a_gap_the_end_before_it_is_tried_and_the_rest_is_told(knowledge: Path, runs: Path) -> None:
+    planned = plan_undo(knowledge, of="scripted teacher", teacher="Ann")
+    (whole,) = preview(planned, runs, quietly).runs
+    (run,) = runs.iterdir()
+    read_anew(run, lambda path: Lossy(path, range(401, 451)))
+    shown = preview_on_newest(planned, runs, quietly, last_s=0.75)
+    (tried,) = shown.runs
+    assert tried.from_s == pytest.approx(3.24)
+    assert tried.found.ticks == 76
+    assert 0 < tried.found.would_ask < whole.found.would_ask
+    assert all(tried.from_s <= each.from_s <= each.to_s < 4.0 for each in tried.found.stretches)
+    (note,) = shown.notes
+    assert note.startswith(f"{run}: 50 ticks before 4.50 s (tick ")
+    assert note.endswith("are not in the recording, so what came after them cannot be replayed")
+
+    (short,) = preview_on_newest(planned, runs, quietly, last_s=4.5).runs
+    assert (short.from_s, short.found.ticks) == (0.0, 400)
+
+
+def test_while_the_newest_run_of_a_file_is_looked_for_no_other_is_kept_in_memory(
+    knowledge: Path, runs: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (own,) = runs.iterdir()
+    for day in range(21, 25):
+        shutil.copytree(own, runs / f"202603{day}T094640Z-wall_following")
+    read, alive = list[weakref.ref[Run]](), list[int]()
+
+    def read_and_count(path: Path) -> Run:
+        run = read_run(path)
+        alive.append(sum(each() is not None for each in read))
+        read.append(weakref.ref(run))
+        return run
+
+    monkeypatch.setattr(trial, "read_run", read_and_count)
+    with Journal.read_only(knowledge) as journal:
+        (newest,) = newest_to_try(runs, journal.binding, knowledge).runs
+    assert newest.name.endswith("20260324T094640Z-wall_following")
+    assert len(read) == 5
+    assert max(alive) <= 2  # the newest, and the one before, which has only just been looked at
+
+
+class Retold(SegmentReader):
+    """Reads a file as if it told of that knowledge file, as an earlier kurt2rt did."""
+
+    def __init__(self, path: Path, told: str) -> None:
+        super().__init__(path)
+        self._told = told
+
+    def records(self) -> Iterator[McapRecord]:
+        for record in super().records():
+            if isinstance(record, Metadata) and record.name == RUN_METADATA:
+                record.metadata["knowledge"] = self._told
+            yield record
+
+
+def test_a_run_of_an_earlier_kurt2rt_belongs_to_the_file_below_whose_folder_it_lies(
+    knowledge: Path, runs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (own,) = runs.iterdir()
+    later = Path(shutil.copytree(own, runs / "20260321T094640Z-wall_following"))
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    shutil.copy(knowledge, elsewhere)
+    read_anew(own, lambda path: Retold(path, knowledge.name))
+    read_anew(later, lambda path: Retold(path, f"elsewhere/{knowledge.name}"))
+
+    def newest(file: Path) -> str:
+        with Journal.read_only(file) as journal:
+            (run,) = newest_to_try(runs, journal.binding, file).runs
+        return run.name
+
+    for working_folder in (tmp_path, elsewhere):
+        monkeypatch.chdir(working_folder)
+        assert newest(knowledge) == str(own)
+        assert newest(elsewhere / knowledge.name) == str(later)
+    monkeypatch.chdir(elsewhere)
+    assert newest(Path(knowledge.name)) == str(later)
+    read_anew(own, lambda path: Retold(path, str(elsewhere / knowledge.name)))
+    read_anew(later, lambda path: Retold(path, str(knowledge)))
+    assert newest(knowledge) == str(later)
+    assert newest(Path(knowledge.name)) == str(own)
+
+
+def test_a_run_that_cannot_be_read_is_left_out_and_told(knowledge: Path, recordings: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "runs"
+    shutil.copytree(recordings, folder)
+    (folder / "20260320T114640Z-torn").mkdir()
+    (folder / "20260320T114640Z-torn" / "0001.mcap").write_bytes(b"nonsense")
+    with Journal.read_only(knowledge) as journal:
+        found = runs_to_try(folder, journal.binding)
+    assert len(found.runs) == 1
+    (note,) = found.notes
+    assert "20260320T114640Z-torn" in note
+
+
+@pytest.fixture
+def kurt2rt(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path: Path) -> CommandLine:
+    """The command line, in a temporary folder."""
+    monkeypatch.chdir(tmp_path)
+    return CommandLine(monkeypatch, capfd)
+
+
+def test_an_undo_shows_on_the_newest_run_of_the_file_what_it_changes(
+    kurt2rt: CommandLine, knowledge: Path, recordings: Path
+) -> None:
+    assert kurt2rt("run", "--seconds", "0.3", "--teacher", "none", "--knowledge", knowledge).exit_code == 0
+    (own,) = Path("var/runs").iterdir()
+    later = Path("var/runs/20991231T094640Z-wall_following")  # of another file
+    shutil.copytree(next(recordings.iterdir()), later)
+    before = folded(knowledge)
+
+    dry = kurt2rt("knowledge", "undo", knowledge, "--dry-run").out.splitlines()
+    assert dry[0].startswith(f"{knowledge}: would be undone: RLA ")
+    assert dry[1].startswith(f"{own}: not one of ")
+    assert dry[2:] == ["nothing was changed: --dry-run"]
+    assert folded(knowledge).rlas == before.rlas
+    tried, undone = kurt2rt("knowledge", "undo", knowledge).out.splitlines()
+    assert tried == dry[1]
+    assert undone.startswith(f"{knowledge}: undone: RLA ")
+    assert undone.endswith("(lesson far-2 by Ann)")
+    tried, again = kurt2rt("knowledge", "redo", knowledge).out.splitlines()
+    assert tried == dry[1]
+    assert again.startswith(f"{knowledge}: stands again: RLA ")
+    assert folded(knowledge).rlas == before.rlas
+    (undone,) = kurt2rt("knowledge", "undo", knowledge, "--no-preview").out.splitlines()
+    assert undone.endswith("(lesson far-2 by Ann)")
+
+
+def test_an_undo_is_tried_on_the_runs_that_are_named(kurt2rt: CommandLine, knowledge: Path, recordings: Path) -> None:
+    said = kurt2rt("knowledge", "undo", knowledge, "--of", "scripted teacher", "--dry-run", "--runs", recordings).out
+    assert "20260320T094640Z-wall_following: of 490 decisions: 458 times ask where it drove; the longest:\n" in said
+    assert " s  asks, instead of " in said
+    said = kurt2rt("knowledge", "undo", knowledge, "--lesson", "far-1", "--dry-run", "--runs", recordings).out
+    assert "20260320T094640Z-wall_following: not one of " in said
+    assert "holds no recorded run" in kurt2rt.refused("knowledge", "undo", knowledge, "--runs", "nowhere")
+    assert folded(knowledge).last_standing_lesson == "far-2"
+
+
+def test_where_nothing_was_recorded_an_undo_says_so_and_goes_on(kurt2rt: CommandLine, knowledge: Path) -> None:
+    not_tried, undone = kurt2rt("knowledge", "undo", knowledge).out.splitlines()
+    assert not_tried == "not tried: var/runs holds no recorded run of such knowledge"
+    assert undone.endswith("(lesson far-2 by Ann)")
+
+
+def test_an_undo_whose_standard_input_was_closed_asks_nobody(knowledge: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(knowledge.parent)
+    monkeypatch.setattr(sys, "stdin", None)
+    monkeypatch.setattr(sys, "argv", ["kurt2rt", "knowledge", "undo", str(knowledge)])
+    with pytest.raises(SystemExit) as end:
+        main()
+    assert not end.value.code
+    assert folded(knowledge).last_standing_lesson == "far-1"
+
+
+class Typed(io.StringIO):
+    """What a user types at a terminal."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+def test_at_a_terminal_an_undo_asks_first(kurt2rt: CommandLine, knowledge: Path) -> None:
+    for answer in ("n\n", "\n"):
+        refused = kurt2rt("knowledge", "undo", knowledge, typed=Typed(answer))
+        assert refused.exit_code == 1
+        assert refused.err.strip() == "Undo lesson far-2? [y/N]:"
+        assert "would be undone: RLA " in refused.out
+        assert refused.out.endswith("nothing was changed\n")
+        assert folded(knowledge).last_standing_lesson == "far-2"
+    agreed = kurt2rt("knowledge", "undo", knowledge, "--of", "Ann", typed=Typed("y\n"))
+    assert agreed.err.strip() == "Undo these 2 lessons? [y/N]:"
+    assert agreed.out.endswith("2 lessons of Ann undone\n")
+    agreed = kurt2rt("knowledge", "redo", knowledge, typed=Typed("y\n"))
+    assert agreed.err.strip() == "Redo lesson far-1? [y/N]:"
+    for quick in ("--yes", "--no-preview"):
+        assert kurt2rt("knowledge", "redo", knowledge, quick, typed=Typed()).err == ""
+        kurt2rt("knowledge", "undo", knowledge, quick, typed=Typed())
+
+
+def test_a_compaction_on_the_command_line(kurt2rt: CommandLine, knowledge: Path, recordings: Path) -> None:
+    dry = kurt2rt("knowledge", "compact", knowledge, "--runs", recordings, "--dry-run").out
+    assert "would delete: RLA " in dry
+    done = kurt2rt("knowledge", "compact", knowledge, "--runs", recordings).out
+    assert re.search(r"tried on 500 ticks \(5 s, [1-9] s of them driven\) of 1 runs", done)
+    assert f"to take all of that back: kurt2rt knowledge undo {knowledge} --of compact" in done
+    assert "holds no recorded run" in kurt2rt.refused("knowledge", "compact", knowledge, "--runs", "nowhere")
+
+
+def test_an_undo_that_is_not_agreed_to_leaves_nothing_beside_the_knowledge(
+    kurt2rt: CommandLine, knowledge: Path
+) -> None:
+    given = Path("given") / "mine.knowledge"  # from elsewhere: no robot has run on it here
+    given.parent.mkdir()
+    shutil.copy(knowledge, given)
+    before = given.read_bytes()
+    assert kurt2rt("knowledge", "undo", given, typed=Typed("n\n")).exit_code == 1
+    assert list(given.parent.iterdir()) == [given]
+    assert given.read_bytes() == before
+
+
+def test_of_a_run_without_a_gap_each_tick_is_decoded_once(
+    knowledge: Path, runs: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    planned = plan_undo(knowledge, of="scripted teacher", teacher="Ann")
+    decoded = list[int]()
+
+    def decode_and_count(data: bytes) -> TickEntry:
+        entry = decode_tick(data)
+        decoded.append(entry.number)
+        return entry
+
+    monkeypatch.setattr(reader, "decode_tick", decode_and_count)
+    (tried,) = preview_on_newest(planned, runs, quietly, last_s=0.75).runs
+    assert tried.from_s == pytest.approx(4.24)
+    assert tried.found.ticks == 76
+    looked_at = Counter(decoded)
+    assert len(looked_at) == 500
+    assert {number for number, times in looked_at.items() if times > 1} == {1, 500}  # where it begins and ends
+
+
+def test_an_undo_where_nothing_can_be_written_is_refused_before_it_is_tried(
+    kurt2rt: CommandLine, knowledge: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given = Path("given") / "mine.knowledge"
+    given.parent.mkdir()
+    shutil.copy(knowledge, given)
+    monkeypatch.setattr(os, "access", lambda path, _: Path(path) != given.parent.resolve())  # root may write anywhere
+    assert f"{given.resolve()}: cannot be locked; give a path in a folder" in kurt2rt.refused(
+        "knowledge", "undo", given
+    )

@@ -1,0 +1,203 @@
+"""Other knowledge looks on at a run, and it is told where it would have decided otherwise."""
+
+import math
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.rla.rla import (
+    BASIC,
+    MID,
+    ActionReplaced,
+    ActionWithdrawn,
+    Origin,
+    Phase,
+    Rla,
+    RlaCreated,
+    TeachingEvent,
+)
+from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.knowledge.journal.entry import JournalEntry
+from kurt2rt.knowledge.journal.loading import open_knowledge
+from kurt2rt.runs.replay.counterfactual import Counterfactual, counterfactual
+from kurt2rt.runs.replay.counterfactual_policy import Shadow, answers_then, shadow_of
+from kurt2rt.runs.replay.replay import Replay, ReplayedTick
+from kurt2rt.runs.replay.run import Run
+from tests.runs.replay.stored_runs import NAMES, stored
+
+ORIGIN = Origin("later", "Ann", Phase.CORRECTIONS, 5)
+
+
+def of_every_story(first: str, seconds: float) -> pytest.MarkDecorator:
+    """The beginning of one; all of it, and of the others, in the deep suite."""
+    whole = [pytest.param(name, 44.0, marks=pytest.mark.deep) for name in NAMES]
+    return pytest.mark.parametrize(("name", "seconds"), [(first, seconds), *whole])
+
+
+def taught_in(run: Run) -> list[TeachingEvent]:
+    return [event for entry in run.entries() for event in entry.events]
+
+
+@pytest.fixture(scope="module")
+def lessons() -> dict[str, list[TeachingEvent]]:
+    return {name: taught_in(stored(name)) for name in NAMES}
+
+
+@of_every_story("errand", 8.0)
+def test_what_was_known_in_the_end_would_never_have_otherwise_decided_than_itself(
+    name: str, seconds: float, lessons: dict[str, list[TeachingEvent]]
+) -> None:
+    run = stored(name, seconds)
+    found = counterfactual(run, Shadow(run, lessons[name]), Shadow(run, lessons[name]))
+    assert found.same
+    assert found.ticks == round(seconds * 100)
+
+
+@of_every_story("walls", 16.0)
+def test_who_knows_nothing_would_have_asked_wherever_it_drove(
+    name: str, seconds: float, lessons: dict[str, list[TeachingEvent]]
+) -> None:
+    run = stored(name, seconds)
+    whole = Shadow(run, lessons[name])
+    found = counterfactual(run, Shadow(run, ()), whole)
+    assert found.would_ask > 500
+    assert (found.other_action, found.would_drive) == (0, 0)
+    stretch = next(each for each in found.stretches if each.level == BASIC)
+    assert stretch.would_be == (None, None, math.inf, 0.0)
+    assert stretch.was.rla is not None
+    assert stretch.was.share_of_radius <= 1.0
+    assert sum(each.ticks for each in found.stretches if each.level == BASIC) == found.would_ask
+    assert all(each.from_s <= each.to_s <= seconds for each in found.stretches)
+
+
+def test_what_was_learnt_later_would_have_spared_questions(lessons: dict[str, list[TeachingEvent]]) -> None:
+    run = stored("errand", 24)
+    assert counterfactual(run, Shadow(run, lessons["errand"])).would_drive > 100
+
+
+def test_where_its_teacher_drove_or_stopped_it_no_knowledge_had_a_say(lessons: dict[str, list[TeachingEvent]]) -> None:
+    run = stored("walls", 16)
+    stood = sum(entry.decision.cause.value in ("teacher", "stopped", "unsaved") for entry in run.entries())
+    assert counterfactual(run, Shadow(run, lessons["walls"])).decided == 1600 - stood
+
+
+def test_a_corrected_rla_is_named_where_it_would_have_driven_otherwise(
+    lessons: dict[str, list[TeachingEvent]],
+) -> None:
+    run = stored("walls", 12)
+    known = lessons["walls"]
+    used = Shadow(run, known)
+    counted: dict[int, int] = {}
+    for each in counterfactual(run, Shadow(run, ()), used).stretches:
+        assert each.was.rla is not None
+        counted[each.was.rla.rla_id] = counted.get(each.was.rla.rla_id, 0) + each.ticks
+    most = max(counted, key=lambda rla_id: counted[rla_id])
+    other = "back" if used_action(used, most) != "back" else "forward"
+    found = counterfactual(run, Shadow(run, [*known, ActionReplaced(most, other, "", ORIGIN)]), used)
+    assert found.other_action == counted[most]
+    assert {each.would_be.action for each in found.stretches} == {other}
+    assert {each.would_be.rla.rla_id for each in found.stretches if each.would_be.rla is not None} == {most}
+
+
+def used_action(shadow: Shadow, rla_id: int) -> str:
+    rla = shadow._system.get(rla_id)
+    assert rla is not None
+    return rla.action
+
+
+def test_the_mid_level_is_looked_at_by_itself(lessons: dict[str, list[TeachingEvent]]) -> None:
+    run = stored("errand", 14)
+    known = lessons["errand"]
+    whole = Shadow(run, known)
+    ways = [event.rla for event in known if isinstance(event, RlaCreated) and event.rla.level == MID]
+    less = [event for event in known if not isinstance(event, RlaCreated) or event.rla.level != MID]
+    found = counterfactual(run, Shadow(run, less), whole)
+    assert ways
+    assert found.mid_otherwise > 100
+    assert (found.other_action, found.would_ask, found.would_drive) == (0, 0, 0)
+    assert {each.level for each in found.stretches} == {MID}
+
+
+@of_every_story("walls", 36.0)
+def test_what_was_is_what_drove_also_where_the_robot_was_taught_otherwise_in_that_very_tick(
+    name: str, seconds: float
+) -> None:
+    run = stored(name, seconds)
+    replay = Replay(run)
+    heard: Counter[str] = Counter()
+    taught_now = 0
+    for entry, record in replay:
+        answer = answers_then(record, replay.runtime).basic
+        decision = record.decision
+        if decision.cause is Cause.RLA:
+            assert answer.rla is not None
+            assert (answer.rla.rla_id, answer.action) == (decision.rla_id, decision.action), entry.tick
+            taught_now += bool(entry.events)
+        elif decision.cause is Cause.UNKNOWN:
+            assert answer.action is None, entry.tick
+        heard[decision.cause.value] += 1
+    assert heard["rla"] > 1000
+    assert heard["unknown"] > 100
+    assert taught_now > 2
+
+
+def test_what_was_withdrawn_in_that_tick_had_driven() -> None:
+    """As a critic does it: the action drives, is found bad, and is gone behind the same tick."""
+    run = stored("walls")
+    replay = Replay(run)
+    for _entry, record in replay:
+        if record.decision.cause is Cause.RLA and record.tick > 1200:
+            break
+    rla_id = record.decision.rla_id
+    assert rla_id is not None
+    replay.runtime.level.apply(ActionWithdrawn(rla_id, "", ORIGIN))
+    assert answers_then(record, replay.runtime).basic.action == record.decision.action
+
+
+def test_where_nobody_could_be_asked_withdrawn_rlas_are_passed_over(
+    lessons: dict[str, list[TeachingEvent]],
+) -> None:
+    run = stored("walls")
+    events = [event for event in lessons["walls"] if isinstance(event, RlaCreated) and event.rla.level == BASIC]
+    known = Shadow(run, events)
+    replay = Replay(run)
+    for _entry, record in replay:
+        if record.decision.cause is Cause.RLA and record.tick > 1200:
+            break
+    asked = known.look(record, replay.runtime).basic
+    assert asked.rla is not None
+    withdrawn = Shadow(run, [*events, ActionWithdrawn(asked.rla.rla_id, "", ORIGIN)])
+    assert withdrawn.look(record, replay.runtime).basic.rla is None
+    replay.runtime.level.nobody_is_asked = True
+    passed_over = withdrawn.look(record, replay.runtime).basic
+    assert passed_over.nearest is not None
+    assert passed_over.nearest.rla_id != asked.rla.rla_id
+
+
+def test_each_tick_is_told_of() -> None:
+    run = stored("walls", 5)
+    seen: list[ReplayedTick] = []
+    found = counterfactual(run, Shadow(run, ()), on_tick=seen.append)
+    assert isinstance(found, Counterfactual)
+    assert [tick.entry.number for tick in seen] == list(range(1, 501))
+    assert not found.trouble
+
+
+def test_knowledge_comes_from_a_file_and_the_file_stays_as_it_is(
+    tmp_path: Path, lessons: dict[str, list[TeachingEvent]]
+) -> None:
+    run = stored("walls", 10)
+    path = tmp_path / "walls.knowledge"
+    with open_knowledge(path, run.robot, run.task) as journal:
+        journal.append([JournalEntry(event, "2026-11-22T03:00:00Z") for event in lessons["walls"]])
+    before = path.read_bytes()
+    assert counterfactual(run, shadow_of(run, path), Shadow(run, lessons["walls"])).same
+    assert path.read_bytes() == before
+
+
+def test_knowledge_of_other_features_is_refused() -> None:
+    run = stored("walls")
+    with pytest.raises(RecordingError, match="this knowledge cannot decide there"):
+        Shadow(run, [RlaCreated(Rla(1, (1.0, 2.0), "forward", None, ORIGIN))])

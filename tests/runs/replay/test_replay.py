@@ -1,0 +1,240 @@
+"""A recorded run comes out again as it was: each decision, and all that is known, bit for bit."""
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from hal.robot import WheelSpeeds
+from kurt2rt.core.decision.active_stop import STARTED
+from kurt2rt.core.rla.rla import BASIC, MID, Phase, RlaCreated
+from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.teaching.commands import Resume, Stop, Teach, Watch
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.runs.recording.entries import TickEntry
+from kurt2rt.runs.recording.run_folder import segments_in
+from kurt2rt.runs.recording.run_head import RunHead
+from kurt2rt.runs.replay.comparison import compare
+from kurt2rt.runs.replay.reader import read_run
+from kurt2rt.runs.replay.replay import Replay, replay_until
+from kurt2rt.runs.replay.run import Run
+from tests.core.basic.helpers import keep, with_repertoire
+from tests.runs.replay.stored_runs import NAMES, STORED, stored
+from tests.runs.replay.stories import NAME, STORIES, Scene, record_story
+
+HERE = Path(__file__).parents[3]
+
+
+def differences(run: Run) -> tuple[int, list[str]]:
+    """How many ticks were compared, and the first differences."""
+    ticks, found = 0, []
+    for entry, record in Replay(run):
+        ticks += 1
+        found += [str(each) for each in compare(entry, record)]
+    return ticks, found[:5]
+
+
+@pytest.mark.parametrize("name", STORIES)
+def test_a_stored_run_is_decided_again_as_it_was(name: str) -> None:
+    run = read_run(STORED / f"{name}.mcap")
+    assert differences(run) == (round(STORIES[name].seconds * 100), [])
+    assert not run.trouble
+
+
+OF_2004 = {
+    "OPENBLAS_CORETYPE": "Prescott",
+    "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4",
+    "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F",
+}
+OF_2013 = {"OPENBLAS_CORETYPE": "Haswell"}
+
+
+@pytest.mark.parametrize(
+    ("processor", "seconds"),
+    [
+        pytest.param(OF_2004, 5, id="of 2004"),
+        pytest.param(OF_2004, 44, id="of 2004, whole", marks=pytest.mark.deep),
+        pytest.param(OF_2013, 44, id="of 2013, whole", marks=pytest.mark.deep),
+    ],
+)
+def test_on_other_processors_too(processor: dict[str, str], seconds: int) -> None:
+    told = subprocess.run(
+        [sys.executable, "-m", "tests.runs.replay.on_this_processor", str(seconds)],
+        cwd=HERE,
+        env={**os.environ, **processor},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (told.returncode, told.stdout.splitlines()) == (0, [f"{name}: the same" for name in NAMES]), told.stderr
+
+
+def test_the_stored_run_holds_what_a_run_may_hold() -> None:
+    """Or it would prove little."""
+    walls = list(stored("walls").entries())
+    kinds = {type(command).__name__ for entry in walls for command in entry.commands}
+    assert {"Watch", "Drive", "Teach", "Correct", "Undo", "Reward", "Appraise", "PressesForgotten"} <= kinds
+    events = {type(event).__name__ for entry in walls for event in entry.events}
+    assert {"RlaCreated", "ActionReplaced", "ActionWithdrawn", "RlaRewarded", "LessonUndone"} <= events
+    causes = {entry.decision.cause.value for entry in walls}
+    assert {"rla", "held", "teacher", "unknown", "stopped", "unsaved"} <= causes
+    assert any(entry.opinion is not None for entry in walls)
+    errand = list(stored("errand").entries())
+    assert any(entry.surprise is not None for entry in errand + walls)
+    assert any(entry.decision.mid is not None and entry.decision.mid.event is not None for entry in errand)
+    assert any(entry.decision.plan is not None for entry in errand)
+    assert any(event.rla.level == MID for entry in errand for event in entry.events if hasattr(event, "rla"))
+
+
+def test_what_was_not_taught_then_is_told_as_the_first_difference() -> None:
+    run = stored("walls")
+    replay = Replay(run)
+    for entry in run.entries():
+        if entry.events:  # the first lesson does not come
+            entry = entry._replace(commands=())
+            break
+        replay.step(entry)
+    first = compare(entry, replay.step(entry))
+    assert any(each.field == "events" for each in first)
+    assert f"tick {entry.tick}" in str(first[0])
+
+
+def test_a_zero_of_another_sign_is_a_difference_and_so_is_a_truth_for_a_number() -> None:
+    """Both are equal for Python, and not what was recorded."""
+    entry, record = next(iter(Replay(stored("walls"))))
+    still = entry.decision._replace(wheel_speeds=WheelSpeeds(-0.0, 0.0))
+    (found,) = compare(entry._replace(decision=still), record)
+    assert found.in_words == "decision.wheel_speeds.left_m_s was -0.0, and is 0.0 now"
+    (found,) = compare(entry._replace(senses=entry.senses._replace(bumpers=False)), record)
+    assert found.field == "senses.bumpers"
+
+
+def test_the_runtime_is_as_it_was_at_a_time() -> None:
+    run = stored("walls")
+    runtime, tick = replay_until(run, 31.5)
+    assert tick.entry.now_s <= 31.5 < tick.entry.now_s + 0.011
+    assert runtime.school.phase is Phase.REINFORCEMENT
+    assert compare(*tick) == []
+    early, first = replay_until(run, -1.0)
+    assert first.entry.number == 1
+    assert early.school.stopped == STARTED
+
+
+@pytest.fixture(scope="module")
+def fresh(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run that was recorded just now, as the robot program does it."""
+    return record_story("walls", tmp_path_factory.mktemp("runs"), seconds=6)
+
+
+def test_a_run_that_was_just_recorded_is_replayed_from_its_folder(fresh: Path) -> None:
+    run = read_run(fresh)
+    assert differences(run) == (600, [])
+    (segment,) = segments_in(fresh)
+    assert read_run(segment).head == run.head
+
+
+def test_a_torn_run_is_replayed_up_to_its_last_whole_chunk(fresh: Path, tmp_path: Path) -> None:
+    (segment,) = segments_in(fresh)
+    torn = tmp_path / "torn.mcap"
+    torn.write_bytes(segment.read_bytes()[: segment.stat().st_size * 2 // 3])
+    run = read_run(torn)
+    ticks, found = differences(run)
+    assert 100 < ticks < 600
+    assert found == []
+    assert "torn.mcap" in run.trouble
+
+
+def without(entries: Iterator[TickEntry], lost: range) -> Iterator[TickEntry]:
+    return (entry for entry in entries if entry.number not in lost)
+
+
+def part_of(run: Run, lost: range) -> Run:
+    return Run("a run with a gap", run.head, run._attachments, lambda: without(run._read(), lost))
+
+
+def test_what_came_after_a_gap_is_not_replayed_and_that_is_said() -> None:
+    run = part_of(stored("walls"), range(201, 204))
+    assert differences(run) == (200, [])
+    assert not run.whole
+    assert run.trouble.startswith("3 ticks before 2.03 s (tick 204) are not in the recording")
+
+
+def test_a_run_whose_beginning_is_gone_says_so() -> None:
+    run = stored("walls")
+    kept = {name: data for name, data in run._attachments.items() if name != "knowledge.jsonl"}
+    with pytest.raises(RecordingError, match=r"knowledge\.jsonl is missing, with which the run began"):
+        Run("late", run.head, kept, run._read)
+
+
+def test_damaged_settings_are_refused() -> None:
+    run = stored("walls")
+    kept = {**run._attachments, "settings/robot.json": b"{}"}
+    with pytest.raises(RecordingError, match=r"settings/robot\.json is damaged"):
+        Run("worn", run.head, kept, run._read)
+
+
+def test_settings_of_another_version_are_refused_with_its_name() -> None:
+    run = stored("walls")
+    head = RunHead(**{**{name: getattr(run.head, name) for name in RunHead.__slots__}, "fingerprints": {}})
+    with pytest.raises(RecordingError, match="recorded by kurt2rt story, whose settings this one cannot use"):
+        Run("old", head, {**run._attachments, "settings/robot.json": b"{}"}, run._read)
+
+
+@pytest.mark.parametrize("name", ["settings/../../escaped", "/escaped", "settings/task.json/escaped"])
+def test_a_run_that_would_write_elsewhere_is_refused(name: str) -> None:
+    run = stored("walls")
+    with pytest.raises(RecordingError, match=r"evil: holds .*escaped|evil: holds 'settings/task\.json' as a file and"):
+        Run("evil", run.head, {**run._attachments, name: b"!"}, run._read)
+
+
+def test_what_is_no_run_is_refused_in_a_sentence(tmp_path: Path) -> None:
+    with pytest.raises(RecordingError, match="no recorded run"):
+        read_run(tmp_path)
+    with pytest.raises(RecordingError, match="cannot be read"):
+        read_run(tmp_path / "nothing")
+    (tmp_path / "empty.mcap").write_bytes(b"")
+    with pytest.raises(RecordingError, match="says of no run"):
+        read_run(tmp_path / "empty.mcap")
+
+
+def test_a_stop_among_the_commands_stays_where_it_was() -> None:
+    entries = [entry for entry in stored("walls").entries() if any(isinstance(each, Stop) for each in entry.commands)]
+    assert [entry.tick for entry in entries] == [571]
+
+
+def follow_the_wall(scene: Scene, record: TickRecord) -> None:
+    """An action that was taught itself drives, and is lost now and then."""
+    scene.runtime.inbox.put(Watch(NAME, record.tick))
+    if record.tick == 20:
+        scene.say(lambda name: Resume(name, NAME))
+    if record.decision.asking and record.tick % 50 == 0:
+        scene.say(lambda name: Teach(name, NAME, "follow" if record.tick < 300 else "curve_left"))
+
+
+def test_actions_that_were_taught_themselves_are_kept_with_the_run(tmp_path: Path) -> None:
+    task = load_task("wall_following")
+    mine = tmp_path / "mine"
+    mine.mkdir()
+    taught = (event for entry in stored("walls", 20).entries() for event in entry.events)
+    lessons = [event for event in taught if isinstance(event, RlaCreated) and event.rla.level == BASIC]
+    keep(mine / "walls.knowledge", task, *lessons)
+    follows = "kind: task, name: follow, task: wall_following, knowledge: walls.knowledge"
+    curve = "kind: motor, name: curve_left, left_m_s: 0.1, right_m_s: 0.2"
+    task = with_repertoire(task, mine, follows, curve)
+    folder = record_story("walls", tmp_path / "runs", seconds=8, task=task, other=follow_the_wall)
+    shutil.rmtree(mine)
+    run = read_run(folder)
+    assert any(entry.decision.action == "follow" for entry in run.entries())
+    assert differences(run) == (800, [])
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("name", STORIES)
+def test_so_is_a_run_of_some_minutes(name: str, tmp_path: Path) -> None:
+    run = read_run(record_story(name, tmp_path, seconds=300))
+    assert differences(run) == (30_000, [])

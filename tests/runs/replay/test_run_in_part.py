@@ -1,0 +1,69 @@
+"""A run of which not all is there any more: it is not replayed, but what there is can be looked at."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.runs.explain.timeline import summary, timeline_of
+from kurt2rt.runs.recording.entries import TickEntry
+from kurt2rt.runs.recording.run_folder import segments_in
+from kurt2rt.runs.replay.reader import read_run
+from kurt2rt.runs.replay.replay import Replay, replay_until
+from kurt2rt.runs.replay.run import Run
+from kurt2rt.runs.replay.verify import verify
+from tests.channel.desk import ROBOT, TASK
+from tests.runs.recording.desk_recording import empty_run, late_run
+from tests.runs.replay.stored_runs import STORED
+
+
+@pytest.fixture(scope="module")
+def late(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    run = late_run(tmp_path_factory.mktemp("runs"))
+    assert segments_in(run)[0].name != "0001.mcap"
+    return run
+
+
+def test_one_without_its_beginning_cannot_be_replayed_and_says_since_when_it_is_there(late: Path) -> None:
+    first = next(read_run(late, in_part=True).entries_in_part()).number
+    with pytest.raises(
+        RecordingError, match=rf"is there from its tick {first} on; .* raise recordings_mb for the next"
+    ):
+        read_run(late)
+    with pytest.raises(RecordingError, match=rf"is there from its tick {first} on"):
+        Replay(read_run(late, in_part=True))
+
+
+def test_what_is_left_of_it_is_read_with_the_settings_that_were_in_force(late: Path) -> None:
+    run = read_run(late, in_part=True)
+    assert (run.robot, run.task, run.lessons) == (ROBOT, TASK, ())
+    numbers = [entry.number for entry in run.entries_in_part()]
+    assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+    assert run.trouble.startswith(f"the first {numbers[0] - 1} ticks of the run (")
+
+
+def with_gaps(run: Run, *lost: range) -> Run:
+    def read() -> Iterator[TickEntry]:
+        return (entry for entry in run._read() if not any(entry.number in each for each in lost))
+
+    return Run("a run with gaps", run.head, run._attachments, read)
+
+
+def test_a_timeline_goes_on_behind_a_gap_and_does_not_call_it_missed_ticks() -> None:
+    run = with_gaps(read_run(STORED / "walls.mcap"), range(201, 204), range(1000, 1101))
+    timeline = timeline_of(run.entries_in_part(), run.robot)
+    assert (timeline.ticks, timeline.missed, timeline.unrecorded) == (4400 - 104, 0, 104)
+    assert run.trouble == "104 ticks in 2 places are not in the recording"
+    assert "104 ticks not recorded" in summary(timeline)
+    before = max(stretch.to_s for stretch in timeline.stretches if stretch.from_s < 9.9)
+    assert before == pytest.approx(9.99)
+    assert len(list(run.entries())) == 200
+
+
+def test_of_a_run_without_a_tick_nothing_is_the_same(tmp_path: Path) -> None:
+    run = empty_run(tmp_path)
+    with pytest.raises(RecordingError, match="holds no tick; the program ended before the first one"):
+        verify(read_run(run))
+    with pytest.raises(RecordingError, match="holds no tick"):
+        replay_until(read_run(run), 1.0)

@@ -1,0 +1,171 @@
+"""What is found to be wrong in a report, since when it has been so, and when it is over."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from hal.bus_state import ControllerState
+from hal.guard_reason import GuardReason
+from hal.health import Health
+from hal.robot_settings import load_robot
+from kurt2rt.channel.protocol.health import DiskSpace, Trouble
+from kurt2rt.channel.protocol.trouble_code import TroubleCode
+from kurt2rt.service.health.diagnostics import LATELY_S, Counted, TroubleBook
+from kurt2rt.service.health.snapshot import Snapshot
+from tests.service.health.reports import WELL
+
+A_BUS = Health(1000, 0, 0, 0, 0, 0, "", ControllerState.ACTIVE, "", "", None)
+CALM = Snapshot(
+    tick=100,
+    now_s=50.0,
+    infrared_age_s=0.004,
+    encoder_age_s=0.004,
+    bumper_age_s=0.004,
+    bus=A_BUS,
+    unwritten=0,
+    keeper_trouble=None,
+    last_write_s=0.004,
+    drops={"lines": 0},
+    says={},
+    ticks=100,
+    missed_ticks=0,
+    rlas=0,
+    lessons=0,
+    doing="stands and asks",
+)
+
+
+class Ward:
+    """One robot, looked at once a second."""
+
+    def __init__(self, *, tolerates_stalls: bool = False) -> None:
+        self.book = TroubleBook(load_robot(), tolerates_stalls=tolerates_stalls)
+        self.counted = Counted()
+        self.now_s = 50.0
+        self.counters = {"missed": 0, "junk": 0, "drops lines": 0}
+
+    def look(self, snapshot: Snapshot = CALM, **changes: object) -> tuple[Trouble, ...]:
+        """`changes` of the other parts of a report."""
+        self.now_s += 1.0
+        self.counted.see(dict(self.counters))
+        parts = {"punctuality": WELL.punctuality, "disks": WELL.disks, "machine": WELL.machine} | changes
+        missed = replace(
+            parts["punctuality"],  # type: ignore[type-var]
+            missed_lately=self.counted.lately("missed"),
+            missed=self.counters["missed"],
+        )
+        return self.book.judge(
+            replace(snapshot, now_s=self.now_s),
+            missed,  # type: ignore[arg-type]
+            parts["disks"],  # type: ignore[arg-type]
+            parts["machine"],  # type: ignore[arg-type]
+            self.counted,
+        )
+
+    def one(self, snapshot: Snapshot = CALM, **changes: object) -> Trouble:
+        (trouble,) = self.look(snapshot, **changes)
+        return trouble
+
+
+@pytest.fixture
+def ward() -> Ward:
+    return Ward()
+
+
+def test_a_robot_that_is_well_has_no_trouble(ward: Ward) -> None:
+    assert ward.look() == ()
+
+
+def test_silent_sensors_are_urgent_and_it_is_known_for_how_long(ward: Ward) -> None:
+    first = ward.one(replace(CALM, infrared_age_s=0.6))
+    assert first == Trouble(TroubleCode.SENSORS_SILENT, 0.0, True, "infra-red sensors", (0.6,))
+    later = ward.one(replace(CALM, infrared_age_s=1.6))
+    assert (later.numbers, later.since_s) == ((1.6,), 1.0)
+    assert ward.look() == ()
+    unheard = ward.one(replace(CALM, bumper_age_s=math.inf))
+    assert (unheard.code, unheard.name) == (TroubleCode.SENSORS_UNHEARD, "bumpers")
+    assert ward.one(replace(CALM, infrared_age_s=0.6)).since_s == 0.0  # another silence than the one before
+
+
+def test_a_missed_tick_is_told_for_a_minute(ward: Ward) -> None:
+    ward.look()
+    ward.counters["missed"] = 2
+    assert ward.one() == Trouble(TroubleCode.TICKS_MISSED, 0.0, False, numbers=(2, 2))
+    for _ in range(LATELY_S - 2):
+        assert ward.one().code is TroubleCode.TICKS_MISSED
+    assert ward.one().since_s == LATELY_S - 1
+    assert ward.look() == ()
+
+
+def test_what_was_wrong_before_the_first_look_counts(ward: Ward) -> None:
+    ward.counters["missed"] = 1
+    assert ward.one().numbers == (1, 1)
+
+
+def test_ticks_are_late_from_a_fifth_of_a_period_on(ward: Ward) -> None:
+    assert ward.look(punctuality=replace(WELL.punctuality, p99_ms=2.0)) == ()
+    trouble = ward.one(punctuality=replace(WELL.punctuality, p99_ms=2.1))
+    assert (trouble.code, trouble.urgent) == (TroubleCode.TICKS_LATE, False)
+
+
+def test_a_few_late_ticks_of_a_robot_that_stalls_with_the_program_are_no_trouble() -> None:
+    ward = Ward(tolerates_stalls=True)
+    late = replace(WELL.punctuality, p99_ms=9.0)
+    assert ward.look(punctuality=late) == ()
+    ward.counters["missed"] = 600  # of 6000 in a minute
+    assert ward.look(punctuality=late) == ()
+    ward.counters["missed"] = 601
+    assert ward.one(punctuality=late).numbers == (601, 601)
+
+
+def test_the_bus_says_itself_what_is_wrong_and_what_to_do(ward: Ward) -> None:
+    off = replace(A_BUS, controller_trouble="bus can0: bus-off; check cable; then restart", latched=GuardReason.BUS_OFF)
+    alarm = ward.one(replace(CALM, bus=off))
+    assert alarm == Trouble(TroubleCode.BUS_ALARM, 0.0, True, line=off.trouble)
+    assert (alarm.what, alarm.to_do) == ("bus can0: bus-off", "check cable; then restart")
+    ward.counters["junk"] = 12
+    assert ward.one() == Trouble(TroubleCode.CAN_JUNK, 0.0, False, numbers=(12,))
+    assert ward.look(replace(CALM, bus=None)) == ()  # a robot that tells of none
+
+
+def test_a_disk_that_fails_fills_up_hangs_or_takes_its_time(ward: Ward) -> None:
+    failing = ward.one(replace(CALM, keeper_trouble="k: disk full; make room", unwritten=3))
+    assert failing == Trouble(TroubleCode.LESSONS_UNSAVED, 0.0, True, line="k: disk full; make room")
+    little = ward.one(disks=(DiskSpace("recordings", 499_000_000),))
+    assert little == Trouble(TroubleCode.LITTLE_ROOM, 0.0, False, "recordings", (499.0,))
+    assert ward.one(disks=(DiskSpace("recordings", 49_000_000),)).urgent
+    assert ward.one(disks=(DiskSpace("knowledge", None),)).code is TroubleCode.DISK_SILENT
+    slow = ward.one(replace(CALM, last_write_s=0.84))
+    assert (slow.code, slow.numbers) == (TroubleCode.SLOW_DISK, (0.84,))
+
+
+def test_a_slow_write_is_a_trouble_for_a_minute_whatever_was_or_was_not_written_since(ward: Ward) -> None:
+    for _ in range(LATELY_S):
+        assert ward.one(replace(CALM, last_write_s=0.84)).code is TroubleCode.SLOW_DISK
+    ward.one(replace(CALM, last_write_s=0.84))
+    assert ward.look(replace(CALM, last_write_s=0.84)) == ()
+    ward.one(replace(CALM, last_write_s=0.6))
+    assert ward.one().numbers == (0.6,)
+
+
+def test_a_battery_counts_while_it_is_used_up(ward: Ward) -> None:
+    assert ward.look(machine=replace(WELL.machine, battery=0.15, discharging=False)) == ()
+    assert not ward.one(machine=replace(WELL.machine, battery=0.15)).urgent
+    assert ward.one(machine=replace(WELL.machine, battery=0.05)).urgent
+    assert ward.one(machine=replace(WELL.machine, available_bytes=50_000_000)).code is TroubleCode.LITTLE_MEMORY
+
+
+def test_what_queues_throw_away_and_what_parts_say_of_themselves(ward: Ward) -> None:
+    ward.counters["drops lines"] = 40
+    assert ward.one() == Trouble(TroubleCode.DROPS, 0.0, False, "lines", (40,))
+    ward = Ward()
+    said = ward.one(replace(CALM, says={"channel": "phone: no key; pair it anew"}))
+    assert said == Trouble(TroubleCode.PROGRAM, 0.0, False, "channel", line="phone: no key; pair it anew")
+
+
+def test_the_urgent_ones_come_first_then_those_that_have_lasted_longest(ward: Ward) -> None:
+    ward.look(replace(CALM, says={"channel": "a"}))
+    ward.look(replace(CALM, says={"channel": "a", "recording": "b"}))
+    troubles = ward.look(replace(CALM, encoder_age_s=1.0, says={"recording": "b", "channel": "a"}))
+    assert [each.name for each in troubles] == ["encoders", "channel", "recording"]

@@ -1,0 +1,152 @@
+"""The report of a robot that runs on ticks that the test makes; the thread is real."""
+
+import threading
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.channel.protocol.health import DiskSpace, HealthReport
+from kurt2rt.service.health.disk_monitor import DiskLook
+from kurt2rt.service.health.machine import MachineWatch, battery_of
+from kurt2rt.service.health.monitor import HealthWatch
+from kurt2rt.service.health.probes import Instruments
+from tests.channel.desk import Desk
+
+PATIENCE_S = 10.0
+
+
+class Keeping:
+    """Where lessons would be kept."""
+
+    unwritten = 2
+    trouble: str | None = None
+    last_write_s: float | None = 0.005
+
+
+class Robot:
+    """A robot, and the watch on it."""
+
+    def __init__(self, folder: Path) -> None:
+        self.desk = Desk()
+        self.keeping = Keeping()
+        self.now_s = 1000.0
+        self.dropped = 0
+        instruments = Instruments(drops={"lines": lambda: self.dropped})
+        self.watch = HealthWatch(
+            self.desk.runtime,
+            self.keeping,
+            instruments,
+            boot="626f6f74",
+            knowledge=folder / "not made yet" / "x.knowledge",
+            now=lambda: self.now_s,
+        )
+        self.heard: list[HealthReport] = []
+        self.watch.listen(self.heard.append)
+
+    def tick(self, count: int = 1) -> None:
+        for _ in range(count):
+            self.watch.after_tick(self.desk.run())
+            self.now_s += 0.01
+
+    def report(self) -> HealthReport:
+        """What is reported of the newest tick."""
+        return self.watch.report(self.watch.snapshot(self.desk.record))
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Robot:
+    return Robot(tmp_path)
+
+
+def test_a_report_is_made_once_a_second_and_told_after_a_tick(robot: Robot) -> None:
+    made = threading.Event()
+    work = robot.watch.report
+
+    def report(snapshot: object) -> HealthReport:
+        try:
+            return work(snapshot)  # type: ignore[arg-type]
+        finally:
+            made.set()
+
+    robot.watch.report = report  # type: ignore[method-assign]
+    with robot.watch:
+        robot.tick(99)
+        assert not made.is_set()
+        robot.tick()
+        assert made.wait(PATIENCE_S)
+    assert robot.watch.newest is None  # the thread tells nobody; the loop does, after its next tick
+    robot.tick()
+    assert robot.heard == [robot.watch.newest]
+    robot.tick()
+    assert len(robot.heard) == 1
+
+
+def test_it_says_what_the_program_is_and_does(robot: Robot) -> None:
+    robot.tick(300)
+    report = robot.report()
+    assert (report.boot, report.robot, report.task) == ("626f6f74", "kurt2-indoor", "wall_following")
+    assert report.tick == robot.desk.tick
+    assert report.doing == "stands and asks"
+    assert report.uptime_s == pytest.approx(3.0)
+    assert report.punctuality.ticks == 301
+    assert (report.safety.unwritten, report.safety.last_write_ms) == (2, 5.0)
+    assert report.bus is None
+    assert report.machine.memory_bytes > 10_000_000
+    assert report.machine.threads >= 1
+
+
+def test_lateness_of_now_is_the_worst_of_the_last_second(robot: Robot) -> None:
+    for late_s in (0.004, 0.0):
+        robot.desk.runtime.ledger.begin(late_s)
+        robot.desk.runtime.ledger.end()
+    assert robot.report().punctuality.newest_ms == pytest.approx(4.0)
+    robot.tick(100)
+    late = robot.report().punctuality
+    assert late.newest_ms == 0.0
+    assert late.worst_ms == pytest.approx(4.0)
+
+
+def test_sensors_that_were_never_heard_have_no_age(robot: Robot) -> None:
+    robot.desk.robot.infrared_age_s = float("inf")
+    robot.tick()
+    report = robot.report()
+    assert report.ages.infrared_s is None
+    assert report.ages.bumpers_s == 0.0
+    assert [each.about for each in report.troubles if each.urgent][:1] == ["sensors"]
+
+
+def test_parts_that_come_later_are_read_from_then_on(robot: Robot) -> None:
+    robot.tick()
+    robot.watch.include(drops={"pictures": lambda: 7}, says={"channel": lambda: "the port is taken; free it"})
+    robot.dropped = 3
+    report = robot.report()
+    assert {each.of: each.count for each in report.drops} == {"lines": 3, "pictures": 7}
+    assert ("the port is taken", "free it") in [(each.what, each.to_do) for each in report.troubles]
+
+
+def test_there_is_room_where_the_folder_will_be_made(tmp_path: Path) -> None:
+    look = DiskLook({"knowledge": tmp_path / "not" / "there"}, now=lambda: now_s)
+    now_s = 0.0
+    assert look.spaces() == (DiskSpace("knowledge", None),)
+    look.look("knowledge")
+    (space,) = look.spaces()
+    assert space.free_bytes is not None
+    assert space.free_bytes > 0
+    now_s = 5.0  # it has not answered since
+    assert look.spaces() == (DiskSpace("knowledge", None),)
+
+
+def test_the_battery_is_the_machines_own_and_of_two_the_emptier(tmp_path: Path) -> None:
+    assert battery_of(tmp_path) == (None, False)
+    for name, kind, scope, percent, status in (
+        ("AC", "Mains", "", "", ""),
+        ("BAT0", "Battery", "System", "83", "Full"),
+        ("BAT1", "Battery", "", "61", "Discharging"),
+        ("mouse", "Battery", "Device", "4", "Discharging"),
+    ):
+        (tmp_path / name).mkdir()
+        for file, text in (("type", kind), ("scope", scope), ("capacity", percent), ("status", status)):
+            if text:
+                (tmp_path / name / file).write_text(f"{text}\n")
+    assert battery_of(tmp_path) == (0.61, True)
+    assert MachineWatch(tmp_path).look().battery == 0.61

@@ -1,0 +1,200 @@
+"""How another program of the machine gets the report."""
+
+import errno
+import json
+import socket
+import threading
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import asynccontextmanager, contextmanager
+from pathlib import Path
+from typing import cast
+
+import anyio
+import anyio.to_thread
+import pytest
+
+from kurt2rt.channel.protocol.health import HealthReport
+from kurt2rt.channel.protocol.health_codec import plain_of
+from kurt2rt.service.health.monitor import HealthWatch
+from kurt2rt.service.health.status_socket import (
+    StatusError,
+    StatusSocket,
+    reports_at,
+    short_name,
+    socket_of,
+    tell_waiting,
+)
+from tests.service.health.reports import ILL, WELL
+
+PATIENCE_S = 10.0
+
+
+class Watch:
+    """Says what the test says."""
+
+    def __init__(self) -> None:
+        self.newest: HealthReport | None = None
+        self._listeners: list[object] = []
+
+    def listen(self, listener: object) -> None:
+        self._listeners.append(listener)
+
+    def tell(self, report: HealthReport) -> None:
+        self.newest = report
+        for listener in self._listeners:
+            listener(report)  # type: ignore[operator]
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    folder = tmp_path / ("a folder with a name that is too long for the kernel's names of sockets " * 2)
+    folder.mkdir()
+    return socket_of(folder / "x.knowledge")
+
+
+@asynccontextmanager
+async def serving(watch: Watch, path: Path) -> AsyncIterator[StatusSocket]:
+    status = StatusSocket(cast(HealthWatch, watch), path)
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(status.serve)
+        await until(lambda: is_told(path) or bool(status.trouble))
+        yield status
+        tasks.cancel_scope.cancel()
+
+
+@contextmanager
+def bound(path: Path) -> Iterator[socket.socket]:
+    """A program that listens there, and says nothing by itself."""
+    with socket.socket(socket.AF_UNIX) as listener, short_name(path) as short:
+        listener.bind(short)
+        listener.listen()
+        yield listener
+
+
+def is_told(path: Path) -> bool:
+    """Whether somebody listens there."""
+    with socket.socket(socket.AF_UNIX) as reader, short_name(path) as short:
+        return reader.connect_ex(short) == 0
+
+
+def mode_of(path: Path) -> int:
+    """Its mode; 0 where there is nothing."""
+    return path.stat().st_mode if path.exists() else 0
+
+
+async def until(holds: Callable[[], bool]) -> None:
+    with anyio.fail_after(PATIENCE_S):
+        while not holds():  # noqa: ASYNC110 - a file tells nobody
+            await anyio.sleep(0.005)
+
+
+async def following(reports: Iterator[HealthReport]) -> HealthReport:
+    return await anyio.to_thread.run_sync(lambda: next(reports))
+
+
+async def test_a_reader_gets_the_newest_report_at_once_and_then_each(path: Path) -> None:
+    watch = Watch()
+    watch.tell(WELL)
+    async with serving(watch, path):
+        reports = reports_at(path, PATIENCE_S)
+        assert await following(reports) == WELL
+        watch.tell(ILL)
+        assert await following(reports) == ILL
+        assert mode_of(path) & 0o077 == 0  # others than its user are told nothing
+    with pytest.raises(StatusError, match="has ended"):
+        next(reports)
+    assert mode_of(path) == 0
+
+
+async def test_in_its_first_second_a_reader_waits_for_the_report(path: Path) -> None:
+    watch = Watch()
+    async with serving(watch, path), anyio.create_task_group() as tasks:
+        got: list[HealthReport] = []
+
+        async def read() -> None:
+            got.append(await following(reports_at(path, PATIENCE_S)))
+
+        tasks.start_soon(read)
+        await anyio.sleep(0.01)
+        watch.tell(WELL)
+    assert got == [WELL]
+
+
+async def test_what_a_killed_program_left_behind_is_taken_over(path: Path) -> None:
+    with bound(path):
+        pass
+    assert mode_of(path)
+    with pytest.raises(StatusError, match="no robot program runs"):
+        next(reports_at(path, PATIENCE_S))
+    watch = Watch()
+    watch.tell(WELL)
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(StatusSocket(cast(HealthWatch, watch), path).serve)
+        await until(lambda: is_told(path))
+        assert await following(reports_at(path, PATIENCE_S)) == WELL
+        tasks.cancel_scope.cancel()
+
+
+async def test_a_program_that_waits_says_for_what_until_there_is_a_status(path: Path) -> None:
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(tell_waiting, path, lambda: "bus: no such interface; set it up")
+        await until(lambda: is_told(path))
+        for _ in range(2):
+            with pytest.raises(StatusError, match="stands and waits for bus: no such interface; set it up"):
+                await anyio.to_thread.run_sync(lambda: list(reports_at(path, PATIENCE_S)))
+        assert mode_of(path) & 0o077 == 0
+        tasks.cancel_scope.cancel()
+    watch = Watch()
+    watch.tell(WELL)
+    async with serving(watch, path):
+        assert await following(reports_at(path, PATIENCE_S)) == WELL
+
+
+def test_where_none_runs_the_reader_is_told_what_to_do(path: Path) -> None:
+    with pytest.raises(
+        StatusError, match=r"no robot program runs with the knowledge .*x\.knowledge, or it .*; start one"
+    ):
+        next(reports_at(path, PATIENCE_S))
+
+
+def test_one_that_says_nothing_hangs(path: Path) -> None:
+    with bound(path), pytest.raises(StatusError, match="it hangs or was stopped"):
+        next(reports_at(path, 0.05))
+
+
+def test_another_version_is_not_guessed_at(path: Path) -> None:
+    plain = plain_of(WELL)
+    del plain["machine"]
+
+    def answer() -> None:
+        connection, _ = other.accept()
+        with connection:
+            connection.sendall(json.dumps(plain).encode() + b"\n")
+
+    with bound(path) as other:
+        answering = threading.Thread(target=answer)
+        answering.start()
+        with pytest.raises(StatusError, match=r"has no machine.*use the kurt2rt that the robot runs"):
+            next(reports_at(path, PATIENCE_S))
+        answering.join()
+
+
+async def test_where_no_socket_can_be_made_the_rest_goes_on(tmp_path: Path) -> None:
+    path = tmp_path / "taken.status"
+    path.mkdir()
+    async with serving(Watch(), path) as status:
+        await until(lambda: bool(status.trouble))
+    assert "no status is told there" in status.trouble
+
+
+async def test_a_socket_on_a_read_only_disk_is_left_without_a_word(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = list[Path]()
+
+    def refuse(file: Path, missing_ok: bool = False) -> None:
+        del missing_ok
+        asked.append(file)
+        raise OSError(errno.EROFS, "Read-only file system", str(file))
+
+    async with serving(Watch(), path):
+        monkeypatch.setattr(Path, "unlink", refuse)
+    assert asked == [path]

@@ -1,0 +1,97 @@
+"""The unit is put in its place and taken away; what is another program's is not touched."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.service.systemd.install import Places, install, require_free, uninstall
+from kurt2rt.service.systemd.installation import program
+from kurt2rt.service.systemd.unit import MARK, Unit, UnitError, unit_of
+
+SSH = "[Unit]\nDescription=OpenBSD Secure Shell server\n"
+
+
+class Machine:
+    """Its folders of units, and what its service manager was told."""
+
+    def __init__(self, folder: Path) -> None:
+        self.places = Places(folder / "system", folder / "sysusers.d", (folder / "lib",))
+        for each in (self.places.units, self.places.users, *self.places.others):
+            each.mkdir()
+        self.done: list[Sequence[str]] = []
+
+    def install(self, name: str = "kurt2rt") -> tuple[Path, ...]:
+        return install(unit(name), self.done.append, self.places)
+
+    def uninstall(self, name: str = "kurt2rt") -> tuple[Path, ...]:
+        return uninstall(name, self.done.append, self.places)
+
+    @property
+    def files(self) -> list[Path]:
+        return [*self.places.units.iterdir(), *self.places.users.iterdir()]
+
+
+@pytest.fixture
+def machine(tmp_path: Path) -> Machine:
+    return Machine(tmp_path)
+
+
+def unit(name: str = "kurt2rt") -> Unit:
+    return unit_of(name, "can0", (*program(), "run", "--service"))
+
+
+def test_it_is_installed_and_taken_away_again(machine: Machine) -> None:
+    service, sysusers = machine.install()
+    assert service.read_text(encoding="utf-8") == unit().service
+    assert 'u kurt2rt - "KURT2 robot" /var/lib/kurt2rt' in sysusers.read_text(encoding="utf-8")
+    assert machine.done == [("systemd-sysusers", str(sysusers)), ("systemctl", "daemon-reload")]
+    machine.done.clear()
+    assert machine.uninstall() == (service, sysusers)
+    assert machine.done == [("systemctl", "disable", "--now", "kurt2rt.service"), ("systemctl", "daemon-reload")]
+    assert machine.files == []
+    with pytest.raises(UnitError, match="there is no such unit"):
+        machine.uninstall()
+
+
+def test_one_of_ours_is_installed_anew_over_the_old(machine: Machine) -> None:
+    assert machine.install() == machine.install()
+    assert all(path.read_text(encoding="utf-8").startswith(MARK) for path in machine.files)
+
+
+@pytest.mark.parametrize("folder", ["system", "sysusers.d"])
+def test_what_another_program_put_there_stays(folder: str, machine: Machine, tmp_path: Path) -> None:
+    others = tmp_path / folder / ("robotd.service" if folder == "system" else "robotd.conf")
+    others.write_text(SSH, encoding="utf-8")
+    with pytest.raises(UnitError, match="is another program's; give another --name"):
+        machine.install("robotd")
+    with pytest.raises(UnitError, match="is another program's and stays"):
+        machine.uninstall("robotd")
+    assert machine.done == []
+    assert machine.files == [others]
+    assert others.read_text(encoding="utf-8") == SSH
+
+
+def test_a_unit_of_the_system_is_not_hidden_by_ours(machine: Machine, tmp_path: Path) -> None:
+    (tmp_path / "lib" / "robotd.service").write_text(SSH, encoding="utf-8")
+    with pytest.raises(UnitError, match=r"lib/robotd\.service: is another program's"):
+        machine.install("robotd")
+    assert machine.files == []
+
+
+def test_a_masked_unit_is_somebodys(machine: Machine) -> None:
+    (machine.places.units / "robotd.service").symlink_to("/dev/null")
+    with pytest.raises(UnitError, match="is another program's"):
+        machine.install("robotd")
+
+
+def test_a_user_of_the_machine_does_not_become_the_robots(machine: Machine) -> None:
+    with pytest.raises(UnitError, match="daemon: is a user of this machine already"):
+        require_free("daemon", machine.places)
+
+
+@pytest.mark.parametrize("name", ["../ssh", "", "SSH"])
+def test_what_is_no_name_is_not_taken_away(name: str, machine: Machine) -> None:
+    with pytest.raises(UnitError, match="is no name"):
+        machine.uninstall(name)
+    assert machine.done == []

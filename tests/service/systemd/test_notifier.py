@@ -1,0 +1,63 @@
+"""What the program tells the service manager arrives, and a manager that is gone or deaf holds nobody up."""
+
+import os
+import secrets
+from pathlib import Path
+
+from kurt2rt.service.systemd.notifier import Notifier
+from tests.service.systemd.manager import Manager, manager
+
+
+def test_a_life_as_the_manager_hears_it(tmp_path: Path) -> None:
+    with manager(tmp_path) as systemd, Notifier(systemd.environment(4.0)) as notifier:
+        assert notifier.is_heard
+        assert notifier.watchdog_s == 4.0
+        notifier.ready()
+        notifier.status("waits for\nthe bus")
+        notifier.status("waits for the bus")
+        notifier.ping()
+        notifier.reloading(12)
+        notifier.stopping()
+        assert systemd.heard() == [
+            "READY=1",
+            "STATUS=waits for the bus",
+            "WATCHDOG=1",
+            "RELOADING=1",
+            "MONOTONIC_USEC=12",
+            "STOPPING=1",
+        ]
+
+
+def test_a_socket_without_a_file_is_found() -> None:
+    systemd = Manager(f"@kurt2rt-test-{secrets.token_hex(8)}")
+    with Notifier(systemd.environment()) as notifier:
+        notifier.ready()
+    assert systemd.heard() == ["READY=1"]
+    systemd.close()
+
+
+def test_without_a_manager_nothing_is_said() -> None:
+    with Notifier({"WATCHDOG_USEC": "1000"}) as notifier:
+        notifier.ready()
+        assert not notifier.is_heard
+        assert notifier.watchdog_s is None
+        assert notifier.lost == 0
+
+
+def test_the_watchdog_of_another_process_is_not_ours(tmp_path: Path) -> None:
+    with manager(tmp_path) as systemd:
+        others = {**systemd.environment(4.0), "WATCHDOG_PID": str(os.getpid() + 1)}
+        with Notifier(others) as notifier:
+            assert notifier.watchdog_s is None
+
+
+def test_a_manager_that_is_gone_or_deaf_is_counted(tmp_path: Path) -> None:
+    with manager(tmp_path) as systemd, Notifier(systemd.environment()) as notifier:
+        while not notifier.lost:  # nobody reads: the socket's queue is full at some time
+            notifier.ping()
+    gone = Notifier({"NOTIFY_SOCKET": str(tmp_path / "nowhere")})
+    gone.ready()
+    assert gone.lost == 1
+    gone.close()
+    gone.ready()
+    assert gone.lost == 1

@@ -1,0 +1,90 @@
+"""The unit says what the issue asks of it, and systemd's own tools agree."""
+
+import shlex
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from config import CONFIG_DIR
+from kurt2rt.service.systemd.installation import program
+from kurt2rt.service.systemd.unit import Unit, UnitError, quoted, unit_of
+from kurt2rt.service.systemd.verify import MOST_EXPOSURE, examine, has_tool
+
+needs_systemd = pytest.mark.skipif(
+    not has_tool(), reason="systemd-analyze is not here; on Debian: apt-get install systemd"
+)
+
+
+def unit(**changes: str) -> Unit:
+    return unit_of(changes.get("name", "kurt2rt"), changes.get("bus", "can0"), (*program(), "run", "--service"))
+
+
+def settings_of(text: str) -> list[tuple[str, str]]:
+    lines = [line for line in text.splitlines() if "=" in line and not line.startswith("#")]
+    return [(key, value) for key, _, value in (line.partition("=") for line in lines)]
+
+
+def test_it_cannot_stay_dead_and_is_watched() -> None:
+    said = dict(settings_of(unit().service))
+    assert said["Type"] == "notify"
+    assert float(said["WatchdogSec"]) > 0
+    assert (said["Restart"], said["StartLimitIntervalSec"]) == ("always", "0")
+    assert (said["User"], said["StateDirectory"], said["WorkingDirectory"]) == ("kurt2rt", "kurt2rt", "%S/kurt2rt")
+
+
+def test_it_has_the_capability_for_real_time_priority_and_no_other() -> None:
+    said = settings_of(unit().service)
+    of_capabilities = [value for key, value in said if "Capabilit" in key]
+    assert of_capabilities == ["CAP_SYS_NICE", "CAP_SYS_NICE"]
+    assert ("ProtectSystem", "strict") in said
+
+
+def test_it_orders_itself_after_nothing() -> None:
+    assert not {"After", "Requires", "Wants", "BindsTo"} & dict(settings_of(unit().service)).keys()
+
+
+def test_a_folder_elsewhere_may_be_written_also_when_it_comes_late() -> None:
+    made = unit_of("kurt2rt", "can0", program(), [Path("/mnt/my disk/kurt")])
+    assert ("ReadWritePaths", '-"/mnt/my disk/kurt"') in settings_of(made.service)
+
+
+@pytest.mark.parametrize("word", ["a b", "100%", 'say "yes"', "$HOME", "back\\slash", "plain/path.yaml"])
+def test_words_are_read_back_as_they_were(word: str) -> None:
+    (read,) = shlex.split(quoted(word).replace("$$", "$"))
+    assert read.replace("%%", "%") == word
+
+
+@pytest.mark.parametrize("name", ["", "Robot", "../etc", "a b", "9", "x" * 40])
+def test_a_name_that_is_none_is_refused(name: str) -> None:
+    with pytest.raises(UnitError, match="is no name"):
+        unit(name=name)
+
+
+def test_a_bus_with_a_line_break_does_not_add_a_line() -> None:
+    with pytest.raises(UnitError, match="control characters"):
+        unit(bus="can0\nExecStartPre=/bin/sh")
+
+
+@needs_systemd
+def test_systemd_takes_it_and_finds_it_shut() -> None:
+    found = examine(unit())
+    assert found.complaints == ()
+    assert found.exposure <= MOST_EXPOSURE
+    assert found.passed
+
+
+@needs_systemd
+def test_a_misspelt_setting_is_found() -> None:
+    made = unit()
+    broken = Unit(made.name, made.service.replace("Restart=always", "Restart=alwys"), made.sysusers)
+    found = examine(broken)
+    assert any("alwys" in line for line in found.complaints)
+    assert not found.passed
+
+
+def test_it_comes_with_pip() -> None:
+    project = tomllib.loads((CONFIG_DIR.parent / "pyproject.toml").read_text(encoding="utf-8"))
+    patterns = project["tool"]["setuptools"]["package-data"]["config"]
+    packed = {path for pattern in patterns for path in CONFIG_DIR.glob(pattern)}
+    assert set((CONFIG_DIR / "service").iterdir()) <= packed

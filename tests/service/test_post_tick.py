@@ -1,0 +1,219 @@
+"""What the service does after each tick, with a real journal and its thread, on ticks that the test makes."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.channel.protocol.requests import CorrectRequest
+from kurt2rt.channel.server.reply import Verdict
+from kurt2rt.core.rla.outcome import ResultCode
+from kurt2rt.core.rla.rla import RlaCreated, RlaDeleted
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.teaching.commands import Command, Teach
+from kurt2rt.core.teaching.question import Question, WayQuestion
+from kurt2rt.core.tick import InMemoryEventStore, TickRecord
+from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.journal.loading import go_on_teaching
+from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
+from kurt2rt.platform.clock import LockstepClock
+from kurt2rt.runtime import build_runtime
+from kurt2rt.service.post_tick import Rounds, Screen, Status
+from kurt2rt.service.settings import load_service
+from tests.channel.desk import ROBOT, STAMP, TASK, Desk, WideRobot, reply_of, turns
+from tests.core.rla.helpers import created, origin
+
+CHECKPOINT, STATUS, SECOND = 50, 200, 100
+SERVICE = load_service().model_copy(update={"checkpoint_period_s": 0.5, "status_period_s": 2.0})
+
+
+class Shift:
+    """A robot, its journal on a real disk, and the rounds that are made after each of its ticks."""
+
+    def __init__(self, path: Path, *, with_channel: bool = False) -> None:
+        self.path = path
+        self.writer = JournalWriter(go_on_teaching(path, ROBOT, TASK).journal, lambda: STAMP)
+        self.desk = Desk(keeper=self.writer)
+        self.stamps: dict[str, str] = {}
+        self.statuses: list[Status] = []
+        self.questions: list[Question | WayQuestion] = []
+        self.settled: list[Acknowledgement] = []
+        self.seen: list[TickRecord] = []
+        self.next_command: Command | None = None
+        screen = Screen(status=self.statuses.append, question=self.questions.append, settled=self.settled.append)
+        channel = self.desk.channel if with_channel else None
+        self.rounds = Rounds(self.desk.runtime, self.writer, self.stamps, SERVICE, screen, self._watch, channel)
+        self._tick = 10_000
+
+    def run(self, ticks: int = 1, counts: int | None = None) -> TickRecord:
+        """So many ticks, as the scheduler makes them."""
+        if counts is not None:
+            self.desk.robot.counts = counts
+        runtime = self.desk.runtime
+        for _ in range(ticks):
+            self._tick += 1
+            runtime.ledger.begin(0.0)
+            record = runtime.tick.run(self._tick, self._tick * 0.01)
+            self.rounds(record)
+            runtime.ledger.end()
+        return record
+
+    def write(self) -> None:
+        """Until the disk has everything."""
+        assert self.writer.flush(30.0)
+
+    def _watch(self, record: TickRecord) -> Command | None:
+        self.seen.append(record)
+        command, self.next_command = self.next_command, None
+        return command
+
+
+@pytest.fixture
+def shift(tmp_path: Path) -> Iterator[Shift]:
+    shift = Shift(tmp_path / "lessons.knowledge")
+    yield shift
+    shift.writer.close()
+
+
+def test_the_teacher_in_the_program_sees_every_tick_and_his_command_acts_in_the_next(shift: Shift) -> None:
+    first = shift.run()
+    shift.next_command = Teach("t-1", "Ann", "forward")
+    assert shift.run().results == ()
+    assert [result.command_id for result in shift.run().results] == ["t-1"]
+    assert [record.tick for record in shift.seen] == [first.tick, first.tick + 1, first.tick + 2]
+
+
+def test_a_lesson_is_told_as_settled_once_it_is_on_the_disk_and_its_time_is_kept(shift: Shift) -> None:
+    shift.desk.runtime.inbox.put(Teach("t-1", "Ann", "forward"))
+    shift.run()
+    shift.write()
+    shift.run()
+    assert shift.settled == [Acknowledgement("t-1", 1, None, STAMP)]
+    assert shift.stamps == {"t-1": STAMP}
+    shift.run(10)
+    assert len(shift.settled) == 1
+    with Journal.read_only(shift.path) as journal:
+        assert [event.origin.command_id for event in journal.events()] == ["t-1"]
+
+
+def test_a_lesson_that_never_can_be_written_is_told_and_has_no_time(shift: Shift) -> None:
+    shift.desk.runtime.inbox.put(Teach("t-1", "Ann", "forward"))
+    shift.run()
+    shift.writer.submit(RlaDeleted(1, origin("t-1")))  # the same command cannot have done something else as well
+    shift.write()
+    shift.run()
+    good, bad = shift.settled
+    assert (good.error, bad.command_id, bad.sequence) == (None, "t-1", None)
+    assert "another lesson of this id stands in row 1" in str(bad.error)
+    assert shift.stamps == {"t-1": STAMP}
+
+
+def test_a_status_comes_once_per_period(shift: Shift) -> None:
+    assert shift.rounds.last is None
+    shift.run(2 * STATUS)
+    assert [status.record.tick for status in shift.statuses] == [10_000 + STATUS, 10_000 + 2 * STATUS]
+    assert shift.rounds.last is shift.statuses[-1]
+    assert (shift.rounds.last.unsaved_lessons, shift.rounds.last.trouble) == (0, None)
+
+
+def knows(shift: Shift, rla_id: int) -> RlaCreated:
+    """One RLA, far from where the robot is."""
+    runtime = shift.desk.runtime
+    event = created(rla_id, (1e6,) * runtime.level.system.dimensions)
+    runtime.school.learning.apply(event)
+    return event
+
+
+def test_counts_are_saved_once_per_checkpoint(shift: Shift) -> None:
+    knows(shift, 7)
+    shift.desk.runtime.statistics.uses[7] = 3
+    shift.run(CHECKPOINT - 1)
+    shift.write()
+    assert saved_uses(shift) == {}
+    shift.run(1)
+    shift.desk.runtime.statistics.uses[7] = 99  # what was handed over does not change any more
+    shift.write()
+    assert saved_uses(shift) == {7: 3}
+    shift.rounds.save_statistics()
+    shift.write()
+    assert saved_uses(shift) == {7: 99}
+
+
+def test_what_the_rlas_are_worth_is_saved_with_the_counts_and_gone_on_from(shift: Shift) -> None:
+    taught = knows(shift, 7)
+    shift.desk.runtime.reinforcement.rule.restore(Statistics(values={7: -0.25}))
+    shift.run(CHECKPOINT)
+    shift.write()
+    with Journal.read_only(shift.path) as journal:
+        saved = journal.statistics()
+    assert saved.values == {7: -0.25}
+    again = build_runtime(
+        WideRobot(), ROBOT, TASK, (taught,), InMemoryEventStore(), LockstepClock(lambda: None), saved=saved
+    )
+    assert again.reinforcement.worth(7) == -0.25
+
+
+def test_of_rlas_that_are_no_more_nothing_is_saved(shift: Shift) -> None:
+    knows(shift, 7)
+    counted = shift.desk.runtime.statistics
+    counted.uses.update({7: 3, 8: 2})
+    counted.transitions.update({(7, 7): 1, (7, 8): 1, (8, 7): 1})
+    shift.run(CHECKPOINT)
+    shift.write()
+    with Journal.read_only(shift.path) as journal:
+        saved = journal.statistics()
+    assert (saved.uses, saved.transitions) == ({7: 3}, {(7, 7): 1})
+
+
+def test_the_robot_asks_when_it_begins_to_ask_and_not_in_each_tick(shift: Shift) -> None:
+    shift.run(3 * SECOND)
+    assert [str(question) for question in shift.questions] == ["I know nothing yet, teach me"]
+
+
+def test_at_the_border_of_r_it_asks_at_most_once_a_second(shift: Shift) -> None:
+    shift.desk.runtime.inbox.put(Teach("t-1", "Ann", "forward"))
+    shift.run(2 * SECOND)  # it asked nothing: it was taught in its first tick
+    asked = []
+    for _ in range(SECOND):
+        shift.run(1, counts=900)
+        asked.append(len(shift.questions))
+        shift.run(1, counts=100)
+    assert asked == [1] * (SECOND // 2) + [2] * (SECOND // 2)
+
+
+def test_a_question_that_came_too_soon_is_asked_when_it_may_be_if_it_still_stands(shift: Shift) -> None:
+    shift.desk.runtime.inbox.put(Teach("t-1", "Ann", "forward"))
+    shift.run(SECOND)
+    shift.run(1, counts=900)
+    shift.run(1, counts=100)
+    shift.run(SECOND - 2, counts=900)
+    assert len(shift.questions) == 1
+    shift.run(1)
+    assert len(shift.questions) == 2
+    assert shift.questions[1].nearest_rla == 1
+
+
+async def test_a_lesson_over_the_channel_is_answered_in_the_round_after_it_became_durable(tmp_path: Path) -> None:
+    shift = Shift(tmp_path / "lessons.knowledge", with_channel=True)
+    desk = shift.desk
+    task = await desk.send(desk.answer())
+    shift.run()
+    shift.write()
+    await turns()
+    assert not task.done()
+    shift.run()
+    reply = await reply_of(task)
+    assert (reply.verdict, reply.body["row"], reply.body["code"]) == (Verdict.DONE, 1, ResultCode.RLA_TAUGHT)
+    assert desk.tick == shift.seen[-1].tick
+
+    task = await desk.send(desk.command(CorrectRequest, "back", None))
+    shift.run()
+    shift.write()
+    shift.run()
+    assert (await reply_of(task)).body["row"] == 2
+    shift.writer.close()
+
+
+def saved_uses(shift: Shift) -> dict[int, int]:
+    with Journal.read_only(shift.path) as journal:
+        return dict(journal.statistics().uses)

@@ -1,0 +1,99 @@
+"""A program that is told to end does first what comes first, and ends whatever hangs."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+
+import pytest
+
+from kurt2rt.service.shutdown import ENDING, Ending, ShutdownStage, last_word
+
+HANGS = """
+import ctypes, time
+from kurt2rt.service.shutdown import Ending, ShutdownStage, leave
+with Ending(give_up=leave) as ending:
+    ending.stage = ShutdownStage.LESSONS
+    with ending.first(lambda: print("wheels", flush=True), lambda: print("loop", flush=True), lambda: {act}):
+        print("begun", flush=True)
+        {body}
+"""
+
+
+def raise_here(number: signal.Signals) -> None:
+    os.kill(os.getpid(), number)
+
+
+@pytest.mark.parametrize("number", ENDING)
+def test_what_comes_first_is_done_once_and_in_order(number: signal.Signals) -> None:
+    done: list[str] = []
+    ended = threading.Event()
+    before = signal.getsignal(number)
+    with Ending() as ending, ending.first(lambda: done.append("wheels"), lambda: done.append("loop"), ended.set):
+        assert not ending.asked
+        assert ending.patience_s(10.0) == 10.0
+        raise_here(number)
+        assert ended.wait(60)
+        raise_here(number)
+        assert ending.asked
+        assert ending.patience_s(10.0) < 1.0
+    assert done == ["wheels", "loop"]
+    assert signal.getsignal(number) is before
+
+
+def test_who_begins_after_the_signal_ends_at_once() -> None:
+    done: list[str] = []
+    heard = threading.Event()
+    with Ending() as ending:
+        with ending.first(heard.set):
+            raise_here(signal.SIGTERM)
+            assert heard.wait(60)
+        with ending.first(lambda: done.append("late")):
+            assert done == ["late"]
+    assert done == ["late"]
+
+
+def test_a_signal_that_asks_for_something_else_ends_nothing() -> None:
+    heard = threading.Event()
+    with Ending(others={signal.SIGHUP: heard.set}) as ending:
+        raise_here(signal.SIGHUP)
+        assert heard.wait(60)
+        assert not ending.asked
+
+
+def test_one_that_fails_does_not_keep_the_next_from_being_done() -> None:
+    stopped = threading.Event()
+
+    def fail() -> None:
+        raise ValueError("the brake is gone")
+
+    def end() -> None:
+        with Ending() as ending, ending.first(fail, stopped.set):
+            raise_here(signal.SIGTERM)
+            assert stopped.wait(60)
+
+    with pytest.raises(ValueError, match="brake is gone"):
+        end()
+
+
+@pytest.mark.parametrize(
+    ("body", "act", "exit_code", "says"),
+    [
+        ("time.sleep(1000)", "None", 2, last_word(ShutdownStage.LESSONS)),
+        ("while True: pass", "None", 2, last_word(ShutdownStage.LESSONS)),
+        # The interpreter as a whole, as soon as the signal was heard: the kernel ends it.
+        ("time.sleep(1000)", "ctypes.PyDLL(None).sleep(1000)", -signal.SIGALRM, ""),
+    ],
+    ids=["asleep", "busy", "stuck"],
+)
+def test_what_hangs_is_left_behind_and_named(body: str, act: str, exit_code: int, says: str) -> None:
+    command = [sys.executable, "-c", HANGS.format(body=body, act=act)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as program:
+        assert program.stdout is not None
+        assert program.stdout.readline() == "begun\n"
+        program.send_signal(signal.SIGTERM)
+        out, err = program.communicate()
+    assert out == "wheels\nloop\n"
+    assert err.startswith(says)
+    assert program.returncode == exit_code

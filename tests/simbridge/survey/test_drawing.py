@@ -1,0 +1,37 @@
+"""Drawing of worlds and robots."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from hal.simulation import Pose
+from simbridge.survey.drawing import draw_robot, draw_trail, draw_world
+from simbridge.worlds.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
+from tests.simbridge.rig import ROBOT, room
+
+
+def test_drawing_of_a_world_with_a_robot_is_saved(tmp_path: Path) -> None:
+    world = room(
+        walls=[WallSettings(name="board", from_m=(1.0, 0.0), to_m=(1.0, 1.5), thickness_m=0.1)],
+        posts=[RoundObstacleSettings(name="post", x_m=3.0, y_m=3.0, radius_m=0.2)],
+        boxes=[PolygonObstacleSettings(name="box", corners=((2.6, 1.0), (3.1, 1.2), (2.7, 1.6)))],
+    )
+    figure = Figure(figsize=(4, 4), dpi=50)
+    axes = figure.add_subplot()
+    draw_world(axes, world)
+    assert len(axes.patches) == 1 + 3
+    draw_robot(axes, Pose(2.0, 2.0, 0.5), ROBOT)
+    draw_trail(axes, [(0.5, 0.5), (1.5, 2.0), (2.0, 2.0)])
+    figure.savefig(tmp_path / "room.png")
+    assert (tmp_path / "room.png").stat().st_size > 2000
+    assert axes.get_aspect() == 1.0
+
+
+def test_draw_robot_is_to_scale() -> None:
+    axes = Figure().add_subplot()
+    draw_robot(axes, Pose(1.0, 1.0, 0.0), ROBOT)
+    corners = np.asarray(axes.patches[0].get_path().vertices)
+    assert np.ptp(corners[:, 0]) == pytest.approx(ROBOT.geometry.outline_length_m)
+    assert np.ptp(corners[:, 1]) == pytest.approx(ROBOT.geometry.outline_width_m)

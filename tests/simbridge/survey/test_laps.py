@@ -1,0 +1,326 @@
+"""Progress along walls, and the rings that it is measured on."""
+
+import itertools
+import math
+import random
+from collections.abc import Iterator
+
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hal.simulation import Pose
+from simbridge.robot.world import World
+from simbridge.survey.laps import WallProgress
+from simbridge.wall_rings import WallRings
+from simbridge.worlds.geometry import Point, polygons_of
+from simbridge.worlds.world_loading import load_world
+from simbridge.worlds.world_settings import WorldSettings
+from tests.simbridge.rig import ROBOT, Rig, board, box, post, room
+
+NAMES = ("a", "b", "c")
+FIRST_OF_NAMES = ["a", *(pytest.param(name, marks=pytest.mark.deep) for name in ("b", "c"))]
+STEP_M = 0.05
+MIDDLE = (2.0, 2.0)
+ISLAND = box((1.6, 1.6), (2.4, 1.6), (2.4, 2.4), (1.6, 2.4), name="island")
+
+
+def straight(*corners: Point) -> Iterator[Point]:
+    """Yield places on straight lines from corner to corner, as a robot passes them."""
+    for a, b in itertools.pairwise(corners):
+        steps = max(1, math.ceil(math.dist(a, b) / STEP_M))
+        for i in range(1, steps + 1):
+            yield a[0] + i / steps * (b[0] - a[0]), a[1] + i / steps * (b[1] - a[1])
+
+
+def driven(progress: WallProgress, *corners: Point) -> list[float]:
+    """Return the laps after each step from corner to corner; the robot is placed at the first."""
+    before = progress.laps
+    (x_m, y_m), following = corners[0], corners[1]
+    progress.reset(Pose(x_m, y_m, math.atan2(following[1] - y_m, following[0] - x_m)))
+    laps, last = [0.0], corners[0]
+    for place in straight(*corners):
+        heading_rad = math.atan2(place[1] - last[1], place[0] - last[0])
+        laps.append(progress.update(*place, heading_rad) - before)
+        last = place
+    return laps
+
+
+def counted(progress: WallProgress, *corners: Point) -> float:
+    """Return the laps made from corner to corner."""
+    return driven(progress, *corners)[-1]
+
+
+def steps_of(laps: list[float]) -> list[float]:
+    return [after - before for before, after in itertools.pairwise(laps)]
+
+
+def outer_ring(world: WorldSettings, position: Point = MIDDLE) -> shapely.LinearRing:
+    return WallRings(world, position).rings[0]
+
+
+@pytest.mark.parametrize("name", FIRST_OF_NAMES)
+@pytest.mark.parametrize("aside_m", [0.1, 0.0, -0.05])
+def test_wall_progress_round_the_room_is_one_lap(name: str, aside_m: float) -> None:
+    world = World(load_world(name))
+    progress = WallProgress(world)
+    start = world.settings.start_poses[0]
+    way = shapely.Polygon(outer_ring(world.settings, (start.x_m, start.y_m))).buffer(aside_m).exterior
+    way = way.reverse() if way.is_ccw else way
+    for start in world.settings.start_poses:
+        begin_m = way.project(shapely.Point(start.x_m, start.y_m))
+        places = [way.interpolate((begin_m + i / 40 * way.length) % way.length) for i in range(41)]
+        assert counted(progress, *((place.x, place.y) for place in places)) == pytest.approx(1.0, abs=0.02)
+
+
+ROOM = room()
+CORRIDOR = room(walls=[board((0.8, 0.0), (0.8, 3.2))])
+DIVIDED = room(walls=[board((3.0, 0.0), (3.0, 4.0))])
+DOOR = room(walls=[board((2.0, 4.0), (2.0, 2.3)), board((2.0, 0.0), (2.0, 1.8), name="south")])
+BACKWARD = ((0.3, 2.0), (0.3, 0.3), (3.7, 0.3), (3.7, 3.7), (0.3, 3.7), (0.3, 2.0))
+FORWARD = ((0.3, 2.0), (0.3, 3.7), (3.7, 3.7), (3.7, 0.3), (0.3, 0.3), (0.3, 2.0))
+FROM_NORTH = ((2.0, 3.7), (3.7, 3.7), (3.7, 0.3), (0.3, 0.3), (0.3, 3.7), (2.0, 3.7))
+RIGHT_PART = ((3.3, 0.3), (3.3, 3.7), (3.7, 3.7), (3.7, 0.3), (3.3, 0.3))
+LEFT_PART = ((0.3, 0.3), (0.3, 3.7), (2.6, 3.7), (2.6, 0.3), (0.3, 0.3))
+TO_THE_DOOR = ((0.3, 0.3), (0.3, 3.7), (1.7, 3.7), (1.7, 2.05), (2.3, 2.05), (2.3, 3.7), (3.7, 3.7), (3.7, 0.3))
+FROM_THE_DOOR = ((2.3, 0.3), (2.3, 2.05), (1.7, 2.05), (1.7, 0.3), (0.3, 0.3))
+SWAYING = tuple((0.3 + (0.25 if i % 3 == 2 else 0.0), 0.3 + 0.3 * i) for i in range(12))
+OUT_OF_IT = ((0.8, 3.6), (3.6, 3.6), (3.6, 0.4), (1.2, 0.4), (1.2, 3.4), (0.5, 3.4), (0.5, 0.3), (0.3, 0.3))
+
+
+@pytest.mark.parametrize(
+    ("world", "corners", "laps", "tolerance"),
+    [
+        pytest.param(ROOM, BACKWARD, -1.0, 1e-6, id="backward"),
+        pytest.param(ROOM, BACKWARD + BACKWARD[1:], -2.0, 1e-6, id="backward twice"),
+        pytest.param(ROOM, (*FORWARD, (3.7, 2.1), *FORWARD), 2.0, 0.02, id="detour through the middle"),
+        pytest.param(ROOM, ((2.1, 1.9), *FROM_NORTH), 1.0, 0.02, id="start in the middle"),
+        pytest.param(ROOM, (*[(0.3, 1.0), (0.3, 3.0)] * 12, (0.3, 1.0)), 0.0, 1e-9, id="to and fro along a wall"),
+        pytest.param(DIVIDED, RIGHT_PART, 1.0, 1e-6, id="right part of a room"),
+        pytest.param(DIVIDED, LEFT_PART, 1.0, 1e-6, id="left part of a room"),
+        pytest.param(DOOR, TO_THE_DOOR + FROM_THE_DOOR, 1.0, 1e-6, id="narrow door"),
+        pytest.param(CORRIDOR, SWAYING + OUT_OF_IT, 1.0, 0.02, id="swaying in a corridor"),
+    ],
+)
+def test_wall_progress_of_a_path(
+    world: WorldSettings, corners: tuple[Point, ...], laps: float, tolerance: float
+) -> None:
+    assert counted(WallProgress(World(world)), *corners) == pytest.approx(laps, abs=tolerance)
+
+
+@pytest.mark.parametrize("radius_m", [0.1, 0.5, 1.3])
+def test_wall_progress_of_circles_in_the_middle_is_none(radius_m: float) -> None:
+    circle = [(2.0 - radius_m * math.cos(i / 8), 2.0 + radius_m * math.sin(i / 8)) for i in range(200)]
+    assert counted(WallProgress(World(ROOM)), (0.4, 2.0), *circle, (0.4, 2.0)) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_wall_progress_between_two_walls_is_none() -> None:
+    # A bit farther round each time, so that either way round is at times the shorter one.
+    bounces = [(0.3 if i % 2 else 3.7, 2.0 + 0.3 * math.sin(i)) for i in range(60)]
+    assert -1.0 <= counted(WallProgress(World(ROOM)), *bounces) <= 0.1
+
+
+def test_wall_progress_with_a_shortcut_is_no_lap() -> None:
+    shortcut = ((0.3, 0.3), (0.3, 3.7), (3.7, 3.7), (0.3, 0.3))
+    assert counted(WallProgress(World(ROOM)), *shortcut, *shortcut[1:], *shortcut[1:]) < 0.6
+
+
+@pytest.mark.parametrize("name", FIRST_OF_NAMES)
+def test_wall_progress_of_random_ways_is_none(name: str) -> None:
+    world = World(load_world(name))
+    start = world.settings.start_poses[0]
+    at = (start.x_m, start.y_m)
+    reachable = shapely.Polygon(outer_ring(world.settings, at)).buffer(0.15)
+    west_m, south_m, east_m, north_m = reachable.bounds
+    progress, rng, legs = WallProgress(world), random.Random(1), 0
+    while legs < 150:
+        to = (rng.uniform(west_m, east_m), rng.uniform(south_m, north_m))
+        if reachable.contains(shapely.LineString([at, to])):
+            heading_rad = math.atan2(to[1] - at[1], to[0] - at[0])
+            for place in straight(at, to):
+                progress.update(*place, heading_rad)
+            at, legs = to, legs + 1
+            assert -2.0 < progress.laps < 1.0
+
+
+def test_outer_ring_includes_walls_but_no_islands() -> None:
+    wall = board((0.0, 2.5), (1.5, 2.5), 0.1)
+    corner = box((3.0, 0.0), (4.0, 0.0), (4.0, 1.0), (3.0, 1.0))
+    island = box((1.9, 1.4), (2.2, 1.4), (2.0, 1.6), name="island")
+    empty = outer_ring(ROOM)
+    assert empty.length == pytest.approx(4 * (4.0 - 2 * 0.35))
+    assert outer_ring(room(boxes=[island])).equals(empty)
+    way = outer_ring(room(walls=[wall], boxes=[corner, island]))
+    assert not way.is_ccw
+    for place in ((1.5, 2.5), (3.0, 1.0)):
+        assert way.distance(shapely.Point(place)) == pytest.approx(0.35, abs=0.03)
+    assert way.distance(shapely.Point(2.0, 1.5)) > 0.5
+
+
+def test_outer_ring_closes_narrow_gaps() -> None:
+    wall, at_wall = board((0.2, 2.5), (1.5, 2.5), 0.1), shapely.Point(1.0, 2.5)
+    assert outer_ring(room(walls=[wall])).distance(at_wall) < 0.5
+    assert outer_ring(room(walls=[wall.moved(0.6, 0.0)])).distance(at_wall) > 0.6
+
+
+def test_wall_progress_after_a_moved_wall_is_surveyed_again() -> None:
+    world = World(load_world("a"))
+    progress, at_wall, position = WallProgress(world), shapely.Point(1.0, 1.9), (0.3, 1.0)
+    progress.reset(Pose(*position, 0.0))
+    assert outer_ring(world.settings, position).distance(at_wall) < 0.4
+    world.move_wall("tongue", 0.8, 0.0)
+    progress.update(*position, 0.0)
+    assert progress.laps == 0.0
+    assert outer_ring(world.settings, position).distance(at_wall) > 0.6
+
+
+def two_rooms(door_m: float, width_m: float = 0.5) -> WorldSettings:
+    """Return two rooms joined by a passage of this length and width, its middle line at y = 2 m."""
+    half_m, begin_m, end_m = width_m / 2, 2.0 - door_m / 2, 2.0 + door_m / 2
+    south = box((begin_m, 0.0), (end_m, 0.0), (end_m, 2.0 - half_m), (begin_m, 2.0 - half_m), name="south")
+    north = box((begin_m, 2.0 + half_m), (end_m, 2.0 + half_m), (end_m, 4.0), (begin_m, 4.0), name="north")
+    return room(boxes=[south, north])
+
+
+@pytest.mark.parametrize("width_m", [0.36, 0.5, 0.65, 0.69])
+@pytest.mark.parametrize("long_m", [0.06, 1.0])
+def test_wall_progress_through_a_passage_is_one_lap(width_m: float, long_m: float) -> None:
+    progress = WallProgress(World(two_rooms(long_m, width_m)))
+    begin_m, end_m, aside_m = 2.0 - long_m / 2 - 0.3, 2.0 + long_m / 2 + 0.3, width_m / 2 - 0.18
+    there = ((0.3, 0.3), (0.3, 3.7), (begin_m, 3.7), (begin_m, 2.0 + aside_m), (end_m, 2.0 + aside_m))
+    back = ((end_m, 3.7), (3.7, 3.7), (3.7, 0.3), (end_m, 0.3), (end_m, 2.0 - aside_m), (begin_m, 2.0 - aside_m))
+    once = (*there, *back, (begin_m, 0.3), (0.3, 0.3))
+    laps = driven(progress, *once, *once[1:])
+    assert min(steps_of(laps)) >= 0.0
+    assert laps[-1] == pytest.approx(2.0, abs=0.04)
+    # With both walls in reach, a robot in the passage has one on its left either way.
+    assert -1.02 <= counted(progress, *reversed(once)) < -0.5
+
+
+def test_wall_progress_round_an_island_counts_its_length() -> None:
+    progress = WallProgress(World(room(boxes=[ISLAND])))
+    once = ((1.3, 1.3), (2.7, 1.3), (2.7, 2.7), (1.3, 2.7), (1.3, 1.3))
+    way_m, lap_m = 4 * (2.4 - 1.6) + 2 * math.pi * 0.35, 4 * (4.0 - 2 * 0.35)
+    assert progress.lap_m == pytest.approx(lap_m)
+    assert counted(progress, *once, *once[1:]) == pytest.approx(2 * way_m / lap_m, rel=0.03)
+    assert counted(progress, *reversed(once)) == pytest.approx(-way_m / lap_m, rel=0.03)
+
+
+def test_wall_progress_counts_no_jump_between_wall_and_island() -> None:
+    progress = WallProgress(World(room(boxes=[ISLAND])))
+    # Up the outer wall, then across to the island, which is on the left of a robot that drives down again.
+    laps = driven(progress, (0.3, 1.4), (0.3, 2.6), (1.2, 2.6), (1.2, 1.4), (0.3, 1.4))
+    assert min(steps_of(laps)) >= -0.01
+    assert laps[-1] * progress.lap_m == pytest.approx(2 * 1.2, abs=0.5)
+
+
+def test_wall_progress_between_two_rings_is_none() -> None:
+    steps = 0
+    for y_m in (0.8, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0):
+        world = room(boxes=[box((0.9, y_m), (1.5, y_m), (1.5, y_m + 0.6), (0.9, y_m + 0.6))])
+        rings, progress = WallRings(world, MIDDLE), WallProgress(World(world))
+        # Through the gap of 0.9 m: turned about half-way, the robot has the other wall on its left.
+        poses = [(0.4, y_m + 0.1 * i, math.pi / 2) for i in range(4)] + [(0.5, y_m + 0.3, -math.pi / 2)]
+        progress.reset(Pose(*poses[0]))
+        place = rings.place(*poses[0], None)
+        for pose in poses[1:]:
+            before, last, place = progress.laps, place, rings.place(*pose, place)
+            progress.update(*pose)
+            if last is not None and place is not None and last.ring != place.ring:
+                steps += 1
+                assert progress.laps == before
+    assert steps == 7
+
+
+@pytest.mark.parametrize("width_m", [0.8, 1.0, 1.2, 1.6])
+def test_wall_progress_turning_back_in_a_corridor_ends(width_m: float) -> None:
+    progress = WallProgress(World(room(walls=[board((width_m + 0.01, 0.0), (width_m + 0.01, 3.2))])))
+    right_m = width_m - 0.3
+    once = ((0.3, 1.0), (0.3, 2.8), (right_m, 2.8), (right_m, 1.0), (0.3, 1.0))
+    laps = driven(progress, *once, *(once[1:] * 9))
+    assert min(steps_of(laps)) >= -0.003
+    assert laps[-1] * progress.lap_m <= 2 * 1.8 + 0.8
+    assert laps[-1] == pytest.approx(laps[len(laps) // 5], abs=0.01)
+
+
+@given(
+    st.floats(0.34, 1.2),
+    st.floats(0.1, 1.4),
+    st.lists(st.tuples(st.floats(0.2, 3.8), st.floats(0.2, 3.8), st.floats(0.03, 0.5)), max_size=3),
+    st.floats(0.17, 0.5),
+)
+def test_wall_progress_with_the_wall_on_the_left_is_forward(
+    width_m: float, long_m: float, islands: list[tuple[float, float, float]], aside_m: float
+) -> None:
+    posts = tuple(post(*island, name=f"post-{i}") for i, island in enumerate(islands))
+    world = two_rooms(long_m, width_m).model_copy(update={"round_obstacles": posts})
+    for part in polygons_of(world.free_space.buffer(-aside_m)):
+        progress = WallProgress(World(world))
+        # An island is on the left of a robot that goes round it counter-clockwise.
+        ways = [(part.exterior, False), *((hole, True) for hole in part.interiors)]
+        for way, forward_is_ccw in ways:
+            forward = way if way.is_ccw == forward_is_ccw else way.reverse()
+            laps = driven(progress, *forward.coords)
+            best = itertools.accumulate(laps, max)
+            if forward.length > 3.0:  # shorter ways lead round a nook, in which no ring need be
+                assert max(most - now for most, now in zip(best, laps, strict=True)) * progress.lap_m <= 0.6
+                assert laps[-1] * progress.lap_m >= 0.6 * forward.length
+
+
+def test_place_adds_no_lap() -> None:
+    with Rig(load_world("a")) as rig:
+        for start in load_world("a").start_poses * 3:
+            rig.robot.place(start.pose)
+            rig.run(0.2)
+        assert rig.robot.laps == pytest.approx(0.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("name", FIRST_OF_NAMES)
+def test_wall_follower_laps_each_world_in_time(name: str) -> None:
+    world = load_world(name)
+    with Rig(world) as rig:
+        assert lap_driven(rig, world.start_poses[0].pose) == pytest.approx(1.0, abs=0.02)
+        assert rig.robot.collisions == 0
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("name", NAMES)
+def test_driven_lap_counts_one_from_every_start(name: str) -> None:
+    world = load_world(name)
+    for start in world.start_poses[1:]:
+        with Rig(world) as rig:
+            rig.robot.place(start.pose)
+            assert lap_driven(rig, start.pose) == pytest.approx(1.0, abs=0.02), f"from {start}"
+
+
+def lap_driven(rig: Rig, start: Pose) -> float:
+    """Return the laps counted until the robot, following its wall, crosses the line of its start again."""
+    cos, sin = math.cos(start.heading_rad), math.sin(start.heading_rad)
+    away, behind = False, False
+    while True:
+        assert rig.robot.time_s < 110.0, f"{rig.robot.laps:.2f} laps, at {rig.robot.pose}"
+        rig.drive(*follow(rig), 0.05)
+        dx, dy = rig.robot.pose.x_m - start.x_m, rig.robot.pose.y_m - start.y_m
+        ahead_m, left_m = dx * cos + dy * sin, dy * cos - dx * sin
+        away = away or math.hypot(dx, dy) > 1.0
+        if away and behind and ahead_m >= 0.0 and abs(left_m) < 0.25:
+            return rig.robot.laps
+        behind = ahead_m < 0.0
+
+
+def follow(rig: Rig) -> tuple[int, int]:
+    """Return wheel speeds in cm/s that follow the wall on the left at 0.2 m."""
+    if "ENCODER" not in rig.heard:
+        return 0, 0
+    ahead_m, front_m, back_m, edge_m = (
+        min(ROBOT.infrared.distance_m(rig.reading(name)) for name in group)
+        for group in (("s9", "s10", "s11"), ("s1",), ("s2",), ("s15",))
+    )
+    if ahead_m < 0.24:
+        return 15, -15
+    if front_m > 0.45:
+        return (16, 34) if edge_m < 0.4 else (10, 32)
+    turn = 60.0 * (front_m - 0.20) + 120.0 * (front_m - back_m)
+    turn = max(-14.0, min(14.0, turn)) if edge_m > 0.22 else -12.0
+    return round(30 - turn / 2), round(30 + turn / 2)

@@ -1,0 +1,145 @@
+"""A teacher reaches into the simulated world while its thread steps the robot."""
+
+import threading
+from collections.abc import Iterator
+
+import pytest
+
+from hal.simulation import Post, SimulatedWorld
+from simbridge.realtime import RealtimeSimulation
+from simbridge.simulated_world import Kurt2World
+from simbridge.worlds.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
+from tests.simbridge.rig import ROBOT, Rig, facing_wall, room
+
+BOARD = WallSettings(name="board", from_m=(0.5, 3.0), to_m=(1.5, 3.0), thickness_m=0.05)
+POST = RoundObstacleSettings(name="post", x_m=1.0, y_m=1.0, radius_m=0.1)
+BOX = PolygonObstacleSettings(name="box", corners=((3.0, 3.0), (3.4, 3.0), (3.4, 3.4)))
+WORLD = room(walls=(BOARD,), posts=(POST,), boxes=(BOX,))
+"""The robot stands in the middle, at (2, 2), and looks along x."""
+LENGTH_M, WIDTH_M = ROBOT.geometry.outline_length_m, ROBOT.geometry.outline_width_m
+
+
+class Yard:
+    """A simulated robot that lives by itself, and the ground that it stands on."""
+
+    def __init__(self, rig: Rig, simulation: RealtimeSimulation) -> None:
+        self.rig = rig
+        self.simulation = simulation
+        self.ground: SimulatedWorld = Kurt2World(rig.robot, WORLD, ROBOT.geometry, simulation)
+
+    def step(self) -> None:
+        """Until the thread has done all that was asked."""
+        done = threading.Event()
+        self.simulation.submit(done.set)
+        assert done.wait(30.0)
+
+
+@pytest.fixture
+def yard() -> Iterator[Yard]:
+    with Rig(WORLD) as rig, RealtimeSimulation(rig.robot) as simulation:
+        yield Yard(rig, simulation)
+
+
+def test_the_world_from_above(yard: Yard) -> None:
+    view = yard.ground.world()
+    assert (view.version, view.name, view.size_m) == (0, "room", (4.0, 4.0))
+    assert view.outline == WORLD.outline
+    assert [(wall.name, wall.corners) for wall in view.walls] == [("board", BOARD.corners), ("box", BOX.corners)]
+    assert view.posts == (Post("post", 1.0, 1.0, 0.1),)
+
+
+def test_where_the_robot_is(yard: Yard) -> None:
+    place = yard.ground.place()
+    assert (place.x_m, place.y_m, place.heading_rad) == (2.0, 2.0, 0.0)
+    assert (place.laps, place.collisions, place.world_version) == (0.0, 0, 0)
+
+
+@pytest.mark.parametrize("name", ["board", "post", "box"])
+def test_a_wall_is_moved_for_the_robot_too_and_the_version_grows(yard: Yard, name: str) -> None:
+    yard.ground.move_wall(name, 0.25, -0.5)
+    yard.step()
+    assert yard.ground.world().version == yard.ground.place().world_version == 1
+    moved = WORLD.moved(name, 0.25, -0.5)
+    assert yard.rig.robot.world.settings == moved
+    view = yard.ground.world()
+    assert [wall.corners for wall in view.walls] == [
+        *(each.corners for each in moved.walls),
+        moved.polygon_obstacles[0].corners,
+    ]
+    assert view.posts[0].x_m == moved.round_obstacles[0].x_m
+
+
+def test_moves_add_up_also_between_two_steps(yard: Yard) -> None:
+    for _ in range(4):
+        yard.ground.move_wall("post", 0.1, 0.0)
+    yard.step()
+    assert yard.ground.world().version == 4
+    assert yard.ground.world().posts[0].x_m == pytest.approx(1.4)
+    assert yard.rig.robot.world.settings.round_obstacles[0].x_m == pytest.approx(1.4)
+
+
+def test_what_nobody_knows_is_refused_with_the_names_that_are_known(yard: Yard) -> None:
+    with pytest.raises(ValueError, match="nothing is named 'tree'; there are: board, post, box"):
+        yard.ground.move_wall("tree", 0.1, 0.0)
+    assert yard.ground.world().version == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "dx_m", "dy_m"),
+    [("board", 1.0, -1.0), ("post", 1.0, 1.0), ("box", -1.2, -1.1)],
+    ids=lambda value: str(value),
+)
+def test_nothing_is_put_where_the_robot_is(yard: Yard, name: str, dx_m: float, dy_m: float) -> None:
+    with pytest.raises(ValueError, match=f"{name} would stand where the robot is"):
+        yard.ground.move_wall(name, dx_m, dy_m)
+    yard.step()
+    assert yard.ground.world().version == 0
+    assert yard.rig.robot.world.settings == WORLD
+
+
+def test_how_near_a_post_may_come(yard: Yard) -> None:
+    to_touch_m = 2.0 - WIDTH_M / 2 - 0.1 - 1.0
+    yard.ground.move_wall("post", 1.0, 0.0)
+    with pytest.raises(ValueError, match="post would stand where the robot is"):
+        yard.ground.move_wall("post", 0.0, to_touch_m + 0.001)
+    yard.ground.move_wall("post", 0.0, to_touch_m - 0.001)
+
+
+def test_a_robot_that_leans_on_one_wall_does_not_nail_down_the_others() -> None:
+    with Rig(WORLD) as rig:
+        rig.robot.place(facing_wall(0.1))
+        rig.drive(20, 20, 2.0)
+        assert rig.robot.touching
+        with RealtimeSimulation(rig.robot) as simulation:
+            yard = Yard(rig, simulation)
+            yard.ground.move_wall("post", 0.5, 0.5)
+            yard.step()
+            assert yard.rig.robot.world.settings == WORLD.moved("post", 0.5, 0.5)
+
+
+def test_the_robot_is_put_down_elsewhere(yard: Yard) -> None:
+    yard.ground.put_robot(1.0, 2.0, 1.5)
+    yard.step()
+    place = yard.ground.place()
+    assert (place.x_m, place.y_m, place.heading_rad) == pytest.approx((1.0, 2.0, 1.5))
+
+
+@pytest.mark.parametrize(
+    ("x_m", "y_m"),
+    [(1.0, 1.0), (1.0, 3.0), (3.3, 3.1), (0.1, 2.0), (-1.0, 2.0), (50.0, 50.0)],
+    ids=["post", "board", "box", "outer wall", "outside", "far away"],
+)
+def test_it_is_put_only_where_there_is_room(yard: Yard, x_m: float, y_m: float) -> None:
+    with pytest.raises(ValueError, match="there is no room for the robot there"):
+        yard.ground.put_robot(x_m, y_m, 0.0)
+    yard.step()
+    assert yard.ground.place().x_m == 2.0
+
+
+def test_a_move_that_is_asked_for_counts_at_once_for_what_is_asked_next(yard: Yard) -> None:
+    yard.ground.move_wall("post", 0.0, -0.6)
+    yard.ground.put_robot(1.0, 1.0, 0.0)
+    with pytest.raises(ValueError, match="there is no room"):
+        yard.ground.put_robot(1.0, 0.5, 0.0)
+    yard.step()
+    assert yard.ground.place().y_m == pytest.approx(1.0)

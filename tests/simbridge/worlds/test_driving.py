@@ -1,0 +1,181 @@
+import itertools
+import math
+
+import pytest
+
+from hal.control import Control, Mode, RawControl, RawSide, SpeedControl
+from hal.robot_settings import RobotSettings
+from hal.simulation import Pose
+from simbridge.worlds.obstacle_settings import RoundObstacleSettings, WallSettings
+from tests.simbridge.rig import ROBOT, STAND, Rig, facing_wall, half_turn, room
+
+RAW_DRIVE = RawControl(RawSide(650), RawSide(650))
+
+
+def robot_with_track(track_m: float) -> RobotSettings:
+    return ROBOT.model_copy(update={"geometry": ROBOT.geometry.model_copy(update={"effective_track_m": track_m})})
+
+
+@pytest.mark.parametrize(
+    ("control", "speed_m_s"),
+    [
+        (SpeedControl(Mode.SPEED_CM, 30, 30), 0.30),
+        (SpeedControl(Mode.SPEED_CM, -30, -30), -0.30),
+        (SpeedControl(Mode.SPEED, 40, 40), 0.4 * 0.69),
+        (RAW_DRIVE, 0.27),
+        (RawControl(RawSide(650, backward=True), RawSide(650, backward=True)), -0.27),
+        (RawControl(RawSide(350), RawSide(350)), 0.0),  # the dead band
+    ],
+)
+def test_each_mode_drives_at_its_set_point(control: Control, speed_m_s: float, rig: Rig) -> None:
+    rig.run(2.0, control)
+    assert rig.speed_m_s == pytest.approx(speed_m_s, abs=0.002)
+    before = rig.robot.pose
+    rig.run(2.0, control)
+    assert rig.robot.pose.x_m - before.x_m == pytest.approx(2.0 * speed_m_s, rel=0.05, abs=1e-6)
+
+
+def test_encoders_sum_up_to_the_distance_rolled(rig: Rig) -> None:
+    rig.drive(7, 7, 5.0)
+    rig.drive(0, 0, 1.0)
+    rolled_m = sum(rig.ticks) / 2 * ROBOT.geometry.metres_per_tick
+    assert rolled_m == pytest.approx(rig.robot.pose.x_m - 2.0, rel=0.06)
+    assert rig.heard["GETSPEED"] == tuple(rig.ticks)
+
+
+def test_speed_follows_the_set_point_with_its_lag(rig: Rig) -> None:
+    rig.run(0.12, SpeedControl(Mode.SPEED_CM, 10, 10))
+    assert rig.speed_m_s == pytest.approx(0.10 * (1 - math.exp(-1)), rel=0.02)
+
+
+def test_motors_keep_their_acceleration_limits(rig: Rig) -> None:
+    speeds = [0.0]
+    for control in [SpeedControl(Mode.SPEED_CM, 44, 44)] * 100 + [STAND] * 100:
+        rig.step(control)
+        speeds.append(rig.speed_m_s)
+    changes = [after - before for before, after in itertools.pairwise(speeds)]
+    rounding = 2 * ROBOT.geometry.metres_per_tick / ROBOT.can.cycle_s
+    assert max(changes) == pytest.approx(ROBOT.motors.acceleration_m_s2 * 0.01, abs=rounding)
+    assert min(changes) == pytest.approx(-ROBOT.motors.braking_m_s2 * 0.01, abs=rounding)
+
+
+@pytest.mark.parametrize("track_m", [0.385, 0.406, 0.50])
+def test_a_spin_turns_by_the_effective_track(track_m: float) -> None:
+    with Rig(robot=robot_with_track(track_m)) as rig:
+        rig.drive(-20, 20, 4.0)
+        rig.drive(0, 0, 1.0)
+        rolled_m = (rig.ticks[1] - rig.ticks[0]) * ROBOT.geometry.metres_per_tick
+        assert rig.robot.pose.heading_rad == pytest.approx(rolled_m / track_m, rel=0.04)
+        assert math.dist(rig.robot.pose[:2], (2.0, 2.0)) < 0.04
+
+
+def test_a_curve_runs_along_its_circle(rig: Rig) -> None:
+    rig.robot.place(Pose(2.0, 1.2, 0.0))
+    rig.drive(20, 40, 6.0)
+    radius_m = 0.30 / (0.20 / ROBOT.geometry.effective_track_m)
+    assert math.dist(rig.robot.pose[:2], (2.0, 1.2 + radius_m)) == pytest.approx(radius_m, rel=0.08)
+    assert rig.robot.collisions == 0
+
+
+def test_slip_differs_between_seeds_and_stays_small() -> None:
+    ends = []
+    for seed in range(4):
+        with Rig(seed=seed) as rig:
+            rig.drive(30, 30, 3.0)
+            ends.append(rig.robot.pose)
+    assert len(set(ends)) == 4
+    assert all(abs(end.heading_rad) < 0.2 for end in ends)
+
+
+def test_reversing_ramps_down_first(rig: Rig) -> None:
+    rig.run(1.0, SpeedControl(Mode.SPEED_CM, 30, 30))
+    speeds = []
+    for _ in range(60):
+        rig.step(SpeedControl(Mode.SPEED_CM, -30, -30))
+        speeds.append(rig.speed_m_s)
+    assert speeds == sorted(speeds, reverse=True)
+    assert any(0.0 <= speed <= 0.03 for speed in speeds)
+    assert speeds[-1] < -0.15
+
+
+def test_wall_ahead_blocks_the_body_and_is_one_collision(rig: Rig) -> None:
+    rig.robot.place(facing_wall(0.3))
+    rig.drive(30, 30, 3.0)
+    blocked = rig.robot.pose
+    rig.drive(30, 30, 2.0)
+    assert rig.robot.pose.x_m == pytest.approx(blocked.x_m, abs=0.005)
+    assert rig.robot.pose.x_m + ROBOT.geometry.outline_length_m / 2 == pytest.approx(4.0, abs=0.005)
+    assert rig.speed_m_s == pytest.approx(0.30, abs=0.01)  # the wheels slip on
+    assert rig.heard["BUMPERC"] == (0b000111, 0)
+    assert (rig.robot.touching, rig.robot.bumped, rig.robot.collisions) == (True, True, 1)
+
+
+def test_second_contact_is_a_second_collision(rig: Rig) -> None:
+    rig.robot.place(facing_wall(0.1))
+    rig.drive(20, 20, 2.0)
+    rig.drive(-20, -20, 1.5)
+    assert (rig.robot.touching, rig.robot.bumped, rig.robot.collisions) == (False, False, 1)
+    assert rig.heard["BUMPERC"] == (0, 0)
+    rig.drive(20, 20, 3.0)
+    assert rig.robot.collisions == 2
+
+
+def test_wall_behind_presses_the_rear_bumpers(rig: Rig) -> None:
+    rig.robot.place(half_turn(facing_wall(0.1)))
+    rig.drive(-20, -20, 2.0)
+    assert rig.heard["BUMPERC"] == (0b111000, 0)
+
+
+@pytest.mark.parametrize(("left_m", "bits"), [(0.14, 0b001), (0.0, 0b010), (-0.14, 0b100)])
+def test_post_presses_the_bumper_it_meets(left_m: float, bits: int) -> None:
+    post = RoundObstacleSettings(name="post", x_m=2.6, y_m=2.0 + left_m, radius_m=0.02)
+    with Rig(room(posts=[post])) as rig:
+        while not rig.robot.touching:
+            rig.drive(15, 15, 0.01)
+        assert rig.heard["BUMPERC"] == (bits, 0)
+
+
+@pytest.mark.parametrize(("heading_deg", "bits"), [(10, 0b100), (20, 0b100), (30, 0b100), (-20, 0b001)])
+def test_body_corner_at_a_wall_presses_its_bumper(heading_deg: float, bits: int) -> None:
+    """The contact lies at the very edge of the bar, where rounding must not decide."""
+    with Rig() as rig:
+        rig.robot.place(Pose(3.5, 2.0, math.radians(heading_deg)))
+        pressed: list[int] = []
+        while len(pressed) < 12:
+            rig.drive(10, 10, 0.01)
+            if rig.robot.touching:
+                pressed.append(rig.heard["BUMPERC"][0])
+    assert set(pressed) == {bits}
+
+
+def test_side_contact_presses_no_bumper(rig: Rig) -> None:
+    rig.robot.place(Pose(1.0, 4.0 - ROBOT.geometry.outline_width_m / 2 - 0.005, 0.03))
+    bumped = []
+    for _ in range(300):
+        rig.drive(20, 20, 0.01)
+        bumped.append(rig.robot.bumped)
+    assert rig.robot.collisions == 1
+    assert not any(bumped)
+    assert rig.robot.pose.x_m > 1.4
+    assert rig.robot.pose.y_m < 4.0 - ROBOT.geometry.outline_width_m / 2 + 0.005
+
+
+@pytest.mark.parametrize("speed_cm_s", [15, 60, 90])
+def test_thin_wall_stops_the_robot_at_any_speed(speed_cm_s: int) -> None:
+    board = WallSettings(name="board", from_m=(3.0, 0.0), to_m=(3.0, 4.0), thickness_m=0.02)
+    for heading_rad in (0.0, 0.8):
+        with Rig(room(walls=[board])) as rig:
+            rig.robot.place(Pose(2.3, 1.5, heading_rad))
+            rig.drive(speed_cm_s, speed_cm_s, 3.0)
+            assert rig.robot.pose.x_m < 2.99 - ROBOT.geometry.outline_width_m / 2 + 0.01
+            assert 0.0 < rig.robot.pose.y_m < 4.0
+
+
+def test_place_stops_the_wheels_and_counts_nothing(rig: Rig) -> None:
+    rig.drive(30, 30, 1.0)
+    laps = rig.robot.laps
+    rig.robot.place(Pose(1.0, 3.0, 1.0))
+    rig.step()
+    assert rig.robot.pose[:2] == pytest.approx((1.0, 3.0), abs=0.001)
+    assert abs(rig.speed_m_s) < 0.02
+    assert (rig.robot.collisions, rig.robot.laps) == (0, laps)

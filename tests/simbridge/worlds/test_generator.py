@@ -1,0 +1,149 @@
+"""Worlds by their seeds: all of them can be driven in, and each is always the same."""
+
+import hashlib
+import math
+
+import pytest
+import shapely
+
+from hal.settings import SettingsError
+from simbridge.worlds.generator.drivable import FOLLOWING_M, TURNING_M, is_drivable
+from simbridge.worlds.generator.seeded_random import SeededRandom
+from simbridge.worlds.world_loading import load_world
+from simbridge.worlds.world_settings import WorldSettings
+from tests.simbridge.rig import ROBOT, Rig, left_clearances_m
+from tests.simbridge.survey.test_laps import follow, lap_driven
+
+
+def seeds(quick: range, deep: range) -> list[object]:
+    return [pytest.param(quick, id="quick"), pytest.param(deep, id="deep", marks=pytest.mark.deep)]
+
+
+def generated(name: str) -> WorldSettings:
+    return load_world(name, ROBOT)
+
+
+def digest(name: str) -> str:
+    return hashlib.sha256(generated(name).model_dump_json().encode()).hexdigest()[:16]
+
+
+@pytest.mark.parametrize("some", seeds(range(0, 100, 4), range(1100)))
+def test_rooms_let_a_wall_follower_round(some: range) -> None:
+    for seed in some:
+        world = generated(f"rooms-{seed}")
+        floor = world.free_space
+        assert is_drivable(floor, FOLLOWING_M), world.name
+        centres = floor.buffer(-TURNING_M + 0.002)
+        assert len(world.start_poses) >= 8
+        for start, pose in enumerate(world.start_poses):
+            assert centres.contains(shapely.Point(pose.x_m, pose.y_m)), f"{world.name} start_poses.{start}"
+        corners = shapely.Polygon(world.outline)
+        assert corners.area < corners.convex_hull.area - 0.05, f"{world.name} has no corner that points inwards"
+        assert world.walls[0].name == "tongue"
+
+
+@pytest.mark.parametrize("some", seeds(range(0, 100, 30), range(0, 1100, 9)))
+def test_rooms_starts_look_along_a_left_wall(some: range) -> None:
+    for seed in some:
+        world = generated(f"rooms-{seed}")
+        for start in range(len(world.start_poses)):
+            clearances = left_clearances_m(world, start)
+            assert all(0.145 <= clear_m <= 0.305 for clear_m in clearances), f"{world.name} {start}: {clearances}"
+            assert max(clearances) - min(clearances) < 0.01
+
+
+@pytest.mark.parametrize("some", seeds(range(0, 100, 4), range(1100)))
+def test_streets_are_all_drivable(some: range) -> None:
+    for seed in some:
+        world = generated(f"streets-{seed}")
+        floor = world.free_space
+        assert is_drivable(floor), world.name
+        faces = floor.boundary
+        junctions = world.junctions
+        assert len(junctions) >= 9
+        for street in world.streets:
+            assert 0.7 <= street.width_m <= 1.1
+            line = shapely.LineString([street.from_m, street.to_m])
+            # At its junctions a wider street may cross it, along its blocks its walls are where they should be.
+            assert faces.distance(line) == pytest.approx(street.width_m / 2, abs=0.21), world.name
+        middles = shapely.MultiLineString([[street.from_m, street.to_m] for street in world.streets])
+        for start in world.start_poses:
+            assert middles.distance(shapely.Point(start.x_m, start.y_m)) < 1e-9
+            assert all(math.dist((start.x_m, start.y_m), junction) > 0.6 for junction in junctions)
+
+
+@pytest.mark.parametrize("some", seeds(range(0, 100, 30), range(0, 1100, 9)))
+def test_streets_starts_are_in_the_middle(some: range) -> None:
+    for seed in some:
+        world = generated(f"streets-{seed}")
+        for start in range(len(world.start_poses)):
+            clearances = left_clearances_m(world, start)
+            assert max(clearances) - min(clearances) < 1e-6
+            assert 0.35 - 0.165 - 1e-6 <= clearances[0] <= 0.55 - 0.165 + 1e-6
+
+
+def test_streets_do_not_cross_squares() -> None:
+    world = next(world for world in map(generated, (f"streets-{i}" for i in range(50))) if has_a_square(world))
+    assert len(world.junctions) >= 9
+    free = world.free_space
+    for street in world.streets:
+        middle = shapely.LineString([street.from_m, street.to_m]).interpolate(0.5, normalized=True)
+        assert free.boundary.distance(middle) < 1.0
+
+
+def has_a_square(world: WorldSettings) -> bool:
+    columns = {name[-2] for name in world.names}
+    rows = {name[-1] for name in world.names}
+    return len(world.names) < len(columns) * len(rows)
+
+
+def test_generated_worlds_are_equal_on_every_machine() -> None:
+    # Numbers of another machine. They change with the generator only: then exams on generated worlds do, too.
+    assert [digest("rooms-17"), digest("streets-3")] == ["38d54f9daa54236a", "6635d1be71c0b592"]
+
+
+def test_generated_worlds_differ_between_seeds() -> None:
+    assert len({digest(f"rooms-{i}") for i in range(10)} | {digest(f"streets-{i}") for i in range(10)}) == 20
+
+
+def test_seeded_random_reaches_its_bounds() -> None:
+    rng = SeededRandom("bounds")
+    lengths = {rng.length_m(0.7, 1.1) for _ in range(2000)}
+    assert (min(lengths), max(lengths), len(lengths)) == (0.7, 1.1, 41)
+    assert {rng.integer(3) for _ in range(100)} == {0, 1, 2}
+
+
+def test_is_drivable_rejects_narrow_gaps() -> None:
+    room = shapely.box(0, 0, 4, 3)
+    assert is_drivable(room)
+    assert is_drivable(room.difference(shapely.box(1.9, 0, 2.0, 2.3)))
+    assert not is_drivable(room.difference(shapely.box(1.9, 0, 2.0, 2.5)))
+    assert not is_drivable(room.difference(shapely.box(0.3, 0.0, 0.4, 1.0)))
+
+
+@pytest.mark.parametrize("name", ["rooms", "rooms-", "rooms-x", "rooms-017", "rooms--1", "rooms-1234567890", "roads-3"])
+def test_load_world_unknown_name_lists_the_names(name: str) -> None:
+    with pytest.raises(SettingsError, match=rf"^{name}: .* a, b, c, manhattan, .*; or rooms-N or streets-N with any"):
+        load_world(name)
+
+
+@pytest.mark.deep
+def test_wall_follower_laps_a_generated_room() -> None:
+    world = generated("rooms-0")
+    with Rig(world) as rig:
+        assert lap_driven(rig, world.start_poses[0].pose) == pytest.approx(1.0, abs=0.02)
+        assert rig.robot.collisions == 0
+
+
+@pytest.mark.deep
+def test_wall_follower_laps_nearly_all_rooms() -> None:
+    # It may hit the end of a wall between its three front sensors, and turn the wrong way then.
+    lapped = 0
+    for seed in range(100):
+        world = generated(f"rooms-{seed}")
+        with Rig(world) as rig:
+            rig.robot.place(world.start_poses[0].pose)
+            while rig.robot.time_s < 150.0 and rig.robot.laps < 1.0:
+                rig.drive(*follow(rig), 0.05)
+            lapped += rig.robot.laps >= 1.0
+    assert lapped >= 95

@@ -1,0 +1,198 @@
+"""Worlds: the shipped ones, and the checks of their files."""
+
+import math
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+import shapely
+import yaml
+
+from config import CONFIG_DIR
+from simbridge.robot.world import World
+from simbridge.worlds.obstacle_settings import PolygonObstacleSettings
+from simbridge.worlds.world_loading import load_world
+from tests.simbridge.rig import ROBOT, Rig, left_clearances_m, refusal, room
+
+NAMES = ("a", "b", "c")
+PLAIN = {
+    "name": "plain",
+    "size_m": [3.0, 3.0],
+    "infrared_rays": 1,
+    "outline": [[0, 0], [3, 0], [3, 3], [0, 3], [0, 0]],
+    "start_poses": [{"x_m": 1.5, "y_m": 1.5, "heading_deg": 0}],
+}
+BOW_TIE = [[0, 0], [3, 3], [3, 0], [0, 3], [0, 0]]
+BAY = [[1.5, 2.1], [2.2, 2.1], [2.2, 2.9], [1.5, 2.9], [1.5, 2.85], [2.0, 2.85], [2.0, 2.15], [1.5, 2.15]]
+STAR = [[0.5, 0.2], [0.68, 0.74], [0.2, 0.41], [0.8, 0.41], [0.32, 0.74]]
+AHEAD = {"x_m": 1.5, "y_m": 1.5, "heading_deg": 0}
+TWO_STARTS = [AHEAD, {**AHEAD, "x_m": 0.4}]
+DIVIDER = {"name": "divider", "from_m": [0.8, 0.0], "to_m": [0.8, 3.0], "thickness_m": 0.02}
+BOARD = {"name": "board", "from_m": [1.5, 0.0], "to_m": [1.5, 1.5], "thickness_m": 0.05}
+
+
+def written(folder: Path, change: dict[str, object]) -> str:
+    """Return the path of a file of the plain world with some keys changed."""
+    path = folder / "plain.yaml"
+    path.write_text(yaml.safe_dump({**PLAIN, **change}), encoding="utf-8")
+    return str(path)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_starts_look_along_a_left_wall(name: str) -> None:
+    world = load_world(name)
+    assert len(world.start_poses) >= 8
+    for start in range(len(world.start_poses)):
+        clearances = left_clearances_m(world, start)
+        assert all(0.145 <= clear_m <= 0.305 for clear_m in clearances), f"start_poses.{start}: {clearances}"
+        assert max(clearances) - min(clearances) < 0.01
+
+
+def test_world_a_is_three_by_four_metres() -> None:
+    world = load_world("a")
+    assert world.size_m == (3.0, 4.0)
+    assert 0.8 * 12 < shapely.Polygon(world.outline).area < 12
+
+
+def around(*corners: list[float]) -> dict[str, object]:
+    return {"outline": [[0, 0], [3, 0], *corners]}
+
+
+def with_box(name: str, *corners: list[float]) -> dict[str, object]:
+    return {"polygon_obstacles": [{"name": name, "corners": corners}]}
+
+
+def with_post(x_m: float, y_m: float, radius_m: float) -> dict[str, object]:
+    return {"round_obstacles": [{"name": "post", "x_m": x_m, "y_m": y_m, "radius_m": radius_m}]}
+
+
+@pytest.mark.parametrize(
+    ("change", "fragments"),
+    [
+        (around([3, 3], [0, 3]), ("outline", "(0.0, 3.0)", "(0.0, 0.0)")),
+        ({"outline": BOW_TIE}, ("outline", "[1.5 1.5]")),
+        (around([3, 0], [3, 3], [0, 3], [0, 0]), ("outline", "(3.0, 0.0)")),
+        (around([3, 3], [3, 1], [0, 3], [0, 0]), ("outline", "[3 1]")),
+        ({"size_m": [3.0, 4.0]}, ("outline", "4.0 in y")),
+        ({"walls": [BOARD, BOARD]}, ("board",)),
+        ({"walls": [{**BOARD, "to_m": [1.5, 0.0]}]}, ("walls.0", "0.01 m")),
+        (with_box("star", *STAR), ("polygon_obstacles.0.corners",)),
+        (with_box("line", [0.2, 0.2], [0.5, 0.2], [0.9, 0.2]), ("polygon_obstacles.0.corners",)),
+        (with_box("ring", [0.2, 0.2], [1, 0.2], [1, 1], [0.2, 0.2]), ("polygon_obstacles.0.corners",)),
+        (with_post(3.2, 1.5, 0.2), ("post",)),
+        ({"walls": [{**BOARD, "from_m": [-1, -0.1], "to_m": [4, -0.1]}]}, ("board",)),
+        ({"start_poses": [AHEAD, {**AHEAD, "heading_deg": 90}, AHEAD]}, ("start_poses.0", "start_poses.2")),
+        (
+            {"start_poses": [{**AHEAD, "heading_deg": 180}, {**AHEAD, "heading_deg": -179.5}]},
+            ("start_poses.0", "start_poses.1"),
+        ),
+        ({"walls": [DIVIDER], "start_poses": TWO_STARTS}, ("start_poses.1", "0.33 m")),
+        ({"walls": [{**DIVIDER, "to_m": [0.8, 2.69]}], "start_poses": TWO_STARTS}, ("start_poses.1", "0.33 m")),
+        ({"streets": [{"from_m": [1.5, 1.5], "to_m": [1.5, 2.9], "width_m": 0.8}]}, ("streets.0",)),
+        ({"start_poses": []}, ("start_poses",)),
+        ({"start_poses": [{**AHEAD, "x_m": 0.25}]}, ("start_poses.0", "0.033 m")),
+        ({"start_poses": [{**AHEAD, "x_m": 5.0}]}, ("start_poses.0", "0.000 m")),
+        ({"walls": [{**BOARD, "to_m": [1.5, 1.4]}]}, ("start_poses.0", "0.000 m")),
+        (with_post(1.5, 1.7, 0.01), ("start_poses.0", "0.025 m")),
+        (with_box("chip", [1.6, 1.5], [1.62, 1.5], [1.61, 1.52]), ("start_poses.0", "0.000 m")),
+        ({"infrared_rays": 2}, ("infrared_rays",)),
+        ({"wals": []}, ("wals",)),
+    ],
+)
+def test_load_world_wrong_file_names_file_and_key(
+    change: dict[str, object], fragments: tuple[str, ...], tmp_path: Path
+) -> None:
+    message = refusal(written(tmp_path, change))
+    assert message.startswith(str(tmp_path))
+    assert [fragment for fragment in fragments if fragment not in message] == []
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {},
+        {"start_poses": [AHEAD, {**AHEAD, "heading_deg": 90}, {**AHEAD, "x_m": 1.52}]},
+        {"walls": [{**DIVIDER, "to_m": [0.8, 2.66]}], "start_poses": TWO_STARTS},
+        {"walls": [{**BOARD, "from_m": [-0.2, 2.9], "to_m": [0.5, 3.2]}]},
+        {"polygon_obstacles": [{"name": "bay", "corners": BAY}]},
+    ],
+)
+def test_load_world_unusual_worlds_are_accepted(change: dict[str, object], tmp_path: Path) -> None:
+    assert load_world(written(tmp_path, change)).name == "plain"
+
+
+def test_concave_obstacle_lets_the_robot_in() -> None:
+    bay = PolygonObstacleSettings(name="bay", corners=tuple((x + 1.0, y - 0.5) for x, y in BAY))
+    with Rig(room(boxes=[bay])) as rig:
+        rig.run(0.5)
+        assert ROBOT.infrared.distance_m(rig.reading("s11")) > 0.5
+        rig.drive(20, 20, 6.0)
+        assert rig.robot.collisions > 0
+        assert rig.robot.pose.x_m == pytest.approx(3.0 - ROBOT.geometry.outline_length_m / 2, abs=0.01)
+
+
+def test_junctions_are_crossings_of_middle_lines() -> None:
+    world = load_world("manhattan")
+    lines = (0.4, 2.2, 4.0, 5.8)
+    assert world.junctions == [(x, y) for x in lines for y in lines]
+    for street in world.streets:
+        line = shapely.LineString([street.from_m, street.to_m])
+        assert world.free_space.exterior.distance(line) == pytest.approx(street.width_m / 2)  # type: ignore[union-attr]
+        assert min(shape.distance(line) for shape in world.shapes) == pytest.approx(street.width_m / 2)
+    assert load_world("a").junctions == []
+
+
+def test_starts_in_streets_are_in_the_middle() -> None:
+    world = load_world("manhattan")
+    for start in range(len(world.start_poses)):
+        assert left_clearances_m(world, start) == pytest.approx([0.4 - 0.165] * 4)
+
+
+@pytest.mark.parametrize(
+    ("name", "post", "side", "away_m"),
+    [
+        ("one_object", "post", "left", 0.3),
+        ("two_objects", "west", "left", 0.18),
+        ("two_objects", "east", "right", 0.18),
+    ],
+)
+def test_starts_have_an_object_abeam(name: str, post: str, side: str, away_m: float) -> None:
+    world = load_world(name)
+    object_ = next(each for each in world.round_obstacles if each.name == post)
+    abeam = 0
+    for pose in (start.pose for start in world.start_poses):
+        dx, dy = object_.x_m - pose.x_m, object_.y_m - pose.y_m
+        ahead_m = dx * math.cos(pose.heading_rad) + dy * math.sin(pose.heading_rad)
+        left_m = dy * math.cos(pose.heading_rad) - dx * math.sin(pose.heading_rad)
+        beside_m = (left_m if side == "left" else -left_m) - object_.radius_m - ROBOT.geometry.outline_width_m / 2
+        abeam += abs(ahead_m) < 0.002 and abs(beside_m - away_m) < 0.002
+    assert abeam == len(world.start_poses) // len(world.round_obstacles)
+
+
+def test_two_objects_are_both_in_range_between_them() -> None:
+    west, east = load_world("two_objects").round_obstacles
+    gap_m = east.x_m - west.x_m - west.radius_m - east.radius_m
+    assert gap_m == pytest.approx(0.75)
+    # Clear of both by what a robot keeps from one, and seen well by sensors that reach 0.6 m.
+    assert 0.18 < (gap_m - ROBOT.geometry.outline_width_m) / 2 < 0.25
+
+
+def test_one_object_is_smaller_than_a_sensor_gap() -> None:
+    world = load_world("one_object")
+    left = sorted(sensor.x_m for sensor in ROBOT.infrared.sensors if sensor.heading_deg == 90)
+    assert 2 * world.round_obstacles[0].radius_m < min(b - a for a, b in pairwise(left))
+    assert world.infrared_rays == 3
+
+
+def test_move_wall_updates_the_settings() -> None:
+    world = World(load_world("a"))
+    before = world.settings.walls[0]
+    world.move_wall("tongue", 0.1, -0.2)
+    after = world.settings.walls[0]
+    assert after.from_m == pytest.approx((before.from_m[0] + 0.1, before.from_m[1] - 0.2))
+    assert load_world("a").walls[0] == before
+
+
+def test_load_world_loads_every_shipped_world() -> None:
+    for path in (CONFIG_DIR / "worlds").glob("*.yaml"):
+        assert load_world(path.stem).start_poses

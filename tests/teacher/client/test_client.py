@@ -1,0 +1,1066 @@
+"""A teacher's device over real sockets and real keys, against a robot whose mind is the test's."""
+
+import asyncio
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import AsyncExitStack, asynccontextmanager
+from itertools import pairwise
+from pathlib import Path
+from typing import cast
+
+import anyio
+import pytest
+
+import kurt2rt.teacher
+from kurt2rt.channel.protocol.codec import WireError
+from kurt2rt.channel.protocol.lesson_list import LessonLine
+from kurt2rt.channel.protocol.requests import (
+    PACKAGE,
+    VERSION,
+    AnswerRequest,
+    AppraiseRequest,
+    BeAtRequest,
+    BehaviourRequest,
+    CommandRequest,
+    CorrectRequest,
+    DeleteRequest,
+    DriveRequest,
+    ExportRequest,
+    HelloRequest,
+    LessonsRequest,
+    MoveWallRequest,
+    NameRequest,
+    PhaseRequest,
+    PlaceRequest,
+    PursueRequest,
+    ReleaseRequest,
+    ReplaceRequest,
+    Request,
+    ResumeRequest,
+    RewardRequest,
+    SaveRequest,
+    SeekLikeRequest,
+    SeekRequest,
+    SeekRlaRequest,
+    SessionRequest,
+    SituationsRequest,
+    StopRequest,
+    TakeRequest,
+    UndoRequest,
+    WatchRequest,
+    WorldRequest,
+)
+from kurt2rt.channel.security.context_folder import CredentialsError
+from kurt2rt.channel.security.pairing import Pairing, pair, renew
+from kurt2rt.channel.server.reply import Reply, Verdict, done, refusal, unsaved
+from kurt2rt.core.rla.outcome import Outcome, RefusalCode
+from kurt2rt.core.rla.outcome_text import text_of
+from kurt2rt.core.rla.rla import MID, Phase
+from kurt2rt.teacher import TeacherClient
+from kurt2rt.teacher.client.answer import Answer, NoAnswerError, local_refusal
+from tests.channel.lossy_link import LossyLink, Weather
+from tests.teacher.stand_in_robot import StandInRobot, agrees, in_a_task_of_its_own, stand_in_robot
+
+HELLO = {
+    "v": VERSION,
+    "boot": b"boot",
+    "tick": 7,
+    "robot": "kurt2-indoor",
+    "task": "wall_following",
+    "radius": 700.0,
+    "period_s": 0.01,
+    "actions": ["forward", "spin_left"],
+    "behaviours": ["straight_on", "turn_left"],
+    "appraisals": [["bad", -1], ["neutral", 0], ["good", 1]],
+    "trusted_from": 0.8,
+    "mid": ["history", 12, 6.0],
+    "seeks": True,
+    "sensors": [["front", "F", 0.2, 0.0, 0.0]],
+    "outline": [0.434, 0.33],
+    "max_m_s": 0.6,
+    "simulated": True,
+    "phases": {1: "supervised", 2: "corrections"},
+}
+
+
+HELD = Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="Ann")
+NOT_SAVED = Outcome.of(RefusalCode.NOT_SAVED, says="the disk is full")
+
+
+class Clock:
+    """A clock that can be put forward."""
+
+    def __init__(self) -> None:
+        self.ahead_s = 0.0
+
+    def __call__(self) -> float:
+        return time.monotonic() + self.ahead_s
+
+
+@pytest.fixture
+def pairing(tmp_path: Path) -> Pairing:
+    return pair(tmp_path / "teachers", tmp_path / "devices", "phone")
+
+
+@pytest.fixture
+async def robot(pairing: Pairing) -> AsyncIterator[StandInRobot]:
+    async with in_a_task_of_its_own(stand_in_robot(pairing.teacher.parent)) as robot:
+        yield robot
+
+
+@pytest.fixture
+async def client(pairing: Pairing, robot: StandInRobot) -> AsyncIterator[TeacherClient]:
+    async with in_a_task_of_its_own(TeacherClient(pairing.device.folder, port=robot.port)) as client:
+        await first_state(client)
+        yield client
+
+
+async def first_state(client: TeacherClient) -> None:
+    await seen(client, lambda: True)
+
+
+async def seen(client: TeacherClient, holds: Callable[[], bool]) -> None:
+    """Wait for a picture with which something holds."""
+    with anyio.fail_after(10.0):
+        async for _ in client.states():
+            if holds():
+                return
+
+
+async def eventually(holds: Callable[[], bool]) -> None:
+    """Wait for something that tells nobody."""
+    with anyio.fail_after(10.0):
+        while not holds():  # noqa: ASYNC110
+            await anyio.sleep(0.005)
+
+
+async def be_in_charge(client: TeacherClient, robot: StandInRobot) -> None:
+    robot.show(teacher="phone")
+    await seen(client, lambda: client.state is not None and client.state.teacher == "phone")
+
+
+# Seeing
+
+
+async def test_it_takes_its_name_from_the_pairing_and_sees_the_robot(
+    client: TeacherClient, robot: StandInRobot
+) -> None:
+    assert client.name == "phone"
+    await seen(client, lambda: client.state == robot.state)
+    assert client.state_age_s < 10.0
+    assert client.link.pictures_per_s > 0.0
+    assert client.trouble == ""
+    assert client.restarts == 0
+
+
+async def test_a_pairing_without_a_note_of_the_robot_has_the_name_of_its_folder(
+    pairing: Pairing, robot: StandInRobot
+) -> None:
+    (pairing.device.folder / "device.json").unlink()
+    async with TeacherClient(pairing.device.folder, "127.0.0.1", robot.port) as client:
+        await first_state(client)
+        assert client.name == "phone"
+
+
+async def test_a_pairing_that_is_in_use_or_not_there_is_refused_in_a_sentence(
+    client: TeacherClient, pairing: Pairing, tmp_path: Path
+) -> None:
+    assert client.state is not None
+    with pytest.raises(CredentialsError, match="another program uses this pairing"):
+        await TeacherClient(pairing.device.folder).__aenter__()
+    with pytest.raises(CredentialsError, match="there is no pairing to open"):
+        await TeacherClient(tmp_path / "nobody").__aenter__()
+
+
+def test_a_client_that_is_not_open_says_how_to_open_it(pairing: Pairing) -> None:
+    with pytest.raises(RuntimeError, match="use it as: async with"):
+        TeacherClient(pairing.device.folder).press(0.1, 0.1)
+
+
+async def test_a_slow_reader_gets_the_newest_picture_and_misses_those_between(
+    client: TeacherClient, robot: StandInRobot
+) -> None:
+    robot.showing = False
+    states = client.states()
+    first = await anext(states)
+    for _ in range(3):
+        newest = robot.show()
+        await seen(client, lambda: client.state == newest)  # noqa: B023 - called only in this round
+    assert (await anext(states)) == newest
+    assert newest.tick >= first.tick + 15
+
+
+async def test_the_pictures_end_with_the_client(pairing: Pairing, robot: StandInRobot) -> None:
+    async with TeacherClient(pairing.device.folder, port=robot.port) as client:
+        states = client.states()
+        await anext(states)
+    assert [each async for each in states] == []
+
+
+async def test_doubled_and_overtaken_pictures_never_go_back_in_time(pairing: Pairing, robot: StandInRobot) -> None:
+    bad = Weather(doubled=0.5, overtaken=0.5, overtaken_s=0.12)
+    ticks = []
+    async with (
+        LossyLink(robot.port, down=bad) as link,
+        TeacherClient(pairing.device.folder, port=link.port) as client,
+    ):
+        async for state in client.states():
+            ticks.append(state.tick)
+            if len(ticks) == 12:
+                break
+    assert ticks == sorted(set(ticks))
+
+
+async def test_it_asks_what_robot_this_is(client: TeacherClient, robot: StandInRobot) -> None:
+    async def introduces_itself(_: Request) -> Reply:
+        return Reply(Verdict.DONE, HELLO)
+
+    robot.mind = introduces_itself
+    hello = await client.hello()
+    assert hello.behaviours == ("straight_on", "turn_left")
+    assert (hello.robot, hello.actions, hello.outline) == ("kurt2-indoor", ("forward", "spin_left"), (0.434, 0.33))
+    assert hello.sensors[0].label == "F"
+    assert hello.phases == ("supervised", "corrections")
+    assert hello.appraisals == (("bad", -1), ("neutral", 0), ("good", 1))
+    assert hello.trusted_from == 0.8
+    assert (hello.what, hello.law) == ("", None)  # a robot of before
+    assert robot.orders() == [HelloRequest()]
+
+
+@pytest.mark.parametrize(("version", "older"), [(VERSION - 1, "the robot's"), (VERSION + 1, "this device's")])
+async def test_a_robot_of_another_version_is_not_understood_and_it_is_said_what_to_do(
+    client: TeacherClient, robot: StandInRobot, version: int, older: str
+) -> None:
+    async def speaks_otherwise(_: Request) -> Reply:
+        # An older robot lacks what was added since: that must not be what is complained of.
+        lacking = {key: value for key, value in HELLO.items() if key not in ("appraisals", "trusted_from")}
+        return Reply(Verdict.DONE, {**lacking, "v": version})
+
+    robot.mind = speaks_otherwise
+    said = f"speaks version {version} of the wire contract, .* bring {older} kurt2rt up to date"
+    with pytest.raises(NoAnswerError, match=said):
+        await client.hello()
+
+
+async def test_lessons_and_world_come_as_values(client: TeacherClient, robot: StandInRobot) -> None:
+    async def tells(request: Request) -> Reply:
+        if isinstance(request, LessonsRequest):
+            return Reply(Verdict.DONE, {"lessons": [["phone-01", "RLA 7: forward", "phone", 1, 42, "", False]]})
+        corners = [[0.0, 0.0], [1.0, 0.0]]
+        world = {"version": 3, "name": "A", "size": [3, 4], "outline": corners, "walls": [["north", corners]]}
+        return Reply(Verdict.DONE, {**world, "round": [["pillar", 1.0, 2.0, 0.1]]})
+
+    robot.mind = tells
+    assert await client.lessons(5) == (LessonLine("phone-01", "RLA 7: forward", "phone", 1, 42, "", False),)
+    world = await client.world()
+    assert world is not None
+    assert (world.version, world.walls[0].name, world.round[0].radius_m) == (3, "north", 0.1)
+    assert robot.orders() == [LessonsRequest(5), WorldRequest()]
+
+
+async def test_the_situations_that_have_a_name_are_read(client: TeacherClient, robot: StandInRobot) -> None:
+    async def tells(_: Request) -> Reply:
+        return Reply(Verdict.DONE, {"situations": ["door", "window"]})
+
+    robot.mind = tells
+    assert await client.situations() == ("door", "window")
+    assert robot.orders() == [SituationsRequest()]
+    robot.mind = agrees
+    with pytest.raises(NoAnswerError, match="the robot's answer has no situations"):
+        await client.situations()
+
+
+async def test_a_real_robot_has_no_world_to_tell_of(client: TeacherClient, robot: StandInRobot) -> None:
+    async def is_real(_: Request) -> Reply:
+        return Reply(Verdict.NOT_HERE, {"why": "refused", "text": "this robot is not simulated"})
+
+    robot.mind = is_real
+    assert await client.world() is None
+
+
+# Commands
+
+
+async def test_each_command_says_on_which_picture_it_was_given(client: TeacherClient, robot: StandInRobot) -> None:
+    async def introduces_itself(request: Request) -> Reply:
+        return Reply(Verdict.DONE, HELLO) if isinstance(request, HelloRequest) else await agrees(request)
+
+    robot.mind = introduces_itself
+    robot.showing = False
+    picture = robot.show()
+    await seen(client, lambda: client.state == picture)
+    await client.answer("forward", of=88)
+    await client.correct("spin_right")
+    await client.reward(-1, of=80)
+    await client.appraise("bad", of=81)
+    await client.appraise("neutral")
+    await client.replace(7, "forward")
+    await client.delete(7)
+    await client.undo()
+    await client.undo("phone-01")
+    await client.set_phase(Phase.CORRECTIONS)
+    await client.pursue("turn_left")
+    await client.answer("turn_left", level=MID, beside=True)
+    await client.correct("turn_left", of=80, level=MID)
+    await client.name_situation("door", of=81)
+    await client.seek("door")
+    await client.seek_rla(12)
+    await client.seek_like({"x_m": 1.5}, 0.25)
+    await client.stop_seeking()
+    await client.be_at("door")
+    await client.begin_session("morning")
+    await client.end_session()
+    await client.resume()
+    await client.take()
+    await client.hand_over("laptop")
+    await client.save("after lunch")
+    await client.export()
+    await client.export(PACKAGE)
+    await client.run("quarter_turn_left", seconds=3.0)
+    await client.move_wall("north", 0.5, -0.25)
+    await client.place(1.0, 2.0, 0.5)
+    heard = [each for each in robot.orders() if isinstance(each, CommandRequest)]
+    expected: list[tuple[type[CommandRequest], dict[str, object]]] = [
+        (AnswerRequest, {"action": "forward", "decision_tick": 88}),
+        (CorrectRequest, {"action": "spin_right", "decision_tick": None}),
+        (RewardRequest, {"value": -1, "decision_tick": 80}),
+        (AppraiseRequest, {"appraisal": "bad", "decision_tick": 81}),
+        (AppraiseRequest, {"appraisal": "neutral", "decision_tick": None}),
+        (ReplaceRequest, {"rla_id": 7, "action": "forward"}),
+        (DeleteRequest, {"rla_id": 7}),
+        (UndoRequest, {"lesson": None}),
+        (UndoRequest, {"lesson": "phone-01"}),
+        (PhaseRequest, {"phase": Phase.CORRECTIONS}),
+        (PursueRequest, {"behaviour": "turn_left"}),
+        (AnswerRequest, {"action": "turn_left", "decision_tick": None, "level": MID, "beside": True}),
+        (CorrectRequest, {"action": "turn_left", "decision_tick": 80, "level": MID}),
+        (NameRequest, {"name": "door", "decision_tick": 81}),
+        (SeekRequest, {"name": "door"}),
+        (SeekRlaRequest, {"rla_id": 12}),
+        (SeekLikeRequest, {"features": (("x_m", 1.5),), "tolerance": 0.25}),
+        (SeekRequest, {"name": None}),
+        (BeAtRequest, {"name": "door"}),
+        (SessionRequest, {"name": "morning"}),
+        (SessionRequest, {"name": None}),
+        (ResumeRequest, {}),
+        (TakeRequest, {}),
+        (ReleaseRequest, {"to": "laptop"}),
+        (SaveRequest, {"label": "after lunch"}),
+        (ExportRequest, {"form": "table"}),
+        (ExportRequest, {"form": "package"}),
+        (BehaviourRequest, {"action": "quarter_turn_left", "ticks": 300}),
+        (MoveWallRequest, {"name": "north", "dx_m": 0.5, "dy_m": -0.25}),
+        (PlaceRequest, {"x_m": 1.0, "y_m": 2.0, "heading_rad": 0.5}),
+    ]
+    assert heard == [
+        kind(boot=b"boot", command_id=each.command_id, seen=picture.tick, **fields)
+        for (kind, fields), each in zip(expected, heard, strict=True)
+    ]
+    assert len({each.command_id for each in heard}) == len(heard)
+
+
+async def test_an_answer_tells_what_was_done(client: TeacherClient, robot: StandInRobot) -> None:
+    async def saves(_: Request) -> Reply:
+        return done(99, name="a.db", sha256="ab12")
+
+    robot.mind = saves
+    assert await client.save("x") == Answer(True, "", "", 99, {"name": "a.db", "sha256": "ab12"})
+
+
+@pytest.mark.parametrize(
+    ("reply", "answer"),
+    [
+        (
+            refusal("held", HELD, 5),
+            Answer(False, "held", text_of(HELD), 5, outcome=HELD),
+        ),
+        (unsaved(NOT_SAVED, 5), Answer(False, "unsaved", "the disk is full", 5, outcome=NOT_SAVED)),
+        (Reply(Verdict.NOT_HERE), Answer(False, "4.04 Not Found", "", -1)),
+    ],
+)
+async def test_a_refusal_is_an_answer(client: TeacherClient, robot: StandInRobot, reply: Reply, answer: Answer) -> None:
+    async def refuses(_: Request) -> Reply:
+        return reply
+
+    robot.mind = refuses
+    assert await client.answer("forward") == answer
+
+
+async def test_what_the_robot_could_not_take_is_refused_here(client: TeacherClient, robot: StandInRobot) -> None:
+    answer = await client.reward(3)
+    assert (answer.accepted, answer.why, answer.text) == (False, "malformed", "value has to be one of 1, -1")
+    assert robot.orders() == []
+
+
+async def test_while_answers_are_lost_the_same_command_is_sent_again(pairing: Pairing, robot: StandInRobot) -> None:
+    async with (
+        LossyLink(robot.port) as link,
+        TeacherClient(pairing.device.folder, port=link.port) as client,
+        anyio.create_task_group() as tasks,
+    ):
+        await first_state(client)
+        link.change_weather(down=Weather(loss=1.0))
+        answers: list[Answer] = []
+
+        async def teach() -> None:
+            answers.append(await client.answer("forward"))
+
+        tasks.start_soon(teach)
+        await robot.hears(AnswerRequest, 3)
+        assert answers == []
+        link.change_weather(down=Weather())
+        await eventually(lambda: bool(answers))
+        assert answers[0].accepted
+        copies = robot.all_of(AnswerRequest)
+        assert set(copies) == {copies[0]}
+
+
+async def test_at_30_percent_loss_each_way_every_reward_arrives_and_is_answered(
+    pairing: Pairing, robot: StandInRobot
+) -> None:
+    bad = Weather(loss=0.3, delay_s=0.005, jitter_s=0.005, doubled=0.05, overtaken=0.05)
+    async with (
+        LossyLink(robot.port, up=bad, down=bad) as link,
+        TeacherClient(pairing.device.folder, port=link.port) as client,
+    ):
+        await first_state(client)
+        answers: list[Answer] = []
+
+        async def reward() -> None:
+            answers.append(await client.reward(1))
+
+        for _ in range(3):
+            async with anyio.create_task_group() as tasks:
+                for _ in range(12):
+                    tasks.start_soon(reward)
+    assert [each.accepted for each in answers] == [True] * 36
+    assert len({each.command_id for each in robot.all_of(RewardRequest)}) == 36
+
+
+async def test_without_an_answer_it_is_not_known_whether_it_counted_and_nothing_is_left_behind(
+    pairing: Pairing, robot: StandInRobot
+) -> None:
+    clock = Clock()
+    async with (
+        LossyLink(robot.port) as link,
+        TeacherClient(pairing.device.folder, port=link.port, patience_s=0.25, now=clock) as client,
+    ):
+        await be_in_charge(client, robot)
+        tasks_before = len(asyncio.all_tasks())
+        link.cut()
+        lost_before = link.up.lost
+        results = await asyncio.gather(*(client.reward(1) for _ in range(100)), return_exceptions=True)
+        assert all(isinstance(each, NoAnswerError) for each in results)
+        assert "not known whether it counted" in str(results[0])
+        await link.until(lambda: link.up.lost - lost_before >= 100)
+        clock.ahead_s += 2.0
+        # What is left is the observation, or the one that is being registered in its place.
+        await eventually(lambda: client._open.requests.open_exchanges <= 1)
+        await eventually(lambda: len(asyncio.all_tasks()) <= tasks_before)
+        link.mend()
+        assert (await client.reward(1)).accepted
+
+
+async def test_before_the_first_picture_nothing_is_sent(pairing: Pairing) -> None:
+    async with (
+        stand_in_robot(pairing.teacher.parent, showing=False) as robot,
+        TeacherClient(pairing.device.folder, port=robot.port, patience_s=0.1) as client,
+    ):
+        with pytest.raises(NoAnswerError, match="there is no picture of the robot, so nothing was sent"):
+            await client.answer("forward")
+        assert robot.heard == []
+        assert (await client.stop()).accepted
+
+
+async def test_without_a_robot_it_says_what_the_network_says(pairing: Pairing) -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+        taken.bind(("127.0.0.1", 0))
+        port = taken.getsockname()[1]
+    async with TeacherClient(pairing.device.folder, port=port, patience_s=0.1) as client:
+        await eventually(lambda: client.trouble != "")
+        assert "nothing is heard of 127.0.0.1" in client.trouble
+        with pytest.raises(NoAnswerError, match="nothing is heard of"):
+            await client.stop()
+
+
+# Presence
+
+
+async def test_while_in_charge_and_watching_it_says_so_40_times_a_second(
+    client: TeacherClient, robot: StandInRobot
+) -> None:
+    await seen(client, lambda: client.state == robot.state)
+    assert robot.heard == []
+    await be_in_charge(client, robot)
+    heard = await robot.hears(WatchRequest, 10)
+    assert all(later.seen >= earlier.seen for earlier, later in pairwise(heard))
+    assert heard[-1].boot == b"boot"
+    assert client.state is not None
+    assert heard[-1].seen >= client.state.tick - 10
+    await eventually(lambda: client.link.answered == 1.0)
+    assert client.link.rtt_ms is not None
+    assert client.link.rtt_ms > 0.0
+
+
+async def test_who_looks_away_or_hands_over_says_nothing(client: TeacherClient, robot: StandInRobot) -> None:
+    async def says_nothing() -> None:
+        await client.stop()  # once it is answered, all that was said before it has been heard
+        told = len(robot.all_of(WatchRequest))
+        for _ in range(3):
+            newest = robot.show(teacher=robot.state.teacher)
+            await seen(client, lambda: client.state is not None and client.state.tick >= newest.tick)  # noqa: B023
+        await client.stop()
+        assert len(robot.all_of(WatchRequest)) == told
+
+    await be_in_charge(client, robot)
+    await robot.hears(WatchRequest)
+    client.watching = False
+    await says_nothing()
+    client.watching = True
+    await robot.hears(WatchRequest, len(robot.all_of(WatchRequest)) + 1)
+    robot.show(teacher="laptop")
+    await seen(client, lambda: client.state is not None and client.state.teacher == "laptop")
+    await says_nothing()
+
+
+async def test_on_an_old_picture_nothing_is_said(pairing: Pairing, robot: StandInRobot) -> None:
+    clock = Clock()
+    async with TeacherClient(pairing.device.folder, port=robot.port, now=clock) as client:
+        await be_in_charge(client, robot)
+        await robot.hears(WatchRequest)
+        robot.showing = False
+        clock.ahead_s += 0.6
+        await client.stop()
+        told = len(robot.all_of(WatchRequest))
+        await client.stop()
+        assert len(robot.all_of(WatchRequest)) == told
+
+
+# Stopping
+
+
+async def never_answers(_: Request) -> Reply:
+    await anyio.sleep_forever()
+    raise AssertionError
+
+
+MOVING: dict[str, tuple[type[CommandRequest], Callable[[TeacherClient], Awaitable[Answer]]]] = {
+    "go": (ResumeRequest, lambda client: client.resume()),
+    "forward": (BehaviourRequest, lambda client: client.run("forward", seconds=1.0)),
+    "phase 5": (PhaseRequest, lambda client: client.set_phase(Phase.AUTONOMOUS)),
+    "take": (TakeRequest, lambda client: client.take()),
+    "turn_left": (PursueRequest, lambda client: client.pursue("turn_left")),
+}
+
+
+@pytest.mark.parametrize("what", MOVING)
+async def test_a_stop_ends_what_would_move_the_robot_and_is_not_answered_yet(
+    client: TeacherClient, robot: StandInRobot, what: str
+) -> None:
+    kind, say = MOVING[what]
+
+    async def hears_only_stops(request: Request) -> Reply:
+        if isinstance(request, HelloRequest):
+            return Reply(Verdict.DONE, HELLO)
+        return await (never_answers if isinstance(request, kind) else agrees)(request)
+
+    robot.mind = hears_only_stops
+    answers: list[Answer] = []
+
+    async def move() -> None:
+        answers.append(await say(client))
+
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(move)
+        await robot.hears(kind, 2)
+        stop = await client.stop()
+    assert stop.accepted
+    assert answers == [local_refusal("stopped", Outcome.of(RefusalCode.STOPPED_MEANWHILE, command=what))]
+    # Longer than a command waits before it is sent again: four more commands go and come.
+    sent = len(robot.all_of(kind))
+    robot.mind = agrees
+    for _ in range(4):
+        newest = robot.show()
+        await seen(client, lambda: client.state is not None and client.state.tick > newest.tick)  # noqa: B023
+    assert len(robot.all_of(kind)) == sent
+    assert isinstance(robot.orders()[-1], StopRequest)
+
+
+async def test_a_stop_leaves_a_lesson_that_is_under_way(client: TeacherClient, robot: StandInRobot) -> None:
+    stopped = anyio.Event()
+
+    async def answers_lessons_after_the_stop(request: Request) -> Reply:
+        if isinstance(request, AnswerRequest):
+            await stopped.wait()
+        return await agrees(request)
+
+    robot.mind = answers_lessons_after_the_stop
+    answers: list[Answer] = []
+
+    async def teach() -> None:
+        answers.append(await client.answer("forward"))
+
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(teach)
+        await robot.hears(AnswerRequest)
+        await client.stop()
+        stopped.set()
+    assert answers[0].accepted
+
+
+async def test_go_right_after_a_stop_says_that_the_teacher_knows_of_that_stop(
+    client: TeacherClient, robot: StandInRobot
+) -> None:
+    robot.showing = False
+    picture = robot.show()
+    await seen(client, lambda: client.state == picture)
+    stopped_tick = picture.tick + 3
+
+    async def stops_later(request: Request) -> Reply:
+        return done(stopped_tick if isinstance(request, StopRequest) else stopped_tick + 20)
+
+    robot.mind = stops_later
+    await client.stop()
+    await client.resume()
+    await client.answer("forward")
+    # Answers to other things are no news of the robot to who wants to move it: somebody may have stopped it meanwhile.
+    await client.resume()
+    resumes = robot.all_of(ResumeRequest)
+    assert [each.seen for each in resumes] == [stopped_tick, stopped_tick]
+    assert robot.all_of(AnswerRequest)[0].seen == stopped_tick + 20
+
+
+async def test_ticks_that_an_earlier_start_of_the_robot_told_count_for_nothing(pairing: Pairing) -> None:
+    teachers = pairing.teacher.parent
+    clock = Clock()
+
+    async def far_on(_: Request) -> Reply:
+        return done(1_000_000)
+
+    async with AsyncExitStack() as first_start:
+        robot = await first_start.enter_async_context(in_a_task_of_its_own(stand_in_robot(teachers)))
+        async with TeacherClient(pairing.device.folder, port=robot.port, now=clock) as client:
+            await first_state(client)
+            robot.mind = far_on
+            await client.stop()
+            await first_start.aclose()
+            async with stand_in_robot(teachers, port=robot.port, boot=b"anew") as robot:
+                clock.ahead_s += 1.5
+                await seen(client, lambda: client.state is not None and client.state.boot == b"anew")
+                await client.resume()
+                await client.answer("forward")
+                (resume,), (answer,) = robot.all_of(ResumeRequest), robot.all_of(AnswerRequest)
+                assert max(resume.seen, answer.seen) < 1_000_000
+
+
+async def test_a_stop_that_nobody_answers_is_sent_on_until_it_is(pairing: Pairing, robot: StandInRobot) -> None:
+    async with (
+        LossyLink(robot.port) as link,
+        TeacherClient(pairing.device.folder, port=link.port, patience_s=0.15) as client,
+    ):
+        await first_state(client)
+        tasks_before = len(asyncio.all_tasks())
+        link.cut()
+        for _ in range(3):
+            with pytest.raises(NoAnswerError, match=r"the stop is not answered: .* it is sent on until it is"):
+                await client.stop()
+            assert client.stop_pending
+        assert len(asyncio.all_tasks()) == tasks_before + 1
+        assert robot.all_of(StopRequest) == []
+        link.mend()
+        await eventually(lambda: not client.stop_pending)
+        (stop, *copies) = robot.all_of(StopRequest)
+        assert set(copies) <= {stop}
+        await eventually(lambda: len(asyncio.all_tasks()) <= tasks_before)
+
+
+async def test_of_a_stop_that_is_never_answered_only_some_copies_are_remembered(
+    pairing: Pairing, robot: StandInRobot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("kurt2rt.teacher.client.request_sender.RESEND_S", 0.001)
+    async with (
+        LossyLink(robot.port) as link,
+        TeacherClient(pairing.device.folder, port=link.port, patience_s=0.05) as client,
+    ):
+        await first_state(client)
+        link.cut()
+        with pytest.raises(NoAnswerError):
+            await client.stop()
+        lost = link.up.lost
+        await link.until(lambda: link.up.lost > lost + 200)
+        assert client.stop_pending
+        assert client._open.requests.open_exchanges <= 35 + 2  # and two of the observation
+
+
+@pytest.mark.parametrize("wish", ["resume", "run", "press"])
+async def test_a_later_wish_ends_a_stop_that_nobody_answered(pairing: Pairing, robot: StandInRobot, wish: str) -> None:
+    async def does_not_hear_stops(request: Request) -> Reply:
+        if isinstance(request, HelloRequest):
+            return Reply(Verdict.DONE, HELLO)
+        return await (never_answers if isinstance(request, StopRequest) else agrees)(request)
+
+    robot.mind = does_not_hear_stops
+    async with TeacherClient(pairing.device.folder, port=robot.port, patience_s=0.15) as client:
+        await first_state(client)
+        with pytest.raises(NoAnswerError):
+            await client.stop()
+        assert client.stop_pending
+        if wish == "resume":
+            assert (await client.resume()).accepted
+        elif wish == "run":
+            assert (await client.run("forward", seconds=1.0)).accepted
+        else:
+            assert client.press(0.1, 0.1)
+            await robot.hears(DriveRequest)
+        assert not client.stop_pending
+        stops = len(robot.all_of(StopRequest))
+        told = robot.state.tick
+        await seen(client, lambda: client.state is not None and client.state.tick > told + 20)
+        assert len(robot.all_of(StopRequest)) == stops
+
+
+async def test_a_press_that_cannot_begin_ends_no_stop(pairing: Pairing, robot: StandInRobot) -> None:
+    clock = Clock()
+    async with (
+        LossyLink(robot.port) as link,
+        TeacherClient(pairing.device.folder, port=link.port, patience_s=0.1, now=clock) as client,
+    ):
+        await first_state(client)
+        link.cut()
+        with pytest.raises(NoAnswerError):
+            await client.stop()
+        clock.ahead_s += 0.6
+        assert not client.press(0.1, 0.1)
+        assert client.stop_pending
+
+
+# Driving
+
+
+async def test_a_press_drives_until_it_is_let_go_and_then_stops(client: TeacherClient, robot: StandInRobot) -> None:
+    assert client.press(0.2, 0.2)
+    assert client.pressing
+    await robot.hears(DriveRequest, 3)
+    client.press(0.1, -0.1)
+    await eventually(lambda: robot.all_of(DriveRequest)[-1].left_m_s == 0.1)
+    answer = await client.let_go()
+    assert answer is not None
+    assert answer.accepted
+    assert not client.pressing
+    heard = robot.all_of(DriveRequest)
+    assert (heard[0].left_m_s, heard[0].right_m_s) == (0.2, 0.2)
+    assert (heard[-1].left_m_s, heard[-1].right_m_s) == (0.1, -0.1)
+    assert len({each.hold for each in heard}) == 1
+    released = robot.heard[-1]
+    assert isinstance(released, StopRequest)
+    assert released.hold == heard[0].hold
+    assert await client.let_go() is None
+
+
+async def test_who_lets_go_has_let_go_before_he_is_answered_and_may_press_anew(
+    client: TeacherClient, robot: StandInRobot
+) -> None:
+    async def does_not_answer_stops(request: Request) -> Reply:
+        return await (never_answers if isinstance(request, StopRequest) else agrees)(request)
+
+    robot.mind = does_not_answer_stops
+    client.press(0.2, 0.2)
+    first = client._hand.hold
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(client.let_go)
+        await robot.hears(StopRequest)
+        assert not client.pressing
+        assert client.press(0.1, 0.1)
+        await robot.hears(StopRequest, 3)
+        assert client.pressing
+        tasks.cancel_scope.cancel()
+    second = client._hand.hold
+    assert first is not None
+    assert second is not None
+    assert second > first
+    assert {each.hold for each in robot.all_of(StopRequest)} == {first}
+    robot.mind = agrees
+    await client.stop()
+    assert robot.all_of(StopRequest)[-1].hold is None
+
+
+async def test_a_block_that_ends_after_its_press_was_stopped_leaves_the_next_press_alone(
+    client: TeacherClient, robot: StandInRobot
+) -> None:
+    async with client.driving() as wheel:
+        assert wheel.set(0.2, 0.2)
+        await client.stop()
+        assert client.press(0.1, 0.1)
+    assert client.pressing
+    assert [each.hold for each in robot.all_of(StopRequest)] == [None]
+    await client.let_go()
+
+
+async def test_the_next_press_has_a_larger_number_also_after_a_restart_of_the_device_and_new_keys(
+    pairing: Pairing,
+) -> None:
+    teachers, devices = pairing.teacher.parent, pairing.device.folder.parent
+    heard: list[DriveRequest] = []
+    for new_keys in (False, False, True):
+        if new_keys:
+            renew(teachers, devices, "phone")
+        async with (
+            stand_in_robot(teachers) as robot,
+            TeacherClient(pairing.device.folder, port=robot.port) as client,
+        ):
+            await first_state(client)
+            for _ in range(2):
+                before = len(robot.all_of(DriveRequest))
+                client.press(0.1, 0.1)
+                await robot.hears(DriveRequest, before + 1)
+                await client.let_go()
+            heard += robot.all_of(DriveRequest)
+    holds = list(dict.fromkeys(each.hold for each in heard))
+    assert len(holds) == 6
+    assert holds == sorted(holds)
+
+
+async def test_a_driving_block_ends_with_a_stop(client: TeacherClient, robot: StandInRobot) -> None:
+    async with client.driving() as wheel:
+        assert wheel.set(0.2, 0.2)
+        await robot.hears(DriveRequest, 2)
+        assert wheel.set(0.1, 0.2)
+    released = robot.heard[-1]
+    assert isinstance(released, StopRequest)
+    assert released.hold == wheel.hold == robot.all_of(DriveRequest)[-1].hold
+    assert not wheel.set(0.2, 0.2)
+    assert wheel.ended == "let go"
+
+
+async def test_a_driving_block_that_fails_ends_with_a_stop_too(client: TeacherClient, robot: StandInRobot) -> None:
+    async def drive() -> None:
+        async with client.driving() as wheel:
+            wheel.set(0.2, 0.2)
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        await drive()
+    assert isinstance(robot.heard[-1], StopRequest)
+
+
+async def test_who_is_cancelled_while_driving_still_stops(client: TeacherClient, robot: StandInRobot) -> None:
+    async def drive() -> None:
+        async with client.driving() as wheel:
+            wheel.set(0.2, 0.2)
+            await anyio.sleep_forever()
+
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(drive)
+        await robot.hears(DriveRequest)
+        tasks.cancel_scope.cancel()
+    assert isinstance(robot.heard[-1], StopRequest)
+
+
+async def test_a_client_that_ends_while_a_press_is_on_stops_the_robot(pairing: Pairing, robot: StandInRobot) -> None:
+    async def drive() -> None:
+        async with TeacherClient(pairing.device.folder, port=robot.port) as client:
+            await first_state(client)
+            client.press(0.2, 0.2)
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        await drive()
+    released = robot.heard[-1]
+    assert isinstance(released, StopRequest)
+    assert released.hold == robot.all_of(DriveRequest)[-1].hold
+
+
+@pytest.mark.parametrize("why", ["stopped", "held", "stale"])
+async def test_a_refused_press_ends_and_says_why(client: TeacherClient, robot: StandInRobot, why: str) -> None:
+    async def refuses(request: Request) -> Reply:
+        if isinstance(request, DriveRequest):
+            return refusal(why, HELD, 5)
+        return await agrees(request)
+
+    robot.mind = refuses
+    async with client.driving() as wheel:
+        assert wheel.set(0.2, 0.2)
+        await eventually(lambda: not client.pressing)
+        assert client.refusal is not None
+        assert (client.refusal.why, client.refusal.outcome) == (why, HELD)
+        assert wheel.ended == text_of(HELD)
+        assert not wheel.set(0.2, 0.2)
+    assert robot.all_of(StopRequest) == []
+
+
+async def test_a_press_goes_on_when_only_a_message_that_was_late_is_refused(
+    client: TeacherClient, robot: StandInRobot
+) -> None:
+    late = anyio.Event()
+
+    async def refuses_the_first_one_late(request: Request) -> Reply:
+        if request == robot.all_of(DriveRequest)[0]:
+            await late.wait()
+            return refusal("stale", Outcome(RefusalCode.OLD_PICTURE), 5)
+        if request == robot.all_of(DriveRequest)[1]:
+            return refusal("old", Outcome(RefusalCode.OVERTAKEN), 5)
+        return await agrees(request)
+
+    robot.mind = refuses_the_first_one_late
+    client.press(0.2, 0.2)
+    await robot.hears(DriveRequest, 5)
+    late.set()
+    await robot.hears(DriveRequest, 10)
+    assert client.pressing
+    await client.let_go()
+
+
+async def test_a_press_ends_when_no_picture_comes_for_half_a_second(pairing: Pairing, robot: StandInRobot) -> None:
+    clock = Clock()
+    async with TeacherClient(pairing.device.folder, port=robot.port, now=clock) as client:
+        await first_state(client)
+        robot.showing = False
+        client.press(0.2, 0.2)
+        await robot.hears(DriveRequest)
+        clock.ahead_s += 0.6
+        await eventually(lambda: not client.pressing)
+        assert client.refusal is not None
+        assert client.refusal.outcome == Outcome(RefusalCode.PICTURE_LOST)
+        driven = len(robot.all_of(DriveRequest))
+        assert not client.press(0.2, 0.2)
+        assert await client.let_go() is None
+        await client.stop()
+        assert len(robot.all_of(DriveRequest)) == driven
+
+
+async def test_speeds_that_no_robot_takes_are_an_error_of_the_program(client: TeacherClient) -> None:
+    with pytest.raises(WireError, match="left_m_s has to be a number from -2 to 2 m/s"):
+        client.press(3.0, 0.0)
+    assert not client.pressing
+
+
+# The robot and the link
+
+
+async def test_after_a_restart_of_the_robot_it_proves_itself_and_goes_on(pairing: Pairing) -> None:
+    teachers = pairing.teacher.parent
+    clock = Clock()
+    async with AsyncExitStack() as first_start:
+        robot = await first_start.enter_async_context(in_a_task_of_its_own(stand_in_robot(teachers)))
+        async with TeacherClient(pairing.device.folder, port=robot.port, now=clock) as client:
+            await first_state(client)
+            assert client.press(0.2, 0.2)
+            await robot.hears(DriveRequest)
+            await first_start.aclose()
+            async with stand_in_robot(teachers, port=robot.port, boot=b"anew") as robot:
+                clock.ahead_s += 1.5
+                await seen(client, lambda: client.state is not None and client.state.boot == b"anew")
+                assert client.restarts == 1
+                assert not client.pressing
+                assert (await client.answer("forward")).accepted
+                assert robot.all_of(AnswerRequest)[0].boot == b"anew"
+                assert all(each.boot == b"boot" for each in robot.all_of(DriveRequest))
+
+
+async def test_after_a_pause_of_the_link_it_observes_anew_and_the_robot_shows_to_one_only(
+    pairing: Pairing, robot: StandInRobot
+) -> None:
+    clock = Clock()
+    async with (
+        LossyLink(robot.port) as link,
+        TeacherClient(pairing.device.folder, port=link.port, now=clock) as client,
+    ):
+        await first_state(client)
+        link.cut()
+        lost = link.up.lost
+        clock.ahead_s += 1.5
+        await link.until(lambda: link.up.lost > lost)
+        link.mend()
+        clock.ahead_s += 1.5
+        count = client._pictures.count
+        await eventually(lambda: client._pictures.count > count + 5)
+        await eventually(lambda: robot.site.observers == 1)
+
+
+async def test_a_robot_that_does_not_know_the_device_is_told_apart_from_silence(tmp_path: Path) -> None:
+    stranger = pair(tmp_path / "others", tmp_path / "strangers", "phone")
+    async with (
+        forger(unauthorised) as port,
+        TeacherClient(stranger.device.folder, port=port, patience_s=0.1) as client,
+    ):
+        with pytest.raises(NoAnswerError, match="does not know this device; pair it: kurt2rt pair"):
+            await client.stop()
+
+
+@pytest.mark.parametrize(
+    "option", [b"", b"\x01", b"\x01\x05", b"\x07" + b"\xff" * 7, b"\x10", b"\x18", b"\x20", b"\x29\x01", b"\xe0"]
+)
+async def test_a_forged_answer_is_none_and_hurts_nobody(tmp_path: Path, option: bytes) -> None:
+    pairing = pair(tmp_path / "teachers", tmp_path / "devices", "phone")
+    async with (
+        forger(lambda request: changed(request, option)) as port,
+        TeacherClient(pairing.device.folder, port=port, patience_s=0.1) as client,
+    ):
+        with pytest.raises(NoAnswerError):
+            await client.stop()
+        assert client._open.requests.damaged >= 1
+
+
+async def test_forged_resets_and_errors_only_cost_time(pairing: Pairing) -> None:
+    async with (
+        forger(lambda request: b"\x70\x00" + request[2:4]) as port,
+        TeacherClient(pairing.device.folder, port=port, patience_s=0.15) as client,
+    ):
+        with pytest.raises(NoAnswerError):
+            await client.stop()
+
+
+def unauthorised(request: bytes) -> bytes:
+    """A plain 4.01, as whoever does not know the device sends it."""
+    return head_of_answer(request, 0x81)
+
+
+def changed(request: bytes, option: bytes) -> bytes:
+    """A 2.04 that says it is protected."""
+    return head_of_answer(request, 0x44) + bytes([0x90 | len(option)]) + option + b"\xffforged, and not even long"
+
+
+def head_of_answer(request: bytes, code: int) -> bytes:
+    confirmable = request[0] & 0x30 == 0
+    token = request[4 : 4 + (request[0] & 0x0F)]
+    kind = 0x60 if confirmable else 0x50
+    return bytes([kind | len(token), code]) + request[2:4] + token
+
+
+class Forger(asyncio.DatagramProtocol):
+    """Answers every datagram with one of its own making."""
+
+    def __init__(self, forge: Callable[[bytes], bytes]) -> None:
+        self._forge = forge
+        self._transport: asyncio.DatagramTransport | None = None
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        self._transport = cast(asyncio.DatagramTransport, transport)
+
+    def datagram_received(self, data: bytes, addr: tuple[str, int]) -> None:
+        assert self._transport is not None
+        self._transport.sendto(self._forge(data), addr)
+
+
+@asynccontextmanager
+async def forger(forge: Callable[[bytes], bytes]) -> AsyncIterator[int]:
+    transport, _ = await asyncio.get_running_loop().create_datagram_endpoint(
+        lambda: Forger(forge), local_addr=("127.0.0.1", 0)
+    )
+    yield transport.get_extra_info("sockname")[1]
+    transport.close()
+
+
+def test_only_who_asks_for_the_client_loads_its_network_library() -> None:
+    lines = (
+        "import sys, kurt2rt.core.teaching.commands",
+        "assert 'aiocoap' not in sys.modules",
+        "from kurt2rt.teacher import TeacherClient",
+        "assert 'aiocoap' in sys.modules",
+    )
+    subprocess.run([sys.executable, "-c", "; ".join(lines)], check=True)
+    with pytest.raises(AttributeError, match="has no attribute 'Nobody'"):
+        _ = kurt2rt.teacher.Nobody

@@ -1,0 +1,178 @@
+"""The client against the robot's own program: the simulated robot, its journal and its channel, in real time."""
+
+import hashlib
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import anyio
+import pytest
+
+from kurt2rt.channel.protocol.requests import PACKAGE
+from kurt2rt.channel.protocol.state import State
+from kurt2rt.channel.security.pairing import Pairing, pair
+from kurt2rt.channel.server.channel import Channel
+from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.knowledge.exchange.package import read_given
+from kurt2rt.service.post_tick import Screen
+from kurt2rt.service.serve import Openness, serve
+from kurt2rt.teacher import TeacherClient
+from kurt2rt.teacher.client.answer import RefusedError
+from simbridge.simulated_world import Kurt2World
+from simbridge.worlds.world_loading import load_world
+from tests.channel.lossy_link import LossyLink, Weather
+from tests.service.rig import LONGEST_S, SETTINGS, Rig, eager_task, end_service, rig, settings_for
+
+A_BAD_LINK = Weather(loss=0.1, delay_s=0.005, jitter_s=0.005, doubled=0.05, overtaken=0.05)
+
+
+@asynccontextmanager
+async def listening_robot(live: Rig, folder: Path) -> AsyncIterator[int]:
+    """The robot's program with its channel on a free port, which it yields; ended as a service manager does."""
+    opened = anyio.Event()
+    ports: list[int] = []
+
+    def listening(channel: Channel) -> None:
+        ports.append(channel.endpoint.port)
+        opened.set()
+
+    ground = Kurt2World(live.simulated, load_world("a"), SETTINGS.geometry, live.simulation)
+    settings = settings_for(folder / "knowledge.sqlite").model_copy(
+        update={"teachers": str(folder / "teachers"), "port": 0}
+    )
+    screen = Screen(status=live.statuses.append, question=live.questions.append, settled=live.settled.append)
+
+    async def run() -> None:
+        openness = Openness(lambda: "", ground, listening)
+        await serve(live.robot, SETTINGS, settings, eager_task(), screen, openness=openness, duration_s=LONGEST_S)
+
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(run)
+        await opened.wait()
+        yield ports[0]
+        end_service()
+
+
+async def state_where(robot: TeacherClient, **wanted: object) -> State:
+    with anyio.fail_after(20.0):
+        async for state in robot.states():
+            if all(getattr(state, name) == value for name, value in wanted.items()):
+                return state
+    raise AssertionError("the client ended")
+
+
+def paired(folder: Path) -> Pairing:
+    return pair(folder / "teachers", folder / "devices", "phone")
+
+
+async def test_a_lesson_over_a_bad_link_from_hello_to_undo(tmp_path: Path) -> None:
+    device = paired(tmp_path).device
+    with rig() as live:
+        async with (
+            listening_robot(live, tmp_path) as port,
+            LossyLink(port, up=A_BAD_LINK, down=A_BAD_LINK) as link,
+            TeacherClient(device.folder, port=link.port) as robot,
+        ):
+            hello = await robot.hello()
+            assert (hello.robot, hello.simulated, len(hello.sensors)) == (SETTINGS.name, True, 18)
+            assert hello.phases == tuple(each.name.lower() for each in Phase)
+            assert (await robot.take()).accepted
+            asks = await state_where(robot, teacher="phone", cause="unknown")
+            answer = await robot.answer("forward", of=asks.tick)
+            assert answer.accepted
+            assert answer.outcome == Outcome.of(ResultCode.RLA_TAUGHT, rla=1, action="forward")
+            drives = await state_where(robot, cause="rla", lessons=1, unsaved=0)
+            assert (drives.rla, drives.action, drives.taught_by) == (1, "forward", "phone")
+            (line,) = await robot.lessons()
+            assert (line.teacher, line.phase, line.undone) == ("phone", 1, False)
+            assert line.stamp != ""
+            nonsense = await robot.correct("fly")
+            assert (nonsense.accepted, nonsense.why) == (False, "refused")
+            assert nonsense.outcome is not None
+            assert nonsense.outcome.code is RefusalCode.NO_ACTION
+            assert (await robot.undo(line.command_id)).accepted
+            await state_where(robot, lessons=0)
+            (line,) = await robot.lessons()
+            assert line.undone
+
+
+async def test_copies_come_over_a_bad_link_whole(tmp_path: Path) -> None:
+    device = paired(tmp_path).device
+    with rig() as live:
+        async with (
+            listening_robot(live, tmp_path) as port,
+            LossyLink(port, up=A_BAD_LINK, down=A_BAD_LINK) as link,
+            TeacherClient(device.folder, port=link.port) as robot,
+        ):
+            assert (await robot.take()).accepted
+            asks = await state_where(robot, teacher="phone", cause="unknown")
+            assert (await robot.answer("forward", of=asks.tick)).accepted
+            for made, folder in ((await robot.save("noon"), "saved"), (await robot.export(PACKAGE), "exported")):
+                assert made.accepted, made.text
+                parts = [part async for part in robot.file_parts(made.extra["name"])]
+                content = b"".join(part.content for part in parts)
+                assert hashlib.sha256(content).hexdigest() == made.extra["sha256"]
+                assert content == (tmp_path / folder / made.extra["name"]).read_bytes()
+            with pytest.raises(RefusedError, match="no copy of this run"):
+                await anext(robot.file_parts("knowledge.sqlite"))
+    given = read_given(tmp_path / "exported" / str(made.extra["name"]))
+    assert len(given.lessons) == 1
+
+
+async def test_the_hand_drives_while_it_presses_and_the_robot_stands_when_it_lets_go(tmp_path: Path) -> None:
+    device = paired(tmp_path).device
+    with rig() as live:
+        async with (
+            listening_robot(live, tmp_path) as port,
+            TeacherClient(device.folder, port=port) as robot,
+        ):
+            await state_where(robot, cause="unknown")
+            async with robot.driving() as wheel:
+                assert wheel.set(0.15, 0.15)
+                drives = await state_where(robot, by_hand=True, left_m_s=0.15, right_m_s=0.15)
+                assert (drives.teacher, drives.cause) == ("phone", "teacher")
+            stands = await state_where(robot, by_hand=False, left_m_s=0.0, right_m_s=0.0)
+            assert stands.stopped is not None
+            async with robot.driving() as wheel:
+                wheel.set(0.15, 0.15)
+                await state_where(robot, by_hand=True, left_m_s=0.15)
+                await robot.stop()
+                assert not wheel.set(0.15, 0.15)
+            assert robot.link.rtt_ms is not None
+
+
+async def test_go_right_after_an_answered_stop_is_taken(tmp_path: Path) -> None:
+    device = paired(tmp_path).device
+    with rig() as live:
+        async with (
+            listening_robot(live, tmp_path) as port,
+            TeacherClient(device.folder, port=port) as robot,
+        ):
+            assert (await robot.take()).accepted
+            for _ in range(10):
+                stop = await robot.stop()
+                go = await robot.resume()
+                assert (stop.outcome, go.outcome) == (Outcome(ResultCode.STOPPED), Outcome(ResultCode.RESUMED))
+            await state_where(robot, stopped=None)
+
+
+async def test_the_world_is_seen_and_changed(tmp_path: Path) -> None:
+    device = paired(tmp_path).device
+    with rig() as live:
+        async with (
+            listening_robot(live, tmp_path) as port,
+            TeacherClient(device.folder, port=port) as robot,
+        ):
+            state = await state_where(robot, cause="unknown")
+            assert state.place is not None
+            world = await robot.world()
+            assert world is not None
+            wall = world.walls[-1]
+            moved = await robot.move_wall(wall.name, 0.01, 0.0)
+            assert moved.accepted, moved.text
+            again = await robot.world()
+            assert again is not None
+            assert again.version > world.version
+            nowhere = await robot.place(-50.0, -50.0, 0.0)
+            assert not nowhere.accepted

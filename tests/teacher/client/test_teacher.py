@@ -1,0 +1,189 @@
+"""The blocking teacher against the robot's own program in another process, and against a robot that is not there."""
+
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TypeVar
+
+import anyio
+import anyio.to_thread
+import pytest
+
+import kurt2rt.teacher
+from kurt2rt.channel.protocol.codec import WireError
+from kurt2rt.channel.protocol.requests import AppraiseRequest, Request, StopRequest, WatchRequest
+from kurt2rt.channel.protocol.schema import ChannelError
+from kurt2rt.channel.security.context_folder import CredentialsError
+from kurt2rt.channel.security.pairing import ONLOOKER, Pairing, pair
+from kurt2rt.core.rla.outcome import Outcome, ResultCode
+from kurt2rt.teacher import RobotProcess, Teacher
+from kurt2rt.teacher.client.answer import Answer, NoAnswerError
+from tests.forked_robot import fork_robots
+from tests.teacher.stand_in_robot import stand_in_robot
+
+_Result = TypeVar("_Result")
+
+
+@pytest.fixture
+def pairing(tmp_path: Path) -> Pairing:
+    return pair(tmp_path / "teachers", tmp_path / "devices", "phone")
+
+
+@pytest.fixture(scope="module")
+def robot(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RobotProcess]:
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        fork_robots(monkeypatch)
+        with RobotProcess(tmp_path_factory.mktemp("robot")) as robot:
+            yield robot
+
+
+async def in_a_thread(call: Callable[[], _Result]) -> _Result:
+    return await anyio.to_thread.run_sync(call)
+
+
+async def test_teacher_in_a_running_loop_teaches(robot: RobotProcess) -> None:
+    # As in a notebook: this test's loop runs, and each call blocks it.
+    with Teacher(robot.device) as teacher:
+        assert "forward" in teacher.hello().actions
+        assert teacher.world() is not None
+        assert teacher.take().accepted
+        teacher.resume()
+        asking = teacher.wait_for_question()
+        assert teacher.answer("forward", of=asking.tick).outcome == Outcome.of(
+            ResultCode.RLA_TAUGHT, rla=1, action="forward"
+        )
+        drives = teacher.wait_until(lambda state: state.cause == "rla")
+        assert (drives.rla, drives.teacher) == (1, "local")
+        refused = teacher.correct("fly")
+        assert (refused.accepted, refused.why) == (False, "refused")
+        assert [line.text for line in teacher.lessons()] == ["RLA 1 taught: forward"]
+        assert teacher.undo().accepted
+        assert teacher.wait_for_question().rlas == 0
+    assert robot.knowledge.is_file()
+
+
+def test_drive_interrupted_by_ctrl_c_stops_the_robot(robot: RobotProcess) -> None:
+    with Teacher(robot.device, patience_s=10.0) as teacher:
+        teacher.take()
+        assert teacher.drive(0.1, 0.1, seconds=0.1) == ""
+        assert teacher.wait_until(lambda state: not state.by_hand).left_m_s == 0.0
+        main = threading.main_thread().ident
+        assert main is not None
+
+        def interrupt_once_it_drives() -> None:
+            with looker:
+                looker.wait_until(lambda state: state.by_hand)
+            signal.pthread_kill(main, signal.SIGINT)
+
+        looker = Teacher(robot.device.with_name(ONLOOKER), patience_s=10.0)
+        interrupting = threading.Thread(target=interrupt_once_it_drives)
+        interrupting.start()
+        with pytest.raises(KeyboardInterrupt):
+            teacher.drive(0.1, 0.1, seconds=600.0)
+        interrupting.join()
+        stands = teacher.wait_until(lambda state: not state.by_hand)
+        assert (stands.left_m_s, stands.right_m_s) == (0.0, 0.0)
+
+
+def test_drive_out_of_range_raises_and_leaves_the_robot(robot: RobotProcess) -> None:
+    with Teacher(robot.device) as teacher:
+        teacher.take()
+        with pytest.raises(WireError, match="left_m_s has to be a number from -2 to 2 m/s"):
+            teacher.drive(9.0, 9.0, seconds=1.0)
+        assert not teacher.state.by_hand
+
+
+async def test_attention_ends_after_the_last_call(pairing: Pairing) -> None:
+    async with stand_in_robot(pairing.teacher.parent) as robot:
+        robot.show(teacher="phone")
+        teacher = Teacher(pairing.device.folder, port=robot.port, attention_s=0.1)
+        await in_a_thread(teacher.open)
+        await in_a_thread(lambda: teacher.wait_until(lambda state: state.teacher == "phone"))
+        await robot.hears(WatchRequest)
+        with anyio.fail_after(10.0):
+            heard = -1
+            while heard != (heard := len(robot.all_of(WatchRequest))):  # noqa: ASYNC110
+                await anyio.sleep(0.2)  # ten messages, if attention lasted
+        await in_a_thread(lambda: teacher.state)
+        await robot.hears(WatchRequest, heard + 1)
+        await in_a_thread(teacher.close)
+        await in_a_thread(teacher.close)
+
+
+async def test_each_command_reaches_the_robot(pairing: Pairing) -> None:
+    async with stand_in_robot(pairing.teacher.parent) as robot:
+
+        def give() -> None:
+            with Teacher(pairing.device.folder, port=robot.port) as teacher:
+                commands: tuple[Callable[[], Answer], ...] = (
+                    lambda: teacher.begin_session("one"),
+                    teacher.end_session,
+                    lambda: teacher.reward(+1, of=7),
+                    lambda: teacher.appraise("bad"),
+                    lambda: teacher.pursue("turn_left"),
+                    lambda: teacher.place(1.0, 2.0, 0.0),
+                    lambda: teacher.save("mine"),
+                    lambda: teacher.hand_over("anna"),
+                    teacher.stop,
+                )
+                assert all(command().accepted for command in commands)
+
+        await in_a_thread(give)
+        names = [type(each).__name__ for each in _without_doubles(robot.orders())]
+        assert names[-9:] == [
+            *("SessionRequest", "SessionRequest", "RewardRequest", "AppraiseRequest", "PursueRequest"),
+            *("PlaceRequest", "SaveRequest", "ReleaseRequest", "StopRequest"),
+        ]
+        assert robot.all_of(AppraiseRequest)[0].appraisal == "bad"
+        assert robot.all_of(StopRequest)
+
+
+def _without_doubles(requests: list[Request]) -> list[Request]:
+    return list(dict.fromkeys(requests))
+
+
+def test_no_robot_is_one_line_that_says_what_to_do(pairing: Pairing) -> None:
+    with pytest.raises(NoAnswerError) as nobody:
+        Teacher(pairing.device.folder, port=1, connect_s=0.2).open()
+    assert "\n" not in str(nobody.value)
+    assert "no robot answers for 0.2 s" in str(nobody.value)
+    assert str(nobody.value).endswith("start one: kurt2rt run")
+    with pytest.raises(CredentialsError, match="there is no pairing to open"):
+        Teacher(pairing.device.folder.with_name("nothing")).open()
+
+
+def test_a_teacher_that_is_not_open_says_how_to_open_it() -> None:
+    with pytest.raises(RuntimeError, match="use it as: with Teacher"):
+        Teacher("nothing").stop()
+
+
+def test_wait_until_ends_with_the_newest_cause(robot: RobotProcess) -> None:
+    with Teacher(robot.device) as teacher, pytest.raises(TimeoutError, match="waited 0 s; the robot's newest state: "):
+        teacher.wait_until(lambda _: False, timeout_s=0.0)
+
+
+def test_a_robot_that_cannot_start_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
+    fork_robots(monkeypatch)
+    robot = RobotProcess(world="nowhere")
+    with pytest.raises(ChannelError, match=r"ended with code 2: kurt2rt: .*nowhere"):
+        robot.start()
+    with pytest.raises(RuntimeError, match="does not run"):
+        robot.device.exists()
+
+
+def test_a_robot_ends_with_the_program_that_started_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    fork_robots(monkeypatch)
+    with RobotProcess(tmp_path) as robot:
+        process = robot._process
+        assert process is not None
+        assert process.stdin is not None
+        process.stdin.close()  # as the kernel does when that program is gone
+        assert process.wait(30.0) == 0
+        assert "the robot stands" in robot.log.read_text(encoding="utf-8")
+
+
+def test_the_package_names_what_it_has() -> None:
+    assert kurt2rt.teacher.Teacher is Teacher
+    with pytest.raises(AttributeError, match="no attribute 'Nobody'"):
+        assert kurt2rt.teacher.Nobody

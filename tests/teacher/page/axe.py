@@ -1,0 +1,32 @@
+"""axe-core in the browser of the stories: what a page has that shuts people out."""
+
+import os
+from importlib import import_module
+
+import pytest
+
+from tests.teacher.page.phone import Phone
+
+_BUNDLED = "axe_core_python.base"
+_RUN = """
+const [done] = [...arguments].slice(-1);
+const rules = {"label-content-name-mismatch": {enabled: true}};
+const told = ({id, nodes}) => `${id}: ${nodes.map((each) => each.target.join(" ")).join(", ")}`;
+axe.run({resultTypes: ["violations"], rules}).then(
+  ({violations}) => done(violations.map(told)),
+  (error) => done([String(error)]),
+);
+"""
+
+
+def violations(phone: Phone) -> list[str]:
+    """Return the rules that the page breaks now, each with the elements that do; empty for an accessible page.
+
+    Skips where axe-core is not installed, unless this is CI.
+    """
+    needed = os.environ.get("CI") == "true"
+    bundled = import_module(_BUNDLED) if needed else pytest.importorskip(_BUNDLED)
+    if phone.run("return typeof axe === 'undefined';"):
+        phone.run(bundled.AXE_SCRIPT)
+    found: list[str] = phone.driver.execute_async_script(_RUN)
+    return found

@@ -1,0 +1,302 @@
+"""A robot at the other end of the bridge that does as the test says and notes what it is told."""
+
+import math
+from collections.abc import AsyncIterator
+from dataclasses import MISSING, dataclass, field, fields, replace
+from typing import Any
+
+import anyio
+import anyio.lowlevel
+
+from hal.robot_settings import load_robot
+from hal.simulation import SimulatedPlace
+from kurt2rt.channel.protocol.exam_status import NO_EXAM, ExamStanding
+from kurt2rt.channel.protocol.health import HealthReport
+from kurt2rt.channel.protocol.hello import Hello, SensorPlace
+from kurt2rt.channel.protocol.lesson_list import LessonLine
+from kurt2rt.channel.protocol.requests import TABLE, VERSION
+from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
+from kurt2rt.channel.protocol.state import State
+from kurt2rt.channel.protocol.world import World
+from kurt2rt.core.rla.rla import BASIC, Phase
+from kurt2rt.platform.file_part import FilePart
+from kurt2rt.runs.explain.facts import DecisionFacts
+from kurt2rt.teacher.client.answer import Answer, NoAnswerError, RefusedError
+from kurt2rt.teacher.client.link_quality import Link
+
+A_STATE = State(
+    boot=b"boot",
+    tick=100,
+    phase=1,
+    infrared_counts=(180, 176, 178, 175, 75, 74, 76, 78, 120, 90, 105, 70, 71, 72, 210, 82, 160, 70),
+    infrared_age_s=0.01,
+    bumpers=0,
+    left_m_s=0.3,
+    right_m_s=0.3,
+    cause="rla",
+    action="forward",
+    rla=1,
+    nearest=1,
+    nearest_action="forward",
+    distance=300.0,
+    radius=700.0,
+    taught_by="phone",
+    taught_at="2026-11-21T12:04:00Z",
+    question=(),
+    teacher=None,
+    by_hand=False,
+    stopped=None,
+    rlas=1,
+    lessons=1,
+    unsaved=0,
+    session=None,
+    clock_s=0.0,
+    guard=(),
+    trouble="",
+    late_p99_ms=0.2,
+    missed_ticks=0,
+    place=None,
+)
+A_PLACE = SimulatedPlace(x_m=0.54, y_m=3.63, heading_rad=0.0, laps=0.0, collisions=0, world_version=0)
+
+
+A_HELLO = Hello(
+    version=VERSION,
+    boot=b"boot",
+    tick=100,
+    robot="kurt2-indoor",
+    task="wall_following",
+    radius=700.0,
+    period_s=0.01,
+    actions=("forward", "spin_left", "spin_right"),
+    sensors=tuple(
+        SensorPlace(each.name, each.label, each.x_m, each.y_m, each.heading_deg)
+        for each in load_robot().infrared.sensors
+    ),
+    outline=(0.434, 0.33),
+    max_m_s=0.6,
+    simulated=True,
+    phases=("supervised", "corrections", "reinforcement", "critic", "autonomous"),
+)
+A_WORLD = World(0, "A", (3.0, 4.0), ((0.0, 0.0), (3.0, 0.0), (3.0, 4.0), (0.0, 4.0)), (), ())
+A_SIMULATION = SimulationView(
+    "a",
+    "wall_following",
+    ("a", "b", "c", "manhattan"),
+    (TaskName("eight", "Teach it to drive an eight round the two columns"), TaskName("wall_following", "Teach it so")),
+)
+A_LESSON = LessonLine("phone-0a", "RLA 1: forward", "phone", 1, 90, "2026-11-21T12:04:00Z", False)
+
+
+@dataclass
+class FakeRobot:
+    """Implements kurt2rt.teacher.page.robot_link.RobotLink."""
+
+    told: list[tuple[Any, ...]] = field(default_factory=list)
+    silent: bool = False
+    refuses: str = ""
+    watching: bool = False
+    pressing: bool = False
+    refusal: Answer | None = None
+    trouble: str = ""
+    state_age_s: float = math.inf
+    state: State | None = None
+    greeting: Hello = A_HELLO
+    named: tuple[str, ...] = ()
+    simulated: SimulationView = A_SIMULATION
+    examined: ExamStanding = NO_EXAM
+    files: dict[str, bytes] = field(default_factory=dict)
+    answers_with: dict[str, object] = field(default_factory=dict)
+    """What else its answers hold."""
+    report: HealthReport | None = None
+    decided: DecisionFacts | None = None
+    newest_lessons: tuple[LessonLine, ...] = (A_LESSON,)
+    link: Link = field(default_factory=lambda: Link(4.0, 1.0, 20.0))
+    _news: anyio.Event = field(default_factory=anyio.Event, init=False)
+    _heard: anyio.Event = field(default_factory=anyio.Event, init=False)
+
+    def show(self, **changes: Any) -> State:
+        """A new picture, changed from the last one, two ticks later unless told otherwise."""
+        last = self.state or A_STATE
+        self.state = replace(last, **{"tick": last.tick + 2, **changes})
+        self.state_age_s = 0.0
+        self._news.set()
+        self._news = anyio.Event()
+        return self.state
+
+    def begin_anew(self) -> None:
+        """As one that was told nothing yet and has shown nothing."""
+        for each in fields(self):
+            if each.init and each.name != "link":
+                new = each.default if each.default_factory is MISSING else each.default_factory()
+                setattr(self, each.name, new)
+
+    def told_of(self, name: str) -> list[tuple[Any, ...]]:
+        """What it was told of one kind."""
+        return [each for each in self.told if each[0] == name]
+
+    async def is_told(self, name: str) -> None:
+        """Wait until it is."""
+        while not any(each[0] == name for each in self.told):
+            await self._heard.wait()
+
+    async def states(self) -> AsyncIterator[State]:
+        seen = None
+        while True:
+            if self.state is None or self.state is seen:
+                await self._news.wait()
+                continue
+            seen = self.state
+            yield seen
+
+    def press(self, left_m_s: float, right_m_s: float) -> bool:
+        self._hear(("press", left_m_s, right_m_s))
+        self.pressing = True
+        return True
+
+    async def let_go(self) -> Answer | None:
+        self.pressing = False
+        return await self._answer("let_go")
+
+    async def hello(self) -> Hello:
+        await self._answer("hello")
+        return self.greeting
+
+    async def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:
+        await self._answer("lessons", count)
+        return self.newest_lessons
+
+    async def health(self) -> HealthReport | None:
+        if self.silent:
+            raise NoAnswerError("no answer")
+        await anyio.lowlevel.checkpoint()
+        return self.report
+
+    async def why(self) -> DecisionFacts | None:
+        await self._answer("why")
+        return self.decided
+
+    async def world(self) -> World | None:
+        await self._answer("world")
+        return A_WORLD
+
+    async def answer(self, action: str, *, of: int | None = None, level: str = BASIC, beside: bool = False) -> Answer:
+        return await self._answer("answer", action, of, *(() if level == BASIC else (level, beside)))
+
+    async def correct(self, action: str, *, of: int | None = None, level: str = BASIC) -> Answer:
+        return await self._answer("correct", action, of, *(() if level == BASIC else (level,)))
+
+    async def reward(self, value: int, *, of: int | None = None) -> Answer:
+        return await self._answer("reward", value, of)
+
+    async def appraise(self, appraisal: str, *, of: int | None = None) -> Answer:
+        return await self._answer("appraise", appraisal, of)
+
+    async def undo(self, lesson: str | None = None) -> Answer:
+        return await self._answer("undo", lesson)
+
+    async def set_phase(self, phase: Phase) -> Answer:
+        return await self._answer("set_phase", phase)
+
+    async def pursue(self, behaviour: str) -> Answer:
+        return await self._answer("pursue", behaviour)
+
+    async def name_situation(self, name: str, *, of: int | None = None) -> Answer:
+        return await self._answer("name_situation", name, of)
+
+    async def situations(self) -> tuple[str, ...]:
+        await self._answer("situations")
+        return self.named
+
+    async def seek(self, name: str) -> Answer:
+        return await self._answer("seek", name)
+
+    async def stop_seeking(self) -> Answer:
+        return await self._answer("stop_seeking")
+
+    async def be_at(self, name: str) -> Answer:
+        return await self._answer("be_at", name)
+
+    async def begin_session(self, name: str) -> Answer:
+        return await self._answer("begin_session", name)
+
+    async def end_session(self) -> Answer:
+        return await self._answer("end_session")
+
+    async def stop(self) -> Answer:
+        self.pressing = False
+        return await self._answer("stop")
+
+    async def resume(self) -> Answer:
+        return await self._answer("resume")
+
+    async def take(self) -> Answer:
+        return await self._answer("take")
+
+    async def hand_over(self, to: str | None = None) -> Answer:
+        return await self._answer("hand_over", to)
+
+    async def save(self, label: str = "") -> Answer:
+        return await self._answer("save", label)
+
+    async def export(self, form: str = TABLE) -> Answer:
+        return await self._answer("export", form)
+
+    async def examine(self) -> Answer:
+        return await self._answer("examine")
+
+    async def exam(self) -> ExamStanding | None:
+        if self.silent:
+            raise NoAnswerError("no answer")
+        await anyio.lowlevel.checkpoint()
+        return self.examined
+
+    async def file_parts(self, name: str) -> AsyncIterator[FilePart]:
+        await self._answer("file_parts", name)
+        if name not in self.files:
+            raise RefusedError(f"{name}: is no copy of this run of the program; save or export again")
+        for offset in range(0, len(self.files[name]), 1000):
+            yield FilePart(len(self.files[name]), self.files[name][offset : offset + 1000])
+
+    async def move_wall(self, name: str, dx: float, dy: float) -> Answer:
+        return await self._answer("move_wall", name, dx, dy)
+
+    async def place(self, x: float, y: float, heading: float) -> Answer:
+        return await self._answer("place", x, y, heading)
+
+    async def put_back(self) -> Answer:
+        return await self._answer("put_back")
+
+    async def simulation(self) -> SimulationView | None:
+        if self.silent:
+            raise NoAnswerError("no answer")
+        await anyio.lowlevel.checkpoint()
+        return self.simulated
+
+    async def next_run(self, world: str | None = None, task: str | None = None, *, fresh: bool = False) -> Answer:
+        return await self._answer("next_run", world, task, fresh)
+
+    async def set_speed(self, times: int) -> Answer:
+        return await self._answer("set_speed", times)
+
+    async def upload(self, upload: bytes, content: bytes) -> None:
+        answer = await self._answer("upload", upload, content)
+        if not answer.accepted:
+            raise RefusedError(answer.text)
+
+    async def load_upload(self, upload: bytes, sha256: bytes) -> Answer:
+        return await self._answer("load", upload, sha256)
+
+    async def _answer(self, *told: Any) -> Answer:
+        self._hear(told)
+        if self.silent:
+            raise NoAnswerError("no answer: not known whether it counted; look at the lessons")
+        await anyio.lowlevel.checkpoint()
+        if self.refuses:
+            return Answer(False, "refused", self.refuses, 0)
+        return Answer(True, "", f"{told[0]} done", 0, self.answers_with)
+
+    def _hear(self, told: tuple[Any, ...]) -> None:
+        self.told.append(told)
+        self._heard.set()
+        self._heard = anyio.Event()

@@ -1,0 +1,85 @@
+"""A robot that drives, and the page that its teacher has open on a phone."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import partial
+
+import anyio
+from anyio.from_thread import BlockingPortal, start_blocking_portal
+
+from kurt2rt.channel.protocol.state import State
+from tests.teacher.page.fake_robot import A_PLACE, FakeRobot
+from tests.teacher.page.phone import PORTRAIT, Phone
+from tests.teacher.page.test_served_page import TOKEN, Served, served
+
+_INTRODUCED = "return document.querySelector('#robot-name')?.textContent ?? '';"
+_SHOWN = """
+const [clock, claim] = ['#clock', '#claim'].map((each) => document.querySelector(each));
+return [clock.textContent, claim.hidden];
+"""
+
+
+class Lesson:
+    """A robot, and the page that its teacher has open."""
+
+    def __init__(self, phone: Phone, portal: BlockingPortal, page: Served) -> None:
+        self.phone = phone
+        self.robot = page.robot
+        self._portal = portal
+        self._address = f"http://127.0.0.1:{page.port}/pair?token={TOKEN}"
+        self._begun = 0
+
+    def begin(self, prepare: Callable[[FakeRobot], None] = lambda _: None, **shown: object) -> None:
+        """Another robot comes up, prepared so, and drives by its RLA 1; the page has nothing open from the one before.
+
+        A page introduces itself to a robot that was started anew; to load it anew for each story takes far longer.
+        """
+        self._begun += 1
+        boot, name = f"boot {self._begun}".encode(), f"robot {self._begun}"
+        self._portal.call(self.robot.begin_anew)
+        prepare(self.robot)
+        self.robot.greeting = replace(self.robot.greeting, boot=boot, robot=name)
+        self.show(**{"boot": boot, "teacher": "local", "place": A_PLACE, **shown})
+        self.phone.turn(PORTRAIT)
+        self.phone.come_to(self._address)
+        self.phone.wait(lambda: str(self.phone.run(_INTRODUCED)).startswith(f"{name},"), "it has introduced itself")
+        # Its first pictures may have come before it did, and were shown as those of the robot before.
+        self.show(clock_s=60.0 * self._begun)
+        self.phone.wait(self._is_shown, "the page shows this robot, and is its teacher's")
+
+    def show(self, **changes: object) -> State:
+        """From the next picture on; returns that one."""
+        return self._portal.call(partial(self.robot.show, **changes))
+
+    def reads(self, selector: str, text: str) -> None:
+        """Wait until it stands there."""
+        self.phone.wait(lambda: text in self.phone.text(selector), f"{selector} says {text!r}")
+
+    def told(self, name: str) -> list[object]:
+        """What the robot was told of one kind."""
+        return [each[1] for each in self.robot.told if each[0] == name]
+
+    def _is_shown(self) -> bool:
+        clock, in_charge = self.phone.run(_SHOWN)
+        return bool(clock == f"{self._begun}:00" and in_charge)
+
+
+async def show_on(robot: FakeRobot) -> None:
+    """A picture of it each 100 ms; what changes is shown at once."""
+    while True:
+        await anyio.sleep(0.1)
+        if robot.state is not None:
+            robot.show()
+
+
+@contextmanager
+def lessons(phone: Phone) -> Iterator[Lesson]:
+    """A page's server and the robot behind it, for one lesson after another."""
+    with start_blocking_portal() as portal, portal.wrap_async_context_manager(served()) as page:
+        pictures = portal.start_task_soon(show_on, page.robot)
+        try:
+            yield Lesson(phone, portal, page)
+        finally:
+            phone.leave()
+            pictures.cancel()

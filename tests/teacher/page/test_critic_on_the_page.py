@@ -1,0 +1,133 @@
+"""The inner critic on the page: a teacher teaches it in phase 4, and watches it in phase 5."""
+
+from dataclasses import replace
+
+import pytest
+
+from kurt2rt.channel.protocol.hello import AppraisalName
+from kurt2rt.channel.protocol.lesson_list import LessonLine
+from tests.teacher.page.fake_robot import A_HELLO, A_LESSON, FakeRobot
+from tests.teacher.page.lesson import Lesson
+from tests.teacher.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL
+from tests.teacher.page.test_browser import assert_handy
+
+ACTIONS = (
+    *("forward", "back", "stand", "bear_left", "bear_right", "curve_left", "curve_right", "spin_left", "spin_right"),
+    *("quarter_turn_left", "quarter_turn_right", "along_left_wall", "along_right_wall"),
+    *("sharp_left", "sharp_right", "flee", "whirl_left", "whirl_right"),
+)
+APPRAISALS = (AppraisalName("good", 1), AppraisalName("bad", -1), AppraisalName("neutral", 0))
+A_CHANGE = LessonLine(
+    "c-1", "RLA 17 corrected: spin_left instead of back", "critic", 5, 9, "2026-11-21T12:04:00Z", False
+)
+SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
+
+
+def fits(lesson: Lesson) -> None:
+    """Nothing of the critic's words runs out of their box."""
+    over = lesson.phone.run(
+        "const edge = document.querySelector('#critic').getBoundingClientRect().right;"
+        "return [...document.querySelectorAll('#critic *')].filter((e) => e.checkVisibility())"
+        ".filter((e) => e.getBoundingClientRect().right > edge).map((e) => e.textContent);"
+    )
+    assert over == []
+
+
+def look(lesson: Lesson, name: str) -> None:
+    """It can be read and touched on each screen."""
+    for size in SIZES:
+        lesson.phone.turn(size, touch=size != LAPTOP)
+        lesson.phone.show(f"11-{name}-{size[0]}x{size[1]}")
+        assert_handy(lesson.phone, size, "teach")
+        fits(lesson)
+    lesson.phone.turn(PORTRAIT)
+
+
+@pytest.fixture
+def lesson(a_lesson: Lesson) -> Lesson:
+    def prepare(robot: FakeRobot) -> None:
+        robot.greeting = replace(A_HELLO, actions=ACTIONS, appraisals=APPRAISALS, trusted_from=0.8)
+        robot.newest_lessons = (A_LESSON,)
+
+    a_lesson.begin(prepare, phase=4, opinion=1, opinion_of=40, signals_missing=(6, 2))
+    return a_lesson
+
+
+def test_in_phase_4_the_signals_teach_the_critic_and_the_teacher_sees_how_far_it_agrees(lesson: Lesson) -> None:
+    phone = lesson.phone
+    lesson.reads("#opinion", "critic: thinks good")
+    assert phone.text("#trusted") == "not trusted yet"
+    assert phone.text("#agreement-text") == "needs 6 bad and 2 good signals more of yours"
+    fits(lesson)
+    shown = phone.texts("#rewards button")
+    assert [each.split()[-1] for each in shown] == ["bad", "neutral", "good", "last"]
+    phone.touch("[data-appraisal=bad]")
+    lesson.reads("#said", "appraise done")
+    phone.key("keyDown", "0")
+    phone.wait(lambda: lesson.told("appraise") == ["bad", "neutral"], "a key teaches it, too")
+    assert lesson.told("reward") == []
+
+    lesson.show(opinion=None, opinion_of=None, agreement=0.61, signals_missing=(0, 0))
+    lesson.reads("#opinion", "critic: does not know this")
+    lesson.reads("#agreement-text", "agrees 0.61, needs 0.80")
+    fits(lesson)
+    lesson.show(opinion=-1, opinion_of=41, agreement=0.87, trusted=True)
+    lesson.reads("#agreement-text", "agrees with you 0.87")
+    assert phone.text("#agreement-text") == "agrees with you 0.87"
+    assert phone.text("#trusted") == "trusted"
+    lesson.reads("#opinion", "critic: thinks bad")
+    assert not phone.shows("#role")
+    assert not phone.shows("#changed")
+    look(lesson, "phase-4")
+
+    lesson.show(phase=3, value=-0.001)
+    phone.wait(lambda: not phone.shows("#critic"), "before phase 4 nobody sees it")
+    lesson.reads("#gauge-text", "worth 0.00")
+    lesson.show(value=-0.08)
+    lesson.reads("#gauge-text", "worth \N{MINUS SIGN}0.08")
+    phone.touch("#blame")
+    phone.wait(lambda: lesson.told("reward") == [-1], "a signal is the robot's reward again")
+
+
+def test_in_phase_5_the_teacher_sees_what_the_critic_thinks_and_changed_last(lesson: Lesson) -> None:
+    phone = lesson.phone
+    lesson.show(phase=5, agreement=0.87, trusted=True, signals_missing=(0, 0), value=0.52)
+    lesson.reads("#changed", "has changed nothing lately")
+    lesson.robot.newest_lessons = (A_LESSON, A_CHANGE)
+    lesson.show(lessons=2)
+    lesson.reads("#changed", "changed last: RLA 17 corrected: spin_left instead of back, 21 Nov")
+    assert phone.text("#trusted") == "trusted"
+    lesson.show(role="measures", bad_share=0.0)
+    lesson.reads("#role", "measures how well it goes")
+    lesson.show(role="acts", bad_share=0.07)
+    lesson.reads("#role", "acts")
+    lesson.show(role="not needed", bad_share=0.0199)
+    lesson.reads("#role", "not needed: 1 % of the driving was bad")
+    phone.touch("#praise")
+    phone.wait(lambda: lesson.told("reward") == [1], "the teacher's own signals stay")
+    look(lesson, "phase-5")
+    lesson.robot.newest_lessons = (A_LESSON, A_CHANGE._replace(undone=True))
+    lesson.show(agreement=0.7, trusted=False, role="listens", bad_share=None, lessons=1)
+    lesson.reads("#trusted", "only listens")
+    assert not phone.shows("#role")
+    fits(lesson)
+    lesson.reads("#changed", "undone: RLA 17")
+
+
+def test_an_action_that_was_withdrawn_is_answered_and_not_corrected(lesson: Lesson) -> None:
+    phone = lesson.phone
+    lesson.show(
+        cause="unknown",
+        action=None,
+        rla=None,
+        nearest=17,
+        nearest_action="ask",
+        nearest_value=-0.1,
+        left_m_s=0.0,
+        right_m_s=0.0,
+    )
+    lesson.reads("#sentence", "RLA 17 was blamed: worth \N{MINUS SIGN}0.10 now, teach me again")
+    assert phone.text("#nearest") == "nearest: RLA 17, its action was withdrawn"
+    phone.touch("[data-action=forward]")
+    phone.wait(lambda: lesson.told("answer") == ["forward"], "an answer")
+    assert lesson.told("correct") == []

@@ -1,0 +1,95 @@
+"""Copies of the knowledge that the page offers as downloads."""
+
+import hashlib
+import json
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.channel.protocol.requests import MOST_UPLOAD_BYTES
+from tests.teacher.page.fake_robot import FakeRobot
+from tests.teacher.page.lesson import Lesson
+from tests.teacher.page.phone import PORTRAIT, SMALL
+from tests.teacher.page.test_browser import assert_handy
+from tests.teacher.page.test_served_page import served
+
+NAME, CONTENT = "wall-following-20261122T180000.zip", bytes(range(256)) * 20
+
+
+@pytest.fixture
+def lesson(a_lesson: Lesson) -> Lesson:
+    def prepare(robot: FakeRobot) -> None:
+        robot.files[NAME] = CONTENT
+        robot.answers_with = {"name": NAME, "sha256": "ab" * 32, "size": len(CONTENT)}
+
+    a_lesson.begin(prepare)
+    a_lesson.phone.turn(PORTRAIT)
+    a_lesson.phone.touch("#tab-more")
+    return a_lesson
+
+
+@pytest.mark.parametrize(("button", "order"), [("#export", ("export", "package")), ("#save", ("save", ""))])
+def test_a_copy_is_downloaded_whole(lesson: Lesson, tmp_path: Path, button: str, order: tuple[str, str]) -> None:
+    phone = lesson.phone
+    phone.driver.execute_cdp_cmd(
+        "Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(tmp_path), "eventsEnabled": False}
+    )
+    phone.touch(button)
+    phone.wait((tmp_path / NAME).exists, "the browser has stored it")
+    assert (tmp_path / NAME).read_bytes() == CONTENT
+    assert order in lesson.robot.told
+    assert phone.text("#saved") == f"Downloaded: {NAME} (5 kB); a copy is on the robot."
+    for size in (PORTRAIT, SMALL):
+        phone.turn(size)
+        phone.show(f"20-downloaded-{size[0]}x{size[1]}")
+
+
+def test_a_file_is_uploaded_and_loaded(lesson: Lesson, tmp_path: Path) -> None:
+    phone, file = lesson.phone, tmp_path / NAME
+    file.write_bytes(CONTENT)
+    phone.write("#load-file", str(file))
+    lesson.reads("#said", "load done")
+    (uploaded,) = (each for each in lesson.robot.told if each[0] == "upload")
+    (loaded,) = (each for each in lesson.robot.told if each[0] == "load")
+    assert uploaded[2] == CONTENT
+    assert loaded[1:] == (uploaded[1], hashlib.sha256(CONTENT).digest())
+    phone.middle("#load")
+    assert_handy(phone, PORTRAIT, "more")
+    phone.show("24-loaded")
+
+
+def test_a_file_that_the_robot_refuses_is_told_in_a_line(lesson: Lesson, tmp_path: Path) -> None:
+    file = tmp_path / NAME
+    file.write_bytes(CONTENT)
+    lesson.robot.refuses = "the file is too large (at most 8000000 bytes)"
+    lesson.phone.write("#load-file", str(file))
+    lesson.reads("#said", f"{NAME}: the file is too large (at most 8000000 bytes)")
+
+
+async def test_an_upload_needs_the_cookie_and_a_page_of_ours() -> None:
+    async with served() as page:
+        ours = {**page.cookie, "Origin": f"http://127.0.0.1:{page.port}"}
+        assert (await page.get("/upload", {"Origin": ours["Origin"]}, method="POST", body=b"PK")).status == 403
+        elsewhere = {**page.cookie, "Origin": "http://evil.example"}
+        assert (await page.get("/upload", elsewhere, method="POST", body=b"PK")).status == 403
+        assert not page.robot.told_of("upload")
+        got = await page.get("/upload", ours, method="POST", body=b"PK")
+        assert (got.status, len(json.loads(got.body)["upload"])) == (200, 16)
+        assert (await page.get("/upload", ours, method="POST", body=b"")).status == 400
+        large = await page.get("/upload", ours, method="POST", body=bytes(MOST_UPLOAD_BYTES + 1))
+        assert (large.status, large.body) == (413, "the file is too large (at most 8 MB)")
+        assert len(page.robot.told_of("upload")) == 1
+
+
+async def test_a_download_needs_the_cookie_and_a_file_of_the_robot() -> None:
+    async with served() as page:
+        page.robot.files[NAME] = CONTENT
+        assert (await page.get(f"/files/{NAME}")).status == 403
+        got = await page.get(f"/files/{NAME}", page.cookie)
+        assert (got.status, got.content) == (200, CONTENT)
+        assert got.headers["Content-Disposition"] == f"attachment; filename*=UTF-8''{NAME}"
+        missing = await page.get("/files/robot.key", page.cookie)
+        assert missing.status == 404
+        assert "save or export again" in missing.body
+        page.robot.silent = True
+        assert (await page.get(f"/files/{NAME}", page.cookie)).status == 504

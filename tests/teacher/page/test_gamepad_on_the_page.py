@@ -1,0 +1,131 @@
+"""A gamepad drives while its shoulder button is held, and only then."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from tests.teacher.page.lesson import Lesson
+from tests.teacher.page.phone import Phone
+
+# One pad of the standard mapping, as the browser would tell of it.
+PAD = """
+window.pad = {index: 0, id: "pad", connected: true, mapping: "standard", axes: [0, 0, 0, 0], timestamp: 0,
+  buttons: Array.from({length: 17}, () => ({pressed: false, touched: false, value: 0}))};
+window.pads = [null];
+navigator.getGamepads = () => pads;
+window.tellPad = (kind) => {
+  const event = new Event(kind);
+  event.gamepad = pad;
+  dispatchEvent(event);
+};
+window.shoulder = (held) => { pad.buttons[5] = {pressed: held, touched: held, value: Number(held)}; };
+document.hasFocus = () => !window.away;
+"""
+
+
+@pytest.fixture
+def driving(a_lesson: Lesson) -> Iterator[Lesson]:
+    """A page with a gamepad that has just been plugged in."""
+    phone = a_lesson.phone
+    phone.leave()
+    with phone.before_scripts(PAD):
+        a_lesson.begin()
+        phone.run("pads[0] = pad; tellPad('gamepadconnected');")
+        a_lesson.reads("#said", "gamepad: hold a shoulder button")
+        yield a_lesson
+    phone.leave()
+
+
+def presses(lesson: Lesson) -> list[tuple[object, ...]]:
+    return [each for each in lesson.robot.told if each[0] == "press"]
+
+
+def polled(phone: Phone) -> None:
+    """The pad was looked at a few times more."""
+    phone.driver.execute_async_script("const [done] = arguments; setTimeout(done, 200);")
+
+
+def hold(lesson: Lesson) -> None:
+    phone = lesson.phone
+    phone.run("shoulder(false)")
+    polled(phone)
+    phone.run("pad.axes = [0, -1, 0, 0]; shoulder(true)")
+    phone.wait(lambda: lesson.robot.pressing and phone.has("#stick.held"), "the pad drives")
+
+
+def test_gamepad_stick_alone_drives_nothing(driving: Lesson) -> None:
+    driving.phone.run("pad.axes = [0, -1, 0, 0]")
+    polled(driving.phone)
+    assert presses(driving) == []
+
+
+def test_gamepad_drives_while_its_shoulder_button_is_held(driving: Lesson) -> None:
+    hold(driving)
+    assert presses(driving)[-1] == ("press", 0.3, 0.3)
+    driving.phone.run("pad.axes = [1, 0.05, 0, 0]")
+    driving.phone.wait(lambda: presses(driving)[-1][1:] == (0.18, -0.18), "it turns right; nearly nothing is nothing")
+    driving.phone.run("shoulder(false)")
+    driving.phone.wait(lambda: not driving.robot.pressing, "it lets go")
+    count = len(presses(driving))
+    polled(driving.phone)
+    assert len(presses(driving)) == count
+
+
+@pytest.mark.parametrize(
+    "end",
+    [
+        "pad.connected = false; pads[0] = null; tellPad('gamepaddisconnected')",
+        pytest.param("pads[0] = null", marks=pytest.mark.deep),
+        pytest.param("window.away = true; dispatchEvent(new Event('blur'))", marks=pytest.mark.deep),
+        "Object.defineProperty(document, 'visibilityState', {value: 'hidden', configurable: true});"
+        "document.dispatchEvent(new Event('visibilitychange'))",
+        pytest.param("document.querySelector('#stop').click()", marks=pytest.mark.deep),
+    ],
+    ids=["disconnected", "gone", "blur", "hidden", "stop"],
+)
+def test_gamepad_lets_go_for_good_until_pressed_again(driving: Lesson, end: str) -> None:
+    hold(driving)
+    phone = driving.phone
+    phone.run(end)
+    phone.wait(lambda: not driving.robot.pressing, "it lets go")
+    # The button is still held when all is well again: that is no new press.
+    phone.run(
+        "window.away = false; pad.connected = true; delete document.visibilityState; pads[0] = pad;"
+        "tellPad('gamepadconnected');"
+    )
+    count = len(presses(driving))
+    polled(phone)
+    assert len(presses(driving)) == count
+    hold(driving)
+
+
+def test_gamepad_of_a_page_that_only_watches_drives_nothing(driving: Lesson) -> None:
+    driving.show(teacher="ann")
+    driving.phone.wait(lambda: driving.phone.shows("#claim"), "another one teaches")
+    driving.phone.run("pad.axes = [0, -1, 0, 0]; shoulder(true)")
+    polled(driving.phone)
+    driving.show(teacher="local")
+    driving.phone.wait(lambda: not driving.phone.shows("#claim"), "this page's teacher again")
+    polled(driving.phone)
+    assert presses(driving) == []  # it was held before
+
+
+@pytest.mark.deep
+def test_second_gamepad_that_is_held_does_not_go_on_for_the_first(driving: Lesson) -> None:
+    hold(driving)
+    phone = driving.phone
+    phone.run("pads[1] = {...pad, index: 1, buttons: pad.buttons.map((each) => ({...each}))};")
+    polled(phone)
+    phone.run("shoulder(false)")
+    phone.wait(lambda: not driving.robot.pressing, "the first lets go")
+    count = len(presses(driving))
+    polled(phone)
+    assert len(presses(driving)) == count
+
+
+def test_gamepad_with_unknown_buttons_is_refused(driving: Lesson) -> None:
+    driving.phone.run("pad.mapping = ''; tellPad('gamepadconnected')")
+    driving.reads("#said", "its buttons are not known")
+    driving.phone.run("pad.axes = [0, -1, 0, 0]; shoulder(true)")
+    polled(driving.phone)
+    assert presses(driving) == []

@@ -1,0 +1,60 @@
+import pytest
+
+from kurt2rt.teacher.page.host_names import host_name, is_ours, own_address, own_names
+
+NAMES = {"robot-desk", "robot-desk.local"}
+
+
+@pytest.mark.parametrize(
+    ("host", "name"),
+    [
+        ("localhost:8642", "localhost"),
+        ("192.168.1.7", "192.168.1.7"),
+        ("[::1]:8642", "::1"),
+        ("Robot-Desk.local.:80", "robot-desk.local"),
+        ("", ""),
+        (":80", ""),
+        ("[", ""),
+    ],
+)
+def test_a_host_header_holds_a_name_or_an_address(host: str, name: str) -> None:
+    assert host_name(host) == name
+
+
+@pytest.mark.parametrize(
+    ("host", "local_address"),
+    [
+        ("127.0.0.1:8642", "127.0.0.1"),
+        ("localhost:8642", "127.0.0.1"),
+        ("localhost:8642", "::1"),
+        ("[::1]:8642", "::1"),
+        ("192.168.1.7:8642", "192.168.1.7"),
+        ("192.168.1.7:8642", "::ffff:192.168.1.7"),
+        ("robot-desk:8642", "192.168.1.7"),
+        ("ROBOT-DESK.local:8642", "192.168.1.7"),
+    ],
+)
+def test_the_address_that_the_connection_came_to_is_ours_and_so_are_our_names(host: str, local_address: str) -> None:
+    assert is_ours(host, local_address, NAMES)
+
+
+@pytest.mark.parametrize(
+    ("host", "local_address"),
+    [
+        ("evil.example:8642", "127.0.0.1"),
+        ("evil.example", "192.168.1.7"),
+        ("127.0.0.1.evil.example", "127.0.0.1"),
+        ("localhost.evil.example", "127.0.0.1"),
+        ("localhost", "192.168.1.7"),
+        ("192.168.1.8", "192.168.1.7"),
+        ("", "127.0.0.1"),
+        ("localhost", ""),
+    ],
+)
+def test_a_foreign_name_that_was_made_to_lead_here_is_not_ours(host: str, local_address: str) -> None:
+    assert not is_ours(host, local_address, NAMES)
+
+
+def test_this_machine_has_names_and_an_address() -> None:
+    assert all(name == name.lower() for name in own_names())
+    assert is_ours(own_address(), own_address(), own_names())

@@ -1,0 +1,162 @@
+import json
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from kurt2rt.channel.protocol.schema import WireError
+from kurt2rt.core.rla.rla import Phase
+from kurt2rt.teacher.page.messages import LONGEST_MESSAGE, ORDERS, Beat, Hidden, Order, Press, Release, StopNow, parse
+
+
+def lesson(name: str, arguments: dict[str, object]) -> dict[str, object]:
+    return {"kind": "order", "number": 1, "name": name, "arguments": arguments, "picture": 4}
+
+
+@pytest.mark.parametrize(
+    ("said", "understood"),
+    [
+        ({"kind": "beat", "picture": 7, "at_ms": 12.5}, Beat(7, 12.5)),
+        ({"kind": "beat", "picture": None, "at_ms": 0}, Beat(None, 0.0)),
+        ({"kind": "hidden"}, Hidden()),
+        ({"kind": "press", "hold": 2, "left_m_s": 0.3, "right_m_s": -1, "picture": 9}, Press(2, 0.3, -1.0, 9)),
+        ({"kind": "release"}, Release()),
+        ({"kind": "stop", "number": 3}, StopNow(3)),
+        (
+            lesson("correct", {"action": "turn_left", "level": "mid"}),
+            Order(1, "correct", {"action": "turn_left", "level": "mid"}, 4),
+        ),
+        (
+            lesson("answer", {"action": "forward", "level": "basic", "beside": False}),
+            Order(1, "answer", {"action": "forward", "level": "basic", "beside": False}, 4),
+        ),
+        (lesson("seek", {"name": "door"}), Order(1, "seek", {"name": "door"}, 4)),
+        (
+            lesson("name", {"name": "door"}),
+            Order(1, "name", {"name": "door"}, 4),
+        ),
+        (
+            {"kind": "order", "number": 1, "name": "phase", "arguments": {"phase": 2}, "picture": 4},
+            Order(1, "phase", {"phase": Phase.CORRECTIONS}, 4),
+        ),
+        (
+            {"kind": "order", "number": 1, "name": "appraise", "arguments": {"appraisal": "bad"}, "picture": 4},
+            Order(1, "appraise", {"appraisal": "bad"}, 4),
+        ),
+        (
+            {"kind": "order", "number": 1, "name": "pursue", "arguments": {"behaviour": "turn_left"}, "picture": 4},
+            Order(1, "pursue", {"behaviour": "turn_left"}, 4),
+        ),
+        (
+            {"kind": "order", "number": 1, "name": "undo", "arguments": {"lesson": "phone-0a"}, "picture": 4},
+            Order(1, "undo", {"lesson": "phone-0a"}, 4),
+        ),
+    ],
+)
+def test_what_a_page_says_is_understood(said: dict[str, Any], understood: object) -> None:
+    assert parse(json.dumps(said)) == understood
+
+
+def order(name: str, /, **arguments: object) -> str:
+    return json.dumps({"kind": "order", "number": 1, "name": name, "arguments": arguments, "picture": 1})
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "",
+        "[]",
+        "{",
+        "[" * 500,
+        '"stop"',
+        "{}",
+        '{"kind": 1}',
+        '{"kind": "drive"}',
+        '{"kind": "stop"}',
+        '{"kind": "stop", "number": true}',
+        '{"kind": "stop", "number": 0}',
+        '{"kind": "stop", "number": 1, "more": 2}',
+        '{"kind": "beat", "picture": 1, "at_ms": NaN}',
+        '{"kind": "beat", "picture": 1, "at_ms": 1e400}',
+        '{"kind": "beat", "picture": 1.5, "at_ms": 0}',
+        '{"kind": "press", "hold": 1, "left_m_s": 2.01, "right_m_s": 0, "picture": 1}',
+        '{"kind": "press", "hold": 1, "left_m_s": Infinity, "right_m_s": 0, "picture": 1}',
+        '{"kind": "press", "hold": 1, "left_m_s": "0", "right_m_s": 0, "picture": 1}',
+        '{"kind": "press", "hold": 1, "left_m_s": ' + "9" * 400 + ', "right_m_s": 0, "picture": 1}',
+        '{"kind": "order", "number": 1, "name": "answer", "arguments": null, "picture": 1}',
+        order("drive"),
+        order("answer"),
+        order("answer", action="forward"),
+        order("answer", action="", level="basic", beside=False),
+        order("answer", action="forward", level="critic", beside=False),
+        order("answer", action="forward", level="mid", beside=1),
+        order("correct", action="forward", level=None),
+        order("correct", action="forward", level="mid", beside=False),
+        order("seek", name=""),
+        order("seek", goal="door"),
+        order("name", name=3),
+        order("pursue", behaviour=""),
+        order("answer", action="x" * 65, level="basic", beside=False),
+        order("answer", action="for\nward", level="basic", beside=False),
+        order("answer", action="forward", level="basic", beside=False, of=1),
+        order("undo", lesson=None),
+        order("appraise", appraisal=""),
+        order("appraise", value=1),
+        order("reward", value=0),
+        order("reward", value=2),
+        order("phase", phase=6),
+        order("place", x_m=101, y_m=0, heading_rad=0),
+        json.dumps({"kind": "hidden", "padding": "x" * LONGEST_MESSAGE}),
+    ],
+)
+def test_anything_else_is_refused_in_a_sentence(said: str) -> None:
+    with pytest.raises(WireError) as refusal:
+        parse(said)
+    assert str(refusal.value)
+    assert "\n" not in str(refusal.value)
+
+
+@given(st.text(max_size=200) | st.recursive(st.none() | st.floats() | st.text(), st.lists).map(json.dumps))
+def test_no_text_does_anything_but_be_understood_or_refused(text: str) -> None:
+    try:
+        parse(text)
+    except WireError:
+        return
+
+
+@given(
+    st.fixed_dictionaries(
+        {"kind": st.sampled_from(["beat", "press", "stop", "order"])},
+        optional={
+            "name": st.sampled_from(sorted(ORDERS)),
+            **dict.fromkeys(
+                ("number", "hold", "picture", "at_ms", "left_m_s", "right_m_s"),
+                st.integers() | st.floats() | st.none() | st.booleans(),
+            ),
+            "arguments": st.dictionaries(
+                st.sampled_from(("action", "level", "beside", "name")) | st.text(max_size=8),
+                st.integers() | st.booleans() | st.sampled_from(("basic", "mid", "door")) | st.text(max_size=8),
+                max_size=3,
+            ),
+        },
+    )
+)
+def test_no_fields_do_either(fields: dict[str, Any]) -> None:
+    try:
+        parse(json.dumps(fields))
+    except WireError:
+        return
+
+
+def test_an_upload_is_named_in_hexadecimal() -> None:
+    def load(upload: str) -> str:
+        arguments = {"upload": upload, "sha256": "ab" * 32}
+        return json.dumps({"kind": "order", "number": 1, "name": "load", "arguments": arguments, "picture": 1})
+
+    order = parse(load("0f" * 8))
+    assert isinstance(order, Order)
+    assert order.arguments == {"upload": b"\x0f" * 8, "sha256": b"\xab" * 32}
+    for wrong in ("0f" * 7, "0f" * 9, "zz" * 8):
+        with pytest.raises(WireError, match="upload has to be 16 hexadecimal digits"):
+            parse(load(wrong))

@@ -1,0 +1,294 @@
+"""The page's server as a browser, a stranger and another site meet it."""
+
+import contextlib
+import http.client
+import json
+from collections.abc import AsyncIterator
+from contextlib import AsyncExitStack, asynccontextmanager
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import anyio
+import anyio.to_thread
+import pytest
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import InvalidStatus
+
+from kurt2rt.teacher.page.access import Access
+from kurt2rt.teacher.page.app import STATIC
+from kurt2rt.teacher.page.public_address import PageError, PublicAddress
+from kurt2rt.teacher.page.server import listen, run_page
+from tests.teacher.page.fake_robot import FakeRobot
+
+TOKEN = "abcdefghijklmnopqrstuvwxyz012345"
+
+
+@dataclass
+class Got:
+    status: int
+    headers: http.client.HTTPMessage
+    content: bytes
+
+    @property
+    def body(self) -> str:
+        return self.content.decode()
+
+
+@dataclass
+class Served:
+    robot: FakeRobot
+    access: Access
+    port: int
+    end: anyio.Event
+
+    @property
+    def cookie(self) -> dict[str, str]:
+        return {"Cookie": f"{self.access.cookie_name}={self.access.cookie}"}
+
+    async def get(
+        self, path: str, headers: dict[str, str] | None = None, *, method: str = "GET", body: bytes | None = None
+    ) -> Got:
+        def ask() -> Got:
+            connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=10)
+            try:
+                connection.request(method, path, body, headers or {})
+                response = connection.getresponse()
+                return Got(response.status, response.headers, response.read())
+            finally:
+                connection.close()
+
+        return await anyio.to_thread.run_sync(ask)
+
+    def websocket(self, *, origin: str | None = "same", cookie: bool = True, host: str | None = None) -> connect:
+        at = f"127.0.0.1:{self.port}"
+        headers = dict(self.cookie) if cookie else {}
+        if origin is not None:
+            headers["Origin"] = f"http://{at}" if origin == "same" else origin
+        asked = f"ws://{host or at}/robot"  # names the Host; the connection goes to this server all the same
+        return connect(asked, additional_headers=headers, proxy=None, host="127.0.0.1", port=self.port)
+
+
+@asynccontextmanager
+async def served(*, public: PublicAddress | None = None, request_within_s: float = 5.0) -> AsyncIterator[Served]:
+    robot = FakeRobot()
+    access = Access("local", TOKEN, ["desk"], public)
+    end = anyio.Event()
+    with listen(0, everywhere=False) as listener:
+        async with anyio.create_task_group() as tasks:
+            serve = partial(run_page, request_within_s=request_within_s)
+            tasks.start_soon(serve, robot, access, "127.0.0.1:5683", listener, end.wait)
+            yield Served(robot, access, listener.getsockname()[1], end)
+            end.set()
+
+
+async def hear(socket: ClientConnection, kind: str) -> dict[str, Any]:
+    """The next message of a kind."""
+    while True:
+        message: dict[str, Any] = json.loads(await socket.recv())
+        if message["kind"] == kind:
+            return message
+
+
+async def see(page: Served, socket: ClientConnection) -> int:
+    """A picture comes to the page; its number."""
+    await socket.send('{"kind": "beat", "picture": null, "at_ms": 0}')
+    page.robot.show(teacher="local")
+    number: int = (await hear(socket, "state"))["picture"]
+    return number
+
+
+async def test_without_the_cookie_there_is_nothing_but_how_to_get_it() -> None:
+    async with served() as page:
+        for path in ("/", "/index.html", "/app.js", "/style.css", "/robot", "/nothing"):
+            got = await page.get(path)
+            assert got.status == 403
+            assert "Scan the code again" in got.body
+            assert "kurt2rt teach" in got.body
+            wrong = await page.get(path, {"Cookie": f"{page.access.cookie_name}={'0' * 64}"})
+            assert wrong.status == 403
+
+
+async def test_the_token_brings_the_cookie_and_the_cookie_the_page() -> None:
+    async with served() as page:
+        got = await page.get(f"/pair?token={TOKEN}")
+        assert got.status == 200
+        assert 'content="0;url=/"' in got.body
+        cookie = got.headers["Set-Cookie"]
+        assert "HttpOnly" in cookie
+        assert "SameSite=strict" in cookie
+        assert TOKEN not in cookie
+        brought = {"Cookie": cookie.split(";")[0]}
+        for path in ("/", *(f"/{file.name}" for file in STATIC.iterdir())):
+            assert (await page.get(path, brought)).status == 200
+        assert (await page.get("/nothing", brought)).status == 404
+        assert (await page.get("/../app.py", brought)).status == 404
+
+
+async def test_wrong_tokens_never_lock_out_the_right_one() -> None:
+    async with served() as page:
+        for _ in range(5):
+            assert (await page.get("/pair?token=guess")).status == 403
+        assert (await page.get("/pair?token=guess")).status == 429
+        paired = await page.get(f"/pair?token={TOKEN}")
+        assert paired.status == 200
+        assert page.access.cookie in paired.headers["Set-Cookie"]
+        assert (await page.get("/pair?token=guess")).status == 429
+
+
+async def test_under_a_foreign_name_nothing_is_served() -> None:
+    async with served() as page:
+        for path in ("/", f"/pair?token={TOKEN}"):
+            assert (await page.get(path, {**page.cookie, "Host": f"evil.example:{page.port}"})).status == 421
+        assert (await page.get("/", {**page.cookie, "Host": f"desk:{page.port}"})).status == 200
+        with pytest.raises(InvalidStatus):
+            async with page.websocket(host="evil.example", origin="http://evil.example"):
+                pass
+
+
+async def test_no_other_site_opens_the_websocket() -> None:
+    async with served() as page:
+        for origin in (None, "null", "http://evil.example", "https://127.0.0.1"):
+            with pytest.raises(InvalidStatus):
+                async with page.websocket(origin=origin):
+                    pass
+        with pytest.raises(InvalidStatus):
+            async with page.websocket(cookie=False):
+                pass
+
+
+async def test_manifest_is_served_as_one_and_its_icons_are_there() -> None:
+    async with served() as page:
+        got = await page.get("/manifest.webmanifest", page.cookie)
+        assert (got.status, got.headers["content-type"]) == (200, "application/manifest+json")
+        manifest = json.loads(got.body)
+        assert (manifest["start_url"], manifest["display"]) == ("/", "standalone")
+        for icon in manifest["icons"]:
+            got = await page.get(f"/{icon['src']}", page.cookie)
+            assert (got.status, got.headers["content-type"]) == (200, icon["type"])
+        # A browser brings the cookie for a manifest only if it is told to.
+        assert (
+            'rel="manifest" href="manifest.webmanifest" crossorigin="use-credentials"'
+            in (STATIC / "index.html").read_text()
+        )
+
+
+async def test_the_page_runs_no_foreign_script_and_is_in_no_frame() -> None:
+    async with served() as page:
+        got = await page.get("/", page.cookie)
+        policy = got.headers["Content-Security-Policy"]
+        assert "default-src 'self'" in policy
+        assert "frame-ancestors 'none'" in policy
+        assert "unsafe" not in policy
+        assert got.headers["X-Content-Type-Options"] == "nosniff"
+        assert got.headers["Referrer-Policy"] == "no-referrer"
+        assert "server" not in got.headers
+        for file in STATIC.iterdir():
+            if file.suffix == ".png":
+                continue
+            text = file.read_text(encoding="utf-8")
+            assert "<script>" not in text
+            assert "style=" not in text
+            assert "http" not in text.replace("http://www.w3.org/", "").replace("http-equiv", ""), file.name
+
+
+async def test_pictures_come_over_the_websocket_and_orders_go_back() -> None:
+    async with served() as page, page.websocket() as socket:
+        assert (await hear(socket, "page"))["seat"] == "here"
+        number = await see(page, socket)
+        lesson = {"action": "forward", "level": "basic", "beside": False}
+        order = {"kind": "order", "number": 7, "name": "answer", "arguments": lesson, "picture": number}
+        await socket.send(json.dumps(order))
+        answer = await hear(socket, "answer")
+        assert (answer["number"], answer["accepted"]) == (7, True)
+
+
+async def test_what_no_page_of_ours_says_closes_its_websocket() -> None:
+    async with served() as page, page.websocket() as socket:
+        await socket.send('{"kind": "drive"}')
+        await socket.wait_closed()
+        assert socket.close_code == 1008
+
+
+async def test_a_page_that_is_gone_lets_go_of_the_robot() -> None:
+    async with served() as page:
+        async with page.websocket() as socket:
+            number = await see(page, socket)
+            press = {"kind": "press", "hold": 1, "left_m_s": 0.2, "right_m_s": 0.2, "picture": number}
+            await socket.send(json.dumps(press))
+            await page.robot.is_told("press")
+        await page.robot.is_told("let_go")
+
+
+async def test_the_end_of_the_server_lets_go_of_the_robot_first() -> None:
+    async with served() as page, page.websocket() as socket:
+        number = await see(page, socket)
+        press = {"kind": "press", "hold": 1, "left_m_s": 0.2, "right_m_s": 0.2, "picture": number}
+        await socket.send(json.dumps(press))
+        await page.robot.is_told("press")
+        page.end.set()
+        await socket.wait_closed()
+        assert page.robot.told[-1] == ("let_go",)
+
+
+async def test_connections_that_say_nothing_do_not_keep_the_teacher_out() -> None:
+    async with served() as page, AsyncExitStack() as idle:
+        for _ in range(120):
+            await idle.enter_async_context(await anyio.connect_tcp("127.0.0.1", page.port))
+        assert (await page.get("/", page.cookie)).status == 200
+        assert (await page.get(f"/pair?token={TOKEN}")).status == 200
+        async with page.websocket() as socket:
+            await hear(socket, "page")
+
+
+@pytest.mark.parametrize(
+    "said", [b"", b"GET / HTTP/1.1\r\nHost: ", b"POST / HTTP/1.1\r\nContent-Length: 9\r\n\r\nhalf"]
+)
+async def test_a_request_that_never_comes_whole_is_not_waited_for(said: bytes) -> None:
+    async with served(request_within_s=0.1) as page, await anyio.connect_tcp("127.0.0.1", page.port) as connection:
+        await connection.send(said)
+        with anyio.fail_after(4), contextlib.suppress(anyio.EndOfStream, anyio.BrokenResourceError):
+            while True:
+                await connection.receive()
+
+
+async def test_half_a_request_does_not_buy_more_time() -> None:
+    async with served(request_within_s=0.3) as page, await anyio.connect_tcp("127.0.0.1", page.port) as connection:
+        with anyio.fail_after(4), contextlib.suppress(anyio.BrokenResourceError):
+            while True:
+                await connection.send(b"X")
+                await anyio.sleep(0.02)
+
+
+async def test_a_page_stays_for_longer_than_a_request_may_take() -> None:
+    async with served(request_within_s=0.1) as page, page.websocket() as socket:
+        await hear(socket, "page")
+        await anyio.sleep(0.3)
+        await see(page, socket)
+
+
+async def test_behind_a_tls_proxy_the_page_is_served_under_its_public_address_alone() -> None:
+    async with served(public=PublicAddress("robot.example")) as page:
+        public = {"Host": "robot.example"}
+        got = await page.get(f"/pair?token={TOKEN}", public)
+        assert got.status == 200
+        assert "Secure" in got.headers["Set-Cookie"]
+        got = await page.get("/", {**page.cookie, **public})
+        assert got.status == 200
+        assert "wss://robot.example" in got.headers["Content-Security-Policy"]
+        assert (await page.get("/", {**page.cookie, "Host": "evil.example"})).status == 421
+        # Proxies hand on the Host, or put their own there; the Origin is the browser's.
+        for host in ("robot.example", None):
+            async with page.websocket(host=host, origin="https://robot.example") as socket:
+                await hear(socket, "page")
+        for origin in ("http://robot.example", "https://evil.example", "https://robot.example:444"):
+            with pytest.raises(InvalidStatus):
+                async with page.websocket(host=None, origin=origin):
+                    pass
+
+
+async def test_a_port_in_use_is_said() -> None:
+    with listen(0, everywhere=False) as listener:
+        port = listener.getsockname()[1]
+        with pytest.raises(PageError, match=f"port {port}: cannot listen .* give another one with --page-port"):
+            listen(port, everywhere=False)

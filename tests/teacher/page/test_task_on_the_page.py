@@ -1,0 +1,142 @@
+"""What the task is, how far teaching has come, and what the sensors make different."""
+
+from dataclasses import replace
+
+from hal.robot_settings import load_robot
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.perception.sensor_words import law_of
+from kurt2rt.core.teaching.progress import Progress
+from kurt2rt.core.teaching.question import FeatureDifference
+from tests.teacher.page.fake_robot import A_HELLO, A_PLACE, FakeRobot
+from tests.teacher.page.lesson import Lesson
+from tests.teacher.page.phone import Phone
+
+QUESTION = (
+    FeatureDifference("maximum front", 441.0, 108.0),
+    FeatureDifference("s9", 441.0, 108.0),
+    FeatureDifference("s14", 70.0, 400.0),
+    FeatureDifference("s17", 160.0, 160.4),
+)
+ASKS = {"cause": "unknown", "action": None, "rla": None, "distance": 1100.0, "question": QUESTION}
+# Orange, as in canvas.js: pixels of one canvas in that colour.
+MARKED = """
+const canvas = document.querySelector(arguments[0]);
+const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+let count = 0;
+for (let i = 0; i < data.length; i += 4) count += data[i] === 0xd9 && data[i + 1] === 0x48 && data[i + 2] === 0x0f;
+return count;
+"""
+CUT = """
+return ["#sentence", "#why", "#said", "#what"].filter((name) => {
+  const it = document.querySelector(name);
+  return it.scrollHeight > it.clientHeight + 1 || it.scrollWidth > it.clientWidth + 1;
+});
+"""
+
+
+def prepare(robot: FakeRobot) -> None:
+    law = law_of(load_robot().infrared)
+    robot.greeting = replace(A_HELLO, what="Teach it to turn left at every junction", law=law)
+
+
+def test_page_says_the_task_and_what_the_phase_changes(a_lesson: Lesson) -> None:
+    a_lesson.begin(prepare)
+    phone = a_lesson.phone
+    assert phone.text("h1") == "Teach it to turn left at every junction"
+    phone.touch("#tab-more")
+    told = []
+    for phase in range(1, 6):
+        a_lesson.show(phase=phase)
+        a_lesson.reads("#phase", f"phase {phase}")
+        told.append(phone.text("#phase-says"))
+    assert len(set(told)) == 5
+    assert all(each.endswith(".") for each in told)
+
+
+def test_page_of_a_robot_that_tells_no_sentence_names_the_task(a_lesson: Lesson) -> None:
+    a_lesson.begin()
+    assert a_lesson.phone.text("h1") == "Task wall following"
+
+
+def test_progress_is_told_with_rules_and_lessons_apart(a_lesson: Lesson) -> None:
+    a_lesson.begin(prepare, rlas=12, lessons=14, progress=Progress(0, None, 0))
+    phone = a_lesson.phone
+    a_lesson.reads("#progress", "rules 12")
+    assert phone.text("#progress") == "rules 12"
+    assert phone.text("#lesson-count") == "14"
+    a_lesson.show(progress=Progress(9, 40, 2))
+    a_lesson.reads("#progress", "by itself 40 % · asks 2 in 9 s · rules 12")
+    a_lesson.show(progress=Progress(60, 87, 3))
+    a_lesson.reads("#progress", "by itself 87 % · asks 3 a minute · rules 12")
+
+
+def test_question_tells_places_and_centimetres_and_marks_the_sensors(a_lesson: Lesson) -> None:
+    a_lesson.begin(prepare)
+    phone = a_lesson.phone
+    assert phone.run(MARKED, "#robot-view") == 0
+    a_lesson.show(**ASKS)
+    a_lesson.reads("#differences", "front left")
+    # The nearest in front is that sensor, and the rear left edge reads the same to the centimetre.
+    assert phone.texts("#differences li") == [
+        "front left: 13 cm, was 46 cm",
+        "rear centre: nothing within 60 cm, was 15 cm",
+    ]
+    phone.wait(lambda: phone.run(MARKED, "#robot-view") > 0, "the sensors are marked")
+    a_lesson.show(cause="rla", action="forward", rla=1, question=(), distance=300.0)
+    phone.wait(lambda: phone.run(MARKED, "#robot-view") == 0, "they are not any more")
+
+
+def test_world_view_shows_the_rays(a_lesson: Lesson) -> None:
+    a_lesson.begin(prepare)
+    phone = a_lesson.phone
+    phone.touch("#view")
+    assert phone.run(MARKED, "#world-view") == 0
+    a_lesson.show(**ASKS)
+    phone.wait(lambda: phone.run(MARKED, "#world-view") > 0, "the ray of the sensor that differs")
+    phone.touch("#view")
+
+
+def test_trail_outlives_a_reload_and_ends_with_the_robot_program(a_lesson: Lesson) -> None:
+    a_lesson.begin(prepare)
+    phone = a_lesson.phone
+    for step in (1, 2):
+        a_lesson.show(place=replace(A_PLACE, x_m=1.0 + step))
+        stay(phone)
+    reload(phone)
+    assert {2.0, 3.0} <= xs(phone)
+    a_lesson.show(place=replace(A_PLACE, x_m=2.5))
+    stay(phone)
+    reload(phone)
+    assert {2.0, 3.0, 2.5} <= xs(phone)  # the page after the first reload went on with the trail
+    a_lesson.begin(prepare)
+    reload(phone)
+    assert xs(phone) == {A_PLACE.x_m}
+
+
+def stay(phone: Phone) -> None:
+    """The page sees some pictures more: it notes ten places a second."""
+    phone.driver.execute_async_script("const [done] = arguments; setTimeout(done, 300);")
+
+
+def reload(phone: Phone) -> None:
+    phone.run("window.before = true; location.reload()")
+    phone.wait(lambda: phone.run("return !window.before") and phone.text("#claim") == "", "another page")
+    phone.wait(lambda: phone.text("h1").startswith("Teach it"), "the page is there again")
+
+
+def xs(phone: Phone) -> set[float]:
+    """Where the trail that was kept goes along."""
+    return {x for _, x, _ in phone.run("return JSON.parse(sessionStorage.getItem('kurt2rt.trail')).points;")}
+
+
+def test_important_sentences_are_never_cut(a_lesson: Lesson) -> None:
+    a_lesson.begin(prepare)
+    phone = a_lesson.phone
+    long = "the second guard braked, because no tick ran for 0.1 s; look whether other programs keep this computer busy"
+    a_lesson.show(cause="stopped", action=None, rla=None, stopped=ActiveStop(StopReason.OTHER, long))
+    a_lesson.reads("#sentence", long[:40])
+    for size in ((390, 844), (360, 600), (844, 390), (1280, 800)):
+        phone.turn(size)
+        cut = phone.run(CUT)
+        assert cut == [], size
+        assert long in phone.text("#sentence")

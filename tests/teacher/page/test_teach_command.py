@@ -1,0 +1,101 @@
+"""`kurt2rt teach` as a process of its own."""
+
+import http.client
+import json
+import signal
+import socket
+from pathlib import Path
+from urllib.parse import urlsplit
+
+from websockets.sync.client import connect
+
+from config import CONFIG_DIR
+from kurt2rt.channel.security.pairing import pair, read_device, revoke
+from kurt2rt.teacher.page.server import listen
+from tests.cli.helpers import running
+
+
+def free_udp_port() -> int:
+    """A port that nobody listens on."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+def cookie_of(address: str) -> str:
+    """Open the address that was printed, as a browser does."""
+    parts = urlsplit(address)
+    connection = http.client.HTTPConnection(parts.netloc, timeout=10)
+    try:
+        connection.request("GET", f"{parts.path}?{parts.query}")
+        response = connection.getresponse()
+        response.read()
+        assert response.status == 200
+        return str(response.headers["Set-Cookie"]).split(";")[0]
+    finally:
+        connection.close()
+
+
+def test_the_page_says_that_there_is_no_robot_and_ends_when_told(tmp_path: Path) -> None:
+    port = free_udp_port()
+    with running("teach", "--page-port", "0", "--port", str(port), folder=tmp_path) as page:
+        address = page.wait_for("http://").strip()
+        assert address.startswith("http://127.0.0.1:")
+        at = urlsplit(address).netloc
+        headers = {"Cookie": cookie_of(address), "Origin": f"http://{at}"}
+        with connect(f"ws://{at}/robot", additional_headers=headers, proxy=None) as websocket:
+            said: dict[str, str] = {}
+            while said.get("kind") != "silent":
+                said = json.loads(websocket.recv(timeout=10))
+        assert said["text"].startswith(f"no robot at 127.0.0.1:{port}; is kurt2rt run running?")
+        ended = page.end(signal.SIGTERM)
+    assert ended.exit_code == 0
+    assert ended.err == ""
+
+
+def test_a_pairing_that_is_revoked_ends_its_page(tmp_path: Path) -> None:
+    teachers, devices = tmp_path / "var" / "teachers", tmp_path / "var" / "devices"
+    pair(teachers, devices, "phone")
+    with running("teach", "--as", "phone", "--page-port", "0", folder=tmp_path) as page:
+        address = urlsplit(page.wait_for("http://").strip())
+        cookie_of(address._replace(netloc=f"127.0.0.1:{address.port}").geturl())  # it is served, also on loopback
+        revoke(teachers, devices, "phone")
+        assert page.process.wait(timeout=20) == 2
+        assert page.process.stderr is not None
+        (line,) = page.process.stderr.read().splitlines()
+    assert line == "kurt2rt: phone: its pairing was revoked; pair it again: kurt2rt pair phone"
+
+
+def test_a_second_page_takes_the_next_port_and_says_so(tmp_path: Path) -> None:
+    pair(tmp_path / "var" / "teachers", tmp_path / "var" / "devices", "phone")
+    settings = tmp_path / "own.yaml"
+    default = (CONFIG_DIR / "runtime" / "default.yaml").read_text(encoding="utf-8")
+    with listen(0, everywhere=False) as before:
+        port = before.getsockname()[1]
+        settings.write_text(default.replace("page_port: 8642", f"page_port: {port}"), encoding="utf-8")
+        with running("teach", "--as", "phone", "--settings", "own.yaml", folder=tmp_path) as page:
+            told = page.wait_for("page for phone, ")
+            served = urlsplit(page.wait_for("http://").strip()).port
+            assert served is not None
+            assert port < served <= port + 9
+            assert f"; port {port} is in use, so it is at {served}; " in told
+            cookie_of(f"http://127.0.0.1:{served}/pair?token={read_device(tmp_path / 'var/devices/phone').token}")
+            assert page.end(signal.SIGTERM).err == ""
+        with running("teach", "--as", "phone", "--page-port", str(port), folder=tmp_path) as page:
+            page.process.wait(timeout=20)
+            assert page.process.stderr is not None
+            assert f"port {port}: cannot listen (Address already in use)" in page.process.stderr.read()
+
+
+def test_all_devices_are_served_by_one_command(tmp_path: Path) -> None:
+    with running("teach", "--phone", "--page-port", "0", "--port", "9", folder=tmp_path) as page:
+        local = page.wait_for("http://127.0.0.1:").strip()
+        page.wait_for("for a phone: kurt2rt pair phone")
+        pair(tmp_path / "var" / "teachers", tmp_path / "var" / "devices", "phone")
+        page.wait_for("page for phone:")
+        phone = urlsplit(page.wait_for("/pair?token=").strip())
+        assert phone.port == urlsplit(local).port
+        cookie_of(local)
+        cookie_of(phone._replace(netloc=f"127.0.0.2:{phone.port}").geturl())  # beyond what is 127.0.0.1 alone
+        assert page.end(signal.SIGTERM).err == ""

@@ -1,0 +1,115 @@
+"""The scripted teacher of the mid level: what is right at the next junction, said once the robot is about that one."""
+
+import numpy as np
+
+from behaviors.metrics.task_metric import WayAhead
+from hal.robot import STANDSTILL, GuardResult
+from kurt2rt.core.decision.decision import Cause, Decision, MidDecision
+from kurt2rt.core.decision.junction_event import JunctionEvent
+from kurt2rt.core.perception.perception import Situation
+from kurt2rt.core.rla.rla import BASIC, MID, Phase
+from kurt2rt.core.task_settings import TeacherSettings
+from kurt2rt.core.teaching.commands import Command, Correct, Pursue, Teach
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.teacher.scripted.dispatcher import ScriptedDispatcher
+from kurt2rt.teacher.scripted.teacher import picture_of
+from tests.core.helpers import sensed
+
+NAME = "scripted teacher"
+BEHAVIOURS = ("straight_on", "turn_left", "turn_right")
+REACTION_TICKS, PATIENCE_TICKS, NOTICES_WITHIN_TICKS = 100, 50, 300
+PASSED = JunctionEvent(0, left_open=True, right_open=False, turn_rad=0.0, way_m=1.0)
+BEFORE_THE_FIRST = WayAhead(0, False, "turn_left", "straight_on")
+IN_THE_FIRST = BEFORE_THE_FIRST._replace(inside=True)
+BEHIND_THE_FIRST = WayAhead(1, False, "straight_on", "turn_right")
+
+
+def dispatcher(phase: Phase = Phase.CORRECTIONS, *, error_rate: float = 0.0) -> ScriptedDispatcher:
+    settings = TeacherSettings(reaction_s=1.0, patience_s=0.5, error_rate=error_rate)
+    person = ScriptedDispatcher(BEHAVIOURS, settings, period_s=0.01, seed=1, session="s")
+    person.phase = phase
+    return person
+
+
+def record(mid: MidDecision, *, drives: bool = True) -> TickRecord:
+    cause = Cause.RLA if drives else Cause.UNKNOWN
+    asks_at = MID if mid.asks else BASIC
+    decision = Decision(STANDSTILL, cause, "forward" if drives else None, None, None, asks_at=asks_at, mid=mid)
+    situation = Situation(np.zeros(1), history_frozen=False)
+    return TickRecord(1, 0.01, sensed(100), situation, decision, GuardResult(STANDSTILL, (), latched=False), ())
+
+
+def wants(behaviour: str, *, event: JunctionEvent | None = None, overridden: bool = False) -> TickRecord:
+    return record(MidDecision(behaviour, 1, None, asks=False, overridden=overridden, event=event))
+
+
+ASKS = record(MidDecision("straight_on", None, None, asks=True, overridden=False, event=None), drives=False)
+
+
+def said(person: ScriptedDispatcher, seen: TickRecord, ahead: WayAhead, ticks: int) -> list[tuple[int, Command]]:
+    """What is said, and in which of so many ticks."""
+    heard = [(tick, person.watch(seen, ahead)) for tick in range(1, ticks + 1)]
+    return [(tick, command) for tick, command in heard if command is not None]
+
+
+def test_a_question_is_answered_after_the_reaction_time_with_what_is_right_ahead() -> None:
+    for phase in (Phase.SUPERVISED, Phase.CORRECTIONS):
+        answers = said(dispatcher(phase), ASKS, BEFORE_THE_FIRST, REACTION_TICKS)
+        assert answers == [(REACTION_TICKS, Teach("s-mid-1", NAME, "turn_left", level=MID))]
+
+
+def test_the_teacher_of_the_basic_level_is_not_asked_what_the_mid_level_asks() -> None:
+    assert not picture_of(ASKS).asking
+    basic = record(MidDecision("turn_left", 1, None, asks=False, overridden=False, event=None), drives=False)
+    assert picture_of(basic).asking
+
+
+def test_another_wish_is_corrected_when_it_has_lasted() -> None:
+    corrections = said(dispatcher(), wants("turn_right"), BEFORE_THE_FIRST, PATIENCE_TICKS)
+    assert corrections == [(PATIENCE_TICKS, Correct("s-mid-1", NAME, "turn_left", level=MID))]
+
+
+def test_nothing_is_said_of_the_right_wish_in_phase_1_or_where_the_teacher_commanded_himself() -> None:
+    long = 10 * PATIENCE_TICKS
+    assert said(dispatcher(), wants("turn_left"), BEFORE_THE_FIRST, long) == []
+    assert said(dispatcher(Phase.SUPERVISED), wants("turn_right"), BEFORE_THE_FIRST, long) == []
+    assert said(dispatcher(), wants("turn_right", overridden=True), BEFORE_THE_FIRST, long) == []
+
+
+def test_behind_a_junction_nothing_is_said_until_the_robot_has_noticed_it() -> None:
+    person = dispatcher()
+    assert said(person, wants("turn_left"), IN_THE_FIRST, 200) == []
+    assert said(person, wants("turn_left"), BEHIND_THE_FIRST, 2 * PATIENCE_TICKS) == []  # it is about the first still
+    assert person.watch(wants("turn_right", event=PASSED), BEHIND_THE_FIRST) is None
+    corrections = said(person, wants("turn_right"), BEHIND_THE_FIRST, PATIENCE_TICKS)
+    assert [command for _, command in corrections] == [Correct("s-mid-1", NAME, "straight_on", level=MID)]
+
+
+def test_a_junction_noticed_before_it_is_left_is_noticed_too() -> None:
+    person = dispatcher()
+    assert said(person, wants("turn_left"), IN_THE_FIRST, 200) == []
+    assert person.watch(wants("straight_on", event=PASSED), IN_THE_FIRST) is None
+    assert said(person, wants("straight_on"), IN_THE_FIRST, 2 * PATIENCE_TICKS) == []
+    assert said(person, wants("straight_on"), BEHIND_THE_FIRST, 2 * NOTICES_WITHIN_TICKS) == []
+
+
+def test_where_the_robot_does_not_notice_a_junction_he_commands_and_teaches_nothing() -> None:
+    person = dispatcher()
+    said(person, wants("turn_left"), IN_THE_FIRST, 10)
+    commands = said(person, wants("turn_left"), BEHIND_THE_FIRST, NOTICES_WITHIN_TICKS + 10)
+    assert [command for _, command in commands][:1] == [Pursue("s-mid-1", NAME, "straight_on")]
+    assert commands[0][0] == NOTICES_WITHIN_TICKS
+    assert person.missed == 1
+
+
+def test_a_robot_that_stands_is_given_time_to_notice() -> None:
+    person = dispatcher()
+    said(person, wants("turn_left"), IN_THE_FIRST, 10)
+    stands = record(MidDecision("turn_left", 1, None, asks=False, overridden=False, event=None), drives=False)
+    assert said(person, stands, BEHIND_THE_FIRST, 3 * NOTICES_WITHIN_TICKS) == []
+
+
+def test_errors_name_another_behaviour() -> None:
+    answers = said(dispatcher(error_rate=1.0), ASKS, BEFORE_THE_FIRST, 50 * REACTION_TICKS)
+    named = {command.action for _, command in answers if isinstance(command, Teach)}
+    assert named == {"straight_on", "turn_right"}

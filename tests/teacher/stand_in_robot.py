@@ -1,0 +1,129 @@
+"""A robot whose socket, keys and pictures are real and whose mind is the test's."""
+
+import asyncio
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import AbstractAsyncContextManager, asynccontextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+import anyio
+
+from kurt2rt.channel.protocol.codec import encode_state
+from kurt2rt.channel.protocol.requests import CommandRequest, DriveRequest, Request, StreamRequest, WatchRequest
+from kurt2rt.channel.protocol.state import State
+from kurt2rt.channel.security.paired_devices import Teachers
+from kurt2rt.channel.server.endpoint import open_endpoint
+from kurt2rt.channel.server.reply import Reply, done, refusal
+from kurt2rt.channel.server.request_handler import Reception, Sender
+from kurt2rt.channel.server.resources import RobotSite
+from kurt2rt.core.rla.outcome import Outcome, RefusalCode
+from tests.channel.states import ASKING
+
+Mind = Callable[[Request], Awaitable[Reply]]
+_PICTURE_EACH_S = 0.05
+_TICKS = 5
+
+_Kind = TypeVar("_Kind", bound=Request)
+_Thing = TypeVar("_Thing")
+
+
+async def agrees(_: Request) -> Reply:
+    return done(7)
+
+
+class StandInRobot:
+    """Shows a picture 20 times a second while `showing`, and notes what it hears."""
+
+    def __init__(self, teachers: Teachers, boot: bytes, *, showing: bool) -> None:
+        self.site = RobotSite(teachers, cast(Reception, self))
+        self.port = 0
+        self.state: State = replace(ASKING, boot=boot, teacher=None)
+        self.showing = showing
+        self.mind: Mind = agrees
+        self.heard: list[Request] = []
+        self._news = anyio.Event()
+
+    async def answer(self, _sender: Sender, request: Request) -> Reply:
+        """What the site asks of a reception."""
+        self.heard.append(request)
+        self._wake()
+        if isinstance(request, StreamRequest | CommandRequest) and request.boot != self.state.boot:
+            return refusal("boot", Outcome(RefusalCode.RESTARTED), 7)
+        return await self.mind(request)
+
+    def show(self, **changes: Any) -> State:
+        """The next picture, changed from the last one."""
+        self.state = replace(self.state, tick=self.state.tick + _TICKS, **changes)
+        self.site.show(encode_state(self.state))
+        return self.state
+
+    def all_of(self, kind: type[_Kind]) -> list[_Kind]:
+        """What was heard of one kind."""
+        return [each for each in self.heard if isinstance(each, kind)]
+
+    def orders(self) -> list[Request]:
+        """What was heard but for the streams."""
+        return [each for each in self.heard if not isinstance(each, WatchRequest | DriveRequest)]
+
+    async def hears(self, kind: type[_Kind], count: int = 1) -> list[_Kind]:
+        """Wait until so many of a kind were heard."""
+        with anyio.fail_after(10.0):
+            while len(self.all_of(kind)) < count:
+                await self._news.wait()
+        return self.all_of(kind)
+
+    async def show_pictures(self) -> None:
+        while True:
+            if self.showing:
+                self.show()
+            await anyio.sleep(_PICTURE_EACH_S)
+
+    def _wake(self) -> None:
+        self._news.set()
+        self._news = anyio.Event()
+
+
+@asynccontextmanager
+async def stand_in_robot(
+    folder: Path, *, port: int = 0, boot: bytes = b"boot", showing: bool = True
+) -> AsyncIterator[StandInRobot]:
+    """On loopback, for the teachers of a folder; when it ends it is as if it had crashed."""
+    teachers = Teachers(folder)
+    robot = StandInRobot(teachers, boot, showing=showing)
+    endpoint = await open_endpoint(robot.site, "127.0.0.1", port)
+    robot.site.doorkeeper = endpoint
+    robot.port = endpoint.port
+    try:
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(robot.show_pictures)
+            yield robot
+            tasks.cancel_scope.cancel()
+    finally:
+        with anyio.CancelScope(shield=True):
+            await endpoint.close()
+        for name in teachers.names:
+            teachers._held[name].context.abandon()
+
+
+@asynccontextmanager
+async def in_a_task_of_its_own(manager: AbstractAsyncContextManager[_Thing]) -> AsyncIterator[_Thing]:
+    """For fixtures: pytest begins and ends them in different tasks, and task groups do not allow that."""
+    opened: asyncio.Future[_Thing] = asyncio.get_running_loop().create_future()
+    over = asyncio.Event()
+
+    async def hold() -> None:
+        async with manager as thing:
+            opened.set_result(thing)
+            await over.wait()
+
+    holding = asyncio.create_task(hold())
+    either: set[asyncio.Future[Any]] = {holding, opened}
+    await asyncio.wait(either, return_when=asyncio.FIRST_COMPLETED)
+    if not opened.done():
+        await holding  # raises what kept it from opening
+    try:
+        yield opened.result()
+    finally:
+        over.set()
+        await holding
