@@ -51,7 +51,7 @@ class Wall(NamedTuple):
     """x and y in metres."""
 
 
-class Post(NamedTuple):
+class SimulatedPost(NamedTuple):
     """A round obstacle from above."""
 
     name: str
@@ -77,7 +77,7 @@ class WorldPlan(NamedTuple):
     size_m: tuple[float, float]
     outline: tuple[tuple[float, float], ...]
     walls: tuple[Wall, ...]
-    posts: tuple[Post, ...]
+    posts: tuple[SimulatedPost, ...]
     streets: tuple[Street, ...] = ()
     junctions: tuple[tuple[float, float], ...] = ()
     """Points where two streets meet, or one ends at another."""

@@ -10,9 +10,9 @@ from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.appraisal_features import CircumstancesPerception
 from kurt2rt.core.critic.critic import Critic
 from kurt2rt.core.critic.settings import CriticSettings, load_critic
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.level import Level
-from kurt2rt.core.expectations.tracker import Expecting
+from kurt2rt.core.expectations.tracker import ExpectationTracker
 from kurt2rt.core.layer_stack import LayerStack
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.mid.settings import MidSettings, load_mid
@@ -21,7 +21,7 @@ from kurt2rt.core.perception.perception import Perception
 from kurt2rt.core.perception.weights import weights_of
 from kurt2rt.core.planning.navigator import Navigator
 from kurt2rt.core.progress_meter import ProgressMeter
-from kurt2rt.core.reinforcement.decision_history import RecentDecisions
+from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
 from kurt2rt.core.rla.rla import CRITIC, MID, TeachingEvent
@@ -30,16 +30,16 @@ from kurt2rt.core.rla.space import Space
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.teaching.authority import Authority
-from kurt2rt.core.teaching.command_handler import School
-from kurt2rt.core.teaching.goal_commands import Errands
+from kurt2rt.core.teaching.authority import ControlAuthority
+from kurt2rt.core.teaching.command_handler import CommandHandler
+from kurt2rt.core.teaching.goal_commands import GoalCommands
 from kurt2rt.core.teaching.inbox import TeacherInbox
 from kurt2rt.core.teaching.mid_lessons import MidLessons
-from kurt2rt.core.teaching.system_events import SetDown
-from kurt2rt.core.tick import LessonKeeper, Tick, TickRecord
+from kurt2rt.core.teaching.system_events import RobotRepositioned
+from kurt2rt.core.tick import EventStore, Tick, TickRecord
 from kurt2rt.knowledge.task_repertoire import repertoire_of
 from kurt2rt.platform.clock import Clock
-from kurt2rt.platform.ledger import Ledger
+from kurt2rt.platform.ledger import TickTimer
 from kurt2rt.platform.scheduler import Scheduler
 
 
@@ -55,14 +55,14 @@ class Runtime:
     """Over the basic level; None where the task has none."""
     navigator: Navigator | None
     """Has the mid level go to goals; None where there is no mid level."""
-    wanted: Wanted
-    school: School
+    wanted: ActiveBehaviour
+    school: CommandHandler
     reinforcement: Reinforcement
     self_teaching: SelfTeaching
     inbox: TeacherInbox
     statistics: StatisticsCounter
-    expecting: Expecting
-    ledger: Ledger
+    expecting: ExpectationTracker
+    ledger: TickTimer
     progress: ProgressMeter
     """Counts what its owner hands it after each tick."""
     tick: Tick
@@ -70,7 +70,7 @@ class Runtime:
 
     def set_down(self) -> None:
         """Somebody has set the robot down elsewhere, between two ticks: the next one begins anew there."""
-        self.inbox.put(SetDown())
+        self.inbox.put(RobotRepositioned())
 
     def to_save(self) -> Statistics:
         """What was counted of the RLAs that live, and what they are worth, as it is now."""
@@ -101,13 +101,13 @@ def build_runtime(
     settings: RobotSettings,
     task: TaskSettings,
     events: Iterable[TeachingEvent],
-    keeper: LessonKeeper,
+    keeper: EventStore,
     clock: Clock,
     *,
     statistics: StatisticsCounter | None = None,
     level_override: Level | None = None,
     attended: bool = False,
-    wanted: Wanted | None = None,
+    wanted: ActiveBehaviour | None = None,
     saved: Statistics | None = None,
     asked: bool = True,
     tolerates_stalls: bool = False,
@@ -132,12 +132,12 @@ def build_runtime(
     system = empty_system(task, definition, critic, mid_settings)
     events = tuple(events)
     period_s = settings.can.cycle_s
-    recent = RecentDecisions(definition.dimensions)
+    recent = DecisionHistory(definition.dimensions)
     reinforcement = Reinforcement(system, recent, task.reinforcement, period_s)
     # The rest of what was saved is kept by those who count on from it, and would be kept twice.
     reinforcement.recall(events, saved and replace(saved, uses={}, transitions={}, expectations={}))
     repertoire = repertoire_of(task, settings)
-    wanted = wanted or Wanted(task.behaviours)
+    wanted = wanted or ActiveBehaviour(task.behaviours)
     level = BasicLevel(
         system, repertoire, round(task.learning.minimum_action_s / period_s), wanted, reinforcement.choice
     )
@@ -147,7 +147,7 @@ def build_runtime(
     if mid_settings is not None:
         mid = MidLevel(system, mid_settings.build(settings, counted), mid_settings, wanted)
     at_the_wheels = level_override or level
-    expecting = Expecting(system, mid, statistics.transitions, None if saved is None else saved.expectations)
+    expecting = ExpectationTracker(system, mid, statistics.transitions, None if saved is None else saved.expectations)
     navigator = None if mid is None else Navigator(mid, statistics.follow_ups, expecting.of)
     lessons = None if mid is None else MidLessons(mid)
     # Instances of its own: a behaviour that the hand runs must not disturb the one that an RLA runs later.
@@ -156,9 +156,9 @@ def build_runtime(
     agreement.hear_all(events)
     self_teaching = SelfTeaching(reinforcement, system, critic, agreement, period_s)
     self_teaching.recall(events, saved)
-    school = School(
+    school = CommandHandler(
         level,
-        Authority(hand, attended=attended),
+        ControlAuthority(hand, attended=attended),
         insert_beyond_share=task.learning.insert_beyond_share,
         taken_command_ids=(event.origin.command_id for event in events),
         reinforcement=reinforcement,
@@ -166,11 +166,11 @@ def build_runtime(
         agreement=agreement,
         self_teaching=self_teaching,
         mid=lessons,
-        errands=None if navigator is None or lessons is None else Errands(navigator, lessons),
+        errands=None if navigator is None or lessons is None else GoalCommands(navigator, lessons),
         asked=asked,
     )
     inbox = TeacherInbox()
-    ledger = Ledger()
+    ledger = TickTimer()
     tick = Tick(
         robot,
         Perception(definition, sensors),

@@ -20,7 +20,7 @@ lift, lower           put the robot on a block, wheels in the air, and down agai
 help                  this"""
 
 
-class Desk:
+class SimConsole:
     """Obeys what is typed."""
 
     def __init__(self, standalone: StandaloneRobot, world: WorldSettings, ground: Kurt2World) -> None:

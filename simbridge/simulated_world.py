@@ -3,7 +3,7 @@
 import shapely
 
 from hal.robot_settings import GeometrySettings
-from hal.simulation import Pose, Post, SimulatedPlace, Street, Wall, WorldPlan
+from hal.simulation import Pose, SimulatedPlace, SimulatedPost, Street, Wall, WorldPlan
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.worlds.geometry import rectangle
@@ -20,7 +20,7 @@ def plan_of(world: WorldSettings, version: int = 0) -> WorldPlan:
         size_m=world.size_m,
         outline=world.outline,
         walls=tuple(walls),
-        posts=tuple(Post(each.name, each.x_m, each.y_m, each.radius_m) for each in world.round_obstacles),
+        posts=tuple(SimulatedPost(each.name, each.x_m, each.y_m, each.radius_m) for each in world.round_obstacles),
         streets=tuple(Street(each.from_m, each.to_m, each.width_m) for each in world.streets),
         junctions=tuple(world.junctions),
     )

@@ -7,15 +7,15 @@ from pydantic import Field
 
 from behaviors.metrics.angle_about import AngleAbout
 from behaviors.metrics.mean import MEASURE_EVERY, Mean
-from behaviors.metrics.task_metric import DISTANCE_ERROR, Course, CourseSettings, Findings
+from behaviors.metrics.task_metric import DISTANCE_ERROR, Findings, MetricSettings, TaskMetric
 from hal.settings import SettingsError
-from hal.simulation import Pose, Post, Simulation, WorldPlan
+from hal.simulation import Pose, SimulatedPost, Simulation, WorldPlan
 
 _WHOLE = 5 / 6
 """Of a round from the middle back to the middle; what is missing was driven on the other post's side."""
 
 
-class EightsSettings(CourseSettings):
+class EightsSettings(MetricSettings):
     """Eights."""
 
     wanted_m: Annotated[float, Field(gt=0, le=5)]
@@ -28,7 +28,7 @@ class EightsSettings(CourseSettings):
                 f"course eights: world {plan.name} has {len(plan.posts)} round obstacles", do="choose one with two"
             )
 
-    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
         """The course."""
         plan = simulation.plan
         self.require(plan, behaviours)
@@ -46,7 +46,7 @@ class Eights:
     unit = "eights"
     stranded = False
 
-    def __init__(self, settings: EightsSettings, west: Post, east: Post, behaviour: str) -> None:
+    def __init__(self, settings: EightsSettings, west: SimulatedPost, east: SimulatedPost, behaviour: str) -> None:
         self.behaviour = behaviour
         self.progress = 0.0
         self._wanted_m = settings.wanted_m

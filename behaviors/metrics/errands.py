@@ -7,13 +7,13 @@ from pydantic import Field
 
 from behaviors.metrics.junctions import QUARTERS
 from behaviors.metrics.streets import StreetMap
-from behaviors.metrics.task_metric import JUNCTIONS, Course, CourseSettings, Findings
+from behaviors.metrics.task_metric import JUNCTIONS, Findings, MetricSettings, TaskMetric
 from behaviors.metrics.town import Street, Town
 from hal.settings import SettingsError
 from hal.simulation import Pose, Simulation, WorldPlan
 
 
-class ErrandsSettings(CourseSettings):
+class ErrandsSettings(MetricSettings):
     """Errands."""
 
     names: Annotated[int, Field(ge=1, le=1000)]
@@ -35,7 +35,7 @@ class ErrandsSettings(CourseSettings):
                 f"course errands: world {plan.name} has no streets that meet", do="choose one with streets"
             )
 
-    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
         """The course."""
         return self.walk_in(simulation.plan, behaviours)
 

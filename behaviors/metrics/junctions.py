@@ -6,7 +6,7 @@ from collections import Counter
 
 from behaviors.metrics.mean import MEASURE_EVERY, Mean
 from behaviors.metrics.streets import Junction, Side, StreetMap, side_towards
-from behaviors.metrics.task_metric import JUNCTIONS, LATERAL_DEVIATION, RIGHT, Course, CourseSettings, Findings
+from behaviors.metrics.task_metric import JUNCTIONS, LATERAL_DEVIATION, RIGHT, Findings, MetricSettings, TaskMetric
 from hal.settings import SettingsError
 from hal.simulation import Pose, Simulation, WorldPlan
 
@@ -17,7 +17,7 @@ _LOOK_EVERY = 5
 _LEFT_BEHIND_M = 0.1
 
 
-class JunctionsSettings(CourseSettings):
+class JunctionsSettings(MetricSettings):
     """Junctions."""
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
@@ -29,7 +29,7 @@ class JunctionsSettings(CourseSettings):
                 f"course junctions: world {plan.name} has no streets that meet", do="choose one with streets"
             )
 
-    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:
         """The course."""
         plan = simulation.plan
         self.require(plan, behaviours)

@@ -6,11 +6,11 @@ from typing import Annotated
 from pydantic import Field
 
 from behaviors.metrics.mean import MEASURE_EVERY, Mean
-from behaviors.metrics.task_metric import DISTANCE_ERROR, LEAST_SPEED_M_S, Course, CourseSettings, Findings
+from behaviors.metrics.task_metric import DISTANCE_ERROR, LEAST_SPEED_M_S, Findings, MetricSettings, TaskMetric
 from hal.simulation import Pose, Simulation
 
 
-class LapsSettings(CourseSettings):
+class LapsSettings(MetricSettings):
     """Laps."""
 
     wanted_m: Annotated[float, Field(gt=0, le=5)]
@@ -20,7 +20,7 @@ class LapsSettings(CourseSettings):
         """Return the laps of a drive that makes 0.1 m/s along walls."""
         return LEAST_SPEED_M_S * duration_s / simulation.lap_m
 
-    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
         """The course."""
         return Laps(self, simulation, behaviours[0])
 

@@ -7,14 +7,14 @@ from pydantic import Field
 
 from behaviors.metrics.angle_about import AngleAbout
 from behaviors.metrics.mean import MEASURE_EVERY, Mean
-from behaviors.metrics.task_metric import DISTANCE_ERROR, Course, CourseSettings, Findings
+from behaviors.metrics.task_metric import DISTANCE_ERROR, Findings, MetricSettings, TaskMetric
 from hal.settings import SettingsError
-from hal.simulation import Pose, Post, Simulation, WorldPlan
+from hal.simulation import Pose, SimulatedPost, Simulation, WorldPlan
 
 Distance = Annotated[float, Field(gt=0, le=5)]
 
 
-class RoundsSettings(CourseSettings):
+class RoundsSettings(MetricSettings):
     """Rounds; distances from the robot's centre to the face of the post."""
 
     wanted_m: Distance
@@ -31,7 +31,7 @@ class RoundsSettings(CourseSettings):
                 do="choose one with a single one",
             )
 
-    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
         """The course."""
         plan = simulation.plan
         self.require(plan, behaviours)
@@ -44,7 +44,7 @@ class Rounds:
     unit = "rounds"
     stranded = False
 
-    def __init__(self, settings: RoundsSettings, post: Post, behaviour: str) -> None:
+    def __init__(self, settings: RoundsSettings, post: SimulatedPost, behaviour: str) -> None:
         self.behaviour = behaviour
         self._settings = settings
         self._radius_m = post.radius_m

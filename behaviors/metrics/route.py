@@ -16,9 +16,9 @@ from behaviors.metrics.task_metric import (
     JUNCTIONS,
     LATERAL_DEVIATION,
     RIGHT,
-    Course,
-    CourseSettings,
     Findings,
+    MetricSettings,
+    TaskMetric,
     WayAhead,
 )
 from hal.settings import SettingsError
@@ -29,7 +29,7 @@ _LOOK_EVERY = 5
 _LEFT_BEHIND_M = 0.1
 
 
-class RouteSettings(CourseSettings):
+class RouteSettings(MetricSettings):
     """Route."""
 
     decisions: Annotated[int, Field(ge=4, le=64)] = 8
@@ -50,7 +50,7 @@ class RouteSettings(CourseSettings):
             )
         self.route_in(plan, behaviours)
 
-    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
         """The course; chance decides nothing of it, or another route would be examined than was taught."""
         plan = simulation.plan
         self.require(plan, behaviours)

@@ -23,7 +23,7 @@ RIGHT = "junctions right"
 """How many of them through the side that was asked for."""
 
 
-class Course(Protocol):
+class TaskMetric(Protocol):
     """Watches one drive from above: says what is wanted, and measures how well it is done."""
 
     @property
@@ -78,7 +78,7 @@ class WayAhead(NamedTuple):
 
 
 @runtime_checkable
-class RouteCourse(Course, Protocol):
+class RouteMetric(TaskMetric, Protocol):
     """A course along a route: what is right at a junction is said to the level that chooses among behaviours."""
 
     @property
@@ -92,7 +92,7 @@ class RouteCourse(Course, Protocol):
         ...
 
 
-class CourseSettings(KindSettings):
+class MetricSettings(KindSettings):
     """Base of the settings of every course: a class named after its file in this folder, which is the kind."""
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
@@ -106,5 +106,5 @@ class CourseSettings(KindSettings):
         return 0.0
 
     @abstractmethod
-    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:
         """The course in a simulation. Raises hal.settings.SettingsError as `require` does."""

@@ -3,18 +3,18 @@
 import math
 import random
 
-from behaviors.metrics.task_metric import LEAST_SPEED_M_S, Course, CourseSettings, Findings
+from behaviors.metrics.task_metric import LEAST_SPEED_M_S, Findings, MetricSettings, TaskMetric
 from hal.simulation import Pose, Simulation
 
 
-class WaySettings(CourseSettings):
+class WaySettings(MetricSettings):
     """Way."""
 
     def least_progress(self, simulation: Simulation, duration_s: float) -> float:  # noqa: ARG002 - as in other courses
         """Return the way of a drive at 0.1 m/s, in m."""
         return LEAST_SPEED_M_S * duration_s
 
-    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:  # noqa: ARG002
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
         """The course."""
         return Way(simulation.pose, behaviours[0])
 

@@ -11,8 +11,8 @@ from rich.progress import Progress
 
 from hal.robot_settings import load_robot
 from kurt2rt.checks.bench.report import as_json, look_at_machine, print_report
-from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, Subject
-from kurt2rt.checks.bench.suite import FULL, QUICK, Bench, run_suite
+from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, RobotUnderTest
+from kurt2rt.checks.bench.suite import FULL, QUICK, BenchName, run_suite
 from kurt2rt.cli.json_output import AsJson, JsonFile, require_json_file
 from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_settings import load_task
@@ -24,8 +24,8 @@ def bench(
         bool, typer.Option("--quick", help="Measure less, in under a minute; rare lateness may hide.")
     ] = False,
     only: Annotated[
-        str, typer.Option(metavar="NAME,...", help=f"Measure only these: {', '.join(Bench)}.", show_default=False)
-    ] = ",".join(Bench),
+        str, typer.Option(metavar="NAME,...", help=f"Measure only these: {', '.join(BenchName)}.", show_default=False)
+    ] = ",".join(BenchName),
     json: AsJson = False,
     folder: Annotated[
         Path, typer.Option(exists=True, file_okay=False, writable=True, help="A folder on the disk to measure.")
@@ -60,7 +60,7 @@ def bench(
     settings = load_robot()
     task = load_task("wall_following")
     stage = Kurt2SimulationFactory(settings)
-    subject = Subject(settings, task, lambda purpose: stage.open(task.teaching.world, SEED, purpose))
+    subject = RobotUnderTest(settings, task, lambda purpose: stage.open(task.teaching.world, SEED, purpose))
     # A bar that redraws itself would do so in the middle of what is measured.
     with (
         Progress(console=Console(stderr=True), auto_refresh=False) as progress,
@@ -81,11 +81,11 @@ def bench(
         file.write_text(as_json(results, machine) + "\n", encoding="utf-8")
 
 
-def _chosen(names: str) -> frozenset[Bench]:
+def _chosen(names: str) -> frozenset[BenchName]:
     chosen = {name.strip() for name in names.split(",")}
-    unknown = sorted(chosen - set(Bench))
+    unknown = sorted(chosen - set(BenchName))
     if unknown:
         raise typer.BadParameter(
-            f"there is no {', '.join(unknown)}; give some of {', '.join(Bench)}", param_hint="--only"
+            f"there is no {', '.join(unknown)}; give some of {', '.join(BenchName)}", param_hint="--only"
         )
-    return frozenset(map(Bench, chosen))
+    return frozenset(map(BenchName, chosen))

@@ -19,15 +19,15 @@ from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings, load_robot
 from hal.settings import SettingsError
 from kurt2rt.checks.commission.checklist import STEPS, Checklist, barring, open_steps, step_named, steps_to_take
-from kurt2rt.checks.commission.console_operator import TypingPerson
+from kurt2rt.checks.commission.console_operator import ConsoleOperator
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.listener import Listener
-from kurt2rt.checks.commission.operator import LeftError
+from kurt2rt.checks.commission.operator import AbortedError
 from kurt2rt.checks.commission.progress import Progress, load_progress
 from kurt2rt.checks.commission.report import as_text, print_report
 from kurt2rt.checks.commission.robot_file import write_robot_file
-from kurt2rt.checks.commission.step import Outcome, Step
-from kurt2rt.checks.commission.test_stand import Bench
+from kurt2rt.checks.commission.step import CommissionStep, StepOutcome
+from kurt2rt.checks.commission.test_stand import TestStand
 from kurt2rt.cli.options import RobotName
 from kurt2rt.platform.durable_files import write_durably
 from kurt2rt.platform.timerfd_clock import TimerfdClock
@@ -122,7 +122,7 @@ def commission(
     write_durably(report, as_text(taken, STEPS))
     _tell(console, f"all that was measured: {report}")
     _conclude(console, taken, base, target)
-    if any(taken.steps[step.name].outcome is Outcome.FAILED for step in chosen if step.name in taken.steps):
+    if any(taken.steps[step.name].outcome is StepOutcome.FAILED for step in chosen if step.name in taken.steps):
         raise typer.Exit(1)
 
 
@@ -131,15 +131,17 @@ async def _walk(
     base: RobotSettings,
     progress: Progress,
     path: Path,
-    chosen: Sequence[Step],
-    skipped: Sequence[Step],
+    chosen: Sequence[CommissionStep],
+    skipped: Sequence[CommissionStep],
     who: str,
     console: Console,
 ) -> Progress:
-    person = TypingPerson(sys.stdin, console)
+    person = ConsoleOperator(sys.stdin, console)
     listener = Listener(open_bus(bus), load_codec(base.can.database))
     with TimerfdClock() as clock:
-        bench = Bench(base, lambda settings: Kurt2(settings, open_bus(bus)), listener, clock, person, second_guard=True)
+        bench = TestStand(
+            base, lambda settings: Kurt2(settings, open_bus(bus)), listener, clock, person, second_guard=True
+        )
         checklist = Checklist(bench, progress, path, who, _now)
         stopped = True
         async with anyio.create_task_group() as tasks:
@@ -147,7 +149,7 @@ async def _walk(
             with bench:  # inside of the scope: whatever ends it, the wheels are braked first
                 try:
                     await checklist.walk(chosen, skipped)
-                except LeftError:
+                except AbortedError:
                     _tell(console, "left; the same command goes on from here")
                 stopped = False  # not by a signal
             tasks.cancel_scope.cancel()
@@ -207,7 +209,7 @@ def _progress(path: Path, fresh: Progress, anew: bool) -> Progress:
     return kept.model_copy(update={"bus": fresh.bus})
 
 
-def _named(names: str | None, option: str) -> list[Step]:
+def _named(names: str | None, option: str) -> list[CommissionStep]:
     words = [] if names is None else [word.strip() for word in names.split(",") if word.strip()]
     try:
         return [step_named(word) for word in words]

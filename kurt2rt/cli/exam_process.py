@@ -14,7 +14,7 @@ import anyio
 from behaviors.metrics.route import RouteSettings
 from hal.robot_settings import load_robot
 from hal.settings import SettingsError
-from kurt2rt.channel.protocol.exam_status import EXAM, ExamStanding, WorldVerdict
+from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus, WorldVerdict
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams
@@ -38,7 +38,7 @@ def main(arguments: list[str]) -> None:
     try:
         _examine(Path(knowledge), Path(picture), robot_name, task_name, int(seed))
     except (KnowledgeError, SettingsError, OSError) as error:
-        _tell(ExamStanding(False, 0.0, "", trouble=" ".join(str(error).split())))
+        _tell(ExamStatus(False, 0.0, "", trouble=" ".join(str(error).split())))
 
 
 def _examine(knowledge: Path, picture: Path, robot_name: str, task_name: str, seed: int) -> None:
@@ -59,7 +59,7 @@ def _examine(knowledge: Path, picture: Path, robot_name: str, task_name: str, se
         share = min(1.0, (len(drives) - 1 + done_s / whole_s) / (2 * len(worlds)))
         if share - told >= _TELL_EACH_SHARE:
             told = share
-            _tell(ExamStanding(True, share, what))
+            _tell(ExamStatus(True, share, what))
 
     async def run() -> tuple[WorldResult, ...]:
         return await run_exams(stage, robot, task, events, worlds, seed=seed, report=report)
@@ -75,10 +75,10 @@ def _examine(knowledge: Path, picture: Path, robot_name: str, task_name: str, se
     )
     passed, judged = (sum(counts) for counts in zip(*((each.passed, each.judged) for each in verdicts), strict=True))
     unjudged = f"; {len(verdicts) - judged} not judged" if judged < len(verdicts) else ""
-    _tell(ExamStanding(False, 1.0, f"Passed in {passed} of {judged} worlds{unjudged}.", verdicts))
+    _tell(ExamStatus(False, 1.0, f"Passed in {passed} of {judged} worlds{unjudged}.", verdicts))
 
 
-def _tell(standing: ExamStanding) -> None:
+def _tell(standing: ExamStatus) -> None:
     print(json.dumps(EXAM.plain_of(standing)), flush=True)
 
 

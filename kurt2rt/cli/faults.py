@@ -14,7 +14,7 @@ from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_settings import load_task
 
 if TYPE_CHECKING:
-    from kurt2rt.checks.faults.suite import Trial
+    from kurt2rt.checks.faults.suite import FaultTrial
 
 
 def faults(
@@ -67,10 +67,10 @@ def faults(
     with Progress(console=Console(stderr=True)) as progress:
         bar = progress.add_task("faults", total=len(targets) * len(kinds) * seeds)
 
-        def on_done(trial: "Trial") -> None:
+        def on_done(trial: "FaultTrial") -> None:
             progress.update(bar, advance=1, description=str(trial.case))
 
-        async def run() -> "list[Trial]":
+        async def run() -> "list[FaultTrial]":
             cases = cases_of(chosen, targets, kinds)
             return await try_cases(
                 FaultRigFactory(settings), cases, chosen, settings, task, range(1, seeds + 1), on_done

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from kurt2rt.runs.recording.recover import NothingWholeError, copy_whole
+from kurt2rt.runs.recording.recover import NothingRecoverableError, copy_whole
 from kurt2rt.runs.recording.run_folder import find_run, segments_in
 from kurt2rt.service.settings import load_service
 
@@ -36,7 +36,7 @@ def recover(
     for segment in segments:
         try:
             torn = copy_whole(segment, folder / segment.name)
-        except NothingWholeError as error:
+        except NothingRecoverableError as error:
             if len(segments) == 1:
                 raise
             typer.echo(f"{error}; not copied")

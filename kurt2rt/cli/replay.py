@@ -15,12 +15,12 @@ from kurt2rt.cli.tables import console_of
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.platform.text_table import TextTable, print_whole
 from kurt2rt.runs.recording.run_folder import find_run
-from kurt2rt.runs.replay.counterfactual import Counterfactual, Stretch, counterfactual
-from kurt2rt.runs.replay.counterfactual_policy import Answer, shadow_of
+from kurt2rt.runs.replay.counterfactual import Counterfactual, DifferingStretch, counterfactual
+from kurt2rt.runs.replay.counterfactual_policy import PolicyAnswer, shadow_of
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import ReplayedTick
 from kurt2rt.runs.replay.run import Run
-from kurt2rt.runs.replay.verify import Verdict, verify
+from kurt2rt.runs.replay.verify import ReplayVerdict, verify
 from kurt2rt.service.settings import load_service
 
 _TELL_EVERY_TICKS = 100
@@ -82,7 +82,7 @@ def _verify(run: Run, *, as_json: bool) -> None:
         raise typer.Exit(1)
 
 
-def _verdict_in_words(run: Run, verdict: Verdict) -> Iterator[str]:
+def _verdict_in_words(run: Run, verdict: ReplayVerdict) -> Iterator[str]:
     yield _title(run)
     if verdict.same:
         yield (
@@ -103,7 +103,7 @@ def _verdict_in_words(run: Run, verdict: Verdict) -> Iterator[str]:
         yield verdict.trouble
 
 
-def _verdict_as_json(run: Run, verdict: Verdict) -> dict[str, Any]:
+def _verdict_as_json(run: Run, verdict: ReplayVerdict) -> dict[str, Any]:
     return {
         "run": run.name,
         "task": run.head.task,
@@ -172,7 +172,7 @@ def _print_stretches(console: Console, found: Counterfactual, limit: int) -> Non
     print_whole(console, table)
 
 
-def _row(stretch: Stretch) -> tuple[str, ...]:
+def _row(stretch: DifferingStretch) -> tuple[str, ...]:
     at = "" if stretch.level == BASIC else f" ({stretch.level} level)"
     return (
         f"{stretch.from_s:.2f}",
@@ -184,7 +184,7 @@ def _row(stretch: Stretch) -> tuple[str, ...]:
     )
 
 
-def _said(answer: Answer) -> str:
+def _said(answer: PolicyAnswer) -> str:
     return "asks" if answer.rla is None else f"{answer.action} by {answer.rla.title}"
 
 
@@ -214,7 +214,7 @@ def _counterfactual_as_json(run: Run, knowledge: Path, found: Counterfactual) ->
     }
 
 
-def _answer_as_json(answer: Answer) -> dict[str, Any]:
+def _answer_as_json(answer: PolicyAnswer) -> dict[str, Any]:
     nearest = answer.nearest
     return {
         "action": answer.action,

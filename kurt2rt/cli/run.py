@@ -168,12 +168,12 @@ def run(
         from hal.robot_settings import load_robot
         from kurt2rt.cli.scripted_file import own_file, require_agreement
         from kurt2rt.cli.terminal_screen import TerminalScreen
-        from kurt2rt.core.decision.active_behaviour import Wanted
+        from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
         from kurt2rt.core.rla.outcome import CommandRefusedError
         from kurt2rt.core.rla.outcome_text import text_of
         from kurt2rt.core.task_settings import load_task
         from kurt2rt.runs.recording.live_view import parse_address
-        from kurt2rt.service.program import Orders, RobotProgram
+        from kurt2rt.service.program import RobotProgram, RunOptions
         from kurt2rt.service.settings import load_service
         from kurt2rt.teacher.scripted.channel_teacher import two_levels
 
@@ -213,10 +213,10 @@ def run(
         raise typer.BadParameter(two_levels(taught), param_hint="--auto")
     if behaviour is not None:
         try:
-            Wanted(taught.behaviours).pursue(behaviour)
+            ActiveBehaviour(taught.behaviours).pursue(behaviour)
         except CommandRefusedError as error:
             raise typer.BadParameter(text_of(error.outcome), param_hint="--behaviour") from error
-    orders = Orders(
+    orders = RunOptions(
         bus=robot,
         settings=settings,
         as_service=service,

@@ -9,7 +9,7 @@ from rich.console import Console
 from hal.settings import find_config
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.service.settings import load_service
-from kurt2rt.service.systemd.access import Wanted, closed_to_others, to_hand_over
+from kurt2rt.service.systemd.access import RequiredAccess, closed_to_others, to_hand_over
 from kurt2rt.service.systemd.install import install as install_unit
 from kurt2rt.service.systemd.install import require_free
 from kurt2rt.service.systemd.install import uninstall as uninstall_unit
@@ -128,7 +128,7 @@ def uninstall(name: UnitName = "kurt2rt") -> None:
     typer.echo(f"what was taught stays in {STATE / name}")
 
 
-def _unit(robot: str, settings: str, name: str, *, page: bool) -> tuple[Unit, Wanted]:
+def _unit(robot: str, settings: str, name: str, *, page: bool) -> tuple[Unit, RequiredAccess]:
     """The unit, and what it needs to get at. Raises SettingsError, UnitError."""
     require_name(name)
     found = find_config("runtime", settings)
@@ -139,7 +139,7 @@ def _unit(robot: str, settings: str, name: str, *, page: bool) -> tuple[Unit, Wa
     files = [found.absolute(), _as_the_service_finds("robot", loaded.robot, state)]
     files.append(_as_the_service_finds("task", loaded.task, state))
     folders = (Path(loaded.knowledge).parent, *map(Path, (loaded.teachers, loaded.devices, loaded.recordings)))
-    wanted = Wanted(
+    wanted = RequiredAccess(
         tuple(each for each in files if not each.is_relative_to(state)),
         tuple(each for each in sorted(set(folders)) if each.is_absolute() and not each.is_relative_to(state)),
     )

@@ -15,9 +15,9 @@ from hal.bus import open_bus
 from hal.robot_settings import load_robot
 from hal.settings import SettingsError
 from kurt2rt.cli.options import RobotName, world_option
-from kurt2rt.platform.signal_handlers import Hearing
+from kurt2rt.platform.signal_handlers import SignalHandlers
 from kurt2rt.platform.switch_interval import short_turns
-from kurt2rt.service.console_thread import Printer
+from kurt2rt.service.console_thread import ConsoleThread
 
 _ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 _LOOK_S = 0.05
@@ -77,7 +77,7 @@ def sim(
             "nobody outside this program hears a virtual bus; give shared:NAME", param_hint="--bus"
         )
     # Here, because a robot carries no simulator: the packages it needs are an extra.
-    from simbridge.sim_console import Desk, News, StatusLine, TypedLines
+    from simbridge.sim_console import News, SimConsole, StatusLine, TypedLines
     from simbridge.simulated_world import Kurt2World
     from simbridge.standalone import StandaloneRobot
     from simbridge.worlds.world_loading import load_world
@@ -96,8 +96,8 @@ def sim(
     with ExitStack() as ending:
         end = _Wish()
         # Started in the background it would be halted where it looks what was typed, but for SIGTTIN.
-        ending.enter_context(Hearing({**dict.fromkeys(_ENDING, end.note), signal.SIGTTIN: signal.SIG_IGN}))
-        printer = ending.enter_context(Printer())
+        ending.enter_context(SignalHandlers({**dict.fromkeys(_ENDING, end.note), signal.SIGTTIN: signal.SIG_IGN}))
+        printer = ending.enter_context(ConsoleThread())
 
         def say(text: str) -> None:
             printer.put(lambda: tell(text))
@@ -107,7 +107,9 @@ def sim(
         ending.enter_context(short_turns())
         ending.enter_context(standalone)
         simulation = standalone.simulation
-        desk = Desk(standalone, ground_plan, Kurt2World(standalone.robot, ground_plan, settings.geometry, simulation))
+        desk = SimConsole(
+            standalone, ground_plan, Kurt2World(standalone.robot, ground_plan, settings.geometry, simulation)
+        )
         keyboard, news, line = TypedLines(sys.stdin), News(standalone), StatusLine(standalone)
         ends_at_s = math.inf if seconds is None else time.monotonic() + seconds
         status_at_s = time.monotonic() + _STATUS_S

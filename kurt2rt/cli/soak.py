@@ -18,8 +18,8 @@ from kurt2rt.checks.soak.settings import load_soak
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.platform.malloc import give_back_large_pieces
-from kurt2rt.platform.signal_handlers import Hearing
+from kurt2rt.platform.malloc import pin_mmap_threshold
+from kurt2rt.platform.signal_handlers import SignalHandlers
 from kurt2rt.runs.recording.recording import Recording
 from kurt2rt.runs.recording.run_files import budget_of
 from kurt2rt.service.settings import load_service
@@ -76,10 +76,10 @@ def soak(
     from kurt2rt.checks.soak.picture import draw_soak
     from kurt2rt.checks.soak.report import as_json as soak_as_json
     from kurt2rt.checks.soak.report import print_report
-    from kurt2rt.checks.soak.soak_run import Day
+    from kurt2rt.checks.soak.soak_run import SoakRun
     from simbridge.faults.long_run_rig import LongRunRig
 
-    give_back_large_pieces()  # as the robot's program does
+    pin_mmap_threshold()  # as the robot's program does
     settings = load_soak(day)
     table, task = load_faults(settings.faults), load_task(settings.task)
     robot = load_robot(table.robot)
@@ -90,7 +90,7 @@ def soak(
     recording = Recording(out / _RUNS, budget_of(settings.recordings_mb), "sim")
     place = LongRunRig(robot, settings.world, seed)
     try:
-        running = Day(place, settings, table, robot, task, service, recording, seed=seed, by_module=by_module)
+        running = SoakRun(place, settings, table, robot, task, service, recording, seed=seed, by_module=by_module)
         columns = (*Progress.get_default_columns()[:-1], TimeElapsedColumn(), TimeRemainingColumn())
         with Progress(*columns, console=Console(stderr=True)) as progress:
             bar = progress.add_task("soak", total=hours * 3600.0)
@@ -110,14 +110,14 @@ def soak(
         raise typer.Exit(1)
 
 
-def _first_ctrl_c(end: Callable[[], None]) -> Hearing:
+def _first_ctrl_c(end: Callable[[], None]) -> SignalHandlers:
     """Who hears the first one; the second one does what it did before."""
 
     def hear(_number: int, _frame: FrameType | None) -> None:
         hearing.give_back()
         end()
 
-    hearing = Hearing({signal.SIGINT: hear})
+    hearing = SignalHandlers({signal.SIGINT: hear})
     return hearing
 
 

@@ -11,7 +11,7 @@ from kurt2rt.cli.json_output import print_json
 from kurt2rt.platform.text_table import print_whole
 
 if TYPE_CHECKING:
-    from kurt2rt.experiments.study.table import Sheet
+    from kurt2rt.experiments.study.table import Table
 
 
 _UNLIMITED = 100_000
@@ -26,7 +26,7 @@ def console_of() -> Console:
 
 
 def print_study(
-    sheets: "Iterable[Sheet]", reasons_not_to_judge: Iterable[str], report: Path, *, as_json: bool = False
+    sheets: "Iterable[Table]", reasons_not_to_judge: Iterable[str], report: Path, *, as_json: bool = False
 ) -> None:
     """Its tables, why some of it was not judged, and where the report is."""
     if as_json:
@@ -40,6 +40,6 @@ def print_study(
     print_whole(console, f"report  {report}")
 
 
-def tables_of(sheets: "Iterable[Sheet]") -> list[dict[str, Any]]:
+def tables_of(sheets: "Iterable[Table]") -> list[dict[str, Any]]:
     """Return tables for JSON: cells are texts, as they are printed."""
     return [{"title": each.title, "columns": each.columns, "rows": each.rows, "note": each.note} for each in sheets]

@@ -9,7 +9,7 @@ from rich.console import Console
 from hal.health import Health
 from kurt2rt.cli.browser import has_desktop, open_link
 from kurt2rt.cli.live_screen import LiveScreen
-from kurt2rt.service.post_tick import Status
+from kurt2rt.service.post_tick import ProgramStatus
 from kurt2rt.service.status_line import alarms, doing, guarded, numbers, status_line, timed_doing, troubles
 from kurt2rt.teacher.page.served_pages import NO_PAGES, PageAddress, ServedPages, of_line
 
@@ -60,7 +60,7 @@ class TerminalScreen:
         if self._live is not None:
             self.tell(text, "green")
 
-    def show(self, status: Status, health: Health, trouble: str) -> None:
+    def show(self, status: ProgramStatus, health: Health, trouble: str) -> None:
         """Show the status. `trouble`: of simulator and CAN log; empty where neither has any."""
         more = [trouble] if trouble else []
         if self._live is not None:

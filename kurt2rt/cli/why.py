@@ -17,9 +17,9 @@ from kurt2rt.cli.tables import console_of
 from kurt2rt.cli.why_live import ask_why
 from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.platform.text_table import print_whole
-from kurt2rt.runs.explain.counterfactual import Tip
+from kurt2rt.runs.explain.counterfactual import SensorCounterfactual
 from kurt2rt.runs.explain.facts import DecisionFacts
-from kurt2rt.runs.explain.from_run import Explained, explain_run
+from kurt2rt.runs.explain.from_run import ExplainedMoment, explain_run
 from kurt2rt.runs.explain.terminal import render_timeline, render_why
 from kurt2rt.runs.explain.timeline import timeline_of
 from kurt2rt.runs.recording.entries import TickEntry
@@ -221,7 +221,13 @@ def _device(service: ServiceSettings, name: str) -> Device:
 
 
 def _draw(
-    facts: DecisionFacts, found: tuple[Tip, ...], robot: RobotSettings, where: str, picture: Path, *, as_json: bool
+    facts: DecisionFacts,
+    found: tuple[SensorCounterfactual, ...],
+    robot: RobotSettings,
+    where: str,
+    picture: Path,
+    *,
+    as_json: bool,
 ) -> None:
     # Not at the top: matplotlib is an extra, and a robot does without it.
     from kurt2rt.runs.explain.picture import draw_why
@@ -230,7 +236,7 @@ def _draw(
     _say_where(picture, as_json=as_json)
 
 
-def _explain(run: Run, at_s: float) -> Explained:
+def _explain(run: Run, at_s: float) -> ExplainedMoment:
     columns = (TextColumn("replaying"), BarColumn(), TextColumn("{task.completed:.0f} of {task.total:.0f} s"))
     with Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True), transient=True) as progress:
         bar = progress.add_task("", total=at_s)

@@ -10,7 +10,7 @@ from kurt2rt.channel.security.pairing import Device
 from kurt2rt.cli.no_robot import no_robot
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.runs.explain.counterfactual import Tip, tips
+from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, tips
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.answer import NoAnswerError
 from kurt2rt.teacher.client.client import ANSWER_WITHIN_S, TeacherClient
@@ -18,17 +18,17 @@ from kurt2rt.teacher.client.client import ANSWER_WITHIN_S, TeacherClient
 _FIRST_TICK_S = 0.1
 
 
-class Asked(NamedTuple):
+class LiveQuestion(NamedTuple):
     """What a robot said of its newest decision."""
 
     facts: DecisionFacts
-    tips: tuple[Tip, ...]
+    tips: tuple[SensorCounterfactual, ...]
     """Of the RLAs that it told of, the nearest ones; none where its task is not known here."""
 
 
 def ask_why(
     device: Device, host: str, port: int, robot: RobotSettings, *, patience_s: float = ANSWER_WITHIN_S
-) -> Asked:
+) -> LiveQuestion:
     """Ask over the teacher's channel, as one who does not teach. Raises NoAnswerError, CredentialsError."""
 
     async def ask() -> DecisionFacts:
@@ -42,10 +42,10 @@ def ask_why(
         facts = anyio.run(ask)
     except NoAnswerError as error:
         raise no_robot(host, port, device.name) from error
-    return Asked(facts, _tips_of(facts, robot))
+    return LiveQuestion(facts, _tips_of(facts, robot))
 
 
-def _tips_of(facts: DecisionFacts, robot: RobotSettings) -> tuple[Tip, ...]:
+def _tips_of(facts: DecisionFacts, robot: RobotSettings) -> tuple[SensorCounterfactual, ...]:
     """Only those with which another RLA answers: whether the robot would ask, one farther off may decide."""
     try:
         definition = load_situation(load_task(facts.task).situation, robot.infrared.names)

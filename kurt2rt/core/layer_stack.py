@@ -3,13 +3,13 @@
 from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.decision.decision import Cause, Decision, standing
 from kurt2rt.core.decision.level import Level
-from kurt2rt.core.decision.plan_step import Course
+from kurt2rt.core.decision.plan_step import GoalStatus
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.planning.navigator import Navigator
 from kurt2rt.core.rla.rla import MID
 
-_STANDS: dict[Course | None, Cause] = {Course.ARRIVED: Cause.AT_GOAL, Course.NO_WAY: Cause.NO_WAY}
+_STANDS: dict[GoalStatus | None, Cause] = {GoalStatus.ARRIVED: Cause.AT_GOAL, GoalStatus.NO_WAY: Cause.NO_WAY}
 """Why a robot stands that seeks a goal, whatever its mid level commands."""
 
 

@@ -10,7 +10,7 @@ import math
 _GRID = 2.0**32
 
 
-def steady(value: float) -> float:
+def round_portable(value: float) -> float:
     """A value of some thousand at most, rounded to 2e-10: what a last bit could change is rounded away."""
     return math.floor(value * _GRID + 0.5) / _GRID
 

@@ -12,23 +12,23 @@ from kurt2rt.core.decision.decision import Cause, Decision, MidDecision, standin
 from kurt2rt.core.decision.level import Level
 from kurt2rt.core.decision.standing import DRIVES, BumperWatch, Standing, StandingWatch
 from kurt2rt.core.expectations.surprise import Surprise
-from kurt2rt.core.expectations.tracker import Expecting
-from kurt2rt.core.mid.usage_counter import MidUses
+from kurt2rt.core.expectations.tracker import ExpectationTracker
+from kurt2rt.core.mid.usage_counter import MidUsageCounter
 from kurt2rt.core.perception.perception import Perception, Situation
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.rla import BASIC, Phase, Rla, TeachingEvent
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
-from kurt2rt.core.teaching.command_handler import School
+from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import BeAt, Command, CommandResult, Correct, Drive, Resume, Teach, Watch
 from kurt2rt.core.teaching.inbox import TeacherInbox
-from kurt2rt.core.teaching.system_events import Input, PressesForgotten, SetDown, SpeedChanged
-from kurt2rt.platform.ledger import Ledger, Stage
+from kurt2rt.core.teaching.system_events import Input, PairingRenewed, RobotRepositioned, SpeedChanged
+from kurt2rt.platform.ledger import Stage, TickTimer
 
 _TELL_KNOWLEDGE_TICKS = 100
 """How often a record holds all that is known, at least."""
 
 
-class LessonKeeper(Protocol):
+class EventStore(Protocol):
     """Where teaching events go to be kept; answers at once and works outside the tick."""
 
     @property
@@ -43,7 +43,7 @@ class LessonKeeper(Protocol):
 
 @dataclass(slots=True)
 class InMemoryEventStore:
-    """Events kept in a list, in submission order (LessonKeeper)."""
+    """Events kept in a list, in submission order (EventStore)."""
 
     events: list[TeachingEvent] = field(default_factory=list)
     trouble: str | None = None
@@ -103,16 +103,16 @@ class Tick:
         robot: Robot,
         perception: Perception,
         level: Level,
-        school: School,
+        school: CommandHandler,
         inbox: TeacherInbox,
-        keeper: LessonKeeper,
+        keeper: EventStore,
         statistics: StatisticsCounter,
-        ledger: Ledger,
+        ledger: TickTimer,
         *,
         now: Callable[[], float],
         stale_infrared_s: float,
         circumstances: CircumstancesPerception | None = None,
-        expecting: Expecting | None = None,
+        expecting: ExpectationTracker | None = None,
         tolerates_stalls: bool = False,
         asks_when_held: bool = True,
     ) -> None:
@@ -131,7 +131,7 @@ class Tick:
         self._inbox = inbox
         self._keeper = keeper
         self._statistics = statistics
-        self._mid_uses = MidUses(statistics)
+        self._mid_uses = MidUsageCounter(statistics)
         self._expecting = expecting
         self._ledger = ledger
         self._now = now
@@ -171,13 +171,13 @@ class Tick:
             if isinstance(command, Watch | Drive):
                 self._school.follow(command, tick)
                 continue
-            if isinstance(command, PressesForgotten):
+            if isinstance(command, PairingRenewed):
                 self._school.authority.forget(command.teacher)
                 continue
             if isinstance(command, SpeedChanged):
                 self._school.authority.speed = command.times
                 continue
-            if isinstance(command, SetDown):
+            if isinstance(command, RobotRepositioned):
                 self._set_down()
                 continue
             new = not self._school.has_taken(command.command_id)

@@ -7,7 +7,7 @@ from behaviors.repertoire import load_repertoire
 from behaviors.repertoire_settings import TaskAction, TaughtAction
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError, find_beside
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.mid.place import PlaceSettings
 from kurt2rt.core.mid.settings import load_mid
 from kurt2rt.core.rla.rla import TeachingEvent
@@ -41,7 +41,7 @@ class _Building:
                 f"a repertoire cannot be a part of itself: {way}", do="give that task another repertoire"
             )
         task = load_task(action.task)
-        wanted, mid = Wanted(task.behaviours), None
+        wanted, mid = ActiveBehaviour(task.behaviours), None
         if isinstance(action, TaughtAction):
             wanted.pursue(action.behaviour)
         elif task.mid is not None:

@@ -5,9 +5,9 @@ from collections.abc import Iterable
 from behaviors.repertoire import Repertoire
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.basic.epsilon_greedy import Choice
+from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.basic.taught_action import TaughtSystem
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.layer_stack import LayerStack
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.mid.settings import MidSettings
@@ -24,7 +24,7 @@ def build_taught_system(
     robot: RobotSettings,
     lessons: Iterable[TeachingEvent],
     repertoire: Repertoire,
-    wanted: Wanted,
+    wanted: ActiveBehaviour,
     mid: MidSettings | None,
 ) -> TaughtSystem:
     """What `lessons` have taught of a task, as one action.
@@ -43,7 +43,7 @@ def build_taught_system(
     system.apply_all(lessons)
     # Nothing is learnt here: among equals the newest answers, which was tried because those before it had sunk.
     settings = task.reinforcement
-    choice = Choice(lambda _: 0.0, epsilon=0.0, hold_ticks=round(settings.hold_s / period_s), seed=settings.seed)
+    choice = EpsilonGreedy(lambda _: 0.0, epsilon=0.0, hold_ticks=round(settings.hold_s / period_s), seed=settings.seed)
     perception = Perception(definition, sensors)
     basic = BasicLevel(system, repertoire, round(learning.minimum_action_s / period_s), wanted, choice)
     if mid is None:

@@ -21,7 +21,7 @@ class Stage(IntEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Share:
+class Percentiles:
     """Microseconds that something took, over the ticks kept."""
 
     median_us: float
@@ -29,15 +29,15 @@ class Share:
     worst_us: float
 
 
-def share_of(took_ns: Sequence[int] | np.ndarray[tuple[int, ...], np.dtype[np.int64]]) -> Share:
+def share_of(took_ns: Sequence[int] | np.ndarray[tuple[int, ...], np.dtype[np.int64]]) -> Percentiles:
     """Median, p99 and worst of times in nanoseconds; zeros where there are none."""
     if len(took_ns) == 0:
-        return Share(0.0, 0.0, 0.0)
+        return Percentiles(0.0, 0.0, 0.0)
     median, p99, worst = np.percentile(took_ns, (50, 99, 100)) / 1000.0
-    return Share(float(median), float(p99), float(worst))
+    return Percentiles(float(median), float(p99), float(worst))
 
 
-class Ledger:
+class TickTimer:
     """Time per stage and per tick, lateness and missed ticks, of the last `capacity` ticks."""
 
     def __init__(self, capacity: int = 6000) -> None:
@@ -65,23 +65,23 @@ class Ledger:
         self.ticks += 1
         self._row = self.ticks % self._capacity
 
-    def stage(self, stage: Stage) -> Share:
+    def stage(self, stage: Stage) -> Percentiles:
         """What one stage took."""
         return self._share(np.array(self._stages[stage]))
 
-    def tick(self) -> Share:
+    def tick(self) -> Percentiles:
         """What all stages together took."""
         return self._share(np.sum([np.array(column) for column in self._stages], axis=0))
 
-    def lateness(self) -> Share:
+    def lateness(self) -> Percentiles:
         """How late ticks began."""
         return self._share(np.array(self._lateness))
 
-    def lateness_of_last(self, ticks: int) -> Share:
+    def lateness_of_last(self, ticks: int) -> Percentiles:
         """How late the last so many ticks began, those that are kept and over."""
         kept = min(ticks, self.ticks, self._capacity)
         rows = np.arange(self.ticks - kept, self.ticks) % self._capacity
         return share_of(np.array(self._lateness)[rows])
 
-    def _share(self, nanoseconds: np.ndarray[tuple[int, ...], np.dtype[np.int64]]) -> Share:
+    def _share(self, nanoseconds: np.ndarray[tuple[int, ...], np.dtype[np.int64]]) -> Percentiles:
         return share_of(nanoseconds[: min(self.ticks, self._capacity)])

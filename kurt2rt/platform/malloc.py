@@ -7,7 +7,7 @@ _M_MMAP_THRESHOLD = -3
 _LARGE_BYTES = 128 * 1024
 
 
-def give_back_large_pieces() -> None:
+def pin_mmap_threshold() -> None:
     """Let what is taken in a piece of 128 kB or more leave no gap when it is no more needed, for the whole program.
 
     So the C library begins, too. But with the first large piece that is given back it raises its bound up to that

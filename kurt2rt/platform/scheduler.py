@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Generic, TypeVar
 
 from kurt2rt.platform.clock import Clock
-from kurt2rt.platform.ledger import Ledger
+from kurt2rt.platform.ledger import TickTimer
 
 RecordT = TypeVar("RecordT")
 
@@ -17,7 +17,7 @@ class Scheduler(Generic[RecordT]):
     """
 
     def __init__(
-        self, clock: Clock, run_tick: Callable[[int, float], RecordT], period_s: float, ledger: Ledger
+        self, clock: Clock, run_tick: Callable[[int, float], RecordT], period_s: float, ledger: TickTimer
     ) -> None:
         """`run_tick`: takes the tick's number, from 1, and its time in seconds; returns the tick's record."""
         self._clock = clock

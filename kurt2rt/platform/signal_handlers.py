@@ -10,7 +10,7 @@ Handler = Callable[[int, FrameType | None], object] | signal.Handlers
 with one before."""
 
 
-class Hearing:
+class SignalHandlers:
     """Has signals handled otherwise, as a context manager; at its end they are handled as they were before."""
 
     def __init__(self, handlers: Mapping[signal.Signals, Handler]) -> None:

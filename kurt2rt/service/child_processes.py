@@ -39,7 +39,7 @@ class _Companion:
     trouble: str = ""
 
 
-class Companions:
+class ChildProcesses:
     """Starts kurt2rt commands as processes of their own, looks after them and ends them with this one.
 
     In sessions of their own, so that Ctrl-C reaches the robot first. Their standard input is a pipe from here: it ends

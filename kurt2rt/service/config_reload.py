@@ -14,7 +14,7 @@ Tell = Callable[[str], None]
 """Takes a line for the log; may not wait."""
 
 
-class Reloading:
+class ConfigReloader:
     """Reads the settings when it is asked to; takes what may change, and says of the rest that it waits for a start."""
 
     def __init__(

@@ -10,7 +10,7 @@ _CAPACITY = 200
 _LAST_LINES_S = 1.0
 
 
-class Printer:
+class ConsoleThread:
     """A thread that runs what it is given, in order. When it cannot keep up, what comes is dropped and counted."""
 
     def __init__(self, patience_s: Callable[[float], float] = lambda most_s: most_s) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from kurt2rt.channel.protocol.exam_status import EXAM, NO_EXAM, ExamStanding
+from kurt2rt.channel.protocol.exam_status import EXAM, NO_EXAM, ExamStatus
 from kurt2rt.channel.protocol.schema import WireError
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
@@ -47,7 +47,7 @@ class LiveExam:
             except OSError as error:
                 knowledge.unlink(missing_ok=True)
                 raise KnowledgeError(f"the exam cannot be started ({error})", do="install kurt2rt whole") from error
-            self.standing = ExamStanding(True, 0.0, "the exam begins")
+            self.standing = ExamStatus(True, 0.0, "the exam begins")
             self._reading = threading.Thread(
                 target=self._read, args=(self._process, knowledge, picture), name="exam", daemon=True
             )
@@ -74,7 +74,7 @@ class LiveExam:
     def _read(self, process: "subprocess.Popen[bytes]", knowledge: Path, picture: Path) -> None:
         assert process.stdout is not None
         assert process.stdin is not None
-        verdict: ExamStanding | None = None
+        verdict: ExamStatus | None = None
         try:
             for line in process.stdout:
                 with suppress(WireError, ValueError):  # what a library prints between is no news of the exam

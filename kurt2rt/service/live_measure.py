@@ -6,12 +6,12 @@ from typing import Final
 from behaviors.metrics.eights import EightsSettings
 from behaviors.metrics.laps import LapsSettings
 from behaviors.metrics.rounds import RoundsSettings
-from behaviors.metrics.task_metric import Course, CourseSettings
+from behaviors.metrics.task_metric import MetricSettings, TaskMetric
 from behaviors.metrics.way import WaySettings
 from hal.settings import SettingsError
 from hal.simulation import Simulation
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.teaching.system_events import SetDown
+from kurt2rt.core.teaching.system_events import RobotRepositioned
 from kurt2rt.core.tick import TickRecord
 
 _MEASURED_LIVE: Final = (LapsSettings, RoundsSettings, EightsSettings)
@@ -41,14 +41,14 @@ class LiveMeasure:
 
     def follow(self, record: TickRecord) -> None:
         """Look at the robot, once in a few ticks; call it after each tick."""
-        if any(isinstance(each, SetDown) for each in record.commands):
+        if any(isinstance(each, RobotRepositioned) for each in record.commands):
             self._course.put(self._simulation.pose)
         # The simulation counts laps by itself, and the distance to the wall is not told.
         elif record.tick % _FOLLOW_EVERY == 0 and not isinstance(self._task.course, LapsSettings):
             self._course.follow(self._simulation.pose)
 
-    def _begin(self) -> Course:
-        course: CourseSettings = self._task.course
+    def _begin(self) -> TaskMetric:
+        course: MetricSettings = self._task.course
         if not isinstance(course, _MEASURED_LIVE):
             course = _WAY
         try:
@@ -56,5 +56,5 @@ class LiveMeasure:
         except SettingsError:  # such as an eight in a world without two posts
             return self._built(_WAY)
 
-    def _built(self, course: CourseSettings) -> Course:
+    def _built(self, course: MetricSettings) -> TaskMetric:
         return course.build(self._simulation, self._task.behaviours, random.Random(0))

@@ -10,14 +10,14 @@ from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.core.rla.outcome_text import text_of
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import Command
-from kurt2rt.core.teaching.question import Question, WayQuestion, ask, ask_the_way
+from kurt2rt.core.teaching.question import MidQuestion, Question, ask, ask_the_way
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
 from kurt2rt.platform.gc_control import sweep
 from kurt2rt.runs.recording.recorder import RunRecorder
 from kurt2rt.runs.recording.run_files import budget_of
 from kurt2rt.runtime import Runtime
-from kurt2rt.service.health.monitor import HealthWatch
+from kurt2rt.service.health.monitor import HealthMonitor
 from kurt2rt.service.settings import ServiceSettings
 
 Watcher = Callable[[TickRecord], Command | None]
@@ -25,7 +25,7 @@ Watcher = Callable[[TickRecord], Command | None]
 
 
 @dataclass(frozen=True, slots=True)
-class Status:
+class ProgramStatus:
     """How the service stands, for the one who looks at it."""
 
     record: TickRecord
@@ -39,12 +39,12 @@ class Status:
 
 
 @dataclass(frozen=True, slots=True)
-class Screen:
+class ProgramConsole:
     """What the service tells. Called from the loop: none of these may wait."""
 
-    status: Callable[[Status], None]
+    status: Callable[[ProgramStatus], None]
     """Once per status period."""
-    question: Callable[[Question | WayQuestion], None]
+    question: Callable[[Question | MidQuestion], None]
     """When the robot begins to ask, at most once a second: at the border of R it asks for moments at a time."""
     settled: Callable[[Acknowledgement], None]
     """A lesson is durable, or never can be, and why."""
@@ -52,7 +52,7 @@ class Screen:
     """A lesson is durable; in words."""
 
 
-class Rounds:
+class PostTick:
     """One round after each tick. Nothing here waits."""
 
     def __init__(
@@ -61,10 +61,10 @@ class Rounds:
         writer: JournalWriter,
         stamps: dict[str, str],
         service: ServiceSettings,
-        screen: Screen,
+        screen: ProgramConsole,
         teacher: Watcher | None,
         channel: Channel | None,
-        health: HealthWatch | None = None,
+        health: HealthMonitor | None = None,
         recorder: RunRecorder | None = None,
     ) -> None:
         """`stamps`: when each lesson was written, by command id; goes on here."""
@@ -83,7 +83,7 @@ class Rounds:
         """Lessons that are not durable yet, in words, by command id."""
         self._asking = False
         self._asked_at = -self._ticks_per_second
-        self.last: Status | None = None
+        self.last: ProgramStatus | None = None
         """The last status that was shown."""
 
     def __call__(self, record: TickRecord) -> None:
@@ -114,7 +114,9 @@ class Rounds:
         if ticks % (self._status_ticks * speed) == 0:
             channel_trouble = "" if self._channel is None else self._channel.trouble
             recording_trouble = "" if self._recorder is None else self._recorder.trouble
-            self.last = Status(record, runtime, writer.unwritten, writer.trouble, channel_trouble, recording_trouble)
+            self.last = ProgramStatus(
+                record, runtime, writer.unwritten, writer.trouble, channel_trouble, recording_trouble
+            )
             self._screen.status(self.last)
         if ticks % self._ticks_per_second == 0:
             sweep()
@@ -158,7 +160,7 @@ class Rounds:
                 self._recorder.asked(question)
             self._screen.question(question)
 
-    def _question_of(self, record: TickRecord) -> Question | WayQuestion:
+    def _question_of(self, record: TickRecord) -> Question | MidQuestion:
         runtime, match = self._runtime, record.decision.match
         if runtime.mid is not None and record.decision.asks_at == MID:
             return ask_the_way(match, runtime.mid.settings.situation.words(runtime.mid.vector))

@@ -4,18 +4,18 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from threading import Thread
 
-from kurt2rt.service.config_reload import Reloading
-from kurt2rt.service.shutdown import Ending
+from kurt2rt.service.config_reload import ConfigReloader
+from kurt2rt.service.shutdown import ShutdownHandler
 from kurt2rt.service.systemd.notifier import Notifier
 
 
 @dataclass(frozen=True, slots=True)
-class Upkeep:
+class ProcessContext:
     """Made by the program around its service."""
 
-    ending: Ending
+    ending: ShutdownHandler
     notifier: Notifier
-    reloading: Reloading | None = None
+    reloading: ConfigReloader | None = None
     """None: settings stay as they were at the start."""
     parts: Mapping[str, Callable[[], bool]] = field(default_factory=dict)
     """What has to be alive beside the loop, by name."""

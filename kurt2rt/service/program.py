@@ -22,29 +22,29 @@ from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, local_pairing, pai
 from kurt2rt.channel.server.channel import EVERYWHERE, LOOPBACK, Channel
 from kurt2rt.channel.server.udp_port import require_port
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.teaching.question import Question, WayQuestion
+from kurt2rt.core.teaching.question import MidQuestion, Question
 from kurt2rt.knowledge.journal.loading import OpenedKnowledge, go_on_teaching
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.platform.malloc import give_back_large_pieces
+from kurt2rt.platform.malloc import pin_mmap_threshold
 from kurt2rt.platform.realtime_priority import take_real_time_priority
 from kurt2rt.runs.recording.can_log import CanLog, open_can_log
 from kurt2rt.runs.recording.recording import Recording
 from kurt2rt.runs.recording.run_files import budget_of
 from kurt2rt.service.bus_names import SHARED
-from kurt2rt.service.child_processes import Companions
-from kurt2rt.service.config_reload import Reloading
-from kurt2rt.service.console_thread import Printer
-from kurt2rt.service.health.probes import Instruments
+from kurt2rt.service.child_processes import ChildProcesses
+from kurt2rt.service.config_reload import ConfigReloader
+from kurt2rt.service.console_thread import ConsoleThread
+from kurt2rt.service.health.probes import Probes
 from kurt2rt.service.health.status_socket import socket_of, tell_waiting
 from kurt2rt.service.live_exam import LiveExam
 from kurt2rt.service.open_robot import OpenedRobot, Opening, open_robot
-from kurt2rt.service.post_tick import Screen, Status
-from kurt2rt.service.process_context import Upkeep
-from kurt2rt.service.serve import Openness, serve
+from kurt2rt.service.post_tick import ProgramConsole, ProgramStatus
+from kurt2rt.service.process_context import ProcessContext
+from kurt2rt.service.serve import ChannelOptions, serve
 from kurt2rt.service.settings import ServiceSettings, for_a_unit
-from kurt2rt.service.shutdown import Ending, ShutdownStage, leave
-from kurt2rt.service.startup import AGAIN_S, Need, Start, require_folder
+from kurt2rt.service.shutdown import ShutdownHandler, ShutdownStage, force_exit
+from kurt2rt.service.startup import AGAIN_S, Dependency, StartupGate, require_folder
 from kurt2rt.service.status_line import status_line
 from kurt2rt.service.systemd.notifier import Notifier
 
@@ -59,7 +59,7 @@ _SIMULATOR_S = 0.5
 
 
 @dataclass(frozen=True, slots=True)
-class Orders:
+class RunOptions:
     """What the command line says beside the settings."""
 
     bus: str
@@ -103,7 +103,7 @@ class ProgramScreen(Protocol):
         """Tell that a lesson is durable, in words."""
         ...
 
-    def show(self, status: Status, health: Health, trouble: str) -> None:
+    def show(self, status: ProgramStatus, health: Health, trouble: str) -> None:
         """Show the status. `trouble`: of simulator and CAN log; empty where neither has any."""
         ...
 
@@ -121,19 +121,19 @@ class RobotProgram:
 
     def __init__(
         self,
-        orders: Orders,
+        orders: RunOptions,
         read: Callable[[], ServiceSettings],
         robot: RobotSettings,
         task: TaskSettings,
         screen: ProgramScreen,
         *,
         opening: Opening = open_robot,
-        give_up: Callable[[ShutdownStage], None] | None = leave,
+        give_up: Callable[[ShutdownStage], None] | None = force_exit,
         again_s: float = AGAIN_S,
     ) -> None:
         """`read`: the runtime settings, as the command line changes them. `opening` gives the robot.
 
-        `give_up`: as kurt2rt.service.shutdown.Ending. `again_s`: seconds between two attempts to find what is missing.
+        `give_up`: as ShutdownHandler. `again_s`: seconds between two attempts to find what is missing.
 
         Raises SettingsError.
         """
@@ -162,17 +162,17 @@ class RobotProgram:
     def run(self) -> None:
         """Run until a user or a signal ends it. Raises what `serve` and `open_robot` do."""
         service, orders = self._service, self._orders
-        give_back_large_pieces()
+        pin_mmap_threshold()
         end = "" if orders.as_service else "; Ctrl-C ends"
         self._screen.tell(f"task {self._task.name}, robot {orders.bus}, knowledge {service.knowledge}{end}")
         with self._around as around:
             notifier = around.enter_context(Notifier())
-            reloading = Reloading(self._read, service, notifier, self._say) if orders.as_service else None
+            reloading = ConfigReloader(self._read, service, notifier, self._say) if orders.as_service else None
             others = {} if reloading is None else {signal.SIGHUP: reloading.ask}
-            ending = around.enter_context(Ending(others=others, give_up=self._give_up))
-            self._upkeep = Upkeep(ending, notifier, reloading, self._parts(), self._guards, self._say)
-            self._companions = around.enter_context(Companions(orders.settings, ending.patience_s, self._say))
-            self._printer = around.enter_context(Printer(ending.patience_s))
+            ending = around.enter_context(ShutdownHandler(others=others, give_up=self._give_up))
+            self._upkeep = ProcessContext(ending, notifier, reloading, self._parts(), self._guards, self._say)
+            self._companions = around.enter_context(ChildProcesses(orders.settings, ending.patience_s, self._say))
+            self._printer = around.enter_context(ConsoleThread(ending.patience_s))
             around.callback(self._printer.put, self._screen.close)
             last = anyio.run(self._serve)
             service = self._service
@@ -185,7 +185,7 @@ class RobotProgram:
             self._screen.tell(self._log.trouble or f"{self._log.written} frames are in {self._log.name}")
         self._screen.tell(f"the robot stands{count}")
 
-    async def _serve(self) -> Status | None:
+    async def _serve(self) -> ProgramStatus | None:
         """One run after the other: a teacher of a simulated robot may want another world, task or knowledge file."""
         if self._orders.seconds is not None:
             self._ends_at_s = time.monotonic() + self._orders.seconds
@@ -210,7 +210,7 @@ class RobotProgram:
         self._task, self._knowledge, self._opened = run.task, None, None
         self._say(f"world {run.world}, task {run.task.name}, knowledge {run.knowledge}")
 
-    async def _serve_run(self) -> Status | None:
+    async def _serve_run(self) -> ProgramStatus | None:
         orders, ending = self._orders, self._upkeep.ending
         self._upkeep.notifier.ready()
         if orders.as_service:
@@ -232,7 +232,7 @@ class RobotProgram:
         if opened.ground is not None:
             self._runs = self._runs or self._simulated_runs(opened)
             run = self._runs.present
-        openness = Openness(
+        openness = ChannelOptions(
             lambda: opened.robot.health.trouble,
             opened.ground,
             self._listening,
@@ -249,7 +249,7 @@ class RobotProgram:
             self._robot,
             self._service,
             self._task,
-            Screen(status=self._show, question=self._question, settled=self._settled, taught=self._taught),
+            ProgramConsole(status=self._show, question=self._question, settled=self._settled, taught=self._taught),
             openness=openness if orders.attended else None,
             duration_s=left_s if math.isfinite(left_s) else None,
             stopped=orders.stopped or goes_on,
@@ -265,13 +265,13 @@ class RobotProgram:
         """Wait until all is there, or until the program is told to end: then the scope is cancelled."""
         loop = asyncio.get_running_loop()
         needs = (
-            Need("bus", self._take_robot),
-            Need(_KNOWLEDGE, self._take_knowledge),
-            Need("teachers' keys", self._pair),
-            Need("network", self._look_at_port),
-            *((Need("recordings", self._look_at_recordings),) if self._orders.record else ()),
+            Dependency("bus", self._take_robot),
+            Dependency(_KNOWLEDGE, self._take_knowledge),
+            Dependency("teachers' keys", self._pair),
+            Dependency("network", self._look_at_port),
+            *((Dependency("recordings", self._look_at_recordings),) if self._orders.record else ()),
         )
-        start = Start(needs, self._upkeep.notifier, self._say, self._hold, self._again_s)
+        start = StartupGate(needs, self._upkeep.notifier, self._say, self._hold, self._again_s)
         with self._upkeep.ending.first(self._brake, lambda: loop.call_soon_threadsafe(waiting.cancel)):
             try:
                 async with anyio.create_task_group() as tasks:
@@ -285,7 +285,7 @@ class RobotProgram:
         if self._opened is not None:
             self._opened.robot.release()
 
-    async def _tell_waiting(self, start: Start) -> None:
+    async def _tell_waiting(self, start: StartupGate) -> None:
         """As soon as the knowledge is this program's: the status of whoever else teaches on in it is not ours."""
         await start.until(_KNOWLEDGE)
         await tell_waiting(socket_of(Path(self._service.knowledge)), lambda: start.waits_for)
@@ -356,14 +356,14 @@ class RobotProgram:
         watchdog = None if self._opened is None else self._opened.robot.watchdog.thread
         return (self._upkeep.ending.thread, *(() if watchdog is None else (watchdog,)))
 
-    def _instruments(self, opened: OpenedRobot) -> Instruments:
+    def _instruments(self, opened: OpenedRobot) -> Probes:
         log = self._log
         drops = {"lines for the terminal": lambda: self._printer.dropped}
         says = {"companions": lambda: self._companions.trouble}
         if log is not None:
             drops["frames for the CAN log"], says["CAN log"] = lambda: log.lost, lambda: log.trouble
         folders = {"recordings": Path(self._service.recordings)} if self._orders.record else {}
-        return Instruments(lambda: opened.robot.health, drops, says, folders, lambda: self._screen.links)
+        return Probes(lambda: opened.robot.health, drops, says, folders, lambda: self._screen.links)
 
     def _exam(self, opened: OpenedRobot) -> LiveExam | None:
         if opened.ground is None:
@@ -403,7 +403,7 @@ class RobotProgram:
             self._say,
         )
 
-    def _question(self, question: Question | WayQuestion) -> None:
+    def _question(self, question: Question | MidQuestion) -> None:
         self._say(str(question), "yellow")
 
     def _settled(self, acknowledgement: Acknowledgement) -> None:
@@ -416,11 +416,11 @@ class RobotProgram:
     def _hear_page(self, line: str) -> None:
         self._printer.put(lambda: self._screen.page_line(line))
 
-    def _show(self, status: Status) -> None:
+    def _show(self, status: ProgramStatus) -> None:
         # The line is made by the printer as well: the percentiles in it cost more than a tick.
         self._printer.put(lambda: self._show_now(status))
 
-    def _show_now(self, status: Status) -> None:
+    def _show_now(self, status: ProgramStatus) -> None:
         assert self._opened is not None
         health = self._opened.robot.health
         log_trouble = "" if self._log is None else self._log.trouble

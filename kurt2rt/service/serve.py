@@ -16,16 +16,16 @@ from hal.simulation import SimulatedWorld
 from kurt2rt.channel.protocol.health_codec import plain_of
 from kurt2rt.channel.protocol.requests import BOOT_BYTES, FASTEST
 from kurt2rt.channel.security.paired_devices import Teachers
-from kurt2rt.channel.server.channel import Channel, Surroundings, open_channel
+from kurt2rt.channel.server.channel import Channel, ChannelDependencies, open_channel
 from kurt2rt.channel.server.simulation import RunControl
-from kurt2rt.channel.server.state_builder import Safekeeping
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.channel.server.state_builder import JournalStatus
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.active_stop import NEXT_RUN, STARTED
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.exchange.package import package_knowledge
-from kurt2rt.knowledge.files.backup import Safe
+from kurt2rt.knowledge.files.backup import BackupService
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import OpenedKnowledge, go_on_teaching
 from kurt2rt.knowledge.journal.writer import JournalWriter, utc_now
@@ -36,19 +36,19 @@ from kurt2rt.platform.simulated_clock import HeldWorld, SimulatedClock, Speed
 from kurt2rt.platform.switch_interval import short_turns
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 from kurt2rt.runs.recording.recorder import RunRecorder
-from kurt2rt.runs.recording.recording import Circumstances, Recording
+from kurt2rt.runs.recording.recording import Recording, RunContext
 from kurt2rt.runtime import Runtime, build_runtime
-from kurt2rt.service.health.monitor import HealthWatch
-from kurt2rt.service.health.probes import Instruments
+from kurt2rt.service.health.monitor import HealthMonitor
+from kurt2rt.service.health.probes import Probes
 from kurt2rt.service.health.status_socket import StatusSocket, socket_of
 from kurt2rt.service.live_exam import LiveExam
 from kurt2rt.service.live_measure import LiveMeasure
-from kurt2rt.service.post_tick import Rounds, Screen, Status, Watcher
-from kurt2rt.service.process_context import Upkeep
+from kurt2rt.service.post_tick import PostTick, ProgramConsole, ProgramStatus, Watcher
+from kurt2rt.service.process_context import ProcessContext
 from kurt2rt.service.settings import ServiceSettings
-from kurt2rt.service.shutdown import Ending, ShutdownStage
+from kurt2rt.service.shutdown import ShutdownHandler, ShutdownStage
 from kurt2rt.service.systemd.notifier import Notifier
-from kurt2rt.service.systemd.watchdog import Heartbeat
+from kurt2rt.service.systemd.watchdog import WatchdogNotifier
 
 _RECORDING_S = 2.0
 """For the disk to keep the end of the recording."""
@@ -59,7 +59,7 @@ _KEYS_S = 0.3
 
 
 @dataclass(frozen=True, slots=True)
-class Openness:
+class ChannelOptions:
     """How the robot is open to teachers over the network."""
 
     bus_trouble: Callable[[], str]
@@ -85,19 +85,19 @@ async def serve(
     settings: RobotSettings,
     service: ServiceSettings,
     task: TaskSettings,
-    screen: Screen,
+    screen: ProgramConsole,
     *,
     teacher: Watcher | None = None,
-    openness: Openness | None = None,
+    openness: ChannelOptions | None = None,
     duration_s: float | None,
     stopped: bool = False,
     behaviour: str | None = None,
-    instruments: Instruments | None = None,
-    upkeep: Upkeep | None = None,
+    instruments: Probes | None = None,
+    upkeep: ProcessContext | None = None,
     knowledge: OpenedKnowledge | None = None,
     recording: Recording | None = None,
     tolerates_stalls: bool = False,
-) -> Status | None:
+) -> ProgramStatus | None:
     """Run until a signal ends it, Ctrl-Z too, or for `duration_s`; the wheels stand before anything else ends.
 
     `teacher`: one inside this program. `openness`: teachers over the network; then the robot needs one who is there.
@@ -109,7 +109,7 @@ async def serve(
     UnknownBehaviourError, ChannelError; ValueError for a behaviour that the task does not teach.
     """
     path = Path(service.knowledge)
-    wanted = Wanted(task.behaviours)
+    wanted = ActiveBehaviour(task.behaviours)
     if behaviour is not None:
         wanted.pursue(behaviour)
     with ExitStack() as around:
@@ -117,7 +117,7 @@ async def serve(
         speed = None
         if openness is not None and openness.world is not None:
             clock = speed = SimulatedClock(clock, openness.world, FASTEST)
-        upkeep = upkeep or Upkeep(around.enter_context(Ending()), Notifier({}))
+        upkeep = upkeep or ProcessContext(around.enter_context(ShutdownHandler()), Notifier({}))
         ending = upkeep.ending
         opened = knowledge or go_on_teaching(path, settings, task)
         stamps = opened.stamps
@@ -125,7 +125,7 @@ async def serve(
         measure = None if openness is None else openness.measure
         begin_with = () if openness is None else openness.begin_with
         stop = None if not stopped else NEXT_RUN if begin_with else STARTED
-        circumstances = Circumstances(
+        circumstances = RunContext(
             boot.hex(),
             str(path),
             openness is not None,
@@ -154,15 +154,15 @@ async def serve(
                 runtime.school.stop(stop)
             for command in begin_with:
                 runtime.inbox.put(command)
-            watch = HealthWatch(
+            watch = HealthMonitor(
                 runtime,
                 writer,
-                instruments or Instruments(),
+                instruments or Probes(),
                 boot=boot.hex(),
                 knowledge=path,
                 tolerates_stalls=tolerates_stalls,
             )
-            status = StatusSocket(watch, socket_of(path), (instruments or Instruments()).pages)
+            status = StatusSocket(watch, socket_of(path), (instruments or Probes()).pages)
             watch.include(says={"status": lambda: status.trouble})
             if recorder is not None:
                 watch.include(
@@ -170,12 +170,12 @@ async def serve(
                 )
                 watch.listen(lambda report: recorder.healthy(plain_of(report)))
             parts = {"knowledge journal": lambda: writer.is_alive, **upkeep.parts}
-            heartbeat = Heartbeat(upkeep.notifier, settings.can.cycle_s, parts, upkeep.tell)
+            heartbeat = WatchdogNotifier(upkeep.notifier, settings.can.cycle_s, parts, upkeep.tell)
             async with (
                 anyio.create_task_group() as tasks,
                 _channel(runtime, writer, stamps, service, openness, boot, watch, ending, speed) as channel,
             ):
-                rounds = Rounds(runtime, writer, stamps, service, screen, teacher, channel, watch, recorder)
+                rounds = PostTick(runtime, writer, stamps, service, screen, teacher, channel, watch, recorder)
 
                 def after_tick(record: TickRecord) -> None:
                     rounds(record)
@@ -185,7 +185,7 @@ async def serve(
 
                 tasks.start_soon(status.serve)
                 if upkeep.reloading is not None:
-                    tasks.start_soon(upkeep.reloading.serve, _Taking(rounds, service, upkeep))
+                    tasks.start_soon(upkeep.reloading.serve, _SettingsApplier(rounds, service, upkeep))
                 ticks = None if duration_s is None else round(duration_s / settings.can.cycle_s)
                 # The wheels first, also where the loop hangs.
                 stop_wheels = partial(robot.emergency_stop, GuardReason.SERVICE_ENDS)
@@ -214,24 +214,24 @@ async def _channel(
     writer: JournalWriter,
     stamps: dict[str, str],
     service: ServiceSettings,
-    openness: Openness | None,
+    openness: ChannelOptions | None,
     boot: bytes,
-    watch: HealthWatch,
-    ending: Ending,
+    watch: HealthMonitor,
+    ending: ShutdownHandler,
     speed: Speed | None,
 ) -> AsyncIterator[Channel | None]:
     if openness is None:
         yield None
         return
-    safekeeping = Safekeeping(
+    safekeeping = JournalStatus(
         unsaved=lambda: writer.unwritten,
         trouble=lambda: writer.trouble,
         stamp_of=lambda command_id: stamps.get(command_id, ""),
     )
     package = partial(package_knowledge, robot=runtime.robot, task=runtime.task)
     exam = openness.exam
-    safe = Safe(Path(service.knowledge), writer, package, None if exam is None else exam.begin)
-    surroundings = Surroundings(
+    safe = BackupService(Path(service.knowledge), writer, package, None if exam is None else exam.begin)
+    surroundings = ChannelDependencies(
         safekeeping,
         safe,
         openness.bus_trouble,
@@ -259,7 +259,7 @@ async def _channel(
 
 
 @contextmanager
-def _writing(journal: Journal, ending: Ending) -> Iterator[JournalWriter]:
+def _writing(journal: Journal, ending: ShutdownHandler) -> Iterator[JournalWriter]:
     writer = JournalWriter(journal, utc_now)
     try:
         yield writer
@@ -273,8 +273,8 @@ def _recording(
     settings: RobotSettings,
     task: TaskSettings,
     knowledge: OpenedKnowledge,
-    circumstances: Circumstances,
-    ending: Ending,
+    circumstances: RunContext,
+    ending: ShutdownHandler,
 ) -> Iterator[RunRecorder]:
     recorder = recording.recorder(settings, task, knowledge, circumstances)
     recorder.start()
@@ -285,10 +285,10 @@ def _recording(
         recording.ended(recorder)
 
 
-class _Taking:
+class _SettingsApplier:
     """Takes settings that were read anew."""
 
-    def __init__(self, rounds: Rounds, service: ServiceSettings, upkeep: Upkeep) -> None:
+    def __init__(self, rounds: PostTick, service: ServiceSettings, upkeep: ProcessContext) -> None:
         self._rounds = rounds
         self._priority = service.priority
         self._upkeep = upkeep

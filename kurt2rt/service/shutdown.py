@@ -13,7 +13,7 @@ from enum import StrEnum
 from types import FrameType, TracebackType
 from typing import Final, Self
 
-from kurt2rt.platform.signal_handlers import Hearing
+from kurt2rt.platform.signal_handlers import SignalHandlers
 
 ENDING = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP)
 """Ctrl-\\ and Ctrl-Z among them: a program that is stopped or dies on the spot does not brake."""
@@ -54,7 +54,7 @@ _STAGES: Final = {
 }
 
 
-class Ending:
+class ShutdownHandler:
     """Hears signals in a thread of its own: also while the loop, or whatever it waits for, hangs.
 
     At the first signal that ends the program it does what `first` was given, then gives the rest its time. Use it in
@@ -77,7 +77,9 @@ class Ending:
         self._failures: list[Exception] = []
         self._deadline_s = math.inf
         self._lock = threading.Lock()
-        self._hearing = Hearing(dict.fromkeys((*ENDING, *map(signal.Signals, self._others)), _is_heard_elsewhere))
+        self._hearing = SignalHandlers(
+            dict.fromkeys((*ENDING, *map(signal.Signals, self._others)), _is_heard_elsewhere)
+        )
         self._wakeup_before = -1
         self._bell, self._ear = socket.socketpair()
         self._bell.setblocking(False)
@@ -177,7 +179,7 @@ def last_word(stage: ShutdownStage) -> str:
     return f"kurt2rt: ended without {_STAGES[stage]}, which did not end in time; look at disk and network"
 
 
-def leave(stage: ShutdownStage) -> None:
+def force_exit(stage: ShutdownStage) -> None:
     """End this process now, whatever hangs, with a last word and exit code 2. What was acknowledged is on the disk."""
     # A terminal may hang as well; one that takes something takes a short line.
     if select.select([], [_STDERR], [], _LAST_WORD_S)[1]:

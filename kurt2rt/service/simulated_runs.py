@@ -15,7 +15,7 @@ from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
 from kurt2rt.channel.server.simulation import TeacherNow
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.critic.settings import load_critic
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.mid.settings import load_mid
@@ -205,7 +205,7 @@ def _require_able(events: Iterable[TeachingEvent], robot: RobotSettings, task: T
     definition = load_situation(task.situation, robot.infrared.names)
     system = empty_system(task, definition, load_critic(task.critic), mid)
     system.apply_all(events)
-    wanted = Wanted(task.behaviours)
+    wanted = ActiveBehaviour(task.behaviours)
     BasicLevel(system, repertoire_of(task, robot), 1, wanted)
     if mid is not None:
         MidLevel(system, mid.build(robot), mid, wanted)

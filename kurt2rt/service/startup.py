@@ -31,7 +31,7 @@ _COMES_LATER = (StartError, BusError, KnowledgeError, ChannelError, CredentialsE
 
 
 @dataclass(frozen=True, slots=True)
-class Need:
+class Dependency:
     """One thing that the program cannot do without."""
 
     name: str
@@ -39,12 +39,12 @@ class Need:
     """Takes it, or raises one line that says what is missing. Called outside the loop, again and again."""
 
 
-class Start:
+class StartupGate:
     """Waits for all needs at once. Meanwhile it has the robot stand, pings, and tells what it waits for."""
 
     def __init__(
         self,
-        needs: Sequence[Need],
+        needs: Sequence[Dependency],
         notifier: Notifier,
         tell: Callable[[str], None],
         hold: Callable[[], None],
@@ -82,7 +82,7 @@ class Start:
                     looking.start_soon(self._look, need)
             standing.cancel_scope.cancel()
 
-    async def _look(self, need: Need) -> None:
+    async def _look(self, need: Dependency) -> None:
         while True:
             try:
                 await anyio.to_thread.run_sync(need.look, abandon_on_cancel=True)

@@ -25,20 +25,20 @@ from kurt2rt.channel.server.channel import Channel, describe
 from kurt2rt.channel.server.endpoint import Endpoint
 from kurt2rt.channel.server.off_tick_requests import Copies
 from kurt2rt.channel.server.reply import Reply
-from kurt2rt.channel.server.request_handler import LONGEST_WAIT_S, Reception, Sender
+from kurt2rt.channel.server.request_handler import LONGEST_WAIT_S, RequestHandler, Sender
 from kurt2rt.channel.server.resources import Keys, RobotSite
 from kurt2rt.channel.server.simulation import TeacherNow
-from kurt2rt.channel.server.state_builder import Safekeeping, Telling
+from kurt2rt.channel.server.state_builder import JournalStatus, StateBuilder
 from kurt2rt.core.rla.outcome import Outcome, outcome_in
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.core.tick import InMemoryEventStore, LessonKeeper, TickRecord
+from kurt2rt.core.tick import EventStore, InMemoryEventStore, TickRecord
 from kurt2rt.knowledge.files.atomic_write import SavedCopy
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.platform.simulated_clock import HeldWorld, SimulatedClock
-from kurt2rt.runs.explain.live import Explaining
+from kurt2rt.runs.explain.live import LiveExplainer
 from kurt2rt.runtime import Runtime, build_runtime
 from tests.core.test_tick import CorridorRobot
 
@@ -137,7 +137,7 @@ class Desk:
         *,
         ground: SimulatedWorld | None = None,
         keys: Keys | None = None,
-        keeper: LessonKeeper | None = None,
+        keeper: EventStore | None = None,
         longest_wait_s: float = LONGEST_WAIT_S,
         behaviours: tuple[str, ...] = ("",),
         mid: str | None = None,
@@ -160,8 +160,8 @@ class Desk:
         stamp_of = lambda command_id: self.stamps.get(command_id, "")  # noqa: E731
         hello = describe(self.runtime, BOOT, simulated=ground is not None)
         copies: Copies = self.shelf
-        explaining = Explaining(self.runtime, stamp_of)
-        self.reception = Reception(
+        explaining = LiveExplainer(self.runtime, stamp_of)
+        self.reception = RequestHandler(
             self.runtime,
             BOOT,
             hello,
@@ -175,8 +175,10 @@ class Desk:
             speed=None if ground is None else self.speed,
             exam=None if ground is None else lambda: self.exam,
         )
-        safekeeping = Safekeeping(lambda: self.unwritten, lambda: self.notebook.trouble, stamp_of)
-        self.telling = Telling(self.runtime, BOOT, safekeeping, lambda: self.bus_trouble, ground, lambda: self.health)
+        safekeeping = JournalStatus(lambda: self.unwritten, lambda: self.notebook.trouble, stamp_of)
+        self.telling = StateBuilder(
+            self.runtime, BOOT, safekeeping, lambda: self.bus_trouble, ground, lambda: self.health
+        )
         # Without a socket: nothing here is sent, and the keys are those of the tests of the site.
         self.site = RobotSite(cast(Keys, keys), self.reception)
         self.channel = Channel(

@@ -1,6 +1,6 @@
 """A world that notes what is done to it (hal.simulation.SimulatedWorld)."""
 
-from hal.simulation import Post, SimulatedPlace, Wall, WorldPlan
+from hal.simulation import SimulatedPlace, SimulatedPost, Wall, WorldPlan
 
 
 class Yard:
@@ -15,7 +15,9 @@ class Yard:
     def world(self) -> WorldPlan:
         outline = ((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0), (0.0, 0.0))
         box = Wall("box", ((1.0, 1.0), (2.0, 1.0), (2.0, 2.0)))
-        return WorldPlan(len(self.changes), "yard", (4.0, 4.0), outline, (box,), (Post("post", 3.0, 3.0, 0.1),))
+        return WorldPlan(
+            len(self.changes), "yard", (4.0, 4.0), outline, (box,), (SimulatedPost("post", 3.0, 3.0, 0.1),)
+        )
 
     def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
         if name != "box":

@@ -19,8 +19,8 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.runtime import Runtime
-from kurt2rt.service.post_tick import Screen
-from kurt2rt.service.serve import Openness, serve
+from kurt2rt.service.post_tick import ProgramConsole
+from kurt2rt.service.serve import ChannelOptions, serve
 from kurt2rt.service.settings import ServiceSettings, load_service
 
 SETTINGS = load_robot()
@@ -136,9 +136,9 @@ async def robot_at_work(folder: Path) -> AsyncIterator[RobotAtWork]:
             SETTINGS,
             service,
             load_task("wall_following"),
-            Screen(status=_nothing, question=_nothing, settled=_nothing),
+            ProgramConsole(status=_nothing, question=_nothing, settled=_nothing),
             teacher=records.append,
-            openness=Openness(lambda: "", None, listening),
+            openness=ChannelOptions(lambda: "", None, listening),
             duration_s=None,
         )
         at_work.ended = True

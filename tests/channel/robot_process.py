@@ -17,8 +17,8 @@ from hal.robot import Robot
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.platform.gc_control import sweep
-from kurt2rt.service.post_tick import Screen, Status
-from kurt2rt.service.serve import Openness, serve
+from kurt2rt.service.post_tick import ProgramConsole, ProgramStatus
+from kurt2rt.service.serve import ChannelOptions, serve
 from tests.channel.robot_at_work import SETTINGS, CheapRobot, service_settings
 
 
@@ -48,7 +48,7 @@ async def work(folder: Path, sweeper: _Sweeper) -> None:
         channels.append(channel)
         print(channel.endpoint.port, flush=True)
 
-    def tell(status: Status) -> None:
+    def tell(status: ProgramStatus) -> None:
         (channel,) = channels
         counters, ledger = channel.endpoint.counters, status.runtime.ledger
         line = {
@@ -66,8 +66,8 @@ async def work(folder: Path, sweeper: _Sweeper) -> None:
         print(json.dumps(line), flush=True)
 
     robot: Robot = CheapRobot()
-    quiet = Screen(status=tell, question=lambda _: None, settled=lambda _: None)
-    openness = Openness(lambda: "", None, listening)
+    quiet = ProgramConsole(status=tell, question=lambda _: None, settled=lambda _: None)
+    openness = ChannelOptions(lambda: "", None, listening)
     task = load_task("wall_following")
     await serve(robot, SETTINGS, service_settings(folder), task, quiet, openness=openness, duration_s=None)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.service.child_processes import Companions
+from kurt2rt.service.child_processes import ChildProcesses
 
 LONGEST_S = 60.0
 LOOK_S = 0.01
@@ -53,8 +53,8 @@ def births(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Births]:
     opened.close()
 
 
-def companions(told: Told, script: str) -> Companions:
-    return Companions("default", tell=told.put, start=(sys.executable, "-c", script), look_s=LOOK_S)
+def companions(told: Told, script: str) -> ChildProcesses:
+    return ChildProcesses("default", tell=told.put, start=(sys.executable, "-c", script), look_s=LOOK_S)
 
 
 def is_there(process: int) -> bool:
@@ -114,7 +114,7 @@ def test_modules_are_not_looked_for_in_the_present_folder(tmp_path: Path, monkey
     (tmp_path / "kurt2rt" / "__init__.py").write_text("raise SystemExit(7)", encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     told = Told()
-    with Companions("default", tell=told.put, look_s=LOOK_S) as beside:
+    with ChildProcesses("default", tell=told.put, look_s=LOOK_S) as beside:
         beside.start("pairing", "pair", lasts=True)  # which does not know all these words, and starts soonest
         assert told.next() == "kurt2rt: No such option: --while-stdin; see kurt2rt pair --help"
         assert told.next().startswith("pairing ended (exit code 2)")

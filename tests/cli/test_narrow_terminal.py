@@ -12,7 +12,7 @@ from kurt2rt.checks.bench.report import print_report as print_bench
 from kurt2rt.checks.commission.checklist import STEPS
 from kurt2rt.checks.commission.progress import Progress
 from kurt2rt.checks.commission.report import print_report as print_commissioning
-from kurt2rt.checks.doctor.check_result import Finding, FindingCode, Status
+from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 from kurt2rt.checks.doctor.report import print_report as print_doctor
 from kurt2rt.checks.soak.report import print_report as print_soak
 from kurt2rt.cli.status import as_rich as health_as_rich
@@ -44,8 +44,10 @@ from tests.service.health.reports import ILL
 WALLS = str(STORED / "walls.mcap")
 DRIVES = [paper.robot(seed, 92, paper.drive("rooms-9007"), paper.drive("manhattan")) for seed in (100, 101)]
 FOUND = [
-    Finding(FindingCode.PRIORITY, Status.OK, {"limit": "unlimited " * 9, "capability": "without"}),
-    Finding(FindingCode.FOLDER, Status.OK, {"folder": "/var/lib/kurt2rt/knowledge/of/this/robot"}, needed=True),
+    CheckResult(FindingCode.PRIORITY, CheckStatus.OK, {"limit": "unlimited " * 9, "capability": "without"}),
+    CheckResult(
+        FindingCode.FOLDER, CheckStatus.OK, {"folder": "/var/lib/kurt2rt/knowledge/of/this/robot"}, needed=True
+    ),
 ]
 
 Print = Callable[[Console], None]

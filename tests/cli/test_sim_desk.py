@@ -9,7 +9,7 @@ import pytest
 
 from hal.bus import CanBus, open_bus
 from hal.control import Mode, SpeedControl, SystemControl, control_frame
-from simbridge.sim_console import HELP, Desk, News, StatusLine, TypedLines
+from simbridge.sim_console import HELP, News, SimConsole, StatusLine, TypedLines
 from simbridge.simulated_world import Kurt2World
 from simbridge.standalone import StandaloneRobot
 from simbridge.worlds.world_loading import load_world
@@ -34,7 +34,7 @@ class Table:
         self.asked: list[object] = []
         simulation = self.standalone.simulation
         simulation.submit = lambda job: self.asked.append(job())  # type: ignore[method-assign]  # no thread runs here
-        self.desk = Desk(self.standalone, WORLD, Kurt2World(self.robot, WORLD, ROBOT.geometry, simulation))
+        self.desk = SimConsole(self.standalone, WORLD, Kurt2World(self.robot, WORLD, ROBOT.geometry, simulation))
         self.news = News(self.standalone)
 
     def cycles(self, count: int, told: SpeedControl | SystemControl | None = None) -> list[str]:

@@ -9,7 +9,7 @@ from hal.guard_reason import GuardReason
 from hal.health import Health
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.teaching.commands import Teach
-from kurt2rt.service.post_tick import Status
+from kurt2rt.service.post_tick import ProgramStatus
 from kurt2rt.service.status_line import status_line
 from tests.channel.desk import Desk
 
@@ -31,12 +31,12 @@ LOST = replace(WELL, bus_trouble="bus can0: receiving failed", latched=GuardReas
 
 
 @pytest.fixture(scope="module")
-def status() -> Status:
+def status() -> ProgramStatus:
     desk = Desk()
-    return Status(desk.record, desk.runtime, 0, None, "")
+    return ProgramStatus(desk.record, desk.runtime, 0, None, "")
 
 
-def test_a_robot_that_is_well_has_nothing_to_say(status: Status) -> None:
+def test_a_robot_that_is_well_has_nothing_to_say(status: ProgramStatus) -> None:
     assert WELL.trouble == ""
     assert status_line(status, WELL).split(" | ")[-1].startswith("missed")
 
@@ -44,37 +44,37 @@ def test_a_robot_that_is_well_has_nothing_to_say(status: Status) -> None:
 def test_a_robot_that_was_stopped_says_what_it_waits_for() -> None:
     desk = Desk()
     desk.runtime.school.stop(STARTED)
-    line = status_line(Status(desk.run(), desk.runtime, 0, None, ""), WELL)
+    line = status_line(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), WELL)
     assert "stands until Go: the robot program was started" in line
 
 
 def test_the_rule_that_drives_is_named_with_the_behaviour_that_is_wanted() -> None:
     desk = Desk(behaviours=("straight_on", "turn_left"))
     desk.runtime.wanted.pursue("turn_left")
-    assert "stands and asks about turn_left " in status_line(Status(desk.run(), desk.runtime, 0, None, ""), WELL)
+    assert "stands and asks about turn_left " in status_line(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), WELL)
     desk.runtime.school.authority.attended = False
     desk.runtime.inbox.put(Teach("t", "Ann", "forward"))
     assert "forward by RLA 1 of turn_left at 0 of R " in status_line(
-        Status(desk.run(), desk.runtime, 0, None, ""), WELL
+        ProgramStatus(desk.run(), desk.runtime, 0, None, ""), WELL
     )
 
 
 def test_what_the_robot_could_not_learn_is_told() -> None:
     desk = Desk()
     desk.runtime.school.learning.trouble = "1 change was skipped"
-    assert status_line(Status(desk.run(), desk.runtime, 0, None, ""), WELL).endswith(" | 1 change was skipped")
+    assert status_line(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), WELL).endswith(" | 1 change was skipped")
 
 
-def test_a_bus_that_limps_is_shown_while_the_robot_drives_on(status: Status) -> None:
+def test_a_bus_that_limps_is_shown_while_the_robot_drives_on(status: ProgramStatus) -> None:
     assert status_line(status, PASSIVE).endswith(" | bus can0: error-passive, 130 errors")
 
 
-def test_a_lost_bus_is_told_until_somebody_says_resume(status: Status) -> None:
+def test_a_lost_bus_is_told_until_somebody_says_resume(status: ProgramStatus) -> None:
     assert status_line(status, LOST).endswith(" | bus can0: receiving failed")
     assert "receiving failed" not in status_line(status, replace(LOST, latched=None))
 
 
-def test_what_stopped_the_robot_is_told_with_it(status: Status) -> None:
+def test_what_stopped_the_robot_is_told_with_it(status: ProgramStatus) -> None:
     stopped = replace(WELL, alarm="another node sends CONTROL", foreign_control=2, latched=GuardReason.FOREIGN_CONTROL)
     line = status_line(status, stopped)
     assert line.endswith(" | another node sends CONTROL | 2 CONTROL frames of another sender so far")

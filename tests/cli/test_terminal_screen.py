@@ -9,7 +9,7 @@ from rich.console import Console
 
 from kurt2rt.cli.terminal_screen import TerminalScreen
 from kurt2rt.core.decision.active_stop import STARTED
-from kurt2rt.service.post_tick import Status
+from kurt2rt.service.post_tick import ProgramStatus
 from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages, to_line
 from tests.channel.desk import Desk
 from tests.cli.test_status_line import PASSIVE, WELL
@@ -34,9 +34,9 @@ class Shown:
 
 
 @pytest.fixture(scope="module")
-def status() -> Status:
+def status() -> ProgramStatus:
     desk = Desk()
-    return Status(desk.record, desk.runtime, 0, None, "")
+    return ProgramStatus(desk.record, desk.runtime, 0, None, "")
 
 
 def test_page_line_tells_each_address_once() -> None:
@@ -57,7 +57,7 @@ def test_page_line_that_is_no_address_is_printed() -> None:
     assert shown.screen.links == ()
 
 
-def test_show_on_a_stream_prints_every_status(status: Status) -> None:
+def test_show_on_a_stream_prints_every_status(status: ProgramStatus) -> None:
     shown = Shown()
     for trouble in ("", "no simulator"):
         shown.screen.show(status, WELL, trouble)
@@ -65,7 +65,7 @@ def test_show_on_a_stream_prints_every_status(status: Status) -> None:
         assert line.endswith(trouble)
 
 
-def test_show_in_a_log_prints_changes_other_than_numbers(status: Status) -> None:
+def test_show_in_a_log_prints_changes_other_than_numbers(status: ProgramStatus) -> None:
     shown = Shown(as_service=True)
     shown.screen.show(status, WELL, "")
     assert shown.lines() == []
@@ -92,7 +92,7 @@ def test_show_in_the_journal_tells_a_stop_without_level(monkeypatch: pytest.Monk
     desk = Desk()
     desk.runtime.school.stop(STARTED)
     shown = Shown(as_service=True)
-    shown.screen.show(Status(desk.run(), desk.runtime, 0, None, ""), PASSIVE, "")
+    shown.screen.show(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), PASSIVE, "")
     (line,) = shown.lines()
     assert not line.startswith("<")
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Cause, Decision
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.rla import TeachingEvent
@@ -39,7 +39,7 @@ class SmallLevel:
         self.actions = {name: Counted() for name in "abc"}
         system = RlaSystem(1, RADIUS)
         system.apply_all(events)
-        self.wanted = Wanted(behaviours)
+        self.wanted = ActiveBehaviour(behaviours)
         self.level = BasicLevel(system, self.actions, MINIMUM_TICKS, self.wanted)
 
     def at(self, place: float, stand_because: Cause | None = None) -> Decision:

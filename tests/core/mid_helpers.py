@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from hal.robot import SensorReadings
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Cause, Decision, MidDecision
 from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.layer_stack import LayerStack
@@ -57,7 +57,7 @@ class SmallStack:
             self.system.apply(created(number, (0.0,), action, behaviour=behaviour))
         self.system.apply_all(events)
         self.actions = {name: Counted() for name in "abc"}
-        self.wanted = Wanted(BEHAVIOURS)
+        self.wanted = ActiveBehaviour(BEHAVIOURS)
         self.symbols = Symbols()
         self.mid = MidLevel(self.system, self.symbols, load_mid("turns"), self.wanted)
         basic = BasicLevel(self.system, self.actions, MINIMUM_TICKS, self.wanted)

@@ -11,19 +11,19 @@ from behaviors.motor_primitive import MotorPrimitive
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Cause, Decision
 from kurt2rt.core.perception.perception import Perception
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import Phase, TeachingEvent
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
-from kurt2rt.core.teaching.authority import Authority
-from kurt2rt.core.teaching.command_handler import School
+from kurt2rt.core.teaching.authority import ControlAuthority
+from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import Command, Resume
 from kurt2rt.core.teaching.inbox import TeacherInbox
 from kurt2rt.core.tick import InMemoryEventStore, Tick, TickRecord
-from kurt2rt.platform.ledger import Ledger
+from kurt2rt.platform.ledger import TickTimer
 from tests.core.perception.helpers import READINGS, SENSORS, WHEELS, definition
 from tests.teacher.helpers import correct, delete, pursue, resume, set_phase, stop, teach
 
@@ -88,12 +88,12 @@ class Corridor:
         repertoire: dict[str, Behaviour] = {"forward": MotorPrimitive(FORWARD), "back": MotorPrimitive(BACK)}
         small = definition((*READINGS, *WHEELS), scale=10)
         self.system = RlaSystem(small.dimensions, RADIUS, np.repeat((1.0, PAST_WEIGHT), small.dimensions // 2))
-        self.level = BasicLevel(self.system, repertoire, minimum_action_ticks=3, wanted=Wanted(behaviours))
+        self.level = BasicLevel(self.system, repertoire, minimum_action_ticks=3, wanted=ActiveBehaviour(behaviours))
         self.inbox = TeacherInbox()
         self.statistics = StatisticsCounter()
-        self.ledger = Ledger()
-        authority = Authority(repertoire, attended=attended)
-        self.school = School(self.level, authority, insert_beyond_share=0.5, taken_command_ids=(), asked=asked)
+        self.ledger = TickTimer()
+        authority = ControlAuthority(repertoire, attended=attended)
+        self.school = CommandHandler(self.level, authority, insert_beyond_share=0.5, taken_command_ids=(), asked=asked)
         robot: Robot = self.robot
         self.tick = Tick(
             robot,

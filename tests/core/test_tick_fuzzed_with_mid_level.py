@@ -9,7 +9,7 @@ import pytest
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import Cause, Decision
 from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.core.decision.plan_step import Course
+from kurt2rt.core.decision.plan_step import GoalStatus
 from kurt2rt.core.rla.rla import BASIC, CRITIC, MID, Phase, TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import (
@@ -136,7 +136,7 @@ class Bedlam(Town):
         if decision.cause is Cause.TEACHER:
             return school.authority.is_manual(self.tick)
         there = school.authority.present(self.tick) or school.phase is Phase.AUTONOMOUS
-        stands_at_goal = decision.plan is not None and decision.plan.course in (Course.ARRIVED, Course.NO_WAY)
+        stands_at_goal = decision.plan is not None and decision.plan.course in (GoalStatus.ARRIVED, GoalStatus.NO_WAY)
         asks = decision.mid is None or decision.mid.asks
         return there and not school.stopped and not asks and (mid.overridden or not stands_at_goal)
 

@@ -8,7 +8,7 @@ import pytest
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.core.decision.plan_step import Course, PlanStep
+from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import MID, SituationNamed, TeachingEvent
 from kurt2rt.core.teaching.commands import (
@@ -75,7 +75,7 @@ class Block(Town):
         while True:
             step = self.run().decision.plan
             assert step is not None
-            if step.course is not Course.PLANNING:
+            if step.course is not GoalStatus.PLANNING:
                 return step
 
 
@@ -113,7 +113,7 @@ def test_it_drives_to_the_door_and_stands_there(block: Block) -> None:
     record = block.go()
     plan = record.decision.plan
     assert plan is not None
-    assert (plan.course, plan.says, plan.surprises) == (Course.ARRIVED, "arrived: door", 0)
+    assert (plan.course, plan.says, plan.surprises) == (GoalStatus.ARRIVED, "arrived: door", 0)
     assert (record.decision.cause, record.decision.wheel_speeds) == (Cause.AT_GOAL, STANDSTILL)
     record = block.say(StopSeeking)
     assert record.decision.plan is None
@@ -134,7 +134,7 @@ def test_of_two_ways_from_a_place_it_takes_the_one_that_leads_to_the_goal(block:
     block.go()
     assert block.run().behaviour == "straight_on"
     block.go()
-    assert block.plan().course is Course.ARRIVED
+    assert block.plan().course is GoalStatus.ARRIVED
 
 
 def test_surprised_it_plans_from_where_it_is(block: Block) -> None:
@@ -151,9 +151,9 @@ def test_surprised_it_plans_from_where_it_is(block: Block) -> None:
     block.go("straight_on")  # it was to turn
     assert block.run().decision.asks_at == MID
     step = block.plan()
-    assert (step.course, step.surprises) == (Course.LOST, 1)
+    assert (step.course, step.surprises) == (GoalStatus.LOST, 1)
     block.say(BeAt, "door")
-    assert block.plan().course is Course.UNDER_WAY
+    assert block.plan().course is GoalStatus.UNDER_WAY
 
 
 def test_where_no_way_leads_it_stands_and_says_so() -> None:
@@ -175,9 +175,9 @@ def test_where_it_stood_it_stands_until_the_plan_stands(block: Block) -> None:
     for _ in range(2):
         plan = record.decision.plan
         assert plan is not None
-        assert (plan.course, record.decision.wheel_speeds) == (Course.PLANNING, STANDSTILL)
+        assert (plan.course, record.decision.wheel_speeds) == (GoalStatus.PLANNING, STANDSTILL)
         record = block.run()
-    assert block.plan().course is Course.UNDER_WAY
+    assert block.plan().course is GoalStatus.UNDER_WAY
     assert block.run().decision.driving
 
 
@@ -185,7 +185,7 @@ def test_one_that_is_under_way_drives_on_while_it_plans(block: Block) -> None:
     record = block.seek(DOOR)
     plan = record.decision.plan
     assert plan is not None
-    assert (plan.course, plan.rla_id, record.decision.driving) == (Course.PLANNING, None, True)
+    assert (plan.course, plan.rla_id, record.decision.driving) == (GoalStatus.PLANNING, None, True)
 
 
 def test_a_plan_that_comes_too_late_for_the_next_junction_begins_behind_it(block: Block) -> None:
@@ -210,10 +210,10 @@ def test_a_plan_that_comes_too_late_for_the_next_junction_begins_behind_it(block
 def test_what_is_taught_of_the_basic_level_meanwhile_holds_no_plan_up(block: Block) -> None:
     block.seek(DOOR)
     ticks = 0
-    while (step := block.say(Reward, 1).decision.plan) is not None and step.course is Course.PLANNING:
+    while (step := block.say(Reward, 1).decision.plan) is not None and step.course is GoalStatus.PLANNING:
         ticks += 1
     assert ticks < 5
-    assert block.plan().course is Course.UNDER_WAY
+    assert block.plan().course is GoalStatus.UNDER_WAY
 
 
 def test_what_is_taught_of_places_meanwhile_begins_the_plan_anew_once_in_a_while(block: Block) -> None:
@@ -221,7 +221,7 @@ def test_what_is_taught_of_places_meanwhile_begins_the_plan_anew_once_in_a_while
     block.seek(NamedGoal("here"))
     block.seek(DOOR)
     changes = 0
-    while (step := block.run().decision.plan) is not None and step.course is Course.PLANNING:
+    while (step := block.run().decision.plan) is not None and step.course is GoalStatus.PLANNING:
         changes += 1
         block.teach(("straight_on", "turn_right")[changes % 2], beside=True) if changes < 3 else None
     assert 2 < changes < 30
@@ -234,7 +234,7 @@ def test_a_name_that_is_given_again_is_sought_where_it_is_now(block: Block) -> N
     block.go()
     block.say(NameSituation, "door", None)  # here, where the first way leads
     step = block.plan()
-    assert (step.course, step.says) == (Course.ARRIVED, "arrived: door")
+    assert (step.course, step.says) == (GoalStatus.ARRIVED, "arrived: door")
 
 
 def test_a_goal_whose_name_is_undone_is_given_up_with_words(block: Block) -> None:
@@ -244,10 +244,10 @@ def test_a_goal_whose_name_is_undone_is_given_up_with_words(block: Block) -> Non
     record = block.say(Undo, name)
     step = block.plan()
     assert step.says == "door cannot be gone to any more: nothing was named 'door'; named were: nothing"
-    assert (step.course, record.decision.wheel_speeds) == (Course.NO_WAY, STANDSTILL)
+    assert (step.course, record.decision.wheel_speeds) == (GoalStatus.NO_WAY, STANDSTILL)
     block.go()
     block.say(NameSituation, "door")
-    assert block.plan().course is Course.ARRIVED
+    assert block.plan().course is GoalStatus.ARRIVED
     assert told(block.say(StopSeeking)).accepted
     assert block.run().decision.driving
 
@@ -257,7 +257,7 @@ def test_a_lost_robot_arrives_nowhere(block: Block) -> None:
     assert block.run().decision.asks_at == MID
     block.seek(PartialGoal((("east", 1.0),)))  # that is how a reckoning begins
     step = block.plan()
-    assert step.course is Course.LOST
+    assert step.course is GoalStatus.LOST
 
 
 def test_switched_on_anew_it_is_lost_until_it_is_told_where_it_is(block: Block) -> None:
@@ -285,7 +285,7 @@ def test_the_teachers_word_goes_before_the_plan_until_the_next_junction(block: B
     assert block.run().behaviour == "turn_left"
     assert block.say(Pursue, "straight_on").behaviour == "straight_on"
     block.go()
-    assert block.plan().course is Course.LOST
+    assert block.plan().course is GoalStatus.LOST
 
 
 def test_his_word_drives_also_where_the_robot_has_arrived(block: Block) -> None:

@@ -10,7 +10,7 @@ from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
 from kurt2rt.experiments.lockstep.exam import ExamResult, examine
-from kurt2rt.experiments.lockstep.lesson import LessonResult
+from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from simbridge.simulation import Kurt2SimulationFactory
 
@@ -40,7 +40,7 @@ class Taught:
 
     task: TaskSettings
     knowledge: Path
-    result: LessonResult
+    result: TrainingResult
     events: list[TeachingEvent]
     saved: list[Acknowledgement]
     """As `on_saved` heard of them."""
@@ -53,7 +53,7 @@ def teach(knowledge: Path, task: TaskSettings | None = None, seed: int = 1) -> T
     reported_s: list[float] = []
     task = task or short_task()
 
-    async def lesson() -> tuple[LessonResult, list[TeachingEvent]]:
+    async def lesson() -> tuple[TrainingResult, list[TeachingEvent]]:
         return await run_lesson(
             STAGE,
             ROBOT,

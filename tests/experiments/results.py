@@ -6,8 +6,8 @@ from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import SuccessSettings
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, WorldResult
 from kurt2rt.experiments.lockstep.exam import ExamResult
-from kurt2rt.experiments.lockstep.lesson import LessonResult
-from kurt2rt.platform.ledger import Ledger
+from kurt2rt.experiments.lockstep.lesson import TrainingResult
+from kurt2rt.platform.ledger import TickTimer
 
 TRAIL = (Position(0.5, 0.5), Position(0.6, 0.5), Position(0.7, 0.6))
 
@@ -37,7 +37,7 @@ def world_result(learned: ExamResult, teachers_laps: float = 9.0) -> WorldResult
 
 def curriculum_result(seed: int, rlas: int, *exams: ExamResult) -> CurriculumResult:
     origin = Origin("c", "Ann", Phase.SUPERVISED, 1)
-    lesson = LessonResult(
+    lesson = TrainingResult(
         seed=seed,
         world="a",
         teaching_s=345.0,
@@ -50,6 +50,6 @@ def curriculum_result(seed: int, rlas: int, *exams: ExamResult) -> CurriculumRes
         growth=tuple(range(rlas)),
         trail=TRAIL,
         ask_positions=TRAIL[1:],
-        ledger=Ledger(),
+        ledger=TickTimer(),
     )
     return CurriculumResult(lesson, tuple(world_result(each) for each in exams))

@@ -9,14 +9,14 @@ import yaml
 
 from config import CONFIG_DIR
 from hal.robot_settings import load_robot
-from kurt2rt.channel.protocol.exam_status import EXAM, ExamStanding
+from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus
 from kurt2rt.cli import exam_process
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.service.live_exam import LiveExam
 
-OVER = ExamStanding(False, 1.0, "Passed in 0 of 1 worlds.")
+OVER = ExamStatus(False, 1.0, "Passed in 0 of 1 worlds.")
 
 
 @pytest.fixture
@@ -32,7 +32,7 @@ def saying(*lines: str, after: str = "") -> "LiveExam":
     return LiveExam(lambda _, picture: (sys.executable, "-c", script, str(picture)))
 
 
-def ended(exam: LiveExam) -> ExamStanding:
+def ended(exam: LiveExam) -> ExamStatus:
     assert exam._reading is not None
     exam._reading.join(10.0)
     return exam.standing
@@ -50,11 +50,11 @@ def test_a_verdict_comes_with_the_picture_and_the_copy_is_deleted(copy: Path, tm
 def test_an_exam_is_over_only_with_its_picture(copy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     drawn = "open(sys.argv[1], 'wb').close()"
     exam = saying(json.dumps(EXAM.plain_of(OVER)), "a last word", after=drawn)
-    standings: list[ExamStanding] = []
+    standings: list[ExamStatus] = []
 
     def note(each: LiveExam, name: str, value: object) -> None:
         object.__setattr__(each, name, value)
-        if isinstance(value, ExamStanding):
+        if isinstance(value, ExamStatus):
             standings.append(value)
 
     monkeypatch.setattr(LiveExam, "__setattr__", note)

@@ -9,17 +9,17 @@ import pytest
 from behaviors.repertoire import load_repertoire
 from hal.health import Health
 from kurt2rt.core.basic.policy_level import PolicyLevel
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Command, Correct, Teach
-from kurt2rt.core.teaching.question import Question, WayQuestion
+from kurt2rt.core.teaching.question import MidQuestion, Question
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.loading import go_on_teaching
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
-from kurt2rt.service.post_tick import Rounds, Screen, Status
+from kurt2rt.service.post_tick import PostTick, ProgramConsole, ProgramStatus
 from kurt2rt.service.settings import load_service
 from kurt2rt.service.status_line import status_line
 from simbridge.simulation import Kurt2Simulation
@@ -37,8 +37,8 @@ class Service:
         opened = go_on_teaching(path, ROBOT, ROUTE)
         self.writer = JournalWriter(opened.journal, lambda: STAMP)
         self.settled: list[Acknowledgement] = []
-        self.questions: list[Question | WayQuestion] = []
-        wanted = Wanted(ROUTE.behaviours)
+        self.questions: list[Question | MidQuestion] = []
+        wanted = ActiveBehaviour(ROUTE.behaviours)
         driver = PolicyLevel(ROUTE.policy.build(ROBOT.infrared), load_repertoire(ROUTE.repertoire, ROBOT), 10, wanted)
         self.runtime = build_runtime(
             simulation.robot,
@@ -52,8 +52,8 @@ class Service:
             wanted=wanted,
             saved=opened.saved,
         )
-        screen = Screen(status=lambda _: None, question=self.questions.append, settled=self.settled.append)
-        self.rounds = Rounds(self.runtime, self.writer, opened.stamps, load_service(), screen, None, None)
+        screen = ProgramConsole(status=lambda _: None, question=self.questions.append, settled=self.settled.append)
+        self.rounds = PostTick(self.runtime, self.writer, opened.stamps, load_service(), screen, None, None)
         self.record: TickRecord
         self.health: Health = simulation.robot.health
 
@@ -73,7 +73,7 @@ class Service:
 
     @property
     def line(self) -> str:
-        return status_line(Status(self.record, self.runtime, 0, None, ""), self.health)
+        return status_line(ProgramStatus(self.record, self.runtime, 0, None, ""), self.health)
 
     def close(self) -> None:
         self.rounds.save_statistics()

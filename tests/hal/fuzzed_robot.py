@@ -14,10 +14,10 @@ from hal.in_process_bus import InProcessBus
 from hal.kurt2 import Kurt2
 from hal.shared_bus import SharedBus
 from kurt2rt.core.basic.policy_level import PolicyLevel
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.experiments.lockstep.exam import NothingIsTaught
+from kurt2rt.experiments.lockstep.exam import NoTeachingAllowed
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
 from simbridge.simulated_robot import SimulatedRobot
@@ -51,10 +51,10 @@ class FuzzedRobot:
             task.policy.build(ROBOT.infrared),
             load_repertoire(task.repertoire, ROBOT),
             round(task.learning.minimum_action_s / TICK_S),
-            Wanted(),
+            ActiveBehaviour(),
         )
         clock = LockstepClock(self._step)
-        runtime = build_runtime(self.kurt2, ROBOT, task, [], NothingIsTaught(), clock, level_override=level)
+        runtime = build_runtime(self.kurt2, ROBOT, task, [], NoTeachingAllowed(), clock, level_override=level)
         self._scheduler = runtime.scheduler
 
     async def drive(self, bad_frames: int) -> None:

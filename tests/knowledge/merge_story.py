@@ -35,12 +35,12 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.versions.contradictions import Borders
-from kurt2rt.knowledge.versions.lesson_identity import Taught
-from kurt2rt.knowledge.versions.merge import Merge, Merging, Side
+from kurt2rt.knowledge.versions.contradictions import Radii
+from kurt2rt.knowledge.versions.lesson_identity import KnowledgeContent
+from kurt2rt.knowledge.versions.merge import MergePlan, Merger, Side
 from tests.knowledge.lessons import STAMP
 
-BORDERS = Borders({BASIC: Space(4, 10.0)}, {BASIC: 0.2})
+BORDERS = Radii({BASIC: Space(4, 10.0)}, {BASIC: 0.2})
 ACTIONS = ("forward", "left", "right")
 KINDS = (
     ("create",) * 3 + ("replace",) * 2 + ("withdraw", "delete") + ("reward",) * 3 + ("name",) * 2
@@ -98,9 +98,9 @@ class Story:
         else:
             self.merge(mine, theirs, self._random.choice((None, None, "mine", "theirs")))
 
-    def read(self, name: str) -> Taught:
+    def read(self, name: str) -> KnowledgeContent:
         entries = tuple(self.files[name].entries)
-        return Taught(self._journal, entries, fold_entries(self._journal, entries, radius=math.inf))
+        return KnowledgeContent(self._journal, entries, fold_entries(self._journal, entries, radius=math.inf))
 
     def teach(self, name: str, lessons: int) -> None:
         file, system = self.files[name], self.read(name).system
@@ -122,7 +122,7 @@ class Story:
             file.decisions[tick] = self._decision(file, stands=not undone)
             self.told.append(f"{name}: {type(event).__name__} {tick}")
 
-    def merge(self, mine: str, theirs: str, prefer: Side | None) -> Merge:
+    def merge(self, mine: str, theirs: str, prefer: Side | None) -> MergePlan:
         """Merge, and hold what came of it against the model."""
         before, there = self.read(mine), self.read(theirs)
         mine_outcomes, their_outcomes = _outcomes(before.system), _outcomes(there.system)
@@ -156,8 +156,8 @@ class Story:
             self._heard(file, other, stands, here, rewards, settled=bool(planned.conflicts))
         return planned
 
-    def _plan(self, mine: Taught, theirs: Taught, prefer: Side | None) -> Merge:
-        merging = Merging(mine, theirs, BORDERS, teacher="command line", stamp=STAMP)
+    def _plan(self, mine: KnowledgeContent, theirs: KnowledgeContent, prefer: Side | None) -> MergePlan:
+        merging = Merger(mine, theirs, BORDERS, teacher="command line", stamp=STAMP)
         return merging.plan(Statistics(), Statistics(), prefer)
 
     def _heard(

@@ -2,10 +2,10 @@
 
 import pytest
 
-from kurt2rt.platform.ledger import Ledger, Share, Stage
+from kurt2rt.platform.ledger import Percentiles, Stage, TickTimer
 
 
-def tick(ledger: Ledger, lateness_s: float) -> None:
+def tick(ledger: TickTimer, lateness_s: float) -> None:
     ledger.begin(lateness_s)
     for stage in Stage:
         ledger.mark(stage)
@@ -13,12 +13,12 @@ def tick(ledger: Ledger, lateness_s: float) -> None:
 
 
 def test_before_the_first_tick_all_shares_are_zero() -> None:
-    ledger = Ledger()
-    assert ledger.tick() == ledger.lateness() == ledger.stage(Stage.DECIDE) == Share(0.0, 0.0, 0.0)
+    ledger = TickTimer()
+    assert ledger.tick() == ledger.lateness() == ledger.stage(Stage.DECIDE) == Percentiles(0.0, 0.0, 0.0)
 
 
 def test_shares_are_median_99th_percentile_and_worst() -> None:
-    ledger = Ledger()
+    ledger = TickTimer()
     for microseconds in range(1, 101):
         tick(ledger, microseconds * 1e-6)
     share = ledger.lateness()
@@ -26,14 +26,14 @@ def test_shares_are_median_99th_percentile_and_worst() -> None:
 
 
 def test_the_stages_make_up_the_tick() -> None:
-    ledger = Ledger()
+    ledger = TickTimer()
     tick(ledger, 0.0)
     assert ledger.tick().worst_us == pytest.approx(sum(ledger.stage(stage).worst_us for stage in Stage))
     assert all(ledger.stage(stage).worst_us >= 0 for stage in Stage)
 
 
 def test_only_the_last_ticks_are_kept() -> None:
-    ledger = Ledger(capacity=10)
+    ledger = TickTimer(capacity=10)
     tick(ledger, 1.0)
     for _ in range(9):
         tick(ledger, 0.001)

@@ -6,12 +6,12 @@ import sys
 _STORY = """
 import os
 from pathlib import Path
-from kurt2rt.platform.malloc import give_back_large_pieces
+from kurt2rt.platform.malloc import pin_mmap_threshold
 
 def resident_mb():
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
 
-give_back_large_pieces()
+pin_mmap_threshold()
 first = bytearray(8_000_000)
 del first
 before_mb = resident_mb()

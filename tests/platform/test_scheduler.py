@@ -10,16 +10,16 @@ from behaviors.motor_primitive import MotorPrimitive
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.perception.perception import Perception
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
-from kurt2rt.core.teaching.authority import Authority
-from kurt2rt.core.teaching.command_handler import School
+from kurt2rt.core.teaching.authority import ControlAuthority
+from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.inbox import TeacherInbox
 from kurt2rt.core.tick import Tick, TickRecord
-from kurt2rt.experiments.lockstep.exam import NothingIsTaught
-from kurt2rt.platform.ledger import Ledger
+from kurt2rt.experiments.lockstep.exam import NoTeachingAllowed
+from kurt2rt.platform.ledger import TickTimer
 from kurt2rt.platform.scheduler import Scheduler
 from tests.core.perception.helpers import READINGS, SENSORS, definition
 
@@ -65,11 +65,13 @@ class Run:
 
     def __init__(self, clock: HandClock) -> None:
         small = definition(READINGS)
-        level = BasicLevel(RlaSystem(small.dimensions, 10.0), {"stand": MotorPrimitive(STANDSTILL)}, 1, Wanted())
+        level = BasicLevel(
+            RlaSystem(small.dimensions, 10.0), {"stand": MotorPrimitive(STANDSTILL)}, 1, ActiveBehaviour()
+        )
         self.clock = clock
-        self.ledger = Ledger(capacity=100)
-        school = School(
-            level, Authority(level.repertoire, attended=False), insert_beyond_share=0.5, taken_command_ids=()
+        self.ledger = TickTimer(capacity=100)
+        school = CommandHandler(
+            level, ControlAuthority(level.repertoire, attended=False), insert_beyond_share=0.5, taken_command_ids=()
         )
         perception, statistics = Perception(small, SENSORS), StatisticsCounter()
         tick = Tick(
@@ -78,7 +80,7 @@ class Run:
             level,
             school,
             TeacherInbox(),
-            NothingIsTaught(),
+            NoTeachingAllowed(),
             statistics,
             self.ledger,
             now=clock.now_s,

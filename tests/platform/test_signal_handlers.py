@@ -6,7 +6,7 @@ from types import FrameType
 
 import pytest
 
-from kurt2rt.platform.signal_handlers import Hearing
+from kurt2rt.platform.signal_handlers import SignalHandlers
 
 
 class Ear:
@@ -19,8 +19,8 @@ class Ear:
 
 def test_who_heard_a_signal_before_hears_it_again_afterwards() -> None:
     first, second = Ear(), Ear()
-    with Hearing({signal.SIGUSR1: first.hear}):
-        with Hearing({signal.SIGUSR1: second.hear, signal.SIGUSR2: second.hear}):
+    with SignalHandlers({signal.SIGUSR1: first.hear}):
+        with SignalHandlers({signal.SIGUSR1: second.hear, signal.SIGUSR2: second.hear}):
             signal.raise_signal(signal.SIGUSR1)
             signal.raise_signal(signal.SIGUSR2)
         signal.raise_signal(signal.SIGUSR1)
@@ -36,7 +36,7 @@ def test_who_gives_it_back_when_he_hears_it_hears_it_once() -> None:
         hearing.give_back()
         once.hear(number, frame)
 
-    with Hearing({signal.SIGUSR1: always.hear}), (hearing := Hearing({signal.SIGUSR1: hear})):
+    with SignalHandlers({signal.SIGUSR1: always.hear}), (hearing := SignalHandlers({signal.SIGUSR1: hear})):
         for _ in range(3):
             signal.raise_signal(signal.SIGUSR1)
     assert once.heard == [signal.SIGUSR1]
@@ -45,7 +45,7 @@ def test_who_gives_it_back_when_he_hears_it_hears_it_once() -> None:
 
 def test_it_is_given_back_by_who_fails() -> None:
     before = signal.getsignal(signal.SIGINT)
-    with pytest.raises(ZeroDivisionError), Hearing({signal.SIGINT: signal.SIG_IGN}):
+    with pytest.raises(ZeroDivisionError), SignalHandlers({signal.SIGINT: signal.SIG_IGN}):
         raise ZeroDivisionError
     assert signal.getsignal(signal.SIGINT) is before
 
@@ -55,7 +55,7 @@ def test_other_threads_hear_no_signals() -> None:
 
     def try_to() -> None:
         try:
-            Hearing({signal.SIGUSR1: signal.SIG_IGN}).hear()
+            SignalHandlers({signal.SIGUSR1: signal.SIG_IGN}).hear()
         except ValueError as error:
             problems.append(error)
 

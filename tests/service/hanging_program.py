@@ -11,9 +11,9 @@ from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.runs.recording.run_files import RunFiles
 from kurt2rt.service import program
-from kurt2rt.service.post_tick import Rounds
+from kurt2rt.service.post_tick import PostTick
 
-_ROUND = Rounds.__call__
+_ROUND = PostTick.__call__
 _DRIVES_M_S = 0.1
 
 
@@ -22,7 +22,7 @@ def _hang(*_: Any, **__: Any) -> Never:
         threading.Event().wait()
 
 
-def _hang_while_it_drives(rounds: Rounds, record: TickRecord) -> None:
+def _hang_while_it_drives(rounds: PostTick, record: TickRecord) -> None:
     if max(map(abs, record.grant.wheel_speeds)) > _DRIVES_M_S:
         _hang()
     _ROUND(rounds, record)
@@ -39,8 +39,8 @@ def _let_hang(thing: str) -> None:
         "recorder": (RunFiles, "tend", _hang),
         "keys": (Teachers, "close", _hang),
         "network": (Endpoint, "close", _hang_in_the_loop),
-        "loop": (Rounds, "save_statistics", _hang),
-        "drive": (Rounds, "__call__", _hang_while_it_drives),
+        "loop": (PostTick, "save_statistics", _hang),
+        "drive": (PostTick, "__call__", _hang_while_it_drives),
     }
     owner, name, replacement = hangs[thing]
     setattr(owner, name, replacement)

@@ -15,10 +15,10 @@ from hal.robot_settings import load_robot
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Command
-from kurt2rt.core.teaching.question import Question, WayQuestion
+from kurt2rt.core.teaching.question import MidQuestion, Question
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
-from kurt2rt.service.post_tick import Screen, Status
+from kurt2rt.service.post_tick import ProgramConsole, ProgramStatus
 from kurt2rt.service.serve import serve
 from kurt2rt.service.settings import ServiceSettings, load_service
 from kurt2rt.teacher.scripted.teacher import picture_of, teacher_of
@@ -54,8 +54,8 @@ class Rig:
     simulation: RealtimeSimulation
     simulated: SimulatedRobot
     records: list[TickRecord] = field(default_factory=list)
-    questions: list[Question | WayQuestion] = field(default_factory=list)
-    statuses: list[Status] = field(default_factory=list)
+    questions: list[Question | MidQuestion] = field(default_factory=list)
+    statuses: list[ProgramStatus] = field(default_factory=list)
     settled: list[Acknowledgement] = field(default_factory=list)
 
     @property
@@ -74,14 +74,16 @@ class Rig:
         *,
         task: TaskSettings | None = None,
         duration_s: float = LONGEST_S,
-    ) -> Status | None:
+    ) -> ProgramStatus | None:
         """Run the service; `watch` sees each tick, may answer it and ends the run when it has seen enough."""
 
         def teacher(record: TickRecord) -> Command | None:
             self.records.append(record)
             return watch(record)
 
-        screen = Screen(status=self.statuses.append, question=self.questions.append, settled=self.settled.append)
+        screen = ProgramConsole(
+            status=self.statuses.append, question=self.questions.append, settled=self.settled.append
+        )
         return await serve(
             self.robot,
             SETTINGS,

@@ -5,21 +5,21 @@ from typing import Any, cast
 
 import pytest
 
-from hal.simulation import Pose, Post, WorldPlan
+from hal.simulation import Pose, SimulatedPost, WorldPlan
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.core.teaching.system_events import SetDown
+from kurt2rt.core.teaching.system_events import RobotRepositioned
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.service.live_measure import LiveMeasure
 
 NOTHING = cast(Any, None)
 A_RECORD = TickRecord(0, 0.0, NOTHING, NOTHING, NOTHING, NOTHING, ())
-POST = Post("post", 2.0, 2.0, 0.1)
+POST = SimulatedPost("post", 2.0, 2.0, 0.1)
 
 
 class FromAbove:
     """As much of a simulation as a measure looks at."""
 
-    def __init__(self, *posts: Post) -> None:
+    def __init__(self, *posts: SimulatedPost) -> None:
         self.pose = Pose(2.5, 2.0, 0.0)
         self.laps = 0.0
         self.plan = WorldPlan(0, "yard", (4.0, 4.0), (), (), posts)
@@ -28,12 +28,12 @@ class FromAbove:
 class Drive:
     """A measure that is shown one tick after the other."""
 
-    def __init__(self, task: str, *posts: Post) -> None:
+    def __init__(self, task: str, *posts: SimulatedPost) -> None:
         self.simulation = FromAbove(*posts)
         self.measure = LiveMeasure(load_task(task), cast(Any, self.simulation))
         self._tick = 0
 
-    def go(self, x_m: float, y_m: float, *happened: SetDown) -> None:
+    def go(self, x_m: float, y_m: float, *happened: RobotRepositioned) -> None:
         """The robot is there, for as long as a measure needs to see it."""
         self.simulation.pose = Pose(x_m, y_m, 0.0)
         for happening in (happened, *((),) * 4):
@@ -49,8 +49,8 @@ def test_rounds_about_the_post_are_counted_and_being_set_down_is_none() -> None:
         drive.go(2.0 + 0.5 * math.cos(angle), 2.0 + 0.5 * math.sin(angle))
     assert drive.measure.unit == "rounds"
     assert drive.measure.progress == pytest.approx(2.0, abs=0.01)
-    drive.go(1.5, 2.0, SetDown())
-    drive.go(2.5, 2.0, SetDown())
+    drive.go(1.5, 2.0, RobotRepositioned())
+    drive.go(2.5, 2.0, RobotRepositioned())
     assert drive.measure.progress == pytest.approx(2.0, abs=0.01)
 
 
@@ -67,6 +67,6 @@ def test_where_the_course_measures_no_such_drive_it_is_metres_of_way(task: str) 
     drive.go(2.5, 2.0)
     drive.go(2.5, 2.3)
     drive.go(2.1, 2.3)
-    drive.go(0.5, 0.5, SetDown())
+    drive.go(0.5, 0.5, RobotRepositioned())
     assert drive.measure.unit == "m"
     assert drive.measure.progress == pytest.approx(0.7)

@@ -11,14 +11,14 @@ from kurt2rt.core.rla.outcome import ResultCode
 from kurt2rt.core.rla.rla import RlaCreated, RlaDeleted
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.teaching.commands import Command, Teach
-from kurt2rt.core.teaching.question import Question, WayQuestion
+from kurt2rt.core.teaching.question import MidQuestion, Question
 from kurt2rt.core.tick import InMemoryEventStore, TickRecord
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import go_on_teaching
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
-from kurt2rt.service.post_tick import Rounds, Screen, Status
+from kurt2rt.service.post_tick import PostTick, ProgramConsole, ProgramStatus
 from kurt2rt.service.settings import load_service
 from tests.channel.desk import ROBOT, STAMP, TASK, Desk, WideRobot, reply_of, turns
 from tests.core.rla.helpers import created, origin
@@ -35,14 +35,16 @@ class Shift:
         self.writer = JournalWriter(go_on_teaching(path, ROBOT, TASK).journal, lambda: STAMP)
         self.desk = Desk(keeper=self.writer)
         self.stamps: dict[str, str] = {}
-        self.statuses: list[Status] = []
-        self.questions: list[Question | WayQuestion] = []
+        self.statuses: list[ProgramStatus] = []
+        self.questions: list[Question | MidQuestion] = []
         self.settled: list[Acknowledgement] = []
         self.seen: list[TickRecord] = []
         self.next_command: Command | None = None
-        screen = Screen(status=self.statuses.append, question=self.questions.append, settled=self.settled.append)
+        screen = ProgramConsole(
+            status=self.statuses.append, question=self.questions.append, settled=self.settled.append
+        )
         channel = self.desk.channel if with_channel else None
-        self.rounds = Rounds(self.desk.runtime, self.writer, self.stamps, SERVICE, screen, self._watch, channel)
+        self.rounds = PostTick(self.desk.runtime, self.writer, self.stamps, SERVICE, screen, self._watch, channel)
         self._tick = 10_000
 
     def run(self, ticks: int = 1, counts: int | None = None) -> TickRecord:

@@ -11,7 +11,7 @@ import yaml
 
 from config import CONFIG_DIR
 from hal.settings import SettingsError
-from kurt2rt.service.config_reload import Reloading
+from kurt2rt.service.config_reload import ConfigReloader
 from kurt2rt.service.settings import ServiceSettings, for_a_unit, load_service, while_running
 from kurt2rt.service.systemd.notifier import Notifier
 from tests.service.systemd.manager import manager
@@ -27,7 +27,9 @@ class Program:
         self.change()
         self.told: list[str] = []
         self.taken: list[ServiceSettings] = []
-        self.reloading = Reloading(lambda: load_service(str(path)), load_service(str(path)), notifier, self.told.append)
+        self.reloading = ConfigReloader(
+            lambda: load_service(str(path)), load_service(str(path)), notifier, self.told.append
+        )
 
     def change(self, **changes: object) -> None:
         settings = yaml.safe_load(SHIPPED.read_text(encoding="utf-8"))

@@ -8,12 +8,12 @@ import threading
 
 import pytest
 
-from kurt2rt.service.shutdown import ENDING, Ending, ShutdownStage, last_word
+from kurt2rt.service.shutdown import ENDING, ShutdownHandler, ShutdownStage, last_word
 
 HANGS = """
 import ctypes, time
-from kurt2rt.service.shutdown import Ending, ShutdownStage, leave
-with Ending(give_up=leave) as ending:
+from kurt2rt.service.shutdown import ShutdownHandler, ShutdownStage, force_exit
+with ShutdownHandler(give_up=force_exit) as ending:
     ending.stage = ShutdownStage.LESSONS
     with ending.first(lambda: print("wheels", flush=True), lambda: print("loop", flush=True), lambda: {act}):
         print("begun", flush=True)
@@ -30,7 +30,10 @@ def test_what_comes_first_is_done_once_and_in_order(number: signal.Signals) -> N
     done: list[str] = []
     ended = threading.Event()
     before = signal.getsignal(number)
-    with Ending() as ending, ending.first(lambda: done.append("wheels"), lambda: done.append("loop"), ended.set):
+    with (
+        ShutdownHandler() as ending,
+        ending.first(lambda: done.append("wheels"), lambda: done.append("loop"), ended.set),
+    ):
         assert not ending.asked
         assert ending.patience_s(10.0) == 10.0
         raise_here(number)
@@ -45,7 +48,7 @@ def test_what_comes_first_is_done_once_and_in_order(number: signal.Signals) -> N
 def test_who_begins_after_the_signal_ends_at_once() -> None:
     done: list[str] = []
     heard = threading.Event()
-    with Ending() as ending:
+    with ShutdownHandler() as ending:
         with ending.first(heard.set):
             raise_here(signal.SIGTERM)
             assert heard.wait(60)
@@ -56,7 +59,7 @@ def test_who_begins_after_the_signal_ends_at_once() -> None:
 
 def test_a_signal_that_asks_for_something_else_ends_nothing() -> None:
     heard = threading.Event()
-    with Ending(others={signal.SIGHUP: heard.set}) as ending:
+    with ShutdownHandler(others={signal.SIGHUP: heard.set}) as ending:
         raise_here(signal.SIGHUP)
         assert heard.wait(60)
         assert not ending.asked
@@ -69,7 +72,7 @@ def test_one_that_fails_does_not_keep_the_next_from_being_done() -> None:
         raise ValueError("the brake is gone")
 
     def end() -> None:
-        with Ending() as ending, ending.first(fail, stopped.set):
+        with ShutdownHandler() as ending, ending.first(fail, stopped.set):
             raise_here(signal.SIGTERM)
             assert stopped.wait(60)
 

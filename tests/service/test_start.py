@@ -26,7 +26,7 @@ from kurt2rt.core.teaching.commands import Command, Teach
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.service.health.status_socket import StatusError, reports_at, socket_of
 from kurt2rt.service.open_robot import OpenedRobot
-from kurt2rt.service.program import Orders, RobotProgram
+from kurt2rt.service.program import RobotProgram, RunOptions
 from kurt2rt.service.settings import ServiceSettings, load_service
 from kurt2rt.teacher import TeacherClient
 from tests.service.rig import SETTINGS, Rig, end_service, rig
@@ -37,7 +37,7 @@ BRAKE = bytes(encode_brake().data)
 ALL = ("bus", "disk", "network", "teacher")
 IN_TURN = [ALL[first:] + ALL[:first] for first in range(len(ALL))]
 """Each of them comes last once."""
-ORDERS = Orders(
+ORDERS = RunOptions(
     bus="can0",
     settings="default",
     as_service=True,

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from hal.simulation import Post, SimulatedWorld
+from hal.simulation import SimulatedPost, SimulatedWorld
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_world import Kurt2World
 from simbridge.worlds.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
@@ -45,7 +45,7 @@ def test_the_world_from_above(yard: Yard) -> None:
     assert (view.version, view.name, view.size_m) == (0, "room", (4.0, 4.0))
     assert view.outline == WORLD.outline
     assert [(wall.name, wall.corners) for wall in view.walls] == [("board", BOARD.corners), ("box", BOX.corners)]
-    assert view.posts == (Post("post", 1.0, 1.0, 0.1),)
+    assert view.posts == (SimulatedPost("post", 1.0, 1.0, 0.1),)
 
 
 def test_where_the_robot_is(yard: Yard) -> None:

@@ -15,7 +15,7 @@ from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.server.endpoint import open_endpoint
 from kurt2rt.channel.server.reply import Reply, done, refusal
-from kurt2rt.channel.server.request_handler import Reception, Sender
+from kurt2rt.channel.server.request_handler import RequestHandler, Sender
 from kurt2rt.channel.server.resources import RobotSite
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode
 from tests.channel.states import ASKING
@@ -36,7 +36,7 @@ class StandInRobot:
     """Shows a picture 20 times a second while `showing`, and notes what it hears."""
 
     def __init__(self, teachers: Teachers, boot: bytes, *, showing: bool) -> None:
-        self.site = RobotSite(teachers, cast(Reception, self))
+        self.site = RobotSite(teachers, cast(RequestHandler, self))
         self.port = 0
         self.state: State = replace(ASKING, boot=boot, teacher=None)
         self.showing = showing

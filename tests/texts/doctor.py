@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from kurt2rt.checks.doctor.check_result import Finding, FindingCode, Status
+from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 from kurt2rt.checks.doctor.finding_text import text_of
 
 _VALUES: dict[str, float | str] = {
@@ -43,4 +43,4 @@ _VALUES: dict[str, float | str] = {
 def findings() -> Iterator[tuple[str, str]]:
     """Yield subject, found and what to do of each finding."""
     for code in FindingCode:
-        yield code, " | ".join(text_of(Finding(code, Status.OK, _VALUES)))
+        yield code, " | ".join(text_of(CheckResult(code, CheckStatus.OK, _VALUES)))

@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Generic, TypeVar
 
-from kurt2rt.channel.protocol.schema import Check, Flag, ManyOf, OrNone, Real, Text, Whole, WireError
+from kurt2rt.channel.protocol.schema import Check, Flag, Float, Int, ManyOf, OrNone, Text, WireError
 
-COUNT: Final = Whole(0, 2**53)
+COUNT: Final = Int(0, 2**53)
 NAME: Final = Text(128)
 LINE: Final = Text(512)
 
@@ -82,7 +82,7 @@ def _plainly(value: Any, check: Check) -> Any:
     match check:
         case MapOf(checks=checks):
             return {name: _plainly(getattr(value, name), inner) for name, inner in checks.items()}
-        case ManyOf(check=Real() | Whole() | Flag(), most=most):  # a condition has 72: they are as they should be
+        case ManyOf(check=Float() | Int() | Flag(), most=most):  # a condition has 72: they are as they should be
             return list(value[:most])
         case ManyOf(check=inner, most=most):
             return [_plainly(each, inner) for each in value[:most]]

@@ -8,17 +8,17 @@ from typing import Any
 from hal.simulation import SimulatedPlace
 from kurt2rt.channel.protocol.requests import BOOT_BYTES, LARGEST_NUMBER, LONGEST_TEXT, REQUESTS, Request, checks_of
 from kurt2rt.channel.protocol.schema import (
+    Bytes,
     Check,
     Flag,
+    Float,
+    Int,
     ManyOf,
-    Octets,
     OneOf,
     OneWord,
     OrNone,
-    Real,
     Row,
     Text,
-    Whole,
     WireError,
     decode_strictly,
     encode_plainly,
@@ -96,17 +96,17 @@ _MOST_STEPS = 32
 """Of a plan that are told; a longer one is cut."""
 _LINE = Text(512)
 _NAME = Text(LONGEST_TEXT)
-_NUMBER = Whole(0, LARGEST_NUMBER)
-_ANY_REAL = Real(math.inf)
-_FINITE = Real(1e9)
+_NUMBER = Int(0, LARGEST_NUMBER)
+_ANY_REAL = Float(math.inf)
+_FINITE = Float(1e9)
 
 _PLAIN: tuple[tuple[str, str, Check], ...] = (
-    ("b", "boot", Octets(BOOT_BYTES)),
+    ("b", "boot", Bytes(BOOT_BYTES)),
     ("t", "tick", _NUMBER),
-    ("ph", "phase", Whole(1, 5)),
-    ("ir", "infrared_counts", ManyOf(Whole(0, 65_535), most=64)),
+    ("ph", "phase", Int(1, 5)),
+    ("ir", "infrared_counts", ManyOf(Int(0, 65_535), most=64)),
     ("ia", "infrared_age_s", _ANY_REAL),
-    ("bp", "bumpers", Whole(0, 2**32 - 1)),
+    ("bp", "bumpers", Int(0, 2**32 - 1)),
     ("by", "cause", _NAME),
     ("act", "action", OrNone(_NAME)),
     ("rla", "rla", OrNone(_NUMBER)),
@@ -131,10 +131,10 @@ _PLAIN: tuple[tuple[str, str, Check], ...] = (
     ("v", "value", OrNone(_FINITE)),
     ("op", "opinion", OrNone(OneOf((-1, 0, 1)))),
     ("on", "opinion_of", OrNone(_NUMBER)),
-    ("ag", "agreement", OrNone(Real(1.0))),
+    ("ag", "agreement", OrNone(Float(1.0))),
     ("tru", "trusted", Flag()),
     ("cr", "role", _NAME),
-    ("bs", "bad_share", OrNone(Real(1.0))),
+    ("bs", "bad_share", OrNone(Float(1.0))),
     ("sm", "signals_missing", Row((_NUMBER, _NUMBER))),
     ("aa", "asks_at", OneWord((BASIC, MID))),
     ("go", "goal", _NAME),
@@ -163,7 +163,7 @@ _MID = (
 """The fields of MidState."""
 _SURPRISE = (_NUMBER, OneWord((BASIC, MID)), _NUMBER, _NUMBER, _ANY_REAL, Flag())
 """The fields of SurpriseState."""
-_PROGRESS = (Whole(0, WINDOW_S), OrNone(Whole(0, 100)), _NUMBER)
+_PROGRESS = (Int(0, WINDOW_S), OrNone(Int(0, 100)), _NUMBER)
 """The fields of Progress."""
 _STANDING = (_NAME, Flag(), Flag(), OrNone(_FINITE), _LINE)
 """The fields of Standing."""

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from kurt2rt.channel.protocol.cbor_schema import LINE, NAME, Form, MapOf, MayLack
-from kurt2rt.channel.protocol.schema import Flag, ManyOf, Real
+from kurt2rt.channel.protocol.schema import Flag, Float, ManyOf
 
 _MOST_WORLDS = 32
 
@@ -21,7 +21,7 @@ class WorldVerdict:
 
 
 @dataclass(frozen=True, slots=True)
-class ExamStanding:
+class ExamStatus:
     """The exam that is under way, or the newest one."""
 
     running: bool
@@ -37,14 +37,14 @@ class ExamStanding:
     """Why there is no verdict, in a line; empty where nothing went wrong."""
 
 
-NO_EXAM = ExamStanding(False, 0.0, "")
+NO_EXAM = ExamStatus(False, 0.0, "")
 
-EXAM = Form[ExamStanding](
+EXAM = Form[ExamStatus](
     "the exam",
     MapOf(
-        ExamStanding,
+        ExamStatus,
         running=Flag(),
-        share=Real(1.0),
+        share=Float(1.0),
         text=LINE,
         verdicts=ManyOf(
             MapOf(WorldVerdict, world=NAME, passed=Flag(), text=LINE, judged=MayLack(Flag())), most=_MOST_WORLDS

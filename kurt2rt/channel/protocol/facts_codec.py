@@ -5,21 +5,21 @@ from typing import Any
 
 from hal.robot import WheelSpeeds
 from kurt2rt.channel.protocol.cbor_schema import COUNT, LINE, NAME, Form, MapOf, MayLack, OrNotFinite
-from kurt2rt.channel.protocol.schema import Flag, ManyOf, OneWord, OrNone, Real, Row, Whole
+from kurt2rt.channel.protocol.schema import Flag, Float, Int, ManyOf, OneWord, OrNone, Row
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.decision.standing_text import stop_of_text
-from kurt2rt.runs.explain.facts import MOST_OTHERS, Act, DecisionFacts, LevelFacts, RlaStory
+from kurt2rt.runs.explain.facts import MOST_OTHERS, DecisionFacts, LessonFact, LevelFacts, RlaFacts
 
 _MOST_ACTS = 32
 _MOST_FEATURES = 512
 
-_REAL = Real(1e12)
+_REAL = Float(1e12)
 _DISTANCE = OrNotFinite(_REAL, math.inf)
 _SPEEDS = Row((_REAL, _REAL))
 _VECTOR = ManyOf(OrNotFinite(_REAL, math.nan), most=_MOST_FEATURES)
 _STORY = MapOf(
-    RlaStory,
+    RlaFacts,
     rla_id=COUNT,
     title=NAME,
     action=NAME,
@@ -27,7 +27,9 @@ _STORY = MapOf(
     distance=_DISTANCE,
     radius=_REAL,
     acts=ManyOf(
-        MapOf(Act, text=LINE, teacher=NAME, phase=Whole(1, 5), tick=COUNT, stamp=NAME, undone=Flag(), changes=Flag()),
+        MapOf(
+            LessonFact, text=LINE, teacher=NAME, phase=Int(1, 5), tick=COUNT, stamp=NAME, undone=Flag(), changes=Flag()
+        ),
         most=_MOST_ACTS,
     ),
     uses=COUNT,
@@ -81,7 +83,7 @@ _FACTS = MapOf(
     now_s=_REAL,
     robot=NAME,
     task=NAME,
-    phase=Whole(1, 5),
+    phase=Int(1, 5),
     cause=OneWord(tuple(cause.value for cause in Cause)),
     action=OrNone(NAME),
     asks_at=NAME,

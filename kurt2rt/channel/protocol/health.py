@@ -39,7 +39,7 @@ class Trouble:
 
 
 @dataclass(frozen=True, slots=True)
-class Punctuality:
+class TickLateness:
     """How late ticks begin, of the last minute unless said otherwise, in milliseconds."""
 
     newest_ms: float
@@ -93,7 +93,7 @@ class DiskSpace:
 
 
 @dataclass(frozen=True, slots=True)
-class Safety:
+class JournalHealth:
     """How lessons fare on their way to the disk."""
 
     unwritten: int
@@ -103,7 +103,7 @@ class Safety:
 
 
 @dataclass(frozen=True, slots=True)
-class Machine:
+class MachineHealth:
     """The program and the machine that it runs on."""
 
     memory_bytes: int
@@ -150,13 +150,13 @@ class HealthReport:
     rlas: int
     lessons: int
     """That stand."""
-    punctuality: Punctuality
+    punctuality: TickLateness
     ages: SensorAges
     bus: BusHealth | None
     """None where the robot does not tell of one."""
     disks: tuple[DiskSpace, ...]
-    safety: Safety
-    machine: Machine
+    safety: JournalHealth
+    machine: MachineHealth
     drops: tuple[Drops, ...]
     troubles: tuple[Trouble, ...]
     """The urgent ones first, then those that have lasted longest."""

@@ -6,13 +6,13 @@ from kurt2rt.channel.protocol.health import (
     DiskSpace,
     Drops,
     HealthReport,
-    Machine,
-    Punctuality,
-    Safety,
+    JournalHealth,
+    MachineHealth,
     SensorAges,
+    TickLateness,
     Trouble,
 )
-from kurt2rt.channel.protocol.schema import Flag, ManyOf, OrNone, Real
+from kurt2rt.channel.protocol.schema import Flag, Float, ManyOf, OrNone
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.channel.protocol.trouble_text import numbers_of
 from kurt2rt.core.teaching.progress import Progress
@@ -20,7 +20,7 @@ from kurt2rt.core.teaching.progress import Progress
 MOST_ROWS = 16
 """Of troubles, disks and queues; more are not told."""
 
-_TIME = Real(1e12)
+_TIME = Float(1e12)
 
 
 def _trouble(
@@ -67,7 +67,7 @@ _REPORT = MapOf(
     doing=LINE,
     rlas=COUNT,
     lessons=COUNT,
-    punctuality=MapOf(Punctuality, **_MILLISECONDS, ticks=COUNT, missed=COUNT, missed_lately=COUNT),
+    punctuality=MapOf(TickLateness, **_MILLISECONDS, ticks=COUNT, missed=COUNT, missed_lately=COUNT),
     ages=MapOf(SensorAges, infrared_s=OrNone(_TIME), encoders_s=OrNone(_TIME), bumpers_s=OrNone(_TIME)),
     bus=OrNone(
         MapOf(
@@ -82,14 +82,14 @@ _REPORT = MapOf(
         )
     ),
     disks=ManyOf(MapOf(DiskSpace, of=NAME, free_bytes=OrNone(COUNT)), most=MOST_ROWS),
-    safety=MapOf(Safety, unwritten=COUNT, last_write_ms=OrNone(_TIME)),
+    safety=MapOf(JournalHealth, unwritten=COUNT, last_write_ms=OrNone(_TIME)),
     machine=MapOf(
-        Machine,
+        MachineHealth,
         memory_bytes=COUNT,
         available_bytes=OrNone(COUNT),
-        processor_share=Real(1e6),
+        processor_share=Float(1e6),
         threads=COUNT,
-        battery=OrNone(Real(1.0)),
+        battery=OrNone(Float(1.0)),
         discharging=Flag(),
     ),
     drops=ManyOf(MapOf(Drops, of=NAME, count=COUNT), most=MOST_ROWS),

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from kurt2rt.channel.protocol.health import HealthReport, Punctuality, SensorAges, Trouble
+from kurt2rt.channel.protocol.health import HealthReport, SensorAges, TickLateness, Trouble
 from kurt2rt.core.teaching.progress import WINDOW_S, Progress
 
 FINE, WARNS, URGENT = "", "warns", "urgent"
@@ -138,7 +138,7 @@ def size(count: int) -> str:
     return f"{count / 1000:.0f} kB"
 
 
-def _lately(late: Punctuality) -> str:
+def _lately(late: TickLateness) -> str:
     return f", {late.missed_lately} of them in the last minute" if late.missed_lately else ""
 
 

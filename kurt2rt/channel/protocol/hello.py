@@ -5,19 +5,19 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from kurt2rt.channel.protocol.requests import BOOT_BYTES, LARGEST_NUMBER, VERSION
-from kurt2rt.channel.protocol.schema import Flag, ManyOf, Octets, OrNone, Real, Row, Text, Whole, WireError
+from kurt2rt.channel.protocol.schema import Bytes, Flag, Float, Int, ManyOf, OrNone, Row, Text, WireError
 from kurt2rt.core.perception.sensor_words import InfraredLaw, SensorWords
 
 _NAME = Text(64)
-_METRES = Real(1000.0, "m")
-_NUMBER = Whole(0, LARGEST_NUMBER)
-_BOOT = Octets(BOOT_BYTES)
-_SENSORS = ManyOf(Row((_NAME, _NAME, _METRES, _METRES, Real(360.0, "degrees"))), most=64)
-_APPRAISALS = ManyOf(Row((_NAME, Whole(-1, 1))), most=16)
-_MID = OrNone(Row((_NAME, Whole(0, 256), Real(1e9))))
+_METRES = Float(1000.0, "m")
+_NUMBER = Int(0, LARGEST_NUMBER)
+_BOOT = Bytes(BOOT_BYTES)
+_SENSORS = ManyOf(Row((_NAME, _NAME, _METRES, _METRES, Float(360.0, "degrees"))), most=64)
+_APPRAISALS = ManyOf(Row((_NAME, Int(-1, 1))), most=16)
+_MID = OrNone(Row((_NAME, Int(0, 256), Float(1e9))))
 _OUTLINE = Row((_METRES, _METRES))
 _WHAT = Text(128)
-_COUNTS = Real(1e6, "counts")
+_COUNTS = Float(1e6, "counts")
 _LAW = OrNone(Row((_COUNTS, _METRES, _COUNTS, _METRES, _METRES, _COUNTS)))
 
 
@@ -107,17 +107,17 @@ def hello_of(body: Mapping[str, Any]) -> Hello:
             tick=_NUMBER("tick", body["tick"]),
             robot=_NAME("robot", body["robot"]),
             task=_NAME("task", body["task"]),
-            radius=Real(1e9)("radius", body["radius"]),
-            period_s=Real(10.0, "s")("period_s", body["period_s"]),
+            radius=Float(1e9)("radius", body["radius"]),
+            period_s=Float(10.0, "s")("period_s", body["period_s"]),
             actions=ManyOf(_NAME, most=256)("actions", body["actions"]),
             sensors=tuple(SensorPlace(*each) for each in _SENSORS("sensors", body["sensors"])),
             outline=_OUTLINE("outline", body["outline"]),
-            max_m_s=Real(10.0, "m/s")("max_m_s", body["max_m_s"]),
+            max_m_s=Float(10.0, "m/s")("max_m_s", body["max_m_s"]),
             simulated=Flag()("simulated", body["simulated"]),
             phases=ManyOf(_NAME, most=5)("phases", [phases[number] for number in sorted(phases)]),
             behaviours=ManyOf(_NAME, most=64)("behaviours", body["behaviours"]),
             appraisals=tuple(AppraisalName(*each) for each in _APPRAISALS("appraisals", body["appraisals"])),
-            trusted_from=Real(1.0)("trusted_from", body["trusted_from"]),
+            trusted_from=Float(1.0)("trusted_from", body["trusted_from"]),
             mid=None if (mid := _MID("mid", body["mid"])) is None else MidIntroduction(*mid),
             seeks=Flag()("seeks", body["seeks"]),
             what=_WHAT("what", body.get("what", "")),
@@ -128,7 +128,7 @@ def hello_of(body: Mapping[str, Any]) -> Hello:
 
 
 def _require_version(body: Mapping[str, Any]) -> None:
-    version = Whole(1, LARGEST_NUMBER)("version of the wire contract", body.get("v"))
+    version = Int(1, LARGEST_NUMBER)("version of the wire contract", body.get("v"))
     if version != VERSION:
         older = "the robot's" if version < VERSION else "this device's"
         raise WireError(

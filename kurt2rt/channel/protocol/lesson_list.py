@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from kurt2rt.channel.protocol.requests import LARGEST_NUMBER, MOST_LESSONS
-from kurt2rt.channel.protocol.schema import Flag, ManyOf, Row, Text, Whole, WireError
+from kurt2rt.channel.protocol.schema import Flag, Int, ManyOf, Row, Text, WireError
 
 _LINES = ManyOf(
-    Row((Text(128), Text(512), Text(128), Whole(1, 5), Whole(0, LARGEST_NUMBER), Text(64), Flag())),
+    Row((Text(128), Text(512), Text(128), Int(1, 5), Int(0, LARGEST_NUMBER), Text(64), Flag())),
     most=MOST_LESSONS,
 )
 

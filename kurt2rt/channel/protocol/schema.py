@@ -23,7 +23,7 @@ Check = Callable[[str, object], Any]
 
 
 @dataclass(frozen=True, slots=True)
-class Octets:
+class Bytes:
     """Bytes of one length."""
 
     length: int
@@ -36,7 +36,7 @@ class Octets:
 
 
 @dataclass(frozen=True, slots=True)
-class OctetsUpTo:
+class BytesUpTo:
     """At least one byte, and no more than `most`."""
 
     most: int
@@ -49,7 +49,7 @@ class OctetsUpTo:
 
 
 @dataclass(frozen=True, slots=True)
-class Whole:
+class Int:
     """A whole number; True is none."""
 
     least: int
@@ -63,7 +63,7 @@ class Whole:
 
 
 @dataclass(frozen=True, slots=True)
-class Real:
+class Float:
     """A number no larger than `most` either way, in `unit`. Whole ones count: some encoders shorten 1.0 to 1."""
 
     most: float

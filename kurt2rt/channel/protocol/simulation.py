@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from kurt2rt.channel.protocol.cbor_schema import LINE, NAME, Form, MapOf
 from kurt2rt.channel.protocol.requests.limits import FASTEST
-from kurt2rt.channel.protocol.schema import ManyOf, Real, Whole
+from kurt2rt.channel.protocol.schema import Float, Int, ManyOf
 
 _MOST_NAMES = 64
 
@@ -46,9 +46,9 @@ SIMULATION = Form[SimulationView](
         task=NAME,
         worlds=ManyOf(NAME, most=_MOST_NAMES),
         tasks=ManyOf(MapOf(TaskName, name=NAME, what=LINE), most=_MOST_NAMES),
-        speed=Whole(1, FASTEST),
-        reached=Real(1000.0),
-        progress=Real(1e9),
+        speed=Int(1, FASTEST),
+        reached=Float(1000.0),
+        progress=Float(1e9),
         unit=NAME,
     ),
 )

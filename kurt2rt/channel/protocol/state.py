@@ -126,7 +126,7 @@ class State:
     trusted: bool = False
     """Whether the critic agrees well enough to act in phase 5."""
     role: str = "listens"
-    """What the critic does: a value of kurt2rt.core.critic.state.Role."""
+    """What the critic does: a value of kurt2rt.core.critic.state.CriticState."""
     bad_share: float | None = None
     """Share of the driven time that it found bad lately; None while it only listens."""
     signals_missing: tuple[int, int] = (0, 0)

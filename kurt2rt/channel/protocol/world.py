@@ -4,12 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from hal.simulation import Post, Wall
+from hal.simulation import SimulatedPost, Wall
 from kurt2rt.channel.protocol.requests import LARGEST_NUMBER
-from kurt2rt.channel.protocol.schema import ManyOf, Real, Row, Text, Whole, WireError
+from kurt2rt.channel.protocol.schema import Float, Int, ManyOf, Row, Text, WireError
 
 _NAME = Text(64)
-_METRES = Real(1000.0, "m")
+_METRES = Float(1000.0, "m")
 _CORNERS = ManyOf(Row((_METRES, _METRES)), most=1000)
 
 
@@ -23,7 +23,7 @@ class World:
     size: tuple[float, float]
     outline: tuple[tuple[float, float], ...]
     walls: tuple[Wall, ...]
-    round: tuple[Post, ...]
+    round: tuple[SimulatedPost, ...]
 
 
 def world_of(body: Mapping[str, Any]) -> World:
@@ -32,12 +32,12 @@ def world_of(body: Mapping[str, Any]) -> World:
         walls = ManyOf(Row((_NAME, _CORNERS)), most=1000)("walls", body["walls"])
         posts = ManyOf(Row((_NAME, _METRES, _METRES, _METRES)), most=1000)("round", body["round"])
         return World(
-            version=Whole(0, LARGEST_NUMBER)("version", body["version"]),
+            version=Int(0, LARGEST_NUMBER)("version", body["version"]),
             name=_NAME("name", body["name"]),
             size=Row((_METRES, _METRES))("size", body["size"]),
             outline=_CORNERS("outline", body["outline"]),
             walls=tuple(Wall(*each) for each in walls),
-            round=tuple(Post(*each) for each in posts),
+            round=tuple(SimulatedPost(*each) for each in posts),
         )
     except KeyError as error:
         raise WireError(f"the robot's world has no {error}") from error

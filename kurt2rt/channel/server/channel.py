@@ -10,27 +10,27 @@ import anyio
 
 from hal.simulation import SimulatedWorld
 from kurt2rt.channel.protocol.codec import encode_state
-from kurt2rt.channel.protocol.exam_status import ExamStanding
+from kurt2rt.channel.protocol.exam_status import ExamStatus
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.requests import BOOT_BYTES, VERSION
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.server.endpoint import Endpoint, open_endpoint
 from kurt2rt.channel.server.off_tick_requests import Copies
 from kurt2rt.channel.server.reply import done, refusal, unsaved
-from kurt2rt.channel.server.request_handler import Reception
+from kurt2rt.channel.server.request_handler import RequestHandler
 from kurt2rt.channel.server.resources import RobotSite
 from kurt2rt.channel.server.simulation import Measure, RunControl
-from kurt2rt.channel.server.state_builder import Safekeeping, Telling
+from kurt2rt.channel.server.state_builder import JournalStatus, StateBuilder
 from kurt2rt.core.perception.sensor_words import law_of
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import HandOver, Stop
 from kurt2rt.core.teaching.inbox import InboxFullError
-from kurt2rt.core.teaching.system_events import PressesForgotten
+from kurt2rt.core.teaching.system_events import PairingRenewed
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.platform.simulated_clock import Speed
-from kurt2rt.runs.explain.live import Explaining
+from kurt2rt.runs.explain.live import LiveExplainer
 from kurt2rt.runtime import Runtime
 
 PICTURES_PER_S = 20
@@ -39,10 +39,10 @@ _REFRESH_S = 1.0
 
 
 @dataclass(frozen=True, slots=True)
-class Surroundings:
+class ChannelDependencies:
     """What of the service the channel needs."""
 
-    safekeeping: Safekeeping
+    safekeeping: JournalStatus
     copies: Copies
     bus_trouble: Callable[[], str]
     ground: SimulatedWorld | None
@@ -50,7 +50,7 @@ class Surroundings:
     """Random bytes of this start."""
     health: Callable[[], HealthReport | None] = lambda: None
     """The newest report; None before the first."""
-    exam: Callable[[], ExamStanding] | None = None
+    exam: Callable[[], ExamStatus] | None = None
     """Status of the exam; None if the robot is not examined."""
     simulation: RunControl | None = None
     """None where the simulator is not in this program."""
@@ -66,12 +66,12 @@ class Channel:
     def __init__(
         self,
         runtime: Runtime,
-        reception: Reception,
+        reception: RequestHandler,
         site: RobotSite,
-        telling: Telling,
+        telling: StateBuilder,
         endpoint: Endpoint,
         pairing_trouble: Callable[[], tuple[str, ...]],
-        explaining: Explaining,
+        explaining: LiveExplainer,
         speed: Speed | None = None,
     ) -> None:
         self._reception = reception
@@ -142,14 +142,14 @@ class Channel:
 
 @asynccontextmanager
 async def open_channel(
-    runtime: Runtime, teachers: Teachers, port: int, surroundings: Surroundings
+    runtime: Runtime, teachers: Teachers, port: int, surroundings: ChannelDependencies
 ) -> AsyncIterator[Channel]:
     """Listen for the teachers of `teachers`: on this machine only while none is paired. Raises ChannelError."""
     boot = surroundings.boot
     hello = describe(runtime, boot, simulated=surroundings.ground is not None)
     stamp_of = surroundings.safekeeping.stamp_of
-    explaining = Explaining(runtime, stamp_of)
-    reception = Reception(
+    explaining = LiveExplainer(runtime, stamp_of)
+    reception = RequestHandler(
         runtime,
         boot,
         hello,
@@ -163,7 +163,7 @@ async def open_channel(
         speed=surroundings.speed,
         measure=surroundings.measure,
     )
-    telling = Telling(
+    telling = StateBuilder(
         runtime, boot, surroundings.safekeeping, surroundings.bus_trouble, surroundings.ground, surroundings.health
     )
     site = RobotSite(teachers, reception)
@@ -188,7 +188,7 @@ async def _refresh(teachers: Teachers, runtime: Runtime) -> None:
     while True:
         await anyio.sleep(_REFRESH_S)
         for name in (await teachers.refresh()).gone:
-            runtime.inbox.put(PressesForgotten(name))
+            runtime.inbox.put(PairingRenewed(name))
             if runtime.school.authority.teacher == name:
                 revoked = f"{name}-gone-{secrets.token_hex(4)}"
                 runtime.inbox.put(Stop(f"{revoked}-stop", name))

@@ -75,7 +75,7 @@ class _Key:
     """Highest sequence number so far."""
 
 
-class Gate:
+class DatagramFilter:
     """Accepts what may be a request and comes at a bearable rate."""
 
     def __init__(

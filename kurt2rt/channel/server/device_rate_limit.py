@@ -1,7 +1,7 @@
 """How often each device may ask for what costs the loop something."""
 
 
-class Allowance:
+class PerDeviceRateLimit:
     """So many at once, and one more every few ticks; each device has its own."""
 
     def __init__(self, most: int, every_ticks: int) -> None:

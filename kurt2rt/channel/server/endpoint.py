@@ -13,7 +13,7 @@ from aiocoap.message import Direction
 from aiocoap.numbers.constants import TransportTuning
 from aiocoap.transports.udp6 import MessageInterfaceUDP6, UDP6EndpointAddress
 
-from kurt2rt.channel.server.datagram_filter import Counters, Gate, Limits, SocketAddress
+from kurt2rt.channel.server.datagram_filter import Counters, DatagramFilter, Limits, SocketAddress
 from kurt2rt.channel.server.sealed_request import SealedRequest
 from kurt2rt.channel.server.udp_port import bound_socket
 
@@ -69,7 +69,7 @@ class _Failures(logging.Handler):
 class _Socket(MessageInterfaceUDP6):  # type: ignore[misc]  # Any
     """aiocoap's UDP interface behind a gate. Nothing that arrives makes it raise."""
 
-    gate: Gate | None = None
+    gate: DatagramFilter | None = None
     """None until aiocoap's layers above are put together; what comes earlier is as good as lost."""
 
     def datagram_msg_received(
@@ -136,7 +136,7 @@ class Endpoint:
         context: aiocoap.Context,
         opened: _Socket,
         port: int,
-        gate: Gate,
+        gate: DatagramFilter,
         counters: Counters,
         failures: _Failures,
     ) -> None:
@@ -191,7 +191,7 @@ async def open_endpoint(
     """
     loop = asyncio.get_running_loop()
     counters = Counters()
-    gate = Gate(limits or Limits(), counters, now, key_of)
+    gate = DatagramFilter(limits or Limits(), counters, now, key_of)
     failures = _Failures(counters)
     # Not registered anywhere: aiocoap's lines about single messages are neither formatted nor passed on.
     log = logging.Logger("kurt2rt.channel.coap", logging.ERROR)

@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any, Protocol
 
 from hal.simulation import SimulatedWorld
-from kurt2rt.channel.protocol.exam_status import EXAM, ExamStanding
+from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus
 from kurt2rt.channel.protocol.requests import (
     PACKAGE,
     PART_BYTES,
@@ -28,7 +28,7 @@ from kurt2rt.channel.protocol.requests import (
     WorldRequest,
 )
 from kurt2rt.channel.protocol.simulation import SIMULATION
-from kurt2rt.channel.server.pending_commands import Outcomes
+from kurt2rt.channel.server.pending_commands import PendingCommands
 from kurt2rt.channel.server.reply import Reply, Verdict, done, plain_outcome, refusal, restarted, unsaved
 from kurt2rt.channel.server.simulation import Measure, RunControl, TeacherNow
 from kurt2rt.channel.server.upload import Upload
@@ -91,11 +91,11 @@ class OffTickRequests:
         self,
         runtime: Runtime,
         boot: bytes,
-        outcomes: Outcomes,
+        outcomes: PendingCommands,
         tick: Callable[[], int],
         copies: Copies,
         ground: SimulatedWorld | None,
-        exam: Callable[[], ExamStanding] | None,
+        exam: Callable[[], ExamStatus] | None,
         simulation: RunControl | None,
         speed: Speed | None,
         measure: Measure | None,

@@ -6,7 +6,7 @@ from collections import OrderedDict
 from kurt2rt.channel.server.reply import Reply
 
 
-class Outcomes:
+class PendingCommands:
     """Replies by command id, those that are still to come among them; the oldest settled ones are forgotten."""
 
     def __init__(self, capacity: int = 1024) -> None:

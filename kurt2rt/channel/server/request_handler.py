@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from hal.simulation import SimulatedWorld
-from kurt2rt.channel.protocol.exam_status import ExamStanding
+from kurt2rt.channel.protocol.exam_status import ExamStatus
 from kurt2rt.channel.protocol.facts_codec import plain_of_facts
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.health_codec import plain_of
@@ -30,9 +30,9 @@ from kurt2rt.channel.protocol.requests import (
     WhyRequest,
 )
 from kurt2rt.channel.server.command_of import command_of
-from kurt2rt.channel.server.device_rate_limit import Allowance
+from kurt2rt.channel.server.device_rate_limit import PerDeviceRateLimit
 from kurt2rt.channel.server.off_tick_requests import Copies, OffTickCommand, OffTickRequests
-from kurt2rt.channel.server.pending_commands import Outcomes
+from kurt2rt.channel.server.pending_commands import PendingCommands
 from kurt2rt.channel.server.reply import Reply, Verdict, done, refusal, restarted, unsaved
 from kurt2rt.channel.server.simulation import Measure, RunControl
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
@@ -65,7 +65,7 @@ class Sender(NamedTuple):
     """Grows with each message of a pairing."""
 
 
-class Reception:
+class RequestHandler:
     """Takes requests in the robot's own loop, between two ticks."""
 
     def __init__(
@@ -80,7 +80,7 @@ class Reception:
         longest_wait_s: float = LONGEST_WAIT_S,
         health: Callable[[], HealthReport | None] = lambda: None,
         why: Callable[[], DecisionFacts | None] = lambda: None,
-        exam: Callable[[], ExamStanding] | None = None,
+        exam: Callable[[], ExamStatus] | None = None,
         simulation: RunControl | None = None,
         speed: Speed | None = None,
         measure: Measure | None = None,
@@ -99,8 +99,8 @@ class Reception:
         self._longest_wait_s = longest_wait_s
         self._health = health
         self._why = why
-        self._whys = Allowance(MOST_WHYS, WHY_EVERY_TICKS)
-        self._outcomes = Outcomes()
+        self._whys = PerDeviceRateLimit(MOST_WHYS, WHY_EVERY_TICKS)
+        self._outcomes = PendingCommands()
         self._newest: dict[str, Sender] = {}
         self.tick = 0
         """Of the newest picture."""

@@ -10,7 +10,7 @@ from aiocoap.numbers.constants import TransportTuning
 
 from kurt2rt.channel.protocol.codec import CONTENT_FORMAT, PATHS, WireError, decode_request, encode_answer
 from kurt2rt.channel.server.reply import Reply, Verdict, malformed
-from kurt2rt.channel.server.request_handler import Reception, Sender
+from kurt2rt.channel.server.request_handler import RequestHandler, Sender
 from kurt2rt.channel.server.sealed_request import SealedRequest
 
 _CODES = {
@@ -55,7 +55,7 @@ class Keys(Protocol):
         ...
 
 
-class Doorkeeper(Protocol):
+class SenderRegistry(Protocol):
     """Is told which senders are no strangers."""
 
     def proved(self, remote: Any) -> None:
@@ -98,13 +98,13 @@ class _Observer:
 class RobotSite:
     """Answers requests (what aiocoap calls a site). One place checks the key, for every path."""
 
-    def __init__(self, keys: Keys, reception: Reception) -> None:
+    def __init__(self, keys: Keys, reception: RequestHandler) -> None:
         self._keys = keys
         self._reception = reception
         self._observers: set[_Observer] = set()
         self._picture = b""
         self._skipped = 0
-        self.doorkeeper: Doorkeeper | None = None
+        self.doorkeeper: SenderRegistry | None = None
         """To be set once the endpoint is open; before that nothing arrives."""
         self.failures = 0
         """Requests that ended in an error of ours; none should."""

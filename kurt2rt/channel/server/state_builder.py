@@ -21,7 +21,7 @@ _LATENESS_EVERY = 20
 
 
 @dataclass(frozen=True, slots=True)
-class Safekeeping:
+class JournalStatus:
     """How lessons fare on the disk."""
 
     unsaved: Callable[[], int]
@@ -30,14 +30,14 @@ class Safekeeping:
     """When the lesson of a command became durable; empty before it is."""
 
 
-class Telling:
+class StateBuilder:
     """Turns the record of a tick into the picture that teachers see."""
 
     def __init__(
         self,
         runtime: Runtime,
         boot: bytes,
-        safekeeping: Safekeeping,
+        safekeeping: JournalStatus,
         bus_trouble: Callable[[], str],
         ground: SimulatedWorld | None,
         health: Callable[[], HealthReport | None] = lambda: None,

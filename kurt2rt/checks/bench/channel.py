@@ -6,10 +6,10 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from kurt2rt.checks.bench.channel_lesson import measure_channel_lessons
-from kurt2rt.checks.bench.channel_load import Shifts, measure_load
+from kurt2rt.checks.bench.channel_load import LoadShifts, measure_load
 from kurt2rt.checks.bench.press_to_wheel import measure_presses, measure_presses_on_page
-from kurt2rt.checks.bench.result import Result
-from kurt2rt.checks.bench.robot_under_test import OnProgress, Subject
+from kurt2rt.checks.bench.result import BenchResult
+from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest
 
 _PAGE_PACKAGES = ("starlette", "uvicorn", "websockets")
 
@@ -19,13 +19,13 @@ class ChannelLengths:
     """How much of the channel is measured."""
 
     presses: int
-    shifts: Shifts
+    shifts: LoadShifts
     lessons: int
 
 
 async def measure_channel(
-    subject: Subject, folder: Path, lengths: ChannelLengths, progress_of: Callable[[str], OnProgress]
-) -> tuple[Result, ...]:
+    subject: RobotUnderTest, folder: Path, lengths: ChannelLengths, progress_of: Callable[[str], OnProgress]
+) -> tuple[BenchResult, ...]:
     """Presses, with and without the page; the loop with a teacher there; lessons. Files go to folders in `folder`.
 
     The page is left out where its packages, an extra, are not installed. Raises LessonLostError, KnowledgeError,

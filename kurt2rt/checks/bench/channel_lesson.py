@@ -8,8 +8,8 @@ from anyio import to_thread
 
 from kurt2rt.checks.bench.helper_process import partner
 from kurt2rt.checks.bench.open_robot import OpenRobot, open_robot
-from kurt2rt.checks.bench.result import Goal, Reference, Result
-from kurt2rt.checks.bench.robot_under_test import OnProgress, Subject
+from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
+from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest
 from kurt2rt.core.teaching.commands import Teach
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
 from kurt2rt.platform.ledger import share_of
@@ -21,7 +21,9 @@ _WARMING_UP = 1
 _PATIENCE_S = 10.0
 
 
-async def measure_channel_lessons(subject: Subject, folder: Path, lessons: int, on_progress: OnProgress) -> Result:
+async def measure_channel_lessons(
+    subject: RobotUnderTest, folder: Path, lessons: int, on_progress: OnProgress
+) -> BenchResult:
     """From an answer of the teacher's device until it is acknowledged there; files go to `folder`.
 
     In turns with lessons that begin and end in the robot's program. Raises LessonLostError, KnowledgeError,
@@ -39,12 +41,12 @@ async def measure_channel_lessons(subject: Subject, folder: Path, lessons: int, 
                 inside_ns.append(await _teach_inside(robot, number))
             on_progress(len(took_ns) / lessons)
     took, inside = share_of(took_ns), share_of(inside_ns)
-    return Result(
+    return BenchResult(
         "channel",
         "lesson answered",
         took,
         Reference("durable", inside.median_us, took.median_us),
-        (Goal("p99 us", took.p99_us, P99_LIMIT_US),),
+        (BenchGoal("p99 us", took.p99_us, P99_LIMIT_US),),
         f"{lessons} lessons; durable, without the channel: p99 {inside.p99_us / 1000:.1f} ms",
     )
 

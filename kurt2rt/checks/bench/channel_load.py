@@ -10,15 +10,15 @@ from statistics import fmean
 from kurt2rt.channel.server.channel import PICTURES_PER_S
 from kurt2rt.checks.bench.helper_process import partner
 from kurt2rt.checks.bench.open_robot import OpenRobot, open_robot
-from kurt2rt.checks.bench.result import Goal, Reference, Result
-from kurt2rt.checks.bench.robot_under_test import OnProgress, Subject
+from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
+from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest
 from kurt2rt.core.rla.rla import Phase
-from kurt2rt.platform.ledger import Ledger, Share, share_of
+from kurt2rt.platform.ledger import Percentiles, TickTimer, share_of
 
 _SETTLING_S = 0.3
 
 
-class Company(StrEnum):
+class Load(StrEnum):
     """Who is at the robot."""
 
     NOBODY = "leave"
@@ -30,7 +30,7 @@ class Company(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Shifts:
+class LoadShifts:
     """How often and how long each company is there; in turns, so what the machine does meanwhile falls on all alike."""
 
     rounds: int
@@ -38,7 +38,7 @@ class Shifts:
 
 
 @dataclass(frozen=True, slots=True)
-class Stay:
+class LoadPhase:
     """One company at the robot, for a while."""
 
     seconds: float
@@ -60,11 +60,11 @@ class Stay:
 
 
 @dataclass(frozen=True, slots=True)
-class Stays:
+class LoadPhases:
     """All stays of one company."""
 
-    lateness: Share
-    each: tuple[Stay, ...]
+    lateness: Percentiles
+    each: tuple[LoadPhase, ...]
 
     @property
     def missed_ticks(self) -> int:
@@ -72,13 +72,15 @@ class Stays:
         return sum(stay.missed_ticks for stay in self.each)
 
 
-async def measure_load(subject: Subject, folder: Path, shifts: Shifts, on_progress: OnProgress) -> tuple[Result, ...]:
+async def measure_load(
+    subject: RobotUnderTest, folder: Path, shifts: LoadShifts, on_progress: OnProgress
+) -> tuple[BenchResult, ...]:
     """Lateness and processor time of a robot that drives by its RLAs, with and without company; files go to `folder`.
 
     Raises KnowledgeError, PartnerLostError, OSError without a timerfd.
     """
-    ledgers = {company: Ledger(shifts.rounds * shifts.ticks) for company in Company}
-    stays: dict[Company, list[Stay]] = {company: [] for company in Company}
+    ledgers = {company: TickTimer(shifts.rounds * shifts.ticks) for company in Load}
+    stays: dict[Load, list[LoadPhase]] = {company: [] for company in Load}
     async with open_robot(subject, folder) as robot, partner("kurt2rt.checks.bench.device", *robot.address) as device:
         # It drives in the same way whoever is there.
         robot.runtime.school.phase = Phase.AUTONOMOUS
@@ -86,34 +88,34 @@ async def measure_load(subject: Subject, folder: Path, shifts: Shifts, on_progre
         period_s = robot.runtime.robot.can.cycle_s
         for number in range(shifts.rounds):
             robot.pace.shift(period_s / shifts.rounds)
-            for company in Company:
+            for company in Load:
                 robot.rounds.open = True
                 await device.ask(company.value)
                 await _settle(robot, company)
                 stays[company].append(await _stay(robot, ledgers[company], shifts.ticks))
             on_progress((number + 1) / shifts.rounds)
     return load_results(
-        {company: Stays(ledgers[company].lateness(), tuple(stays[company])) for company in Company},
+        {company: LoadPhases(ledgers[company].lateness(), tuple(stays[company])) for company in Load},
         period_s=period_s,
         driving_share=robot.rounds.driving / robot.rounds.ticks,
     )
 
 
-async def _settle(robot: OpenRobot, company: Company) -> None:
-    somebody = company is not Company.NOBODY
+async def _settle(robot: OpenRobot, company: Load) -> None:
+    somebody = company is not Load.NOBODY
     await robot.rounds.until(lambda: (robot.channel.observers > 0) is somebody)
     robot.rounds.open = somebody
     await robot.rounds.go_on_for(round(_SETTLING_S / robot.runtime.robot.can.cycle_s))
 
 
-async def _stay(robot: OpenRobot, ledger: Ledger, ticks: int) -> Stay:
+async def _stay(robot: OpenRobot, ledger: TickTimer, ticks: int) -> LoadPhase:
     counters, runtime = robot.channel.endpoint.counters, robot.runtime
     missed, messages = runtime.ledger.missed_ticks, counters.received
     processor_ns, begun_ns = time.process_time_ns(), time.monotonic_ns()
     robot.clock.ledger = ledger
     await robot.rounds.go_on_for(ticks)
     robot.clock.ledger = None
-    return Stay(
+    return LoadPhase(
         seconds=(time.monotonic_ns() - begun_ns) / 1e9,
         processor_us=(time.process_time_ns() - processor_ns) / 1e3,
         messages=counters.received - messages,
@@ -121,9 +123,9 @@ async def _stay(robot: OpenRobot, ledger: Ledger, ticks: int) -> Stay:
     )
 
 
-def load_results(stays: dict[Company, Stays], *, period_s: float, driving_share: float) -> tuple[Result, ...]:
+def load_results(stays: dict[Load, LoadPhases], *, period_s: float, driving_share: float) -> tuple[BenchResult, ...]:
     """How late ticks begin with a teacher there, and what the channel's work is made of."""
-    nobody, onlooker, teacher = (stays[company] for company in Company)
+    nobody, onlooker, teacher = (stays[company] for company in Load)
     late = Reference("alone, p99", nobody.lateness.p99_us, teacher.lateness.p99_us)
     channel = _more(nobody.each, teacher.each, [1.0] * len(teacher.each))
     alone_us = share_of([round(stay.work_us * 1e3) for stay in nobody.each]).median_us
@@ -134,16 +136,16 @@ def load_results(stays: dict[Company, Stays], *, period_s: float, driving_share:
     ]
     message = _more(onlooker.each, teacher.each, more_messages)
     return (
-        Result(
+        BenchResult(
             "channel",
             "late, teacher there",
             teacher.lateness,
             late,
-            (Goal("missed", teacher.missed_ticks, 0),),
+            (BenchGoal("missed", teacher.missed_ticks, 0),),
             f"{PICTURES_PER_S} pictures out, {fmean(more_messages):.0f} messages in per second; without "
             f"anybody {nobody.missed_ticks} ticks missed; driving in {driving_share:.0%} of the ticks",
         ),
-        Result(
+        BenchResult(
             "channel",
             "channel, per second",
             channel,
@@ -151,12 +153,12 @@ def load_results(stays: dict[Company, Stays], *, period_s: float, driving_share:
             note=f"{channel.median_us / 1e4:.1f} % of a core: processor time of the robot's program with a teacher, "
             "less that without anybody in the same round",
         ),
-        Result("channel", "  a picture", picture, Reference("period", period_s * 1e6, picture.median_us)),
-        Result("channel", "  a message", message, Reference("period", period_s * 1e6, message.median_us)),
+        BenchResult("channel", "  a picture", picture, Reference("period", period_s * 1e6, picture.median_us)),
+        BenchResult("channel", "  a message", message, Reference("period", period_s * 1e6, message.median_us)),
     )
 
 
-def _more(less: Sequence[Stay], more: Sequence[Stay], things_per_s: Sequence[float]) -> Share:
+def _more(less: Sequence[LoadPhase], more: Sequence[LoadPhase], things_per_s: Sequence[float]) -> Percentiles:
     """How much more work there was for each thing, round by round."""
     return share_of(
         [

@@ -4,8 +4,8 @@ import time
 from pathlib import Path
 
 from kurt2rt.checks.bench.one_core import on_one_core
-from kurt2rt.checks.bench.result import Goal, Reference, Result
-from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, Subject, kept_knowledge, lasting
+from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
+from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, RobotUnderTest, kept_knowledge, lasting
 from kurt2rt.checks.bench.tick_budget import share_result
 from kurt2rt.experiments.lockstep.lesson import teach
 from kurt2rt.platform.ledger import share_of
@@ -14,8 +14,8 @@ TIMES_REAL_TIME = 60.0
 
 
 async def measure_closed_loop(
-    subject: Subject, folder: Path, blocks: int, seconds_per_block: int, on_progress: OnProgress
-) -> tuple[Result, ...]:
+    subject: RobotUnderTest, folder: Path, blocks: int, seconds_per_block: int, on_progress: OnProgress
+) -> tuple[BenchResult, ...]:
     """Time per tick of a lesson that goes on from the subject's knowledge, and the runtime's share of it.
 
     Timed by blocks of whole simulated seconds. The journal goes to `folder`. Raises KnowledgeError.
@@ -49,12 +49,12 @@ async def measure_closed_loop(
     tick = share_of(tick_ns)
     reference = Reference("period", period_s * 1e6, tick.median_us)
     best = period_s * 1e9 / min(tick_ns)
-    loop = Result(
+    loop = BenchResult(
         "loop",
         "closed loop, a tick",
         tick,
         reference,
-        (Goal("ratio", reference.ratio, TIMES_REAL_TIME, at_least=True),),
+        (BenchGoal("ratio", reference.ratio, TIMES_REAL_TIME, at_least=True),),
         f"{blocks} blocks of {ticks_per_block} ticks on core {core}: median {reference.ratio:.1f} times real time, "
         f"best {best:.1f}; {len(lesson.rlas)} RLAs",
     )

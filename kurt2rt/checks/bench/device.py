@@ -20,7 +20,7 @@ class BenchmarkRefusedError(RuntimeError):
     """The robot does not do what the benchmark needs."""
 
 
-class Device:
+class BenchDevice:
     """Looks at the robot, watches over it, drives it and teaches it, as it is asked to."""
 
     def __init__(self, folder: Path, port: int) -> None:
@@ -101,7 +101,7 @@ def _require(answer: Answer) -> None:
 
 async def main(folder: Path, port: int) -> None:
     """Do jobs until the input ends."""
-    device = Device(folder, port)
+    device = BenchDevice(folder, port)
     try:
         await do_jobs(
             {

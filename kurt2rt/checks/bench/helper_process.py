@@ -15,11 +15,11 @@ _LONGEST_ANSWER = 65_536
 _ENDING_S = 5.0
 
 
-class PartnerLostError(RuntimeError):
+class HelperLostError(RuntimeError):
     """The process beside the robot's ended or fell silent; what it had to say is on standard error."""
 
 
-class Partner:
+class HelperProcess:
     """Does one job at a time."""
 
     def __init__(self, module: str, process: anyio.abc.Process) -> None:
@@ -33,21 +33,21 @@ class Partner:
         self._answers = BufferedByteReceiveStream(process.stdout)
 
     async def ask(self, job: str, *, patience_s: float = 30.0, **fields: Any) -> dict[str, Any]:
-        """Have a job done; its answer. Raises PartnerLostError."""
+        """Have a job done; its answer. Raises HelperLostError."""
         try:
             with anyio.fail_after(patience_s):
                 await self._stdin.send(json.dumps({"job": job, **fields}).encode() + b"\n")
                 answer = await self._answers.receive_until(b"\n", _LONGEST_ANSWER)
         except (anyio.BrokenResourceError, anyio.EndOfStream, anyio.IncompleteRead) as error:
-            raise PartnerLostError(f"{self._module} ended while it was asked to {job}; see above why") from error
+            raise HelperLostError(f"{self._module} ended while it was asked to {job}; see above why") from error
         except TimeoutError as error:
-            raise PartnerLostError(f"{self._module} did not {job} within {patience_s:g} s") from error
+            raise HelperLostError(f"{self._module} did not {job} within {patience_s:g} s") from error
         fields_of_answer: dict[str, Any] = json.loads(answer)
         return fields_of_answer
 
 
 @asynccontextmanager
-async def partner(module: str, *arguments: str) -> AsyncIterator[Partner]:
+async def partner(module: str, *arguments: str) -> AsyncIterator[HelperProcess]:
     """Start `python -m module`; however this ends, the process ends as well."""
     # In a session of its own, so that Ctrl-C reaches the robot first. Its input ends when we do, and so does it.
     process = await anyio.open_process(
@@ -58,7 +58,7 @@ async def partner(module: str, *arguments: str) -> AsyncIterator[Partner]:
         start_new_session=True,
     )
     try:
-        yield Partner(module, process)
+        yield HelperProcess(module, process)
     finally:
         with anyio.CancelScope(shield=True):
             assert process.stdin is not None

@@ -1,14 +1,14 @@
 """A clock that notes how late its waits end, in whichever ledger is open."""
 
 from kurt2rt.platform.clock import Clock
-from kurt2rt.platform.ledger import Ledger
+from kurt2rt.platform.ledger import TickTimer
 
 
 class NotingClock:
     """A clock (kurt2rt.platform.clock.Clock) of which one may ask how late a part of a run was."""
 
     def __init__(self, clock: Clock) -> None:
-        self.ledger: Ledger | None = None
+        self.ledger: TickTimer | None = None
         """Where lateness goes; None: it is not noted."""
         self._clock = clock
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import anyio
 from anyio import to_thread
 
-from kurt2rt.checks.bench.result import Goal, Reference, Result
-from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, Subject, kept_knowledge
+from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
+from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, RobotUnderTest, kept_knowledge
 from kurt2rt.core.teaching.commands import Teach
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
@@ -23,8 +23,8 @@ P99_LIMIT_US = 20_000.0
 
 
 async def measure_lessons(
-    subject: Subject, folder: Path, lessons: int, on_progress: OnProgress, patience_s: float = 10.0
-) -> Result:
+    subject: RobotUnderTest, folder: Path, lessons: int, on_progress: OnProgress, patience_s: float = 10.0
+) -> BenchResult:
     """Time from a command of the teacher, over the tick that takes it, to the journal in `folder` that has it durable.
 
     In turns with a bare fsync there. Raises LessonLostError, KnowledgeError, OSError without a timerfd.
@@ -73,11 +73,11 @@ async def measure_lessons(
     finally:
         simulation.close()
     took = share_of(took_ns)
-    return Result(
+    return BenchResult(
         "lesson",
         "lesson durable",
         took,
         Reference("bare fsync", share_of(syncs_ns).median_us, took.median_us),
-        (Goal("p99 us", took.p99_us, P99_LIMIT_US),),
+        (BenchGoal("p99 us", took.p99_us, P99_LIMIT_US),),
         f"{lessons} lessons, the wait for the next tick ({period_s * 500:g} ms on average) included",
     )

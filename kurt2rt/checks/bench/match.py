@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurt2rt.checks.bench.result import Goal, Reference, Result
+from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
 from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress
 from kurt2rt.core.rla.matching import ConditionIndex, exact_distances
 from kurt2rt.platform.ledger import share_of
@@ -33,7 +33,7 @@ class WrongWinnerError(RuntimeError):
     """The index and the brute force name different RLAs: the times mean nothing."""
 
 
-def measure_match(sizes: tuple[Size, ...], on_progress: OnProgress) -> tuple[Result, ...]:
+def measure_match(sizes: tuple[Size, ...], on_progress: OnProgress) -> tuple[BenchResult, ...]:
     """Nearest of each number of RLAs, in turns with a float64 brute force. Raises WrongWinnerError."""
     results = []
     for number, size in enumerate(sizes, start=1):
@@ -42,7 +42,7 @@ def measure_match(sizes: tuple[Size, ...], on_progress: OnProgress) -> tuple[Res
     return tuple(results)
 
 
-def _measure(size: Size) -> Result:
+def _measure(size: Size) -> BenchResult:
     chance = np.random.default_rng(SEED)
     conditions = chance.uniform(0.0, LARGEST_COUNTS, (size.rlas, DIMENSIONS))
     index = ConditionIndex(DIMENSIONS)
@@ -66,10 +66,10 @@ def _measure(size: Size) -> Result:
                     "run the tests of kurt2rt/core/rla"
                 )
     took = share_of(took_ns)
-    return Result(
+    return BenchResult(
         "match",
         f"nearest of {size.rlas} RLAs",
         took,
         Reference("brute force", share_of(reference_ns).median_us, took.median_us),
-        (Goal("median us", took.median_us, size.limit_us),),
+        (BenchGoal("median us", took.median_us, size.limit_us),),
     )

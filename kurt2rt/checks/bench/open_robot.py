@@ -11,30 +11,30 @@ import anyio.to_thread
 
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.security.pairing import Device, local_pairing
-from kurt2rt.channel.server.channel import Channel, Surroundings, open_channel
-from kurt2rt.channel.server.state_builder import Safekeeping
+from kurt2rt.channel.server.channel import Channel, ChannelDependencies, open_channel
+from kurt2rt.channel.server.state_builder import JournalStatus
 from kurt2rt.checks.bench.lateness_clock import NotingClock
 from kurt2rt.checks.bench.press_schedule import WitnessedRobot
-from kurt2rt.checks.bench.robot_under_test import Subject, kept_knowledge
-from kurt2rt.checks.bench.tick_phase import Pace
+from kurt2rt.checks.bench.robot_under_test import RobotUnderTest, kept_knowledge
+from kurt2rt.checks.bench.tick_phase import LoopPacer
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.exchange.package import package_knowledge
-from kurt2rt.knowledge.files.backup import Safe
+from kurt2rt.knowledge.files.backup import BackupService
 from kurt2rt.knowledge.journal.writer import JournalWriter
 from kurt2rt.platform.gc_control import quiet_gc
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 from kurt2rt.runtime import Runtime, build_runtime
-from kurt2rt.service.post_tick import Rounds, Screen
+from kurt2rt.service.post_tick import PostTick, ProgramConsole
 from kurt2rt.service.settings import load_service
 
 _PATIENCE_S = 30.0
 
 
-class Turnstile:
+class PauseGate:
     """What happens after each tick: what the service does, and a look whether what is waited for has come."""
 
-    def __init__(self, with_channel: Rounds, without: Rounds) -> None:
+    def __init__(self, with_channel: PostTick, without: PostTick) -> None:
         self.open = True
         """Whether the channel has its part in it."""
         self.ticks = 0
@@ -80,8 +80,8 @@ class OpenRobot:
     clock: NotingClock
     device: Device
     """A teacher's device that is paired with it."""
-    rounds: Turnstile
-    pace: Pace
+    rounds: PauseGate
+    pace: LoopPacer
 
     @property
     def address(self) -> tuple[str, ...]:
@@ -90,7 +90,7 @@ class OpenRobot:
 
 
 @asynccontextmanager
-async def open_robot(subject: Subject, folder: Path) -> AsyncIterator[OpenRobot]:
+async def open_robot(subject: RobotUnderTest, folder: Path) -> AsyncIterator[OpenRobot]:
     """Set the robot down, standing and open to teachers; knowledge and pairing go to `folder`, which is made.
 
     Raises KnowledgeError, ChannelError, OSError without a timerfd, and what the block raises as it is.
@@ -113,26 +113,26 @@ async def open_robot(subject: Subject, folder: Path) -> AsyncIterator[OpenRobot]
             )
             runtime.school.stop(STARTED)
             stamps: dict[str, str] = {}
-            safekeeping = Safekeeping(
+            safekeeping = JournalStatus(
                 unsaved=lambda: writer.unwritten,
                 trouble=lambda: writer.trouble,
                 stamp_of=lambda command_id: stamps.get(command_id, ""),
             )
             package = partial(package_knowledge, robot=subject.settings, task=subject.task)
-            safe = Safe(Path(service.knowledge), writer, package)
-            surroundings = Surroundings(safekeeping, safe, lambda: "", None)
-            screen = Screen(status=lambda _: None, question=lambda _: None, settled=lambda _: None)
+            safe = BackupService(Path(service.knowledge), writer, package)
+            surroundings = ChannelDependencies(safekeeping, safe, lambda: "", None)
+            screen = ProgramConsole(status=lambda _: None, question=lambda _: None, settled=lambda _: None)
             teachers = await anyio.to_thread.run_sync(Teachers, folder / "teachers")
             try:
                 async with (
                     anyio.create_task_group() as tasks,
                     open_channel(runtime, teachers, 0, surroundings) as channel,
                 ):
-                    rounds = Turnstile(
-                        Rounds(runtime, writer, stamps, service, screen, None, channel),
-                        Rounds(runtime, writer, stamps, service, screen, None, None),
+                    rounds = PauseGate(
+                        PostTick(runtime, writer, stamps, service, screen, None, channel),
+                        PostTick(runtime, writer, stamps, service, screen, None, None),
                     )
-                    pace = Pace(runtime.scheduler, clock)
+                    pace = LoopPacer(runtime.scheduler, clock)
                     tasks.start_soon(pace.run, rounds)
                     try:
                         yield OpenRobot(runtime, writer, channel, witness, clock, pairing.device, rounds, pace)

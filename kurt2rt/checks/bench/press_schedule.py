@@ -14,7 +14,7 @@ _HELD_S = (0.10, 0.15)
 _UNTIL_NEXT_S = (0.25, 0.40)
 
 
-class Rhythm(NamedTuple):
+class PressSchedule(NamedTuple):
     """Of one press, in seconds from its beginning; no multiple of anything that the robot does."""
 
     held_s: float
@@ -29,21 +29,21 @@ class Press(NamedTuple):
     forward: bool
 
 
-class Start(NamedTuple):
+class PressStart(NamedTuple):
     """The first CONTROL frame with a speed after one without."""
 
     at_ns: int
     forward: bool
 
 
-def rhythms(seed: int) -> Iterator[Rhythm]:
+def rhythms(seed: int) -> Iterator[PressSchedule]:
     """One after another, without end."""
     chance = random.Random(seed)
     while True:
-        yield Rhythm(chance.uniform(*_HELD_S), chance.uniform(*_UNTIL_NEXT_S))
+        yield PressSchedule(chance.uniform(*_HELD_S), chance.uniform(*_UNTIL_NEXT_S))
 
 
-def waits_ns(presses: Sequence[Press], starts: Sequence[Start]) -> list[int]:
+def waits_ns(presses: Sequence[Press], starts: Sequence[PressStart]) -> list[int]:
     """From each press to the start of the wheels before the next press; one that did not start them has none."""
     waits = []
     for number, press in enumerate(presses):
@@ -62,7 +62,7 @@ class WitnessedRobot(RobotProxy):
     def __init__(self, robot: Robot, clock: Clock) -> None:
         """`clock` is the machine's monotonic one."""
         super().__init__(robot)
-        self.starts: list[Start] = []
+        self.starts: list[PressStart] = []
         self._clock = clock
         self._stood = True
 
@@ -71,6 +71,6 @@ class WitnessedRobot(RobotProxy):
         grant = self._robot.drive(wanted, decided_at_s, now_s)
         stands = grant.wheel_speeds == STANDSTILL
         if self._stood and not stands:
-            self.starts.append(Start(round(self._clock.now_s() * 1e9), grant.wheel_speeds.left_m_s > 0.0))
+            self.starts.append(PressStart(round(self._clock.now_s() * 1e9), grant.wheel_speeds.left_m_s > 0.0))
         self._stood = stands
         return grant

@@ -8,8 +8,8 @@ from typing import Any
 from kurt2rt.checks.bench.helper_process import partner
 from kurt2rt.checks.bench.open_robot import OpenRobot, open_robot
 from kurt2rt.checks.bench.press_schedule import Press, waits_ns
-from kurt2rt.checks.bench.result import Goal, Reference, Result
-from kurt2rt.checks.bench.robot_under_test import OnProgress, Subject
+from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
+from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest
 from kurt2rt.platform.ledger import share_of
 
 MEDIAN_LIMIT_US = 25_000.0
@@ -20,7 +20,7 @@ _WARMING_UP = 1
 _Ask = Callable[..., Awaitable[dict[str, Any]]]
 
 
-async def measure_presses(subject: Subject, folder: Path, presses: int, on_progress: OnProgress) -> Result:
+async def measure_presses(subject: RobotUnderTest, folder: Path, presses: int, on_progress: OnProgress) -> BenchResult:
     """From a press in a teacher's program to the first CONTROL frame that moves the wheels; files go to `folder`.
 
     Raises KnowledgeError, PartnerLostError, OSError without a timerfd.
@@ -30,7 +30,9 @@ async def measure_presses(subject: Subject, folder: Path, presses: int, on_progr
         return await _pressed(robot, device.ask, presses, "press to CONTROL", on_progress)
 
 
-async def measure_presses_on_page(subject: Subject, folder: Path, presses: int, on_progress: OnProgress) -> Result:
+async def measure_presses_on_page(
+    subject: RobotUnderTest, folder: Path, presses: int, on_progress: OnProgress
+) -> BenchResult:
     """The same from a press on the teacher's page, over its WebSocket and the page's server. Raises as the other."""
     async with open_robot(subject, folder) as robot, AsyncExitStack() as ending:
         page = await ending.enter_async_context(partner("kurt2rt.checks.bench.page_process", *robot.address))
@@ -42,7 +44,7 @@ async def measure_presses_on_page(subject: Subject, folder: Path, presses: int, 
         return await _pressed(robot, browser.ask, presses, "  from the page", on_progress)
 
 
-async def _pressed(robot: OpenRobot, ask: _Ask, presses: int, what: str, on_progress: OnProgress) -> Result:
+async def _pressed(robot: OpenRobot, ask: _Ask, presses: int, what: str, on_progress: OnProgress) -> BenchResult:
     await ask("press", presses=_WARMING_UP)  # what is slow but once
     made: list[Press] = []
     while len(made) < presses:
@@ -54,18 +56,18 @@ async def _pressed(robot: OpenRobot, ask: _Ask, presses: int, what: str, on_prog
     return press_result(what, waits, lost=presses - len(waits), period_s=robot.runtime.robot.can.cycle_s)
 
 
-def press_result(what: str, waits_ns: list[int], *, lost: int, period_s: float) -> Result:
+def press_result(what: str, waits_ns: list[int], *, lost: int, period_s: float) -> BenchResult:
     """What became of so many presses, beside the period of the loop."""
     took = share_of(waits_ns)
-    return Result(
+    return BenchResult(
         "channel",
         what,
         took,
         Reference("period", period_s * 1e6, took.median_us),
         (
-            Goal("median us", took.median_us, MEDIAN_LIMIT_US),
-            Goal("p99 us", took.p99_us, P99_LIMIT_US),
-            Goal("lost", lost, 0),
+            BenchGoal("median us", took.median_us, MEDIAN_LIMIT_US),
+            BenchGoal("p99 us", took.p99_us, P99_LIMIT_US),
+            BenchGoal("lost", lost, 0),
         ),
         f"{len(waits_ns) + lost} presses, {lost} lost; the wait for the next tick "
         f"({period_s * 500:g} ms on average) included",

@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, Subject, kept_knowledge
+from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, RobotUnderTest, kept_knowledge
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.platform.asyncio_clock import AsyncioClock
 from kurt2rt.platform.clock import Clock
 from kurt2rt.platform.gc_control import quiet_gc
-from kurt2rt.platform.ledger import Ledger, Share, Stage
+from kurt2rt.platform.ledger import Percentiles, Stage, TickTimer
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 from kurt2rt.runtime import build_runtime
 from kurt2rt.teacher.scripted.teacher import picture_of, teacher_of
@@ -38,17 +38,17 @@ class RealTimeRun:
     """Share of ticks in which an action drove the wheels."""
     rlas: int
     """Known at the end."""
-    lateness: Share
-    asyncio_lateness: Share
+    lateness: Percentiles
+    asyncio_lateness: Percentiles
     """How late the bare loop woke."""
-    tick: Share
-    stages: dict[Stage, Share]
+    tick: Percentiles
+    stages: dict[Stage, Percentiles]
 
 
-async def run_in_real_time(subject: Subject, folder: Path, turns: Turns, on_progress: OnProgress) -> RealTimeRun:
+async def run_in_real_time(subject: RobotUnderTest, folder: Path, turns: Turns, on_progress: OnProgress) -> RealTimeRun:
     """Drive as the service does, its journal in `folder`. Raises KnowledgeError, OSError without a timerfd."""
     period_s = subject.settings.can.cycle_s
-    asyncio_ledger = Ledger()
+    asyncio_ledger = TickTimer()
     driving = 0
     simulation = subject.open_simulation("bench real_time")
     try:
@@ -92,7 +92,7 @@ async def run_in_real_time(subject: Subject, folder: Path, turns: Turns, on_prog
     )
 
 
-async def sleep_bare(clock: Clock, ticks: int, period_s: float, ledger: Ledger) -> None:
+async def sleep_bare(clock: Clock, ticks: int, period_s: float, ledger: TickTimer) -> None:
     """Sleep to the next multiple of the period, so many times, and enter how late each sleep ended."""
     start_s = clock.now_s()
     number = 0

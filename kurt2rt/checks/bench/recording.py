@@ -5,17 +5,17 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from kurt2rt.checks.bench.channel_load import Shifts
+from kurt2rt.checks.bench.channel_load import LoadShifts
 from kurt2rt.checks.bench.lateness_clock import NotingClock
-from kurt2rt.checks.bench.result import Goal, Reference, Result
-from kurt2rt.checks.bench.robot_under_test import OnProgress, Subject, kept_knowledge
+from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
+from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest, kept_knowledge
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.platform.gc_control import quiet_gc
-from kurt2rt.platform.ledger import Ledger, Share, share_of
+from kurt2rt.platform.ledger import Percentiles, TickTimer, share_of
 from kurt2rt.platform.switch_interval import short_turns
 from kurt2rt.platform.timerfd_clock import TimerfdClock
-from kurt2rt.runs.recording.recording import Circumstances, Recording
+from kurt2rt.runs.recording.recording import Recording, RunContext
 from kurt2rt.runs.recording.run_files import budget_of
 from kurt2rt.runs.recording.run_folder import used_bytes
 from kurt2rt.runtime import Runtime, build_runtime
@@ -25,7 +25,7 @@ NOTE_LIMIT_US = 50.0
 
 
 @dataclass(frozen=True, slots=True)
-class Stretch:
+class RecordedStretch:
     """A while with or without a recorder."""
 
     processor_us: float
@@ -40,19 +40,19 @@ class RecordedDrive:
     period_s: float
     ticks: int
     """Of each stretch."""
-    lateness: Share
-    alone_lateness: Share
-    note: Share
-    recorded: tuple[Stretch, ...]
-    alone: tuple[Stretch, ...]
+    lateness: Percentiles
+    alone_lateness: Percentiles
+    note: Percentiles
+    recorded: tuple[RecordedStretch, ...]
+    alone: tuple[RecordedStretch, ...]
     bytes_written: int
     dropped: int
     trouble: str
 
 
 async def measure_recording(
-    subject: Subject, folder: Path, shifts: Shifts, on_progress: OnProgress
-) -> tuple[Result, ...]:
+    subject: RobotUnderTest, folder: Path, shifts: LoadShifts, on_progress: OnProgress
+) -> tuple[BenchResult, ...]:
     """Drive in real time by what is known, in turns with and without a recorder; files go to `folder`.
 
     Raises KnowledgeError, OSError without a timerfd.
@@ -60,14 +60,16 @@ async def measure_recording(
     return recording_results(await drive_recorded(subject, folder, shifts, on_progress))
 
 
-async def drive_recorded(subject: Subject, folder: Path, shifts: Shifts, on_progress: OnProgress) -> RecordedDrive:
+async def drive_recorded(
+    subject: RobotUnderTest, folder: Path, shifts: LoadShifts, on_progress: OnProgress
+) -> RecordedDrive:
     """The drive. Raises as `measure_recording`."""
     runs = folder / "runs"
     settings, period_s = subject.settings, subject.settings.can.cycle_s
     recording = Recording(runs, budget_of(_BUDGET_MB), "sim")
-    recorder = recording.recorder(settings, subject.task, None, Circumstances("bench", "", attended=False))
-    ledgers = {recorded: Ledger(shifts.rounds * shifts.ticks) for recorded in (False, True)}
-    stretches: dict[bool, list[Stretch]] = {False: [], True: []}
+    recorder = recording.recorder(settings, subject.task, None, RunContext("bench", "", attended=False))
+    ledgers = {recorded: TickTimer(shifts.rounds * shifts.ticks) for recorded in (False, True)}
+    stretches: dict[bool, list[RecordedStretch]] = {False: [], True: []}
     noted_ns: list[int] = []
 
     def note(record: TickRecord) -> None:
@@ -111,17 +113,17 @@ async def drive_recorded(subject: Subject, folder: Path, shifts: Shifts, on_prog
     )
 
 
-async def _stretch(runtime: Runtime, after_tick: Callable[[TickRecord], None], ticks: int) -> Stretch:
+async def _stretch(runtime: Runtime, after_tick: Callable[[TickRecord], None], ticks: int) -> RecordedStretch:
     missed, processor_ns = runtime.ledger.missed_ticks, time.process_time_ns()
     await runtime.scheduler.run(ticks, after_tick)
-    return Stretch((time.process_time_ns() - processor_ns) / 1e3, runtime.ledger.missed_ticks - missed)
+    return RecordedStretch((time.process_time_ns() - processor_ns) / 1e3, runtime.ledger.missed_ticks - missed)
 
 
 def _ignore(_: TickRecord) -> None:
     """Nobody records."""
 
 
-def recording_results(drive: RecordedDrive) -> tuple[Result, ...]:
+def recording_results(drive: RecordedDrive) -> tuple[BenchResult, ...]:
     """How late ticks begin while the run is recorded, what a note takes, and the recorder's work beside the loop."""
     stretch_s = drive.ticks * drive.period_s
     pairs = list(zip(drive.alone, drive.recorded, strict=True))
@@ -131,22 +133,22 @@ def recording_results(drive: RecordedDrive) -> tuple[Result, ...]:
     missed = sum(each.missed_ticks for each in drive.recorded)
     missed_alone = sum(each.missed_ticks for each in drive.alone)
     return (
-        Result(
+        BenchResult(
             "recording",
             "late, recorded",
             drive.lateness,
             Reference("alone, p99", drive.alone_lateness.p99_us, drive.lateness.p99_us),
-            (Goal("missed", missed, 0), Goal("lost", drive.dropped, 0)),
+            (BenchGoal("missed", missed, 0), BenchGoal("lost", drive.dropped, 0)),
             drive.trouble or f"without a recorder {missed_alone} ticks missed",
         ),
-        Result(
+        BenchResult(
             "recording",
             "  a note, in the loop",
             drive.note,
             Reference("period", drive.period_s * 1e6, drive.note.median_us),
-            (Goal("p99 us", drive.note.p99_us, NOTE_LIMIT_US),),
+            (BenchGoal("p99 us", drive.note.p99_us, NOTE_LIMIT_US),),
         ),
-        Result(
+        BenchResult(
             "recording",
             "  writing, per second",
             more,

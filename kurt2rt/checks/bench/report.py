@@ -10,12 +10,12 @@ import numpy as np
 from rich.console import Console
 from rich.text import Text
 
-from kurt2rt.checks.bench.result import Result
+from kurt2rt.checks.bench.result import BenchResult
 from kurt2rt.platform.text_table import TextTable, print_whole
 
 
 @dataclass(frozen=True, slots=True)
-class Machine:
+class BenchMachine:
     """Where it was measured, and how busy that was with other things."""
 
     cores: int
@@ -25,12 +25,12 @@ class Machine:
     numpy: str
 
 
-def look_at_machine() -> Machine:
+def look_at_machine() -> BenchMachine:
     """The machine as it is now."""
-    return Machine(len(os.sched_getaffinity(0)), os.getloadavg(), platform.python_version(), np.__version__)
+    return BenchMachine(len(os.sched_getaffinity(0)), os.getloadavg(), platform.python_version(), np.__version__)
 
 
-def as_json(results: Sequence[Result], machine: Machine) -> str:
+def as_json(results: Sequence[BenchResult], machine: BenchMachine) -> str:
     """A JSON object: the machine, and one object per result with its ratio and with each goal's verdict."""
     rows = []
     for result in results:
@@ -43,7 +43,7 @@ def as_json(results: Sequence[Result], machine: Machine) -> str:
     return json.dumps({"machine": asdict(machine), "results": rows}, indent=2)
 
 
-def print_report(results: Sequence[Result], machine: Machine, console: Console) -> None:
+def print_report(results: Sequence[BenchResult], machine: BenchMachine, console: Console) -> None:
     """One table, what one has to know to read it, and how busy the machine was."""
     table = TextTable()
     for heading in ("what", "median us", "p99 us", "reference", "us", "ratio", "goal: met"):

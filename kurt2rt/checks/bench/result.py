@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from kurt2rt.platform.ledger import Share
+from kurt2rt.platform.ledger import Percentiles
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +21,7 @@ class Reference:
 
 
 @dataclass(frozen=True, slots=True)
-class Goal:
+class BenchGoal:
     """One number and the limit it should keep."""
 
     what: str
@@ -41,13 +41,13 @@ class Goal:
 
 
 @dataclass(frozen=True, slots=True)
-class Result:
+class BenchResult:
     """One row of the report."""
 
     bench: str
     what: str
-    took: Share
+    took: Percentiles
     reference: Reference | None = None
-    goals: tuple[Goal, ...] = ()
+    goals: tuple[BenchGoal, ...] = ()
     note: str = ""
     """What one has to know to read the numbers."""

@@ -22,7 +22,7 @@ SEED = 1
 
 
 @dataclass(frozen=True, slots=True)
-class Subject:
+class RobotUnderTest:
     """The robot, where it drives and what it knows."""
 
     settings: RobotSettings
@@ -32,7 +32,7 @@ class Subject:
     events: tuple[TeachingEvent, ...] = ()
 
 
-async def learn(subject: Subject, duration_s: float, on_progress: OnProgress) -> Subject:
+async def learn(subject: RobotUnderTest, duration_s: float, on_progress: OnProgress) -> RobotUnderTest:
     """The same subject, taught in lockstep for that much simulated time, two thirds of it with corrections."""
     notebook = InMemoryEventStore()
     task = lasting(subject.task, supervised_s=duration_s / 3, corrections_s=duration_s * 2 / 3)
@@ -49,7 +49,7 @@ async def learn(subject: Subject, duration_s: float, on_progress: OnProgress) ->
         )
     finally:
         simulation.close()
-    return Subject(subject.settings, subject.task, subject.open_simulation, tuple(notebook.events))
+    return RobotUnderTest(subject.settings, subject.task, subject.open_simulation, tuple(notebook.events))
 
 
 def lasting(task: TaskSettings, *, supervised_s: float, corrections_s: float) -> TaskSettings:
@@ -59,7 +59,7 @@ def lasting(task: TaskSettings, *, supervised_s: float, corrections_s: float) ->
 
 
 @contextmanager
-def kept_knowledge(subject: Subject, path: Path) -> Iterator[JournalWriter]:
+def kept_knowledge(subject: RobotUnderTest, path: Path) -> Iterator[JournalWriter]:
     """A writer on a new knowledge file that holds what the subject was taught. Raises KnowledgeError."""
     with open_knowledge(path, subject.settings, subject.task) as journal:
         journal.append([JournalEntry(event, utc_now()) for event in subject.events])

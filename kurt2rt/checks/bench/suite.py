@@ -6,19 +6,19 @@ from enum import StrEnum
 from pathlib import Path
 
 from kurt2rt.checks.bench.channel import ChannelLengths, measure_channel
-from kurt2rt.checks.bench.channel_load import Shifts
+from kurt2rt.checks.bench.channel_load import LoadShifts
 from kurt2rt.checks.bench.closed_loop import measure_closed_loop
 from kurt2rt.checks.bench.lateness import lateness_result
 from kurt2rt.checks.bench.lesson import measure_lessons
 from kurt2rt.checks.bench.match import SIZES, Size, measure_match
 from kurt2rt.checks.bench.real_time import Turns, run_in_real_time
 from kurt2rt.checks.bench.recording import measure_recording
-from kurt2rt.checks.bench.result import Result
-from kurt2rt.checks.bench.robot_under_test import OnProgress, Subject, learn
+from kurt2rt.checks.bench.result import BenchResult
+from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest, learn
 from kurt2rt.checks.bench.tick_budget import tick_results
 
 
-class Bench(StrEnum):
+class BenchName(StrEnum):
     """What can be measured."""
 
     LATENESS = "lateness"
@@ -43,7 +43,7 @@ class Lengths:
     """Simulated seconds in a block."""
     lessons: int
     channel: ChannelLengths
-    recording: Shifts
+    recording: LoadShifts
 
 
 FULL = Lengths(
@@ -53,8 +53,8 @@ FULL = Lengths(
     loop_blocks=15,
     loop_block_s=20,
     lessons=200,
-    channel=ChannelLengths(presses=200, shifts=Shifts(rounds=8, ticks=250), lessons=200),
-    recording=Shifts(rounds=10, ticks=600),
+    channel=ChannelLengths(presses=200, shifts=LoadShifts(rounds=8, ticks=250), lessons=200),
+    recording=LoadShifts(rounds=10, ticks=600),
 )
 QUICK = Lengths(
     learning_s=90.0,
@@ -63,44 +63,44 @@ QUICK = Lengths(
     loop_blocks=4,
     loop_block_s=20,
     lessons=50,
-    channel=ChannelLengths(presses=15, shifts=Shifts(rounds=2, ticks=100), lessons=15),
-    recording=Shifts(rounds=3, ticks=150),
+    channel=ChannelLengths(presses=15, shifts=LoadShifts(rounds=2, ticks=100), lessons=15),
+    recording=LoadShifts(rounds=3, ticks=150),
 )
 
 
 async def run_suite(
-    benches: Collection[Bench],
-    subject: Subject,
+    benches: Collection[BenchName],
+    subject: RobotUnderTest,
     folder: Path,
     lengths: Lengths,
     progress_of: Callable[[str], OnProgress],
-) -> tuple[Result, ...]:
+) -> tuple[BenchResult, ...]:
     """Measure what is asked for; files go to `folder`, which must be empty.
 
     `progress_of` begins a job of that name and gives what is to be told of its progress.
     """
-    results: list[Result] = []
-    if any(bench is not Bench.MATCH for bench in benches):
+    results: list[BenchResult] = []
+    if any(bench is not BenchName.MATCH for bench in benches):
         subject = await learn(subject, lengths.learning_s, progress_of("teaching, to have something to drive with"))
-    if Bench.LATENESS in benches or Bench.TICK in benches:
+    if BenchName.LATENESS in benches or BenchName.TICK in benches:
         run = await run_in_real_time(subject, folder, lengths.turns, progress_of("driving in real time"))
-        if Bench.LATENESS in benches:
+        if BenchName.LATENESS in benches:
             results.append(lateness_result(run))
-        if Bench.TICK in benches:
+        if BenchName.TICK in benches:
             results.extend(tick_results(run, subject.settings.can.cycle_s))
-    if Bench.MATCH in benches:
+    if BenchName.MATCH in benches:
         results.extend(measure_match(lengths.sizes, progress_of("matching")))
-    if Bench.LOOP in benches:
+    if BenchName.LOOP in benches:
         results.extend(
             await measure_closed_loop(
                 subject, folder, lengths.loop_blocks, lengths.loop_block_s, progress_of("driving in lockstep")
             )
         )
-    if Bench.LESSON in benches:
+    if BenchName.LESSON in benches:
         results.append(await measure_lessons(subject, folder, lengths.lessons, progress_of("making lessons durable")))
-    if Bench.CHANNEL in benches:
+    if BenchName.CHANNEL in benches:
         results.extend(await measure_channel(subject, folder, lengths.channel, progress_of))
-    if Bench.RECORDING in benches:
+    if BenchName.RECORDING in benches:
         results.extend(
             await measure_recording(subject, folder, lengths.recording, progress_of("driving, recorded and not"))
         )

@@ -1,26 +1,26 @@
 """What a tick takes of its period, stage by stage."""
 
 from kurt2rt.checks.bench.real_time import RealTimeRun
-from kurt2rt.checks.bench.result import Goal, Reference, Result
-from kurt2rt.platform.ledger import Share
+from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
+from kurt2rt.platform.ledger import Percentiles
 
 MEDIAN_LIMIT_US = 100.0
 P99_LIMIT_US = 250.0
 
 
-def tick_results(run: RealTimeRun, period_s: float) -> tuple[Result, ...]:
+def tick_results(run: RealTimeRun, period_s: float) -> tuple[BenchResult, ...]:
     """Each stage of the ticks of a run in real time, and all together beside the period."""
     whole = share_result("tick", "tick, all stages", run.tick, period_s, "at 100 Hz the caches are cold")
-    return (*(Result("tick", f"  {stage.name.lower()}", share) for stage, share in run.stages.items()), whole)
+    return (*(BenchResult("tick", f"  {stage.name.lower()}", share) for stage, share in run.stages.items()), whole)
 
 
-def share_result(bench: str, what: str, tick: Share, period_s: float, note: str) -> Result:
+def share_result(bench: str, what: str, tick: Percentiles, period_s: float, note: str) -> BenchResult:
     """What all stages of a tick take together, beside the period."""
-    return Result(
+    return BenchResult(
         bench,
         what,
         tick,
         Reference("period", period_s * 1e6, tick.median_us),
-        (Goal("median us", tick.median_us, MEDIAN_LIMIT_US), Goal("p99 us", tick.p99_us, P99_LIMIT_US)),
+        (BenchGoal("median us", tick.median_us, MEDIAN_LIMIT_US), BenchGoal("p99 us", tick.p99_us, P99_LIMIT_US)),
         note,
     )

@@ -7,7 +7,7 @@ from kurt2rt.platform.clock import Clock
 from kurt2rt.platform.scheduler import Scheduler
 
 
-class Pace:
+class LoopPacer:
     """Runs the scheduler until `end`."""
 
     def __init__(self, scheduler: Scheduler[TickRecord], clock: Clock) -> None:

@@ -4,10 +4,10 @@ from functools import reduce
 from operator import and_, or_
 
 from kurt2rt.checks.commission.findings import Findings
-from kurt2rt.checks.commission.frame_statistics import Heard
-from kurt2rt.checks.commission.operator import SKIP, Asked, Choice, Question, Tone
-from kurt2rt.checks.commission.step import Result
-from kurt2rt.checks.commission.test_stand import Bench
+from kurt2rt.checks.commission.frame_statistics import FrameStatistics
+from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, Tone
+from kurt2rt.checks.commission.step import StepResult
+from kurt2rt.checks.commission.test_stand import TestStand
 
 _SETTLE_S = 0.1
 _LOOK_S = 0.3
@@ -23,14 +23,14 @@ class BumpersStep:
     moves = False
     bars_driving = False
 
-    async def take(self, bench: Bench, findings: Findings) -> Result:
+    async def take(self, bench: TestStand, findings: Findings) -> StepResult:
         """Ask for each bumper of the table."""
         bumpers = bench.settings.bumpers
-        result = Result(findings.model_copy(update={"bumper_bits": {}}))
+        result = StepResult(findings.model_copy(update={"bumper_bits": {}}))
         if not bumpers:
             result.note("the settings know no bumpers")
             return result
-        await bench.ask(Question(Asked.UNTOUCHED, "Touch no bumper.", (Choice("", "look"),)))
+        await bench.ask(OperatorQuestion(QuestionKind.UNTOUCHED, "Touch no bumper.", (AnswerChoice("", "look"),)))
         await bench.stand(_SETTLE_S)
         heard = await bench.stand(_LOOK_S)
         if not heard.bumpers:
@@ -54,12 +54,12 @@ class BumpersStep:
         return result
 
 
-async def _find(bench: Bench, name: str, untouched: int, found: dict[str, int]) -> int | None:
+async def _find(bench: TestStand, name: str, untouched: int, found: dict[str, int]) -> int | None:
     while True:
-        question = Question(
-            Asked.BUMPER,
+        question = OperatorQuestion(
+            QuestionKind.BUMPER,
             f"Press and hold: {name}.",
-            (Choice("", "look"), Choice(SKIP, "skip this one")),
+            (AnswerChoice("", "look"), AnswerChoice(SKIP, "skip this one")),
             subject=name,
         )
         if await bench.ask(question) == SKIP:
@@ -77,7 +77,7 @@ async def _find(bench: Bench, name: str, untouched: int, found: dict[str, int]) 
         bench.tell(f"bit {bit} answered, but that is {owner}'s: press {name}, or skip it and repeat the step", Tone.BAD)
 
 
-def _held(heard: Heard) -> int:
+def _held(heard: FrameStatistics) -> int:
     """Bits that are set all the time."""
     return reduce(and_, heard.bumpers) if heard.bumpers else 0
 

@@ -9,19 +9,19 @@ from hal.identity import hardware
 from hal.settings import SettingsError
 from kurt2rt.checks.commission.bumpers import BumpersStep
 from kurt2rt.checks.commission.identity import IdentityStep
-from kurt2rt.checks.commission.ir_calibration_step import RulerStep
-from kurt2rt.checks.commission.operator import SKIP, Asked, Choice, Question, SkippedError, Tone
+from kurt2rt.checks.commission.ir_calibration_step import IrCalibrationStep
+from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, SkippedError, Tone
 from kurt2rt.checks.commission.progress import Progress, StepRecord
 from kurt2rt.checks.commission.sensors import SensorsStep
 from kurt2rt.checks.commission.speed_modes import SpeedModesStep
-from kurt2rt.checks.commission.step import Outcome, Result, Step
+from kurt2rt.checks.commission.step import CommissionStep, StepOutcome, StepResult
 from kurt2rt.checks.commission.stopping import StoppingStep
-from kurt2rt.checks.commission.test_stand import Bench
+from kurt2rt.checks.commission.test_stand import TestStand
 from kurt2rt.checks.commission.wheels import WheelsStep
-from kurt2rt.checks.commission.wheels_off_ground_step import LiftedStep
+from kurt2rt.checks.commission.wheels_off_ground_step import WheelsOffGroundStep
 
-_LIFTED = LiftedStep()
-STEPS: tuple[Step, ...] = (
+_LIFTED = WheelsOffGroundStep()
+STEPS: tuple[CommissionStep, ...] = (
     IdentityStep(),
     _LIFTED,
     SpeedModesStep(),
@@ -29,7 +29,7 @@ STEPS: tuple[Step, ...] = (
     StoppingStep(),
     SensorsStep(),
     BumpersStep(),
-    RulerStep(),
+    IrCalibrationStep(),
 )
 """In order: everything that turns the wheels comes while the robot is on its block."""
 _AGAIN = "r"
@@ -38,7 +38,7 @@ _AGAIN = "r"
 class Checklist:
     """Walks a person through steps; after each one the progress is on the disk."""
 
-    def __init__(self, bench: Bench, progress: Progress, path: Path, who: str, now: Callable[[], str]) -> None:
+    def __init__(self, bench: TestStand, progress: Progress, path: Path, who: str, now: Callable[[], str]) -> None:
         """`path` of the progress file; `now` tells date and time in UTC to the minute."""
         self._bench = bench
         self.progress = progress
@@ -47,7 +47,7 @@ class Checklist:
         self._now = now
         self._lifted = False
 
-    async def walk(self, chosen: Sequence[Step], skipped: Sequence[Step] = ()) -> None:
+    async def walk(self, chosen: Sequence[CommissionStep], skipped: Sequence[CommissionStep] = ()) -> None:
         """Take the chosen steps in the checklist's order, note the skipped.
 
         Raises LeftError, BusError, OSError, and SettingsError when what was found before is another robot's.
@@ -64,7 +64,7 @@ class Checklist:
             self._bench.tell(f"Do:  {step.what_to_do}")
             await self._take(step)
 
-    async def _take(self, step: Step) -> None:
+    async def _take(self, step: CommissionStep) -> None:
         again = True
         while again:
             try:
@@ -75,11 +75,13 @@ class Checklist:
                 return
             again = await self._judge(step, result)
 
-    async def _result(self, step: Step) -> Result:
+    async def _result(self, step: CommissionStep) -> StepResult:
         if step.moves and not self._lifted:
             raise SkippedError("the wheels were not confirmed off the ground")
         if step is not _LIFTED:
-            begin = Question(Asked.BEGIN, "Ready?", (Choice("", "begin"), Choice(SKIP, "skip this step")))
+            begin = OperatorQuestion(
+                QuestionKind.BEGIN, "Ready?", (AnswerChoice("", "begin"), AnswerChoice(SKIP, "skip this step"))
+            )
             if await self._bench.ask(begin) == SKIP:
                 raise SkippedError("as you wished")
             await self._require_same_robot()
@@ -88,7 +90,7 @@ class Checklist:
             self._lifted = True
         return result
 
-    async def _judge(self, step: Step, result: Result) -> bool:
+    async def _judge(self, step: CommissionStep, result: StepResult) -> bool:
         """Tell and keep; returns whether to take it again."""
         record = StepRecord(
             outcome=result.outcome,
@@ -100,14 +102,16 @@ class Checklist:
         await self._keep(step, record, result)
         for line in result.untold:
             self._bench.tell(line, Tone.MEASURED)
-        if result.outcome is Outcome.PASSED:
+        if result.outcome is StepOutcome.PASSED:
             self._bench.tell(f"passed: {step.title}", Tone.GOOD)
             return False
         for line in result.to_do:
             self._bench.tell(line, Tone.TO_DO)
         self._bench.tell(f"FAILED: {step.title}", Tone.BAD)
-        choices = (Choice(_AGAIN, "repeat it, when that is mended"), Choice("", "go on"))
-        return await self._bench.ask(Question(Asked.AFTER_FAILURE, "Repeat this step?", choices)) == _AGAIN
+        choices = (AnswerChoice(_AGAIN, "repeat it, when that is mended"), AnswerChoice("", "go on"))
+        return (
+            await self._bench.ask(OperatorQuestion(QuestionKind.AFTER_FAILURE, "Repeat this step?", choices)) == _AGAIN
+        )
 
     async def _require_same_robot(self) -> None:
         """What was found on one robot, a simulated one perhaps, is not to be taken for another's."""
@@ -122,50 +126,50 @@ class Checklist:
                 do="give this robot another --name, or begin anew with --anew",
             )
 
-    async def _skip(self, step: Step, why: str, *, on_purpose: bool = False) -> None:
+    async def _skip(self, step: CommissionStep, why: str, *, on_purpose: bool = False) -> None:
         """Note it. What passed before has still passed, what failed has still failed, unless that is passed over
         on purpose: then what is to be done is kept.
         """
         before = self.progress.steps.get(step.name)
-        if before is not None and before.outcome is Outcome.PASSED:
+        if before is not None and before.outcome is StepOutcome.PASSED:
             return
-        if before is not None and before.outcome is Outcome.FAILED and not on_purpose:
+        if before is not None and before.outcome is StepOutcome.FAILED and not on_purpose:
             self._bench.tell(f"{step.title}: failed on {before.at}, and that stands", Tone.BAD)
             return
         to_do = () if before is None else before.to_do
-        record = StepRecord(outcome=Outcome.SKIPPED, at=self._now(), who=self._who, measured=(why,), to_do=to_do)
+        record = StepRecord(outcome=StepOutcome.SKIPPED, at=self._now(), who=self._who, measured=(why,), to_do=to_do)
         await self._keep(step, record)
 
-    async def _keep(self, step: Step, record: StepRecord, result: Result | None = None) -> None:
+    async def _keep(self, step: CommissionStep, record: StepRecord, result: StepResult | None = None) -> None:
         findings = self.progress.findings if result is None else result.findings
         self.progress = self.progress.with_step(step.name, record, findings)
         await to_thread.run_sync(self.progress.save, self._path)
 
 
-def open_steps(progress: Progress) -> list[Step]:
+def open_steps(progress: Progress) -> list[CommissionStep]:
     """Steps without an outcome; the block under the wheels is none by itself."""
     return [step for step in STEPS if step is not _LIFTED and step.name not in progress.steps]
 
 
-def steps_to_take(progress: Progress) -> list[Step]:
+def steps_to_take(progress: Progress) -> list[CommissionStep]:
     """Steps that have not passed, as a session takes them when nobody chose any."""
     steps = progress.steps
     return [
         step
         for step in STEPS
-        if step is not _LIFTED and (step.name not in steps or steps[step.name].outcome is not Outcome.PASSED)
+        if step is not _LIFTED and (step.name not in steps or steps[step.name].outcome is not StepOutcome.PASSED)
     ]
 
 
-def barring(progress: Progress) -> list[Step]:
+def barring(progress: Progress) -> list[CommissionStep]:
     """Steps that failed in a way that forbids to drive this robot."""
     return [
         step
         for step in STEPS
-        if step.bars_driving and step.name in progress.steps and progress.steps[step.name].outcome is Outcome.FAILED
+        if step.bars_driving and step.name in progress.steps and progress.steps[step.name].outcome is StepOutcome.FAILED
     ]
 
 
-def step_named(name: str) -> Step:
+def step_named(name: str) -> CommissionStep:
     """A step by its name. Raises KeyError."""
     return {step.name: step for step in STEPS}[name]

@@ -7,7 +7,7 @@ from rich.console import Console
 from rich.text import Text
 
 from kurt2rt.checks.commission.keyboard import Keyboard
-from kurt2rt.checks.commission.operator import LEAVE, Choice, LeftError, Question, Tone
+from kurt2rt.checks.commission.operator import LEAVE, AbortedError, AnswerChoice, OperatorQuestion, Tone
 
 _STYLES = {Tone.TITLE: "bold", Tone.GOOD: "green", Tone.TO_DO: "yellow", Tone.BAD: "bold red"}
 _MARKS = {
@@ -21,8 +21,8 @@ _MARKS = {
 """Lines can be told apart without colours."""
 
 
-class TypingPerson:
-    """A person (kurt2rt.checks.commission.operator.Person) behind a screen and a keyboard."""
+class ConsoleOperator:
+    """A person (kurt2rt.checks.commission.operator.Operator) behind a screen and a keyboard."""
 
     def __init__(self, lines: TextIO, console: Console) -> None:
         self._keyboard = Keyboard(lines)
@@ -32,16 +32,16 @@ class TypingPerson:
         """Print a line."""
         self._line(_MARKS[tone] + text, _STYLES.get(tone, ""))
 
-    async def answer(self, question: Question) -> str:
-        """Print the question until one of its answers is typed. Raises LeftError when the input has ended."""
-        choices = (*question.choices, Choice(LEAVE, "leave"))
+    async def answer(self, question: OperatorQuestion) -> str:
+        """Print the question until one of its answers is typed. Raises AbortedError when the input has ended."""
+        choices = (*question.choices, AnswerChoice(LEAVE, "leave"))
         while True:
             self._line(f"  {question.text}", "cyan")
             self._line(f"    {_shown(choices)} > ", end="")
             line = await self._keyboard.line()
             if line is None:
                 self._console.print()
-                raise LeftError
+                raise AbortedError
             answer = line.strip().lower()
             if not self._keyboard.echoes:
                 self.tell(answer)
@@ -54,5 +54,5 @@ class TypingPerson:
         self._console.print(Text(text, style=style), end=end, soft_wrap=not self._console.is_terminal)
 
 
-def _shown(choices: Sequence[Choice]) -> str:
+def _shown(choices: Sequence[AnswerChoice]) -> str:
     return "  ".join(f"[{choice.key or 'Enter'}] {choice.meaning}" for choice in choices)

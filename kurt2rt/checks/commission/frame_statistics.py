@@ -26,7 +26,7 @@ class Identity(NamedTuple):
 
 
 @dataclass(slots=True)
-class Heard:
+class FrameStatistics:
     """Collected by the listener; times are on the bench's clock."""
 
     arrivals_s: dict[int, list[float]] = field(default_factory=dict)

@@ -4,9 +4,9 @@ from hal.bus import CONTROL_ID
 from hal.codec import load_codec
 from hal.identity import hardware
 from kurt2rt.checks.commission.findings import Findings
-from kurt2rt.checks.commission.frame_statistics import Heard
-from kurt2rt.checks.commission.step import Result
-from kurt2rt.checks.commission.test_stand import Bench
+from kurt2rt.checks.commission.frame_statistics import FrameStatistics
+from kurt2rt.checks.commission.step import StepResult
+from kurt2rt.checks.commission.test_stand import TestStand
 
 _LISTEN_S = 2.0
 _PERIOD_TOLERANCE = 0.2
@@ -22,10 +22,10 @@ class IdentityStep:
     moves = False
     bars_driving = True
 
-    async def take(self, bench: Bench, findings: Findings) -> Result:
+    async def take(self, bench: TestStand, findings: Findings) -> StepResult:
         """Listen, compare with the settings."""
         heard = await bench.stand(_LISTEN_S)
-        result = Result(findings)
+        result = StepResult(findings)
         if not heard.arrivals_s:
             result.to_do.append(
                 "Nothing was heard: is the robot on, the cable in, the interface up at "
@@ -39,7 +39,7 @@ class IdentityStep:
         return result
 
 
-def _judge_identity(heard: Heard, result: Result) -> None:
+def _judge_identity(heard: FrameStatistics, result: StepResult) -> None:
     for name, said in sorted(heard.identities.items()):
         last = said[-1]
         counted = last.loop_counter - said[0].loop_counter
@@ -61,7 +61,7 @@ def _judge_identity(heard: Heard, result: Result) -> None:
         result.to_do.append("INFO_1 (0x04) never came: this is not the KURT2 controller, or it has not started")
 
 
-def _judge_periods(bench: Bench, heard: Heard, result: Result) -> None:
+def _judge_periods(bench: TestStand, heard: FrameStatistics, result: StepResult) -> None:
     robot = bench.settings
     codec = load_codec(robot.can.database)
     sensor_of = {sensor.channel: sensor.name for sensor in robot.infrared.sensors}
@@ -92,7 +92,7 @@ def _judge_periods(bench: Bench, heard: Heard, result: Result) -> None:
         result.note("not in the CAN database, ignored: " + ", ".join(f"0x{each:X}" for each in strange))
 
 
-def _judge_junk(heard: Heard, result: Result) -> None:
+def _judge_junk(heard: FrameStatistics, result: StepResult) -> None:
     for what, count in sorted(heard.junk.items()):
         result.to_do.append(f"{count} x {what}: find who sends it, or the loose contact")
     if heard.control:

@@ -22,11 +22,11 @@ _NEAR_COUNTS, _FAR_COUNTS = (250.0, 1000.0), (0.0, 250.0)
 _LEAST_RATIO = 2.5
 
 
-class LawError(UserError, ValueError):
+class IrCalibrationError(UserError, ValueError):
     """The readings do not make a law."""
 
 
-class Reading(NamedTuple):
+class IrReading(NamedTuple):
     """Median counts of a sensor with a board at a distance from its face."""
 
     sensor: str
@@ -35,7 +35,7 @@ class Reading(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Law:
+class IrLaw:
     """The law between near and far."""
 
     numerator_counts_m: float
@@ -52,10 +52,10 @@ class Law:
 
 
 @dataclass(frozen=True, slots=True)
-class Fit:
+class IrFit:
     """A law and how far each reading lies from it."""
 
-    law: Law
+    law: IrLaw
     residuals: tuple[float, ...]
     """Counts, reading minus law, in the order of the readings."""
     outliers: tuple[int, ...]
@@ -64,8 +64,8 @@ class Fit:
     """Root mean square of the residuals of those that were not, in units of what a reading may be off."""
 
 
-def fit_law(readings: Sequence[Reading]) -> Fit:
-    """Least squares; single readings that do not fit to the others are left out. Raises LawError."""
+def fit_law(readings: Sequence[IrReading]) -> IrFit:
+    """Least squares; single readings that do not fit to the others are left out. Raises IrCalibrationError."""
     _require_range(readings)
     kept = list(range(len(readings)))
     fit = _fit(readings, kept)
@@ -82,7 +82,7 @@ def fit_law(readings: Sequence[Reading]) -> Fit:
     return fit
 
 
-def _fit(readings: Sequence[Reading], kept: Sequence[int]) -> Fit:
+def _fit(readings: Sequence[IrReading], kept: Sequence[int]) -> IrFit:
     """For each offset the law is a straight line in 1 / (distance + offset); the best offset is taken."""
     distances = np.array([readings[at].distance_m for at in kept])
     counts = np.array([readings[at].counts for at in kept])
@@ -97,34 +97,36 @@ def _fit(readings: Sequence[Reading], kept: Sequence[int]) -> Fit:
     slope = (x @ (weights * counts) + bias * (x @ weights)) / (x**2 @ weights)
     cost = ((counts - (slope[:, None] * x - bias[:, None])) ** 2) @ weights
     best = int(np.argmin(cost))
-    law = Law(float(slope[best]), float(_OFFSETS_M[best]), float(bias[best]))
+    law = IrLaw(float(slope[best]), float(_OFFSETS_M[best]), float(bias[best]))
     residuals = tuple(each.counts - law.counts_at(each.distance_m) for each in readings)
     scatter = float(np.sqrt(cost[best] / len(kept)))
-    return Fit(law, residuals, tuple(at for at in range(len(readings)) if at not in kept), scatter)
+    return IrFit(law, residuals, tuple(at for at in range(len(readings)) if at not in kept), scatter)
 
 
 def _sigma(counts: float) -> float:
     return float(np.hypot(_SIGMA_COUNTS, _SIGMA_SHARE * counts))
 
 
-def _require_range(readings: Sequence[Reading]) -> None:
+def _require_range(readings: Sequence[IrReading]) -> None:
     distances = [each.distance_m for each in readings]
     if len(set(distances)) < LEAST_DISTANCES or min(distances) > 0.15 or max(distances) < 0.4:
-        raise LawError(f"{LEAST_DISTANCES} distances at least, from 0.15 m or less to 0.40 m or more, are needed")
+        raise IrCalibrationError(
+            f"{LEAST_DISTANCES} distances at least, from 0.15 m or less to 0.40 m or more, are needed"
+        )
     near, far = (
         np.median([each.counts for each in readings if each.distance_m == end(distances)]) for end in (min, max)
     )
     if near < _LEAST_RATIO * far:
-        raise LawError(
+        raise IrCalibrationError(
             f"{near:.0f} counts at {min(distances):.2f} m and {far:.0f} at {max(distances):.2f} m: they hardly fall "
             "with distance, so the sensor does not see the board, or the channel is another sensor's"
         )
 
 
-def _require_plausible(fit: Fit) -> None:
+def _require_plausible(fit: IrFit) -> None:
     near, far = fit.law.counts_at(_NEAR_M), fit.law.counts_at(_FAR_M)
     if fit.scatter > _WORST_SCATTER:
-        raise LawError("the readings scatter too much around any law: was the board where it was asked for?")
+        raise IrCalibrationError("the readings scatter too much around any law: was the board where it was asked for?")
     for where, counts, (least, most) in (("0.10", near, _NEAR_COUNTS), ("0.60", far, _FAR_COUNTS)):
         if not least <= counts <= most:
-            raise LawError(f"{counts:.0f} counts at {where} m, plausible are {least:.0f} to {most:.0f}")
+            raise IrCalibrationError(f"{counts:.0f} counts at {where} m, plausible are {least:.0f} to {most:.0f}")

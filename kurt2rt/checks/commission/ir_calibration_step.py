@@ -4,11 +4,11 @@ import statistics
 
 from hal.robot_settings import SensorSettings
 from kurt2rt.checks.commission.findings import Findings, LawFound
-from kurt2rt.checks.commission.ir_calibration import Fit, Law, LawError, Reading, fit_law
-from kurt2rt.checks.commission.operator import SKIP, Asked, Choice, Question, SkippedError, Tone
+from kurt2rt.checks.commission.ir_calibration import IrCalibrationError, IrFit, IrLaw, IrReading, fit_law
+from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, SkippedError, Tone
 from kurt2rt.checks.commission.sensors import SETTLE_S
-from kurt2rt.checks.commission.step import Result
-from kurt2rt.checks.commission.test_stand import Bench
+from kurt2rt.checks.commission.step import StepResult
+from kurt2rt.checks.commission.test_stand import TestStand
 
 DISTANCES_M = (0.10, 0.15, 0.20, 0.30, 0.40, 0.50, 0.60)
 _MEASURE_S = 1.0
@@ -16,7 +16,7 @@ _LEAST_FAR_M = 0.4
 _SECOND_LOOKS = 3
 
 
-class RulerStep:
+class IrCalibrationStep:
     """Median over a second at each distance, one law for all sensors."""
 
     name = "infrared"
@@ -29,11 +29,13 @@ class RulerStep:
     moves = False
     bars_driving = False
 
-    async def take(self, bench: Bench, findings: Findings) -> Result:
+    async def take(self, bench: TestStand, findings: Findings) -> StepResult:
         """Ask which sensors, then for the board at each distance."""
-        result = Result(findings.model_copy(update={"law": None}))
+        result = StepResult(findings.model_copy(update={"law": None}))
         chosen = await _choose(bench, findings)
-        await bench.ask(Question(Asked.CLEAR, "Step back: nothing within a metre.", (Choice("", "measure"),)))
+        await bench.ask(
+            OperatorQuestion(QuestionKind.CLEAR, "Step back: nothing within a metre.", (AnswerChoice("", "measure"),))
+        )
         await bench.stand(SETTLE_S)
         heard = await bench.stand(_MEASURE_S)
         floors = [heard.median(_channel(sensor, findings)) for sensor in chosen]
@@ -41,7 +43,7 @@ class RulerStep:
             result.to_do.append("A chosen sensor's channel is not heard: take the step sensors first")
             return result
         floor = statistics.median([each for each in floors if each is not None])
-        readings: list[Reading] = []
+        readings: list[IrReading] = []
         for sensor in chosen:
             for distance_m in DISTANCES_M:
                 reading = await _read(bench, sensor, distance_m, findings)
@@ -49,7 +51,7 @@ class RulerStep:
                     readings.append(reading)
         try:
             fit = await _fit_with_second_looks(bench, readings, {each.name: each for each in chosen}, findings)
-        except LawError as error:
+        except IrCalibrationError as error:
             result.to_do.append(f"No law was fitted: {error}")
             result.measured += [f"{each.sensor} at {each.distance_m:.2f} m: {each.counts:.0f}" for each in readings]
             return result
@@ -85,16 +87,16 @@ class RulerStep:
         return result
 
 
-async def _choose(bench: Bench, findings: Findings) -> tuple[SensorSettings, ...]:
+async def _choose(bench: TestStand, findings: Findings) -> tuple[SensorSettings, ...]:
     sensors = {sensor.name: sensor for sensor in bench.settings.infrared.sensors}
     usable = [name for name in sensors if name not in findings.dead_sensors]
     if not usable:
         raise SkippedError("no sensor answers: take the step sensors first")
     usual = next((name for name in usable if sensors[name].heading_deg == 0.0 and sensors[name].y_m == 0.0), usable[0])
-    question = Question(
-        Asked.WHICH,
+    question = OperatorQuestion(
+        QuestionKind.WHICH,
         f"Which sensors? Names with blanks between them, such as: {usual} {usable[0]}",
-        (Choice("", f"{usual} alone"),),
+        (AnswerChoice("", f"{usual} alone"),),
         free=True,
     )
     while True:
@@ -106,12 +108,15 @@ async def _choose(bench: Bench, findings: Findings) -> tuple[SensorSettings, ...
 
 
 async def _read(
-    bench: Bench, sensor: SensorSettings, distance_m: float, findings: Findings, again: str = ""
-) -> Reading | None:
-    question = Question(
-        Asked.BOARD,
+    bench: TestStand, sensor: SensorSettings, distance_m: float, findings: Findings, again: str = ""
+) -> IrReading | None:
+    question = OperatorQuestion(
+        QuestionKind.BOARD,
         f"{again}The board {distance_m:.2f} m before {sensor.label} ({sensor.name}).",
-        (Choice("", "measure"), Choice(SKIP, "leave this distance out" if not again else "keep the first reading")),
+        (
+            AnswerChoice("", "measure"),
+            AnswerChoice(SKIP, "leave this distance out" if not again else "keep the first reading"),
+        ),
         subject=sensor.name,
         distance_m=distance_m,
     )
@@ -123,13 +128,13 @@ async def _read(
         bench.tell(f"{sensor.name} is not heard any more", Tone.BAD)
         return None
     bench.tell(f"{sensor.name} at {distance_m:.2f} m: {counts:.0f} counts", Tone.MEASURED)
-    return Reading(sensor.name, distance_m, counts)
+    return IrReading(sensor.name, distance_m, counts)
 
 
 async def _fit_with_second_looks(
-    bench: Bench, readings: list[Reading], sensors: dict[str, SensorSettings], findings: Findings
-) -> Fit:
-    """Fit; what does not fit to the others is asked for once more, a few times at most. Raises LawError."""
+    bench: TestStand, readings: list[IrReading], sensors: dict[str, SensorSettings], findings: Findings
+) -> IrFit:
+    """Fit; what does not fit to the others is asked for once more, a few times at most. Raises IrCalibrationError."""
     looked_twice: set[int] = set()
     while True:
         fit = fit_law(readings)
@@ -145,7 +150,7 @@ async def _fit_with_second_looks(
             readings[at] = better
 
 
-def _rows(readings: list[Reading], fit: Fit) -> list[str]:
+def _rows(readings: list[IrReading], fit: IrFit) -> list[str]:
     return [
         f"{reading.sensor} at {reading.distance_m:.2f} m: {reading.counts:.0f} counts, law {reading.counts - off:.0f}, "
         f"off by {off:+.0f}" + (", left out" if at in fit.outliers else "")
@@ -153,7 +158,7 @@ def _rows(readings: list[Reading], fit: Fit) -> list[str]:
     ]
 
 
-def _far_m(law: Law, floor: float, farthest_m: float) -> float:
+def _far_m(law: IrLaw, floor: float, farthest_m: float) -> float:
     """Where the law comes down to the reading of an empty room, if that is within what was measured."""
     return round(min(farthest_m, law.distance_m(floor)), 2)
 

@@ -7,7 +7,7 @@ import can
 from hal.bus import CONTROL_ID, CanBus
 from hal.codec import Codec, InvalidFrameError, MessageCodec
 from hal.robot import HIGHEST_COUNTS
-from kurt2rt.checks.commission.frame_statistics import EncoderFrame, Heard, Identity
+from kurt2rt.checks.commission.frame_statistics import EncoderFrame, FrameStatistics, Identity
 
 _DISTANCE_CHANNEL = re.compile(r"ADC(0\d|1[014])|BDC(0\d|1[0-5])")
 """ADC12 and ADC13 are motor currents."""
@@ -29,7 +29,7 @@ class Listener:
         self.hardware_id: int | None = None
         """As INFO_1 said it last."""
 
-    def hear(self, now_s: float, heard: Heard) -> None:
+    def hear(self, now_s: float, heard: FrameStatistics) -> None:
         """Take what waits, on the clock of `now_s`. Raises hal.bus.BusError."""
         messages = self._bus.drain()
         bus_now_s = self._bus.now_s() if messages else None
@@ -41,7 +41,7 @@ class Listener:
         """Give the end back."""
         self._bus.shutdown()
 
-    def _note(self, message: can.Message, at_s: float, heard: Heard) -> None:
+    def _note(self, message: can.Message, at_s: float, heard: FrameStatistics) -> None:
         if message.is_error_frame:
             heard.junk["error frames of the bus"] += 1
             return
@@ -61,7 +61,7 @@ class Listener:
         except InvalidFrameError as error:
             heard.junk[str(error)] += 1
 
-    def _decode(self, codec: MessageCodec, data: bytes | bytearray, at_s: float, heard: Heard) -> None:
+    def _decode(self, codec: MessageCodec, data: bytes | bytearray, at_s: float, heard: FrameStatistics) -> None:
         values = codec.unpack(data)
         if codec.name == "ENCODER":
             heard.encoder.append(EncoderFrame(at_s, *values))

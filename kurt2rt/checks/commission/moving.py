@@ -3,9 +3,9 @@
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings, SpeedMode
 from kurt2rt.checks.commission.findings import Findings
-from kurt2rt.checks.commission.operator import SKIP, Asked, Choice, Question, SkippedError, Tone
-from kurt2rt.checks.commission.step import Result
-from kurt2rt.checks.commission.test_stand import Bench, Drive
+from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, SkippedError, Tone
+from kurt2rt.checks.commission.step import StepResult
+from kurt2rt.checks.commission.test_stand import TestDrive, TestStand
 
 TEST_SPEED_M_S = 0.15
 DRIVE_S = 1.2
@@ -13,9 +13,11 @@ STEADY_FRAMES = 30
 """At the end of a drive, when the wheels have their speed."""
 
 
-async def leave_to_move(bench: Bench, text: str) -> None:
+async def leave_to_move(bench: TestStand, text: str) -> None:
     """Ask before wheels turn. Raises SkippedError."""
-    question = Question(Asked.MOVE, text, (Choice("", "turn them"), Choice(SKIP, "do not turn them")))
+    question = OperatorQuestion(
+        QuestionKind.MOVE, text, (AnswerChoice("", "turn them"), AnswerChoice(SKIP, "do not turn them"))
+    )
     if await bench.ask(question) == SKIP:
         raise SkippedError("the wheels were not to turn")
 
@@ -27,12 +29,12 @@ def mode_found(findings: Findings) -> SpeedMode:
     return findings.speed_mode
 
 
-def steady(drive: Drive, robot: RobotSettings) -> WheelSpeeds:
+def steady(drive: TestDrive, robot: RobotSettings) -> WheelSpeeds:
     """Speeds of the wheels by the encoders before the brake."""
     return drive.heard.wheel_speeds(robot, STEADY_FRAMES)
 
 
-def why_it_stood(drive: Drive) -> str | None:
+def why_it_stood(drive: TestDrive) -> str | None:
     """Why the guard let nothing through; None when it did."""
     if drive.stopped_by is not None:
         return drive.stopped_by
@@ -41,7 +43,7 @@ def why_it_stood(drive: Drive) -> str | None:
     return None
 
 
-def rests(bench: Bench, drive: Drive, result: Result) -> bool:
+def rests(bench: TestStand, drive: TestDrive, result: StepResult) -> bool:
     """Whether the brake brought the wheels to rest; says at once what to do when not. No step goes on then."""
     if drive.rested_after_s is not None:
         return True

@@ -8,7 +8,7 @@ SKIP = "s"
 LEAVE = "q"
 
 
-class Asked(StrEnum):
+class QuestionKind(StrEnum):
     """What a question is about."""
 
     BEGIN = "begin"
@@ -38,7 +38,7 @@ class Asked(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Choice:
+class AnswerChoice:
     """One short answer; an empty key is Enter alone."""
 
     key: str
@@ -46,12 +46,12 @@ class Choice:
 
 
 @dataclass(frozen=True, slots=True)
-class Question:
+class OperatorQuestion:
     """What a person is asked to do or to say. Every question can be answered with LEAVE."""
 
-    about: Asked
+    about: QuestionKind
     text: str
-    choices: tuple[Choice, ...] = ()
+    choices: tuple[AnswerChoice, ...] = ()
     free: bool = False
     """True when other answers than the choices have a meaning."""
     subject: str = ""
@@ -71,11 +71,11 @@ class Tone(StrEnum):
     BAD = "bad"
 
 
-class Person(Protocol):
+class Operator(Protocol):
     """Who stands at the robot."""
 
-    async def answer(self, question: Question) -> str:
-        """What is answered: a choice's key, or free words. Raises LeftError when nobody answers any more."""
+    async def answer(self, question: OperatorQuestion) -> str:
+        """What is answered: a choice's key, or free words. Raises AbortedError when nobody answers any more."""
         ...
 
     def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
@@ -83,7 +83,7 @@ class Person(Protocol):
         ...
 
 
-class LeftError(Exception):
+class AbortedError(Exception):
     """The person goes; what was done so far is kept."""
 
 

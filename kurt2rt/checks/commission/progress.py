@@ -8,14 +8,14 @@ from pydantic import Field, ValidationError
 
 from hal.settings import Settings, SettingsError
 from kurt2rt.checks.commission.findings import Findings
-from kurt2rt.checks.commission.step import Outcome
+from kurt2rt.checks.commission.step import StepOutcome
 from kurt2rt.platform.durable_files import write_durably
 
 
 class StepRecord(Settings):
     """How a step ended the last time it was taken."""
 
-    outcome: Outcome
+    outcome: StepOutcome
     at: str
     """Date and time, UTC, to the minute."""
     who: str

@@ -6,18 +6,20 @@ from rich.console import Console
 from rich.text import Text
 
 from kurt2rt.checks.commission.progress import Progress
-from kurt2rt.checks.commission.step import Outcome, Step
+from kurt2rt.checks.commission.step import CommissionStep, StepOutcome
 from kurt2rt.platform.text_table import TextTable, print_whole
 
-_STYLES = {Outcome.PASSED: "green", Outcome.FAILED: "bold red", Outcome.SKIPPED: "yellow"}
+_STYLES = {StepOutcome.PASSED: "green", StepOutcome.FAILED: "bold red", StepOutcome.SKIPPED: "yellow"}
 
 
-def passed(progress: Progress, steps: Sequence[Step]) -> bool:
+def passed(progress: Progress, steps: Sequence[CommissionStep]) -> bool:
     """True when every step did."""
-    return all(step.name in progress.steps and progress.steps[step.name].outcome is Outcome.PASSED for step in steps)
+    return all(
+        step.name in progress.steps and progress.steps[step.name].outcome is StepOutcome.PASSED for step in steps
+    )
 
 
-def as_text(progress: Progress, steps: Sequence[Step]) -> str:
+def as_text(progress: Progress, steps: Sequence[CommissionStep]) -> str:
     """Everything that is kept about each step, to be filed."""
     verdict = "PASSED" if passed(progress, steps) else "not passed"
     lines = [f"{progress.name} on {progress.bus}, begun with {progress.base}: {verdict}"]
@@ -33,7 +35,7 @@ def as_text(progress: Progress, steps: Sequence[Step]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def print_report(progress: Progress, steps: Sequence[Step], console: Console) -> None:
+def print_report(progress: Progress, steps: Sequence[CommissionStep], console: Console) -> None:
     """Table, what is to be done, verdict."""
     table = TextTable("step", "outcome", "when (UTC)", "who")
     to_do: list[str] = []

@@ -15,7 +15,7 @@ from hal.settings import SettingsError
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.progress import Progress
 from kurt2rt.checks.commission.report import passed
-from kurt2rt.checks.commission.step import Step
+from kurt2rt.checks.commission.step import CommissionStep
 from kurt2rt.platform.durable_files import write_durably
 
 
@@ -47,7 +47,7 @@ def commissioned(base: RobotSettings, name: str, findings: Findings) -> RobotSet
         raise SettingsError(f"what was found makes no robot: {key}: {first['msg']}", do="repeat that step") from error
 
 
-def robot_file(base: RobotSettings, progress: Progress, steps: Sequence[Step]) -> str:
+def robot_file(base: RobotSettings, progress: Progress, steps: Sequence[CommissionStep]) -> str:
     """Text of the file. Raises SettingsError for findings that contradict one another."""
     settings = commissioned(base, progress.name, progress.findings)
     verdict = "PASSED" if passed(progress, steps) else "NOT PASSED"
@@ -65,7 +65,9 @@ def robot_file(base: RobotSettings, progress: Progress, steps: Sequence[Step]) -
     return "\n".join(head) + "\n" + _render(settings.model_dump(mode="json"), _comments(base, progress))
 
 
-def write_robot_file(path: Path, base: RobotSettings, progress: Progress, steps: Sequence[Step]) -> RobotSettings:
+def write_robot_file(
+    path: Path, base: RobotSettings, progress: Progress, steps: Sequence[CommissionStep]
+) -> RobotSettings:
     """Write the file and load it as the robot's program will. Raises SettingsError, OSError."""
     text = robot_file(base, progress, steps)
     write_durably(path, text)

@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 
 from hal.robot_settings import SensorSettings
 from kurt2rt.checks.commission.findings import Findings
-from kurt2rt.checks.commission.operator import SKIP, Asked, Choice, Question, Tone
-from kurt2rt.checks.commission.step import Result
-from kurt2rt.checks.commission.test_stand import Bench
+from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, Tone
+from kurt2rt.checks.commission.step import StepResult
+from kurt2rt.checks.commission.test_stand import TestStand
 
 SETTLE_S = 0.15
 """A sensor measures every 38 ms or so."""
@@ -33,15 +33,17 @@ class SensorsStep:
     moves = False
     bars_driving = False
 
-    async def take(self, bench: Bench, findings: Findings) -> Result:
+    async def take(self, bench: TestStand, findings: Findings) -> StepResult:
         """Ask for a hand before each sensor of the table."""
         sensors = bench.settings.infrared.sensors
         found = await _kept(bench, findings, sensors)
-        await bench.ask(Question(Asked.CLEAR, "Step back: nothing within a metre.", (Choice("", "measure"),)))
+        await bench.ask(
+            OperatorQuestion(QuestionKind.CLEAR, "Step back: nothing within a metre.", (AnswerChoice("", "measure"),))
+        )
         await bench.stand(SETTLE_S)
         heard = await bench.stand(_BASELINE_S)
         if not heard.channels:
-            result = Result(findings)
+            result = StepResult(findings)
             result.to_do.append("No analog channel is heard: is the robot on? Step identity tells which frames come")
             return result
         empty = {channel: heard.median(channel) or 0.0 for channel in heard.channels}
@@ -53,7 +55,7 @@ class SensorsStep:
             if answer is not None:  # an earlier hand was at the wrong sensor: that one is asked for again
                 del found[answer]
                 waiting = [sensor, *waiting, *(each for each in sensors if each.name == answer)]
-        result = Result(findings.model_copy(update={"channels": found, "dead_sensors": tuple(dead)}))
+        result = StepResult(findings.model_copy(update={"channels": found, "dead_sensors": tuple(dead)}))
         for sensor in sensors:
             result.note(_row(sensor, found, dead))
         not_tried = [sensor.name for sensor in sensors if sensor.name not in (*found, *dead)]
@@ -64,30 +66,30 @@ class SensorsStep:
         return result
 
 
-async def _kept(bench: Bench, findings: Findings, sensors: Sequence[SensorSettings]) -> dict[str, str]:
+async def _kept(bench: TestStand, findings: Findings, sensors: Sequence[SensorSettings]) -> dict[str, str]:
     """Channels that were found before and need no hand again."""
     before = dict(findings.channels)
     missing = [sensor.name for sensor in sensors if sensor.name not in before]
     if not before or not missing:
         return {}
-    question = Question(
-        Asked.KEEP,
+    question = OperatorQuestion(
+        QuestionKind.KEEP,
         f"{len(before)} channels were found before.",
-        (Choice("", f"go on with {', '.join(missing)}"), Choice(_ALL, "ask for all of them anew")),
+        (AnswerChoice("", f"go on with {', '.join(missing)}"), AnswerChoice(_ALL, "ask for all of them anew")),
     )
     return {} if await bench.ask(question) == _ALL else before
 
 
 async def _find(
-    bench: Bench, sensor: SensorSettings, empty: Mapping[str, float], found: dict[str, str], dead: list[str]
+    bench: TestStand, sensor: SensorSettings, empty: Mapping[str, float], found: dict[str, str], dead: list[str]
 ) -> str | None:
     """Ask until a channel is found or the sensor is given up; returns another sensor that has to be asked for again."""
     tried = False
     while True:
-        question = Question(
-            Asked.HAND,
+        question = OperatorQuestion(
+            QuestionKind.HAND,
             f"Your hand 10 to 20 cm before: {sensor.label} ({sensor.name}).",
-            (Choice("", "measure"), Choice(SKIP, "give this one up" if tried else "skip this one")),
+            (AnswerChoice("", "measure"), AnswerChoice(SKIP, "give this one up" if tried else "skip this one")),
             subject=sensor.name,
         )
         if await bench.ask(question) == SKIP:
@@ -114,10 +116,10 @@ async def _find(
             bench.tell(f"{_said(sensor, channel)}, {rise:+.0f} counts", Tone.MEASURED)
             return None
         bench.tell(f"{channel} answered, but that was {owner}'s already.", Tone.BAD)
-        taken = Question(
-            Asked.HAND,
+        taken = OperatorQuestion(
+            QuestionKind.HAND,
             f"Your hand before {sensor.label} ({sensor.name}) again, or was it {owner}'s turn that was wrong?",
-            (Choice("", "measure again"), Choice(_FORGET, f"{owner} was wrong, ask for it again later")),
+            (AnswerChoice("", "measure again"), AnswerChoice(_FORGET, f"{owner} was wrong, ask for it again later")),
             subject=sensor.name,
         )
         if await bench.ask(taken) == _FORGET:

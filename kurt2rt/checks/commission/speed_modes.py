@@ -8,8 +8,8 @@ from hal.robot_settings import RobotSettings, SpeedMode
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.moving import DRIVE_S, TEST_SPEED_M_S, leave_to_move, rests, steady, why_it_stood
 from kurt2rt.checks.commission.operator import SkippedError
-from kurt2rt.checks.commission.step import Result
-from kurt2rt.checks.commission.test_stand import RAN_AWAY, TURNS_SHARE, Bench, Drive
+from kurt2rt.checks.commission.step import StepResult
+from kurt2rt.checks.commission.test_stand import RAN_AWAY, TURNS_SHARE, TestDrive, TestStand
 
 PREFERENCE = (SpeedMode.SPEED_CM, SpeedMode.SPEED, SpeedMode.RAW)
 """Closed loops in the controller before the open one; SPEED_CM is the finer of the two."""
@@ -29,10 +29,10 @@ class SpeedModesStep:
     moves = True
     bars_driving = True
 
-    async def take(self, bench: Bench, findings: Findings) -> Result:
+    async def take(self, bench: TestStand, findings: Findings) -> StepResult:
         """Try all three; the first of the preference that answers is the robot's."""
         robot = bench.settings
-        result = Result(findings.model_copy(update={"speed_mode": None, "full_speed_m_s": None}))
+        result = StepResult(findings.model_copy(update={"speed_mode": None, "full_speed_m_s": None}))
         trials: list[_Trial] = []
         for mode in PREFERENCE:
             try:
@@ -58,7 +58,7 @@ class _Trial:
     """A mode and what came of its drives: forward and, unless that was cut short, backward."""
 
     mode: SpeedMode
-    drives: list[Drive] = field(default_factory=list)
+    drives: list[TestDrive] = field(default_factory=list)
 
     def stood(self) -> str | None:
         """Why the wheels were kept from turning."""
@@ -106,7 +106,7 @@ class _Trial:
         )
 
 
-def _conclude(trials: list[_Trial], robot: RobotSettings, result: Result) -> Result:
+def _conclude(trials: list[_Trial], robot: RobotSettings, result: StepResult) -> StepResult:
     """The first mode that answers is taken; what is wrong with those after it is no matter."""
     for trial in trials:
         trouble = trial.trouble(robot)
@@ -123,5 +123,5 @@ def _conclude(trials: list[_Trial], robot: RobotSettings, result: Result) -> Res
     return result
 
 
-def _fastest_m_s(drive: Drive, robot: RobotSettings) -> float:
+def _fastest_m_s(drive: TestDrive, robot: RobotSettings) -> float:
     return max(map(abs, steady(drive, robot)))

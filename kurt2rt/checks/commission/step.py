@@ -6,10 +6,10 @@ from typing import Protocol
 
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.operator import Tone
-from kurt2rt.checks.commission.test_stand import Bench
+from kurt2rt.checks.commission.test_stand import TestStand
 
 
-class Outcome(StrEnum):
+class StepOutcome(StrEnum):
     """How a step ended."""
 
     PASSED = "passed"
@@ -18,7 +18,7 @@ class Outcome(StrEnum):
 
 
 @dataclass(slots=True)
-class Result:
+class StepResult:
     """What a step measured. It passed when nothing is left to do."""
 
     findings: Findings
@@ -34,18 +34,18 @@ class Result:
         self.measured.append(line)
         self.untold.append(line)
 
-    def tell(self, bench: Bench, line: str) -> None:
+    def tell(self, bench: TestStand, line: str) -> None:
         """A measured line, told at once."""
         self.measured.append(line)
         bench.tell(line, Tone.MEASURED)
 
     @property
-    def outcome(self) -> Outcome:
+    def outcome(self) -> StepOutcome:
         """Passed or failed."""
-        return Outcome.FAILED if self.to_do else Outcome.PASSED
+        return StepOutcome.FAILED if self.to_do else StepOutcome.PASSED
 
 
-class Step(Protocol):
+class CommissionStep(Protocol):
     """One step. `take` may be called again; it then starts over."""
 
     name: str
@@ -58,6 +58,6 @@ class Step(Protocol):
     bars_driving: bool
     """True when a robot that failed here must not be driven, so that no settings file is written."""
 
-    async def take(self, bench: Bench, findings: Findings) -> Result:
+    async def take(self, bench: TestStand, findings: Findings) -> StepResult:
         """Take the step; `findings` are those of the steps before. Raises SkippedError, LeftError, BusError."""
         ...

@@ -13,8 +13,8 @@ from kurt2rt.checks.commission.moving import (
     steady,
     why_it_stood,
 )
-from kurt2rt.checks.commission.step import Result
-from kurt2rt.checks.commission.test_stand import TURNS_SHARE, Bench, Drive
+from kurt2rt.checks.commission.step import StepResult
+from kurt2rt.checks.commission.test_stand import TURNS_SHARE, TestDrive, TestStand
 
 BRAKED_WITHIN_S = 0.5
 SILENT_S = 1.5
@@ -32,10 +32,10 @@ class StoppingStep:
     moves = True
     bars_driving = True
 
-    async def take(self, bench: Bench, findings: Findings) -> Result:
+    async def take(self, bench: TestStand, findings: Findings) -> StepResult:
         """Brake; fall silent."""
         mode = mode_found(findings)
-        result = Result(findings.model_copy(update={"controller_watchdog_s": None}))
+        result = StepResult(findings.model_copy(update={"controller_watchdog_s": None}))
         await leave_to_move(bench, "All wheels turn forward; then the brake.")
         drive = await bench.drive(mode, _FORWARD, DRIVE_S)
         rested_s = drive.rested_after_s
@@ -55,7 +55,7 @@ class StoppingStep:
         return result
 
 
-def _was_turning(bench: Bench, drive: Drive, result: Result) -> bool:
+def _was_turning(bench: TestStand, drive: TestDrive, result: StepResult) -> bool:
     stood = why_it_stood(drive)
     if stood is None and max(map(abs, steady(drive, bench.settings))) < TURNS_SHARE * TEST_SPEED_M_S:
         stood = "no answer to the set point"
@@ -64,7 +64,7 @@ def _was_turning(bench: Bench, drive: Drive, result: Result) -> bool:
     return stood is None
 
 
-def _judge_watchdog(bench: Bench, drive: Drive, result: Result) -> None:
+def _judge_watchdog(bench: TestStand, drive: TestDrive, result: StepResult) -> None:
     if drive.rested_after_s is None:
         result.to_do.append(
             f"Without CONTROL the wheels turned on for {SILENT_S} s: this controller does not stop by itself. "
@@ -80,7 +80,7 @@ def _judge_watchdog(bench: Bench, drive: Drive, result: Result) -> None:
     result.findings = result.findings.model_copy(update={"controller_watchdog_s": round(fell_s, 2)})
 
 
-def _fell_after_s(bench: Bench, drive: Drive) -> float:
+def _fell_after_s(bench: TestStand, drive: TestDrive) -> float:
     """From the last CONTROL to the first ENCODER frame that is clearly slower than the ones before."""
     before = drive.heard.encoder[-30:]
     steady_ticks = statistics.mean(abs(each.left) + abs(each.right) for each in before)

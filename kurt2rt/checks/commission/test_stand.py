@@ -12,9 +12,9 @@ from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from hal.robot_settings import RobotSettings, SpeedMode
-from kurt2rt.checks.commission.frame_statistics import Heard
+from kurt2rt.checks.commission.frame_statistics import FrameStatistics
 from kurt2rt.checks.commission.listener import Listener
-from kurt2rt.checks.commission.operator import LEAVE, LeftError, Person, Question, Tone
+from kurt2rt.checks.commission.operator import LEAVE, AbortedError, Operator, OperatorQuestion, Tone
 from kurt2rt.checks.commission.test_stand_settings import bench_settings
 from kurt2rt.platform.clock import Clock
 
@@ -37,12 +37,12 @@ _REST_S = 0.1
 
 
 @dataclass(frozen=True, slots=True)
-class Drive:
+class TestDrive:
     """What came of an order to turn the wheels; they were braked after it."""
 
-    heard: Heard
+    heard: FrameStatistics
     """While the order held."""
-    after: Heard
+    after: FrameStatistics
     """From then on, until they rested."""
     applied: WheelSpeeds
     """Set points of the last frame of the order."""
@@ -54,7 +54,7 @@ class Drive:
     """From the end of the order until the encoders stood; None when they did not, or were not heard."""
 
 
-class Bench:
+class TestStand:
     """Ticks every cycle. The robot is opened when it first has to move, and is braked whenever it does not."""
 
     def __init__(
@@ -63,7 +63,7 @@ class Bench:
         open_robot: Callable[[RobotSettings], Kurt2],
         listener: Listener,
         clock: Clock,
-        person: Person,
+        person: Operator,
         *,
         second_guard: bool,
     ) -> None:
@@ -93,8 +93,8 @@ class Bench:
         """Say a line to the person."""
         self._person.tell(text, tone)
 
-    async def ask(self, question: Question) -> str:
-        """The person's answer; the robot stands meanwhile. Raises LeftError, also when the answer is to leave."""
+    async def ask(self, question: OperatorQuestion) -> str:
+        """The person's answer; the robot stands meanwhile. Raises AbortedError, also when the answer is to leave."""
         answers: list[str] = []
         gone = False
 
@@ -102,21 +102,21 @@ class Bench:
             nonlocal gone
             try:
                 answers.append(await self._person.answer(question))
-            except LeftError:
+            except AbortedError:
                 gone = True
 
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(listen)
             await checkpoint()  # who answers at once is not kept waiting for a tick
             while not answers and not gone:
-                await self._tick(Heard(), STANDSTILL)
+                await self._tick(FrameStatistics(), STANDSTILL)
         if gone or answers[0] == LEAVE:
-            raise LeftError
+            raise AbortedError
         return answers[0]
 
-    async def stand(self, seconds: float) -> Heard:
+    async def stand(self, seconds: float) -> FrameStatistics:
         """What is heard in a while in which the robot stands; nothing is sent before the wheels first turned."""
-        heard = Heard()
+        heard = FrameStatistics()
         for _ in range(self._ticks(seconds)):
             await self._tick(heard, STANDSTILL)
         return heard
@@ -127,14 +127,14 @@ class Bench:
             await self.stand(_IDENTITY_S)
         return self._listener.hardware_id
 
-    async def drive(self, mode: SpeedMode, wanted: WheelSpeeds, seconds: float) -> Drive:
+    async def drive(self, mode: SpeedMode, wanted: WheelSpeeds, seconds: float) -> TestDrive:
         """Turn the wheels in a speed mode for so long, then brake; sooner when the guard or a runaway stops them, or
         when nothing is counted of a side that is to turn.
         """
         robot = await self._ready(mode)
         return await self._brake(robot, await self._order(robot, wanted, seconds))
 
-    async def fall_silent(self, mode: SpeedMode, wanted: WheelSpeeds, seconds: float, silent_s: float) -> Drive:
+    async def fall_silent(self, mode: SpeedMode, wanted: WheelSpeeds, seconds: float, silent_s: float) -> TestDrive:
         """As `drive`, but then no CONTROL is sent for at most `silent_s`, until the wheels rest by themselves.
 
         `rested_after_s` counts from the last CONTROL frame, and is None when they had to be braked in the end.
@@ -158,8 +158,8 @@ class Bench:
         await self._until_rest(drive, _HALT_S, STANDSTILL)
         return silent
 
-    async def _order(self, robot: Kurt2, wanted: WheelSpeeds, seconds: float) -> Drive:
-        heard = Heard()
+    async def _order(self, robot: Kurt2, wanted: WheelSpeeds, seconds: float) -> TestDrive:
+        heard = FrameStatistics()
         fastest_m_s = max(abs(wanted.left_m_s), abs(wanted.right_m_s)) * _RUNAWAY_FACTOR + _RUNAWAY_MARGIN_M_S
         stopped_by = None
         robot.release()
@@ -174,21 +174,21 @@ class Bench:
                 break
             if ticks == self._ticks(_ANSWER_S) and self._unanswered(heard, wanted):
                 break  # a speed loop that hears nothing of its wheels turns them faster and faster
-        return Drive(heard, Heard(), self._grant.wheel_speeds, self._grant.reasons, stopped_by, None)
+        return TestDrive(heard, FrameStatistics(), self._grant.wheel_speeds, self._grant.reasons, stopped_by, None)
 
-    def _unanswered(self, heard: Heard, wanted: WheelSpeeds) -> bool:
+    def _unanswered(self, heard: FrameStatistics, wanted: WheelSpeeds) -> bool:
         """Whether a side that was told to turn is not counted to."""
         counted = heard.wheel_speeds(self.settings, _ANSWER_FRAMES)
         return any(abs(its) < TURNS_SHARE * abs(told) for its, told in zip(counted, wanted, strict=True))
 
-    async def _brake(self, robot: Kurt2, drive: Drive) -> Drive:
+    async def _brake(self, robot: Kurt2, drive: TestDrive) -> TestDrive:
         robot.emergency_stop(GuardReason.CHECKLIST_WAITS)
         return await self._until_rest(drive, _HALT_S, STANDSTILL)
 
-    async def _until_rest(self, drive: Drive, at_most_s: float, wanted: WheelSpeeds | None) -> Drive:
+    async def _until_rest(self, drive: TestDrive, at_most_s: float, wanted: WheelSpeeds | None) -> TestDrive:
         """The same drive with what came after it, and when the wheels rested."""
         from_s = self._clock.now_s()
-        after = Heard()
+        after = FrameStatistics()
         rested_s = None
         for _ in range(self._ticks(at_most_s)):
             await self._tick(after, wanted)
@@ -221,7 +221,7 @@ class Bench:
     def _ticks(self, seconds: float) -> int:
         return max(1, round(seconds / self._cycle_s))
 
-    async def _tick(self, heard: Heard, wanted: WheelSpeeds | None) -> None:
+    async def _tick(self, heard: FrameStatistics, wanted: WheelSpeeds | None) -> None:
         """One cycle; no CONTROL is sent when nothing is wanted."""
         # Ticks that were missed are skipped, not caught up.
         self._deadline_s = max(self._deadline_s + self._cycle_s, self._clock.now_s())

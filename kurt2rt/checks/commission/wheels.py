@@ -12,10 +12,10 @@ from kurt2rt.checks.commission.moving import (
     steady,
     why_it_stood,
 )
-from kurt2rt.checks.commission.operator import Asked, Choice, Question, Tone
-from kurt2rt.checks.commission.step import Result
-from kurt2rt.checks.commission.test_stand import TURNS_SHARE, Bench, Drive
-from kurt2rt.checks.commission.wiring import Motion, Side, Trial, one, parse_seen, what_to_rewire
+from kurt2rt.checks.commission.operator import AnswerChoice, OperatorQuestion, QuestionKind, Tone
+from kurt2rt.checks.commission.step import StepResult
+from kurt2rt.checks.commission.test_stand import TURNS_SHARE, TestDrive, TestStand
+from kurt2rt.checks.commission.wiring import Motion, WheelSide, WheelTrial, one, parse_seen, what_to_rewire
 
 _UNEQUAL_SHARE = 0.25
 _YES = "y"
@@ -31,13 +31,13 @@ class WheelsStep:
     moves = True
     bars_driving = True
 
-    async def take(self, bench: Bench, findings: Findings) -> Result:
+    async def take(self, bench: TestStand, findings: Findings) -> StepResult:
         """Four drives and four looks."""
         mode = mode_found(findings)
-        result = Result(findings)
-        trials: list[Trial] = []
-        fastest_m_s: dict[Side, float] = {}
-        for side in Side:
+        result = StepResult(findings)
+        trials: list[WheelTrial] = []
+        fastest_m_s: dict[WheelSide, float] = {}
+        for side in WheelSide:
             for sign in (1, -1):
                 ordered = one(side, sign)
                 await leave_to_move(bench, f"The wheels of one side turn: {ordered}.")
@@ -49,7 +49,7 @@ class WheelsStep:
                 speeds = steady(drive, bench.settings)
                 counted = _counted(drive, bench.settings)
                 seen = await _seen(bench, ordered, counted)
-                trials.append(Trial(ordered, seen, counted))
+                trials.append(WheelTrial(ordered, seen, counted))
                 fastest_m_s[side] = max(map(abs, speeds))
                 result.tell(
                     bench,
@@ -66,7 +66,7 @@ class WheelsStep:
         return result
 
 
-def _counted(drive: Drive, robot: RobotSettings) -> Motion:
+def _counted(drive: TestDrive, robot: RobotSettings) -> Motion:
     return Motion(*(_sign(speed_m_s) for speed_m_s in steady(drive, robot)))
 
 
@@ -76,17 +76,17 @@ def _sign(speed_m_s: float) -> int:
     return 1 if speed_m_s > 0 else -1
 
 
-async def _seen(bench: Bench, ordered: Motion, counted: Motion) -> Motion:
+async def _seen(bench: TestStand, ordered: Motion, counted: Motion) -> Motion:
     """What a person saw. Enter alone is no answer: with motors and encoders exchanged only eyes tell. Nor is yes, where
     the encoders disagree with the order.
     """
-    as_ordered = (Choice(_YES, f"yes, {ordered}"),) if counted == ordered else ()
+    as_ordered = (AnswerChoice(_YES, f"yes, {ordered}"),) if counted == ordered else ()
     text = (
         f"Did the wheels turn: {ordered}? If not, type which did: left, right or both, forward or back; or none."
         if as_ordered
         else f"The encoders say: {counted}. Type what you saw: left, right or both, forward or back; or none."
     )
-    question = Question(Asked.SEEN, text, as_ordered, free=True)
+    question = OperatorQuestion(QuestionKind.SEEN, text, as_ordered, free=True)
     while True:
         answer = await bench.ask(question)
         if answer == _YES and as_ordered:

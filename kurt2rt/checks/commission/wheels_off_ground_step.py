@@ -1,14 +1,14 @@
 """Step: the wheels are off the ground, in the person's own words."""
 
 from kurt2rt.checks.commission.findings import Findings
-from kurt2rt.checks.commission.operator import SKIP, Asked, Choice, Question, SkippedError, Tone
-from kurt2rt.checks.commission.step import Result
-from kurt2rt.checks.commission.test_stand import Bench
+from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, SkippedError, Tone
+from kurt2rt.checks.commission.step import StepResult
+from kurt2rt.checks.commission.test_stand import TestStand
 
 WORDS = "wheels up"
 
 
-class LiftedStep:
+class WheelsOffGroundStep:
     """Asked anew in every session: a block that stood there yesterday proves nothing."""
 
     name = "lifted"
@@ -18,12 +18,12 @@ class LiftedStep:
     moves = False
     bars_driving = True
 
-    async def take(self, bench: Bench, findings: Findings) -> Result:
+    async def take(self, bench: TestStand, findings: Findings) -> StepResult:
         """Ask until the words are typed."""
-        question = Question(
-            Asked.LIFTED,
+        question = OperatorQuestion(
+            QuestionKind.LIFTED,
             f"When no wheel touches anything, type: {WORDS}",
-            (Choice(SKIP, "the wheels shall not turn today"),),
+            (AnswerChoice(SKIP, "the wheels shall not turn today"),),
             free=True,
         )
         while True:
@@ -31,7 +31,7 @@ class LiftedStep:
             if answer == SKIP:
                 raise SkippedError("the wheels were not confirmed off the ground")
             if " ".join(answer.split()) == WORDS:
-                result = Result(findings)
+                result = StepResult(findings)
                 result.note("confirmed by typing")
                 return result
             bench.tell(f"That was {answer!r}, not {WORDS!r}.", Tone.BAD)

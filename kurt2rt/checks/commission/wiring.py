@@ -4,7 +4,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 
-class Side(IntEnum):
+class WheelSide(IntEnum):
     """A side of the robot; its place in a Motion."""
 
     LEFT = 0
@@ -23,30 +23,30 @@ class Motion(NamedTuple):
     right: int
 
     @property
-    def only(self) -> tuple[Side, int] | None:
+    def only(self) -> tuple[WheelSide, int] | None:
         """The one side that turns, and its sign; None when none or both do."""
         if bool(self.left) == bool(self.right):
             return None
-        return (Side.LEFT, self.left) if self.left else (Side.RIGHT, self.right)
+        return (WheelSide.LEFT, self.left) if self.left else (WheelSide.RIGHT, self.right)
 
     def __str__(self) -> str:
         ways = {1: "forward", -1: "back"}
         if self.left == self.right:
             return f"both {ways[self.left]}" if self.left else "none"
         return ", ".join(
-            f"{side.word} {ways[sign]}" for side, sign in zip(Side, (self.left, self.right), strict=True) if sign
+            f"{side.word} {ways[sign]}" for side, sign in zip(WheelSide, (self.left, self.right), strict=True) if sign
         )
 
 
 STILL = Motion(0, 0)
 
 
-def one(side: Side, sign: int) -> Motion:
+def one(side: WheelSide, sign: int) -> Motion:
     """Only this side turns."""
-    return Motion(sign, 0) if side is Side.LEFT else Motion(0, sign)
+    return Motion(sign, 0) if side is WheelSide.LEFT else Motion(0, sign)
 
 
-class Trial(NamedTuple):
+class WheelTrial(NamedTuple):
     """One order, what a person saw of it and what the encoders counted."""
 
     ordered: Motion
@@ -73,7 +73,7 @@ def parse_seen(answer: str) -> Motion | None:
     return {"left": Motion(way[0], 0), "right": Motion(0, way[0]), "both": Motion(way[0], way[0])}.get(who[0])
 
 
-def what_to_rewire(trials: list[Trial]) -> list[str]:
+def what_to_rewire(trials: list[WheelTrial]) -> list[str]:
     """Instructions, motors before encoders; empty when all is as it should be. `trials`: each side, both ways."""
     motors = [(trial.ordered, trial.seen) for trial in trials]
     encoders = [(trial.seen, trial.counted) for trial in trials]
@@ -103,10 +103,10 @@ _ENCODERS = _Words(
 
 def _judge(pairs: list[tuple[Motion, Motion]], words: _Words) -> list[str]:
     """From causes, each of one side, to effects."""
-    effects = {side: _effect_of(side, pairs) for side in Side}
+    effects = {side: _effect_of(side, pairs) for side in WheelSide}
     swapped = all(effect is not None and effect[0] is not side for side, effect in effects.items())
     found = [words.swapped] if swapped else []
-    for side in Side:
+    for side in WheelSide:
         causes = [effect for cause, effect in pairs if cause.only is not None and cause.only[0] is side]
         effect = effects[side]
         if not causes:
@@ -122,7 +122,7 @@ def _judge(pairs: list[tuple[Motion, Motion]], words: _Words) -> list[str]:
     return found
 
 
-def _effect_of(side: Side, pairs: list[tuple[Motion, Motion]]) -> tuple[Side, int] | None:
+def _effect_of(side: WheelSide, pairs: list[tuple[Motion, Motion]]) -> tuple[WheelSide, int] | None:
     """Which side answers to a side, and whether the same way (1) or the other (-1); None when no one side does."""
     answers = set()
     for cause, effect in pairs:

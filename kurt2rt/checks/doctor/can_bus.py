@@ -5,7 +5,7 @@ import socket
 from collections.abc import Callable
 from pathlib import Path
 
-from kurt2rt.checks.doctor.check_result import Finding, FindingCode, Status
+from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 from kurt2rt.checks.doctor.sysfs import attribute
 
 NET_FOLDER = Path("/sys/class/net")
@@ -23,45 +23,45 @@ def _open_can_socket() -> socket.socket:
 
 def check_can_kernel(
     open_socket: Callable[[], socket.socket] = _open_can_socket, modules: Path = MODULES_FOLDER
-) -> Finding:
+) -> CheckResult:
     """Can a CAN socket be opened?"""
     try:
         open_socket().close()
     except (OSError, AttributeError) as error:  # AttributeError: a Python that was built without CAN
         code = FindingCode.CAN_UNLOADED if _offers("can-raw", modules) else FindingCode.CAN_MISSING
-        return Finding(code, Status.MISSING, {"error": str(error)})
-    return Finding(FindingCode.CAN, Status.OK)
+        return CheckResult(code, CheckStatus.MISSING, {"error": str(error)})
+    return CheckResult(FindingCode.CAN, CheckStatus.OK)
 
 
-def check_can_interfaces(net: Path = NET_FOLDER) -> tuple[Finding, ...]:
+def check_can_interfaces(net: Path = NET_FOLDER) -> tuple[CheckResult, ...]:
     """Which CAN interfaces with hardware are there, and are they up? One finding each, or one that there is none."""
     interfaces = [each for each in _can_interfaces(net) if not _is_virtual(each)]
     if not interfaces:
         values = {"folder": str(net), "up": _up("can0")}
-        return (Finding(FindingCode.CAN_INTERFACE_NONE, Status.MISSING, values),)
+        return (CheckResult(FindingCode.CAN_INTERFACE_NONE, CheckStatus.MISSING, values),)
     return tuple(_check_interface(each) for each in interfaces)
 
 
-def check_vcan(net: Path = NET_FOLDER, modules: Path = MODULES_FOLDER) -> Finding:
+def check_vcan(net: Path = NET_FOLDER, modules: Path = MODULES_FOLDER) -> CheckResult:
     """Is there a virtual CAN interface? Only tests over the kernel's CAN want one."""
     interfaces = [each for each in _can_interfaces(net) if _is_virtual(each)]
     for each in interfaces:
         if _is_up(each):
-            return Finding(FindingCode.VCAN, Status.OK, {"name": each.name})
+            return CheckResult(FindingCode.VCAN, CheckStatus.OK, {"name": each.name})
     if interfaces:
-        return Finding(FindingCode.VCAN_DOWN, Status.WARNING, {"name": interfaces[0].name})
+        return CheckResult(FindingCode.VCAN_DOWN, CheckStatus.WARNING, {"name": interfaces[0].name})
     if not _offers("vcan", modules):
-        return Finding(FindingCode.VCAN_NO_MODULE, Status.WARNING, {"folder": str(modules)})
-    return Finding(FindingCode.VCAN_NONE, Status.WARNING)
+        return CheckResult(FindingCode.VCAN_NO_MODULE, CheckStatus.WARNING, {"folder": str(modules)})
+    return CheckResult(FindingCode.VCAN_NONE, CheckStatus.WARNING)
 
 
-def _check_interface(interface: Path) -> Finding:
+def _check_interface(interface: Path) -> CheckResult:
     values = {"name": interface.name, "up": _up(interface.name)}
     if not _is_up(interface):
-        return Finding(FindingCode.CAN_INTERFACE_DOWN, Status.WARNING, values)
+        return CheckResult(FindingCode.CAN_INTERFACE_DOWN, CheckStatus.WARNING, values)
     if attribute(interface / "carrier") == "0":
-        return Finding(FindingCode.CAN_INTERFACE_OFF_BUS, Status.WARNING, values)
-    return Finding(FindingCode.CAN_INTERFACE, Status.OK, values)
+        return CheckResult(FindingCode.CAN_INTERFACE_OFF_BUS, CheckStatus.WARNING, values)
+    return CheckResult(FindingCode.CAN_INTERFACE, CheckStatus.OK, values)
 
 
 def _can_interfaces(net: Path) -> list[Path]:

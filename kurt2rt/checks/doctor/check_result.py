@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 
-class Status(StrEnum):
+class CheckStatus(StrEnum):
     """How well the machine serves in one respect."""
 
     OK = "ok"
@@ -64,11 +64,11 @@ class FindingCode(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class CheckResult:
     """Result of one check."""
 
     code: FindingCode
-    status: Status
+    status: CheckStatus
     values: Mapping[str, float | str] = field(default_factory=dict)
     """Fields of the code's texts."""
     needed: bool = False
@@ -77,4 +77,4 @@ class Finding:
     @property
     def forbids_run(self) -> bool:
         """True if `kurt2rt run` cannot start because of this."""
-        return self.needed and self.status is Status.MISSING
+        return self.needed and self.status is CheckStatus.MISSING

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from kurt2rt.checks.doctor.can_bus import check_can_interfaces, check_can_kernel, check_vcan
-from kurt2rt.checks.doctor.check_result import Finding
+from kurt2rt.checks.doctor.check_result import CheckResult
 from kurt2rt.checks.doctor.disk import check_disk
 from kurt2rt.checks.doctor.privileges import check_memory_lock, check_real_time_priority
 from kurt2rt.checks.doctor.processor import check_blas_threads, check_cores, check_governor
@@ -12,7 +12,7 @@ from kurt2rt.checks.doctor.sqlite_log import check_sqlite
 from kurt2rt.checks.doctor.timer import check_clock, check_timer
 
 
-def examine(folder: Path, ticks: int = 100) -> tuple[Finding, ...]:
+def examine(folder: Path, ticks: int = 100) -> tuple[CheckResult, ...]:
     """Look at this machine; `folder` is where knowledge is kept. Changes nothing. Takes 20 ms for each of the ticks."""
     return (
         check_python(),

@@ -5,7 +5,7 @@ import statistics
 import tempfile
 from pathlib import Path
 
-from kurt2rt.checks.doctor.check_result import Finding, FindingCode, Status
+from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 from kurt2rt.checks.doctor.sqlite_log import check_sqlite_log
 from kurt2rt.platform.fsync_probe import sync_ns
 
@@ -17,7 +17,7 @@ WANTED_BYTES = 1024 * 1024 * 1024
 """Recorded runs take most of it."""
 
 
-def check_disk(folder: Path) -> tuple[Finding, ...]:
+def check_disk(folder: Path) -> tuple[CheckResult, ...]:
     """All about the folder, which need not be there: then its nearest parent is judged. Leaves nothing behind."""
     folder = folder.absolute()
     try:
@@ -31,26 +31,28 @@ def check_disk(folder: Path) -> tuple[Finding, ...]:
             )
     except OSError as error:
         values = {"folder": str(folder), "error": str(error)}
-        return (Finding(FindingCode.FOLDER_UNWRITABLE, Status.MISSING, values, needed=True),)
+        return (CheckResult(FindingCode.FOLDER_UNWRITABLE, CheckStatus.MISSING, values, needed=True),)
 
 
-def _check_folder(folder: Path, place: Path) -> Finding:
+def _check_folder(folder: Path, place: Path) -> CheckResult:
     if place == folder:
-        return Finding(FindingCode.FOLDER, Status.OK, {"folder": str(folder)}, needed=True)
-    return Finding(FindingCode.FOLDER_TO_MAKE, Status.OK, {"folder": str(folder), "parent": str(place)}, needed=True)
+        return CheckResult(FindingCode.FOLDER, CheckStatus.OK, {"folder": str(folder)}, needed=True)
+    return CheckResult(
+        FindingCode.FOLDER_TO_MAKE, CheckStatus.OK, {"folder": str(folder), "parent": str(place)}, needed=True
+    )
 
 
-def check_free_space(folder: Path, least_bytes: int = LEAST_BYTES, wanted_bytes: int = WANTED_BYTES) -> Finding:
+def check_free_space(folder: Path, least_bytes: int = LEAST_BYTES, wanted_bytes: int = WANTED_BYTES) -> CheckResult:
     """Is there room for knowledge and for recorded runs?"""
     free_bytes = shutil.disk_usage(folder).free
     values = {"free_gb": free_bytes / 1e9}
     if free_bytes < wanted_bytes:
-        status = Status.MISSING if free_bytes < least_bytes else Status.WARNING
-        return Finding(FindingCode.SPACE_LOW, status, values, needed=True)
-    return Finding(FindingCode.SPACE, Status.OK, values, needed=True)
+        status = CheckStatus.MISSING if free_bytes < least_bytes else CheckStatus.WARNING
+        return CheckResult(FindingCode.SPACE_LOW, status, values, needed=True)
+    return CheckResult(FindingCode.SPACE, CheckStatus.OK, values, needed=True)
 
 
-def check_sync(folder: Path, limit_s: float = SYNC_LIMIT_S) -> Finding:
+def check_sync(folder: Path, limit_s: float = SYNC_LIMIT_S) -> CheckResult:
     """How long does the disk take until a page is durable?"""
     with (folder / "sync").open("wb", buffering=0) as file:
         took_s = [sync_ns(file) / 1e9 for _ in range(SYNC_TIMES)]
@@ -58,5 +60,5 @@ def check_sync(folder: Path, limit_s: float = SYNC_LIMIT_S) -> Finding:
     took = {"median_ms": median_s * 1000, "times": SYNC_TIMES, "worst_ms": max(took_s) * 1000}
     values = {**took, "limit_ms": limit_s * 1000}
     if median_s > limit_s:
-        return Finding(FindingCode.SYNC_SLOW, Status.WARNING, values, needed=True)
-    return Finding(FindingCode.SYNC, Status.OK, values, needed=True)
+        return CheckResult(FindingCode.SYNC_SLOW, CheckStatus.WARNING, values, needed=True)
+    return CheckResult(FindingCode.SYNC, CheckStatus.OK, values, needed=True)

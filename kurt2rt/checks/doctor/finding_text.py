@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from kurt2rt.checks.doctor.check_result import Finding
+from kurt2rt.checks.doctor.check_result import CheckResult
 from kurt2rt.checks.doctor.check_result import FindingCode as Code
 
 _ANOTHER_FOLDER = "give a folder on a local disk that you may write, with --folder"
@@ -129,6 +129,6 @@ _TEXTS: Mapping[Code, FindingText] = {
 }
 
 
-def text_of(finding: Finding) -> FindingText:
+def text_of(finding: CheckResult) -> FindingText:
     """Return the words of a finding."""
     return FindingText(*(text.format(**finding.values) for text in _TEXTS[finding.code]))

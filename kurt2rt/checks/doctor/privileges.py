@@ -6,7 +6,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from kurt2rt.checks.doctor.check_result import Finding, FindingCode, Status
+from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 from kurt2rt.platform.realtime_priority import UNIT_PRIORITY
 
 SELF_STATUS = Path("/proc/self/status")
@@ -21,7 +21,7 @@ def check_real_time_priority(
     limit: int | None = None,
     set_scheduler: Callable[[int, int, os.sched_param], None] = os.sched_setscheduler,
     status: Path = SELF_STATUS,
-) -> Finding:
+) -> CheckResult:
     """Does the kernel grant SCHED_FIFO at the priorities of a unit? The trial decides: a control group may refuse.
 
     The trial is made by a thread that then ends, so nothing keeps the priority. Limit and capability are shown.
@@ -35,25 +35,25 @@ def check_real_time_priority(
     try:
         trial.result()
     except OSError as error:
-        return Finding(FindingCode.PRIORITY_REFUSED, Status.WARNING, {**values, "error": str(error.strerror)})
-    return Finding(FindingCode.PRIORITY, Status.OK, values)
+        return CheckResult(FindingCode.PRIORITY_REFUSED, CheckStatus.WARNING, {**values, "error": str(error.strerror)})
+    return CheckResult(FindingCode.PRIORITY, CheckStatus.OK, values)
 
 
-def check_memory_lock(limit_bytes: int | None = None, status: Path = SELF_STATUS) -> Finding:
+def check_memory_lock(limit_bytes: int | None = None, status: Path = SELF_STATUS) -> CheckResult:
     """May a process as large as this one lock its memory, so that no tick waits for a page from the disk?"""
     if limit_bytes is None:
         limit_bytes = resource.getrlimit(resource.RLIMIT_MEMLOCK)[0]
     if limit_bytes == resource.RLIM_INFINITY:
-        return Finding(FindingCode.MEMORY_LOCK_UNLIMITED, Status.OK)
+        return CheckResult(FindingCode.MEMORY_LOCK_UNLIMITED, CheckStatus.OK)
     values = {"limit_mib": limit_bytes / _MIB}
     if _has_capability(_CAP_IPC_LOCK, status):
-        return Finding(FindingCode.MEMORY_LOCK_CAPABLE, Status.OK, values)
+        return CheckResult(FindingCode.MEMORY_LOCK_CAPABLE, CheckStatus.OK, values)
     # mlockall counts what is mapped, not what is resident; VmSize is in kB of 1024.
     mapped_bytes = int(_status_field("VmSize", status).split()[0]) * 1024
     values["mapped_mib"] = mapped_bytes / _MIB
     if limit_bytes >= mapped_bytes:
-        return Finding(FindingCode.MEMORY_LOCK_LARGE, Status.OK, values)
-    return Finding(FindingCode.MEMORY_LOCK_SMALL, Status.WARNING, values)
+        return CheckResult(FindingCode.MEMORY_LOCK_LARGE, CheckStatus.OK, values)
+    return CheckResult(FindingCode.MEMORY_LOCK_SMALL, CheckStatus.WARNING, values)
 
 
 def _has_capability(number: int, status: Path) -> bool:

@@ -7,39 +7,41 @@ from pathlib import Path
 import numpy as np
 from threadpoolctl import threadpool_info
 
-from kurt2rt.checks.doctor.check_result import Finding, FindingCode, Status
+from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 from kurt2rt.checks.doctor.sysfs import attribute
 
 CPU_FOLDER = Path("/sys/devices/system/cpu")
 
 
-def check_cores(usable: int | None = None) -> Finding:
+def check_cores(usable: int | None = None) -> CheckResult:
     """Is there a core for the ticks and another for everything else?"""
     if usable is None:
         usable = len(os.sched_getaffinity(0))
     values = {"usable": usable, "cores": os.cpu_count() or usable}
     if usable < 2:
-        return Finding(FindingCode.CORES_FEW, Status.WARNING, values)
-    return Finding(FindingCode.CORES, Status.OK, values)
+        return CheckResult(FindingCode.CORES_FEW, CheckStatus.WARNING, values)
+    return CheckResult(FindingCode.CORES, CheckStatus.OK, values)
 
 
-def check_governor(cpu_folder: Path = CPU_FOLDER) -> Finding:
+def check_governor(cpu_folder: Path = CPU_FOLDER) -> CheckResult:
     """Do the cores stay at full clock? One that sleeps between ticks wakes late and slow."""
     files = sorted(cpu_folder.glob("cpu[0-9]*/cpufreq/scaling_governor"))
     governors = Counter(governor for governor in map(attribute, files) if governor)
     if not governors:
-        return Finding(FindingCode.GOVERNOR_NONE, Status.OK)
+        return CheckResult(FindingCode.GOVERNOR_NONE, CheckStatus.OK)
     found = ", ".join(f"{name} on {count} cores" for name, count in sorted(governors.items()))
     if set(governors) == {"performance"}:
-        return Finding(FindingCode.GOVERNOR, Status.OK, {"governors": found})
-    return Finding(FindingCode.GOVERNOR_SAVING, Status.WARNING, {"governors": found, "folder": str(cpu_folder)})
+        return CheckResult(FindingCode.GOVERNOR, CheckStatus.OK, {"governors": found})
+    return CheckResult(
+        FindingCode.GOVERNOR_SAVING, CheckStatus.WARNING, {"governors": found, "folder": str(cpu_folder)}
+    )
 
 
-def check_blas_threads() -> Finding:
+def check_blas_threads() -> CheckResult:
     """Does numpy's linear algebra keep to one thread? A match is too small to be shared out, and helpers spin."""
     libraries = [each for each in threadpool_info() if each["user_api"] == "blas"]
     found = ", ".join(f"{each['internal_api']} {each['num_threads']}" for each in libraries) or "no BLAS that tells"
     values = {"numpy": np.__version__, "libraries": found}
     if all(each["num_threads"] == 1 for each in libraries):
-        return Finding(FindingCode.BLAS, Status.OK, values)
-    return Finding(FindingCode.BLAS_MANY, Status.WARNING, values)
+        return CheckResult(FindingCode.BLAS, CheckStatus.OK, values)
+    return CheckResult(FindingCode.BLAS_MANY, CheckStatus.WARNING, values)

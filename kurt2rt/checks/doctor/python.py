@@ -4,21 +4,21 @@ import subprocess
 import sys
 from importlib.metadata import version
 
-from kurt2rt.checks.doctor.check_result import Finding, FindingCode, Status
+from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 
 LEAST_PYTHON = (3, 11)
 
 
-def check_python(found: tuple[int, int, int] = sys.version_info[:3]) -> Finding:
+def check_python(found: tuple[int, int, int] = sys.version_info[:3]) -> CheckResult:
     """Is Python new enough?"""
     name = ".".join(map(str, found))
     if found[:2] < LEAST_PYTHON:
         least = ".".join(map(str, LEAST_PYTHON))
-        return Finding(FindingCode.PYTHON_OLD, Status.MISSING, {"version": name, "least": least}, needed=True)
-    return Finding(FindingCode.PYTHON, Status.OK, {"version": name}, needed=True)
+        return CheckResult(FindingCode.PYTHON_OLD, CheckStatus.MISSING, {"version": name, "least": least}, needed=True)
+    return CheckResult(FindingCode.PYTHON, CheckStatus.OK, {"version": name}, needed=True)
 
 
-def check_package(name: str, used_for: str, python: str = sys.executable) -> Finding:
+def check_package(name: str, used_for: str, python: str = sys.executable) -> CheckResult:
     """Can a package of the `simulation` extra be imported?
 
     It is tried in a process of its own: a broken native library may take the whole interpreter with it.
@@ -26,8 +26,10 @@ def check_package(name: str, used_for: str, python: str = sys.executable) -> Fin
     fault = _import_fault(name, python)
     if fault:
         values = {"name": name, "used_for": used_for, "fault": fault, "python": python}
-        return Finding(FindingCode.PACKAGE_MISSING, Status.MISSING, values)
-    return Finding(FindingCode.PACKAGE, Status.OK, {"name": name, "used_for": used_for, "version": version(name)})
+        return CheckResult(FindingCode.PACKAGE_MISSING, CheckStatus.MISSING, values)
+    return CheckResult(
+        FindingCode.PACKAGE, CheckStatus.OK, {"name": name, "used_for": used_for, "version": version(name)}
+    )
 
 
 def _import_fault(name: str, python: str) -> str:

@@ -7,19 +7,19 @@ from collections.abc import Sequence
 from rich.console import Console
 from rich.text import Text
 
-from kurt2rt.checks.doctor.check_result import Finding, Status
+from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus
 from kurt2rt.checks.doctor.finding_text import text_of
 from kurt2rt.platform.text_table import TextTable, print_whole
 
-_STYLES = {Status.OK: "green", Status.WARNING: "yellow", Status.MISSING: "bold red"}
+_STYLES = {CheckStatus.OK: "green", CheckStatus.WARNING: "yellow", CheckStatus.MISSING: "bold red"}
 
 
-def as_json(findings: Sequence[Finding]) -> str:
+def as_json(findings: Sequence[CheckResult]) -> str:
     """A JSON list with one object per finding."""
     return json.dumps([_row(finding) for finding in findings], indent=2)
 
 
-def _row(finding: Finding) -> dict[str, object]:
+def _row(finding: CheckResult) -> dict[str, object]:
     text = text_of(finding)
     return {
         "code": finding.code,
@@ -31,7 +31,7 @@ def _row(finding: Finding) -> dict[str, object]:
     }
 
 
-def print_report(findings: Sequence[Finding], console: Console) -> None:
+def print_report(findings: Sequence[CheckResult], console: Console) -> None:
     """Table of what was found, then what to do, then the summary."""
     table = TextTable("subject", "status", "found")
     for finding in findings:
@@ -47,10 +47,10 @@ def print_report(findings: Sequence[Finding], console: Console) -> None:
     console.print(Text(summary(findings)), soft_wrap=True)
 
 
-def summary(findings: Sequence[Finding]) -> str:
+def summary(findings: Sequence[CheckResult]) -> str:
     """One line: how many are how, and whether `kurt2rt run` can do with it."""
     counts = Counter(finding.status for finding in findings)
-    numbers = ", ".join(f"{counts[status]} {status}" for status in Status)
+    numbers = ", ".join(f"{counts[status]} {status}" for status in CheckStatus)
     wanting = ", ".join(text_of(finding).subject for finding in findings if finding.forbids_run)
     verdict = f"kurt2rt run cannot do without: {wanting}" if wanting else "kurt2rt run can start"
     return f"{len(findings)} checks: {numbers}; {verdict}"

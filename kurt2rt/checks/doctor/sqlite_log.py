@@ -4,22 +4,22 @@ import sqlite3
 from contextlib import closing
 from pathlib import Path
 
-from kurt2rt.checks.doctor.check_result import Finding, FindingCode, Status
+from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 
 LEAST_SQLITE = (3, 37, 0)
 """The first with STRICT tables."""
 
 
-def check_sqlite(found: tuple[int, ...] = sqlite3.sqlite_version_info) -> Finding:
+def check_sqlite(found: tuple[int, ...] = sqlite3.sqlite_version_info) -> CheckResult:
     """Is Python's SQLite new enough for the journal?"""
     name = ".".join(map(str, found))
     if found < LEAST_SQLITE:
         least = ".".join(map(str, LEAST_SQLITE))
-        return Finding(FindingCode.SQLITE_OLD, Status.MISSING, {"version": name, "least": least}, needed=True)
-    return Finding(FindingCode.SQLITE, Status.OK, {"version": name}, needed=True)
+        return CheckResult(FindingCode.SQLITE_OLD, CheckStatus.MISSING, {"version": name, "least": least}, needed=True)
+    return CheckResult(FindingCode.SQLITE, CheckStatus.OK, {"version": name}, needed=True)
 
 
-def check_sqlite_log(folder: Path) -> Finding:
+def check_sqlite_log(folder: Path) -> CheckResult:
     """Does a write-ahead log work in this folder? It does not on most network disks, whatever they answer."""
     path = folder / "log.sqlite"
     try:
@@ -28,8 +28,8 @@ def check_sqlite_log(folder: Path) -> Finding:
     except sqlite3.Error as error:
         fault = str(error)
     if fault:
-        return Finding(FindingCode.SQLITE_LOG_FAILS, Status.MISSING, {"fault": fault}, needed=True)
-    return Finding(FindingCode.SQLITE_LOG, Status.OK, needed=True)
+        return CheckResult(FindingCode.SQLITE_LOG_FAILS, CheckStatus.MISSING, {"fault": fault}, needed=True)
+    return CheckResult(FindingCode.SQLITE_LOG, CheckStatus.OK, needed=True)
 
 
 def _connect(path: Path) -> sqlite3.Connection:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import anyio
 
-from kurt2rt.checks.doctor.check_result import Finding, FindingCode, Status
+from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 from kurt2rt.checks.doctor.sysfs import attribute
 from kurt2rt.platform.asyncio_clock import AsyncioClock
 from kurt2rt.platform.clock import Clock
@@ -48,7 +48,7 @@ def check_timer(
     ticks: int = 100,
     period_s: float = PERIOD_S,
     open_clock: Callable[[], AbstractContextManager[Clock]] = TimerfdClock,
-) -> Finding:
+) -> CheckResult:
     """Is there a timer file descriptor, and how late is it beside asyncio.sleep? Takes 2 x ticks x period_s."""
 
     async def both() -> tuple[Lateness, Lateness]:
@@ -59,7 +59,7 @@ def check_timer(
     try:
         ours, theirs = anyio.run(both)
     except OSError as error:
-        return Finding(FindingCode.TIMER_MISSING, Status.MISSING, {"error": str(error)}, needed=True)
+        return CheckResult(FindingCode.TIMER_MISSING, CheckStatus.MISSING, {"error": str(error)}, needed=True)
     values = {
         "ticks": ticks,
         "period_ms": period_s * 1000,
@@ -70,18 +70,18 @@ def check_timer(
         "ratio": theirs.median_s / max(ours.median_s, 1e-9),
     }
     if ours.median_s > TOLERABLE_MEDIAN_S or ours.worst_s >= period_s:
-        return Finding(FindingCode.TIMER_LATE, Status.WARNING, values, needed=True)
-    return Finding(FindingCode.TIMER, Status.OK, values, needed=True)
+        return CheckResult(FindingCode.TIMER_LATE, CheckStatus.WARNING, values, needed=True)
+    return CheckResult(FindingCode.TIMER, CheckStatus.OK, values, needed=True)
 
 
-def check_clock(resolution_s: float | None = None, source: Path = CLOCK_SOURCE) -> Finding:
+def check_clock(resolution_s: float | None = None, source: Path = CLOCK_SOURCE) -> CheckResult:
     """Is the monotonic clock fine and quick to read?"""
     if resolution_s is None:
         resolution_s = time.get_clock_info("monotonic").resolution
     name = attribute(source) or "unknown"
     values: dict[str, float | str] = {"resolution_ns": resolution_s * 1e9, "source": name}
     if resolution_s > COARSE_RESOLUTION_S:
-        return Finding(FindingCode.CLOCK_COARSE, Status.WARNING, values)
+        return CheckResult(FindingCode.CLOCK_COARSE, CheckStatus.WARNING, values)
     if name in SLOW_CLOCK_SOURCES:
-        return Finding(FindingCode.CLOCK_SLOW, Status.WARNING, values)
-    return Finding(FindingCode.CLOCK, Status.OK, values)
+        return CheckResult(FindingCode.CLOCK_SLOW, CheckStatus.WARNING, values)
+    return CheckResult(FindingCode.CLOCK, CheckStatus.OK, values)

@@ -4,7 +4,7 @@ import math
 
 from anyio.lowlevel import checkpoint
 
-from kurt2rt.checks.faults.fault_rig import Disturbance, SimulatedTime
+from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
 
 _LOOK_S = 0.0005
 _LOST_SHARE = 0.5
@@ -41,7 +41,7 @@ class DisturbedClock:
     slow: it runs at half speed. delayed: it lags behind. intermittent: it jumps ahead and back.
     """
 
-    def __init__(self, time: SimulatedTime, disturbance: Disturbance) -> None:
+    def __init__(self, time: SimulatedTime, disturbance: RigDisturbance) -> None:
         self._time = time
         self._disturbance = disturbance
         self._sound = DrillClock(time)

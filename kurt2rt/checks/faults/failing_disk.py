@@ -7,7 +7,7 @@ from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
-from kurt2rt.checks.faults.fault_rig import Disturbance, SimulatedTime
+from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
 from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
@@ -28,7 +28,7 @@ class DiskOutOfStepError(RuntimeError):
 class DisturbedJournal(Journal):
     """A journal whose writes fail or wait; used by the writer's thread, while the drill's thread rules over time."""
 
-    disturbance: Disturbance | None = None
+    disturbance: RigDisturbance | None = None
     """None: the disk is sound."""
     simulated: SimulatedTime
     waits_until_s: float | None = None
@@ -76,7 +76,7 @@ class FailingDisk:
     def __init__(
         self,
         simulated: SimulatedTime,
-        disturbance: Disturbance,
+        disturbance: RigDisturbance,
         path: Path,
         settings: RobotSettings,
         task: TaskSettings,
@@ -144,7 +144,7 @@ class FailingDisk:
         return fails and self._disturbance.acts(now_s) and self._writer.trouble is not None
 
 
-def exchange_file(simulated: SimulatedTime, disturbance: Disturbance, path: Path) -> None:
+def exchange_file(simulated: SimulatedTime, disturbance: RigDisturbance, path: Path) -> None:
     """Another file stands in the place of this one, for the disturbance's span."""
     away = path.with_name(f"{path.name}.away")
     simulated.at(disturbance.begin_s, lambda: _exchange(path, away))

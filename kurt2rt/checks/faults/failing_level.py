@@ -3,7 +3,7 @@
 import math
 
 from hal.robot import SensorReadings, WheelSpeeds
-from kurt2rt.checks.faults.fault_rig import Disturbance, SimulatedTime
+from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
 from kurt2rt.core.decision.decision import Cause, Decision
 from kurt2rt.core.decision.level import Level
 from kurt2rt.core.perception.perception import Situation
@@ -24,7 +24,7 @@ class DisturbedLevel:
     delayed: each takes longer than a period, but is young enough. intermittent: it hangs now and then.
     """
 
-    def __init__(self, time: SimulatedTime, disturbance: Disturbance) -> None:
+    def __init__(self, time: SimulatedTime, disturbance: RigDisturbance) -> None:
         self._time = time
         self._disturbance = disturbance
         self._hung = -1

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import can
 
 from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
-from kurt2rt.checks.faults.fault_rig import Disturbance, SimulatedTime
+from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
 from kurt2rt.runs.recording.can_log import CanLog
 
 _PERIOD_S = 0.1
@@ -18,7 +18,7 @@ _ROOM_FRAMES = 500
 class _FailingWriter:
     """Where the log puts its frames (kurt2rt.runs.recording.frame_writer.FrameWriter)."""
 
-    def __init__(self, simulated: SimulatedTime, disturbance: Disturbance) -> None:
+    def __init__(self, simulated: SimulatedTime, disturbance: RigDisturbance) -> None:
         self.waits_until_s: float | None = None
         self.given_up = False
         self._simulated = simulated
@@ -58,7 +58,7 @@ class FailingRecorder:
     wrong: the writer changes the frames that it gets. slow and delayed: each write takes long.
     """
 
-    def __init__(self, simulated: SimulatedTime, disturbance: Disturbance) -> None:
+    def __init__(self, simulated: SimulatedTime, disturbance: RigDisturbance) -> None:
         self._writer = _FailingWriter(simulated, disturbance)
         self._simulated = simulated
         self._log = CanLog(self._writer, "a drill's", "sim", _ROOM_FRAMES)

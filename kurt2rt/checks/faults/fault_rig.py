@@ -28,7 +28,7 @@ class SimulatedTime(Protocol):
         ...
 
 
-class Disturbance(Protocol):
+class RigDisturbance(Protocol):
     """What is wrong, from when to when."""
 
     @property
@@ -75,7 +75,7 @@ class FaultRig(Protocol):
         ...
 
     @property
-    def disturbance(self) -> Disturbance:
+    def disturbance(self) -> RigDisturbance:
         """The fault."""
         ...
 

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
-from kurt2rt.checks.faults.outcome import LOST_FRAMES, Outcome
+from kurt2rt.checks.faults.outcome import LOST_FRAMES, FaultOutcome
 from kurt2rt.checks.faults.table import CaseSettings
 
 _MOMENT_S = 0.03
@@ -18,7 +18,7 @@ class DrillVerdict(NamedTuple):
     """Deviations from the row; of a known gap those that the gap excuses."""
 
 
-def judge(must: CaseSettings, outcome: Outcome) -> DrillVerdict:
+def judge(must: CaseSettings, outcome: FaultOutcome) -> DrillVerdict:
     """A known gap passes as long as it is one, and excuses nothing beyond the envelope."""
     behaviour = (*_about_standing(must, outcome), *_about_the_latch(must, outcome), *_about_the_end(must, outcome))
     limits = _about_the_limits(must, outcome)
@@ -29,7 +29,7 @@ def judge(must: CaseSettings, outcome: Outcome) -> DrillVerdict:
     return DrillVerdict(not limits, (*limits, *behaviour))
 
 
-def _about_the_limits(must: CaseSettings, outcome: Outcome) -> tuple[Complaint, ...]:
+def _about_the_limits(must: CaseSettings, outcome: FaultOutcome) -> tuple[Complaint, ...]:
     wrong = list(outcome.problems)
     if outcome.old_frames > must.old_frames:
         wrong.append(complaint(ComplaintCode.OLD_FRAMES, frames=outcome.old_frames, allowed=must.old_frames))
@@ -40,7 +40,7 @@ def _about_the_limits(must: CaseSettings, outcome: Outcome) -> tuple[Complaint, 
     return tuple(wrong)
 
 
-def _about_standing(must: CaseSettings, outcome: Outcome) -> list[Complaint]:
+def _about_standing(must: CaseSettings, outcome: FaultOutcome) -> list[Complaint]:
     if must.leads_to == "drives_on":
         if outcome.first is not None and outcome.longest_stand_s > _MOMENT_S:
             because = _listed(outcome.first.because)
@@ -61,7 +61,7 @@ def _about_standing(must: CaseSettings, outcome: Outcome) -> list[Complaint]:
     return wrong
 
 
-def _about_the_latch(must: CaseSettings, outcome: Outcome) -> list[Complaint]:
+def _about_the_latch(must: CaseSettings, outcome: FaultOutcome) -> list[Complaint]:
     if outcome.latched != must.latches:
         latched = f"{outcome.latched} ({outcome.ended_by})" if outcome.ended_by else str(outcome.latched)
         return [complaint(ComplaintCode.OTHER_LATCH, must=str(must.latches), latched=latched)]
@@ -73,7 +73,7 @@ def _about_the_latch(must: CaseSettings, outcome: Outcome) -> list[Complaint]:
     return []
 
 
-def _about_the_end(must: CaseSettings, outcome: Outcome) -> list[Complaint]:
+def _about_the_end(must: CaseSettings, outcome: FaultOutcome) -> list[Complaint]:
     if must.ends_by == "itself":
         return [] if outcome.drove_by_itself else [complaint(ComplaintCode.DID_NOT_DRIVE_BY_ITSELF)]
     wrong = []

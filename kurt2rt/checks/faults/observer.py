@@ -17,7 +17,7 @@ class Stand(NamedTuple):
     to_s: float
 
 
-class Witness(RobotProxy):
+class WheelObserver(RobotProxy):
     """Sees both ends of the bus, and is the robot for the tick."""
 
     def __init__(self, rig: FaultRig, envelope: Envelope, controller_watchdog_s: float) -> None:

@@ -7,7 +7,7 @@ from kurt2rt.checks.faults.complaint import Complaint
 from kurt2rt.checks.faults.table import Kind, Target
 
 LOST_FRAMES = "lost frames"
-"""In `Outcome.counted`: those that are not in the CAN log."""
+"""In `FaultOutcome.counted`: those that are not in the CAN log."""
 
 
 class Standstill(NamedTuple):
@@ -19,7 +19,7 @@ class Standstill(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class FaultOutcome:
     """One fault, once. Times count from the fault's beginning."""
 
     target: Target

@@ -10,14 +10,14 @@ from rich.text import Text
 from kurt2rt.checks.faults.complaint import text_of
 from kurt2rt.checks.faults.outcome import Standstill
 from kurt2rt.checks.faults.stop_times import StopTime
-from kurt2rt.checks.faults.suite import Trial
+from kurt2rt.checks.faults.suite import FaultTrial
 from kurt2rt.checks.faults.table import KINDS, TARGETS, Kind, Target
 from kurt2rt.platform.text_table import TextTable, print_whole
 
 
-def print_report(trials: Sequence[Trial], times: Sequence[StopTime], console: Console) -> None:
+def print_report(trials: Sequence[FaultTrial], times: Sequence[StopTime], console: Console) -> None:
     """What each fault led to, the stop times, and what is not as it must be."""
-    cells: dict[tuple[Target, Kind], list[Trial]] = {}
+    cells: dict[tuple[Target, Kind], list[FaultTrial]] = {}
     for trial in trials:
         cells.setdefault((trial.case.target, trial.case.kind), []).append(trial)
     kinds = [kind for kind in KINDS if any(kind == each for _, each in cells)]
@@ -40,7 +40,7 @@ def print_report(trials: Sequence[Trial], times: Sequence[StopTime], console: Co
     _print_complaints(trials, console)
 
 
-def as_json(trials: Sequence[Trial], times: Sequence[StopTime]) -> str:
+def as_json(trials: Sequence[FaultTrial], times: Sequence[StopTime]) -> str:
     """A JSON object: stop times, and each trial with what had to be, what was, and what is wrong with it."""
     return json.dumps(
         {
@@ -67,7 +67,7 @@ def _row(stand: Standstill | None) -> dict[str, object] | None:
     return None if stand is None else stand._asdict()
 
 
-def _cell(trials: Sequence[Trial]) -> Text:
+def _cell(trials: Sequence[FaultTrial]) -> Text:
     if not trials:
         return Text()
     must = trials[0].case.must
@@ -102,7 +102,7 @@ def _times(times: Sequence[StopTime]) -> TextTable:
     return table
 
 
-def _print_complaints(trials: Sequence[Trial], console: Console) -> None:
+def _print_complaints(trials: Sequence[FaultTrial], console: Console) -> None:
     failed = [trial for trial in trials if not trial.verdict.passed]
     gaps = {trial.case: trial for trial in trials if trial.case.must.known_gap is not None and trial.verdict.passed}
     for case in gaps:

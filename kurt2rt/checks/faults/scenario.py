@@ -14,14 +14,14 @@ from kurt2rt.checks.faults.failing_disk import FailingDisk
 from kurt2rt.checks.faults.failing_level import DisturbedLevel
 from kurt2rt.checks.faults.failing_recorder import FailingRecorder
 from kurt2rt.checks.faults.fault_rig import FaultRig, RigFactory
-from kurt2rt.checks.faults.observer import Witness
-from kurt2rt.checks.faults.outcome import LOST_FRAMES, Outcome, Standstill
+from kurt2rt.checks.faults.observer import WheelObserver
+from kurt2rt.checks.faults.outcome import LOST_FRAMES, FaultOutcome, Standstill
 from kurt2rt.checks.faults.script import Script
 from kurt2rt.checks.faults.table import FaultCase, FaultTable
 from kurt2rt.checks.faults.teacher_link import HandLink
 from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.tick import InMemoryEventStore, LessonKeeper, TickRecord
+from kurt2rt.core.tick import EventStore, InMemoryEventStore, TickRecord
 from kurt2rt.platform.clock import Clock
 from kurt2rt.runtime import Runtime, build_runtime
 
@@ -43,7 +43,7 @@ class _Drill:
         settings: RobotSettings,
         task: TaskSettings,
         chance: random.Random,
-        keeper: LessonKeeper,
+        keeper: EventStore,
         recorder: FailingRecorder | None,
     ) -> None:
         self._rig = rig
@@ -54,7 +54,7 @@ class _Drill:
         self._time = rig.time
         self._recorder = recorder
         self._script = Script(rig, case, table)
-        self._witness = Witness(
+        self._witness = WheelObserver(
             rig, Envelope(table.envelope, case.must.slew_share), table.envelope.controller_watchdog_s
         )
         self._latched: str | None = None
@@ -82,7 +82,7 @@ class _Drill:
             self._start_anew()
             await self._serve()
 
-    def outcome(self, seed: int, problems: tuple[Complaint, ...]) -> Outcome:
+    def outcome(self, seed: int, problems: tuple[Complaint, ...]) -> FaultOutcome:
         """What it came to."""
         witness, word_at_s = self._witness, self._script.word_at_s
         begin_s, end_s = self._rig.disturbance.begin_s, self._rig.disturbance.end_s
@@ -96,7 +96,7 @@ class _Drill:
             "refused messages": 0 if self._link is None else self._link.refused,
             LOST_FRAMES: 0 if self._recorder is None else self._recorder.lost,
         }
-        return Outcome(
+        return FaultOutcome(
             target=self._case.target,
             kind=self._case.kind,
             seed=seed,
@@ -177,7 +177,7 @@ async def drill(
     *,
     seed: int,
     folder: Path,
-) -> Outcome:
+) -> FaultOutcome:
     """Try one case. `folder`: empty, for a knowledge file. Raises DidNotDriveError, KnowledgeError."""
     schedule = table.schedule
     rig = stage.open(
@@ -192,7 +192,7 @@ async def drill(
     chance = random.Random(f"drill {case} {seed}")
     with ExitStack() as stack:
         stack.callback(rig.close)
-        keeper: LessonKeeper = InMemoryEventStore()
+        keeper: EventStore = InMemoryEventStore()
         disk: FailingDisk | None = None
         if case.target == "disk":
             disk = FailingDisk(rig.time, rig.disturbance, folder / "drill.knowledge", settings, task)

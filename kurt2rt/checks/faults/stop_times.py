@@ -4,7 +4,7 @@ import statistics
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from kurt2rt.checks.faults.suite import Trial
+from kurt2rt.checks.faults.suite import FaultTrial
 from kurt2rt.checks.faults.table import FaultTable
 
 
@@ -24,7 +24,7 @@ class StopTime:
         return self.worst_s <= self.goal_s
 
 
-def stop_times(table: FaultTable, trials: Sequence[Trial]) -> list[StopTime]:
+def stop_times(table: FaultTable, trials: Sequence[FaultTrial]) -> list[StopTime]:
     """Those of the table's stop times that were tried and led to a standstill."""
     found = []
     for wanted in table.stop_times:

@@ -8,27 +8,27 @@ from typing import NamedTuple
 from hal.robot_settings import RobotSettings
 from kurt2rt.checks.faults.fault_rig import RigFactory
 from kurt2rt.checks.faults.judge import DrillVerdict, judge
-from kurt2rt.checks.faults.outcome import Outcome
+from kurt2rt.checks.faults.outcome import FaultOutcome
 from kurt2rt.checks.faults.scenario import drill
 from kurt2rt.checks.faults.table import FaultCase, FaultTable
 from kurt2rt.core.task_settings import TaskSettings
 
 
-class Trial(NamedTuple):
+class FaultTrial(NamedTuple):
     """A case, tried with one seed."""
 
     case: FaultCase
-    outcome: Outcome
+    outcome: FaultOutcome
     verdict: DrillVerdict
 
 
 async def try_case(
     stage: RigFactory, case: FaultCase, table: FaultTable, settings: RobotSettings, task: TaskSettings, seed: int
-) -> Trial:
+) -> FaultTrial:
     """Try one case. The seed makes noise, and the phases of fault, ticks and watchdog. Raises DidNotDriveError."""
     with tempfile.TemporaryDirectory(prefix="kurt2rt-faults-") as folder:
         outcome = await drill(stage, case, table, settings, task, seed=seed, folder=Path(folder))
-    return Trial(case, outcome, judge(case.must, outcome))
+    return FaultTrial(case, outcome, judge(case.must, outcome))
 
 
 async def try_cases(
@@ -38,8 +38,8 @@ async def try_cases(
     settings: RobotSettings,
     task: TaskSettings,
     seeds: Sequence[int],
-    on_done: Callable[[Trial], None],
-) -> list[Trial]:
+    on_done: Callable[[FaultTrial], None],
+) -> list[FaultTrial]:
     """Try each case with each seed; `on_done` hears of every trial. Raises DidNotDriveError."""
     trials = []
     for case in cases:

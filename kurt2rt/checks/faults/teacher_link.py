@@ -7,8 +7,8 @@ from typing import Any
 from kurt2rt.channel.protocol.codec import WireError, decode_request, encode_request
 from kurt2rt.channel.protocol.requests import BOOT_BYTES, HIGHEST_SPEED_M_S, DriveRequest
 from kurt2rt.channel.server.reply import Reply, Verdict
-from kurt2rt.channel.server.request_handler import Reception, Sender
-from kurt2rt.checks.faults.fault_rig import Disturbance, SimulatedTime
+from kurt2rt.channel.server.request_handler import RequestHandler, Sender
+from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
 from kurt2rt.knowledge.files.atomic_write import SavedCopy
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.runtime import Runtime
@@ -30,13 +30,15 @@ class HandLink:
     far too fast. slow: few. delayed: late. intermittent: none for a while, again and again.
     """
 
-    def __init__(self, time: SimulatedTime, disturbance: Disturbance, runtime: Runtime, chance: random.Random) -> None:
+    def __init__(
+        self, time: SimulatedTime, disturbance: RigDisturbance, runtime: Runtime, chance: random.Random
+    ) -> None:
         self.refused = 0
         """Messages that were not understood or not taken."""
         self._time = time
         self._disturbance = disturbance
         self._chance = chance
-        self._reception = Reception(runtime, _BOOT, {}, lambda _: "", _NoCopies(), None)
+        self._reception = RequestHandler(runtime, _BOOT, {}, lambda _: "", _NoCopies(), None)
         self._number = self._hold = 0
         self._newest = (0, b"")
         self._passed_at_s = disturbance.begin_s

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from kurt2rt.checks.soak.result import Check, CheckCode
+from kurt2rt.checks.soak.result import CheckCode, SoakCheck
 
 
 class _Texts(NamedTuple):
@@ -43,12 +43,12 @@ _TEXTS: Mapping[CheckCode, _Texts] = {
 }
 
 
-def what_of(check: Check) -> str:
+def what_of(check: SoakCheck) -> str:
     """Return the property that must hold."""
     return _TEXTS[check.code].what.format(**check.values)
 
 
-def found_of(check: Check) -> str:
+def found_of(check: SoakCheck) -> str:
     """Return the measured numbers."""
     texts = _TEXTS[check.code]
     return texts.found.format(**check.values) if check.judged else texts.too_short

@@ -6,35 +6,35 @@ from statistics import median
 from kurt2rt.checks.faults.complaint import Complaint
 from kurt2rt.checks.soak.faults import FaultSeen
 from kurt2rt.checks.soak.observer import Complaints
-from kurt2rt.checks.soak.result import Check, CheckCode, Minute, Start
+from kurt2rt.checks.soak.result import CheckCode, SoakCheck, SoakMinute, SoakStart
 from kurt2rt.checks.soak.settings import LimitSettings
 
 HOUR_S = 3600.0
 _ABOUT_S = 600.0
 
 
-def memory_base_mb(minutes: Sequence[Minute]) -> float | None:
+def memory_base_mb(minutes: Sequence[SoakMinute]) -> float | None:
     """Memory at the end of the first hour, the median of its last ten minutes; None for a shorter soak."""
     base = [each.resident_mb for each in minutes if HOUR_S - _ABOUT_S < each.at_s <= HOUR_S]
     return median(base) if base and minutes[-1].at_s > HOUR_S else None
 
 
-def memory_check(minutes: Sequence[Minute], limits: LimitSettings) -> Check:
+def memory_check(minutes: Sequence[SoakMinute], limits: LimitSettings) -> SoakCheck:
     """No growth after the first hour: the median of any ten minutes against the last ten of that hour."""
     base_mb = memory_base_mb(minutes)
     later = [each for each in minutes if each.at_s > HOUR_S]
     if base_mb is None or len(later) < _ABOUT_S / 60:
-        return Check(CheckCode.MEMORY, passed=True, values={"limit_mb": limits.memory_mb}, judged=False)
+        return SoakCheck(CheckCode.MEMORY, passed=True, values={"limit_mb": limits.memory_mb}, judged=False)
     spans: dict[int, list[float]] = {}
     for each in later:
         spans.setdefault(int(each.at_s / _ABOUT_S), []).append(each.resident_mb)
     grown_mb = max(median(each) for each in spans.values()) - base_mb
     end_mb = later[-1].resident_mb - base_mb
     values = {"limit_mb": limits.memory_mb, "grown_mb": grown_mb, "end_mb": end_mb}
-    return Check(CheckCode.MEMORY, grown_mb <= limits.memory_mb, values)
+    return SoakCheck(CheckCode.MEMORY, grown_mb <= limits.memory_mb, values)
 
 
-def memory_told(minutes: Sequence[Minute], starts: Sequence[Start]) -> str:
+def memory_told(minutes: Sequence[SoakMinute], starts: Sequence[SoakStart]) -> str:
     """What memory grew by after the first hour, apart: what programs left behind, and what knowledge takes.
 
     Empty for a soak that has not had an hour and two programs.
@@ -56,34 +56,34 @@ def memory_told(minutes: Sequence[Minute], starts: Sequence[Start]) -> str:
     )
 
 
-def steady_check(minutes: Sequence[Minute]) -> Check:
+def steady_check(minutes: Sequence[SoakMinute]) -> SoakCheck:
     """As many files and threads at the end as after the first minutes."""
     if len(minutes) < 2:
-        return Check(CheckCode.FILES_AND_THREADS, passed=True, values={}, judged=False)
+        return SoakCheck(CheckCode.FILES_AND_THREADS, passed=True, values={}, judged=False)
     first, last = minutes[0], minutes[-1]
     # At the full minute something may be open that is not for long, so the least of the last ten counts.
     files = min(each.open_files for each in minutes[-10:])
     alive = min(each.threads for each in minutes[-10:])
     passed = files <= first.open_files and alive <= first.threads and last.at_s > first.at_s
     values = {"first_files": first.open_files, "first_threads": first.threads, "files": files, "threads": alive}
-    return Check(CheckCode.FILES_AND_THREADS, passed, values)
+    return SoakCheck(CheckCode.FILES_AND_THREADS, passed, values)
 
 
-def fault_check(faults: Sequence[FaultSeen]) -> Check:
+def fault_check(faults: Sequence[FaultSeen]) -> SoakCheck:
     """Each fault led to the standstill that it must lead to."""
     wrong = sum(bool(each.complaints) for each in faults)
     values = {"faults": len(faults), "drove": sum(each.drove for each in faults), "wrong": wrong}
-    return Check(CheckCode.FAULTS, not wrong, values)
+    return SoakCheck(CheckCode.FAULTS, not wrong, values)
 
 
-def starts_check(starts: Sequence[Start], unexpected: Sequence[Complaint]) -> Check:
+def starts_check(starts: Sequence[SoakStart], unexpected: Sequence[Complaint]) -> SoakCheck:
     """The program ended only where a fault must end it, and left every lesson."""
     lost = sum(each.complaint is not None for each in starts)
     ended = sum(bool(each.ended_by) for each in starts)
     values = {"starts": len(starts), "ended": ended, "unexpected": len(unexpected), "lost": lost}
-    return Check(CheckCode.STARTS, not (lost or unexpected), values)
+    return SoakCheck(CheckCode.STARTS, not (lost or unexpected), values)
 
 
-def envelope_check(complaints: Complaints, frames: int) -> Check:
+def envelope_check(complaints: Complaints, frames: int) -> SoakCheck:
     """Nothing that the witness of every tick complained about."""
-    return Check(CheckCode.ENVELOPE, complaints.count == 0, {"complaints": complaints.count, "frames": frames})
+    return SoakCheck(CheckCode.ENVELOPE, complaints.count == 0, {"complaints": complaints.count, "frames": frames})

@@ -1,7 +1,7 @@
 """The program's clock: simulated time, wrong for a while."""
 
 from kurt2rt.checks.faults.failing_clock import DisturbedClock, DrillClock
-from kurt2rt.checks.faults.fault_rig import Disturbance, SimulatedTime
+from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
 from kurt2rt.platform.clock import Clock
 
 
@@ -14,7 +14,7 @@ class SoakClock:
         self._inner: Clock = self._sound
         self._behind_s = 0.0
 
-    def disturb(self, disturbance: Disturbance) -> None:
+    def disturb(self, disturbance: RigDisturbance) -> None:
         """From now on it is wrong."""
         self._inner = DisturbedClock(self._time, disturbance)
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from hal.robot_settings import RobotSettings
 from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
 from kurt2rt.checks.faults.failing_disk import DiskOutOfStepError, DisturbedJournal, exchange_file
-from kurt2rt.checks.faults.fault_rig import Disturbance, SimulatedTime
+from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import OpenedKnowledge, go_on_teaching
@@ -33,7 +33,7 @@ class SoakKnowledge:
         """`opened`: by `open_soak_knowledge`, at `path`. Raises KnowledgeError."""
         self._path = path
         self._simulated = simulated
-        self._disturbance: Disturbance | None = None
+        self._disturbance: RigDisturbance | None = None
         # Not the entries themselves: the program that is tried here does not keep them, either.
         self._before = [entry.event.origin.command_id for entry in opened.entries]
         binding = opened.journal.binding
@@ -51,7 +51,7 @@ class SoakKnowledge:
         """Of all of the file so far."""
         return len(self._before) + len(self.submitted)
 
-    def disturb(self, disturbance: Disturbance) -> None:
+    def disturb(self, disturbance: RigDisturbance) -> None:
         """From now on the disk fails. Raises DiskOutOfStepError."""
         self.keep_in_step(all_of_it=True)
         self._disturbance = self._journal.disturbance = disturbance

@@ -2,7 +2,7 @@
 
 from hal.robot import SensorReadings
 from kurt2rt.checks.faults.failing_level import DisturbedLevel
-from kurt2rt.checks.faults.fault_rig import Disturbance, SimulatedTime
+from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
 from kurt2rt.core.decision.decision import Cause, Decision
 from kurt2rt.core.decision.level import Level
 from kurt2rt.core.perception.perception import Situation
@@ -17,7 +17,7 @@ class SoakLevel:
         self.behind: Level | None = None
         """The layer that really decides; set before the first tick."""
 
-    def disturb(self, disturbance: Disturbance) -> None:
+    def disturb(self, disturbance: RigDisturbance) -> None:
         """From now on it fails."""
         self._disturbed = DisturbedLevel(self._time, disturbance)
         self._disturbed.behind = self.behind

@@ -7,12 +7,12 @@ from typing import NamedTuple
 from hal.guard_reason import GuardReason
 from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
 from kurt2rt.checks.faults.failing_recorder import FailingRecorder
-from kurt2rt.checks.faults.fault_rig import Disturbance
+from kurt2rt.checks.faults.fault_rig import RigDisturbance
 from kurt2rt.checks.faults.table import FaultCase, FaultTable, Kind, Target, cases_of
 from kurt2rt.checks.soak.disk_list import Spool
 from kurt2rt.checks.soak.long_run_rig import SoakRig
-from kurt2rt.checks.soak.observer import SoakWitness
-from kurt2rt.checks.soak.program_run import Life
+from kurt2rt.checks.soak.observer import SoakObserver
+from kurt2rt.checks.soak.program_run import ProgramRun
 
 _LEAST_GAP_S = 4.0
 _LOOKS_AGAIN_S = 1.0
@@ -40,25 +40,25 @@ class FaultSeen(NamedTuple):
 class SoakFaults:
     """One fault at a time, each case of the table as often as any other."""
 
-    def __init__(self, rig: SoakRig, witness: SoakWitness, table: FaultTable, gap_s: float, seed: int) -> None:
+    def __init__(self, rig: SoakRig, witness: SoakObserver, table: FaultTable, gap_s: float, seed: int) -> None:
         self.seen: Spool[FaultSeen] = Spool()
         self.expects_the_end = False
         """Whether the program that runs may end by the fault that acts."""
         self.acting: FaultCase | None = None
         self.acts_until_s = 0.0
         """Of the newest fault."""
-        self.life: Life | None = None
+        self.life: ProgramRun | None = None
         """The program that runs; None while none does."""
         self._rig, self._witness, self._table = rig, witness, table
         self._gap_s = gap_s
         self._chance = random.Random(f"faults, seed {seed}")
         self._deck: list[FaultCase] = []
-        self._disturbance: Disturbance | None = None
+        self._disturbance: RigDisturbance | None = None
         self._recorder: FailingRecorder | None = None
         self._newest: FaultSeen | None = None
         self._drove = False
         self._old_frames = self._resumes = 0
-        self._suffered: Life | None = None
+        self._suffered: ProgramRun | None = None
         self._plan()
 
     def _plan(self) -> None:
@@ -99,14 +99,14 @@ class SoakFaults:
                 # A disk that comes and goes is to be met in both.
                 every_s = min(_LESSON_EVERY_S, must.period_s or _LESSON_EVERY_S)
                 for number in range(int((end_s - begin_s) / every_s)):
-                    time.at(begin_s + number * every_s, self._on_life(Life.teach_what_is_known))
+                    time.at(begin_s + number * every_s, self._on_life(ProgramRun.teach_what_is_known))
             case "recorder":
                 self._recorder = FailingRecorder(time, disturbance)
                 self._rig.look_on(self._recorder)
             case "teacher_link":
                 life.take_by_hand(disturbance)
         if must.stop_said_after_s is not None:
-            time.at(begin_s + must.stop_said_after_s, self._on_life(Life.say_stop))
+            time.at(begin_s + must.stop_said_after_s, self._on_life(ProgramRun.say_stop))
         time.at(end_s, self._look)
         time.at(end_s + _SETTLES_S, self._end)
 
@@ -114,7 +114,7 @@ class SoakFaults:
         self._drove = not self._witness.stands
         self._witness.look_for_a_stand()
 
-    def _on_life(self, act: Callable[[Life], None]) -> Callable[[], None]:
+    def _on_life(self, act: Callable[[ProgramRun], None]) -> Callable[[], None]:
         def do() -> None:
             if self.life is not None and self.life is self._suffered:
                 act(self.life)

@@ -2,9 +2,9 @@
 
 from hal.robot import STANDSTILL
 from kurt2rt.checks.soak.disk_list import Spool
-from kurt2rt.checks.soak.program_run import Life
+from kurt2rt.checks.soak.program_run import ProgramRun
 from kurt2rt.checks.soak.resource_usage import open_files, resident_mb, threads
-from kurt2rt.checks.soak.result import Minute
+from kurt2rt.checks.soak.result import SoakMinute
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.tick import TickRecord
 
@@ -13,7 +13,7 @@ class MinuteLog:
     """Counts ticks, and makes a line of them when a minute is over."""
 
     def __init__(self) -> None:
-        self.minutes: Spool[Minute] = Spool()
+        self.minutes: Spool[SoakMinute] = Spool()
         self._ticks = self._drives = self._asks = self._stopped = self._missed = 0
         self._worst_late_s = 0.0
 
@@ -26,11 +26,11 @@ class MinuteLog:
         self._missed += missed
         self._worst_late_s = max(self._worst_late_s, late_s)
 
-    def end_minute(self, at_s: float, life: Life, mood: str) -> None:
+    def end_minute(self, at_s: float, life: ProgramRun, mood: str) -> None:
         """A minute is over."""
         ticks = max(1, self._ticks)
         self.minutes.append(
-            Minute(
+            SoakMinute(
                 at_s=at_s,
                 resident_mb=round(resident_mb(), 3),
                 open_files=open_files(),

@@ -5,7 +5,7 @@ from typing import Protocol
 
 from hal.kurt2 import Kurt2
 from hal.tap import Tap
-from kurt2rt.checks.faults.fault_rig import Disturbance, SimulatedTime
+from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
 from kurt2rt.checks.faults.table import Kind
 
 
@@ -48,7 +48,7 @@ class SoakRig(Protocol):
 
     def begin(
         self, target: str, kind: Kind, *, begin_s: float, end_s: float, period_s: float, delay_s: float
-    ) -> Disturbance:
+    ) -> RigDisturbance:
         """Something is going to fail; one that is no part of robot or bus is left to the caller."""
         ...
 

@@ -11,7 +11,7 @@ from kurt2rt.checks.soak.long_run_rig import SoakRig
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.teaching.commands import Resume
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.platform.ledger import Ledger
+from kurt2rt.platform.ledger import TickTimer
 
 _MOST_TOLD = 200
 """Complaints that are stored."""
@@ -32,7 +32,7 @@ class Complaints:
             self.told.append(found)
 
 
-class SoakWitness:
+class SoakObserver:
     """Sees what drivers say, what arrives at the robot, and each tick's record (and is, for the tick, the robot)."""
 
     def __init__(self, rig: SoakRig, limits: EnvelopeSettings) -> None:
@@ -69,7 +69,7 @@ class SoakWitness:
         self._must_stand = "the program was started"
         self._begun_s = None
 
-    def note(self, record: TickRecord, ledger: Ledger, begun_s: float) -> None:
+    def note(self, record: TickRecord, ledger: TickTimer, begun_s: float) -> None:
         """A tick is over; `begun_s`: when the program's loop began, on its own clock."""
         now_s = self._rig.time.now_s()
         moves = record.grant.wheel_speeds != STANDSTILL

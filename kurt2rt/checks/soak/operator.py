@@ -11,7 +11,7 @@ _WAY_M = 0.3
 _DRIVES = (Cause.RLA, Cause.HELD, Cause.TEACHER)
 
 
-class Person:
+class SoakOperator:
     """Sets the robot down elsewhere when it has been about where it is for too long though it would drive.
 
     Where that does not help he switches it off and on: a frame of noise may have switched its motors off.

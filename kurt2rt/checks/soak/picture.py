@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from kurt2rt.checks.faults.table import TARGETS
 from kurt2rt.checks.soak.checks import HOUR_S, memory_base_mb
-from kurt2rt.checks.soak.result import Minute, SoakResult
+from kurt2rt.checks.soak.result import SoakMinute, SoakResult
 from kurt2rt.checks.soak.settings import LimitSettings
 
 _BLUE, _ORANGE, _GREY, _RED, _GREEN = "#2b6cb0", "#dd8a1d", "#b8b8b8", "#c53030", "#2f855a"
@@ -34,7 +34,7 @@ def draw_soak(result: SoakResult, limits: LimitSettings, path: Path) -> None:
     figure.savefig(path, dpi=110)
 
 
-def _draw_memory(axes: Axes, hours: Sequence[float], minutes: Sequence[Minute], limits: LimitSettings) -> None:
+def _draw_memory(axes: Axes, hours: Sequence[float], minutes: Sequence[SoakMinute], limits: LimitSettings) -> None:
     axes.plot(hours, [each.resident_mb for each in minutes], color=_BLUE, linewidth=1.2)
     base_mb = memory_base_mb(minutes)
     if base_mb is not None:
@@ -56,7 +56,7 @@ def _draw_memory(axes: Axes, hours: Sequence[float], minutes: Sequence[Minute], 
     lessons.set_ylabel("lessons (orange), RLAs (green)")
 
 
-def _draw_robot(axes: Axes, hours: Sequence[float], minutes: Sequence[Minute]) -> None:
+def _draw_robot(axes: Axes, hours: Sequence[float], minutes: Sequence[SoakMinute]) -> None:
     moods = list(dict.fromkeys(each.mood for each in minutes))
     drives, asks = [each.drives for each in minutes], [each.asks for each in minutes]
     rest = [max(0.0, 1.0 - drive - ask) for drive, ask in zip(drives, asks, strict=True)]
@@ -72,7 +72,7 @@ def _draw_robot(axes: Axes, hours: Sequence[float], minutes: Sequence[Minute]) -
     axes.legend(loc="center left", bbox_to_anchor=(1.005, 0.5), fontsize=8, title="robot, teacher's mood (top)")
 
 
-def _draw_lateness(axes: Axes, hours: Sequence[float], minutes: Sequence[Minute]) -> None:
+def _draw_lateness(axes: Axes, hours: Sequence[float], minutes: Sequence[SoakMinute]) -> None:
     axes.vlines(hours, 0.0, [each.missed_ticks for each in minutes], color=_RED, linewidth=0.8)
     axes.set_ylabel("missed ticks\nper minute", color=_RED)
     late = axes.twinx()

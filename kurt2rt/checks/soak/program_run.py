@@ -9,14 +9,14 @@ from pathlib import Path
 from hal.guard_reason import GuardReason
 from hal.robot_settings import RobotSettings
 from kurt2rt.checks.faults.complaint import Complaint
-from kurt2rt.checks.faults.fault_rig import Disturbance
+from kurt2rt.checks.faults.fault_rig import RigDisturbance
 from kurt2rt.checks.faults.table import Target
 from kurt2rt.checks.faults.teacher_link import TEACHER, HandLink
 from kurt2rt.checks.soak.failing_clock import SoakClock
 from kurt2rt.checks.soak.failing_knowledge import SoakKnowledge, open_soak_knowledge
 from kurt2rt.checks.soak.failing_level import SoakLevel
 from kurt2rt.checks.soak.long_run_rig import SoakRig
-from kurt2rt.checks.soak.observer import SoakWitness
+from kurt2rt.checks.soak.observer import SoakObserver
 from kurt2rt.checks.soak.teacher import NAME, SoakTeacher
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.task_settings import TaskSettings
@@ -24,9 +24,9 @@ from kurt2rt.core.teaching.commands import Command, ReplaceAction, Take
 from kurt2rt.core.teaching.inbox import InboxFullError
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.platform.gc_control import quiet_gc
-from kurt2rt.runs.recording.recording import Circumstances, Recording
+from kurt2rt.runs.recording.recording import Recording, RunContext
 from kurt2rt.runtime import Runtime, build_runtime
-from kurt2rt.service.post_tick import Rounds, Screen
+from kurt2rt.service.post_tick import PostTick, ProgramConsole
 from kurt2rt.service.settings import ServiceSettings
 from kurt2rt.teacher.client.manual_drive import BEAT_S
 
@@ -38,13 +38,13 @@ _TENDS_EVERY_TICKS = 1000
 """Each waits for the disk, which does not become quicker in simulated time."""
 
 
-class Life:
+class ProgramRun:
     """Opened knowledge, runtime, rounds and writer; `run` until it ends, then `close`."""
 
     def __init__(
         self,
         rig: SoakRig,
-        witness: SoakWitness,
+        witness: SoakObserver,
         teacher: SoakTeacher,
         settings: RobotSettings,
         task: TaskSettings,
@@ -96,13 +96,13 @@ class Life:
         )
         self.level.behind = self.runtime.level
         self.runtime.school.stop(STARTED)
-        screen = Screen(status=lambda _: None, question=lambda _: None, settled=self.knowledge.settled)
-        circumstances = Circumstances(f"{number:016x}", service.knowledge, attended=True, stopped=STARTED)
+        screen = ProgramConsole(status=lambda _: None, question=lambda _: None, settled=self.knowledge.settled)
+        circumstances = RunContext(f"{number:016x}", service.knowledge, attended=True, stopped=STARTED)
         started = _FIRST_DAY + timedelta(seconds=rig.time.now_s())
         # Without its thread: it writes when it is told to, as far as simulated time has gone.
         self.recorder = recording.recorder(settings, task, opened, circumstances, started=started)
         self.recorder.tend()
-        self._rounds = Rounds(
+        self._rounds = PostTick(
             self.runtime,
             self.knowledge.writer,
             opened.stamps,
@@ -153,7 +153,7 @@ class Life:
         self.knowledge.close()
         return self.knowledge.lost_lessons()
 
-    def take_by_hand(self, disturbance: Disturbance) -> None:
+    def take_by_hand(self, disturbance: RigDisturbance) -> None:
         """Somebody takes the robot and drives it by hand, over a link that will fail."""
         link = self._link = HandLink(self._time, disturbance, self.runtime, self._chance)
         self._presses += 1

@@ -9,7 +9,7 @@ from kurt2rt.checks.faults.complaint import Complaint, Value
 from kurt2rt.checks.soak.faults import FaultSeen
 
 
-class Minute(NamedTuple):
+class SoakMinute(NamedTuple):
     """A minute of simulated time, as it was at its end."""
 
     at_s: float
@@ -31,7 +31,7 @@ class Minute(NamedTuple):
     """Of the teacher."""
 
 
-class Start(NamedTuple):
+class SoakStart(NamedTuple):
     """One start of the program."""
 
     at_s: float
@@ -59,7 +59,7 @@ class CheckCode(StrEnum):
     TEACHING_CLOCK = "teaching clock"
 
 
-class Check(NamedTuple):
+class SoakCheck(NamedTuple):
     """Whether a property held, with the numbers that were measured."""
 
     code: CheckCode
@@ -83,9 +83,9 @@ class SoakResult:
     missed_ticks: int
     frames: int
     """CONTROL frames that were held against the envelope."""
-    checks: tuple[Check, ...]
-    minutes: tuple[Minute, ...]
-    starts: tuple[Start, ...]
+    checks: tuple[SoakCheck, ...]
+    minutes: tuple[SoakMinute, ...]
+    starts: tuple[SoakStart, ...]
     faults: tuple[FaultSeen, ...]
     complaints: tuple[Complaint, ...]
     """The first ones."""

@@ -15,12 +15,12 @@ from kurt2rt.checks.soak.disk_list import Spool
 from kurt2rt.checks.soak.faults import SoakFaults
 from kurt2rt.checks.soak.log import MinuteLog
 from kurt2rt.checks.soak.long_run_rig import SoakRig
-from kurt2rt.checks.soak.observer import SoakWitness
+from kurt2rt.checks.soak.observer import SoakObserver
 from kurt2rt.checks.soak.odometry import OdometryCheck
-from kurt2rt.checks.soak.operator import Person
-from kurt2rt.checks.soak.program_run import Life
+from kurt2rt.checks.soak.operator import SoakOperator
+from kurt2rt.checks.soak.program_run import ProgramRun
 from kurt2rt.checks.soak.resource_usage import objects_by_type, used_mb
-from kurt2rt.checks.soak.result import Check, CheckCode, SoakResult, Start
+from kurt2rt.checks.soak.result import CheckCode, SoakCheck, SoakResult, SoakStart
 from kurt2rt.checks.soak.settings import SoakSettings
 from kurt2rt.checks.soak.teacher import SoakTeacher
 from kurt2rt.core.task_settings import TaskSettings
@@ -36,7 +36,7 @@ _MOST_UNEXPECTED = 20
 """Ends of the program after which there is nothing to be learnt from more of them."""
 
 
-class Day:
+class SoakRun:
     """One soak, in its place."""
 
     def __init__(
@@ -59,14 +59,14 @@ class Day:
         self._by_module = by_module
         self._period_s = settings.can.cycle_s
         self._chance = random.Random(f"day {soak.name}, seed {seed}")
-        self._witness = SoakWitness(rig, table.envelope)
+        self._witness = SoakObserver(rig, table.envelope)
         actions = tuple(repertoire_of(task, settings))
         self._teacher = SoakTeacher(soak, task, settings, actions, seed)
         self._faults = SoakFaults(rig, self._witness, table, soak.fault_gap_s, seed)
-        self._person = Person(rig, soak.picked_up_after_s, self._period_s)
+        self._person = SoakOperator(rig, soak.picked_up_after_s, self._period_s)
         self._odometry = OdometryCheck(rig, settings.geometry.metres_per_tick)
         self._log = MinuteLog()
-        self._starts: Spool[Start] = Spool()
+        self._starts: Spool[SoakStart] = Spool()
         self._unexpected: list[Complaint] = []
         self._objects: dict[str, dict[str, int]] = {}
         self._first_hour: tracemalloc.Snapshot | None = None
@@ -111,11 +111,11 @@ class Day:
             self._starts.append(start._replace(left_mb=round(used_mb(), 3)))
         return self._result(clock.now_s(), time.monotonic() - begun_s)
 
-    async def _live(self, until_s: float, on_progress: Callable[[float], None]) -> Start:
+    async def _live(self, until_s: float, on_progress: Callable[[float], None]) -> SoakStart:
         wires = self._soak.wires
         (wire,) = self._chance.choices(list(wires), list(wires.values()))
         begun_s = self._rig.time.now_s()
-        life = Life(
+        life = ProgramRun(
             self._rig,
             self._witness,
             self._teacher,
@@ -159,9 +159,9 @@ class Day:
             self._troubles.append(life.recorder.trouble)
         self._most_waiting = max(self._most_waiting, life.most_waiting)
         lasted_s = self._rig.time.now_s() - begun_s
-        return Start(begun_s, lasted_s, wire, life.ended_by, lost)
+        return SoakStart(begun_s, lasted_s, wire, life.ended_by, lost)
 
-    def _see(self, life: Life, record: TickRecord, on_progress: Callable[[float], None]) -> None:
+    def _see(self, life: ProgramRun, record: TickRecord, on_progress: Callable[[float], None]) -> None:
         now_s = self._rig.time.now_s()
         ledger = life.runtime.ledger
         missed = ledger.missed_ticks - self._missed_before
@@ -182,7 +182,7 @@ class Day:
             if len(self._log.minutes) % 60 == 0:
                 self._look_at_memory(len(self._log.minutes) // 60)
 
-    def _look_at_the_session(self, life: Life, record: TickRecord) -> None:
+    def _look_at_the_session(self, life: ProgramRun, record: TickRecord) -> None:
         school = life.runtime.school
         if school.session is None:
             return
@@ -216,17 +216,17 @@ class Day:
             starts_check(starts, self._unexpected),
             memory_check(minutes, limits),
             steady_check(minutes),
-            Check(
+            SoakCheck(
                 CheckCode.WAITING,
                 self._most_waiting <= limits.waiting,
                 {"commands": self._most_waiting, "allowed": limits.waiting},
             ),
-            Check(
+            SoakCheck(
                 CheckCode.ODOMETRY,
                 self._odometry.worst_m <= limits.odometry_m,
                 {"worst_mm": self._odometry.worst_m * 1000},
             ),
-            Check(
+            SoakCheck(
                 CheckCode.RECORDED,
                 self._unrecorded == 0 and self._recorded == witness.ticks,
                 {
@@ -236,7 +236,7 @@ class Day:
                     "trouble": "".join(f"; {each}" for each in self._troubles[:1]),
                 },
             ),
-            Check(CheckCode.TEACHING_CLOCK, self._session_off == 0, {"ticks": self._session_off}),
+            SoakCheck(CheckCode.TEACHING_CLOCK, self._session_off == 0, {"ticks": self._session_off}),
         )
         return SoakResult(
             name=self._soak.name,

@@ -10,9 +10,9 @@ import typer
 from kurt2rt.cli.knowledge.shared import replaying, say
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.knowledge.versions.editing import require_at_rest
-from kurt2rt.knowledge.versions.undo import Planned
+from kurt2rt.knowledge.versions.undo import UndoPlan
 from kurt2rt.runs.replay.trial import said
-from kurt2rt.runs.replay.undo_preview import Tried, preview, preview_on_newest
+from kurt2rt.runs.replay.undo_preview import TrialResult, preview, preview_on_newest
 from kurt2rt.service.settings import load_service
 
 Runs = Annotated[
@@ -31,7 +31,7 @@ _STRETCHES = 8
 
 
 def agreed(
-    planned: Planned, what: str, become: str, runs: Path | None, *, no_preview: bool, dry_run: bool, yes: bool
+    planned: UndoPlan, what: str, become: str, runs: Path | None, *, no_preview: bool, dry_run: bool, yes: bool
 ) -> bool:
     """Show what it would change; whether to go on with it, False where the user only wanted to look.
 
@@ -64,13 +64,13 @@ def told(record: LessonRecord) -> str:
     return f"{record.text} (lesson {origin.command_id} by {origin.teacher})"
 
 
-def _question(planned: Planned, what: str) -> str:
+def _question(planned: UndoPlan, what: str) -> str:
     if len(planned.lessons) == 1:
         return f"{what.capitalize()} lesson {planned.lessons[0].event.origin.command_id}?"
     return f"{what.capitalize()} these {len(planned.lessons)} lessons?"
 
 
-def _show(planned: Planned, runs: Path | None) -> None:
+def _show(planned: UndoPlan, runs: Path | None) -> None:
     recordings = runs or Path(load_service().recordings)
     try_on = preview if runs else preview_on_newest
     with replaying() as report:
@@ -84,7 +84,7 @@ def _show(planned: Planned, runs: Path | None) -> None:
         say(f"not tried: {recordings} holds no recorded run of such knowledge")
 
 
-def _changes(tried: Tried) -> Iterator[str]:
+def _changes(tried: TrialResult) -> Iterator[str]:
     found = tried.found
     decisions = f"{found.decided} decisions"
     if tried.from_s:

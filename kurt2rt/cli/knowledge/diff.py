@@ -13,7 +13,7 @@ from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.rla import Rla
 from kurt2rt.knowledge.journal.binding import require_same
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.versions.diff import Difference, difference
+from kurt2rt.knowledge.versions.diff import KnowledgeDiff, difference
 from kurt2rt.knowledge.versions.lesson_identity import read_taught
 
 
@@ -38,7 +38,7 @@ def diff(
         say(line)
 
 
-def _lines(found: Difference, a: str, b: str) -> Iterable[str]:
+def _lines(found: KnowledgeDiff, a: str, b: str) -> Iterable[str]:
     yield f"both begin with the same {found.common_rows} rows"
     if found.none:
         yield "and know the same"
@@ -55,7 +55,7 @@ def _lines(found: Difference, a: str, b: str) -> Iterable[str]:
         yield from (f"  {here.title}: {there.action} instead of {here.action}" for here, there in found.changed)
 
 
-def _as_json(found: Difference) -> dict[str, Any]:
+def _as_json(found: KnowledgeDiff) -> dict[str, Any]:
     return {
         "common_rows": found.common_rows,
         "lessons_only_here": [_lesson(record) for record in found.lessons_a],

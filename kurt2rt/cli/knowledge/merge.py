@@ -12,7 +12,7 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.knowledge.journal.writer import utc_now
 from kurt2rt.knowledge.versions.contradictions import borders_of
-from kurt2rt.knowledge.versions.merge import Conflict, ConflictCode, Merge, Side
+from kurt2rt.knowledge.versions.merge import Conflict, ConflictCode, MergePlan, Side
 from kurt2rt.knowledge.versions.merge import merge as bring_in
 
 
@@ -61,7 +61,7 @@ def reason_of(conflict: Conflict) -> str:
     return _REASONS[conflict.code].format(conflict, percent=100 * (conflict.radius_fraction or 0.0))
 
 
-def _told(merged: Merge) -> str:
+def _told(merged: MergePlan) -> str:
     parts = [f"{merged.lessons} lessons", f"{len(merged.new_ids)} RLAs of them new"] if merged.lessons else []
     parts += [f"{merged.undone} undone"] if merged.undone else []
     parts += [f"{merged.redone} redone"] if merged.redone else []

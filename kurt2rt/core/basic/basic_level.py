@@ -5,9 +5,9 @@ from numpy.typing import NDArray
 
 from behaviors.repertoire import Repertoire
 from hal.robot import STANDSTILL, SensorReadings
-from kurt2rt.core.basic.epsilon_greedy import Choice
+from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.basic.held_action import HeldAction
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Cause, Decision
 from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
 from kurt2rt.core.perception.perception import Situation
@@ -39,8 +39,8 @@ class BasicLevel:
         system: RlaSystem,
         repertoire: Repertoire,
         minimum_action_ticks: int,
-        wanted: Wanted,
-        choice: Choice | None = None,
+        wanted: ActiveBehaviour,
+        choice: EpsilonGreedy | None = None,
     ) -> None:
         """`choice`: among RLAs on the very same condition; without it the oldest answers.
 

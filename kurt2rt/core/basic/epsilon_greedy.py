@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from kurt2rt.core.rla.rla import Rla
 
 
-class Choice:
+class EpsilonGreedy:
     """Epsilon-greedy by worth; a choice stands until its group has not been nearest for a while, or comes blame."""
 
     def __init__(self, worth: Callable[[int], float], *, epsilon: float, hold_ticks: int, seed: int) -> None:

@@ -4,7 +4,7 @@ from behaviors.policies.policy import ReferencePolicy
 from behaviors.repertoire import Repertoire
 from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.basic.held_action import HeldAction
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Cause, Decision
 from kurt2rt.core.decision.errors import UnknownActionError
 from kurt2rt.core.perception.perception import Situation
@@ -14,7 +14,7 @@ class PolicyLevel:
     """Drives as the policy says, with the same minimum time per action as a taught level."""
 
     def __init__(
-        self, policy: ReferencePolicy, repertoire: Repertoire, minimum_action_ticks: int, wanted: Wanted
+        self, policy: ReferencePolicy, repertoire: Repertoire, minimum_action_ticks: int, wanted: ActiveBehaviour
     ) -> None:
         self._policy = policy
         self._repertoire = repertoire

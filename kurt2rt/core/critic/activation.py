@@ -3,7 +3,7 @@
 from kurt2rt.core.critic.settings import NeedSettings
 
 
-class Need:
+class ActivationMonitor:
     """A leaky mean of how much of the driven time was bad, plain at first; once it is too much, it is needed for good.
 
     A critic errs at times, and what it errs about is a small share of the time where nothing is wrong.

@@ -10,7 +10,7 @@ from hal.robot import HIGHEST_COUNTS, SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
 from hal.settings import SettingsError
 from kurt2rt.core.critic.settings import CriticSettings
-from kurt2rt.core.numerics import steady
+from kurt2rt.core.numerics import round_portable
 
 
 class CircumstancesPerception:
@@ -42,7 +42,7 @@ class CircumstancesPerception:
         self._no_progress_m2 = want.no_progress_m**2
         self._odometry = WheelOdometry(robot.geometry)
         self._period_s = period_s
-        self._share_of_new = 1.0 - steady(math.exp(-period_s / want.smoothing_s))
+        self._share_of_new = 1.0 - round_portable(math.exp(-period_s / want.smoothing_s))
         self._bump_held_ticks = round(want.bump_held_s / period_s)
         self._surprise_held_ticks = 0 if want.surprise_held_s is None else round(want.surprise_held_s / period_s)
         self._no_wall_ticks = round(want.no_wall_s / period_s)
@@ -102,7 +102,7 @@ class CircumstancesPerception:
         front_m, back_m = self._distance_m[counts[0]], self._distance_m[counts[1]]
         if front_m >= self._wall_m and back_m >= self._wall_m:
             return 0.0
-        return steady(math.atan2(front_m - back_m, baseline_m))
+        return round_portable(math.atan2(front_m - back_m, baseline_m))
 
     def _move(self, motion: WheelMotion) -> None:
         """Follow the wheels through one tick."""
@@ -110,8 +110,8 @@ class CircumstancesPerception:
         self._speed_m_s += self._share_of_new * (way_m / self._period_s - self._speed_m_s)
         self._turn_rad_s += self._share_of_new * (turn_rad / self._period_s - self._turn_rad_s)
         self._heading_rad += turn_rad
-        self._here_x_m += way_m * steady(math.cos(self._heading_rad))
-        self._here_y_m += way_m * steady(math.sin(self._heading_rad))
+        self._here_x_m += way_m * round_portable(math.cos(self._heading_rad))
+        self._here_y_m += way_m * round_portable(math.sin(self._heading_rad))
 
     def _gets_nowhere(self, *, driving: bool) -> bool:
         """Whether it has driven for the whole time and is about where it was."""

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from kurt2rt.core.critic.activation import Need
+from kurt2rt.core.critic.activation import ActivationMonitor
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.critic import Opinion
 from kurt2rt.core.critic.settings import CriticSettings
@@ -26,7 +26,7 @@ class Autonomy:
     def __init__(self, settings: CriticSettings, agreement: Agreement, period_s: float) -> None:
         """`period_s` of a tick."""
         self._agreement = agreement
-        self.need = Need(settings.need, period_s)
+        self.need = ActivationMonitor(settings.need, period_s)
         every_s = settings.signal_every_s
         self._every_ticks = {-1: round(every_s.bad / period_s), 1: round(every_s.good / period_s)}
         self._next_tick = {-1: 0, 1: 0}

@@ -30,7 +30,7 @@ class _Change(NamedTuple):
     """Among all teaching events, from 1."""
 
 
-class BestKnowledge:
+class RollbackMonitor:
     """Scores each window of driving, and of not knowing the way, and tells which of its changes are to be undone.
 
     Scores come with chance, so knowledge is measured while nothing changes it: in the first window of phase 5, and in

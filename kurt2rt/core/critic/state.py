@@ -3,7 +3,7 @@
 from enum import StrEnum
 
 
-class Role(StrEnum):
+class CriticState(StrEnum):
     """What becomes of the critic's opinions."""
 
     LISTENS = "listens"

@@ -3,7 +3,7 @@
 from kurt2rt.core.rla.outcome import CommandRefusedError, RefusalCode
 
 
-class Wanted:
+class ActiveBehaviour:
     """One of the behaviours that a task teaches: only its RLAs answer. A teacher, later a mid level, changes it."""
 
     def __init__(self, behaviours: tuple[str, ...] = ("",)) -> None:

@@ -4,7 +4,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 
-class Course(StrEnum):
+class GoalStatus(StrEnum):
     """How it stands with a goal."""
 
     NONE = "none"
@@ -25,7 +25,7 @@ class PlanStep(NamedTuple):
 
     goal: str
     """In words."""
-    course: Course
+    course: GoalStatus
     behaviours: tuple[str, ...]
     """Those that lead there, that of the way that is being gone first."""
     rla_id: int | None

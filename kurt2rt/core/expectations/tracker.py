@@ -6,7 +6,7 @@ from itertools import chain
 from kurt2rt.core.decision.decision import Cause, Decision
 from kurt2rt.core.expectations.expectations import Expectations
 from kurt2rt.core.expectations.surprise import Surprise
-from kurt2rt.core.expectations.transitions import BasicFollowing, MidFollowing
+from kurt2rt.core.expectations.transitions import BasicTransitionTracker, MidTransitionTracker
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.expectation import Expectation
@@ -15,7 +15,7 @@ from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 
 
-class Expecting:
+class ExpectationTracker:
     """The expectations of the basic level, and of the mid level where there is one."""
 
     def __init__(
@@ -32,9 +32,11 @@ class Expecting:
         self._system = system
         self._mid = mid
         basic = Space(system.dimensions, system.radius, system.weights)
-        self._basic_following = BasicFollowing(Expectations(BASIC, system, basic, transitions, saved))
+        self._basic_following = BasicTransitionTracker(Expectations(BASIC, system, basic, transitions, saved))
         self._mid_following = (
-            None if mid is None else MidFollowing(Expectations(MID, system, mid.settings.space, transitions, saved))
+            None
+            if mid is None
+            else MidTransitionTracker(Expectations(MID, system, mid.settings.space, transitions, saved))
         )
         self._levels = {BASIC: self._basic_following.expectations}
         if self._mid_following is not None:

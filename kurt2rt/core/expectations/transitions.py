@@ -11,7 +11,7 @@ from kurt2rt.core.rla.rla import TeachingEvent
 _NOTHING = np.zeros(0)
 
 
-class BasicFollowing:
+class BasicTransitionTracker:
     """Follows the RLA that drives. Standstill, and another behaviour that is wanted, end it without a follow-up."""
 
     def __init__(self, expectations: Expectations) -> None:
@@ -42,7 +42,7 @@ class BasicFollowing:
         return changed
 
 
-class MidFollowing:
+class MidTransitionTracker:
     """Follows the RLA that commands. It ends where the mid-level situation becomes another, also if it goes on itself.
 
     What else changes it (a lesson, another goal, the teacher's word) is no consequence of what it commanded. Where

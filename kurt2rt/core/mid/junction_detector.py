@@ -10,7 +10,7 @@ from hal.robot import HIGHEST_COUNTS, SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
 from hal.settings import Settings, SettingsError
 from kurt2rt.core.decision.junction_event import JunctionEvent
-from kurt2rt.core.numerics import steady
+from kurt2rt.core.numerics import round_portable
 
 Metres = Annotated[float, Field(gt=0, le=10)]
 Sensors = Annotated[tuple[str, ...], Field(min_length=2)]
@@ -141,8 +141,8 @@ class JunctionDetector:
         self.opened = False
         self._open_m = 0.0
         want = self._settings
-        left_rad = steady(math.atan2(left[-1] - left[0], self._left_baseline_m))
-        right_rad = steady(math.atan2(right[0] - right[-1], self._right_baseline_m))
+        left_rad = round_portable(math.atan2(left[-1] - left[0], self._left_baseline_m))
+        right_rad = round_portable(math.atan2(right[0] - right[-1], self._right_baseline_m))
         self.walled = abs(left_rad) < want.parallel_rad and abs(right_rad) < want.parallel_rad
         if not self.walled:
             self._between_m = 0.0

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hal.robot import SensorReadings
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Decision, MidDecision
 from kurt2rt.core.decision.errors import UnknownBehaviourError
 from kurt2rt.core.mid.settings import MidSettings
@@ -16,7 +16,7 @@ from kurt2rt.core.rla.rla import MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 
 
-class Chooser(Protocol):
+class TieBreaker(Protocol):
     """Who says which of several RLAs on the very same condition commands: a plan, for instance."""
 
     def choose(self, group: tuple[Rla, ...], vector: NDArray[np.float64]) -> Rla | None:
@@ -33,7 +33,9 @@ class MidLevel:
     Situation and knowledge change seldom, and only then the nearest RLA is looked up anew.
     """
 
-    def __init__(self, system: RlaSystem, situation: MidSituation, settings: MidSettings, wanted: Wanted) -> None:
+    def __init__(
+        self, system: RlaSystem, situation: MidSituation, settings: MidSettings, wanted: ActiveBehaviour
+    ) -> None:
         """`wanted`: shared with the basic level, which follows what the mid level commands there.
 
         Raises UnknownBehaviourError for RLAs that command what the task does not teach.
@@ -47,7 +49,7 @@ class MidLevel:
         self.system = system
         self.situation = situation
         self.settings = settings
-        self.chooser: Chooser | None = None
+        self.chooser: TieBreaker | None = None
         self._wanted = wanted
         self._overridden = self._answered_overridden = False
         self._match: Match | None = None

@@ -15,7 +15,7 @@ from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector
 from kurt2rt.core.mid.situation import MidSituation, MidSituationSettings
 from kurt2rt.core.mid.symbols.source import Transitions
-from kurt2rt.core.numerics import steady
+from kurt2rt.core.numerics import round_portable
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.space import Metric
 
@@ -131,8 +131,8 @@ class Place:
     def _reckon(self, senses: SensorReadings) -> None:
         step_m = (senses.encoder_left_ticks + senses.encoder_right_ticks) / 2 * self._metres_per_tick
         middle_rad = self._detector.yaw_rad - self._detector.turn_rad / 2
-        self._x_driven_m += step_m * steady(math.cos(middle_rad))
-        self._y_driven_m += step_m * steady(math.sin(middle_rad))
+        self._x_driven_m += step_m * round_portable(math.cos(middle_rad))
+        self._y_driven_m += step_m * round_portable(math.sin(middle_rad))
         self._way_m += abs(step_m)
 
     def _arrive(self, passed: JunctionEvent) -> None:
@@ -158,7 +158,7 @@ class Place:
         assert street_rad is not None  # nobody passes a junction without having been in a street
         surplus_rad = math.remainder(passed.turn_rad - passed.quarters * _QUARTER_RAD, 2 * math.pi)
         came_rad = street_rad - passed.turn_rad + surplus_rad / 2
-        cos, sin = steady(math.cos(came_rad)), steady(math.sin(came_rad))
+        cos, sin = round_portable(math.cos(came_rad)), round_portable(math.sin(came_rad))
         ahead_m = self._x_driven_m * cos + self._y_driven_m * sin
         left_m = self._y_driven_m * cos - self._x_driven_m * sin
         return ahead_m, 0.0 if passed.quarters == 0 else left_m

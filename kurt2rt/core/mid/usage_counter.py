@@ -5,7 +5,7 @@ from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 
 
-class MidUses:
+class MidUsageCounter:
     """Counts one use for each junction that an RLA led the robot through, when that has been passed.
 
     What was corrected before it came to that led nowhere; nor did an RLA lead where the teacher did. A robot that

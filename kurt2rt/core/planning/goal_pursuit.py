@@ -3,18 +3,18 @@
 from collections.abc import Callable
 
 from kurt2rt.core.decision.goal import Goal
-from kurt2rt.core.decision.plan_step import Course
-from kurt2rt.core.planning.map_builder import Survey
+from kurt2rt.core.decision.plan_step import GoalStatus
+from kurt2rt.core.planning.map_builder import MapBuilder
 from kurt2rt.core.planning.plan import Plan, plan_to
 from kurt2rt.core.planning.target import GroupAt, Target, Vector
-from kurt2rt.core.planning.topological_map import Chart, Charting
+from kurt2rt.core.planning.topological_map import Charting, TopologicalMap
 from kurt2rt.core.rla.rla import Rla
 
 PIECES = 16
 """RLAs and places that are looked at in one tick, for a plan; each takes 30 to 60 us."""
 
 
-class Seeking:
+class GoalPursuit:
     """Where the robot is to go, and the plan to get there. Changes at junction events only, and when it is told to.
 
     A plan is made over several ticks, counted in RLAs and places, so that no tick waits for it, and the same run is the
@@ -29,7 +29,7 @@ class Seeking:
         self._charting = charting
         self._group_at = group_at
         self._target: Target | None = None
-        self._survey: Survey | None = None
+        self._survey: MapBuilder | None = None
         """While a plan is being made: what has been looked at for it."""
         self._here = 0
         """The place that it begins at."""
@@ -37,17 +37,17 @@ class Seeking:
         """The tick that begins a plan may still hear of what an RLA leads to no more: it looks at nothing."""
         self._looked = False
         """Whether the survey is done; the search has the next tick for itself."""
-        self._stood_as: Course | None = None
+        self._stood_as: GoalStatus | None = None
         """How the robot stood when the plan was begun."""
         self._meaningless = ""
         """Why the goal means nothing any more."""
-        self._planned_on: Chart | None = None
+        self._planned_on: TopologicalMap | None = None
         self._next_place: frozenset[int] = frozenset()
         """RLAs on the place that the plan leads to next."""
         self._disappointed: set[int] = set()
         """Places that looked like the goal on the chart, and were not when the robot came there."""
         self.goal: Goal | None = None
-        self.course = Course.NONE
+        self.course = GoalStatus.NONE
         self.plan: Plan | None = None
         """What is left of it; its first way is the one that is being gone."""
         self.surprises = 0
@@ -59,14 +59,14 @@ class Seeking:
         return self.stands_as is not None
 
     @property
-    def stands_as(self) -> Course | None:
+    def stands_as(self) -> GoalStatus | None:
         """Why the robot stands: at a goal, or without a way; None where it does not."""
         match self.course:
-            case Course.ARRIVED:
-                return Course.ARRIVED
-            case Course.NO_WAY | Course.LOST:
-                return Course.NO_WAY
-            case Course.PLANNING:
+            case GoalStatus.ARRIVED:
+                return GoalStatus.ARRIVED
+            case GoalStatus.NO_WAY | GoalStatus.LOST:
+                return GoalStatus.NO_WAY
+            case GoalStatus.PLANNING:
                 return self._stood_as
         return None
 
@@ -76,15 +76,15 @@ class Seeking:
         if self.goal is None:
             return ""
         match self.course:
-            case Course.ARRIVED:
+            case GoalStatus.ARRIVED:
                 return f"arrived: {self.goal.text}"
-            case Course.PLANNING:
+            case GoalStatus.PLANNING:
                 return f"planning the way to {self.goal.text}"
-            case Course.NO_WAY if self._meaningless:
+            case GoalStatus.NO_WAY if self._meaningless:
                 return f"{self.goal.text} cannot be gone to any more: {self._meaningless}"
-            case Course.NO_WAY:
+            case GoalStatus.NO_WAY:
                 return f"no way from here to {self.goal.text}: nothing taught leads there"
-            case Course.LOST:
+            case GoalStatus.LOST:
                 return f"lost on the way to {self.goal.text}: this place is not known; answer here, or set it down"
         left = 0 if self.plan is None else len(self.plan.ways)
         way = None if self.plan is None else self.plan.next
@@ -100,7 +100,7 @@ class Seeking:
         self._meaningless = ""
         self._disappointed.clear()
         self._survey = self.plan = None
-        self.course = Course.UNDER_WAY
+        self.course = GoalStatus.UNDER_WAY
         self.surprises = 0
 
     def mean(self, target: Target) -> None:
@@ -111,19 +111,19 @@ class Seeking:
         """The goal means nothing any more: the robot stands, until there is another one, or none."""
         self._target = None
         self._meaningless = because
-        self._settle(Course.NO_WAY)
+        self._settle(GoalStatus.NO_WAY)
 
     def stop(self) -> None:
         """No goal any more."""
         self.goal = self._target = None
-        self._settle(Course.NONE)
+        self._settle(GoalStatus.NONE)
 
     def arrive(self, situation: Vector) -> None:
         """The robot has come to a place: is it the goal, or where the plan leads to, and how does it go on?"""
-        if self._target is None or self.course is Course.ARRIVED:
+        if self._target is None or self.course is GoalStatus.ARRIVED:
             return
         if self._target.met_by(situation):
-            self._settle(Course.ARRIVED)
+            self._settle(GoalStatus.ARRIVED)
             return
         group = self._group_at(situation)
         if self.plan is not None and self.plan.next is not None:
@@ -164,7 +164,7 @@ class Seeking:
         if self._here in goals:
             self._disappointed.add(self._here)
         plan = plan_to(chart, self._here, goals - self._disappointed)
-        self._settle(Course.NO_WAY if plan is None else Course.UNDER_WAY)
+        self._settle(GoalStatus.NO_WAY if plan is None else GoalStatus.UNDER_WAY)
         if plan is not None:
             self._planned_on = chart
             self._follow(plan)
@@ -177,15 +177,15 @@ class Seeking:
     def _plan_from(self, group: tuple[Rla, ...]) -> None:
         assert self._target is not None
         if not group:
-            self._settle(Course.LOST)
+            self._settle(GoalStatus.LOST)
             return
         self._stood_as = self._stood_as or self.stands_as
-        self.course, self.plan = Course.PLANNING, None
-        self._survey = Survey(self._charting(), self._target)
+        self.course, self.plan = GoalStatus.PLANNING, None
+        self._survey = MapBuilder(self._charting(), self._target)
         self._begun = self._looked = False
         self._here = group[0].rla_id
 
-    def _settle(self, course: Course) -> None:
+    def _settle(self, course: GoalStatus) -> None:
         self.course = course
         self._survey = self.plan = self._stood_as = None
 

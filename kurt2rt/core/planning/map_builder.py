@@ -5,16 +5,16 @@ from collections.abc import Generator
 import numpy as np
 
 from kurt2rt.core.planning.target import Target
-from kurt2rt.core.planning.topological_map import Chart, Charting
+from kurt2rt.core.planning.topological_map import Charting, TopologicalMap
 
 
-class Survey:
+class MapBuilder:
     """Makes the chart, and finds the places on it at which a target is reached."""
 
     def __init__(self, charting: Charting, target: Target) -> None:
         """`charting`: not begun yet."""
         self._work = self._look(charting, target)
-        self.chart: Chart | None = None
+        self.chart: TopologicalMap | None = None
         """None until it stands."""
         self.goals: set[int] = set()
         """Ids of the places at which the target is reached; all of them when the survey is done."""

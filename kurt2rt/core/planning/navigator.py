@@ -6,11 +6,11 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from kurt2rt.core.decision.goal import Goal, NamedGoal, RlaGoal
-from kurt2rt.core.decision.plan_step import Course, PlanStep
+from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.mid.place import Place
 from kurt2rt.core.planning.distances import distance_in
-from kurt2rt.core.planning.goal_pursuit import Seeking
+from kurt2rt.core.planning.goal_pursuit import GoalPursuit
 from kurt2rt.core.planning.target import Target, Vector, target_of
 from kurt2rt.core.planning.topological_map import Charting, Forecast, charting
 from kurt2rt.core.rla.condition import Condition
@@ -27,7 +27,7 @@ _PLACE_OF = re.compile(r"RLA ([1-9][0-9]{0,8})")
 
 
 class Navigator:
-    """The chooser of the mid level while there is a goal (kurt2rt.core.mid.mid_level.Chooser)."""
+    """The chooser of the mid level while there is a goal (kurt2rt.core.mid.mid_level.TieBreaker)."""
 
     def __init__(
         self,
@@ -47,7 +47,7 @@ class Navigator:
         self._distance = distance_in(self._space)
         self._follow_ups = follow_ups
         self._forecast = forecast
-        self._seeking = Seeking(self._charting, self._group_at)
+        self._seeking = GoalPursuit(self._charting, self._group_at)
         self._seen: Vector | None = None
         """The situation that the plan was last looked at in."""
         self._changes = self._system.changes
@@ -70,12 +70,12 @@ class Navigator:
         """How it stands with the goal; None while there is none."""
 
     @property
-    def course(self) -> Course:
+    def course(self) -> GoalStatus:
         """How it stands with the goal."""
         return self._seeking.course
 
     @property
-    def stands_as(self) -> Course | None:
+    def stands_as(self) -> GoalStatus | None:
         """Why the robot is to stand: at its goal, or without a way there; None where it is not."""
         return self._seeking.stands_as
 
@@ -152,7 +152,7 @@ class Navigator:
     def _hear_of_changes(self) -> None:
         seeking, before = self._seeking, self._rlas
         self._rlas = self._system.rlas_at(MID)
-        if seeking.goal is None or seeking.course is Course.ARRIVED:
+        if seeking.goal is None or seeking.course is GoalStatus.ARRIVED:
             return
         try:
             target = self._target_of(seeking.goal)
@@ -164,7 +164,7 @@ class Navigator:
             self._begin(seeking.goal, target)
         elif self._rlas != before:
             seeking.mean(target)
-            planning = seeking.course is Course.PLANNING
+            planning = seeking.course is GoalStatus.PLANNING
             self._outdated = self._outdated or planning or seeking.stands or not self._still_possible()
 
     def _begin(self, goal: Goal, target: Target) -> None:

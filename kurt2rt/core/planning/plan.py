@@ -6,14 +6,14 @@ from itertools import pairwise
 
 import networkx as nx
 
-from kurt2rt.core.planning.topological_map import Chart, Way
+from kurt2rt.core.planning.topological_map import Edge, TopologicalMap
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
     """Ways that follow each other, in the order of driving."""
 
-    ways: tuple[Way, ...]
+    ways: tuple[Edge, ...]
 
     @property
     def ticks(self) -> float:
@@ -21,7 +21,7 @@ class Plan:
         return sum(way.ticks for way in self.ways)
 
     @property
-    def next(self) -> Way | None:
+    def next(self) -> Edge | None:
         """The way to go now; None at the goal."""
         return self.ways[0] if self.ways else None
 
@@ -30,7 +30,7 @@ class Plan:
         return Plan(self.ways[1:])
 
 
-def plan_to(chart: Chart, start: int, goals: Collection[int]) -> Plan | None:
+def plan_to(chart: TopologicalMap, start: int, goals: Collection[int]) -> Plan | None:
     """The cheapest chain of ways from a place to one of the goals (Dijkstra); None where none leads to any."""
     if start not in chart.graph:
         return None

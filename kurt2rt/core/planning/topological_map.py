@@ -16,7 +16,7 @@ from kurt2rt.core.planning.target import GroupAt, Vector
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.rla import Rla
 
-Charting = Generator[None, None, "Chart"]
+Charting = Generator[None, None, "TopologicalMap"]
 """A chart in the making: each piece of the work looks at one RLA, whose situation is matched at most once in it."""
 
 _LIGHT = 8
@@ -48,7 +48,7 @@ class Place:
     """The RLAs on it, oldest first; none where nothing was taught yet."""
 
 
-class Way(NamedTuple):
+class Edge(NamedTuple):
     """From one place to another."""
 
     rla_id: int
@@ -68,7 +68,7 @@ class Way(NamedTuple):
         return self.ticks / self.share
 
 
-class Chart:
+class TopologicalMap:
     """Places and ways as a directed graph."""
 
     def __init__(self) -> None:
@@ -80,7 +80,7 @@ class Chart:
         self.places[place.place_id] = place
         self.graph.add_node(place.place_id)
 
-    def add_way(self, way: Way) -> None:
+    def add_way(self, way: Edge) -> None:
         """Put a way on it; of several from one place to another only the cheapest stays."""
         known = (way.start, way.end) in self.graph.edges
         if not known or way.cost < self.graph.edges[way.start, way.end]["cost"]:
@@ -90,9 +90,9 @@ class Chart:
         """Ids of the RLAs on a place."""
         return frozenset(rla.rla_id for rla in self.places[place_id].members)
 
-    def way(self, start: int, end: int) -> Way:
+    def way(self, start: int, end: int) -> Edge:
         """The cheapest way from a place straight to another."""
-        way: Way = self.graph.edges[start, end]["way"]
+        way: Edge = self.graph.edges[start, end]["way"]
         return way
 
 
@@ -109,7 +109,7 @@ def charting(
     expectation lies in, and as often as follow-ups of that place came; where expectations lie in no place, to where
     its follow-ups stand.
     """
-    chart = Chart()
+    chart = TopologicalMap()
     members: dict[Condition, list[Rla]] = {}
     forecasts: dict[int, Forecast] = {}
     for number, rla in enumerate(rlas):
@@ -143,7 +143,7 @@ def charting(
             seen = ends.total()
             for end, times in ends.items():
                 if end != start:
-                    chart.add_way(Way(rla.rla_id, rla.action, start, end, times / seen, ticks))
+                    chart.add_way(Edge(rla.rla_id, rla.action, start, end, times / seen, ticks))
             yield
     return chart
 
@@ -153,7 +153,7 @@ def _end_of(
     expected: Forecast,
     group_at: GroupAt,
     home: Mapping[int, int],
-    chart: Chart,
+    chart: TopologicalMap,
 ) -> int:
     """The place that an expectation lies in; one that nothing was taught at yet is put on the chart."""
     there = group_at(expected.mean)

@@ -9,7 +9,7 @@ from kurt2rt.core.decision.decision import Decision
 from kurt2rt.core.perception.perception import Situation
 
 
-class RecentDecisions:
+class DecisionHistory:
     """What was seen, decided and thought in the last `capacity` ticks, in memory that does not grow."""
 
     def __init__(self, dimensions: int, capacity: int = 1000) -> None:

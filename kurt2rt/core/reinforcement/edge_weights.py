@@ -10,10 +10,10 @@ praise than it took blame to get there.
 
 from collections.abc import Collection, Iterable, Mapping
 
-from kurt2rt.core.reinforcement.eligibility_trace import Trace
-from kurt2rt.core.reinforcement.rule import Booking
+from kurt2rt.core.reinforcement.eligibility_trace import EligibilityTrace
+from kurt2rt.core.reinforcement.rule import CreditUpdate
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings
-from kurt2rt.core.reinforcement.value_history import Accounts
+from kurt2rt.core.reinforcement.value_history import ValueHistory
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.statistics import Statistics
 
@@ -29,7 +29,7 @@ class EdgeWeights:
 
     def __init__(self, settings: ReinforcementSettings) -> None:
         self._factors = settings.factors
-        self._accounts = Accounts[_Edges]()
+        self._accounts = ValueHistory[_Edges]()
         self._before: int | None = None
 
     def drove(self, rla_id: int | None, tick: int) -> None:  # noqa: ARG002 - what follows what is all that counts
@@ -40,7 +40,7 @@ class EdgeWeights:
             self._accounts.present.setdefault(rla_id, {}).setdefault(self._before, FIRST_WEIGHT)
         self._before = rla_id
 
-    def credits_of(self, value: int, trace: Trace) -> tuple[Credit, ...]:
+    def credits_of(self, value: int, trace: EligibilityTrace) -> tuple[Credit, ...]:
         """What each weight changes by, as a share of the first one: falling weights are worth more."""
         present = self._accounts.present
         return tuple(
@@ -50,11 +50,11 @@ class EdgeWeights:
             if edges[before] != present.get(rla_id, {}).get(before)
         )
 
-    def take(self, value: int, trace: Trace) -> None:
+    def take(self, value: int, trace: EligibilityTrace) -> None:
         """Multiply or divide the weights of the last transitions."""
         self._accounts.present.update(self._changed(value, trace))
 
-    def book(self, bookings: Iterable[Booking], sign: int) -> None:
+    def book(self, bookings: Iterable[CreditUpdate], sign: int) -> None:
         """Change the edge that a credit is of; in old journals it is of an RLA, and shifts all edges into that one."""
         for (rla_id, change, before), depth in bookings:
             edges = self._accounts.at(rla_id, depth)
@@ -120,7 +120,7 @@ class EdgeWeights:
         if self._before == rla_id:
             self._before = None
 
-    def _changed(self, value: int, trace: Trace) -> dict[int, _Edges]:
+    def _changed(self, value: int, trace: EligibilityTrace) -> dict[int, _Edges]:
         """Edges into each RLA that the signal means, after it."""
         changed: dict[int, _Edges] = {}
         for (before, after), factor in zip(trace.transitions, self._factors, strict=False):

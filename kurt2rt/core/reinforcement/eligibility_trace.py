@@ -6,14 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurt2rt.core.numerics import steady
-from kurt2rt.core.reinforcement.decision_history import RecentDecisions
+from kurt2rt.core.numerics import round_portable
+from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 
 LEAST_SHARE = 0.001
 """Smaller shares change nothing that could be told, and would fill the journal."""
 
 
-class Trace(NamedTuple):
+class EligibilityTrace(NamedTuple):
     """What led to a tick."""
 
     shares: Mapping[int, float]
@@ -23,20 +23,20 @@ class Trace(NamedTuple):
 
 
 def trace_of(
-    recent: RecentDecisions,
+    recent: DecisionHistory,
     tick: int,
     *,
     trace_ticks: float,
     most_transitions: int,
     since: Mapping[int, int],
-) -> Trace:
+) -> EligibilityTrace:
     """The trace at a tick, from the decisions that are remembered of the ticks up to it, and of none after it.
 
     `trace_ticks`: time constant. `since`: RLA id -> tick in which it got the action it has; what it did before with
     another one is neither its merit nor its fault.
     """
-    decay = steady(math.exp(-1.0 / trace_ticks))
-    reach = math.ceil(steady(-math.log(LEAST_SHARE) * trace_ticks))
+    decay = round_portable(math.exp(-1.0 / trace_ticks))
+    reach = math.ceil(round_portable(-math.log(LEAST_SHARE) * trace_ticks))
     ticks, rlas = recent.answering_up_to(tick)
     for rla_id in since.keys() & set(rlas.tolist()):
         rlas[(rlas == rla_id) & (ticks < since[rla_id])] = 0
@@ -47,7 +47,7 @@ def trace_of(
     weights = (1.0 - decay) * fading[np.minimum(tick - ticks, reach)]
     sums = np.bincount(rlas, weights)
     shares = {int(rla_id): float(sums[rla_id]) for rla_id in np.flatnonzero(sums >= LEAST_SHARE) if rla_id != 0}
-    return Trace(shares, _last_transitions(ticks.tolist(), rlas.tolist(), most_transitions))
+    return EligibilityTrace(shares, _last_transitions(ticks.tolist(), rlas.tolist(), most_transitions))
 
 
 def _last_transitions(ticks: list[int], rlas: list[int], most: int) -> tuple[tuple[int, int], ...]:

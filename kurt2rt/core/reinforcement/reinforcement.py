@@ -9,13 +9,13 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from kurt2rt.core.basic.epsilon_greedy import Choice
-from kurt2rt.core.reinforcement.decision_history import RecentDecisions
+from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
+from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.edge_weights import EdgeWeights
-from kurt2rt.core.reinforcement.eligibility_trace import Trace, trace_of
+from kurt2rt.core.reinforcement.eligibility_trace import EligibilityTrace, trace_of
 from kurt2rt.core.reinforcement.repair import OriginOf, Repair
-from kurt2rt.core.reinforcement.rule import Booking, ReinforcementRule
-from kurt2rt.core.reinforcement.settings import ReinforcementSettings, WorthSettings
+from kurt2rt.core.reinforcement.rule import CreditUpdate, ReinforcementRule
+from kurt2rt.core.reinforcement.settings import ReinforcementSettings, ValueSettings
 from kurt2rt.core.reinforcement.td_lambda import TdLambda
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.rla import (
@@ -48,19 +48,19 @@ class Reinforcement:
     """Follows the teaching events and the ticks; what it changes in the knowledge is left to its owner to apply."""
 
     def __init__(
-        self, system: RlaSystem, recent: RecentDecisions, settings: ReinforcementSettings, period_s: float
+        self, system: RlaSystem, recent: DecisionHistory, settings: ReinforcementSettings, period_s: float
     ) -> None:
         """`recent`: the decisions that signals are about. `period_s` of a tick."""
         self._system = system
         self.recent = recent
         self._period_s = period_s
         self._settings = settings
-        self._worths: WorthSettings = settings.with_teacher
+        self._worths: ValueSettings = settings.with_teacher
         self.rule = self._account(settings.with_teacher)
         """The teacher's account."""
         self._alone: ReinforcementRule | None = None
         """That of phase 5, while it lasts."""
-        self.choice = Choice(
+        self.choice = EpsilonGreedy(
             self.worth,
             epsilon=settings.epsilon,
             hold_ticks=round(settings.hold_s / period_s),
@@ -71,7 +71,7 @@ class Reinforcement:
         self._depths: dict[str, tuple[int, ...]] = {}
         """Of each reward in the journal, by its command id: to which actions of their RLAs its credits belong, so that
         an undo takes them off the teacher's account there."""
-        self._alone_bookings: dict[str, tuple[Booking, ...]] = {}
+        self._alone_bookings: dict[str, tuple[CreditUpdate, ...]] = {}
         """Of each reward that a teacher gave in this phase 5: what an undo takes off its account."""
         self._since: dict[int, int] = {}
         """RLA id -> tick of this run in which it got the action it has."""
@@ -189,7 +189,7 @@ class Reinforcement:
             if isinstance(event, RlaRewarded):
                 self.rows += 1
                 depths = self._depths[event.origin.command_id] = _depths(self.rule, event.credits)
-                self.rule.book(map(Booking, event.credits, depths), 1)
+                self.rule.book(map(CreditUpdate, event.credits, depths), 1)
             else:
                 self.hear(event)
 
@@ -211,7 +211,7 @@ class Reinforcement:
     def _accounts(self) -> tuple[ReinforcementRule, ...]:
         return (self.rule,) if self._alone is None else (self.rule, self._alone)
 
-    def _account(self, worths: WorthSettings) -> ReinforcementRule:
+    def _account(self, worths: ValueSettings) -> ReinforcementRule:
         settings = self._settings
         if settings.rule == "td_lambda":
             return TdLambda(settings, worths, self._period_s)
@@ -225,7 +225,7 @@ class Reinforcement:
 
         return origin_of
 
-    def _trace(self, tick: int, trace_s: float | None) -> Trace:
+    def _trace(self, tick: int, trace_s: float | None) -> EligibilityTrace:
         """Of those that live: what was deleted since has no part in it."""
         seconds = self._settings.trace_s if trace_s is None else trace_s
         trace = trace_of(
@@ -236,7 +236,7 @@ class Reinforcement:
             since=self._since,
         )
         shares = {rla_id: share for rla_id, share in trace.shares.items() if self._lives(rla_id)}
-        return Trace(shares, tuple(each for each in trace.transitions if all(map(self._lives, each))))
+        return EligibilityTrace(shares, tuple(each for each in trace.transitions if all(map(self._lives, each))))
 
     def _lives(self, rla_id: int) -> bool:
         return self._system.get(rla_id) is not None
@@ -248,7 +248,7 @@ class Reinforcement:
             edge_weights={edge: weight for edge, weight in saved.edge_weights.items() if all(map(self._lives, edge))},
         )
 
-    def _blame(self, value: int, trace: Trace, signal: str, teacher: str) -> None:
+    def _blame(self, value: int, trace: EligibilityTrace, signal: str, teacher: str) -> None:
         if value < 0:
             self.choice.forget()
             least = self._worths.blamed_share
@@ -260,7 +260,7 @@ class Reinforcement:
         assert record is not None
         match record.event:
             case RlaRewarded(credits=credits_):
-                self.rule.book(map(Booking, credits_, self._depths.pop(lesson)), -1)
+                self.rule.book(map(CreditUpdate, credits_, self._depths.pop(lesson)), -1)
                 if self._alone is not None:
                     self._alone.book(self._alone_bookings.pop(lesson, ()), -1)
                 self.choice.forget()
@@ -287,7 +287,7 @@ class Reinforcement:
         match record.event:
             case RlaRewarded(credits=credits_):
                 depths = self._depths[lesson] = _depths(self.rule, credits_)
-                self.rule.book(map(Booking, credits_, depths), 1)
+                self.rule.book(map(CreditUpdate, credits_, depths), 1)
                 self.choice.forget()
             case event:
                 self._hear_of_an_rla(event, origin.tick)
@@ -313,6 +313,6 @@ def _depths(account: ReinforcementRule, credits_: Iterable[Credit]) -> tuple[int
     return tuple(account.depth(credit.rla_id) for credit in credits_)
 
 
-def _booked(account: ReinforcementRule, credits_: Sequence[Credit]) -> tuple[Booking, ...]:
+def _booked(account: ReinforcementRule, credits_: Sequence[Credit]) -> tuple[CreditUpdate, ...]:
     """Credits as they belong to the actions that their RLAs have now."""
-    return tuple(map(Booking, credits_, _depths(account, credits_)))
+    return tuple(map(CreditUpdate, credits_, _depths(account, credits_)))

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from kurt2rt.core.reinforcement.settings import ReinforcementSettings, WorthSettings
+from kurt2rt.core.reinforcement.settings import ReinforcementSettings, ValueSettings
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.matching import exact_square
 from kurt2rt.core.rla.rla import ActionWithdrawn, Lesson, Origin, Rla, RlaCreated, RlaDeleted
@@ -24,7 +24,7 @@ class Repair:
         self._system = system
         self._worth = worth
         self._settings = settings
-        self._worths: WorthSettings = settings.with_teacher
+        self._worths: ValueSettings = settings.with_teacher
         self._tried: dict[tuple[str, Condition], list[str]] = {}
         """Actions tried on a condition, by behaviour and condition, where there were competitors and any RLA lives."""
         self._place_of: dict[int, tuple[str, Condition]] = {}
@@ -32,7 +32,7 @@ class Repair:
         self._rolled_back: dict[tuple[str, Condition], list[str]] = {}
         """Actions whose try made things worse: they are not tried there again in this run."""
 
-    def count_from(self, worths: WorthSettings) -> None:
+    def count_from(self, worths: ValueSettings) -> None:
         """What counts as sunk and as well from now on."""
         self._worths = worths
 

@@ -3,12 +3,12 @@
 from collections.abc import Collection, Iterable, Mapping
 from typing import NamedTuple, Protocol
 
-from kurt2rt.core.reinforcement.eligibility_trace import Trace
+from kurt2rt.core.reinforcement.eligibility_trace import EligibilityTrace
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.statistics import Statistics
 
 
-class Booking(NamedTuple):
+class CreditUpdate(NamedTuple):
     """A credit, and to which action of its RLA it belongs."""
 
     credit: Credit
@@ -23,15 +23,15 @@ class ReinforcementRule(Protocol):
         """Take in one tick: the RLA that answered; None where the robot stood, or nobody may be blamed."""
         ...
 
-    def credits_of(self, value: int, trace: Trace) -> tuple[Credit, ...]:
+    def credits_of(self, value: int, trace: EligibilityTrace) -> tuple[Credit, ...]:
         """By what a signal of -1 or +1 would change the worth of each RLA; changes nothing."""
         ...
 
-    def take(self, value: int, trace: Trace) -> None:
+    def take(self, value: int, trace: EligibilityTrace) -> None:
         """Learn from a signal: worths change by what `credits_of` says."""
         ...
 
-    def book(self, bookings: Iterable[Booking], sign: int) -> None:
+    def book(self, bookings: Iterable[CreditUpdate], sign: int) -> None:
         """Add credits from the journal (+1), or take them off again (-1), where there is anything to take them off."""
         ...
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.autonomy import Autonomy
 from kurt2rt.core.critic.critic import Opinion
-from kurt2rt.core.critic.rollback import BestKnowledge
+from kurt2rt.core.critic.rollback import RollbackMonitor
 from kurt2rt.core.critic.settings import CriticSettings
-from kurt2rt.core.critic.state import Role
+from kurt2rt.core.critic.state import CriticState
 from kurt2rt.core.decision.decision import Decision
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.rla.lesson_history import rla_of
@@ -33,7 +33,7 @@ class SelfTeaching:
         self._system = system
         self._agreement = agreement
         self._autonomy = Autonomy(settings, agreement, period_s)
-        self.best = BestKnowledge(settings.best, period_s)
+        self.best = RollbackMonitor(settings.best, period_s)
         self._proofs = 0
         self._best_worths = Statistics()
         """Of the account of phase 5, when the best window ended."""
@@ -71,13 +71,13 @@ class SelfTeaching:
         return alone
 
     @property
-    def role(self) -> Role:
+    def role(self) -> CriticState:
         """What the critic did in the last tick."""
         if not self._alone:
-            return Role.LISTENS
+            return CriticState.LISTENS
         if self.measures:
-            return Role.MEASURES
-        return Role.ACTS if self._autonomy.need.needed else Role.NOT_NEEDED
+            return CriticState.MEASURES
+        return CriticState.ACTS if self._autonomy.need.needed else CriticState.NOT_NEEDED
 
     @property
     def bad_share(self) -> float | None:

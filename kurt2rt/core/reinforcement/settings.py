@@ -11,7 +11,7 @@ _Share = Annotated[float, Field(ge=0, le=1)]
 _Value = Annotated[float, Field(ge=-1, le=1)]
 
 
-class WorthSettings(Settings):
+class ValueSettings(Settings):
     """Where values begin, and from where an RLA has to be mended."""
 
     first_value: _Value
@@ -26,7 +26,7 @@ class WorthSettings(Settings):
     """Only an RLA with so much of the blame's trace is looked at."""
 
 
-class TaughtWorths(WorthSettings):
+class TaughtValues(ValueSettings):
     """With a teacher. What was praised a hundred times may be wrong elsewhere in its radius: praise only heals."""
 
     first_value: _Value = 0.0
@@ -36,7 +36,7 @@ class TaughtWorths(WorthSettings):
     blamed_share: _Share = 0.1
 
 
-class LonelyWorths(WorthSettings):
+class AutonomousValues(ValueSettings):
     """Without one. A critic errs more often than a teacher, and its praise has to weigh against that."""
 
     first_value: _Value = 0.5
@@ -64,9 +64,9 @@ class ReinforcementSettings(Settings):
         0.97,
     )
     """Edge weights: by what praise multiplies, and blame divides, those of the last transitions, newest first."""
-    with_teacher: TaughtWorths = TaughtWorths()
+    with_teacher: TaughtValues = TaughtValues()
     """In phases 1 to 4."""
-    alone: LonelyWorths = LonelyWorths()
+    alone: AutonomousValues = AutonomousValues()
     """In phase 5."""
     epsilon: _Share = 0.02
     """Share of the choices among competitors that are made by chance instead of by worth."""

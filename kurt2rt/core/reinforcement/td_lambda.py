@@ -10,11 +10,11 @@ teacher and one that is alone, and each of them has an account of its own.
 import math
 from collections.abc import Collection, Iterable, Mapping
 
-from kurt2rt.core.numerics import power, steady
-from kurt2rt.core.reinforcement.eligibility_trace import LEAST_SHARE, Trace
-from kurt2rt.core.reinforcement.rule import Booking
-from kurt2rt.core.reinforcement.settings import ReinforcementSettings, WorthSettings
-from kurt2rt.core.reinforcement.value_history import Accounts
+from kurt2rt.core.numerics import power, round_portable
+from kurt2rt.core.reinforcement.eligibility_trace import LEAST_SHARE, EligibilityTrace
+from kurt2rt.core.reinforcement.rule import CreditUpdate
+from kurt2rt.core.reinforcement.settings import ReinforcementSettings, ValueSettings
+from kurt2rt.core.reinforcement.value_history import ValueHistory
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.statistics import Statistics
 
@@ -22,13 +22,13 @@ from kurt2rt.core.rla.statistics import Statistics
 class TdLambda:
     """Values of RLAs, and an eligibility trace of those that drive."""
 
-    def __init__(self, settings: ReinforcementSettings, worths: WorthSettings, period_s: float) -> None:
+    def __init__(self, settings: ReinforcementSettings, worths: ValueSettings, period_s: float) -> None:
         """`worths`: where values begin, and how high they may rise. `period_s` of a tick."""
         self._settings = settings
         self._worths = worths
-        self._decay = steady(math.exp(-period_s / settings.trace_s))
+        self._decay = round_portable(math.exp(-period_s / settings.trace_s))
         self._step_ticks = max(1, round(settings.step_s / period_s))
-        self._accounts = Accounts[float]()
+        self._accounts = ValueHistory[float]()
         """V less the first value."""
         self._trace: dict[int, float] = {}
         """Divided by the scale, so that a tick need not touch what only fades."""
@@ -51,18 +51,18 @@ class TdLambda:
         if tick % self._step_ticks == 0:
             self._step(rla_id, tick)
 
-    def credits_of(self, value: int, trace: Trace) -> tuple[Credit, ...]:
+    def credits_of(self, value: int, trace: EligibilityTrace) -> tuple[Credit, ...]:
         """Each RLA its share of the signal, as far as its value may rise."""
         alpha = self._settings.alpha
         changes = ((rla_id, self._change(rla_id, alpha * value * share)) for rla_id, share in trace.shares.items())
         return tuple(Credit(rla_id, change) for rla_id, change in changes if change != 0.0)
 
-    def take(self, value: int, trace: Trace) -> None:
+    def take(self, value: int, trace: EligibilityTrace) -> None:
         """V_i += alpha r e_i(t)."""
         for rla_id, change, _ in self.credits_of(value, trace):
             self._add(rla_id, change)
 
-    def book(self, bookings: Iterable[Booking], sign: int) -> None:
+    def book(self, bookings: Iterable[CreditUpdate], sign: int) -> None:
         """Add credits to values, or take them off."""
         for (rla_id, change, before), depth in bookings:
             if before is not None:  # of the other rule

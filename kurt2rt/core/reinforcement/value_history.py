@@ -6,7 +6,7 @@ from typing import Generic, TypeVar
 EarnedT = TypeVar("EarnedT")
 
 
-class Accounts(Generic[EarnedT]):
+class ValueHistory(Generic[EarnedT]):
     """By RLA id; an RLA that gets another action begins anew, and its former account waits until that is undone.
 
     So does the account of one that is deleted; nothing is kept of one that can never come back.

@@ -8,21 +8,21 @@ from itertools import islice
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.core.rla.candidate_index import Contest
+from kurt2rt.core.rla.candidate_index import CandidateIndex
 from kurt2rt.core.rla.competitors import CompetitorGroups
 from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.rla.space import Space
 
 
-class LivingRlas:
+class ActiveRlas:
     """Of all levels and behaviours; winner takes all by distance, among the RLAs of one level and taught behaviour."""
 
     def __init__(self, spaces: Mapping[str, Space]) -> None:
         """`spaces`: by level. With RLAs of a level that is not among them nothing is matched."""
         self._spaces = spaces
         self._rlas: dict[int, Rla] = {}
-        self._contests: dict[tuple[str, str], Contest] = {}
+        self._contests: dict[tuple[str, str], CandidateIndex] = {}
         """By level and behaviour."""
         self._groups = CompetitorGroups()
         self._count_at: Counter[str] = Counter()
@@ -62,7 +62,7 @@ class LivingRlas:
             return Match(rla, math.inf, radius, runner_up, math.inf)
         return Match(rla, nearest.distance, radius, runner_up, nearest.runner_up_distance)
 
-    def _match_passing_over(self, contest: Contest, situation: NDArray[np.float64]) -> Match | None:
+    def _match_passing_over(self, contest: CandidateIndex, situation: NDArray[np.float64]) -> Match | None:
         """The nearest that has an action: looks at all, for it is seldom needed."""
         distances = contest.index.distances(situation * contest.weights)
         order = np.argsort(distances, kind="stable").tolist()  # of equally near ones the older
@@ -120,7 +120,7 @@ class LivingRlas:
         """One begins to live. Raises ValueError, and changes nothing, where its condition cannot be matched."""
         space = self._spaces.get(rla.level)
         if space is not None:
-            contest = self._contests.get((rla.level, rla.behaviour)) or Contest(space)
+            contest = self._contests.get((rla.level, rla.behaviour)) or CandidateIndex(space)
             contest.enter(rla.rla_id, rla.condition)
             self._contests[rla.level, rla.behaviour] = contest
         self.put(rla)

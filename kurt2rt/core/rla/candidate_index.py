@@ -11,7 +11,7 @@ from kurt2rt.core.rla.space import Space
 from kurt2rt.core.rla.symbol_index import SymbolIndex
 
 
-class Contest:
+class CandidateIndex:
     """The RLAs of one level and taught behaviour, by their ids: the same rows as in the index of their conditions."""
 
     def __init__(self, space: Space) -> None:

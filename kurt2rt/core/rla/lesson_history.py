@@ -64,7 +64,7 @@ def pile_of(lesson: Lesson) -> Pile:
     return (lesson.level, lesson.name) if isinstance(lesson, SituationNamed) else rla_of(lesson)
 
 
-class LessonBook:
+class LessonHistory:
     """All lessons by their command id.
 
     Those about one RLA, and those that gave one name, are undone in the order of a pile, the newest first.

@@ -31,7 +31,7 @@ _AT_ONCE = 8192
 """Numbers of a piece of the work: they stay in the cache, and need no memory that is asked of the machine anew."""
 
 
-class Nearest(NamedTuple):
+class NearestCondition(NamedTuple):
     """The nearest condition and the one behind it."""
 
     position: int
@@ -129,12 +129,12 @@ class ConditionIndex:
         """Exact distance of each condition to `situation` (d,), shape (n,), in order of age: not for every tick."""
         return exact_distances(self._exact[: self._count], situation)
 
-    def nearest(self, situation: NDArray[np.float64]) -> Nearest | None:
+    def nearest(self, situation: NDArray[np.float64]) -> NearestCondition | None:
         """Nearest condition to `situation` (d,) and the one behind it; None when there is none."""
         if self._count == 0:
             return None
         if self._count == 1:
-            return Nearest(0, self._distance(0, situation), -1, math.inf)
+            return NearestCondition(0, self._distance(0, situation), -1, math.inf)
         square = float(situation.dot(situation))
         reach = math.sqrt(square) + self._largest_norm
         if not reach < _FLOAT32_REACH:  # true for NaN as well
@@ -155,26 +155,26 @@ class ConditionIndex:
         scores[best], scores[second] = best_score, second_score
         return self._decide_exactly(situation, np.flatnonzero(scores <= second_score + doubt))
 
-    def _decide_exactly(self, situation: NDArray[np.float64], candidates: NDArray[np.intp]) -> Nearest:
+    def _decide_exactly(self, situation: NDArray[np.float64], candidates: NDArray[np.intp]) -> NearestCondition:
         distances = exact_distances(self._exact[candidates], situation)
         first = int(distances.argmin())  # the first of equal ones: candidates are in order of age
         winner, distance = int(candidates[first]), float(distances[first])
         distances[first] = math.inf
         second = int(distances.argmin())
-        return Nearest(winner, distance, int(candidates[second]), float(distances[second]))
+        return NearestCondition(winner, distance, int(candidates[second]), float(distances[second]))
 
     def _distance(self, position: int, situation: NDArray[np.float64]) -> float:
         """`exact_distances` for one row."""
         return math.sqrt(exact_square(self._exact[position] - situation))
 
-    def _two(self, best: int, second: int, situation: NDArray[np.float64]) -> Nearest:
+    def _two(self, best: int, second: int, situation: NDArray[np.float64]) -> NearestCondition:
         """`exact_distances` for two rows: the same sums, at half of what `_distance` would cost twice."""
         rows, squares = self._pair, self._squares
         np.subtract(self._exact[best], situation, rows[0])
         np.subtract(self._exact[second], situation, rows[1])
         np.multiply(rows, rows, rows)
         _sum(rows, 1, out=squares)
-        return Nearest(best, math.sqrt(squares.item(0)), second, math.sqrt(squares.item(1)))
+        return NearestCondition(best, math.sqrt(squares.item(0)), second, math.sqrt(squares.item(1)))
 
     def _grow(self) -> None:
         self._exact = _twice_as_long(self._exact)

@@ -10,7 +10,7 @@ class Appraisal(NamedTuple):
     punishments: int = 0
 
 
-class Appraisals:
+class RewardCounts:
     """Those of all RLAs, by their ids."""
 
     def __init__(self) -> None:

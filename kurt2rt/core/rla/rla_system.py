@@ -11,15 +11,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.core.rla.active_rlas import LivingRlas
+from kurt2rt.core.rla.active_rlas import ActiveRlas
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.fingerprint import knowledge_hash_of
-from kurt2rt.core.rla.lesson_history import LessonBook, LessonRecord
+from kurt2rt.core.rla.lesson_history import LessonHistory, LessonRecord
 from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.named_situations import NamedSituations
 from kurt2rt.core.rla.outcome import Outcome
 from kurt2rt.core.rla.outcome_text import text_of
-from kurt2rt.core.rla.reward_counts import Appraisal, Appraisals
+from kurt2rt.core.rla.reward_counts import Appraisal, RewardCounts
 from kurt2rt.core.rla.rla import (
     ASK,
     BASIC,
@@ -71,11 +71,11 @@ class RlaSystem:
         self.changes = 0
         """How many events were applied: while it stays as it is, equal situations have equal answers."""
         self._spaces = {**(others or {}), BASIC: Space(dimensions, radius, self.weights)}
-        self._living = LivingRlas(self._spaces)
+        self._living = ActiveRlas(self._spaces)
         self._last_id = 0
-        self._appraisals = Appraisals()
+        self._appraisals = RewardCounts()
         self._names = NamedSituations()
-        self._book = LessonBook()
+        self._book = LessonHistory()
         self._before: dict[str, str] = {}
         """Of each lesson that stands and changed an action: that which had given the one before. By command ids, for an
         RLA as it was would be kept of every correction."""

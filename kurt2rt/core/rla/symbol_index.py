@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.core.rla.matching import Nearest, fitting_row
+from kurt2rt.core.rla.matching import NearestCondition, fitting_row
 
 
 def hamming_distances(rows: NDArray[np.float64], symbols: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -68,7 +68,7 @@ class SymbolIndex:
         """Distance of each condition to `situation` (d,), shape (n,), in order of age."""
         return self._distances(self._rows, situation)
 
-    def nearest(self, situation: NDArray[np.float64]) -> Nearest | None:
+    def nearest(self, situation: NDArray[np.float64]) -> NearestCondition | None:
         """Nearest condition to `situation` (d,), of equal ones the older, and the one behind; None if there is none."""
         if not len(self):
             return None
@@ -76,7 +76,7 @@ class SymbolIndex:
         best = int(distances.argmin())
         distance = float(distances[best])
         if len(self) == 1:
-            return Nearest(best, distance, -1, math.inf)
+            return NearestCondition(best, distance, -1, math.inf)
         distances[best] = math.inf
         second = int(distances.argmin())
-        return Nearest(best, distance, second, float(distances[second]))
+        return NearestCondition(best, distance, second, float(distances[second]))

@@ -10,7 +10,7 @@ from kurt2rt.core.teaching.commands import Drive
 _BY_HAND = "by hand"
 
 
-class Authority:
+class ControlAuthority:
     """One teacher at a time. His hand has a lease that the loop ends, so a silent teacher is a robot that stands.
 
     Whoever speaks first is the teacher; another one becomes it only by `take` or when it is handed over.

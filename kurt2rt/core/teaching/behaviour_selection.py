@@ -1,15 +1,15 @@
 """The teacher says which taught behaviour is to be followed: for good, or before a mid level until a junction."""
 
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.teaching.commands import Pursue
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 
 
-class Pursuing:
+class BehaviourSelection:
     """Takes the wishes of teachers in the order in which they saw the robot, however late they come."""
 
-    def __init__(self, wanted: Wanted, mid: MidLessons | None) -> None:
+    def __init__(self, wanted: ActiveBehaviour, mid: MidLessons | None) -> None:
         """`mid`: None: nobody but the teacher says what is wanted."""
         self._wanted = wanted
         self._mid = mid

@@ -9,14 +9,14 @@ from kurt2rt.core.critic.critic import Critic, Opinion
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import Decision
 from kurt2rt.core.perception.perception import Situation
-from kurt2rt.core.reinforcement.decision_history import RecentDecisions
+from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
 from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.rla.rla import BASIC, CRITIC, MID, Origin, Phase, Rla, TeachingEvent
 from kurt2rt.core.rla.rla_system import InvalidEventError
-from kurt2rt.core.teaching.authority import Authority
-from kurt2rt.core.teaching.behaviour_selection import Pursuing
+from kurt2rt.core.teaching.authority import ControlAuthority
+from kurt2rt.core.teaching.behaviour_selection import BehaviourSelection
 from kurt2rt.core.teaching.commands import (
     BeAt,
     BeginSession,
@@ -38,11 +38,11 @@ from kurt2rt.core.teaching.commands import (
     Teach,
     Watch,
 )
-from kurt2rt.core.teaching.goal_commands import Errands
-from kurt2rt.core.teaching.knowledge_updater import Learning
-from kurt2rt.core.teaching.lesson_builder import Tuition, require_action
+from kurt2rt.core.teaching.goal_commands import GoalCommands
+from kurt2rt.core.teaching.knowledge_updater import KnowledgeUpdater
+from kurt2rt.core.teaching.lesson_builder import LessonBuilder, require_action
 from kurt2rt.core.teaching.mid_lessons import MidLessons
-from kurt2rt.core.teaching.rewards import Appraising
+from kurt2rt.core.teaching.rewards import RewardCommands
 from kurt2rt.core.teaching.session_clock import TeachingClock
 from kurt2rt.core.teaching.taught import Taught
 
@@ -55,13 +55,13 @@ _COPIES_OF = 32
 _Answer = tuple[CommandResult, TeachingEvent | None]
 
 
-class School:
+class CommandHandler:
     """What teachers may do: lessons, rewards, appraisals and undo, sessions, phases, stop and resume."""
 
     def __init__(
         self,
         level: BasicLevel,
-        authority: Authority,
+        authority: ControlAuthority,
         *,
         insert_beyond_share: float,
         taken_command_ids: Iterable[str],
@@ -70,7 +70,7 @@ class School:
         agreement: Agreement | None = None,
         self_teaching: SelfTeaching | None = None,
         mid: MidLessons | None = None,
-        errands: Errands | None = None,
+        errands: GoalCommands | None = None,
         asked: bool = True,
     ) -> None:
         """Without `reinforcement` nothing is learnt from rewards, without `self_teaching` nothing in phase 5.
@@ -89,16 +89,16 @@ class School:
         self.reinforcement = reinforcement
         self.mid = mid
         self._errands = errands
-        self.recent = RecentDecisions(level.system.dimensions) if reinforcement is None else reinforcement.recent
-        self._tuition = Tuition(
+        self.recent = DecisionHistory(level.system.dimensions) if reinforcement is None else reinforcement.recent
+        self._tuition = LessonBuilder(
             level,
             self.recent,
             insert_beyond_share=insert_beyond_share,
             reinforcement=reinforcement,
-            appraising=None if critic is None else Appraising(critic, level.system, self.recent),
+            appraising=None if critic is None else RewardCommands(critic, level.system, self.recent),
             mid=mid,
         )
-        self.learning = Learning(
+        self.learning = KnowledgeUpdater(
             level,
             taken_command_ids=taken_command_ids,
             reinforcement=reinforcement,
@@ -112,7 +112,7 @@ class School:
         self.stopped_at_tick = -1
         """When a teacher last said stop, or the guard did: what was said on an older picture must not lift it."""
         self._stops_since_go: deque[str] = deque(maxlen=_COPIES_OF)
-        self._pursuing = Pursuing(self.wanted, mid)
+        self._pursuing = BehaviourSelection(self.wanted, mid)
         self._clock = TeachingClock()
 
     def has_taken(self, command_id: str) -> bool:
@@ -233,7 +233,7 @@ class School:
             self.mid.taught(command)
 
     def learn(self, tick: int, decision: Decision, opinion: Opinion | None) -> list[TeachingEvent]:
-        """What is learnt from a tick when the wheels have been told; see `Learning.from_tick`."""
+        """What is learnt from a tick when the wheels have been told; see `KnowledgeUpdater.from_tick`."""
         return self.learning.from_tick(self.phase, tick, decision, opinion)
 
     def _carry_out(self, command: Command, situation: Situation, tick: int) -> Taught:
@@ -298,7 +298,7 @@ class School:
         self.stop(ActiveStop(reason, command.teacher), command.teacher)
         return Outcome(ResultCode.STOPPED)
 
-    def _errands_of(self) -> Errands:
+    def _errands_of(self) -> GoalCommands:
         if self._errands is None:
             raise CommandRefusedError(RefusalCode.NO_MID_LEVEL)
         return self._errands

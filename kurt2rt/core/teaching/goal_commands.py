@@ -11,7 +11,7 @@ ErrandCommand = NameSituation | Seek | StopSeeking | BeAt
 LONGEST_NAME = 64
 
 
-class Errands:
+class GoalCommands:
     """Carries these commands out, with the navigator."""
 
     def __init__(self, navigator: Navigator, lessons: MidLessons) -> None:

@@ -4,7 +4,7 @@ from collections import deque
 from collections.abc import Iterable
 
 from kurt2rt.core.teaching.commands import Stop
-from kurt2rt.core.teaching.system_events import Input, PressesForgotten, SetDown, SpeedChanged
+from kurt2rt.core.teaching.system_events import Input, PairingRenewed, RobotRepositioned, SpeedChanged
 
 
 class InboxFullError(RuntimeError):
@@ -20,7 +20,7 @@ class TeacherInbox:
 
     def put(self, command: Input) -> None:
         """Hand a command to the next tick. Raises InboxFullError; a stop, and what has happened, is always taken."""
-        if isinstance(command, PressesForgotten | SetDown | SpeedChanged):
+        if isinstance(command, PairingRenewed | RobotRepositioned | SpeedChanged):
             self._waiting.appendleft(command)  # it has happened, and the commands that wait have not
             return
         if len(self._waiting) >= self._capacity and not isinstance(command, Stop):

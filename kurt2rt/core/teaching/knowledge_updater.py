@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.critic import Opinion
-from kurt2rt.core.critic.state import Role
+from kurt2rt.core.critic.state import CriticState
 from kurt2rt.core.decision.decision import Decision
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
@@ -13,7 +13,7 @@ from kurt2rt.core.rla.rla import Phase, TeachingEvent
 from kurt2rt.core.rla.rla_system import InvalidEventError
 
 
-class Learning:
+class KnowledgeUpdater:
     """The one place where the knowledge of a running robot changes; all that follow it are told."""
 
     def __init__(
@@ -37,9 +37,9 @@ class Learning:
         self._skipped = 0
 
     @property
-    def critics_role(self) -> Role:
+    def critics_role(self) -> CriticState:
         """What the critic did in the last tick; it listens where there is none."""
-        return Role.LISTENS if self._self_teaching is None else self._self_teaching.role
+        return CriticState.LISTENS if self._self_teaching is None else self._self_teaching.role
 
     @property
     def bad_share(self) -> float | None:

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.perception.perception import Situation
-from kurt2rt.core.reinforcement.decision_history import RecentDecisions
+from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
@@ -21,26 +21,26 @@ from kurt2rt.core.rla.rla import (
     RlaRewarded,
 )
 from kurt2rt.core.teaching.commands import Appraise, Correct, DeleteRla, ReplaceAction, Reward, Teach, Undo
-from kurt2rt.core.teaching.lesson_context import Meant
+from kurt2rt.core.teaching.lesson_context import LessonContext
 from kurt2rt.core.teaching.mid_lessons import MidLessons
-from kurt2rt.core.teaching.rewards import Appraising
+from kurt2rt.core.teaching.rewards import RewardCommands
 from kurt2rt.core.teaching.taught import Taught, rla_outcome
 
 LessonCommand = Teach | Correct | ReplaceAction | DeleteRla | Reward | Appraise | Undo
 """Commands that are about the knowledge."""
 
 
-class Tuition:
+class LessonBuilder:
     """Makes the events of lessons, and applies none; the teacher may mean a decision of the last seconds."""
 
     def __init__(
         self,
         level: BasicLevel,
-        recent: RecentDecisions,
+        recent: DecisionHistory,
         *,
         insert_beyond_share: float,
         reinforcement: Reinforcement | None,
-        appraising: Appraising | None,
+        appraising: RewardCommands | None,
         mid: MidLessons | None = None,
     ) -> None:
         """Without `reinforcement` rewards are only counted; without `appraising` there is no critic to teach.
@@ -113,20 +113,20 @@ class Tuition:
             return Taught(rla_outcome(ResultCode.RLA_CONFLICTS, other, action=command.action))
         return self._replace(rla, command.action, origin)
 
-    def _meant_at_the_basic_level(self, decision_tick: int | None, situation: Situation) -> Meant:
+    def _meant_at_the_basic_level(self, decision_tick: int | None, situation: Situation) -> LessonContext:
         share = self._insert_beyond_share
         if decision_tick is None:
             newest = self._recent.newest
             drove, touched = self._recent.rla(newest), self._recent.touched(newest)
-            return Meant(situation.vector, self._level.wanted.behaviour, BASIC, drove, share, touched)
+            return LessonContext(situation.vector, self._level.wanted.behaviour, BASIC, drove, share, touched)
         self._require_known(decision_tick)
         if not self._recent.saw(decision_tick):
             raise CommandRefusedError(RefusalCode.WAS_BLIND)
         behaviour, drove = self._recent.behaviour(decision_tick), self._recent.rla(decision_tick)
         touched = self._recent.touched(decision_tick)
-        return Meant(self._recent.situation(decision_tick), behaviour, BASIC, drove, share, touched)
+        return LessonContext(self._recent.situation(decision_tick), behaviour, BASIC, drove, share, touched)
 
-    def _beside(self, action: str, meant: Meant, nearest: Match | None, origin: Origin) -> Taught:
+    def _beside(self, action: str, meant: LessonContext, nearest: Match | None, origin: Origin) -> Taught:
         """Another RLA on the very condition of those that know the situation; where none does, a first one."""
         if meant.level != MID:
             raise CommandRefusedError(RefusalCode.NO_OTHER_WAY)
@@ -137,7 +137,7 @@ class Tuition:
                 return Taught(rla_outcome(ResultCode.RLA_AGREES, rla, action=action))
         return self._create(action, meant, origin, beside=nearest.rla)
 
-    def _of_competitors(self, nearest: Rla, meant: Meant) -> Rla:
+    def _of_competitors(self, nearest: Rla, meant: LessonContext) -> Rla:
         """Where several stand on one condition: the one that drove then, else the one that would answer."""
         group = self._system.competitors(nearest)
         if len(group) == 1 or nearest.asks:
@@ -149,7 +149,7 @@ class Tuition:
             return nearest
         return self._reinforcement.choice.best(group)
 
-    def _create(self, action: str, meant: Meant, origin: Origin, beside: Rla | None = None) -> Taught:
+    def _create(self, action: str, meant: LessonContext, origin: Origin, beside: Rla | None = None) -> Taught:
         rla = Rla(
             rla_id=self._system.next_id,
             condition=tuple(meant.vector.tolist()) if beside is None else beside.condition,
@@ -239,7 +239,7 @@ class Tuition:
             raise CommandRefusedError(RefusalCode.TICK_FORGOTTEN, tick=tick)
 
 
-def _may_not_stand_beside(nearest: Match, meant: Meant) -> bool:
+def _may_not_stand_beside(nearest: Match, meant: LessonContext) -> bool:
     """Whether a situation is at a place that is known, where a second one so near would be the same place twice."""
     return (
         meant.insert_beyond_share > 0.0

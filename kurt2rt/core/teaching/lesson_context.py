@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 
-class Meant(NamedTuple):
+class LessonContext(NamedTuple):
     """Which situation a teacher means, of which level, and what was done there."""
 
     vector: NDArray[np.float64]

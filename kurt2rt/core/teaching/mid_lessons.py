@@ -7,8 +7,8 @@ from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.rla.outcome import CommandRefusedError, RefusalCode
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import Correct, Teach
-from kurt2rt.core.teaching.lesson_context import Meant
-from kurt2rt.core.teaching.recent_mid import RecentMid
+from kurt2rt.core.teaching.lesson_context import LessonContext
+from kurt2rt.core.teaching.recent_mid import MidHistory
 
 
 class MidLessons:
@@ -18,7 +18,7 @@ class MidLessons:
         self.mid = mid
         self.passed_at_tick = -1
         """When a junction had been passed last: what was said before it was about that one."""
-        self._recent = RecentMid()
+        self._recent = MidHistory()
 
     def remember(self, tick: int, decision: Decision) -> None:
         """Keep what the mid level decided in a tick."""
@@ -29,7 +29,7 @@ class MidLessons:
         if decided.event is not None:
             self.passed_at_tick = tick
 
-    def meant(self, decision_tick: int | None) -> Meant:
+    def meant(self, decision_tick: int | None) -> LessonContext:
         """The situation of a tick; None: the present one.
 
         Raises CommandRefusedError for one that is not remembered, or in which the robot did not know where it was.
@@ -37,11 +37,11 @@ class MidLessons:
         share = self.mid.settings.learning.insert_beyond_share
         if decision_tick is None:
             newest = self._recent.newest
-            return _known(Meant(self.mid.vector, "", MID, None if newest is None else newest.rla_id, share))
+            return _known(LessonContext(self.mid.vector, "", MID, None if newest is None else newest.rla_id, share))
         moment = self._recent.at(decision_tick)
         if moment is None:
             raise CommandRefusedError(RefusalCode.TICK_FORGOTTEN, tick=decision_tick)
-        return _known(Meant(moment.vector, "", MID, moment.rla_id, share))
+        return _known(LessonContext(moment.vector, "", MID, moment.rla_id, share))
 
     def taught(self, command: Teach | Correct) -> None:
         """A lesson of the mid level was given just now: where it is about the present, it ends what went before it.
@@ -60,7 +60,7 @@ class MidLessons:
             mid.override(command.action)
 
 
-def _known(meant: Meant) -> Meant:
+def _known(meant: LessonContext) -> LessonContext:
     """Places are matched by distances, and there are none from nowhere."""
     if np.isnan(meant.vector).any():
         raise CommandRefusedError(RefusalCode.PLACE_UNKNOWN)

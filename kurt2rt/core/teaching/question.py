@@ -68,7 +68,7 @@ class Question:
 
 
 @dataclass(frozen=True, slots=True)
-class WayQuestion:
+class MidQuestion:
     """What the teacher sees when the mid level asks which taught behaviour is to be followed."""
 
     nearest_rla: int | None
@@ -95,12 +95,12 @@ class WayQuestion:
         )
 
 
-def ask_the_way(match: Match | None, words: Iterable[str]) -> WayQuestion:
+def ask_the_way(match: Match | None, words: Iterable[str]) -> MidQuestion:
     """Question of the mid level, whose nearest RLA is `match`; `words` of its situation, empty ones left out."""
     here = tuple(word for word in words if word)
     if match is None:
-        return WayQuestion(None, None, float("inf"), 0.0, here)
-    return WayQuestion(match.rla.rla_id, match.rla.action, match.distance, match.radius, here)
+        return MidQuestion(None, None, float("inf"), 0.0, here)
+    return MidQuestion(match.rla.rla_id, match.rla.action, match.distance, match.radius, here)
 
 
 def ask(

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 
-class MidMoment(NamedTuple):
+class MidSnapshot(NamedTuple):
     """What the mid level saw and decided, the same for many ticks."""
 
     vector: NDArray[np.float64]
@@ -17,12 +17,12 @@ class MidMoment(NamedTuple):
     """The mid-level RLA that commanded; None where it asked, or a teacher commanded."""
 
 
-class RecentMid:
+class MidHistory:
     """The last `capacity` of them, by the ticks in which they were: a teacher may mean a junction of minutes ago."""
 
     def __init__(self, capacity: int = 64) -> None:
         self._first_ticks: deque[int] = deque(maxlen=capacity)
-        self._moments: deque[MidMoment] = deque(maxlen=capacity)
+        self._moments: deque[MidSnapshot] = deque(maxlen=capacity)
         self._newest = -1
 
     def remember(self, tick: int, vector: NDArray[np.float64], rla_id: int | None) -> None:
@@ -36,14 +36,14 @@ class RecentMid:
             if last.vector is vector and last.rla_id == rla_id:
                 return
         self._first_ticks.append(tick)
-        self._moments.append(MidMoment(vector, rla_id))
+        self._moments.append(MidSnapshot(vector, rla_id))
 
     @property
-    def newest(self) -> MidMoment | None:
+    def newest(self) -> MidSnapshot | None:
         """The newest one; None before the first."""
         return self._moments[-1] if self._moments else None
 
-    def at(self, tick: int) -> MidMoment | None:
+    def at(self, tick: int) -> MidSnapshot | None:
         """That of a tick; None where it is forgotten, or still to come."""
         place = bisect_right(self._first_ticks, tick) - 1 if tick <= self._newest else -1
         return self._moments[place] if place >= 0 else None

@@ -1,7 +1,7 @@
 """Teaching the critic what a situation was worth (paper, phase 4)."""
 
 from kurt2rt.core.critic.critic import Critic
-from kurt2rt.core.reinforcement.decision_history import RecentDecisions
+from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import CRITIC, ActionReplaced, Appraised, Origin, Rla, RlaCreated
 from kurt2rt.core.rla.rla_system import RlaSystem
@@ -9,10 +9,10 @@ from kurt2rt.core.teaching.commands import Appraise
 from kurt2rt.core.teaching.taught import Taught, rla_outcome
 
 
-class Appraising:
+class RewardCommands:
     """Turns what a teacher says of a situation into the event that teaches it to the critic."""
 
-    def __init__(self, critic: Critic, system: RlaSystem, recent: RecentDecisions) -> None:
+    def __init__(self, critic: Critic, system: RlaSystem, recent: DecisionHistory) -> None:
         self._critic = critic
         self._system = system
         self._recent = recent

@@ -9,14 +9,14 @@ from kurt2rt.core.teaching.commands import Command
 
 
 @dataclass(frozen=True, slots=True)
-class PressesForgotten:
+class PairingRenewed:
     """A teacher's device has new keys, or none any more: presses of it are counted anew."""
 
     teacher: str
 
 
 @dataclass(frozen=True, slots=True)
-class SetDown:
+class RobotRepositioned:
     """Somebody has set the robot down elsewhere: how it came there says nothing now."""
 
 
@@ -27,7 +27,7 @@ class SpeedChanged:
     times: int
 
 
-Happening = PressesForgotten | SetDown | SpeedChanged
+SystemEvent = PairingRenewed | RobotRepositioned | SpeedChanged
 
-Input = Command | Happening
+Input = Command | SystemEvent
 """What a tick takes from the inbox."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from behaviors.metrics.task_metric import Course, RouteCourse
+from behaviors.metrics.task_metric import RouteMetric, TaskMetric
 from hal.settings import SettingsError
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
@@ -20,9 +20,9 @@ def require_course(stage: SimulationFactory, task: TaskSettings, worlds: Iterabl
             raise SettingsError(str(error), where=f"task {task.name}") from error
 
 
-def route_of(course: Course, task: TaskSettings) -> RouteCourse:
+def route_of(course: TaskMetric, task: TaskSettings) -> RouteMetric:
     """The course, along whose route a mid level is taught. Raises hal.settings.SettingsError for another one."""
-    if isinstance(course, RouteCourse):
+    if isinstance(course, RouteMetric):
         return course
     raise SettingsError(
         f"course {task.course.kind} has no route, so nobody can say what the mid level is to want",

@@ -11,7 +11,7 @@ from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.exam import ExamResult, examine
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
-from kurt2rt.experiments.lockstep.lesson import LessonResult, teach
+from kurt2rt.experiments.lockstep.lesson import TrainingResult, teach
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 from kurt2rt.knowledge.journal.loading import read_lessons
@@ -39,7 +39,7 @@ class WorldResult:
 class CurriculumResult:
     """A lesson and its exams."""
 
-    lesson: LessonResult
+    lesson: TrainingResult
     exams: tuple[WorldResult, ...]
 
 
@@ -53,7 +53,7 @@ async def run_lesson(
     report: Report,
     on_saved: Callable[[Acknowledgement], None] = lambda _: None,
     plan: LessonPlan | None = None,
-) -> tuple[LessonResult, list[TeachingEvent]]:
+) -> tuple[TrainingResult, list[TeachingEvent]]:
     """Teach, with the lessons kept in the file `knowledge`; returns the result and all events the file then holds.
 
     Goes on from what the file holds already. `on_saved` hears of each lesson once it is durable. `plan`: None: the

@@ -3,10 +3,10 @@
 import math
 import random
 
-from behaviors.metrics.task_metric import RouteCourse
+from behaviors.metrics.task_metric import RouteMetric
 from hal.simulation import Simulation
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.lockstep.stuck_detector import WayMade
+from kurt2rt.experiments.lockstep.stuck_detector import StuckDetector
 
 
 class Drive:
@@ -23,8 +23,8 @@ class Drive:
         """How often it was set down elsewhere, rescues left out."""
         self._simulation = simulation
         self._chance = chance
-        self._way = WayMade(no_way_s, period_s, least_m=task.exam.stuck_within_m)
-        if isinstance(self.course, RouteCourse):
+        self._way = StuckDetector(no_way_s, period_s, least_m=task.exam.stuck_within_m)
+        if isinstance(self.course, RouteMetric):
             simulation.put(self.course.set_down_at)
         self._pose = simulation.pose
         self.course.put(self._pose)
@@ -48,7 +48,7 @@ class Drive:
 
     def rescue(self) -> None:
         """Set it down at the nearest start pose, or on its route."""
-        if isinstance(self.course, RouteCourse):
+        if isinstance(self.course, RouteMetric):
             self._simulation.put(self.course.set_down_at)
         else:
             self._simulation.rescue()
@@ -59,7 +59,7 @@ class Drive:
 
         On a route it is set down there.
         """
-        if isinstance(self.course, RouteCourse):
+        if isinstance(self.course, RouteMetric):
             self._simulation.put(self.course.set_down_at)
         else:
             self._simulation.reposition(self._chance, in_sight=in_sight, close=close)

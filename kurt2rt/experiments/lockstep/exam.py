@@ -4,11 +4,11 @@ import random
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
-from behaviors.metrics.task_metric import JUNCTIONS, RIGHT, Course, Findings
+from behaviors.metrics.task_metric import JUNCTIONS, RIGHT, Findings, TaskMetric
 from hal.robot_settings import RobotSettings
 from hal.simulation import Position, Simulation
 from kurt2rt.core.basic.policy_level import PolicyLevel
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.level import Level
 from kurt2rt.core.rla.rla import Rla, TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
@@ -24,7 +24,7 @@ from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
 
 
-class NothingIsTaught:
+class NoTeachingAllowed:
     """The keeper of a run in which nobody teaches: an event that comes all the same is a defect."""
 
     trouble: str | None = None
@@ -106,7 +106,7 @@ async def examine(
     alone: Statistics | None = None,
     stuck_ends: bool = True,
     on_record: Callable[[TickRecord], None] = lambda _: None,
-    on_course: Callable[[TickRecord, Course], None] = lambda _record, _course: None,
+    on_course: Callable[[TickRecord, TaskMetric], None] = lambda _record, _course: None,
 ) -> ExamResult:
     """Drive for the exam's duration with what `events` have taught, or by the teacher's own policy.
 
@@ -120,7 +120,7 @@ async def examine(
     names an action which the repertoire lacks.
     """
     period_s = settings.can.cycle_s
-    wanted = Wanted(task.behaviours)
+    wanted = ActiveBehaviour(task.behaviours)
     level: Level | None = None
     if by_teacher:
         task = task.model_copy(update={"mid": None})  # its place is the teacher's, too
@@ -136,7 +136,7 @@ async def examine(
         settings,
         task,
         events,
-        NothingIsTaught(),
+        NoTeachingAllowed(),
         clock,
         level_override=level,
         wanted=wanted,

@@ -15,16 +15,23 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Command, DeleteRla, Resume, Reward
-from kurt2rt.core.tick import LessonKeeper, TickRecord
+from kurt2rt.core.tick import EventStore, TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
 from kurt2rt.experiments.lockstep.compatibility import route_of
 from kurt2rt.experiments.lockstep.drive import Drive
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
 from kurt2rt.experiments.lockstep.lesson_runtime import build_lesson_runtime
 from kurt2rt.experiments.lockstep.primitives import primitives
-from kurt2rt.experiments.lockstep.teacher_workload import Load, Minute
-from kurt2rt.platform.ledger import Ledger
-from kurt2rt.teacher.scripted.appraiser import BlamedByChance, Habits, Judged, ScriptedAppraiser, Signs, UnknownIsBad
+from kurt2rt.experiments.lockstep.teacher_workload import TeacherWorkload, WorkloadMinute
+from kurt2rt.platform.ledger import TickTimer
+from kurt2rt.teacher.scripted.appraiser import (
+    FeedbackTiming,
+    JudgeReward,
+    RandomPenalty,
+    RewardSource,
+    ScriptedAppraiser,
+    UnknownPenalty,
+)
 from kurt2rt.teacher.scripted.dispatcher import ScriptedDispatcher
 from kurt2rt.teacher.scripted.teacher import teacher_of
 
@@ -34,7 +41,7 @@ _AGREEMENT_EVERY_S = 10
 
 
 @dataclass(frozen=True, slots=True)
-class LessonResult:
+class TrainingResult:
     """What a lesson came to."""
 
     seed: int
@@ -50,7 +57,7 @@ class LessonResult:
     """Number of RLAs after each second of teaching."""
     trail: tuple[Position, ...]
     ask_positions: tuple[Position, ...]
-    ledger: Ledger = field(compare=False, repr=False)
+    ledger: TickTimer = field(compare=False, repr=False)
     """Where the time of its last ticks went, on the machine that ran it."""
     alarms: int = 0
     """How often the guard stopped the robot for good, and its teacher said Go."""
@@ -63,7 +70,7 @@ class LessonResult:
     """What progress is counted in."""
     findings: Findings = field(default_factory=dict)
     """What the course measured besides."""
-    load: tuple[Minute, ...] = ()
+    load: tuple[WorkloadMinute, ...] = ()
     """What the teacher said, minute by minute."""
     praise: int = 0
     blame: int = 0
@@ -96,7 +103,7 @@ async def teach(
     simulation: Simulation,
     settings: RobotSettings,
     task: TaskSettings,
-    keeper: LessonKeeper,
+    keeper: EventStore,
     events: Sequence[TeachingEvent],
     *,
     seed: int,
@@ -104,7 +111,7 @@ async def teach(
     statistics: StatisticsCounter | None = None,
     saved: Statistics | None = None,
     plan: LessonPlan | None = None,
-) -> LessonResult:
+) -> TrainingResult:
     """Teach the task for its whole duration; what was taught goes to `keeper`.
 
     `events`: what an earlier lesson taught, to go on from there; `statistics`: what was counted then, to count on;
@@ -133,7 +140,7 @@ async def teach(
     ticks = round(plan.duration_s / period_s)
     begins = _begins(plan, period_s)
     ticks_per_second = round(1 / period_s)
-    load = Load(ticks, period_s)
+    load = TeacherWorkload(ticks, period_s)
     growth: list[int] = []
     trail: list[Position] = []
     ask_positions: list[Position] = []
@@ -220,7 +227,7 @@ async def teach(
         enter(plan.phases[0][0])
     await runtime.scheduler.run(ticks, after_tick)
     system = runtime.level.system
-    return LessonResult(
+    return TrainingResult(
         seed=seed,
         world=task.teaching.world,
         teaching_s=ticks * period_s,
@@ -274,23 +281,21 @@ def _teacher_of(
     session: str,
 ) -> ScriptedAppraiser:
     period_s, times = settings.can.cycle_s, plan.times
-    signs: Signs | None = None
+    signs: RewardSource | None = None
     if plan.signs == "unknown":
-        signs = UnknownIsBad()
+        signs = UnknownPenalty()
     elif plan.signs == "chance":
         # What is meant in the last second would be said when the lesson is over.
         last_s = plan.duration_s - task.teaching.teacher.reaction_s
-        signs = BlamedByChance(
-            plan.blame_by_chance, round(last_s / period_s), round(times.bad_every_s / period_s), seed
-        )
+        signs = RandomPenalty(plan.blame_by_chance, round(last_s / period_s), round(times.bad_every_s / period_s), seed)
     elif plan.signs == "judge":
         if task.judge is None:
             raise SettingsError(
                 "there is no judge, so nobody can praise or blame", where=f"task {task.name}", do="add `judge:`"
             )
-        signs = Judged(task.judge.build(), round(times.patience_s / period_s))
+        signs = JudgeReward(task.judge.build(), round(times.patience_s / period_s))
     every_s = {-1: times.bad_every_s, 0: times.neutral_every_s, 1: times.good_every_s}
-    habits = Habits(
+    habits = FeedbackTiming(
         reaction=round(task.teaching.teacher.reaction_s / period_s),
         every={value: round(each_s / period_s) for value, each_s in every_s.items()},
         gap=round(times.gap_s / period_s),

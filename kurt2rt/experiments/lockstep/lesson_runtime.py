@@ -8,7 +8,7 @@ from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.tick import LessonKeeper
+from kurt2rt.core.tick import EventStore
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import Runtime, build_runtime
 
@@ -17,7 +17,7 @@ def build_lesson_runtime(
     simulation: Simulation,
     settings: RobotSettings,
     task: TaskSettings,
-    keeper: LessonKeeper,
+    keeper: EventStore,
     events: Sequence[TeachingEvent],
     *,
     statistics: StatisticsCounter | None = None,

@@ -11,7 +11,7 @@ from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, run_exams, run_lesson
 from kurt2rt.experiments.study.pool import JobKilledError, Tell, run_jobs
-from kurt2rt.experiments.study.progress_sum import RobotTime
+from kurt2rt.experiments.study.progress_sum import ProgressSum
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ class SeedJob:
 
     def run(self, tell: Tell) -> CurriculumResult:
         """Teach and examine one seed."""
-        report = RobotTime(tell).report
+        report = ProgressSum(tell).report
 
         async def run() -> CurriculumResult:
             lesson, events = await run_lesson(

@@ -6,7 +6,7 @@ from collections import deque
 from hal.simulation import Position
 
 
-class WayMade:
+class StuckDetector:
     """Tells a robot that stays about where it is, standing or going round in circles, from one that travels."""
 
     def __init__(self, window_s: float, period_s: float, *, least_m: float = 1.0) -> None:

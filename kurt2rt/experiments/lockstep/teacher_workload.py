@@ -5,7 +5,7 @@ from typing import Literal, NamedTuple
 from kurt2rt.core.teaching.commands import Appraise, Command, Correct, DeleteRla, ReplaceAction, Reward, Teach
 
 
-class Minute(NamedTuple):
+class WorkloadMinute(NamedTuple):
     """What a teacher said and did in one minute of robot time, also where it changed nothing."""
 
     lessons: int = 0
@@ -30,16 +30,16 @@ SAID = ("lessons", "corrections", "rewards", "appraisals")
 """What is said; the rest is done."""
 
 
-class Load:
+class TeacherWorkload:
     """Counts what a teacher says, minute by minute."""
 
     def __init__(self, ticks: int, period_s: float) -> None:
         """Of a lesson of so many ticks; a minute that is begun counts."""
         self._ticks_per_minute = round(60.0 / period_s)
-        self._minutes = [Minute()] * max(1, -(-ticks // self._ticks_per_minute))
+        self._minutes = [WorkloadMinute()] * max(1, -(-ticks // self._ticks_per_minute))
 
     @property
-    def minutes(self) -> tuple[Minute, ...]:
+    def minutes(self) -> tuple[WorkloadMinute, ...]:
         """One after the other; the last one may be shorter."""
         return tuple(self._minutes)
 

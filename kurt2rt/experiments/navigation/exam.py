@@ -11,7 +11,7 @@ from behaviors.metrics.town import length_m
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose, Simulation
 from kurt2rt.core.decision.goal import NamedGoal
-from kurt2rt.core.decision.plan_step import Course
+from kurt2rt.core.decision.plan_step import GoalStatus
 from kurt2rt.core.rla.rla import Rla, TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
@@ -19,8 +19,8 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import BeAt, Command, Seek, StopSeeking
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
-from kurt2rt.experiments.lockstep.exam import NothingIsTaught
-from kurt2rt.experiments.lockstep.stuck_detector import WayMade
+from kurt2rt.experiments.lockstep.exam import NoTeachingAllowed
+from kurt2rt.experiments.lockstep.stuck_detector import StuckDetector
 from kurt2rt.experiments.navigation.goals import GoalChosen
 from kurt2rt.experiments.navigation.guided_tour import HOME
 from kurt2rt.experiments.navigation.lesson import TRAIL_STRIDE, places_of, walk_in
@@ -34,7 +34,7 @@ _ASTRAY = 2.0
 
 
 class ByChance:
-    """Any of the ways that are possible at a place (kurt2rt.core.mid.mid_level.Chooser)."""
+    """Any of the ways that are possible at a place (kurt2rt.core.mid.mid_level.TieBreaker)."""
 
     def __init__(self, chance: random.Random) -> None:
         self._chance = chance
@@ -74,7 +74,7 @@ async def run_errands(
         settings,
         task,
         events,
-        NothingIsTaught(),
+        NoTeachingAllowed(),
         clock,
         statistics=StatisticsCounter(dict(saved.uses), dict(saved.transitions)),
         saved=saved,
@@ -86,7 +86,7 @@ async def run_errands(
     limit = round(task.exam.duration_s / period_s)
     done: list[ErrandDone] = []
     trail: list[tuple[float, float]] = []
-    way = WayMade(task.exam.stuck_after_s, period_s, least_m=task.exam.stuck_within_m)
+    way = StuckDetector(task.exam.stuck_after_s, period_s, least_m=task.exam.stuck_within_m)
     said = 0
     number = ticks = 0
     way_m = 0.0
@@ -120,9 +120,9 @@ async def run_errands(
         there = walk.street == goal.street
         plan = decision.plan
         if how == "planning":
-            if plan is not None and ticks > 1 and plan.course is Course.ARRIVED:
+            if plan is not None and ticks > 1 and plan.course is GoalStatus.ARRIVED:
                 return "" if there else "it took another place for it"
-            if plan is not None and ticks > 1 and plan.course in (Course.NO_WAY, Course.LOST):
+            if plan is not None and ticks > 1 and plan.course in (GoalStatus.NO_WAY, GoalStatus.LOST):
                 return plan.course.value
         elif there:
             return ""

@@ -17,7 +17,7 @@ _NOTICES_WITHIN_S = 3.0
 """From a junction that it has left to where the robot says so; later it has missed the junction."""
 
 
-class Guide:
+class TourGuide:
     """Leads along a random route, and rather where he has not led it yet; sees the robot, and what its mid level says.
 
     Each way that he leads it for the first time he teaches, beside what was taught there; where the robot would do

@@ -13,14 +13,14 @@ from kurt2rt.experiments.navigation.outcome import ErrandsOutcome, How
 from kurt2rt.experiments.navigation.robot_day import teach_and_send
 from kurt2rt.experiments.route.lesson import copy_knowledge
 from kurt2rt.experiments.study.pool import Tell
-from kurt2rt.experiments.study.progress_sum import RobotTime
-from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.study.progress_sum import ProgressSum
+from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.stored_paths import KeptByStem
+from kurt2rt.experiments.study.stored_paths import StoredPaths
 
 
 @dataclass(frozen=True, slots=True)
-class ErrandsJob(KeptByStem):
+class ErrandsJob(StoredPaths):
     """Lead one robot about, and send it to goals."""
 
     stage: SimulationFactory
@@ -30,7 +30,7 @@ class ErrandsJob(KeptByStem):
     seed: int
     basic: Path
     """Knowledge of the streets; it is copied."""
-    made_of: MadeOf
+    made_of: Provenance
     results: Results
 
     @property
@@ -69,7 +69,7 @@ class ErrandsJob(KeptByStem):
                 knowledge,
                 seed=self.seed,
                 hows=self.hows,
-                report=RobotTime(tell).report,
+                report=ProgressSum(tell).report,
                 made_of=self.made_of,
             )
             self.keep(knowledge)

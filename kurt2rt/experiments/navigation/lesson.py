@@ -13,11 +13,11 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Correct
-from kurt2rt.core.tick import LessonKeeper, TickRecord
+from kurt2rt.core.tick import EventStore, TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
 from kurt2rt.experiments.lockstep.lesson_runtime import build_lesson_runtime
-from kurt2rt.experiments.lockstep.stuck_detector import WayMade
-from kurt2rt.experiments.navigation.guided_tour import Guide
+from kurt2rt.experiments.lockstep.stuck_detector import StuckDetector
+from kurt2rt.experiments.navigation.guided_tour import TourGuide
 from kurt2rt.experiments.navigation.outcome import Place
 from kurt2rt.teacher.scripted.teacher import picture_of, teacher_of
 
@@ -26,7 +26,7 @@ TRAIL_STRIDE = 20
 
 
 @dataclass(frozen=True, slots=True)
-class LedAbout:
+class TourResult:
     """What a lesson came to."""
 
     teaching_s: float
@@ -72,14 +72,14 @@ async def lead_about(
     simulation: Simulation,
     settings: RobotSettings,
     task: TaskSettings,
-    keeper: LessonKeeper,
+    keeper: EventStore,
     events: Sequence[TeachingEvent],
     *,
     seed: int,
     on_progress: Callable[[float], None],
     statistics: StatisticsCounter | None = None,
     saved: Statistics | None = None,
-) -> LedAbout:
+) -> TourResult:
     """Lead the robot about for the task's whole teaching time, from where it stands; that is its home.
 
     The basic level is answered and corrected meanwhile, as in its own lesson. Raises LessonLostError.
@@ -89,8 +89,10 @@ async def lead_about(
     runtime = build_lesson_runtime(simulation, settings, task, keeper, events, statistics=statistics, saved=saved)
     session = f"errands-{seed}-after-{len(events)}"
     teacher = teacher_of(task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
-    guide = Guide(walk, errands_of(task).names, task.teaching.teacher, period_s=period_s, seed=seed, session=session)
-    way = WayMade(task.teaching.rescue_after_s, period_s, least_m=task.exam.stuck_within_m)
+    guide = TourGuide(
+        walk, errands_of(task).names, task.teaching.teacher, period_s=period_s, seed=seed, session=session
+    )
+    way = StuckDetector(task.teaching.rescue_after_s, period_s, least_m=task.exam.stuck_within_m)
     home = simulation.pose
     unanswered_ticks = round(task.teaching.rescue_after_s / period_s)
     ticks, per_second = round(task.teaching.duration_s / period_s), round(1 / period_s)
@@ -136,7 +138,7 @@ async def lead_about(
     runtime.inbox.put(teacher.enter(Phase.CORRECTIONS))
     await runtime.scheduler.run(ticks, after_tick)
     system = runtime.level.system
-    return LedAbout(
+    return TourResult(
         teaching_s=ticks * period_s,
         home=home,
         named=dict(guide.named),

@@ -3,7 +3,7 @@
 from typing import Literal
 
 from hal.settings import Settings
-from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.study.provenance import Provenance
 
 Place = tuple[float, float]
 """x and y in m, to the millimetre."""
@@ -62,7 +62,7 @@ class ErrandsRun(Settings):
 class ErrandsOutcome(Settings):
     """One robot, led about and sent to goals."""
 
-    made_of: MadeOf | None = None
+    made_of: Provenance | None = None
     seed: int
     teaching_s: float
     ways: int

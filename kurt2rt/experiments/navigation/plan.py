@@ -24,7 +24,7 @@ DECIDING = (ErrandsJob,)
 
 
 @dataclass(frozen=True, slots=True)
-class Programme:
+class NavigationPlan:
     """Everything."""
 
     task: TaskSettings
@@ -50,7 +50,7 @@ def plan(
     basic_folder: Path | None = None,
     controls: bool = False,
     source_of: Callable[[SimulationFactory], str] = lambda stage: source_hash(*DECIDING, type(stage)),
-) -> Programme:
+) -> NavigationPlan:
     """Look at task and worlds, and make the jobs.
 
     `basic`: the task that teaches the streets; `basic_folder`: files of robots that were taught it. `controls`: also
@@ -67,19 +67,21 @@ def plan(
     for seed in seeds:
         made = fingerprints.of(task, worlds, streets.made_of[seed], " ".join(hows))
         jobs.append(ErrandsJob(stage, robot, task, hows, seed, streets.files[seed], made, results))
-    return Programme(task, tuple(seeds), streets.jobs, tuple(jobs))
+    return NavigationPlan(task, tuple(seeds), streets.jobs, tuple(jobs))
 
 
-def robot_time_s(programme: Programme, results: Results) -> float:
+def robot_time_s(programme: NavigationPlan, results: Results) -> float:
     """What is still to be simulated. Raises StudyError."""
     return time_of_missing_s(programme.waves, results)
 
 
-def conduct(programme: Programme, results: Results, processes: int, on_standing: Callable[[Standing], None]) -> None:
+def conduct(
+    programme: NavigationPlan, results: Results, processes: int, on_standing: Callable[[Standing], None]
+) -> None:
     """Do the jobs that are missing, wave by wave. Raises StudyError and what a job raises."""
     do_waves(programme.waves, results, processes, on_standing)
 
 
-def read_outcomes(programme: Programme, results: Results) -> tuple[ErrandsOutcome, ...]:
+def read_outcomes(programme: NavigationPlan, results: Results) -> tuple[ErrandsOutcome, ...]:
     """What all jobs have left. Raises StudyError."""
     return tuple(results.read(job, ErrandsOutcome) for job in programme.jobs)

@@ -16,7 +16,7 @@ from kurt2rt.experiments.navigation.exam import run_errands
 from kurt2rt.experiments.navigation.goals import choose_goals
 from kurt2rt.experiments.navigation.lesson import errands_of, lead_about, walk_in
 from kurt2rt.experiments.navigation.outcome import ErrandsOutcome, How, Place
-from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.knowledge.journal.loading import read_lessons
 
 PLANNING: tuple[How, ...] = ("planning",)
@@ -33,7 +33,7 @@ async def teach_and_send(
     seed: int,
     hows: Sequence[How],
     report: Report,
-    made_of: MadeOf | None = None,
+    made_of: Provenance | None = None,
 ) -> ErrandsOutcome:
     """Teach into a file that holds the streets, and send the robot to its goals, once in each of these ways.
 

@@ -9,7 +9,7 @@ from kurt2rt.experiments.lockstep.report import wilson_interval
 from kurt2rt.experiments.navigation.outcome import ErrandDone, ErrandsOutcome, ErrandsRun, How
 from kurt2rt.experiments.navigation.robot_day import CONTROLS, PLANNING
 from kurt2rt.experiments.study.eligibility import reasons_of_robots
-from kurt2rt.experiments.study.table import Sheet
+from kurt2rt.experiments.study.table import Table
 
 SHARE = 18 / 20
 """Of the goals that are to be reached, by a way that is short enough; and of the robots that are to do so."""
@@ -21,14 +21,14 @@ _TITLES: dict[How, str] = {
 }
 
 
-def sheets(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Iterator[Sheet]:
+def sheets(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Iterator[Table]:
     """All tables."""
     yield asked_sheet(outcomes, course)
     yield runs_sheet(outcomes, course)
     yield robots_sheet(outcomes, course)
 
 
-def asked_sheet(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Sheet:
+def asked_sheet(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
     """What was asked beside what came."""
     runs = _runs(outcomes, "planning")
     goals = sum(len(run.errands) for run in runs)
@@ -59,7 +59,7 @@ def asked_sheet(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> 
     )
     reasons = list(reasons_of_robots([each.seed for each in outcomes]))
     told = tuple((what, asked, came, "not judged" if reasons else _word(met)) for what, asked, came, met in rows)
-    return Sheet(
+    return Table(
         "Errands: what was asked",
         ("what", "asked", "came", "verdict"),
         told,
@@ -68,7 +68,7 @@ def asked_sheet(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> 
     )
 
 
-def runs_sheet(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Sheet:
+def runs_sheet(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
     """By a plan, and the controls."""
     rows = []
     for how in (*PLANNING, *CONTROLS):
@@ -95,7 +95,7 @@ def runs_sheet(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> S
     never = sum(each.demonstrated is None for each in replayed)
     led = [each.demonstrated for each in replayed if each.demonstrated is not None]
     shown = f"mean {statistics.fmean(led):.1f}, least {min(led):.2f} times the shortest" if led else "none"
-    return Sheet(
+    return Table(
         "Goals that were never demonstrated as a whole",
         ("how", "reached in time", "95 %", "reached", "way / shortest", "most", "surprises", "collisions"),
         tuple(rows),
@@ -106,7 +106,7 @@ def runs_sheet(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> S
     )
 
 
-def robots_sheet(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Sheet:
+def robots_sheet(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
     """Each robot by itself."""
     rows = []
     for each in outcomes:
@@ -126,7 +126,7 @@ def robots_sheet(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) ->
                 why or "none",
             )
         )
-    return Sheet(
+    return Table(
         "Each robot",
         ("robot", "led, s", "ways", "mid-level RLAs", "asks", "missed", "rescues", "reached", "not reached"),
         tuple(rows),

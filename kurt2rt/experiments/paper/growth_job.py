@@ -10,7 +10,7 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
 from kurt2rt.experiments.paper.outcome import GrowthOutcome, Reading
 from kurt2rt.experiments.study.pool import Tell
-from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.results import Results
 
 
@@ -24,7 +24,7 @@ class GrowthJob:
     """With this radius, and no phase but the first."""
     reading: Reading
     seed: int
-    made_of: MadeOf
+    made_of: Provenance
     results: Results
 
     @property

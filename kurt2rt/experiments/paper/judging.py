@@ -2,14 +2,14 @@
 
 from collections.abc import Iterator
 
-from kurt2rt.experiments.paper.plan import Programme
+from kurt2rt.experiments.paper.plan import PaperPlan
 from kurt2rt.experiments.study.eligibility import ROBOTS, reasons_of_robots
 
 CHOSEN_ON_ROOMS = range(60)
 """The same of generated rooms."""
 
 
-def reasons_not_to_judge(programme: Programme) -> Iterator[str]:
+def reasons_not_to_judge(programme: PaperPlan) -> Iterator[str]:
     """Sentences; none where everything was done, by enough robots that nobody has seen, in such worlds."""
     if not programme.extent.is_whole:
         yield "A part only: it says that everything works, and nothing about the paper."

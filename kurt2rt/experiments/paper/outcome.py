@@ -4,7 +4,7 @@ from typing import Literal
 
 from hal.settings import Settings
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
-from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.study.provenance import Provenance
 
 Reading = Literal["shipped", "plain"]
 """Of the paper's scheme: with the settings of this project, or plainly as the paper says it."""
@@ -58,7 +58,7 @@ class DriveOutcome(Settings):
 class TaughtOutcome(Settings):
     """One robot, taught and examined."""
 
-    made_of: MadeOf
+    made_of: Provenance
     seed: int
     teaching_s: float
     rlas: int
@@ -75,7 +75,7 @@ class TaughtOutcome(Settings):
 class GrowthOutcome(Settings):
     """One robot, taught in phase 1 only."""
 
-    made_of: MadeOf
+    made_of: Provenance
     seed: int
     radius: float
     growth: tuple[int, ...]

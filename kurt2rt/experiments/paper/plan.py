@@ -24,7 +24,7 @@ DECIDING = (TaughtJob, GrowthJob, Extent)
 
 
 @dataclass(frozen=True, slots=True)
-class Experiment:
+class PaperExperiment:
     """One task in one reading: a job per seed."""
 
     settings: ExperimentSettings
@@ -43,7 +43,7 @@ class Growth:
 
 
 @dataclass(frozen=True, slots=True)
-class Programme:
+class PaperPlan:
     """Everything, in the order in which it is shown."""
 
     paper: PaperSettings
@@ -51,7 +51,7 @@ class Programme:
     seeds: tuple[int, ...]
     source: str
     """Hash of the program's source."""
-    experiments: tuple[Experiment, ...]
+    experiments: tuple[PaperExperiment, ...]
     growth: tuple[Growth, ...]
     """Empty when its task is not among those to be done."""
 
@@ -63,7 +63,7 @@ class Programme:
             *(job for growth in self.growth for job in growth.jobs),
         ]
 
-    def experiments_of(self, reading: Reading) -> tuple[Experiment, ...]:
+    def experiments_of(self, reading: Reading) -> tuple[PaperExperiment, ...]:
         """Those of one reading."""
         return tuple(each for each in self.experiments if each.reading == reading)
 
@@ -79,7 +79,7 @@ def plan(
     *,
     source_of: Callable[[SimulationFactory], str] = lambda stage: source_hash(*DECIDING, type(stage)),
     tasks: Sequence[str] = (),
-) -> Programme:
+) -> PaperPlan:
     """Look at every task and world, and make the jobs.
 
     `source_of`: tells the hash of the program's source; `tasks`: only these, by name or path; empty: all.
@@ -108,13 +108,13 @@ def plan(
     source = source_of(stage)
     fingerprints = Fingerprints(stage, robot, source, ("paper", "plain", *PHASES))
 
-    def experiment(each: ExperimentSettings, reading: Reading, task: TaskSettings) -> Experiment:
+    def experiment(each: ExperimentSettings, reading: Reading, task: TaskSettings) -> PaperExperiment:
         jobs = []
         for seed in seeds:
             own = unseen_of(seed, each)
             made = fingerprints.of(task, (task.teaching.world, *task.exam.worlds, *own))
             jobs.append(TaughtJob(stage, robot, task, reading, seed, own, made, results))
-        return Experiment(each, reading, task, tuple(jobs))
+        return PaperExperiment(each, reading, task, tuple(jobs))
 
     def growth(reading: Reading, task: TaskSettings) -> Growth:
         jobs = []
@@ -125,7 +125,7 @@ def plan(
                 jobs.append(GrowthJob(stage, robot, of_radius, reading, seed, made, results))
         return Growth(reading, task, tuple(jobs))
 
-    return Programme(
+    return PaperPlan(
         paper,
         extent,
         tuple(seeds),

@@ -5,16 +5,16 @@ from pathlib import Path
 
 from kurt2rt.experiments.paper.judging import reasons_not_to_judge
 from kurt2rt.experiments.paper.settings_tables import SUCCESS, exams_sheet, learning_sheet
-from kurt2rt.experiments.paper.study import Study
+from kurt2rt.experiments.paper.study import PaperStudy
 from kurt2rt.experiments.paper.tables import sheets, unseen_sheet
 from kurt2rt.experiments.study.eligibility import ROBOTS
-from kurt2rt.experiments.study.figure import Picture
+from kurt2rt.experiments.study.figure import SavedFigure
 from kurt2rt.experiments.study.html_report import spans, write_page
 
 _TITLE = "KURT2: the paper's basic-level tasks, taught and examined"
 
 
-def write_report(study: Study, pictures: Sequence[Picture], command: str, path: Path) -> None:
+def write_report(study: PaperStudy, pictures: Sequence[SavedFigure], command: str, path: Path) -> None:
     """Write the report. `command`: what was typed, without what belongs to the machine alone. Raises OSError."""
     programme = study.programme
     write_page(

@@ -1,8 +1,8 @@
 """Tables of the settings that each task was taught and examined with."""
 
 from kurt2rt.core.task_settings import FeatureWeight
-from kurt2rt.experiments.paper.study import Study
-from kurt2rt.experiments.study.table import Sheet
+from kurt2rt.experiments.paper.study import PaperStudy
+from kurt2rt.experiments.study.table import Table
 
 SUCCESS = (
     "Success is an exam that ends neither stuck nor stopped by the guard, with no more collisions than allowed, more "
@@ -12,7 +12,7 @@ SUCCESS = (
 )
 
 
-def learning_sheet(study: Study) -> Sheet:
+def learning_sheet(study: PaperStudy) -> Table:
     """How each task was taught, in each reading of the paper."""
     rows = []
     for each in study.summaries:
@@ -55,10 +55,10 @@ def learning_sheet(study: Study) -> Sheet:
         "re-positions",
         "sets it down at",
     )
-    return Sheet("Settings of learning and of the scripted teacher", columns, tuple(rows), words=2)
+    return Table("Settings of learning and of the scripted teacher", columns, tuple(rows), words=2)
 
 
-def exams_sheet(study: Study) -> Sheet:
+def exams_sheet(study: PaperStudy) -> Table:
     """How each task was examined; the same in every reading."""
     rows = []
     for task in {each.task.name: each.task for each in study.summaries}.values():
@@ -85,7 +85,7 @@ def exams_sheet(study: Study) -> Sheet:
         "of the teacher's progress at least",
         "junctions right at least",
     )
-    return Sheet("Settings of the exams", columns, tuple(rows), note=SUCCESS)
+    return Table("Settings of the exams", columns, tuple(rows), note=SUCCESS)
 
 
 def _weights(weights: tuple[FeatureWeight, ...]) -> str:

@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from kurt2rt.experiments.paper.outcome import GrowthOutcome, Reading, TaughtOutcome
-from kurt2rt.experiments.paper.plan import Programme
-from kurt2rt.experiments.paper.summary import Summary, summarize
+from kurt2rt.experiments.paper.plan import PaperPlan
+from kurt2rt.experiments.paper.summary import PaperSummary, summarize
 from kurt2rt.experiments.study.pool import Standing
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.run_jobs import do_jobs
@@ -30,11 +30,11 @@ class GrowthStudy:
 
 
 @dataclass(frozen=True, slots=True)
-class Study:
+class PaperStudy:
     """All numbers."""
 
-    programme: Programme
-    summaries: tuple[Summary, ...]
+    programme: PaperPlan
+    summaries: tuple[PaperSummary, ...]
     growth: tuple[GrowthStudy, ...]
 
     @property
@@ -42,13 +42,13 @@ class Study:
         """In the order in which they are shown."""
         return tuple(dict.fromkeys(each.reading for each in self.summaries))
 
-    def of(self, reading: Reading) -> tuple[Summary, ...]:
+    def of(self, reading: Reading) -> tuple[PaperSummary, ...]:
         """The experiments in one reading."""
         return tuple(each for each in self.summaries if each.reading == reading)
 
 
 def conduct(
-    programme: Programme, missing: Sequence[int], processes: int, on_standing: Callable[[Standing], None]
+    programme: PaperPlan, missing: Sequence[int], processes: int, on_standing: Callable[[Standing], None]
 ) -> None:
     """Do the jobs at these places, as `Results.missing` tells them; each leaves its result as soon as it is done.
 
@@ -58,9 +58,9 @@ def conduct(
     do_jobs([jobs[place] for place in missing], processes, on_standing)
 
 
-def read_study(programme: Programme, results: Results) -> Study:
+def read_study(programme: PaperPlan, results: Results) -> PaperStudy:
     """Put together what all jobs have left. Raises StudyError."""
-    return Study(
+    return PaperStudy(
         programme,
         tuple(
             summarize(each, [results.read(job, TaughtOutcome) for job in each.jobs]) for each in programme.experiments

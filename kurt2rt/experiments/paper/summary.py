@@ -9,7 +9,7 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.report import label_of, quartiles, wilson_interval
 from kurt2rt.experiments.paper.outcome import DriveOutcome, Reading, TaughtOutcome
-from kurt2rt.experiments.paper.plan import Experiment
+from kurt2rt.experiments.paper.plan import PaperExperiment
 from kurt2rt.experiments.paper.settings import ExperimentSettings
 from kurt2rt.experiments.study.intervals import Rate, rate_of
 
@@ -62,7 +62,7 @@ class WorldSummary:
 
 
 @dataclass(frozen=True, slots=True)
-class Summary:
+class PaperSummary:
     """One experiment."""
 
     settings: ExperimentSettings
@@ -87,7 +87,7 @@ class Summary:
         return self.task.name.replace("_", " ")
 
 
-def summarize(experiment: Experiment, outcomes: Sequence[TaughtOutcome]) -> Summary:
+def summarize(experiment: PaperExperiment, outcomes: Sequence[TaughtOutcome]) -> PaperSummary:
     """The numbers of one experiment; one outcome per robot."""
     task, unseen = experiment.task, experiment.settings.unseen
     drives = [drive for outcome in outcomes for drive in outcome.drives]
@@ -101,7 +101,7 @@ def summarize(experiment: Experiment, outcomes: Sequence[TaughtOutcome]) -> Summ
     def median(of: str) -> float:
         return quartiles([float(getattr(outcome, of)) for outcome in outcomes])[1]
 
-    return Summary(
+    return PaperSummary(
         settings=experiment.settings,
         reading=experiment.reading,
         task=task,

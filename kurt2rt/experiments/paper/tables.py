@@ -8,10 +8,10 @@ from kurt2rt.experiments.lockstep.report import quartiles
 from kurt2rt.experiments.paper.judging import reasons_not_to_judge
 from kurt2rt.experiments.paper.outcome import DriveOutcome
 from kurt2rt.experiments.paper.settings_tables import SUCCESS
-from kurt2rt.experiments.paper.study import GrowthStudy, Study
-from kurt2rt.experiments.paper.summary import Quartiles, Summary, WorldSummary, success_text
+from kurt2rt.experiments.paper.study import GrowthStudy, PaperStudy
+from kurt2rt.experiments.paper.summary import PaperSummary, Quartiles, WorldSummary, success_text
 from kurt2rt.experiments.paper.verdict import verdicts
-from kurt2rt.experiments.study.table import Sheet
+from kurt2rt.experiments.study.table import Table
 from kurt2rt.experiments.study.verdict_text import cells_of, result_text
 
 _SUCCESS_WORDS = {**EXAM_VERDICT_TEXTS, ExamVerdict.PASSED: "yes", ExamVerdict.FAILED: "NO"}
@@ -22,7 +22,7 @@ _OF_RATES = (
 )
 
 
-def sheets(study: Study) -> Iterator[Sheet]:
+def sheets(study: PaperStudy) -> Iterator[Table]:
     """All tables, those of each reading of the paper's scheme behind each other."""
     reasons = list(reasons_not_to_judge(study.programme))
     for reading in study.readings:
@@ -38,12 +38,12 @@ def sheets(study: Study) -> Iterator[Sheet]:
         yield growth_sheet(growth)
 
 
-def asked_sheet(summaries: Sequence[Summary], title: str, not_judged_because: Sequence[str] = ()) -> Sheet:
+def asked_sheet(summaries: Sequence[PaperSummary], title: str, not_judged_because: Sequence[str] = ()) -> Table:
     """Each number that was asked for beside what came, and whether it is met, unless there are reasons not to judge."""
     found = [(each.label, verdict) for each in summaries for verdict in verdicts(each)]
     met = sum(verdict.met for _, verdict in found)
     note = f"{met} of {len(found)} numbers asked for are met." if found else "Of these tasks nothing is asked."
-    return Sheet(
+    return Table(
         _sentence(title),
         ("task", "what", "asked", "came", "verdict"),
         tuple((label, *cells_of(verdict), result_text(verdict, not_judged_because)) for label, verdict in found),
@@ -52,7 +52,7 @@ def asked_sheet(summaries: Sequence[Summary], title: str, not_judged_because: Se
     )
 
 
-def knowledge_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
+def knowledge_sheet(summaries: Sequence[PaperSummary], title: str) -> Table:
     """RLAs and teaching time beside the paper's."""
     rows = [
         (
@@ -68,7 +68,7 @@ def knowledge_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
         )
         for each in summaries
     ]
-    return Sheet(
+    return Table(
         _sentence(title),
         ("task", "RLAs", "quartiles", "paper", "teaching, s", "paper", "asks", "corrections", "rescues"),
         tuple(rows),
@@ -76,7 +76,7 @@ def knowledge_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
     )
 
 
-def exam_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
+def exam_sheet(summaries: Sequence[PaperSummary], title: str) -> Table:
     """Success and collisions by world."""
     rows = []
     for each, world in _worlds(summaries):
@@ -95,7 +95,7 @@ def exam_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
             )
         )
     times = sorted({each.task.exam.duration_s for each in summaries})
-    return Sheet(
+    return Table(
         _sentence(title),
         ("task", "world", "success", "95 %", "stuck", "collided", "in 10 min", "95 %"),
         tuple(rows),
@@ -106,7 +106,7 @@ def exam_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
     )
 
 
-def drive_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
+def drive_sheet(summaries: Sequence[PaperSummary], title: str) -> Table:
     """How far they came and how well, by world."""
     names = list(dict.fromkeys(name for _, world in _worlds(summaries) for name in world.lengths))
     rows = []
@@ -127,7 +127,7 @@ def drive_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
                 interval,
             )
         )
-    return Sheet(
+    return Table(
         _sentence(title),
         ("task", "world", "progress", "teacher's own", "failed, nowhere", "unknown", *names, "junctions right", "95 %"),
         tuple(rows),
@@ -140,7 +140,7 @@ def drive_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
     )
 
 
-def behaviour_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
+def behaviour_sheet(summaries: Sequence[PaperSummary], title: str) -> Table:
     """RLAs and junctions of each taught behaviour, where several were taught in one session."""
     rows = []
     for each in summaries:
@@ -160,10 +160,10 @@ def behaviour_sheet(summaries: Sequence[Summary], title: str) -> Sheet:
                 )
             )
     columns = ("task", "behaviour", "RLAs, median", "quartiles", "paper's RLAs", "junctions right")
-    return Sheet(_sentence(title), columns, tuple(rows), words=2)
+    return Table(_sentence(title), columns, tuple(rows), words=2)
 
 
-def growth_sheet(growth: GrowthStudy) -> Sheet:
+def growth_sheet(growth: GrowthStudy) -> Table:
     """Numbers behind Fig. 2."""
     last_s = min(len(each.growth) for each in growth.outcomes)
     at_s = [time_s for time_s in _GROWTH_AT_S if time_s <= last_s] or [last_s]
@@ -173,7 +173,7 @@ def growth_sheet(growth: GrowthStudy) -> Sheet:
         cells = [f"{quartiles([curve[time_s - 1] for curve in curves])[1]:g}" for time_s in at_s]
         rows.append((f"{radius:g}", str(len(curves)), *cells))
     how = ", plain reading" if growth.reading == "plain" else ""
-    return Sheet(
+    return Table(
         f"RLAs against time in phase 1 ({growth.task}{how})",
         ("R", "robots", *(f"{time_s} s" for time_s in at_s)),
         tuple(rows),
@@ -182,7 +182,7 @@ def growth_sheet(growth: GrowthStudy) -> Sheet:
     )
 
 
-def unseen_sheet(summary: Summary) -> Sheet:
+def unseen_sheet(summary: PaperSummary) -> Table:
     """Which robot drove in which generated world, and how that went; no rows where these robots drove in none."""
     names = summary.settings.unseen.names if summary.settings.unseen is not None else ()
     drives = sorted(
@@ -205,7 +205,7 @@ def unseen_sheet(summary: Summary) -> Sheet:
             )
         )
     columns = ("world", "robot", "success", "collisions", "progress (teacher's own)", "ended early")
-    return Sheet(f"{_sentence(summary.label)}: worlds that nobody has seen", columns, tuple(rows))
+    return Table(f"{_sentence(summary.label)}: worlds that nobody has seen", columns, tuple(rows))
 
 
 def _of_teacher(drive: DriveOutcome) -> str:
@@ -214,11 +214,11 @@ def _of_teacher(drive: DriveOutcome) -> str:
     return f"{drive.teachers_progress:.1f}{how}"
 
 
-def _worlds(summaries: Sequence[Summary]) -> Iterator[tuple[Summary, WorldSummary]]:
+def _worlds(summaries: Sequence[PaperSummary]) -> Iterator[tuple[PaperSummary, WorldSummary]]:
     return ((each, world) for each in summaries for world in each.worlds)
 
 
-def _robots(summaries: Sequence[Summary]) -> str:
+def _robots(summaries: Sequence[PaperSummary]) -> str:
     robots = max(each.robots for each in summaries)
     return f"{robots} robots for each task." if robots > 1 else "One robot for each task."
 

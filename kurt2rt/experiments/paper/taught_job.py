@@ -10,11 +10,11 @@ from hal.robot_settings import RobotSettings
 from hal.simulation import Position, SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams, run_lesson
-from kurt2rt.experiments.lockstep.lesson import LessonResult
+from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.paper.outcome import DriveOutcome, Place, Reading, TaughtOutcome
 from kurt2rt.experiments.study.pool import Tell
-from kurt2rt.experiments.study.progress_sum import RobotTime
-from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.study.progress_sum import ProgressSum
+from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.results import Results
 
 _PLACE_STRIDE = 2
@@ -32,7 +32,7 @@ class TaughtJob:
     seed: int
     unseen: tuple[str, ...]
     """Generated worlds that this robot drives in, besides those of the task."""
-    made_of: MadeOf
+    made_of: Provenance
     results: Results
 
     @property
@@ -65,7 +65,7 @@ class TaughtJob:
         anyio.run(self._run, tell)
 
     async def _run(self, tell: Tell) -> None:
-        report = RobotTime(tell).report
+        report = ProgressSum(tell).report
         stage, robot, task, seed = self.stage, self.robot, self.task, self.seed
         with self.results.scratch() as folder:
             knowledge = folder / "knowledge"
@@ -74,7 +74,7 @@ class TaughtJob:
             self.results.keep(knowledge, f"knowledge/{self.reading}/{task.name}-{seed}.knowledge")
         self.results.write(self, self._outcome(lesson, exams))
 
-    def _outcome(self, lesson: LessonResult, exams: Iterable[WorldResult]) -> TaughtOutcome:
+    def _outcome(self, lesson: TrainingResult, exams: Iterable[WorldResult]) -> TaughtOutcome:
         of = Counter(rla.behaviour for rla in lesson.rlas)
         several = len(self.task.behaviours) > 1
         return TaughtOutcome(

@@ -4,11 +4,11 @@ import math
 from collections.abc import Iterator
 
 from kurt2rt.experiments.paper.settings import AskedSettings
-from kurt2rt.experiments.paper.summary import Summary, WorldSummary, success_text
+from kurt2rt.experiments.paper.summary import PaperSummary, WorldSummary, success_text
 from kurt2rt.experiments.study.verdict import Target, Values, Verdict
 
 
-def verdicts(summary: Summary) -> Iterator[Verdict]:
+def verdicts(summary: PaperSummary) -> Iterator[Verdict]:
     """Yield the verdict on each target of the experiment."""
     asked = summary.settings.asked
     if asked.rlas_at_most:

@@ -22,9 +22,9 @@ from kurt2rt.experiments.phases.steps import (
     PHASE_5,
     TITLES,
 )
-from kurt2rt.experiments.phases.study import Study
+from kurt2rt.experiments.phases.study import PhasesStudy
 from kurt2rt.experiments.phases.summary import MEASURES, Measure, worlds_of
-from kurt2rt.experiments.study.figure import Picture
+from kurt2rt.experiments.study.figure import SavedFigure
 from kurt2rt.experiments.study.figure_style import save
 
 _LOAD_COLOURS = {"lessons": "#1f6fb2", "corrections": "#d1495b", "rewards": "#2e8540", "appraisals": "#b8860b"}
@@ -33,22 +33,22 @@ _AGREEMENT_EVERY_MIN = 1 / 6
 _WORLD_COLOURS = ("#1f6fb2", "#d1495b", "#2e8540", "#b8860b", "#6b4c9a")
 
 
-def draw_pictures(study: Study, folder: Path) -> Iterator[Picture]:
+def draw_pictures(study: PhasesStudy, folder: Path) -> Iterator[SavedFigure]:
     """Draw each figure into the folder: phases.png, load.png, agreement.png, branches.png, intact.png."""
     robots = len(study.programme.seeds)
     path = folder / "phases.png"
     _draw_stages(study, PATH, path)
-    yield Picture(path, "Phase by phase", f"{robots} robots; bars are 95 % intervals.")
+    yield SavedFigure(path, "Phase by phase", f"{robots} robots; bars are 95 % intervals.")
     path = folder / "load.png"
     _draw_load(study, path)
-    yield Picture(
+    yield SavedFigure(
         path,
         "The teacher's load",
         "What he says in each minute, mean of all robots, along the path of all phases. In phase 5 nobody teaches.",
     )
     path = folder / "agreement.png"
     _draw_agreement(study, path)
-    yield Picture(
+    yield SavedFigure(
         path,
         "Agreement of the critic",
         "With the teacher's signals in phase 4, each compared before it was learnt: median (line) and quartiles (band) "
@@ -56,17 +56,17 @@ def draw_pictures(study: Study, folder: Path) -> Iterator[Picture]:
     )
     path = folder / "branches.png"
     _draw_stages(study, BRANCHES, path)
-    yield Picture(path, "A corrupted set, and what repairs it", "Each with the same sets; bars are 95 % intervals.")
+    yield SavedFigure(path, "A corrupted set, and what repairs it", "Each with the same sets; bars are 95 % intervals.")
     path = folder / "intact.png"
     _draw_intact(study, path)
-    yield Picture(
+    yield SavedFigure(
         path,
         "An intact set, before and after phase 5",
         "One point per robot and world. Above the line there is more of it after phase 5 than before.",
     )
 
 
-def _draw_stages(study: Study, names: Sequence[str], path: Path) -> None:
+def _draw_stages(study: PhasesStudy, names: Sequence[str], path: Path) -> None:
     """Success and collisions of each stage, a colour for each world."""
     figure = Figure(figsize=(11.0, 1.6 + 0.55 * len(names)), layout="constrained")
     success, collisions = figure.subplots(1, 2, sharey=True)
@@ -99,7 +99,7 @@ def _bar(axes: Axes, at: float, value: float, span: tuple[float, float], colour:
     axes.plot([value], [at], "o", color=colour, markersize=6, label=label)
 
 
-def _draw_load(study: Study, path: Path) -> None:
+def _draw_load(study: PhasesStudy, path: Path) -> None:
     """Curves of all kinds of what he says, with the borders between phases."""
     figure = Figure(figsize=(11.0, 4.6), layout="constrained")
     axes = figure.subplots()
@@ -134,7 +134,7 @@ def _draw_load(study: Study, path: Path) -> None:
     save(figure, path)
 
 
-def _draw_agreement(study: Study, path: Path) -> None:
+def _draw_agreement(study: PhasesStudy, path: Path) -> None:
     """Median and quartiles against time, with the bound of trust."""
     figure = Figure(figsize=(7.5, 4.4), layout="constrained")
     axes = figure.subplots()
@@ -156,7 +156,7 @@ def _draw_agreement(study: Study, path: Path) -> None:
     save(figure, path)
 
 
-def _draw_intact(study: Study, path: Path) -> None:
+def _draw_intact(study: PhasesStudy, path: Path) -> None:
     """Each robot before and after, by each measure but success."""
     before, after = study.stages[PHASE_2], study.stages[INTACT]
     shown = [measure for measure in MEASURES[1:] if any(measure.of(exam) is not None for exam in before[0].exams)]

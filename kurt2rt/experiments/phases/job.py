@@ -23,10 +23,10 @@ from kurt2rt.experiments.phases.event_replay import folded
 from kurt2rt.experiments.phases.exams import Examiner
 from kurt2rt.experiments.phases.lesson_summary import told
 from kurt2rt.experiments.phases.outcome import ExamOutcome, JobOutcome, Judgement, StageOutcome, TeachingOutcome
-from kurt2rt.experiments.phases.steps import PHASE_1, PHASE_2, PHASE_4, TITLES, UNTAUGHT, Step
+from kurt2rt.experiments.phases.steps import PHASE_1, PHASE_2, PHASE_4, TITLES, UNTAUGHT, PhaseStep
 from kurt2rt.experiments.study.pool import Tell
-from kurt2rt.experiments.study.progress_sum import RobotTime
-from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.study.progress_sum import ProgressSum
+from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.results import Results, StudyError
 from kurt2rt.knowledge.journal.fold import fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
@@ -52,7 +52,7 @@ class Robot:
         """Path of what it knows after a step, within the folder of results."""
         return f"knowledge/{name}/{self.task.name}-{self.seed}.knowledge"
 
-    def examiner(self, time: RobotTime) -> Examiner:
+    def examiner(self, time: ProgressSum) -> Examiner:
         """Its examiner."""
         return Examiner(self.stage, self.settings, self.task, self.seed, time.report)
 
@@ -62,7 +62,7 @@ class TaughtJob:
     """Phases 1 and 2: the task's own lesson, with exams before it, of what phase 1 taught, and of all."""
 
     robot: Robot
-    made_of: MadeOf
+    made_of: Provenance
 
     @property
     def step(self) -> str:
@@ -95,7 +95,7 @@ class TaughtJob:
         anyio.run(self._run, tell)
 
     async def _run(self, tell: Tell) -> None:
-        robot, time = self.robot, RobotTime(tell)
+        robot, time = self.robot, ProgressSum(tell)
         task, results, worlds = robot.task, robot.results, robot.task.exam.worlds
         examiner = robot.examiner(time)
         with results.scratch() as folder:
@@ -123,14 +123,14 @@ class StepJob:
     """A step after those."""
 
     robot: Robot
-    of: Step
+    of: PhaseStep
     before: "TaughtJob | StepJob"
     """The job of the step that it goes on from."""
     first: TaughtJob
     """Holds the teacher's own drives."""
     alike: "TaughtJob | StepJob | None"
     """The job whose robot was blamed as often as this one shall be by chance."""
-    made_of: MadeOf
+    made_of: Provenance
 
     @property
     def step(self) -> str:
@@ -164,7 +164,7 @@ class StepJob:
         anyio.run(self._run, tell)
 
     async def _run(self, tell: Tell) -> None:
-        robot, step, time = self.robot, self.of, RobotTime(tell)
+        robot, step, time = self.robot, self.of, ProgressSum(tell)
         results = robot.results
         with results.scratch() as folder:
             knowledge = folder / "knowledge"

@@ -3,11 +3,11 @@
 from collections.abc import Iterable
 
 from kurt2rt.core.rla.rla import CRITIC, ActionWithdrawn, LessonUndone, TeachingEvent
-from kurt2rt.experiments.lockstep.lesson import LessonResult
+from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.phases.outcome import TeachingOutcome
 
 
-def told(lesson: LessonResult, events: Iterable[TeachingEvent]) -> TeachingOutcome:
+def told(lesson: TrainingResult, events: Iterable[TeachingEvent]) -> TeachingOutcome:
     """`events`: those that the lesson brought."""
     events = tuple(events)
     own = [event for event in events if event.origin.teacher == CRITIC]

@@ -1,8 +1,8 @@
 """What the steps of one robot come to, as they are kept in their files."""
 
 from hal.settings import Settings
-from kurt2rt.experiments.lockstep.teacher_workload import Minute
-from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.lockstep.teacher_workload import WorkloadMinute
+from kurt2rt.experiments.study.provenance import Provenance
 
 
 class ExamOutcome(Settings):
@@ -27,7 +27,7 @@ class TeachingOutcome(Settings):
     """What was done in one step."""
 
     duration_s: float
-    load: tuple[Minute, ...]
+    load: tuple[WorkloadMinute, ...]
     asks: int
     praise: int
     blame: int
@@ -84,7 +84,7 @@ class StageOutcome(Settings):
 class JobOutcome(Settings):
     """What one job leaves."""
 
-    made_of: MadeOf
+    made_of: Provenance
     seed: int
     stages: tuple[StageOutcome, ...]
     teachers: tuple[ExamOutcome, ...] = ()

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.critic.settings import CriticSettings, load_critic
-from kurt2rt.core.reinforcement.settings import LonelyWorths
+from kurt2rt.core.reinforcement.settings import AutonomousValues
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.phases.job import Job, Robot, StepJob, TaughtJob
-from kurt2rt.experiments.phases.steps import PHASE_2, Step, phases_of, steps_of
-from kurt2rt.experiments.study.provenance import Fingerprints, MadeOf, source_hash
+from kurt2rt.experiments.phases.steps import PHASE_2, PhaseStep, phases_of, steps_of
+from kurt2rt.experiments.study.provenance import Fingerprints, Provenance, source_hash
 from kurt2rt.experiments.study.results import Results
 
 DECIDING = (TaughtJob, StepJob)
@@ -22,7 +22,7 @@ _QUICK_SHARE = 0.2
 
 
 @dataclass(frozen=True, slots=True)
-class Programme:
+class PhasesPlan:
     """Everything."""
 
     task: TaskSettings
@@ -49,7 +49,7 @@ def plan(
     *,
     quick: bool = False,
     source_of: Callable[[SimulationFactory], str] = lambda stage: source_hash(*DECIDING, type(stage)),
-) -> Programme:
+) -> PhasesPlan:
     """Look at task and worlds, and make the jobs.
 
     `quick`: all steps, each so short that it says nothing but that everything works. `source_of`: tells the hash of
@@ -67,7 +67,7 @@ def plan(
     critic = load_critic(task.critic).model_dump_json()
     by_name = {step.name: step for step in steps}
 
-    def made_of(step: Step | None) -> MadeOf:
+    def made_of(step: PhaseStep | None) -> Provenance:
         way = "\n".join(map(repr, _way_to(step, by_name)))
         return fingerprints.of(task, worlds, critic, way)
 
@@ -84,10 +84,10 @@ def plan(
                 of, step, jobs[step.after], first, jobs.get(step.blames_like), made[step.name]
             )
             waves[_depth(step, by_name)].append(job)
-    return Programme(task, tuple(seeds), quick, source, tuple(map(tuple, waves)))
+    return PhasesPlan(task, tuple(seeds), quick, source, tuple(map(tuple, waves)))
 
 
-def _way_to(step: Step | None, by_name: dict[str, Step]) -> Iterator[Step]:
+def _way_to(step: PhaseStep | None, by_name: dict[str, PhaseStep]) -> Iterator[PhaseStep]:
     """All steps that lead to one, itself among them."""
     if step is not None:
         for name in step.needs:
@@ -95,7 +95,7 @@ def _way_to(step: Step | None, by_name: dict[str, Step]) -> Iterator[Step]:
         yield step
 
 
-def _depth(step: Step, by_name: dict[str, Step]) -> int:
+def _depth(step: PhaseStep, by_name: dict[str, PhaseStep]) -> int:
     return 1 + max(0 if name == PHASE_2 else _depth(by_name[name], by_name) for name in step.needs)
 
 
@@ -115,7 +115,7 @@ def _shortened(task: TaskSettings) -> TaskSettings:
     )
 
 
-def _near_sinking(worths: LonelyWorths) -> LonelyWorths:
+def _near_sinking(worths: AutonomousValues) -> AutonomousValues:
     """Of RLAs that a few signals can sink."""
     names = ("first_value", "sunk_below", "well_above")
     return worths.model_copy(update={name: _QUICK_SHARE * getattr(worths, name) for name in names})

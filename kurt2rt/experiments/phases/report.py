@@ -3,23 +3,23 @@
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from kurt2rt.experiments.phases.plan import Programme
+from kurt2rt.experiments.phases.plan import PhasesPlan
 from kurt2rt.experiments.phases.settings_table import settings_sheet
-from kurt2rt.experiments.phases.study import Study
+from kurt2rt.experiments.phases.study import PhasesStudy
 from kurt2rt.experiments.phases.table_rows import sheets
 from kurt2rt.experiments.study.eligibility import reasons_of_robots
-from kurt2rt.experiments.study.figure import Picture
+from kurt2rt.experiments.study.figure import SavedFigure
 from kurt2rt.experiments.study.html_report import spans, write_page
 
 
-def reasons_not_to_judge(programme: Programme) -> Iterator[str]:
+def reasons_not_to_judge(programme: PhasesPlan) -> Iterator[str]:
     """Sentences; none where everything was done, by enough robots that nobody has seen."""
     if programme.quick:
         yield "A part only: it says that everything works, and nothing about the phases."
     yield from reasons_of_robots(programme.seeds)
 
 
-def write_report(study: Study, pictures: Sequence[Picture], command: str, path: Path) -> None:
+def write_report(study: PhasesStudy, pictures: Sequence[SavedFigure], command: str, path: Path) -> None:
     """Write the report. `command`: what was typed, without what belongs to the machine alone. Raises OSError."""
     programme = study.programme
     reasons = list(reasons_not_to_judge(programme))

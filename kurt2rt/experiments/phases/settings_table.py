@@ -6,10 +6,10 @@ from typing import Any
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.phases.steps import phases_of
-from kurt2rt.experiments.study.table import Sheet
+from kurt2rt.experiments.study.table import Table
 
 
-def settings_sheet(task: TaskSettings) -> Sheet:
+def settings_sheet(task: TaskSettings) -> Table:
     """All that stands in the sections of these phases, and in the critic's file."""
     of: dict[str, Any] = {
         "phases": phases_of(task).model_dump(mode="json", exclude={"asked"}),
@@ -18,7 +18,7 @@ def settings_sheet(task: TaskSettings) -> Sheet:
         "critic": load_critic(task.critic).model_dump(mode="json"),
     }
     rows = tuple(_told(of, ""))
-    return Sheet("Settings of phases 3 to 5", ("setting", "value"), rows, words=2)
+    return Table("Settings of phases 3 to 5", ("setting", "value"), rows, words=2)
 
 
 def _told(value: Any, name: str) -> Iterator[tuple[str, str]]:

@@ -43,7 +43,7 @@ TITLES = {
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class PhaseStep:
     """Knowledge that another step left, what is done to it, and where it is examined."""
 
     name: str
@@ -85,7 +85,7 @@ def phases_of(task: TaskSettings) -> PhasesSettings:
     return task.phases
 
 
-def steps_of(task: TaskSettings) -> Iterator[Step]:
+def steps_of(task: TaskSettings) -> Iterator[PhaseStep]:
     """All steps after the lesson of phases 1 and 2, each behind those it needs. Raises hal.settings.SettingsError."""
     phases = phases_of(task)
     worlds, repair_worlds = task.exam.worlds, phases.repair_worlds
@@ -126,11 +126,11 @@ def steps_of(task: TaskSettings) -> Iterator[Step]:
         shown_s=phases.shown_s,
         shown_share=phases.shown_share,
     )
-    yield Step(PHASE_3, PHASE_2, 0.0, "own", rewarded, repair_worlds)
+    yield PhaseStep(PHASE_3, PHASE_2, 0.0, "own", rewarded, repair_worlds)
     errs = phases.corrupted_share if phases.critic_sees_wrong else 0.0
-    yield Step(PHASE_4, PHASE_3, errs, "own", critic, repair_worlds, mistakes="critic", aside=True)
-    yield Step(PHASE_5, PHASE_4, 0.0, "own", alone(phases.autonomy_s, "phase 5"), worlds)
-    yield Step(LONG_RUN, PHASE_5, 0.0, "own", alone(phases.long_run_s, "long run"), ())
+    yield PhaseStep(PHASE_4, PHASE_3, errs, "own", critic, repair_worlds, mistakes="critic", aside=True)
+    yield PhaseStep(PHASE_5, PHASE_4, 0.0, "own", alone(phases.autonomy_s, "phase 5"), worlds)
+    yield PhaseStep(LONG_RUN, PHASE_5, 0.0, "own", alone(phases.long_run_s, "long run"), ())
 
     repair_s, alone_s, wrong = phases.repair_s, phases.repair_alone_s, phases.corrupted_share
     by_itself = alone(alone_s, "repair")
@@ -140,12 +140,12 @@ def steps_of(task: TaskSettings) -> Iterator[Step]:
         Phase.REINFORCEMENT, repair_s, "repair", signs="unknown", times=of_rewards, reposition_every_s=moved
     )
     rewards = taught(Phase.REINFORCEMENT, repair_s, "repair", signs="judge", times=of_rewards, reposition_every_s=moved)
-    yield Step(CORRUPTED, PHASE_2, wrong, "own", None, repair_worlds)
-    yield Step(ASKS, PHASE_2, wrong, "own", asks, repair_worlds)
-    yield Step(UNKNOWN_BAD, PHASE_2, wrong, "own", unknown, repair_worlds)
-    yield Step(REWARDS, PHASE_2, wrong, "own", rewards, repair_worlds)
-    yield Step(BLAME_BY_CHANCE, PHASE_2, wrong, "own", chance, repair_worlds, blames_like=REWARDS)
-    yield Step(JUDGED, PHASE_2, wrong, "taught", None, (), judges_critic=True)
-    yield Step(CRITIC_ALONE, PHASE_2, wrong, "taught", by_itself, repair_worlds)
-    yield Step(SHUFFLED, PHASE_2, wrong, "shuffled", by_itself, repair_worlds)
-    yield Step(INTACT, PHASE_2, 0.0, "taught", by_itself, worlds)
+    yield PhaseStep(CORRUPTED, PHASE_2, wrong, "own", None, repair_worlds)
+    yield PhaseStep(ASKS, PHASE_2, wrong, "own", asks, repair_worlds)
+    yield PhaseStep(UNKNOWN_BAD, PHASE_2, wrong, "own", unknown, repair_worlds)
+    yield PhaseStep(REWARDS, PHASE_2, wrong, "own", rewards, repair_worlds)
+    yield PhaseStep(BLAME_BY_CHANCE, PHASE_2, wrong, "own", chance, repair_worlds, blames_like=REWARDS)
+    yield PhaseStep(JUDGED, PHASE_2, wrong, "taught", None, (), judges_critic=True)
+    yield PhaseStep(CRITIC_ALONE, PHASE_2, wrong, "taught", by_itself, repair_worlds)
+    yield PhaseStep(SHUFFLED, PHASE_2, wrong, "shuffled", by_itself, repair_worlds)
+    yield PhaseStep(INTACT, PHASE_2, 0.0, "taught", by_itself, worlds)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from behaviors.metrics.task_metric import DISTANCE_ERROR
 from kurt2rt.experiments.lockstep.report import label_of, quartiles, wilson_interval
 from kurt2rt.experiments.phases.outcome import ExamOutcome, Judgement, StageOutcome
-from kurt2rt.experiments.study.intervals import Difference, Rate, difference_of, rate_of
+from kurt2rt.experiments.study.intervals import Rate, RateDifference, difference_of, rate_of
 
 TEN_MIN_S = 600.0
 
@@ -141,7 +141,7 @@ class Paired:
     before: float
     """Mean."""
     after: float
-    difference: Difference
+    difference: RateDifference
     better: int
     """Robots."""
     worse: int

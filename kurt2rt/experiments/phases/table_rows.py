@@ -18,7 +18,7 @@ from kurt2rt.experiments.phases.steps import (
     UNKNOWN_BAD,
     phases_of,
 )
-from kurt2rt.experiments.phases.study import Study
+from kurt2rt.experiments.phases.study import PhasesStudy
 from kurt2rt.experiments.phases.summary import paired
 from kurt2rt.experiments.phases.tables.autonomous import alone_sheet, long_run_sheet
 from kurt2rt.experiments.phases.tables.controls import words_of_controls
@@ -28,7 +28,7 @@ from kurt2rt.experiments.phases.tables.paired import paired_sheet
 from kurt2rt.experiments.phases.tables.targets import asked_sheet
 from kurt2rt.experiments.phases.tables.teacher_workload import load_sheet
 from kurt2rt.experiments.phases.tables.teachers import teachers_sheet
-from kurt2rt.experiments.study.table import Sheet
+from kurt2rt.experiments.study.table import Table
 
 SUCCESS = (
     "Success is an exam without collision in which the robot is never stuck nor stopped by the guard, and makes at "
@@ -44,7 +44,7 @@ _PAIRED = (
 )
 
 
-def sheets(study: Study, reasons: Sequence[str]) -> Iterator[Sheet]:
+def sheets(study: PhasesStudy, reasons: Sequence[str]) -> Iterator[Table]:
     """All of them. `reasons` not to judge, if any."""
     yield asked_sheet(study, reasons)
     yield exam_sheet("Phase by phase", PATH, study, f"{SUCCESS} {_PHASE_4}")

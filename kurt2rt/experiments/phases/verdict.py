@@ -7,7 +7,7 @@ from kurt2rt.core.phase_settings import AskedShare
 from kurt2rt.experiments.lockstep.report import label_of
 from kurt2rt.experiments.phases.outcome import ExamOutcome, StageOutcome
 from kurt2rt.experiments.phases.steps import CORRUPTED, CRITIC_ALONE, INTACT, LONG_RUN, PHASE_2, REWARDS, phases_of
-from kurt2rt.experiments.phases.study import Study
+from kurt2rt.experiments.phases.study import PhasesStudy
 from kurt2rt.experiments.phases.summary import Paired, collisions_of, paired, worlds_of
 from kurt2rt.experiments.study.intervals import Rate, fall_of, rate_of
 from kurt2rt.experiments.study.verdict import Target, Values, Verdict
@@ -15,7 +15,7 @@ from kurt2rt.experiments.study.verdict import Target, Values, Verdict
 _HOUR_S = 3600.0
 
 
-def verdicts(study: Study) -> Iterator[Verdict]:
+def verdicts(study: PhasesStudy) -> Iterator[Verdict]:
     """Yield the verdict on each target of the task."""
     phases = phases_of(study.programme.task)
     asked = phases.asked
@@ -46,13 +46,13 @@ def verdicts(study: Study) -> Iterator[Verdict]:
         yield Verdict(Target.INTERVENTIONS, values, rate.value < limit_h)
 
 
-def interventions(study: Study, stage: str = LONG_RUN) -> Rate:
+def interventions(study: PhasesStudy, stage: str = LONG_RUN) -> Rate:
     """An hour, of all robots together in a step without a teacher."""
     taught = [each.teaching for each in study.stages[stage] if each.teaching is not None]
     return rate_of([each.interventions for each in taught], [each.duration_s / _HOUR_S for each in taught])
 
 
-def robots_of_the_long_run(study: Study) -> str:
+def robots_of_the_long_run(study: PhasesStudy) -> str:
     """What the hours are made of, and the robot that needed most."""
     taught = [each.teaching for each in study.stages[LONG_RUN] if each.teaching is not None]
     minutes = " or ".join(f"{each:g}" for each in sorted({each.duration_s / 60.0 for each in taught}))

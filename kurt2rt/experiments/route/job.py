@@ -13,23 +13,23 @@ from kurt2rt.experiments.route.lesson import copy_knowledge, route_of_task, teac
 from kurt2rt.experiments.route.outcome import BasicOutcome, RouteOutcome
 from kurt2rt.experiments.route.variants import Variant
 from kurt2rt.experiments.study.pool import Tell
-from kurt2rt.experiments.study.progress_sum import RobotTime
-from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.study.progress_sum import ProgressSum
+from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.stored_paths import KeptByStem
+from kurt2rt.experiments.study.stored_paths import StoredPaths
 
 _BASIC = "basic"
 
 
 @dataclass(frozen=True, slots=True)
-class BasicJob(KeptByStem):
+class BasicJob(StoredPaths):
     """The task that teaches the streets, with its own lesson."""
 
     stage: SimulationFactory
     robot: RobotSettings
     task: TaskSettings
     seed: int
-    made_of: MadeOf
+    made_of: Provenance
     results: Results
 
     @property
@@ -54,7 +54,7 @@ class BasicJob(KeptByStem):
 
     def run(self, tell: Tell) -> None:
         """Teach, keep the result and the knowledge."""
-        anyio.run(self._run, RobotTime(tell).report)
+        anyio.run(self._run, ProgressSum(tell).report)
 
     async def _run(self, report: Report) -> None:
         with self.results.scratch() as folder:
@@ -72,7 +72,7 @@ class BasicJob(KeptByStem):
 
 
 @dataclass(frozen=True, slots=True)
-class RouteJob(KeptByStem):
+class RouteJob(StoredPaths):
     """One route, taught in one way to one robot, and driven by it."""
 
     stage: SimulationFactory
@@ -83,7 +83,7 @@ class RouteJob(KeptByStem):
     seed: int
     basic: Path
     """Knowledge of the streets; it is copied."""
-    made_of: MadeOf
+    made_of: Provenance
     results: Results
 
     @property
@@ -116,7 +116,7 @@ class RouteJob(KeptByStem):
         anyio.run(self._run, tell)
 
     async def _run(self, tell: Tell) -> None:
-        report = RobotTime(tell).report
+        report = ProgressSum(tell).report
         with self.results.scratch() as folder:
             knowledge = folder / "knowledge"
             copy_knowledge(self.basic, knowledge)

@@ -14,12 +14,12 @@ from hal.simulation import Position, SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
 from kurt2rt.experiments.lockstep.exam import ExamResult, examine
-from kurt2rt.experiments.lockstep.lesson import LessonResult
+from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
 from kurt2rt.experiments.route.outcome import Place, RouteDrive, RouteOutcome, Wrong
-from kurt2rt.experiments.route.route_monitor import Watching
+from kurt2rt.experiments.route.route_monitor import RouteMonitor
 from kurt2rt.experiments.route.variants import Variant
-from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.knowledge.journal.journal import Journal
 
 _PLACE_STRIDE = 2
@@ -31,12 +31,12 @@ class TaughtRoute:
     """A lesson and its exam."""
 
     route: Route
-    lessons: tuple[LessonResult, ...]
+    lessons: tuple[TrainingResult, ...]
     """Its parts, one after the other."""
     exam: ExamResult
     wrong: tuple[Wrong, ...]
 
-    def outcome(self, made_of: MadeOf | None = None) -> RouteOutcome:
+    def outcome(self, made_of: Provenance | None = None) -> RouteOutcome:
         """What is kept of it."""
         last, exam, legs = self.lessons[-1], self.exam, self.route.legs
 
@@ -96,7 +96,7 @@ async def teach_route(
             stage, settings, task, knowledge, seed=seed, report=_named(report, plan), plan=plan
         )
         lessons.append(lesson)
-    watching = Watching()
+    watching = RouteMonitor()
     with closing(stage.open(world, seed, "exam of a route")) as simulation:
         exam = await examine(
             simulation,

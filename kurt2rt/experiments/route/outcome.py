@@ -3,7 +3,7 @@
 from typing import Literal
 
 from hal.settings import Settings
-from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.study.provenance import Provenance
 
 Place = tuple[float, float]
 """x and y in m, to the millimetre."""
@@ -50,7 +50,7 @@ class RouteDrive(Settings):
 class RouteOutcome(Settings):
     """One robot, taught one route and examined on it."""
 
-    made_of: MadeOf | None
+    made_of: Provenance | None
     """None: it was made for once, and is not kept."""
     seed: int
     route: tuple[Place, ...]
@@ -74,7 +74,7 @@ class RouteOutcome(Settings):
 class BasicOutcome(Settings):
     """One robot that was taught the streets, and knows no route yet."""
 
-    made_of: MadeOf
+    made_of: Provenance
     seed: int
     teaching_s: float
     rlas: int

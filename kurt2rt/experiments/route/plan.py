@@ -22,7 +22,7 @@ DECIDING = (BasicJob, RouteJob)
 
 
 @dataclass(frozen=True, slots=True)
-class Experiment:
+class RouteExperiment:
     """Routes of one length, taught in one way: a job per seed."""
 
     decisions: int
@@ -31,7 +31,7 @@ class Experiment:
 
 
 @dataclass(frozen=True, slots=True)
-class Programme:
+class RoutePlan:
     """Everything, in the order in which it is shown."""
 
     task: TaskSettings
@@ -42,7 +42,7 @@ class Programme:
     """Hash of the program's source."""
     basic_jobs: tuple[BasicJob, ...]
     """Empty where the streets were taught before."""
-    experiments: tuple[Experiment, ...]
+    experiments: tuple[RouteExperiment, ...]
 
     @property
     def waves(self) -> tuple[tuple[BasicJob | RouteJob, ...], ...]:
@@ -67,7 +67,7 @@ def plan(
     *,
     basic_folder: Path | None = None,
     source_of: Callable[[SimulationFactory], str] = lambda stage: source_hash(*DECIDING, type(stage)),
-) -> Programme:
+) -> RoutePlan:
     """Look at tasks, worlds and routes, and make the jobs.
 
     `basic`: the task that teaches the streets; `basic_folder`: files of robots that were taught it, as `kurt2rt lesson`
@@ -83,15 +83,15 @@ def plan(
     fingerprints = Fingerprints(stage, robot, source, ("paper", "plain", "phases"))
     streets = streets_of(basic, seeds, stage, robot, results, fingerprints, basic_folder)
 
-    def experiment(count: int, variant: Variant) -> Experiment:
+    def experiment(count: int, variant: Variant) -> RouteExperiment:
         jobs = []
         for seed in seeds:
             own = routes[seed, count]
             made = fingerprints.of(variant.task(own), worlds, streets.made_of[seed], repr(variant))
             jobs.append(RouteJob(stage, robot, own, variant, seed, streets.files[seed], made, results))
-        return Experiment(count, variant, tuple(jobs))
+        return RouteExperiment(count, variant, tuple(jobs))
 
-    return Programme(
+    return RoutePlan(
         task,
         basic,
         tuple(seeds),

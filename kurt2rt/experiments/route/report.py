@@ -5,23 +5,23 @@ from pathlib import Path
 
 from hal.simulation import SimulationFactory
 from kurt2rt.experiments.route.figures import draw_routes
-from kurt2rt.experiments.route.summary import Study
+from kurt2rt.experiments.route.summary import RouteStudy
 from kurt2rt.experiments.route.tables import sheets
 from kurt2rt.experiments.study.eligibility import reasons_of_robots
-from kurt2rt.experiments.study.figure import Picture
+from kurt2rt.experiments.study.figure import SavedFigure
 from kurt2rt.experiments.study.html_report import spans, write_page
 
 _TITLE = "KURT2: routes that its mid level was taught"
 
 
-def draw_pictures(study: Study, stage: SimulationFactory, folder: Path) -> Iterator[Picture]:
+def draw_pictures(study: RouteStudy, stage: SimulationFactory, folder: Path) -> Iterator[SavedFigure]:
     """Draw each length and way of teaching into the folder: route-<way>-<decisions>.png."""
     world = study.programme.task.exam.worlds[0]
     for summary in study.summaries:
         variant, decisions = summary.experiment.variant, summary.experiment.decisions
         path = folder / f"route-{variant.name}-{decisions}.png"
         draw_routes(stage, world, summary.outcomes, path)
-        yield Picture(
+        yield SavedFigure(
             path,
             f"Routes of {decisions} decisions: {variant.title}",
             "Orange: the route of each robot with the number of each decision behind its junction; blue: its drive "
@@ -30,7 +30,7 @@ def draw_pictures(study: Study, stage: SimulationFactory, folder: Path) -> Itera
         )
 
 
-def write_report(study: Study, pictures: Sequence[Picture], command: str, path: Path) -> None:
+def write_report(study: RouteStudy, pictures: Sequence[SavedFigure], command: str, path: Path) -> None:
     """Write the report. `command`: what was typed, without what belongs to the machine alone. Raises OSError."""
     programme = study.programme
     write_page(

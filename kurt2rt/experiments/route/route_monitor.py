@@ -4,7 +4,7 @@ from collections import deque
 
 from behaviors.metrics.junctions import QUARTERS
 from behaviors.metrics.route import FixedRoute, Passage
-from behaviors.metrics.task_metric import Course
+from behaviors.metrics.task_metric import TaskMetric
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.route.outcome import Layer, Wrong
@@ -13,7 +13,7 @@ _HISTORY = 12
 """So many junctions back what was noticed is compared with what was; older ones are in no history (VI.B.2)."""
 
 
-class Watching:
+class RouteMonitor:
     """Compares what the robot noticed of junctions with what it really did there."""
 
     def __init__(self) -> None:
@@ -30,7 +30,7 @@ class Watching:
         """Whether then it had noticed everything, and nothing else."""
         self._last: tuple[TickRecord, FixedRoute] | None = None
 
-    def look(self, record: TickRecord, course: Course) -> None:
+    def look(self, record: TickRecord, course: TaskMetric) -> None:
         """One tick, after the course has followed it."""
         assert isinstance(course, FixedRoute)
         self._last = record, course

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from kurt2rt.experiments.lockstep.report import quartiles
 from kurt2rt.experiments.route.outcome import LAYERS, Layer, RouteOutcome
-from kurt2rt.experiments.route.plan import Experiment, Programme
+from kurt2rt.experiments.route.plan import RouteExperiment, RoutePlan
 from kurt2rt.experiments.study.intervals import Rate, rate_of
 from kurt2rt.experiments.study.pool import Standing
 from kurt2rt.experiments.study.results import Results
@@ -13,10 +13,10 @@ from kurt2rt.experiments.study.run_jobs import do_waves, time_of_missing_s
 
 
 @dataclass(frozen=True, slots=True)
-class Summary:
+class RouteSummary:
     """Routes of one length, taught in one way."""
 
-    experiment: Experiment
+    experiment: RouteExperiment
     outcomes: tuple[RouteOutcome, ...]
     """One per robot, in the order of the seeds."""
 
@@ -61,19 +61,19 @@ class Summary:
 
 
 @dataclass(frozen=True, slots=True)
-class Study:
+class RouteStudy:
     """All numbers."""
 
-    programme: Programme
-    summaries: tuple[Summary, ...]
+    programme: RoutePlan
+    summaries: tuple[RouteSummary, ...]
 
 
-def robot_time_s(programme: Programme, results: Results) -> float:
+def robot_time_s(programme: RoutePlan, results: Results) -> float:
     """What is still to be simulated. Raises StudyError."""
     return time_of_missing_s(programme.waves, results)
 
 
-def conduct(programme: Programme, results: Results, processes: int, on_standing: Callable[[Standing], None]) -> None:
+def conduct(programme: RoutePlan, results: Results, processes: int, on_standing: Callable[[Standing], None]) -> None:
     """Do the jobs that are missing, wave by wave; each leaves its result as soon as it is done.
 
     Raises StudyError and what a job raises.
@@ -81,11 +81,11 @@ def conduct(programme: Programme, results: Results, processes: int, on_standing:
     do_waves(programme.waves, results, processes, on_standing)
 
 
-def read_study(programme: Programme, results: Results) -> Study:
+def read_study(programme: RoutePlan, results: Results) -> RouteStudy:
     """Put together what all jobs have left. Raises StudyError."""
-    return Study(programme, tuple(_summary(each, results) for each in programme.experiments))
+    return RouteStudy(programme, tuple(_summary(each, results) for each in programme.experiments))
 
 
-def _summary(experiment: Experiment, results: Results) -> Summary:
+def _summary(experiment: RouteExperiment, results: Results) -> RouteSummary:
     outcomes: Sequence[RouteOutcome] = [results.read(job, RouteOutcome) for job in experiment.jobs]
-    return Summary(experiment, tuple(outcomes))
+    return RouteSummary(experiment, tuple(outcomes))

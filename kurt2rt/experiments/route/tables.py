@@ -5,10 +5,10 @@ from collections.abc import Iterator, Sequence
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.report import wilson_interval
 from kurt2rt.experiments.route.outcome import RouteOutcome
-from kurt2rt.experiments.route.summary import Study, Summary
+from kurt2rt.experiments.route.summary import RouteStudy, RouteSummary
 from kurt2rt.experiments.route.verdict import verdicts
 from kurt2rt.experiments.study.eligibility import reasons_of_robots
-from kurt2rt.experiments.study.table import Sheet
+from kurt2rt.experiments.study.table import Table
 from kurt2rt.experiments.study.verdict import Result, Verdict
 from kurt2rt.experiments.study.verdict_text import cells_of, result_text
 
@@ -18,7 +18,7 @@ _LAYERS = (
 )
 
 
-def sheets(study: Study) -> Iterator[Sheet]:
+def sheets(study: RouteStudy) -> Iterator[Table]:
     """All tables."""
     if any(list(_verdicts(study))):
         yield asked_sheet(study)
@@ -29,13 +29,13 @@ def sheets(study: Study) -> Iterator[Sheet]:
             yield robots_sheet(summary)
 
 
-def asked_sheet(study: Study) -> Sheet:
+def asked_sheet(study: RouteStudy) -> Table:
     """Each number that was asked for beside what came."""
     reasons = list(reasons_of_robots(study.programme.seeds))
     found = list(_verdicts(study))
     met = sum(verdict.result is Result.MET for _, verdict in found)
     rows = tuple((route, *cells_of(verdict), result_text(verdict, reasons)) for route, verdict in found)
-    return Sheet(
+    return Table(
         "What was asked",
         ("route", "what", "asked", "came", "verdict"),
         rows,
@@ -44,7 +44,7 @@ def asked_sheet(study: Study) -> Sheet:
     )
 
 
-def taught_sheet(summaries: Sequence[Summary]) -> Sheet:
+def taught_sheet(summaries: Sequence[RouteSummary]) -> Table:
     """What the lessons came to."""
     rows = []
     for each in summaries:
@@ -59,7 +59,7 @@ def taught_sheet(summaries: Sequence[Summary]) -> Sheet:
                 *(f"{each.quartiles(name)[1]:g}" for name in numbers),
             )
         )
-    return Sheet(
+    return Table(
         "What was taught",
         (
             *("taught how", "route", "mid-level RLAs", "quartiles", "teaching, s", "asks", "corrections", "missed"),
@@ -73,7 +73,7 @@ def taught_sheet(summaries: Sequence[Summary]) -> Sheet:
     )
 
 
-def exam_sheet(summaries: Sequence[Summary]) -> Sheet:
+def exam_sheet(summaries: Sequence[RouteSummary]) -> Table:
     """Drives without a teacher."""
     rows = []
     for each in summaries:
@@ -92,7 +92,7 @@ def exam_sheet(summaries: Sequence[Summary]) -> Sheet:
             )
         )
     times_s = sorted({job.task.exam.duration_s for each in summaries for job in each.experiment.jobs})
-    return Sheet(
+    return Table(
         "Drives without a teacher",
         (
             *("taught how", "route", "without an error", "95 %", "decisions right", "95 %"),
@@ -106,10 +106,10 @@ def exam_sheet(summaries: Sequence[Summary]) -> Sheet:
     )
 
 
-def robots_sheet(summary: Summary) -> Sheet:
+def robots_sheet(summary: RouteSummary) -> Table:
     """Each robot by itself."""
     rows = tuple((str(each.seed), *_of_robot(each)) for each in summary.outcomes)
-    return Sheet(
+    return Table(
         f"Each robot: {', '.join(_heading(summary))}",
         ("robot", "mid-level RLAs", "asks", "corrections", "right", "collisions", "drive, s", "errors"),
         rows,
@@ -117,7 +117,7 @@ def robots_sheet(summary: Summary) -> Sheet:
     )
 
 
-def robot_sheet(outcome: RouteOutcome, task: TaskSettings) -> Sheet:
+def robot_sheet(outcome: RouteOutcome, task: TaskSettings) -> Table:
     """One robot, beside what the paper reports."""
     drive, paper = outcome.drive, task.paper
     rows = (
@@ -136,7 +136,7 @@ def robot_sheet(outcome: RouteOutcome, task: TaskSettings) -> Sheet:
         ("errors", errors_of(outcome) or "none", ""),
     )
     title = f"Route of {len(outcome.route)} decisions: robot {outcome.seed}"
-    return Sheet(title, ("", "here", "paper"), rows, words=1)
+    return Table(title, ("", "here", "paper"), rows, words=1)
 
 
 def errors_of(outcome: RouteOutcome) -> str:
@@ -162,11 +162,11 @@ def _of_robot(outcome: RouteOutcome) -> tuple[str, ...]:
     )
 
 
-def _verdicts(study: Study) -> Iterator[tuple[str, Verdict]]:
+def _verdicts(study: RouteStudy) -> Iterator[tuple[str, Verdict]]:
     for each in study.summaries:
         for verdict in verdicts(each, study.programme.task.paper):
             yield _heading(each)[1], verdict
 
 
-def _heading(summary: Summary) -> tuple[str, str]:
+def _heading(summary: RouteSummary) -> tuple[str, str]:
     return summary.experiment.variant.title, f"{summary.experiment.decisions} decisions"

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 
 from kurt2rt.core.task_settings import PaperResult
-from kurt2rt.experiments.route.summary import Summary
+from kurt2rt.experiments.route.summary import RouteSummary
 from kurt2rt.experiments.route.variants import TAUGHT
 from kurt2rt.experiments.study.verdict import Target, Verdict
 
@@ -14,7 +14,7 @@ RIGHT = 0.99
 """Share of all decisions that is to be right."""
 
 
-def verdicts(summary: Summary, paper: PaperResult) -> Iterator[Verdict]:
+def verdicts(summary: RouteSummary, paper: PaperResult) -> Iterator[Verdict]:
     """Yield the verdicts on routes of one length; none for controls and for other lengths."""
     experiment = summary.experiment
     share = WITHOUT_ERROR.get(experiment.decisions)

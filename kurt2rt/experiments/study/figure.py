@@ -5,7 +5,7 @@ from pathlib import Path
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
+class SavedFigure:
     """A PNG, and what it shows."""
 
     path: Path

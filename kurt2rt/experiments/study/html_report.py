@@ -7,7 +7,7 @@ from pathlib import Path
 
 import jinja2
 
-from kurt2rt.experiments.study.figure import Picture
+from kurt2rt.experiments.study.figure import SavedFigure
 from kurt2rt.experiments.study.provenance import versions
 from kurt2rt.platform.durable_files import write_durably
 
@@ -16,7 +16,7 @@ _MADE_WITH = ("kurt2rt", "matplotlib", "jinja2")
 
 
 def write_page(
-    path: Path, package: str, template: str, title: str, pictures: Sequence[Picture], **what: object
+    path: Path, package: str, template: str, title: str, pictures: Sequence[SavedFigure], **what: object
 ) -> None:
     """Fill a template of `package`, which extends `page.html.j2` of this one. Raises OSError."""
     environment = jinja2.Environment(

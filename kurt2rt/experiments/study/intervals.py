@@ -55,7 +55,7 @@ def _bootstrapped(statistic: Callable[..., Any], *samples: Sequence[float]) -> t
     return float(low), float(high)
 
 
-class Difference(NamedTuple):
+class RateDifference(NamedTuple):
     """A mean of differences and its 95 % interval."""
 
     value: float
@@ -63,30 +63,30 @@ class Difference(NamedTuple):
     high: float
 
 
-def difference_of(changes: Sequence[float]) -> Difference:
+def difference_of(changes: Sequence[float]) -> RateDifference:
     """The mean change of the same robots from one thing to another, bootstrapped over the robots.
 
     Where all changes are alike, as where none is, the interval is a point; one robot says nothing of others.
     """
     value = math.fsum(changes) / len(changes)
     if len(changes) == 1:
-        return Difference(value, -math.inf, math.inf)
+        return RateDifference(value, -math.inf, math.inf)
     low, high = _bootstrapped(np.mean, changes)
-    return Difference(value, min(low, value), max(high, value))
+    return RateDifference(value, min(low, value), max(high, value))
 
 
-def fall_of(before: Sequence[float], after: Sequence[float]) -> Difference:
+def fall_of(before: Sequence[float], after: Sequence[float]) -> RateDifference:
     """By which share the sum of something falls in the same robots, bootstrapped over the robots, pairs kept together.
 
     Where there was nothing before, nothing falls.
     """
     value = 1.0 - math.fsum(after) / math.fsum(before) if any(before) else 0.0
     if len(before) == 1:
-        return Difference(value, -math.inf, 1.0)
+        return RateDifference(value, -math.inf, 1.0)
 
     def fall(were: FloatArray, are: FloatArray, axis: int) -> Any:
         sums = were.sum(axis)
         return 1.0 - np.divide(are.sum(axis), sums, out=np.ones_like(sums), where=sums > 0)
 
     low, high = _bootstrapped(fall, before, after)
-    return Difference(value, min(low, value), max(high, value))
+    return RateDifference(value, min(low, value), max(high, value))

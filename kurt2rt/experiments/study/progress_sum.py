@@ -3,7 +3,7 @@
 from kurt2rt.experiments.study.pool import Tell
 
 
-class RobotTime:
+class ProgressSum:
     """Adds up the robot time of drives that come one after the other."""
 
     def __init__(self, tell: Tell) -> None:

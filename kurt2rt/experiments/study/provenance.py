@@ -18,7 +18,7 @@ _DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 _COMPUTE = ("numpy", "pymunk", "shapely")
 
 
-class MadeOf(Settings):
+class Provenance(Settings):
     """What decides a result: hashes of settings and source, and the versions of what computes.
 
     The field names are said to the user: made with other ...
@@ -30,7 +30,7 @@ class MadeOf(Settings):
     source: str
     versions: str
 
-    def differences(self, other: "MadeOf") -> list[str]:
+    def differences(self, other: "Provenance") -> list[str]:
         """Names of what is not the same."""
         return [name for name in type(self).model_fields if getattr(self, name) != getattr(other, name)]
 
@@ -80,13 +80,13 @@ class Fingerprints:
         self._stage = stage
         self._known: dict[tuple[str, str], str] = {}
 
-    def of(self, task: TaskSettings, worlds: Iterable[str], *more: str) -> MadeOf:
+    def of(self, task: TaskSettings, worlds: Iterable[str], *more: str) -> Provenance:
         """Of one job that drives in these worlds; `more`: what else it goes by.
 
         Raises hal.settings.SettingsError for what cannot be used.
         """
         of_task = task.model_dump_json(exclude=self._leave_out, serialize_as_any=True)
-        return MadeOf(
+        return Provenance(
             task=settings_hash(
                 of_task,
                 self._settings("situations", task.situation),

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 
 from hal.errors import UserError
 from hal.settings import Settings
-from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.platform.durable_files import write_durably
 
 _UNFINISHED = "unfinished-"
@@ -25,7 +25,7 @@ class StudyError(UserError):
     """Stored results cannot be used, or experiments do not fit together."""
 
 
-class Kept(Protocol):
+class StoredResult(Protocol):
     """A job as far as its file goes."""
 
     @property
@@ -34,7 +34,7 @@ class Kept(Protocol):
         ...
 
     @property
-    def made_of(self) -> MadeOf:
+    def made_of(self) -> Provenance:
         """What decides its result."""
         ...
 
@@ -45,7 +45,7 @@ class Kept(Protocol):
 
 
 class _AnyOutcome(Settings, extra="ignore"):
-    made_of: MadeOf
+    made_of: Provenance
 
 
 class Results:
@@ -80,7 +80,7 @@ class Results:
         with tempfile.TemporaryDirectory(prefix=_UNFINISHED, dir=self.folder) as folder:
             yield Path(folder)
 
-    def missing(self, jobs: Sequence[Kept]) -> list[int]:
+    def missing(self, jobs: Sequence[StoredResult]) -> list[int]:
         """Places of the jobs that have no result yet.
 
         Raises StudyError when there are results of other settings, source or versions, or files that are no results:
@@ -101,7 +101,7 @@ class Results:
             else:
                 self.read(job, job.outcome)
         if foreign:
-            what = ", ".join(name for name in MadeOf.model_fields if name in differences)
+            what = ", ".join(name for name in Provenance.model_fields if name in differences)
             more = f" and {len(foreign) - 1} more" if len(foreign) > 1 else ""
             raise StudyError(
                 f"{foreign[0]}{more} were made with other settings or another program (what differs: {what})",
@@ -110,11 +110,11 @@ class Results:
             )
         return missing
 
-    def write(self, job: Kept, outcome: Settings) -> None:
+    def write(self, job: StoredResult, outcome: Settings) -> None:
         """Keep a result; it is there whole or not at all."""
         write_durably(self.folder / job.file, outcome.model_dump_json() + "\n")
 
-    def read(self, job: Kept, schema: type[OutcomeT]) -> OutcomeT:
+    def read(self, job: StoredResult, schema: type[OutcomeT]) -> OutcomeT:
         """A result. Raises StudyError."""
         return self._read(self.folder / job.file, schema)
 

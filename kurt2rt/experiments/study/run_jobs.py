@@ -4,10 +4,10 @@ from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from kurt2rt.experiments.study.pool import Job, JobKilledError, Standing, run_jobs
-from kurt2rt.experiments.study.results import Kept, Results, StudyError
+from kurt2rt.experiments.study.results import Results, StoredResult, StudyError
 
 
-class KeptJob(Kept, Job[None], Protocol):
+class StoredJob(StoredResult, Job[None], Protocol):
     """A job that leaves its result in a file."""
 
 
@@ -21,13 +21,13 @@ def do_jobs(jobs: Sequence[Job[None]], processes: int, on_standing: Callable[[St
         ) from error
 
 
-def time_of_missing_s(waves: Sequence[Sequence[KeptJob]], results: Results) -> float:
+def time_of_missing_s(waves: Sequence[Sequence[StoredJob]], results: Results) -> float:
     """Robot time that is still to be simulated. Raises StudyError."""
     return sum(wave[place].robot_time_s for wave in waves for place in results.missing(wave))
 
 
 def do_waves(
-    waves: Sequence[Sequence[KeptJob]], results: Results, processes: int, on_standing: Callable[[Standing], None]
+    waves: Sequence[Sequence[StoredJob]], results: Results, processes: int, on_standing: Callable[[Standing], None]
 ) -> None:
     """Do the jobs that are missing, wave by wave, for each needs only those before it.
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from kurt2rt.experiments.study.results import Results
 
 
-class KeptByStem:
+class StoredPaths:
     """Names the files of such a job; a subclass has the folder of results, and says the name."""
 
     __slots__ = ()

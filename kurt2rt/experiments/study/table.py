@@ -9,7 +9,7 @@ from kurt2rt.platform.text_table import TextTable
 
 
 @dataclass(frozen=True, slots=True)
-class Sheet:
+class Table:
     """Cells are texts."""
 
     title: str
@@ -21,7 +21,7 @@ class Sheet:
     """What one has to know to read it."""
 
 
-def as_rich(sheet: Sheet) -> RenderableType:
+def as_rich(sheet: Table) -> RenderableType:
     """For the terminal. Plain text: what is missed is said in a word, not in a colour."""
     table = TextTable(title=sheet.title)
     for place, heading in enumerate(sheet.columns):

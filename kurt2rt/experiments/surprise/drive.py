@@ -14,7 +14,7 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Pursue, Resume
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.lockstep.drive import Drive
-from kurt2rt.experiments.lockstep.exam import NothingIsTaught
+from kurt2rt.experiments.lockstep.exam import NoTeachingAllowed
 from kurt2rt.experiments.surprise.stuck_sensor import StuckSensor
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
@@ -76,7 +76,7 @@ async def drive(
             settings,
             task,
             events,
-            NothingIsTaught(),
+            NoTeachingAllowed(),
             LockstepClock(simulation.step),
             statistics=counter,
             saved=saved,

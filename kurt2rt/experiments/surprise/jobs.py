@@ -11,7 +11,7 @@ from hal.simulation import SimulationFactory
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.study.pool import Tell
-from kurt2rt.experiments.study.table import Sheet
+from kurt2rt.experiments.study.table import Table
 from kurt2rt.experiments.surprise.drive import Different, Surprises, drive
 from kurt2rt.knowledge.journal.loading import read_lessons
 
@@ -84,7 +84,7 @@ class SurpriseJob:
         )
 
 
-def sheet_of(results: Sequence[Sequence[Surprises]]) -> Sheet:
+def sheet_of(results: Sequence[Sequence[Surprises]]) -> Table:
     """A row for each difference, all robots together; `results`: one sequence for each robot, alike."""
     rows = []
     for drives in zip(*results, strict=True):
@@ -102,7 +102,7 @@ def sheet_of(results: Sequence[Sequence[Surprises]]) -> Sheet:
                 f"{100 * sum(each.share_unknown for each in drives) / len(drives):.1f} %",
             )
         )
-    return Sheet(
+    return Table(
         title=f"Surprise, {len(results)} robots",
         columns=(
             *("different", "ends of RLAs", "surprising", "of single robots"),

@@ -41,7 +41,7 @@ COME_FROM = "imported from"
 
 
 @dataclass(frozen=True)
-class Given:
+class KnowledgePackage:
     """What is in an exported file."""
 
     path: Path
@@ -59,10 +59,10 @@ class Given:
 
 
 @dataclass(frozen=True, slots=True)
-class Taken:
+class ImportResult:
     """What an import has done."""
 
-    given: Given
+    given: KnowledgePackage
     other_settings: tuple[str, ...]
     """Settings files that are otherwise here: the same RLAs may have other borders."""
 
@@ -122,7 +122,7 @@ def _package(
     return pack(about, files, key)
 
 
-def read_given(path: Path) -> Given:
+def read_given(path: Path) -> KnowledgePackage:
     """Read an exported file whole. Raises KnowledgeError."""
     archive = unpack(path)
     try:
@@ -137,7 +137,7 @@ def read_given(path: Path) -> Given:
 
 def import_knowledge(
     path: Path, into: Path, robot: RobotSettings, task: TaskSettings, trusted: bytes | None, *, stamp: str
-) -> Taken:
+) -> ImportResult:
     """Make the knowledge file `into` from an exported one; nothing may be there yet. Raises KnowledgeError.
 
     `trusted`: raw public key of the only one whose knowledge is taken; None: anybody's, signed or not.
@@ -160,10 +160,10 @@ def import_knowledge(
     entries = [JournalEntry(each.event, each.stamped_at) for each in given.lessons]
     note = f"{path.name}, exported {given.exported_at}, imported {stamp}"
     bear(into, given.binding, entries, given.statistics, {COME_FROM: note}, source=path)
-    return Taken(given, _otherwise_here(given, robot, task))
+    return ImportResult(given, _otherwise_here(given, robot, task))
 
 
-def _otherwise_here(given: Given, robot: RobotSettings, task: TaskSettings) -> tuple[str, ...]:
+def _otherwise_here(given: KnowledgePackage, robot: RobotSettings, task: TaskSettings) -> tuple[str, ...]:
     here = attachments_of(robot, task)
     return tuple(name for name, content in given.settings.items() if here.get(name) != content)
 
@@ -172,7 +172,7 @@ def _features(features: LevelFeatures) -> dict[str, Any]:
     return {"hash": features.feature_hash, "names": list(features.feature_names)}
 
 
-def _given(path: Path, archive: Archive) -> Given:
+def _given(path: Path, archive: Archive) -> KnowledgePackage:
     """Raises KeyError for a file that is not in it, ValueError."""
     manifest = read_manifest(archive.manifest)
     binding = manifest.binding
@@ -181,4 +181,6 @@ def _given(path: Path, archive: Archive) -> Given:
     require_times(lessons)
     require_fitting(statistics, lessons, binding)
     settings = {name: content for name, content in archive.files.items() if name.startswith(SETTINGS)}
-    return Given(path, binding, lessons, statistics, manifest.task, manifest.exported_at, archive.signed_by, settings)
+    return KnowledgePackage(
+        path, binding, lessons, statistics, manifest.task, manifest.exported_at, archive.signed_by, settings
+    )

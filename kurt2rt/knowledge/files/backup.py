@@ -24,7 +24,7 @@ Raises KnowledgeError.
 """
 
 
-class Safe:
+class BackupService:
     """What was taught until now is in the copy, or there is no copy."""
 
     def __init__(

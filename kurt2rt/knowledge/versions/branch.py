@@ -19,7 +19,7 @@ _NOTE = "branch of"
 
 
 @dataclass(frozen=True, slots=True)
-class Whence:
+class BranchOrigin:
     """Where a branch came from."""
 
     file: str
@@ -33,15 +33,15 @@ class Whence:
 
 
 @dataclass(frozen=True, slots=True)
-class Branched:
+class BranchResult:
     """A branch that was made."""
 
-    whence: Whence
+    whence: BranchOrigin
     left_earlier: int
     """Rows that were left out though they are stamped by the time that was asked for: the clock was set back there."""
 
 
-def branch(path: Path, new: Path, at: str | None, *, stamp: str) -> Branched:
+def branch(path: Path, new: Path, at: str | None, *, stamp: str) -> BranchResult:
     """Make `new` from the rows of `path` up to `at`: a lesson's command id, or a time (ISO 8601); None: all of them.
 
     Up to a time: up to the first row with a later stamp. Where the clock was set back, rows behind that one may bear
@@ -59,21 +59,21 @@ def branch(path: Path, new: Path, at: str | None, *, stamp: str) -> Branched:
             now = fold_entries(journal, entries, radius=0.0)
             statistics = _of_the_same(statistics, then, now, (BASIC, *binding.levels))
     last = entries[rows - 1].event.origin.command_id if rows else ""
-    whence = Whence(path.name, rows, last, stamp)
+    whence = BranchOrigin(path.name, rows, last, stamp)
     kept = [JournalEntry(entry.event, entry.stamped_at) for entry in entries[:rows]]
     note = json.dumps([whence.file, whence.rows, whence.lesson, whence.branched_at])
     bear(new, binding, kept, statistics, {_NOTE: note}, source=path)
-    return Branched(whence, left_earlier)
+    return BranchResult(whence, left_earlier)
 
 
-def whence_of(journal: Journal) -> Whence | None:
+def whence_of(journal: Journal) -> BranchOrigin | None:
     """Where a file was branched from; None for one that was begun by itself. Raises KnowledgeError."""
     note = journal.notes().get(_NOTE)
     if note is None:
         return None
     try:
         file, rows, lesson, branched_at = json.loads(note)
-        return Whence(str(file), int(rows), str(lesson), str(branched_at))
+        return BranchOrigin(str(file), int(rows), str(lesson), str(branched_at))
     except (ValueError, TypeError, RecursionError) as error:
         raise KnowledgeError(
             f"its note on where it was branched from is damaged ({error})", where=journal.path, do="keep the file"

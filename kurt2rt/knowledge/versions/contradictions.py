@@ -16,7 +16,7 @@ from kurt2rt.core.rla.space import Space
 from kurt2rt.core.task_settings import TaskSettings
 
 
-class Borders(NamedTuple):
+class Radii(NamedTuple):
     """How near two conditions are the same, in the distances of a task."""
 
     spaces: Mapping[str, Space]
@@ -25,7 +25,7 @@ class Borders(NamedTuple):
     """By level: within this share of R a correction replaces, and does not insert."""
 
 
-class Near(NamedTuple):
+class Overlap(NamedTuple):
     """An RLA, and how far it is."""
 
     rla: Rla
@@ -33,7 +33,7 @@ class Near(NamedTuple):
     radius: float
 
 
-def borders_of(task: TaskSettings, robot: RobotSettings) -> Borders:
+def borders_of(task: TaskSettings, robot: RobotSettings) -> Radii:
     """Those of a task on a robot. Raises hal.settings.SettingsError."""
     definition = load_situation(task.situation, robot.infrared.names)
     changed = ((each.features, each.weight) for each in task.learning.weights)
@@ -48,13 +48,13 @@ def borders_of(task: TaskSettings, robot: RobotSettings) -> Borders:
     if task.mid is not None:
         mid = load_mid(task.mid)
         spaces[MID], shares[MID] = mid.space, mid.learning.insert_beyond_share
-    return Borders(spaces, shares)
+    return Radii(spaces, shares)
 
 
 class Contradictions:
     """RLAs of one file, asked which of them says something else at the condition of another file's RLA."""
 
-    def __init__(self, rlas: Iterable[Rla], borders: Borders) -> None:
+    def __init__(self, rlas: Iterable[Rla], borders: Radii) -> None:
         """Of levels that the task does not have nothing is near. RLAs that ask contradict nobody."""
         self._shares = borders.shares
         basic = borders.spaces[BASIC]
@@ -63,7 +63,7 @@ class Contradictions:
             if not rla.asks:
                 self._system.apply(RlaCreated(rla))
 
-    def of(self, rla: Rla) -> Near | None:
+    def of(self, rla: Rla) -> Overlap | None:
         """The nearest to its condition, if it lies within the share of R there and has another action."""
         share = self._shares.get(rla.level)
         if share is None:
@@ -71,4 +71,4 @@ class Contradictions:
         match = self._system.match(np.array(rla.condition), rla.behaviour, rla.level)
         if match is None or match.distance > share * match.radius or match.rla.action == rla.action:
             return None
-        return Near(match.rla, match.distance, match.radius)
+        return Overlap(match.rla, match.distance, match.radius)

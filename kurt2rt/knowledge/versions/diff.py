@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.rla import BASIC, Rla
-from kurt2rt.knowledge.versions.lesson_identity import Mark, Taught, common_rows
+from kurt2rt.knowledge.versions.lesson_identity import KnowledgeContent, LessonKey, common_rows
 
 
 @dataclass(frozen=True)
-class Difference:
+class KnowledgeDiff:
     """Of one file (a) and another (b)."""
 
     common_rows: int
@@ -29,13 +29,13 @@ class Difference:
         return not (self.lessons_a or self.lessons_b or self.rlas_a or self.rlas_b or self.changed)
 
 
-def difference(a: Taught, b: Taught) -> Difference:
+def difference(a: KnowledgeContent, b: KnowledgeContent) -> KnowledgeDiff:
     """Compare two files of the same features: RLAs are the same where the same lesson made them."""
     stands_a = {a.marks[record.event.origin.command_id] for record in a.system.lessons if not record.undone}
     stands_b = {b.marks[record.event.origin.command_id] for record in b.system.lessons if not record.undone}
     rlas_a = {a.rla_marks[rla.rla_id]: rla for rla in living(a)}
     rlas_b = {b.rla_marks[rla.rla_id]: rla for rla in living(b)}
-    return Difference(
+    return KnowledgeDiff(
         common_rows(a.entries, b.entries),
         _standing_only_in(a, stands_b),
         _standing_only_in(b, stands_a),
@@ -47,7 +47,7 @@ def difference(a: Taught, b: Taught) -> Difference:
     )
 
 
-def _standing_only_in(one: Taught, other: AbstractSet[Mark]) -> tuple[LessonRecord, ...]:
+def _standing_only_in(one: KnowledgeContent, other: AbstractSet[LessonKey]) -> tuple[LessonRecord, ...]:
     return tuple(
         record
         for record in one.system.lessons
@@ -55,6 +55,6 @@ def _standing_only_in(one: Taught, other: AbstractSet[Mark]) -> tuple[LessonReco
     )
 
 
-def living(taught: Taught) -> list[Rla]:
+def living(taught: KnowledgeContent) -> list[Rla]:
     """All living RLAs, of all levels."""
     return [rla for level in (BASIC, *taught.journal.binding.levels) for rla in taught.system.rlas_at(level)]

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from kurt2rt.core.reinforcement.decision_history import RecentDecisions
+from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
-from kurt2rt.core.reinforcement.settings import ReinforcementSettings, TaughtWorths
+from kurt2rt.core.reinforcement.settings import ReinforcementSettings, TaughtValues
 from kurt2rt.core.rla.rla import Origin, Phase, TeachingEvent
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import FIRST_VALUE, VALUES_INCLUDE, Statistics
@@ -51,9 +51,9 @@ def worths_after(
     """What the statistics become, by the same account as a robot keeps."""
     if not saved.values and VALUES_INCLUDE not in saved.numbers:
         return saved  # credits of another rule
-    first_value = saved.numbers.get(FIRST_VALUE, TaughtWorths().first_value)
-    settings = ReinforcementSettings(with_teacher=TaughtWorths(first_value=first_value, highest_value=None))
-    account = Reinforcement(RlaSystem(dimensions, math.inf), RecentDecisions(dimensions), settings, period_s=0.01)
+    first_value = saved.numbers.get(FIRST_VALUE, TaughtValues().first_value)
+    settings = ReinforcementSettings(with_teacher=TaughtValues(first_value=first_value, highest_value=None))
+    account = Reinforcement(RlaSystem(dimensions, math.inf), DecisionHistory(dimensions), settings, period_s=0.01)
     # An earlier kurt2rt did not say how many rows the values include: all that there were.
     numbers = {VALUES_INCLUDE: float(len(before)), **saved.numbers}
     account.recall([*before, *new], replace(saved, numbers=numbers))

@@ -24,7 +24,7 @@ NO_PILE: PileMark = ("", "")
 """Of events that are no lessons."""
 
 
-class Mark(NamedTuple):
+class LessonKey(NamedTuple):
     """Which event it is, in whichever file, and however it is called there."""
 
     command_id: str
@@ -44,7 +44,7 @@ class Mark(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Taught:
+class KnowledgeContent:
     """What one file holds, read once."""
 
     journal: Journal
@@ -59,9 +59,9 @@ class Taught:
         return {record.event.origin.command_id: record for record in self.system.lessons}
 
     @cached_property
-    def marks(self) -> Mapping[str, Mark]:
+    def marks(self) -> Mapping[str, LessonKey]:
         """Of all lessons, in their order, by the command id that they have here."""
-        marks, created = dict[str, Mark](), Counter[tuple[str, int]]()
+        marks, created = dict[str, LessonKey](), Counter[tuple[str, int]]()
         of_rla = dict[Pile, PileMark]()
         for record in self.system.lessons:
             lesson = record.event
@@ -71,7 +71,7 @@ class Taught:
                 of_rla[pile] = (first, content, created[first, content])
                 created[first, content] += 1
             mark = pile if isinstance(pile, tuple) else of_rla[pile]
-            marks[lesson.origin.command_id] = Mark(first, content, mark, isinstance(lesson, RlaRewarded))
+            marks[lesson.origin.command_id] = LessonKey(first, content, mark, isinstance(lesson, RlaRewarded))
         return marks
 
     @cached_property
@@ -87,15 +87,15 @@ class Taught:
         return {pile: mark for mark, pile in self.piles.items() if isinstance(pile, int)}
 
 
-def read_taught(journal: Journal) -> Taught:
+def read_taught(journal: Journal) -> KnowledgeContent:
     """Read a file whole. Raises KnowledgeError."""
     entries = tuple(journal.entries())
-    return Taught(journal, entries, fold_entries(journal, entries, radius=math.inf))
+    return KnowledgeContent(journal, entries, fold_entries(journal, entries, radius=math.inf))
 
 
-def mark_of(event: TeachingEvent) -> Mark:
+def mark_of(event: TeachingEvent) -> LessonKey:
     """Of an event that is no lesson."""
-    return Mark(*_as_first_taught(event), NO_PILE, is_reward=False)
+    return LessonKey(*_as_first_taught(event), NO_PILE, is_reward=False)
 
 
 def named(event: TeachingEvent, command_id: str) -> TeachingEvent:
@@ -116,9 +116,11 @@ def common_rows(one: Sequence[StoredEntry], other: Sequence[StoredEntry]) -> int
     return same
 
 
-def standing_piles(lessons: Iterable[LessonRecord], marks: Mapping[str, Mark]) -> dict[PileMark, tuple[Mark, ...]]:
+def standing_piles(
+    lessons: Iterable[LessonRecord], marks: Mapping[str, LessonKey]
+) -> dict[PileMark, tuple[LessonKey, ...]]:
     """The lessons that stand, by what they are about; the order in which each was put on the other."""
-    piles = dict[PileMark, tuple[Mark, ...]]()
+    piles = dict[PileMark, tuple[LessonKey, ...]]()
     for record in lessons:
         if not record.undone:
             mark = marks[record.event.origin.command_id]
@@ -126,7 +128,7 @@ def standing_piles(lessons: Iterable[LessonRecord], marks: Mapping[str, Mark]) -
     return piles
 
 
-def lessons_up_to(taught: Taught, rows: int) -> tuple[LessonRecord, ...]:
+def lessons_up_to(taught: KnowledgeContent, rows: int) -> tuple[LessonRecord, ...]:
     """The lessons as they were when the file had that many rows."""
     if rows == len(taught.entries):
         return taught.system.lessons

@@ -18,14 +18,20 @@ from kurt2rt.knowledge.journal.binding import require_same
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.versions.contradictions import Borders, Contradictions
+from kurt2rt.knowledge.versions.contradictions import Contradictions, Radii
 from kurt2rt.knowledge.versions.diff import living
 from kurt2rt.knowledge.versions.editing import new_origin, write
-from kurt2rt.knowledge.versions.lesson_identity import Mark, PileMark, Taught, read_taught, standing_piles
-from kurt2rt.knowledge.versions.merge_base import Parting, Side, Sides, Way
-from kurt2rt.knowledge.versions.merge_writer import Bringing, Wanted
+from kurt2rt.knowledge.versions.lesson_identity import (
+    KnowledgeContent,
+    LessonKey,
+    PileMark,
+    read_taught,
+    standing_piles,
+)
+from kurt2rt.knowledge.versions.merge_base import Side, StackPair, ThreeWayDiff, Way
+from kurt2rt.knowledge.versions.merge_writer import MergeWriter, TargetStack
 
-__all__ = ["Conflict", "ConflictCode", "Merge", "Merging", "Side", "merge"]
+__all__ = ["Conflict", "ConflictCode", "MergePlan", "Merger", "Side", "merge"]
 
 
 class ConflictCode(StrEnum):
@@ -55,7 +61,7 @@ class Conflict:
 
 
 @dataclass(frozen=True)
-class Merge:
+class MergePlan:
     """What a merge would write."""
 
     entries: tuple[JournalEntry, ...]
@@ -77,47 +83,47 @@ class _Pile:
     """A pile, what becomes of its lessons here, and of its rewards."""
 
     mark: PileMark
-    sides: Sides
+    sides: StackPair
     way: Way
-    came: tuple[Mark, ...]
+    came: tuple[LessonKey, ...]
     """Praise and blame that comes."""
-    went: tuple[Mark, ...]
+    went: tuple[LessonKey, ...]
     """Praise and blame that goes."""
 
     @property
-    def homeless(self) -> frozenset[Mark]:
+    def homeless(self) -> frozenset[LessonKey]:
         """Praise and blame of this file that stands on something that is not there any more."""
         theirs, at = set(self.sides.theirs), self._under()
         own = (mark for mark in self.sides.mine if mark.is_reward and mark not in theirs and mark not in self.went)
         return frozenset(mark for mark in own if at[mark] not in theirs)
 
-    def as_there(self) -> Wanted:
+    def as_there(self) -> TargetStack:
         """The lessons of theirs, with the rewards of mine where they were given."""
         at, theirs = self._under(), set(self.sides.theirs)
         own = [mark for mark in self.sides.mine if mark.is_reward and mark not in theirs and mark not in self.went]
-        then = list[Mark]()
+        then = list[LessonKey]()
         for mark in self.sides.theirs:
             if not mark.is_reward:
                 then += [mark, *(reward for reward in own if at[reward] == mark)]
             elif mark in self.came or mark in self.sides.mine:
                 then.append(mark)
-        return Wanted(self.mark, self.sides.mine, tuple(then))
+        return TargetStack(self.mark, self.sides.mine, tuple(then))
 
-    def as_here(self) -> Wanted:
+    def as_here(self) -> TargetStack:
         """The lessons of mine; a reward under one of them stays."""
         then = tuple(mark for mark in self.sides.mine if mark not in self.went or mark in self.stuck)
-        return Wanted(self.mark, self.sides.mine, (*then, *self.came))
+        return TargetStack(self.mark, self.sides.mine, (*then, *self.came))
 
     @property
-    def stuck(self) -> frozenset[Mark]:
+    def stuck(self) -> frozenset[LessonKey]:
         """Rewards that went there, and on which a lesson of this file lies."""
         mine = self.sides.mine
         tops = [place for place, mark in enumerate(mine) if not mark.is_reward]
         return frozenset(mark for mark in self.went if tops and mine.index(mark) < tops[-1])
 
-    def _under(self) -> dict[Mark, Mark | None]:
+    def _under(self) -> dict[LessonKey, LessonKey | None]:
         """On which lesson each reward of mine was given."""
-        at, lesson = dict[Mark, Mark | None](), None
+        at, lesson = dict[LessonKey, LessonKey | None](), None
         for mark in self.sides.mine:
             if mark.is_reward:
                 at[mark] = lesson
@@ -126,17 +132,19 @@ class _Pile:
         return at
 
 
-class Merging:
+class Merger:
     """One merge, planned; changes neither file. Goes on with the fold of mine: plans once."""
 
-    def __init__(self, mine: Taught, theirs: Taught, borders: Borders, *, teacher: str, stamp: str) -> None:
+    def __init__(
+        self, mine: KnowledgeContent, theirs: KnowledgeContent, borders: Radii, *, teacher: str, stamp: str
+    ) -> None:
         """`teacher` and `stamp` of what is undone or redone by it; lessons keep those that they have."""
         self._mine, self._theirs = mine, theirs
         self._borders = borders
         self._teacher, self._stamp = teacher, stamp
-        self._bringing = Bringing(mine, theirs, teacher=teacher, stamp=stamp)
+        self._bringing = MergeWriter(mine, theirs, teacher=teacher, stamp=stamp)
 
-    def plan(self, saved: Statistics, of_theirs: Statistics, prefer: Side | None) -> Merge:
+    def plan(self, saved: Statistics, of_theirs: Statistics, prefer: Side | None) -> MergePlan:
         """What to write, given the statistics of both files. Raises KnowledgeError where it does not fit together."""
         bringing, piles = self._bringing, self._piles()
         both = [each for each in piles if each.way == "both"]
@@ -170,7 +178,7 @@ class Merging:
             name = self._theirs.journal.path.name
             merged = KnowledgeMerged(name, len(self._theirs.entries), last, new_origin("merge", self._teacher))
             entries.append(JournalEntry(merged, self._stamp))
-        return Merge(
+        return MergePlan(
             entries=tuple(entries),
             statistics=self._statistics(saved, of_theirs),
             conflicts=tuple(conflicts),
@@ -185,9 +193,9 @@ class Merging:
         """Piles of theirs that are not the same here, and what becomes of them."""
         here = standing_piles(self._mine.system.lessons, self._mine.marks)
         there = standing_piles(self._theirs.system.lessons, self._theirs.marks)
-        parting, found = Parting(self._mine, self._theirs), list[_Pile]()
+        parting, found = ThreeWayDiff(self._mine, self._theirs), list[_Pile]()
         for mark in self._theirs.piles:
-            sides = Sides(here.get(mark, ()), there.get(mark, ()))
+            sides = StackPair(here.get(mark, ()), there.get(mark, ()))
             if sides.mine == sides.theirs:
                 continue
             way = parting.way_of(mark, sides)
@@ -244,7 +252,7 @@ class Merging:
         rla = self._theirs.system.get(pile)
         return None if rla is None or rla.asks else rla
 
-    def _stays(self, mark: Mark) -> str:
+    def _stays(self, mark: LessonKey) -> str:
         names = [name for name, other in self._mine.marks.items() if other == mark]
         record = self._mine.records[names[-1]]
         return (
@@ -279,8 +287,8 @@ class Merging:
 
 
 def merge(
-    path: Path, other: Path, borders: Borders, prefer: Side | None, *, teacher: str, stamp: str, dry_run: bool = False
-) -> Merge:
+    path: Path, other: Path, borders: Radii, prefer: Side | None, *, teacher: str, stamp: str, dry_run: bool = False
+) -> MergePlan:
     """Bring what was taught in `other` since both last met into `path`; durable on return, all or nothing.
 
     Where there are conflicts and no side is preferred, or `dry_run`, nothing is changed, and a robot may run on `path`
@@ -292,7 +300,7 @@ def merge(
     with Journal.read_only(other) as look:
         require_same(look.binding, binding, other, look.has_lessons_at)
         theirs, of_theirs = read_taught(look), look.statistics()
-    planned = Merging(mine, theirs, borders, teacher=teacher, stamp=stamp).plan(saved, of_theirs, prefer)
+    planned = Merger(mine, theirs, borders, teacher=teacher, stamp=stamp).plan(saved, of_theirs, prefer)
     if not planned.entries or dry_run or (prefer is None and planned.conflicts):
         return planned
     both = replace(binding, levels={**theirs.journal.binding.levels, **binding.levels})

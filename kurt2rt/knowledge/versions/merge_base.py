@@ -7,9 +7,9 @@ from typing import Literal
 from kurt2rt.core.rla.rla import KnowledgeMerged, LessonRedone, LessonUndone
 from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.versions.lesson_identity import (
-    Mark,
+    KnowledgeContent,
+    LessonKey,
     PileMark,
-    Taught,
     common_rows,
     lessons_up_to,
     standing_piles,
@@ -21,7 +21,7 @@ Way = Literal["stays", "as there", "both"]
 
 
 @dataclass(frozen=True, slots=True)
-class Meeting:
+class MergeBase:
     """A moment at which one of them took account of all that the other one held."""
 
     mine: int
@@ -30,48 +30,48 @@ class Meeting:
     shown: Side
     """Whose lessons the other one saw."""
 
-    def is_after(self, other: "Meeting") -> bool:
+    def is_after(self, other: "MergeBase") -> bool:
         """Whether it knew all that was known at the other one."""
         return self != other and self.mine >= other.mine and self.theirs >= other.theirs
 
 
 @dataclass(frozen=True)
-class Base:
+class BaseState:
     """What both knew at a meeting."""
 
-    piles: Mapping[PileMark, tuple[Mark, ...]]
+    piles: Mapping[PileMark, tuple[LessonKey, ...]]
     """As they stood in the file that was shown."""
-    undone_here: frozenset[Mark]
+    undone_here: frozenset[LessonKey]
     """Lessons that were undone in mine after it."""
-    undone_there: frozenset[Mark]
+    undone_there: frozenset[LessonKey]
 
 
 @dataclass(frozen=True, slots=True)
-class Sides:
+class StackPair:
     """One pile as it stands in both files."""
 
-    mine: tuple[Mark, ...]
-    theirs: tuple[Mark, ...]
+    mine: tuple[LessonKey, ...]
+    theirs: tuple[LessonKey, ...]
 
     @property
-    def without_rewards(self) -> "Sides":
+    def without_rewards(self) -> "StackPair":
         """Praise and blame left out."""
-        return Sides(lessons_of(self.mine), lessons_of(self.theirs))
+        return StackPair(lessons_of(self.mine), lessons_of(self.theirs))
 
 
-def lessons_of(pile: Sequence[Mark]) -> tuple[Mark, ...]:
+def lessons_of(pile: Sequence[LessonKey]) -> tuple[LessonKey, ...]:
     """The lessons of a pile that are neither praise nor blame: those whose order matters."""
     return tuple(mark for mark in pile if not mark.is_reward)
 
 
-def last_meetings(mine: Sequence[StoredEntry], theirs: Sequence[StoredEntry]) -> tuple[Meeting, ...]:
+def last_meetings(mine: Sequence[StoredEntry], theirs: Sequence[StoredEntry]) -> tuple[MergeBase, ...]:
     """Where they parted, or the last merge of one into the other; two where each was merged into an older other."""
     common = common_rows(mine, theirs)
-    found = [Meeting(common, common, "mine")]
+    found = [MergeBase(common, common, "mine")]
     for row, seen in _merges(mine, theirs):
-        found.append(Meeting(max(row, common), max(seen, common), "theirs"))
+        found.append(MergeBase(max(row, common), max(seen, common), "theirs"))
     for row, seen in _merges(theirs, mine):
-        found.append(Meeting(max(seen, common), max(row, common), "mine"))
+        found.append(MergeBase(max(seen, common), max(row, common), "mine"))
     found = list({(each.mine, each.theirs): each for each in found}.values())
     return tuple(each for each in found if not any(other.is_after(each) for other in found))
 
@@ -87,26 +87,26 @@ def _merges(into: Sequence[StoredEntry], other: Sequence[StoredEntry]) -> list[t
     ]
 
 
-def base_of(meeting: Meeting, mine: Taught, theirs: Taught) -> Base:
+def base_of(meeting: MergeBase, mine: KnowledgeContent, theirs: KnowledgeContent) -> BaseState:
     """What both knew at that meeting."""
     here, there = lessons_up_to(mine, meeting.mine), lessons_up_to(theirs, meeting.theirs)
     on_mine, on_theirs = standing_piles(here, mine.marks), standing_piles(there, theirs.marks)
-    return Base(
+    return BaseState(
         on_mine if meeting.shown == "mine" else on_theirs,
         undone_here=_undone_since(meeting.mine, mine),
         undone_there=_undone_since(meeting.theirs, theirs),
     )
 
 
-def _undone_since(rows: int, taught: Taught) -> frozenset[Mark]:
+def _undone_since(rows: int, taught: KnowledgeContent) -> frozenset[LessonKey]:
     later = taught.entries[rows:]
     return frozenset(taught.marks[entry.event.lesson] for entry in later if isinstance(entry.event, LessonUndone))
 
 
-class Parting:
+class ThreeWayDiff:
     """How both went on since they met."""
 
-    def __init__(self, mine: Taught, theirs: Taught) -> None:
+    def __init__(self, mine: KnowledgeContent, theirs: KnowledgeContent) -> None:
         self._bases = [base_of(each, mine, theirs) for each in last_meetings(mine.entries, theirs.entries)]
         self._here, self._there = frozenset(mine.marks.values()), frozenset(theirs.marks.values())
         heard = max(
@@ -124,18 +124,18 @@ class Parting:
         self._taken_back = _undone_since(heard, theirs)
         """Lessons that were undone there, of which mine did not hear yet."""
 
-    def way_of(self, pile: PileMark, sides: Sides) -> Way:
+    def way_of(self, pile: PileMark, sides: StackPair) -> Way:
         """Who changed the lessons of a pile, praise and blame apart."""
         sides = sides.without_rewards
         ways = {self._way(lessons_of(base.piles.get(pile, ())), base, sides) for base in self._bases}
         return ways.pop() if len(ways) == 1 else "both"
 
-    def rewards_that_came(self, sides: Sides) -> tuple[Mark, ...]:
+    def rewards_that_came(self, sides: StackPair) -> tuple[LessonKey, ...]:
         """Praise and blame that are new there, or stand there again."""
         rewards = [mark for mark in sides.theirs if mark.is_reward and mark not in sides.mine]
         return tuple(mark for mark in rewards if all(self._came(mark, base) for base in self._bases))
 
-    def rewards_that_went(self, sides: Sides) -> tuple[Mark, ...]:
+    def rewards_that_went(self, sides: StackPair) -> tuple[LessonKey, ...]:
         """Praise and blame that stand here and were taken back there."""
         rewards = [
             mark for mark in sides.mine if mark.is_reward and mark not in sides.theirs and mark in self._taken_back
@@ -146,7 +146,7 @@ class Parting:
             if any(mark in base.piles.get(mark.pile, ()) or mark in base.undone_there for base in self._bases)
         )
 
-    def _came(self, mark: Mark, base: Base) -> bool:
+    def _came(self, mark: LessonKey, base: BaseState) -> bool:
         if mark in base.piles.get(mark.pile, ()):
             return False  # it was undone here since, or left out
         if mark not in self._here:
@@ -154,7 +154,7 @@ class Parting:
         # Of one that came here on another way the undo counts; one that they kept although it was undone is not new.
         return mark not in base.undone_here and mark in self._news
 
-    def _way(self, before: tuple[Mark, ...], base: Base, sides: Sides) -> Way:
+    def _way(self, before: tuple[LessonKey, ...], base: BaseState, sides: StackPair) -> Way:
         mine, theirs = sides.mine, sides.theirs
         if mine == theirs:
             return "stays"
@@ -170,7 +170,7 @@ class Parting:
         return "stays" if _goes_on(mine, theirs, self._there | frozenset(before)) else "both"
 
 
-def _goes_on(longer: tuple[Mark, ...], shorter: tuple[Mark, ...], known: frozenset[Mark]) -> bool:
+def _goes_on(longer: tuple[LessonKey, ...], shorter: tuple[LessonKey, ...], known: frozenset[LessonKey]) -> bool:
     """Whether one is the other and more, of which that one's file never heard."""
     size = len(shorter)
     return longer[:size] == shorter and not known.intersection(longer[size:])

@@ -22,16 +22,16 @@ from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.versions.editing import new_origin
-from kurt2rt.knowledge.versions.lesson_identity import NO_PILE, Mark, PileMark, Taught, mark_of, named
+from kurt2rt.knowledge.versions.lesson_identity import NO_PILE, KnowledgeContent, LessonKey, PileMark, mark_of, named
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class TargetStack:
     """One pile: what stands on it here, and what shall."""
 
     pile: PileMark
-    now: tuple[Mark, ...]
-    then: tuple[Mark, ...]
+    now: tuple[LessonKey, ...]
+    then: tuple[LessonKey, ...]
 
     @property
     def same(self) -> int:
@@ -42,10 +42,10 @@ class Wanted:
         return min(len(self.now), len(self.then))
 
 
-class Bringing:
+class MergeWriter:
     """Finds the rows that a merge writes; applies them to the fold of mine, and changes neither file."""
 
-    def __init__(self, mine: Taught, theirs: Taught, *, teacher: str, stamp: str) -> None:
+    def __init__(self, mine: KnowledgeContent, theirs: KnowledgeContent, *, teacher: str, stamp: str) -> None:
         """`teacher` and `stamp` of what is undone or redone by it; lessons keep those that they have."""
         self.entries: list[JournalEntry] = []
         self.left_out: list[str] = []
@@ -70,12 +70,12 @@ class Bringing:
         """RLA id there -> here, of all that are in both."""
         return self._rlas
 
-    def name_of(self, mark: Mark) -> str | None:
+    def name_of(self, mark: LessonKey) -> str | None:
         """Command id of a lesson here, the newest where it was brought again; None where it is not here."""
         names = self._names.get(mark)
         return names[-1] if names else None
 
-    def bring(self, wanted: Sequence[Wanted], deletions: Iterable[int]) -> None:
+    def bring(self, wanted: Sequence[TargetStack], deletions: Iterable[int]) -> None:
         """Undos, the newest lesson first, deletions, then lessons in the order in which they were taught there.
 
         Raises KnowledgeError where they do not fit.
@@ -111,9 +111,9 @@ class Bringing:
 
     def _put(
         self,
-        mark: Mark,
-        standing: Mapping[Mark, LessonRecord],
-        own: Mapping[Mark, Lesson],
+        mark: LessonKey,
+        standing: Mapping[LessonKey, LessonRecord],
+        own: Mapping[LessonKey, Lesson],
         actions: Mapping[str, Mapping[int, str]],
     ) -> None:
         """Let a lesson stand on its pile: again, where that can be, else as a new one."""
@@ -171,7 +171,7 @@ class Bringing:
         says = "is gone here" if here is None else f"is {here.title} here and says {here.action}"
         return f"{record.text} there by {lesson.origin.teacher} for {meant}; it {says}"
 
-    def _standing(self, mark: Mark) -> str:
+    def _standing(self, mark: LessonKey) -> str:
         for name in self._names[mark]:
             record = self._system.lesson(name)
             if record is not None and not record.undone:
@@ -191,11 +191,11 @@ class Bringing:
         self.entries.append(JournalEntry(event, stamp))
 
 
-def _by_name(taught: Taught) -> list[tuple[str, LessonRecord]]:
+def _by_name(taught: KnowledgeContent) -> list[tuple[str, LessonRecord]]:
     return [(record.event.origin.command_id, record) for record in taught.system.lessons]
 
 
-def _actions_when_rewarded(taught: Taught) -> dict[str, dict[int, str]]:
+def _actions_when_rewarded(taught: KnowledgeContent) -> dict[str, dict[int, str]]:
     """What the RLAs said that praise or blame was meant for, by its command id and theirs."""
     system, found = RlaSystem(taught.system.dimensions, 0.0), dict[str, dict[int, str]]()
     for entry in taught.entries:

@@ -20,7 +20,7 @@ from kurt2rt.knowledge.versions.editing import new_origin, open_again, write
 
 
 @dataclass(frozen=True)
-class Planned:
+class UndoPlan:
     """An undo or a redo that can be made, and is not made yet."""
 
     path: Path
@@ -36,7 +36,7 @@ class Planned:
     statistics: Statistics
 
 
-def plan_undo(path: Path, lesson: str | None = None, of: str | None = None, *, teacher: str) -> Planned:
+def plan_undo(path: Path, lesson: str | None = None, of: str | None = None, *, teacher: str) -> UndoPlan:
     """To take back the lesson of that command id, None: the last that stands; or all of the teacher `of`, newest first.
 
     Reads only; it is `teacher` who undoes. Raises KnowledgeError where there is no such lesson, or a newer one stands
@@ -54,7 +54,7 @@ def plan_undo(path: Path, lesson: str | None = None, of: str | None = None, *, t
     return reading.planned(changes)
 
 
-def plan_redo(path: Path, lesson: str | None = None, of: str | None = None, *, teacher: str) -> Planned:
+def plan_redo(path: Path, lesson: str | None = None, of: str | None = None, *, teacher: str) -> UndoPlan:
     """To let the lesson of that command id stand again, None: the one undone last; or all undone of the teacher `of`.
 
     Those go the one undone last first; one in whose place something else stands stays undone. Reads only; it is
@@ -81,7 +81,7 @@ def plan_redo(path: Path, lesson: str | None = None, of: str | None = None, *, t
     return reading.planned(changes, reasons)
 
 
-def carry_out(planned: Planned, stamp: str) -> None:
+def carry_out(planned: UndoPlan, stamp: str) -> None:
     """Make what was planned, all or nothing; durable on return.
 
     Values become what a robot would make of it: those whom a reward was given lose its credits, and an RLA that gets
@@ -104,10 +104,10 @@ class _Reading:
     statistics: Statistics
     system: RlaSystem
 
-    def planned(self, changes: Sequence[LessonUndone | LessonRedone], stay: Sequence[str] = ()) -> Planned:
+    def planned(self, changes: Sequence[LessonUndone | LessonRedone], stay: Sequence[str] = ()) -> UndoPlan:
         """These changes, which `system` has taken already."""
         records = tuple(_record(self.system, change.lesson) for change in changes)
-        return Planned(self.path, tuple(changes), records, tuple(stay), self.binding, self.events, self.statistics)
+        return UndoPlan(self.path, tuple(changes), records, tuple(stay), self.binding, self.events, self.statistics)
 
 
 def _read(path: Path) -> _Reading:

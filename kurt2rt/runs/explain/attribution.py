@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.runs.explain.facts import LevelFacts, RlaStory
+from kurt2rt.runs.explain.facts import LevelFacts, RlaFacts
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class FeaturePull:
     """For the first one where it is positive: its part of all that speaks for one or the other, -1 to 1."""
 
 
-def shares(level: LevelFacts, story: RlaStory) -> tuple[FeatureShare, ...]:
+def shares(level: LevelFacts, story: RlaFacts) -> tuple[FeatureShare, ...]:
     """All features that differ and count, most first; empty where the robot does not know where it is."""
     squares = _squares(level, story)
     whole = float(squares.sum())
@@ -46,7 +46,7 @@ def shares(level: LevelFacts, story: RlaStory) -> tuple[FeatureShare, ...]:
     )
 
 
-def pulls(level: LevelFacts, first: RlaStory, second: RlaStory) -> tuple[FeaturePull, ...]:
+def pulls(level: LevelFacts, first: RlaFacts, second: RlaFacts) -> tuple[FeaturePull, ...]:
     """All features that speak for one of the two, loudest first."""
     difference = _squares(level, second) - _squares(level, first)
     whole = float(np.abs(difference).sum())
@@ -66,7 +66,7 @@ def pulls(level: LevelFacts, first: RlaStory, second: RlaStory) -> tuple[Feature
     )
 
 
-def to_the_border(level: LevelFacts, first: RlaStory, second: RlaStory) -> float | None:
+def to_the_border(level: LevelFacts, first: RlaFacts, second: RlaFacts) -> float | None:
     """How far the situation lies from where both are equally near, weighted as a distance; None of symbols."""
     if not level.euclidean:
         return None
@@ -77,7 +77,7 @@ def to_the_border(level: LevelFacts, first: RlaStory, second: RlaStory) -> float
     return float(_squares(level, second).sum() - _squares(level, first).sum()) / (2 * apart)
 
 
-def _squares(level: LevelFacts, story: RlaStory) -> NDArray[np.float64]:
+def _squares(level: LevelFacts, story: RlaFacts) -> NDArray[np.float64]:
     here, there = np.array(level.vector), np.array(story.condition)
     if not level.euclidean:
         return np.array(here != there, dtype=np.float64)

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from kurt2rt.core.perception.sensor_words import SensorWords
 from kurt2rt.runs.explain.attribution import pulls, shares
 from kurt2rt.runs.explain.colours import ASKS, INK, PALE_INK, STANDS
-from kurt2rt.runs.explain.facts import LevelFacts, RlaStory
+from kurt2rt.runs.explain.facts import LevelFacts, RlaFacts
 from kurt2rt.runs.explain.sensor_view import DIFFERS
 from kurt2rt.runs.explain.sentences import far
 
@@ -16,7 +16,7 @@ _KNOWN, _LIMIT, _LIMIT_INK = "#e3f1e6", "#3f9b5c", "#2b7a45"
 _SMALLER = "#f0b27f"
 
 
-def draw_nearness(axes: Axes, level: LevelFacts, story: RlaStory | None, colours: Mapping[str, str]) -> None:
+def draw_nearness(axes: Axes, level: LevelFacts, story: RlaFacts | None, colours: Mapping[str, str]) -> None:
     """All RLAs on one line: the nearer the farther left."""
     _bare(axes)
     if level.nearest is None or story is None or not math.isfinite(level.nearest.distance):
@@ -60,7 +60,7 @@ def draw_nearness(axes: Axes, level: LevelFacts, story: RlaStory | None, colours
     axes.text(0.0, 1.0, "how near each RLA is", fontsize=9.5, color=PALE_INK, ha="left", va="bottom")
 
 
-def draw_differences(axes: Axes, level: LevelFacts, story: RlaStory | None, rows: int, words: SensorWords) -> None:
+def draw_differences(axes: Axes, level: LevelFacts, story: RlaFacts | None, rows: int, words: SensorWords) -> None:
     """The features that made the distance what it is: their shares, and both values."""
     _bare(axes)
     found = () if story is None else shares(level, story)[:rows]
@@ -93,7 +93,7 @@ def draw_differences(axes: Axes, level: LevelFacts, story: RlaStory | None, rows
 
 
 def draw_tug_of_war(
-    axes: Axes, level: LevelFacts, story: RlaStory | None, colours: Mapping[str, str], rows: int, words: SensorWords
+    axes: Axes, level: LevelFacts, story: RlaFacts | None, colours: Mapping[str, str], rows: int, words: SensorWords
 ) -> None:
     """Which features speak for the one, which for the other."""
     _bare(axes)
@@ -123,11 +123,11 @@ def draw_tug_of_war(
     axes.set_ylim(rows - 0.4, -0.6)
 
 
-def _side(story: RlaStory, end: float) -> str:
+def _side(story: RlaFacts, end: float) -> str:
     return "left" if story.distance < 0.15 * end else "right" if story.distance > 0.7 * end else "center"
 
 
-def _dot(story: RlaStory, colours: Mapping[str, str]) -> str:
+def _dot(story: RlaFacts, colours: Mapping[str, str]) -> str:
     return ASKS if story.asks else colours.get(story.action, STANDS)
 
 

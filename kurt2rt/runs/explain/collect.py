@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kurt2rt.core.decision.decision import Cause, Decision, MidDecision
-from kurt2rt.core.decision.plan_step import Course
+from kurt2rt.core.decision.plan_step import GoalStatus
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import BASIC, MID, Rla, RlaRewarded
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.runs.explain.facts import Act, DecisionFacts, LevelFacts, RlaStory
+from kurt2rt.runs.explain.facts import DecisionFacts, LessonFact, LevelFacts, RlaFacts
 from kurt2rt.runtime import Runtime
 
 _PASSED_OVER = 12
@@ -82,9 +82,9 @@ def _hindrances(runtime: Runtime, record: TickRecord) -> tuple[str, ...]:
         found.append(Cause.UNATTENDED)
     if navigator is not None and mid is not None and not mid.overridden:
         match navigator.stands_as:
-            case Course.ARRIVED:
+            case GoalStatus.ARRIVED:
                 found.append(Cause.AT_GOAL)
-            case Course.NO_WAY:
+            case GoalStatus.NO_WAY:
                 found.append(Cause.NO_WAY)
     return tuple(cause.value for cause in found)
 
@@ -143,7 +143,7 @@ class _Reader:
         driver = None
         if driver_rla is not None:
             driver = self._story(driver_rla, self._radius_of(driver_rla), distances.get(driver_rla.rla_id, math.inf))
-        others: list[RlaStory] = []
+        others: list[RlaFacts] = []
         for rla_id, distance in ranking:
             rla = self._system.get(rla_id)
             if rla is None or (match is not None and rla_id == match.rla.rla_id):
@@ -185,7 +185,7 @@ class _Reader:
         mid = self._runtime.mid
         return self._system.radius if rla.level == BASIC or mid is None else mid.settings.learning.radius
 
-    def _story(self, rla: Rla, radius: float, distance: float) -> RlaStory:
+    def _story(self, rla: Rla, radius: float, distance: float) -> RlaFacts:
         counted, appraisal = self._runtime.statistics, self._system.appraisal(rla.rla_id)
         rewarded = appraisal.rewards or appraisal.punishments
         lessons = self._system.lessons_about(rla.rla_id)
@@ -194,7 +194,7 @@ class _Reader:
         before = self._uses_before.get(rla.rla_id)
         if before is None and all(isinstance(each.event, RlaRewarded) for each in lessons[1:]):
             before = 0  # it has the action that it was taught with
-        return RlaStory(
+        return RlaFacts(
             rla_id=rla.rla_id,
             title=rla.title,
             action=rla.action,
@@ -218,9 +218,9 @@ class _Reader:
         # Of ways from one place the oldest leads, unless a plan chooses: that one is told as the driver.
         return rla == (self._runtime.level.would_answer(group) if rla.level == BASIC else group[0])
 
-    def _act(self, record: LessonRecord) -> Act:
+    def _act(self, record: LessonRecord) -> LessonFact:
         origin = record.event.origin
-        return Act(
+        return LessonFact(
             text=record.text,
             teacher=origin.teacher,
             phase=int(origin.phase),

@@ -12,11 +12,11 @@ from kurt2rt.core.perception.definition import SituationDefinition, WheelSpeed
 from kurt2rt.core.perception.features import FeatureExtractor
 from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.core.rla.rla import BASIC
-from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaStory
+from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaFacts
 
 
 @dataclass(frozen=True, slots=True)
-class Tip:
+class SensorCounterfactual:
     """One sensor that alone would have changed the decision."""
 
     sensor: str
@@ -32,13 +32,15 @@ class Tip:
     """The sensor's reading in words."""
     needs: str
     """The needed reading, in words."""
-    rla: RlaStory | None
+    rla: RlaFacts | None
     """Who answers then; None: the robot stands and asks."""
     action: str | None
     """What drives then: what that one says, or the action before it until its minimum time is over; None: it asks."""
 
 
-def tips(facts: DecisionFacts, definition: SituationDefinition, law: InfraredSettings) -> tuple[Tip, ...]:
+def tips(
+    facts: DecisionFacts, definition: SituationDefinition, law: InfraredSettings
+) -> tuple[SensorCounterfactual, ...]:
     """For each sensor that can do it alone the smallest change, the smallest of all first.
 
     `facts`: with all RLAs that may answer. The features are computed anew from the changed reading, so extremes,
@@ -72,7 +74,7 @@ def tips(facts: DecisionFacts, definition: SituationDefinition, law: InfraredSet
         if first is not None:
             needed, answer = readings[first], answers[first]
             found.append(
-                Tip(
+                SensorCounterfactual(
                     sensor.name,
                     sensor.label,
                     counts[place],
@@ -107,9 +109,9 @@ def _situation_decided(facts: DecisionFacts) -> bool:
 class _Rivals:
     """All RLAs that may answer, and who does at many situations at once."""
 
-    def __init__(self, level: LevelFacts, stories: tuple[RlaStory, ...], driver: RlaStory | None) -> None:
+    def __init__(self, level: LevelFacts, stories: tuple[RlaFacts, ...], driver: RlaFacts | None) -> None:
         """`driver`: the one that answers now."""
-        groups: dict[tuple[float, ...], list[RlaStory]] = {}
+        groups: dict[tuple[float, ...], list[RlaFacts]] = {}
         for story in sorted(stories, key=lambda story: story.rla_id):
             groups.setdefault(story.condition, []).append(story)
         self._oldest = [group[0] for group in groups.values()]
@@ -118,7 +120,7 @@ class _Rivals:
         self._conditions = np.array([story.condition for story in self._oldest]) * self._weights
         self._radii = np.array([story.radius for story in self._oldest])
 
-    def answer(self, vectors: NDArray[np.float64]) -> list[RlaStory | None]:
+    def answer(self, vectors: NDArray[np.float64]) -> list[RlaFacts | None]:
         """Of each row (n, d) who answers; None where nobody does: none is near enough, or its action was withdrawn."""
         weighted = vectors * self._weights
         squares = (
@@ -135,14 +137,14 @@ class _Rivals:
         ]
 
 
-def _leader(group: list[RlaStory], driver: RlaStory | None) -> RlaStory:
+def _leader(group: list[RlaFacts], driver: RlaFacts | None) -> RlaFacts:
     """Of those on one condition the one that drives, or would."""
     if driver is not None and driver.condition == group[0].condition:
         return driver
     return next((story for story in group if story.leads), group[0])
 
 
-def _does(answer: RlaStory | None, kept: str) -> str | None:
+def _does(answer: RlaFacts | None, kept: str) -> str | None:
     """What drives where that one answers; None: the robot asks."""
     return None if answer is None else kept or answer.action
 

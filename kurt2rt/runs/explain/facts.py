@@ -12,7 +12,7 @@ MOST_OTHERS = 12
 
 
 @dataclass(frozen=True, slots=True)
-class Act:
+class LessonFact:
     """One lesson about an RLA, or its undoing."""
 
     text: str
@@ -29,7 +29,7 @@ class Act:
 
 
 @dataclass(frozen=True, slots=True)
-class RlaStory:
+class RlaFacts:
     """One RLA: what it says, who taught it, when, instead of what, and how often it was used."""
 
     rla_id: int
@@ -40,7 +40,7 @@ class RlaStory:
     distance: float
     """To the situation that was decided on, weighted; infinite where the robot did not know where it was."""
     radius: float
-    acts: tuple[Act, ...]
+    acts: tuple[LessonFact, ...]
     """Oldest first."""
     uses: int
     """How often it became the one that drives, since it was first taught."""
@@ -71,11 +71,11 @@ class LevelFacts:
     """What each feature counts in a distance, shape (d,)."""
     euclidean: bool
     """False: of symbols, which are equal or not; a distance counts places."""
-    nearest: RlaStory | None
+    nearest: RlaFacts | None
     """None before the first lesson."""
-    driver: RlaStory | None
+    driver: RlaFacts | None
     """The one whose action was followed; None while none was."""
-    others: tuple[RlaStory, ...]
+    others: tuple[RlaFacts, ...]
     """Those behind the nearest, the nearer first: the runner-up is the first."""
     count: int
     """How many competed."""
@@ -85,12 +85,12 @@ class LevelFacts:
     """The condition of the nearest, likewise."""
 
     @property
-    def runner_up(self) -> RlaStory | None:
+    def runner_up(self) -> RlaFacts | None:
         """The second nearest."""
         return self.others[0] if self.others else None
 
     @property
-    def otherwise(self) -> RlaStory | None:
+    def otherwise(self) -> RlaFacts | None:
         """The nearest that says something else than the nearest of all; None where none is known."""
         if self.nearest is None:
             return None
@@ -102,7 +102,7 @@ class LevelFacts:
         return any(math.isnan(value) for value in self.vector)
 
     @property
-    def leader(self) -> RlaStory | None:
+    def leader(self) -> RlaFacts | None:
         """Of those on the condition of the nearest the one that answers."""
         nearest = self.nearest
         if nearest is None or nearest.leads:
@@ -110,7 +110,7 @@ class LevelFacts:
         same = (other for other in self.others if other.leads and other.condition == nearest.condition)
         return next(same, nearest)
 
-    def rival_of(self, story: RlaStory) -> RlaStory | None:
+    def rival_of(self, story: RlaFacts) -> RlaFacts | None:
         """Whom to compare it with: the nearest; of the nearest itself the next that says something else."""
         if self.nearest is not None and self.nearest.condition != story.condition:
             return self.nearest

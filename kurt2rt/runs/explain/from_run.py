@@ -17,27 +17,27 @@ from kurt2rt.core.rla.rla import (
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.runs.explain.collect import facts_of
-from kurt2rt.runs.explain.counterfactual import Tip, tips
+from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, tips
 from kurt2rt.runs.explain.facts import DecisionFacts
-from kurt2rt.runs.replay.comparison import Difference, compare
+from kurt2rt.runs.replay.comparison import TickDifference, compare
 from kurt2rt.runs.replay.replay import Replay
 from kurt2rt.runs.replay.run import Run
 
 
 @dataclass(frozen=True, slots=True)
-class Explained:
+class ExplainedMoment:
     """A decision of a run, looked into."""
 
     facts: DecisionFacts
-    tips: tuple[Tip, ...]
+    tips: tuple[SensorCounterfactual, ...]
     """What would have changed it, one reading alone."""
     at_s: float
     """From the first tick of the run."""
-    difference: Difference | None
+    difference: TickDifference | None
     """Where the replay first came to something else than was recorded; None where it never did."""
 
 
-def explain_run(run: Run, at_s: float, report: Callable[[float], None] = lambda _s: None) -> Explained:
+def explain_run(run: Run, at_s: float, report: Callable[[float], None] = lambda _s: None) -> ExplainedMoment:
     """The last decision by `at_s` seconds from the first tick of the run. Raises RecordingError.
 
     `report` gets the seconds of the run that are done, once for each.
@@ -73,7 +73,7 @@ def explain_run(run: Run, at_s: float, report: Callable[[float], None] = lambda 
     stamps.update({**reckoned, **run.stamps_of(reckoned.keys())})
     facts = facts_of(runtime, newest, lambda command_id: stamps.get(command_id, ""), uses_before=uses_before)
     found = tips(facts, runtime.definition, runtime.robot.infrared)
-    return Explained(facts, found, last_s, difference)
+    return ExplainedMoment(facts, found, last_s, difference)
 
 
 def _note_uses(event: TeachingEvent, uses: dict[int, int], before: dict[int, int], system: RlaSystem) -> None:

@@ -6,7 +6,7 @@ from kurt2rt.runs.explain.facts import MOST_OTHERS, DecisionFacts
 from kurt2rt.runtime import Runtime
 
 
-class Explaining:
+class LiveExplainer:
     """Keep the newest tick and collect its facts on request, at most once per tick."""
 
     def __init__(self, runtime: Runtime, stamp_of: StampOf) -> None:

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle, FancyBboxPatch
 
 from kurt2rt.runs.explain.colours import ASKS, INK, PALE_INK, STANDS
-from kurt2rt.runs.explain.facts import LevelFacts, RlaStory
+from kurt2rt.runs.explain.facts import LevelFacts, RlaFacts
 from kurt2rt.runs.explain.sentences import far
 
 _KNOWN, _LIMIT = "#e3f1e6", "#3f9b5c"
@@ -102,7 +102,7 @@ def _row(
     height: float,
     words: Sequence[str],
     values: Sequence[float],
-    nearest: RlaStory | None,
+    nearest: RlaFacts | None,
     count: int,
     other: Sequence[float] | None = None,
 ) -> None:

@@ -16,12 +16,12 @@ from kurt2rt.core.rla.rla import MID
 from kurt2rt.runs.explain.attribution import shares
 from kurt2rt.runs.explain.bars import draw_differences, draw_nearness, draw_tug_of_war
 from kurt2rt.runs.explain.colours import ASKS, INK, PALE_INK, STANDS, TEACHER, colours_of, ink_on
-from kurt2rt.runs.explain.counterfactual import Tip
-from kurt2rt.runs.explain.facts import DecisionFacts, RlaStory
+from kurt2rt.runs.explain.counterfactual import SensorCounterfactual
+from kurt2rt.runs.explain.facts import DecisionFacts, RlaFacts
 from kurt2rt.runs.explain.mid_picture import draw_mid
 from kurt2rt.runs.explain.reasons import because, headline
 from kurt2rt.runs.explain.save_figure import save
-from kurt2rt.runs.explain.sensor_view import LEGEND, Mark, draw_surroundings
+from kurt2rt.runs.explain.sensor_view import LEGEND, SensorMark, draw_surroundings
 from kurt2rt.runs.explain.sentences import guarded, mid_lines, taught, used, would_change
 
 _FEATURES, _FEATURES_BELOW_MID = 7, 4
@@ -32,7 +32,9 @@ _CAPTION = 76
 _WORTH_POINTING = 0.03
 
 
-def draw_why(facts: DecisionFacts, found: tuple[Tip, ...], robot: RobotSettings, title: str, path: Path) -> None:
+def draw_why(
+    facts: DecisionFacts, found: tuple[SensorCounterfactual, ...], robot: RobotSettings, title: str, path: Path
+) -> None:
     """Write a picture as the file's name ends; `found`: what would have changed it. Raises OSError."""
     level = facts.basic
     story = level.driver or level.nearest
@@ -66,7 +68,7 @@ def _right_column(
     figure: Figure,
     spec: SubplotSpec,
     facts: DecisionFacts,
-    story: RlaStory | None,
+    story: RlaFacts | None,
     colours: Mapping[str, str],
     words: SensorWords,
 ) -> None:
@@ -90,7 +92,11 @@ def _right_column(
 
 
 def _heading(
-    figure: Figure, facts: DecisionFacts, found: tuple[Tip, ...], title: str, colours: Mapping[str, str]
+    figure: Figure,
+    facts: DecisionFacts,
+    found: tuple[SensorCounterfactual, ...],
+    title: str,
+    colours: Mapping[str, str],
 ) -> float:
     """The decision in words; returns how high the rest may reach."""
     colour = _colour_of(facts, colours)
@@ -127,9 +133,9 @@ def _situations(
     here: Axes,
     there: Axes,
     facts: DecisionFacts,
-    found: tuple[Tip, ...],
+    found: tuple[SensorCounterfactual, ...],
     robot: RobotSettings,
-    story: RlaStory | None,
+    story: RlaFacts | None,
     colours: Mapping[str, str],
 ) -> None:
     level, sensors = facts.basic, robot.infrared.names
@@ -167,10 +173,10 @@ def _situations(
     here.text(0.5, -0.015, moving, transform=here.transAxes, ha="center", va="top", fontsize=9, color=INK)
 
 
-def _mark(tip: Tip, colours: Mapping[str, str]) -> Mark:
+def _mark(tip: SensorCounterfactual, colours: Mapping[str, str]) -> SensorMark:
     if tip.rla is None:
-        return Mark(tip.sensor, tip.needed_m, "asks", ASKS)
-    return Mark(tip.sensor, tip.needed_m, tip.rla.action, colours[tip.rla.action])
+        return SensorMark(tip.sensor, tip.needed_m, "asks", ASKS)
+    return SensorMark(tip.sensor, tip.needed_m, tip.rla.action, colours[tip.rla.action])
 
 
 def _halves(

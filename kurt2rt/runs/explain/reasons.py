@@ -6,7 +6,7 @@ from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.decision.standing import DRIVES, Standing, StandReason, standing_latched, touched
 from kurt2rt.core.decision.standing_text import in_short, stop_text, why_it_stands
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaStory
+from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaFacts
 from kurt2rt.runs.explain.sentences import far, who
 
 _STANDS = {
@@ -182,15 +182,15 @@ def _why_the_way(mid: LevelFacts) -> str:
     return _nearest(mid.nearest)
 
 
-def _nearest(story: RlaStory) -> str:
+def _nearest(story: RlaFacts) -> str:
     return f"nearest is {who(story)}, at {far(story.distance)} of R {far(story.radius)}"
 
 
-def _percent(story: RlaStory) -> str:
+def _percent(story: RlaFacts) -> str:
     if not story.radius > 0 or math.isinf(story.distance):
         return ""
     return f" ({100 * story.distance / story.radius:.0f} %)"
 
 
-def _worth(story: RlaStory) -> str:
+def _worth(story: RlaFacts) -> str:
     return "" if story.value is None else f" and is worth {story.value:.2f}"

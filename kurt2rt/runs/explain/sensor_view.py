@@ -35,7 +35,7 @@ Point = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
-class Mark:
+class SensorMark:
     """Where the reading of one sensor would have to end for something else to happen."""
 
     sensor: str
@@ -51,7 +51,7 @@ def draw_surroundings(
     averages: Mapping[str, float],
     *,
     differing: Collection[str] = (),
-    marks: Sequence[Mark] = (),
+    marks: Sequence[SensorMark] = (),
     motion: WheelSpeeds | None = None,
     colour: str = INK,
 ) -> None:
@@ -141,7 +141,7 @@ def _label(axes: Axes, sensor: SensorSettings, distance_m: float, text: str, *, 
     )
 
 
-def _mark(axes: Axes, sensor: SensorSettings, mark: Mark, *, aside: bool) -> None:
+def _mark(axes: Axes, sensor: SensorSettings, mark: SensorMark, *, aside: bool) -> None:
     """`aside`: something else is written at its sensor."""
     rise = 34 if aside else 16
     across = [_along(sensor, mark.distance_m, part * 2.2 * _HALF_BEAM_RAD) for part in (-1.0, 0.0, 1.0)]

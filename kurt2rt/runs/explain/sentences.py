@@ -5,8 +5,8 @@ import math
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.rla.rla import ASK
 from kurt2rt.runs.explain.attribution import to_the_border
-from kurt2rt.runs.explain.counterfactual import Tip
-from kurt2rt.runs.explain.facts import Act, DecisionFacts, LevelFacts, RlaStory
+from kurt2rt.runs.explain.counterfactual import SensorCounterfactual
+from kurt2rt.runs.explain.facts import DecisionFacts, LessonFact, LevelFacts, RlaFacts
 
 
 def beside(level: LevelFacts) -> list[str]:
@@ -27,7 +27,7 @@ def beside(level: LevelFacts) -> list[str]:
     return lines
 
 
-def would_change(found: tuple[Tip, ...], most: int = 3) -> list[str]:
+def would_change(found: tuple[SensorCounterfactual, ...], most: int = 3) -> list[str]:
     """What would have had to be otherwise for the robot to do something else, the smallest change first."""
     return [
         f"{tip.label}{_readings(tip)} ({tip.sensor}: {tip.needed_counts} counts, not {tip.counts}): {_then(tip)}"
@@ -55,7 +55,7 @@ def guarded(facts: DecisionFacts) -> str:
     )
 
 
-def taught(story: RlaStory) -> str:
+def taught(story: RlaFacts) -> str:
     """Who taught the action that it has, when, and instead of what."""
     acts = teaching_acts(story)
     if not acts:
@@ -64,12 +64,12 @@ def taught(story: RlaStory) -> str:
     return f"{newest.text}; {when(newest)}, by {newest.teacher} in phase {newest.phase}."
 
 
-def teaching_acts(story: RlaStory) -> tuple[Act, ...]:
+def teaching_acts(story: RlaFacts) -> tuple[LessonFact, ...]:
     """The lessons that stand and made its action, oldest first; praise and blame left out."""
     return tuple(act for act in story.acts if act.changes)
 
 
-def used(story: RlaStory) -> str:
+def used(story: RlaFacts) -> str:
     """How often, and what teachers thought of it."""
     count = story.uses if story.uses_since is None else story.uses_since
     text = f"Used {times(count)}" if count else "Never used"
@@ -86,7 +86,7 @@ def used(story: RlaStory) -> str:
     return f"{text}."
 
 
-def when(act: Act) -> str:
+def when(act: LessonFact) -> str:
     """To the second, and the tick of its run."""
     stamp = act.stamp[:19].replace("T", " ")
     return f"{stamp} UTC (tick {act.tick})" if stamp else f"tick {act.tick} of its run"
@@ -130,12 +130,12 @@ def times(count: int) -> str:
     return ("never", "once", "twice")[count] if count < 3 else f"{count} times"
 
 
-def who(story: RlaStory) -> str:
+def who(story: RlaFacts) -> str:
     """An RLA with what it says."""
     return f"{story.title} ({'asks again' if story.action == ASK else story.action})"
 
 
-def _margin(level: LevelFacts, other: RlaStory) -> str:
+def _margin(level: LevelFacts, other: RlaFacts) -> str:
     nearest = level.nearest
     if nearest is None:
         return ""
@@ -143,12 +143,12 @@ def _margin(level: LevelFacts, other: RlaStory) -> str:
     return "" if border is None else f"; the border to it is {far(border)} away"
 
 
-def _readings(tip: Tip) -> str:
+def _readings(tip: SensorCounterfactual) -> str:
     # Less than a centimetre is told in counts alone.
     return "" if tip.needs == tip.reads else f" at {tip.needs} instead of {tip.reads}"
 
 
-def _then(tip: Tip) -> str:
+def _then(tip: SensorCounterfactual) -> str:
     if tip.rla is None:
         return "the robot would ask"
     if tip.action != tip.rla.action:

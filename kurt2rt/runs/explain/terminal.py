@@ -10,8 +10,8 @@ from kurt2rt.core.rla.rla import MID
 from kurt2rt.knowledge.show.table_cells import plain
 from kurt2rt.platform.text_table import TextTable
 from kurt2rt.runs.explain.attribution import pulls, shares
-from kurt2rt.runs.explain.counterfactual import Tip
-from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaStory
+from kurt2rt.runs.explain.counterfactual import SensorCounterfactual
+from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaFacts
 from kurt2rt.runs.explain.reasons import because, headline
 from kurt2rt.runs.explain.sentences import beside, guarded, mid_lines, still_kept, taught, used, when, would_change
 from kurt2rt.runs.explain.timeline import Kind, Stretch, Timeline, summary
@@ -22,7 +22,7 @@ _BAR = 20
 
 
 def render_why(
-    facts: DecisionFacts, found: tuple[Tip, ...], where: str, words: SensorWords = NO_WORDS
+    facts: DecisionFacts, found: tuple[SensorCounterfactual, ...], where: str, words: SensorWords = NO_WORDS
 ) -> RenderableType:
     """Render one decision.
 
@@ -49,7 +49,7 @@ def render_why(
     return Group(*parts)
 
 
-def _of_level(level: LevelFacts, driver: RlaStory | None, words: SensorWords) -> list[RenderableType]:
+def _of_level(level: LevelFacts, driver: RlaFacts | None, words: SensorWords) -> list[RenderableType]:
     """The RLA it went by, those beside it, and the features."""
     story = driver or level.nearest
     if story is None:
@@ -62,7 +62,7 @@ def _of_level(level: LevelFacts, driver: RlaStory | None, words: SensorWords) ->
     return parts
 
 
-def _differences(level: LevelFacts, story: RlaStory, words: SensorWords) -> RenderableType:
+def _differences(level: LevelFacts, story: RlaFacts, words: SensorWords) -> RenderableType:
     found = shares(level, story)
     other = level.rival_of(story)
     pull = {} if other is None else {each.name: each.pull for each in pulls(level, story, other)}
@@ -96,7 +96,7 @@ def _differences(level: LevelFacts, story: RlaStory, words: SensorWords) -> Rend
     return Group(table, Text(f"and {hidden} more features that differ", style="dim")) if hidden > 0 else table
 
 
-def _history(story: RlaStory) -> TextTable:
+def _history(story: RlaFacts) -> TextTable:
     table = TextTable()
     for heading in ("when", "by", "phase", "what"):
         table.add_column(heading)

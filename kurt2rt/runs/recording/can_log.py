@@ -8,7 +8,7 @@ from typing import NamedTuple, Self
 import can
 
 from kurt2rt.runs.recording.frame_writer import FrameWriter, LogFile
-from kurt2rt.runs.recording.writer_thread import WritingThread
+from kurt2rt.runs.recording.writer_thread import WriterThread
 
 CAPACITY_FRAMES = 20_000
 """That wait for the writer: some 25 s of a disk that does not answer, 5 MB."""
@@ -39,7 +39,7 @@ class CanLog:
         """Frames so far."""
         self._writer = writer
         self._channel = _CHANNEL if ":" in bus or bus == "sim" else bus
-        self._thread = WritingThread[_Noted]("CAN log", capacity_frames, self._run)
+        self._thread = WriterThread[_Noted]("CAN log", capacity_frames, self._run)
         self._failure = ""
         self._not_written = 0
         # The wall clock may be set meanwhile; the stamps go on evenly.

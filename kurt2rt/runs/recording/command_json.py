@@ -1,4 +1,4 @@
-"""What a tick takes from the inbox as JSON, by class name and fields."""
+"""Inbox messages of a tick as JSON: a name for the class, and the fields."""
 
 import math
 from typing import Any, get_args
@@ -6,23 +6,27 @@ from typing import Any, get_args
 from pydantic import TypeAdapter, ValidationError
 
 from kurt2rt.core.teaching.commands import Command
-from kurt2rt.core.teaching.system_events import Happening, Input
+from kurt2rt.core.teaching.system_events import Input, PairingRenewed, RobotRepositioned, SystemEvent
 from kurt2rt.knowledge.exchange.json_checks import RecordingError
 
-_ADAPTERS: dict[str, TypeAdapter[Any]] = {
-    kind.__name__: TypeAdapter(kind) for kind in (*get_args(Command), *get_args(Happening))
+_NAMES: dict[type[Any], str] = {
+    **{kind: kind.__name__ for kind in (*get_args(Command), *get_args(SystemEvent))},
+    # Recordings keep the names that these classes had first.
+    PairingRenewed: "PressesForgotten",
+    RobotRepositioned: "SetDown",
 }
+_ADAPTERS: dict[str, TypeAdapter[Any]] = {name: TypeAdapter(kind) for kind, name in _NAMES.items()}
 
 
 def encode_command(command: Input) -> dict[str, Any]:
-    """For JSON: the class name as `is`, then the fields."""
-    name = type(command).__name__
+    """Return a JSON object: the name of the class as `is`, then the fields."""
+    name = _NAMES[type(command)]
     fields: dict[str, Any] = _finite(_ADAPTERS[name].dump_python(command, mode="json"))
     return {"is": name, **fields}
 
 
 def decode_command(content: object) -> Input:
-    """The command that `encode_command` wrote, equal to the last bit. Raises RecordingError."""
+    """Return the command that `encode_command` wrote, equal to the last bit. Raises RecordingError."""
     if not isinstance(content, dict):
         raise RecordingError(f"a {type(content).__name__} is no command")
     fields = dict(content)

@@ -97,7 +97,7 @@ class RealDisk:
         return free_bytes(path)
 
 
-class HeldFolder:
+class LockedFolder:
     """A run's folder, held as one's own, so that no other program deletes it to make room.
 
     The kernel lets it go when this program ends, however it ends. A disk that knows no locks does without.

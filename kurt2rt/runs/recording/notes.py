@@ -9,7 +9,7 @@ from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.runs.recording.topics import Topics
 
 
-class Ticked(NamedTuple):
+class TickNote(NamedTuple):
     """A tick has been."""
 
     record: TickRecord
@@ -21,7 +21,7 @@ class Ticked(NamedTuple):
     world: WorldPlan | None
 
 
-class Asked(NamedTuple):
+class QuestionNote(NamedTuple):
     """The robot begins to ask."""
 
     question: object
@@ -35,7 +35,7 @@ class HealthNote(NamedTuple):
     """As plain values."""
 
 
-Note = Ticked | Asked | HealthNote | Acknowledgement
+Note = TickNote | QuestionNote | HealthNote | Acknowledgement
 
 
 class NoteLog:
@@ -51,13 +51,13 @@ class NoteLog:
         """One note. Raises RecordingError for one that cannot be written."""
         topics = self.topics
         match note:
-            case Ticked(record, time_ns, saved, truth, world):
+            case TickNote(record, time_ns, saved, truth, world):
                 self._time_ns = time_ns
                 topics.tick(record, saved=saved, truth=truth, time_ns=time_ns)
                 self._world = world or self._world
                 if self._world is not None:
                     topics.ground(self._world, record.tick, time_ns)
-            case Asked(question):
+            case QuestionNote(question):
                 topics.asked(str(question), self._time_ns)
             case HealthNote(report):
                 topics.healthy(report, self._time_ns)

@@ -17,11 +17,11 @@ from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.platform.yield_gil import politely
 from kurt2rt.runs.recording.disk import Disk
 from kurt2rt.runs.recording.live_view import LiveView
-from kurt2rt.runs.recording.notes import Asked, HealthNote, Note, NoteLog, Ticked
+from kurt2rt.runs.recording.notes import HealthNote, Note, NoteLog, QuestionNote, TickNote
 from kurt2rt.runs.recording.run_files import Budget, RunFiles
 from kurt2rt.runs.recording.run_head import RUN_METADATA, RunHead, encode_head
 from kurt2rt.runs.recording.topics import Topics
-from kurt2rt.runs.recording.writer_thread import WritingThread
+from kurt2rt.runs.recording.writer_thread import WriterThread
 
 CAPACITY = 3000
 """Notes that wait for the disk: half a minute of ticks, some 20 MB."""
@@ -59,7 +59,7 @@ class RunRecorder:
         self._files, self._kept = files, kept
         self._live, self._shown = live, shown
         self._ground = ground
-        self._thread = WritingThread[Note]("run recorder", capacity, self._run)
+        self._thread = WriterThread[Note]("run recorder", capacity, self._run)
         self._held: deque[Note] = deque()
         """Was shown already, and waits for a file."""
         self._began_at_ns = began_at_ns
@@ -104,7 +104,7 @@ class RunRecorder:
                 world = self._ground.world()
         self._ticks += 1
         time_ns = self._began_at_ns + round(record.now_s * _NS_PER_S)
-        self._note(Ticked(record, time_ns, saved, truth, world))
+        self._note(TickNote(record, time_ns, saved, truth, world))
 
     def acknowledged(self, acknowledgement: Acknowledgement) -> None:
         """A lesson is durable, or never will be."""
@@ -112,7 +112,7 @@ class RunRecorder:
 
     def asked(self, question: object) -> None:
         """The robot begins to ask; `str` of it is the question."""
-        self._note(Asked(question))
+        self._note(QuestionNote(question))
 
     def healthy(self, report: Mapping[str, Any]) -> None:
         """Take a health report in plain values; it must not change any more."""
@@ -139,7 +139,7 @@ class RunRecorder:
         for note in politely(self._held.popleft() for _ in range(len(self._held))):
             if not self._log(self._kept, note):
                 self._not_written += 1
-            elif isinstance(note, Ticked):
+            elif isinstance(note, TickNote):
                 self._unsaved += 1
 
     def tend(self) -> None:

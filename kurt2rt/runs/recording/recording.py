@@ -22,7 +22,7 @@ from kurt2rt.runs.recording.run_head import RunHead
 
 
 @dataclass(frozen=True, slots=True)
-class Circumstances:
+class RunContext:
     """How a run began."""
 
     boot: str
@@ -59,7 +59,7 @@ class Recording:
         settings: RobotSettings,
         task: TaskSettings,
         knowledge: OpenedKnowledge | None,
-        circumstances: Circumstances,
+        circumstances: RunContext,
         *,
         started: datetime | None = None,
     ) -> RunRecorder:

@@ -13,7 +13,7 @@ TORN_METADATA = "kurt2rt.torn"
 """Metadata of a copy that does not hold all that was meant to be in the file: why, in a sentence."""
 
 
-class NothingWholeError(RecordingError):
+class NothingRecoverableError(RecordingError):
     """A file is none of a run, or nothing of it was written: one that was begun when the power went."""
 
 
@@ -21,7 +21,7 @@ def copy_whole(source: Path, target: Path) -> str:
     """Copy all that is whole of a run's file to a new one with an index; returns why that is not all, or nothing.
 
     Every message keeps its bytes and times. Raises RecordingError where `source` cannot be read or `target` is there,
-    NothingWholeError where there is nothing to copy, OSError where it cannot be written; then no file is left.
+    NothingRecoverableError where there is nothing to copy, OSError where it cannot be written; then no file is left.
     """
     reader = SegmentReader(source)
     try:
@@ -62,7 +62,7 @@ def _copy(reader: SegmentReader, file: BinaryIO) -> None:
             case Metadata():
                 writer.add_metadata(record.name, record.metadata)
     if not started:
-        raise NothingWholeError("is no file of a run, or nothing of it was written", where=reader.path)
+        raise NothingRecoverableError("is no file of a run, or nothing of it was written", where=reader.path)
     if reader.torn:
         writer.add_metadata(TORN_METADATA, {"why": reader.torn})
     writer.finish()  # type: ignore[no-untyped-call]

@@ -9,7 +9,7 @@ from pathlib import Path
 from foxglove import Context
 
 from kurt2rt.knowledge.exchange.attachments import ROBOT, TASK
-from kurt2rt.runs.recording.disk import Disk, HeldFolder, RealDisk
+from kurt2rt.runs.recording.disk import Disk, LockedFolder, RealDisk
 from kurt2rt.runs.recording.run_folder import later_name, make_room, segment_name, used_bytes
 from kurt2rt.runs.recording.segment import Segment
 
@@ -68,7 +68,7 @@ class RunFiles:
         self._attachments = {name: zlib.compress(data) for name, data in attachments.items()}
         self._now_ns = now_ns
         self._disk = disk or RealDisk()
-        self._held: HeldFolder | None = None
+        self._held: LockedFolder | None = None
         self._segment: Segment | None = None
         self._number = 0
         self._attached = False
@@ -206,7 +206,7 @@ class RunFiles:
             except FileExistsError:  # started twice in a second
                 continue
             try:
-                self._held = HeldFolder(path)
+                self._held = LockedFolder(path)
             except OSError:
                 with contextlib.suppress(OSError):  # an empty folder is no run
                     path.rmdir()

@@ -9,7 +9,7 @@ from hal.guard_reason import guard_reason
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.decision.junction_event import JunctionEvent
-from kurt2rt.core.decision.plan_step import Course, PlanStep
+from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.knowledge.exchange.json_checks import RecordingError
@@ -230,7 +230,7 @@ def _mid_of(mid: dict[str, Any]) -> MidEntry:
 def _plan_of(plan: dict[str, Any]) -> PlanStep:
     return PlanStep(
         plan["goal"],
-        Course(plan["course"]),
+        GoalStatus(plan["course"]),
         tuple(plan["behaviours"]),
         plan.get("rla_id"),
         plan["says"],

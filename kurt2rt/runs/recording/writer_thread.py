@@ -10,7 +10,7 @@ _PERIOD_S = 0.1
 NotedT = TypeVar("NotedT")
 
 
-class WritingThread(Generic[NotedT]):
+class WriterThread(Generic[NotedT]):
     """Takes notes without waiting, and runs a writer that looks for them ten times a second.
 
     To put a note takes about a microsecond and never raises; one that finds no room is lost and counted.

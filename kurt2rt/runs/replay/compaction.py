@@ -13,7 +13,7 @@ from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.versions.editing import new_origin, open_again, worths_after, write
 from kurt2rt.runs.replay.run import Run
-from kurt2rt.runs.replay.trial import Known, Report, answers, runs_to_try, told
+from kurt2rt.runs.replay.trial import Report, TrialKnowledge, answers, runs_to_try, told
 
 TEACHER = "compact"
 """Whose lessons the deletions are: all of them can be undone together."""
@@ -74,7 +74,7 @@ def _planned(journal: Journal, recordings: Path, report: Report) -> tuple[Compac
     entries, statistics = journal.read_all()
     system = fold_entries(journal, entries, radius=math.inf)
     tried = runs_to_try(recordings, journal.binding)
-    now = Known(tuple(entry.event for entry in entries), statistics)
+    now = TrialKnowledge(tuple(entry.event for entry in entries), statistics)
     seen = _look(system, tried.runs, now, report)
     if not seen.driven_ticks:
         raise KnowledgeError(
@@ -87,14 +87,14 @@ def _planned(journal: Journal, recordings: Path, report: Report) -> tuple[Compac
     deletions = [RlaDeleted(rla.rla_id, new_origin("compact", TEACHER)) for rla in unneeded]
     if deletions:
         after = worths_after(now.events, deletions, now.statistics, len(journal.binding.feature_names))
-        _prove(tried.runs, now, Known((*now.events, *deletions), after), report)
+        _prove(tried.runs, now, TrialKnowledge((*now.events, *deletions), after), report)
     notes = (*tried.notes, *(f"{run}: nothing drove in it, so it proves nothing" for run in seen.standing))
     others = tuple(sorted({rla.behaviour for rla in rlas} - seen.behaviours))
     kept = len(rlas) - len(unneeded)
     return Compaction(unneeded, kept, seen.runs, seen.ticks, seen.driven_ticks, notes, others), deletions
 
 
-def _look(system: RlaSystem, runs: Sequence[Run], now: Known, report: Report) -> _Seen:
+def _look(system: RlaSystem, runs: Sequence[Run], now: TrialKnowledge, report: Report) -> _Seen:
     seen = _Seen()
     for run in runs:
         ticks = driven_ticks = 0
@@ -116,7 +116,7 @@ def _look(system: RlaSystem, runs: Sequence[Run], now: Known, report: Report) ->
     return seen
 
 
-def _prove(runs: Sequence[Run], before: Known, after: Known, report: Report) -> None:
+def _prove(runs: Sequence[Run], before: TrialKnowledge, after: TrialKnowledge, report: Report) -> None:
     """Raises KnowledgeError where anything is said otherwise: which RLA, at what distance, or that it asks."""
     for run in runs:
         for record, (old, new) in answers(run, (before, after), report):

@@ -8,7 +8,7 @@ from kurt2rt.core.tick import TickRecord
 from kurt2rt.runs.recording.entries import TickEntry, tick_entry_of
 
 
-class Difference(NamedTuple):
+class TickDifference(NamedTuple):
     """Something that came out differently."""
 
     tick: int
@@ -26,7 +26,7 @@ class Difference(NamedTuple):
         return f"tick {self.tick}: {self.in_words}"
 
 
-def compare(entry: TickEntry, record: TickRecord) -> list[Difference]:
+def compare(entry: TickEntry, record: TickRecord) -> list[TickDifference]:
     """All that a replayed tick has otherwise than the recorded one; empty where all is the same to the last bit."""
     knowledge = None
     if entry.knowledge is not None and record.knowledge is not None:
@@ -36,7 +36,7 @@ def compare(entry: TickEntry, record: TickRecord) -> list[Difference]:
     entry, again = _without_words(entry, coded=coded), _without_words(again, coded=coded)
     if repr(again) == repr(entry):  # `==` takes 0.0 for -0.0 and True for 1, and NaN for another one
         return []
-    return [Difference(entry.tick, *each) for each in _differences("", entry, again)]
+    return [TickDifference(entry.tick, *each) for each in _differences("", entry, again)]
 
 
 def _without_words(entry: TickEntry, *, coded: bool) -> TickEntry:

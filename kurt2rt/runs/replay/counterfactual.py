@@ -7,7 +7,7 @@ from typing import NamedTuple
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.runs.replay.counterfactual_policy import Answer, Answers, Shadow, answers_then
+from kurt2rt.runs.replay.counterfactual_policy import CounterfactualPolicy, PolicyAnswer, PolicyAnswers, answers_then
 from kurt2rt.runs.replay.replay import Replay, ReplayedTick, no_tick
 from kurt2rt.runs.replay.run import Run
 from kurt2rt.runtime import Runtime
@@ -15,11 +15,11 @@ from kurt2rt.runtime import Runtime
 _DECIDES = frozenset({Cause.RLA, Cause.HELD, Cause.UNKNOWN})
 """Where knowledge has a say; elsewhere the robot stands for another reason, or its teacher drives."""
 
-Look = Callable[[TickRecord, Runtime], Answers]
+Look = Callable[[TickRecord, Runtime], PolicyAnswers]
 """What some knowledge says of a replayed tick."""
 
 
-class Stretch(NamedTuple):
+class DifferingStretch(NamedTuple):
     """Ticks in a row in which the same was decided, and the same other thing would have been."""
 
     level: str
@@ -28,9 +28,9 @@ class Stretch(NamedTuple):
     to_s: float
     """At the last one."""
     ticks: int
-    was: Answer
+    was: PolicyAnswer
     """Of the first tick."""
-    would_be: Answer
+    would_be: PolicyAnswer
     """Of the first tick."""
 
 
@@ -50,7 +50,7 @@ class Counterfactual:
     """Of those: it would have driven where it asked."""
     mid_otherwise: int
     """Ticks in which the mid level would have commanded otherwise, or asked; 0 where there is none."""
-    stretches: tuple[Stretch, ...]
+    stretches: tuple[DifferingStretch, ...]
     """In the order of time."""
     trouble: str
     """Why not the whole run was looked at, in a sentence; empty where it was."""
@@ -63,8 +63,8 @@ class Counterfactual:
 
 def counterfactual(
     run: Run,
-    would_be: Shadow,
-    was: Shadow | None = None,
+    would_be: CounterfactualPolicy,
+    was: CounterfactualPolicy | None = None,
     on_tick: Callable[[ReplayedTick], None] | None = None,
     from_s: float = 0.0,
 ) -> Counterfactual:
@@ -93,10 +93,10 @@ class _Count:
 
     def __init__(self) -> None:
         self._ticks = self._decided = self._other_action = self._would_ask = self._would_drive = self._mid = 0
-        self._open: dict[str, Stretch] = {}
-        self._stretches: list[Stretch] = []
+        self._open: dict[str, DifferingStretch] = {}
+        self._stretches: list[DifferingStretch] = []
 
-    def take_in(self, at_s: float, record: TickRecord, was: Answers, would_be: Answers) -> None:
+    def take_in(self, at_s: float, record: TickRecord, was: PolicyAnswers, would_be: PolicyAnswers) -> None:
         """One tick, `at_s` since the first one."""
         self._ticks += 1
         decides = record.decision.cause in _DECIDES
@@ -120,7 +120,7 @@ class _Count:
             trouble,
         )
 
-    def _follow(self, level: str, at_s: float, was: Answer, would_be: Answer, *, decides: bool) -> None:
+    def _follow(self, level: str, at_s: float, was: PolicyAnswer, would_be: PolicyAnswer, *, decides: bool) -> None:
         differs = decides and was.action != would_be.action
         if differs:
             self._note(level, was, would_be)
@@ -131,9 +131,9 @@ class _Count:
         if stretch is not None:
             self._stretches.append(self._open.pop(level))
         if differs:
-            self._open[level] = Stretch(level, at_s, at_s, 1, was, would_be)
+            self._open[level] = DifferingStretch(level, at_s, at_s, 1, was, would_be)
 
-    def _note(self, level: str, was: Answer, would_be: Answer) -> None:
+    def _note(self, level: str, was: PolicyAnswer, would_be: PolicyAnswer) -> None:
         if level == MID:
             self._mid += 1
         elif was.action is None:
@@ -144,10 +144,10 @@ class _Count:
             self._other_action += 1
 
 
-def _alike(stretch: Stretch, was: Answer, would_be: Answer) -> bool:
+def _alike(stretch: DifferingStretch, was: PolicyAnswer, would_be: PolicyAnswer) -> bool:
     return tuple(_who(stretch.was)) == tuple(_who(was)) and tuple(_who(stretch.would_be)) == tuple(_who(would_be))
 
 
-def _who(answer: Answer) -> Iterator[object]:
+def _who(answer: PolicyAnswer) -> Iterator[object]:
     yield answer.action
     yield None if answer.rla is None else answer.rla.rla_id

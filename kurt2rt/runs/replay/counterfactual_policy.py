@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hal.settings import SettingsError
-from kurt2rt.core.basic.epsilon_greedy import Choice
+from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.mid.settings import load_mid
 from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.reinforcement.decision_history import RecentDecisions
+from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import BASIC, MID, Rla, TeachingEvent
@@ -28,7 +28,7 @@ from kurt2rt.runs.replay.run import Run
 from kurt2rt.runtime import Runtime, empty_system
 
 
-class Answer(NamedTuple):
+class PolicyAnswer(NamedTuple):
     """What knowledge says to a situation, before it is held to a minimum time and before any guard."""
 
     rla: Rla | None
@@ -51,15 +51,15 @@ class Answer(NamedTuple):
         return self.distance / self.radius if self.radius else math.inf
 
 
-class Answers(NamedTuple):
+class PolicyAnswers(NamedTuple):
     """What knowledge says in one tick."""
 
-    basic: Answer
-    mid: Answer | None
+    basic: PolicyAnswer
+    mid: PolicyAnswer | None
     """None where the task has no mid level."""
 
 
-class Shadow:
+class CounterfactualPolicy:
     """Knowledge that decides on the situations of a run, and does nothing. Nothing is learnt meanwhile."""
 
     def __init__(self, run: Run, events: Iterable[TeachingEvent], statistics: Statistics | None = None) -> None:
@@ -73,18 +73,18 @@ class Shadow:
                 definition = load_situation(task.situation, run.robot.infrared.names)
                 mid = None if task.mid is None else load_mid(task.mid)
                 self._system = empty_system(task, definition, load_critic(task.critic), mid)
-            recent = RecentDecisions(definition.dimensions)
+            recent = DecisionHistory(definition.dimensions)
             self._worths = Reinforcement(self._system, recent, task.reinforcement, run.robot.can.cycle_s)
             self._worths.recall(tuple(events), statistics)
         except (SettingsError, InvalidEventError) as error:
             raise RecordingError(f"this knowledge cannot decide there: {error}", where=run.name) from error
 
-    def answer(self, situation: NDArray[np.float64], behaviour: str, level: str = BASIC) -> Answer:
+    def answer(self, situation: NDArray[np.float64], behaviour: str, level: str = BASIC) -> PolicyAnswer:
         """What it says to a situation vector (d,) of a level, where that behaviour is wanted."""
         match = self._system.match(situation, behaviour, level)
         return _answer(match, self._system, self._worths.choice) if level == BASIC else _way(match)
 
-    def look(self, record: TickRecord, runtime: Runtime) -> Answers:
+    def look(self, record: TickRecord, runtime: Runtime) -> PolicyAnswers:
         """What it says to the situations of a tick that was just replayed in `runtime`.
 
         The basic level answers for the behaviour that was wanted then, and passes over RLAs whose action was withdrawn
@@ -96,17 +96,17 @@ class Shadow:
         mid = None
         if runtime.mid is not None:
             mid = _way(system.match(runtime.mid.vector, level=MID))
-        return Answers(_answer(basic, system, choice), mid)
+        return PolicyAnswers(_answer(basic, system, choice), mid)
 
 
-def shadow_of(run: Run, knowledge: Path) -> Shadow:
+def shadow_of(run: Run, knowledge: Path) -> CounterfactualPolicy:
     """The knowledge in a file, which may be that of a robot that runs. Raises RecordingError, KnowledgeError."""
     with run.settings():
         events, statistics = read_knowledge(knowledge, run.robot, run.task)
-    return Shadow(run, events, statistics)
+    return CounterfactualPolicy(run, events, statistics)
 
 
-def answers_then(record: TickRecord, runtime: Runtime) -> Answers:
+def answers_then(record: TickRecord, runtime: Runtime) -> PolicyAnswers:
     """What the run's own knowledge said in a tick that was just replayed in `runtime`.
 
     It is what was decided: by now the robot may have been taught otherwise, by itself in that very tick. Where the mid
@@ -121,21 +121,21 @@ def answers_then(record: TickRecord, runtime: Runtime) -> Answers:
         if drove.rla_id != decision.rla_id:  # of those on the very same condition another one was chosen
             drove = (None if decision.rla_id is None else runtime.level.system.get(decision.rla_id)) or drove
         answer = answer._replace(rla=replace(drove, action=decision.action))
-    return Answers(answer, mid)
+    return PolicyAnswers(answer, mid)
 
 
-def _answer(match: Match | None, system: RlaSystem, choice: Choice) -> Answer:
+def _answer(match: Match | None, system: RlaSystem, choice: EpsilonGreedy) -> PolicyAnswer:
     """Of the basic level: of competitors the one of most worth drives."""
     if match is None or not match.known:
         return _way(match)
     group = system.competitors(match.rla)
     # One that was deleted since, or told something else, has nobody to be compared with.
     rla = choice.best(group) if len(group) > 1 and match.rla in group else match.rla
-    return Answer(rla, match.rla, match.distance, match.radius)
+    return PolicyAnswer(rla, match.rla, match.distance, match.radius)
 
 
-def _way(match: Match | None) -> Answer:
+def _way(match: Match | None) -> PolicyAnswer:
     """Of ways from one place a plan chooses, or the oldest leads."""
     if match is None:
-        return Answer(None, None, math.inf, 0.0)
-    return Answer(match.rla if match.known else None, match.rla, match.distance, match.radius)
+        return PolicyAnswer(None, None, math.inf, 0.0)
+    return PolicyAnswer(match.rla if match.known else None, match.rla, match.distance, match.radius)

@@ -6,7 +6,7 @@ from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.runs.recording.entries import TickEntry
 
 
-class Replayed:
+class ReplayEnvironment:
     """A Robot, a Clock and a LessonKeeper in one: they share the tick that is on. Nothing moves, nothing is kept."""
 
     def __init__(self) -> None:

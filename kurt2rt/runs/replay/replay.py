@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from hal.settings import SettingsError
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
 from kurt2rt.core.decision.standing_text import stop_of_text
 from kurt2rt.core.rla.rla_system import InvalidEventError
@@ -13,7 +13,7 @@ from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runs.recording.entries import TickEntry
-from kurt2rt.runs.replay.environment import Replayed
+from kurt2rt.runs.replay.environment import ReplayEnvironment
 from kurt2rt.runs.replay.run import Run
 from kurt2rt.runtime import Runtime, build_runtime
 
@@ -32,7 +32,7 @@ class Replay:
         """Raises RecordingError where that is gone, or this program cannot build it."""
         run.require_beginning()
         self.run = run
-        self._replayed = Replayed()
+        self._replayed = ReplayEnvironment()
         self.runtime = self._build()
 
     def step(self, entry: TickEntry) -> TickRecord:
@@ -55,7 +55,7 @@ class Replay:
     def _build(self) -> Runtime:
         run, head = self.run, self.run.head
         try:
-            wanted = Wanted(run.task.behaviours)
+            wanted = ActiveBehaviour(run.task.behaviours)
             if head.behaviour:
                 wanted.pursue(head.behaviour)
             with run.settings():

@@ -14,7 +14,7 @@ from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_same
 from kurt2rt.knowledge.journal.loading import binding_of
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runs.recording.run_folder import runs_in, segments_in
-from kurt2rt.runs.replay.counterfactual_policy import Answer, Answers, Shadow
+from kurt2rt.runs.replay.counterfactual_policy import CounterfactualPolicy, PolicyAnswer, PolicyAnswers
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay, ReplayedTick
 from kurt2rt.runs.replay.run import Run
@@ -27,7 +27,7 @@ _NEWEST = 20
 """So many runs are looked through for one that suits."""
 
 
-class Known(NamedTuple):
+class TrialKnowledge(NamedTuple):
     """All that a robot begins with."""
 
     events: tuple[TeachingEvent, ...]
@@ -35,7 +35,7 @@ class Known(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Runs:
+class RecentRuns:
     """Recorded runs that a change is tried on."""
 
     runs: tuple[Run, ...]
@@ -49,7 +49,7 @@ class Runs:
         return (*self.left_out, *gaps)
 
 
-def runs_to_try(folder: Path, binding: KnowledgeBinding) -> Runs:
+def runs_to_try(folder: Path, binding: KnowledgeBinding) -> RecentRuns:
     """The runs in a folder of recordings, or the one that `folder` is, that this knowledge could have been used in.
 
     Raises KnowledgeError where there is none.
@@ -72,10 +72,10 @@ def runs_to_try(folder: Path, binding: KnowledgeBinding) -> Runs:
             left_out.append(why_not)
     if not runs:
         raise KnowledgeError(f"none of its runs can be tried: {left_out[0]}", where=folder)
-    return Runs(tuple(runs), tuple(left_out))
+    return RecentRuns(tuple(runs), tuple(left_out))
 
 
-def newest_to_try(recordings: Path, binding: KnowledgeBinding, knowledge: Path) -> Runs:
+def newest_to_try(recordings: Path, binding: KnowledgeBinding, knowledge: Path) -> RecentRuns:
     """The newest of the last recorded runs that taught into the file `knowledge`, else the newest that this knowledge
     could have been used in; none where there is none. Its notes say which newer ones cannot be read.
 
@@ -92,15 +92,17 @@ def newest_to_try(recordings: Path, binding: KnowledgeBinding, knowledge: Path) 
                 left_out.append(str(error))
             continue
         if _taught_into(run, path, knowledge):
-            return Runs((run,), tuple(left_out))
+            return RecentRuns((run,), tuple(left_out))
         newest = newest or run
-    return Runs(() if newest is None else (newest,), tuple(left_out))
+    return RecentRuns(() if newest is None else (newest,), tuple(left_out))
 
 
-def answers(run: Run, knowledge: Sequence[Known], report: Report) -> Iterator[tuple[TickRecord, list[Answers]]]:
+def answers(
+    run: Run, knowledge: Sequence[TrialKnowledge], report: Report
+) -> Iterator[tuple[TickRecord, list[PolicyAnswers]]]:
     """What each of these says to the situations of each tick of a run, as they were, and that tick."""
     replay = Replay(run)
-    shadows = [Shadow(run, each.events, each.statistics) for each in knowledge]
+    shadows = [CounterfactualPolicy(run, each.events, each.statistics) for each in knowledge]
     tell = telling(run, report)
     for tick in replay:
         tell(tick)
@@ -118,12 +120,12 @@ def telling(run: Run, report: Report) -> Callable[[ReplayedTick], None]:
     return tell
 
 
-def told(both: Answers) -> str:
+def told(both: PolicyAnswers) -> str:
     """What they say in a few words: the mid level first, where there is one."""
     return ", ".join(said(each) for each in (both.mid, both.basic) if each is not None)
 
 
-def said(answer: Answer) -> str:
+def said(answer: PolicyAnswer) -> str:
     """What one level answers."""
     return "asks" if answer.rla is None else f"{answer.rla.action} by {answer.rla.title}"
 

@@ -6,11 +6,11 @@ from typing import Final
 
 from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.knowledge.versions.editing import worths_after
-from kurt2rt.knowledge.versions.undo import Planned
+from kurt2rt.knowledge.versions.undo import UndoPlan
 from kurt2rt.runs.replay.counterfactual import Counterfactual, counterfactual
-from kurt2rt.runs.replay.counterfactual_policy import Shadow
+from kurt2rt.runs.replay.counterfactual_policy import CounterfactualPolicy
 from kurt2rt.runs.replay.run import Run
-from kurt2rt.runs.replay.trial import Known, Report, Runs, newest_to_try, runs_to_try, telling
+from kurt2rt.runs.replay.trial import RecentRuns, Report, TrialKnowledge, newest_to_try, runs_to_try, telling
 
 LAST_S: Final = 600.0
 """So much of the newest run is compared where nobody named one: what came before is replayed, in half the time."""
@@ -20,7 +20,7 @@ LONGEST_S: Final = 3600.0
 
 
 @dataclass(frozen=True, slots=True)
-class Tried:
+class TrialResult:
     """What a change would have changed in one run."""
 
     run: str
@@ -30,16 +30,16 @@ class Tried:
 
 
 @dataclass(frozen=True)
-class Preview:
+class UndoPreview:
     """A change that was tried."""
 
-    runs: tuple[Tried, ...]
+    runs: tuple[TrialResult, ...]
     """Empty where there was none to try it on."""
     notes: tuple[str, ...]
     """Which runs, or parts of one, could not be tried, and why."""
 
 
-def preview(planned: Planned, runs: Path, report: Report) -> Preview:
+def preview(planned: UndoPlan, runs: Path, report: Report) -> UndoPreview:
     """Try it on all recorded runs in a folder, or on the one that `runs` is; changes nothing.
 
     Raises KnowledgeError where none of them can be tried.
@@ -48,8 +48,8 @@ def preview(planned: Planned, runs: Path, report: Report) -> Preview:
 
 
 def preview_on_newest(
-    planned: Planned, recordings: Path, report: Report, *, last_s: float = LAST_S, longest_s: float = LONGEST_S
-) -> Preview:
+    planned: UndoPlan, recordings: Path, report: Report, *, last_s: float = LAST_S, longest_s: float = LONGEST_S
+) -> UndoPreview:
     """Try it on the end of the newest recorded run of this knowledge, where there is one; changes nothing.
 
     The end of a run with a gap is the last before that: its notes say what comes after it was not tried.
@@ -59,26 +59,26 @@ def preview_on_newest(
     if too_long:
         (run,) = too_long
         note = f"{run.name}: lasts {run.lasts_s / 60:.0f} min, which takes long; name it with --runs to try it"
-        return Preview((), (*newest.left_out, note))
+        return UndoPreview((), (*newest.left_out, note))
     return _try_on(planned, newest, report, last_s=last_s)
 
 
-def _try_on(planned: Planned, runs: Runs, report: Report, last_s: float) -> Preview:
+def _try_on(planned: UndoPlan, runs: RecentRuns, report: Report, last_s: float) -> UndoPreview:
     events, statistics = planned.events, planned.statistics
     dimensions = len(planned.binding.feature_names)
-    before = Known(events, statistics)
-    after = Known((*events, *planned.changes), worths_after(events, planned.changes, statistics, dimensions))
-    tried, troubles = list[Tried](), list[str]()
+    before = TrialKnowledge(events, statistics)
+    after = TrialKnowledge((*events, *planned.changes), worths_after(events, planned.changes, statistics, dimensions))
+    tried, troubles = list[TrialResult](), list[str]()
     for run in runs.runs:
         try:
             tried.append(_tried(run, before, after, report, last_s))
         except RecordingError as error:
             troubles.append(str(error))
-    return Preview(tuple(tried), (*runs.notes, *troubles))
+    return UndoPreview(tuple(tried), (*runs.notes, *troubles))
 
 
-def _tried(run: Run, before: Known, after: Known, report: Report, last_s: float) -> Tried:
+def _tried(run: Run, before: TrialKnowledge, after: TrialKnowledge, report: Report, last_s: float) -> TrialResult:
     # What comes after a gap cannot be replayed: the end of such a run is where that begins.
     from_s = max(run.lasts_without_gap_s - last_s, 0.0) if run.lasts_s > last_s else 0.0
-    old, new = (Shadow(run, each.events, each.statistics) for each in (before, after))
-    return Tried(run.name, from_s, counterfactual(run, new, old, telling(run, report), from_s))
+    old, new = (CounterfactualPolicy(run, each.events, each.statistics) for each in (before, after))
+    return TrialResult(run.name, from_s, counterfactual(run, new, old, telling(run, report), from_s))

@@ -3,13 +3,13 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from kurt2rt.runs.replay.comparison import Difference, compare
+from kurt2rt.runs.replay.comparison import TickDifference, compare
 from kurt2rt.runs.replay.replay import Replay, ReplayedTick, no_tick
 from kurt2rt.runs.replay.run import Run
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class ReplayVerdict:
     """What a replay found."""
 
     ticks: int
@@ -18,7 +18,7 @@ class Verdict:
     """Of the runtime's clock, from the first of them to the last."""
     knowledge: int
     """How often the hash of all that is known was compared."""
-    differences: tuple[Difference, ...]
+    differences: tuple[TickDifference, ...]
     """Of the first tick that came out otherwise; after it all else may follow from it."""
     trouble: str
     """Why not the whole run was replayed, in a sentence; empty where it was."""
@@ -31,14 +31,14 @@ class Verdict:
         return not self.differences
 
 
-def verify(run: Run, on_tick: Callable[[ReplayedTick], None] | None = None) -> Verdict:
+def verify(run: Run, on_tick: Callable[[ReplayedTick], None] | None = None) -> ReplayVerdict:
     """Replay a run up to the first difference. `on_tick` is called for each tick.
 
     Raises RecordingError, also for a run without ticks: nothing is the same there.
     """
     ticks = knowledge = 0
     lasted_s = 0.0
-    differences: list[Difference] = []
+    differences: list[TickDifference] = []
     for tick in Replay(run):
         differences = compare(*tick)
         if differences:
@@ -50,4 +50,4 @@ def verify(run: Run, on_tick: Callable[[ReplayedTick], None] | None = None) -> V
             on_tick(tick)
     if not ticks and not differences:
         raise no_tick(run)
-    return Verdict(ticks, lasted_s, knowledge, tuple(differences), run.trouble, run.whole)
+    return ReplayVerdict(ticks, lasted_s, knowledge, tuple(differences), run.trouble, run.whole)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Final, NamedTuple
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.channel.protocol.health import DiskSpace, Machine, Punctuality, Trouble
+from kurt2rt.channel.protocol.health import DiskSpace, MachineHealth, TickLateness, Trouble
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.service.health.snapshot import Snapshot
 
@@ -78,7 +78,7 @@ class _Writes:
         return max((took_s for _, took_s in self._slow), default=None)
 
 
-class TroubleBook:
+class Diagnostics:
     """Finds what is wrong in each report, and remembers since when."""
 
     def __init__(self, settings: RobotSettings, *, tolerates_stalls: bool = False) -> None:
@@ -91,9 +91,9 @@ class TroubleBook:
     def judge(
         self,
         snapshot: Snapshot,
-        punctuality: Punctuality,
+        punctuality: TickLateness,
         disks: tuple[DiskSpace, ...],
-        machine: Machine,
+        machine: MachineHealth,
         counted: Counted,
     ) -> tuple[Trouble, ...]:
         """The troubles of one report: the urgent ones first, then those that have lasted longest."""
@@ -127,7 +127,7 @@ class TroubleBook:
             elif not age_s <= stale_s:  # a NaN, too
                 yield _Found(TroubleCode.SENSORS_SILENT, True, name, (age_s,))
 
-    def _of_ticks(self, punctuality: Punctuality) -> Iterator[_Found]:
+    def _of_ticks(self, punctuality: TickLateness) -> Iterator[_Found]:
         lately_ticks = min(punctuality.ticks, round(LATELY_S / self._settings.can.cycle_s))
         if self._tolerates_stalls and punctuality.missed_lately <= TOLERATED_SHARE * lately_ticks:
             return
@@ -172,7 +172,7 @@ def _of_keeping(snapshot: Snapshot, slowest_write_s: float | None, disks: tuple[
             yield _Found(TroubleCode.LITTLE_ROOM, urgent, disk.of, (disk.free_bytes / 10**6,))
 
 
-def _of_machine(machine: Machine) -> Iterator[_Found]:
+def _of_machine(machine: MachineHealth) -> Iterator[_Found]:
     if machine.battery is not None and machine.discharging and machine.battery < LOW_BATTERY:
         yield _Found(TroubleCode.LOW_BATTERY, machine.battery < EMPTY_BATTERY, numbers=(machine.battery,))
     available = machine.available_bytes

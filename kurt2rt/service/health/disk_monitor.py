@@ -14,7 +14,7 @@ _EVERY_S = 1.0
 _ANSWERS_WITHIN_S = 4.0
 
 
-class DiskLook:
+class DiskMonitor:
     """A thread that looks once a second. What a disk said last counts for some seconds."""
 
     def __init__(self, folders: Mapping[str, Path], now: Callable[[], float] = time.monotonic) -> None:

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import psutil
 
-from kurt2rt.channel.protocol.health import Machine
+from kurt2rt.channel.protocol.health import MachineHealth
 
 _POWER = Path("/sys/class/power_supply")
 
 
-class MachineWatch:
+class MachineMonitor:
     """Looks at memory, processor and battery; each look takes some hundred microseconds."""
 
     def __init__(self, power: Path = _POWER) -> None:
@@ -21,13 +21,13 @@ class MachineWatch:
         self._looked_at_s = time.monotonic()
         self._used_s = time.process_time()
 
-    def look(self) -> Machine:
+    def look(self) -> MachineHealth:
         """As it is now."""
         now_s, used_s = time.monotonic(), time.process_time()
         share = (used_s - self._used_s) / max(now_s - self._looked_at_s, 1e-3)
         self._looked_at_s, self._used_s = now_s, used_s
         battery, discharging = battery_of(self._power)
-        return Machine(
+        return MachineHealth(
             memory_bytes=self._process.memory_info().rss,
             available_bytes=psutil.virtual_memory().available,
             processor_share=share,

@@ -12,19 +12,19 @@ from types import TracebackType
 from typing import Self
 
 from hal.health import Health
-from kurt2rt.channel.protocol.health import BusHealth, Drops, HealthReport, Punctuality, Safety, SensorAges
+from kurt2rt.channel.protocol.health import BusHealth, Drops, HealthReport, JournalHealth, SensorAges, TickLateness
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.runtime import Runtime
-from kurt2rt.service.health.diagnostics import Counted, TroubleBook
-from kurt2rt.service.health.disk_monitor import DiskLook
-from kurt2rt.service.health.machine import MachineWatch
-from kurt2rt.service.health.probes import Instruments, Keeping
+from kurt2rt.service.health.diagnostics import Counted, Diagnostics
+from kurt2rt.service.health.disk_monitor import DiskMonitor
+from kurt2rt.service.health.machine import MachineMonitor
+from kurt2rt.service.health.probes import JournalStats, Probes
 from kurt2rt.service.health.snapshot import Snapshot, take_snapshot
 
 _ENDS_WITHIN_S = 0.2
 
 
-class HealthWatch:
+class HealthMonitor:
     """Reads the program between two ticks, once a second; a thread makes a report of it, for percentiles cost more than
     a tick.
     """
@@ -32,8 +32,8 @@ class HealthWatch:
     def __init__(
         self,
         runtime: Runtime,
-        keeping: Keeping,
-        instruments: Instruments,
+        keeping: JournalStats,
+        instruments: Probes,
         *,
         boot: str,
         knowledge: Path,
@@ -57,10 +57,10 @@ class HealthWatch:
         self.newest: HealthReport | None = None
         """None in the first second."""
         # Of the thread, or of whoever calls `report`.
-        self._disks = DiskLook(self._instruments.folders)
-        self._machine = MachineWatch()
+        self._disks = DiskMonitor(self._instruments.folders)
+        self._machine = MachineMonitor()
         self._counted = Counted()
-        self._troubles = TroubleBook(runtime.robot, tolerates_stalls=tolerates_stalls)
+        self._troubles = Diagnostics(runtime.robot, tolerates_stalls=tolerates_stalls)
         self._waiting: queue.SimpleQueue[Snapshot | None] = queue.SimpleQueue()
         self._made: HealthReport | None = None
         self._thread = threading.Thread(target=self._run, name="health", daemon=True)
@@ -117,7 +117,7 @@ class HealthWatch:
             ),
             bus=None if snapshot.bus is None else _bus_health(snapshot.bus),
             disks=disks,
-            safety=Safety(snapshot.unwritten, None if last_write_s is None else last_write_s * 1000),
+            safety=JournalHealth(snapshot.unwritten, None if last_write_s is None else last_write_s * 1000),
             machine=machine,
             progress=snapshot.progress,
             drops=tuple(Drops(of, count) for of, count in snapshot.drops.items()),
@@ -136,10 +136,10 @@ class HealthWatch:
         self._thread.join(_ENDS_WITHIN_S)
         self._disks.__exit__(kind, error, trace)
 
-    def _punctuality(self, snapshot: Snapshot) -> Punctuality:
+    def _punctuality(self, snapshot: Snapshot) -> TickLateness:
         ledger = self._runtime.ledger
         lately, late = ledger.lateness_of_last(self._every_ticks), ledger.lateness()
-        return Punctuality(
+        return TickLateness(
             newest_ms=lately.worst_us / 1000,
             median_ms=late.median_us / 1000,
             p99_ms=late.p99_us / 1000,

@@ -8,7 +8,7 @@ from typing import Protocol
 from hal.health import Health
 
 
-class Keeping(Protocol):
+class JournalStats(Protocol):
     """Where lessons are kept; kurt2rt.knowledge.journal.writer.JournalWriter is one."""
 
     @property
@@ -28,7 +28,7 @@ class Keeping(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Instruments:
+class Probes:
     """The parts of a program that are no part of its runtime."""
 
     bus: Callable[[], Health] | None = None
@@ -46,6 +46,6 @@ class Instruments:
         self,
         drops: Mapping[str, Callable[[], int]] | None = None,
         says: Mapping[str, Callable[[], str]] | None = None,
-    ) -> "Instruments":
+    ) -> "Probes":
         """These and others."""
         return replace(self, drops={**self.drops, **(drops or {})}, says={**self.says, **(says or {})})

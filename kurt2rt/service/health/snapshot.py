@@ -9,7 +9,7 @@ from kurt2rt.core.rla.rla import rla_title
 from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.runtime import Runtime
-from kurt2rt.service.health.probes import Instruments, Keeping
+from kurt2rt.service.health.probes import JournalStats, Probes
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class Snapshot:
 
 
 def take_snapshot(
-    runtime: Runtime, record: TickRecord, keeping: Keeping, instruments: Instruments, now_s: float
+    runtime: Runtime, record: TickRecord, keeping: JournalStats, instruments: Probes, now_s: float
 ) -> Snapshot:
     """Read everything; some ten microseconds, and nothing waits."""
     senses, system, ledger = record.senses, runtime.level.system, runtime.ledger

@@ -16,7 +16,7 @@ from hal.errors import UserError
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.health_codec import plain_of, report_of
 from kurt2rt.channel.protocol.schema import WireError
-from kurt2rt.service.health.monitor import HealthWatch
+from kurt2rt.service.health.monitor import HealthMonitor
 
 _MOST_READERS = 8
 _TAKEN_WITHIN_S = 2.0
@@ -38,7 +38,7 @@ def socket_of(knowledge: Path) -> Path:
 class StatusSocket:
     """Tells every reader each report. One that does not read is left."""
 
-    def __init__(self, watch: HealthWatch, path: Path, pages: Callable[[], tuple[str, ...]] = tuple) -> None:
+    def __init__(self, watch: HealthMonitor, path: Path, pages: Callable[[], tuple[str, ...]] = tuple) -> None:
         """`path`: of the socket; users who may write it may read the status, and the links of `pages` with it."""
         self._pages = pages
         self._watch = watch

@@ -15,7 +15,7 @@ _ELSEWHERE = "in a virtual environment in /opt/kurt2rt, for instance"
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class RequiredAccess:
     """What the settings name beside this installation and the unit's own folder."""
 
     files: tuple[Path, ...] = ()
@@ -29,7 +29,7 @@ def sees_homes() -> bool:
     return any(_is_within(path, _HOMES) for path in places())
 
 
-def closed_to_others(wanted: Wanted) -> tuple[str, ...]:
+def closed_to_others(wanted: RequiredAccess) -> tuple[str, ...]:
     """Why the service's own user could not start, a line for each reason with what to do; empty when he can."""
     installation = (_unreadable(path, f"install kurt2rt where everybody may read, {_ELSEWHERE}") for path in places())
     files = (_unreadable(path, _to_copy(path)) or _hidden(path, _to_copy(path)) for path in wanted.files)
@@ -37,7 +37,7 @@ def closed_to_others(wanted: Wanted) -> tuple[str, ...]:
     return tuple(dict.fromkeys(line for line in (*installation, *files, *folders) if line))
 
 
-def to_hand_over(user: str, wanted: Wanted) -> tuple[str, ...]:
+def to_hand_over(user: str, wanted: RequiredAccess) -> tuple[str, ...]:
     """Folders that are there and that `user`, who may not be there yet, may not write; a line each, with what to do."""
     return tuple(
         f"{folder}: belongs to {_owner(folder)}; say: sudo chown {user}: {quote(str(folder))}"

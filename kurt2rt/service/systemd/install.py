@@ -14,7 +14,7 @@ Do = Callable[[Sequence[str]], None]
 
 
 @dataclass(frozen=True, slots=True)
-class Places:
+class InstallPaths:
     """Where systemd looks for its files."""
 
     units: Path = Path("/etc/systemd/system")
@@ -39,10 +39,10 @@ def do(command: Sequence[str]) -> None:
         raise UnitError(f"{' '.join(done.stderr.split()) or f'exit code {done.returncode}'}", where=" ".join(command))
 
 
-def require_free(name: str, places: Places | None = None) -> None:
+def require_free(name: str, places: InstallPaths | None = None) -> None:
     """Raises UnitError for a name that a unit, or a user, of another program has."""
     require_name(name)
-    places = places or Places()
+    places = places or InstallPaths()
     to_do = "give another --name"
     for path in (*places.files(name), *(folder / f"{name}.service" for folder in places.others)):
         if _is_there(path) and not (path.parent in (places.units, places.users) and _is_ours(path)):
@@ -55,9 +55,9 @@ def require_free(name: str, places: Places | None = None) -> None:
         raise UnitError("is a user of this machine already", where=name, do=to_do)
 
 
-def install(unit: Unit, run: Do = do, places: Places | None = None) -> tuple[Path, ...]:
+def install(unit: Unit, run: Do = do, places: InstallPaths | None = None) -> tuple[Path, ...]:
     """Write the unit and make its user; starts nothing. Returns the files. Raises UnitError."""
-    places = places or Places()
+    places = places or InstallPaths()
     require_free(unit.name, places)
     files = places.files(unit.name)
     for path, text in zip(files, (unit.service, unit.sysusers), strict=True):
@@ -70,10 +70,10 @@ def install(unit: Unit, run: Do = do, places: Places | None = None) -> tuple[Pat
     return files
 
 
-def uninstall(name: str, run: Do = do, places: Places | None = None) -> tuple[Path, ...]:
+def uninstall(name: str, run: Do = do, places: InstallPaths | None = None) -> tuple[Path, ...]:
     """End and disable the unit and remove its files; what was taught and its user stay. Raises UnitError."""
     require_name(name)
-    places = places or Places()
+    places = places or InstallPaths()
     files = tuple(each for each in places.files(name) if _is_there(each))
     if not files:
         raise UnitError("there is no such unit", where=places.files(name)[0], do="kurt2rt service install makes one")

@@ -18,7 +18,7 @@ _OPEN = re.compile(r"^✗ (\S+)\s+(.*?)\s+([\d.]+)\s*$", re.MULTILINE)
 
 
 @dataclass(frozen=True, slots=True)
-class Examined:
+class UnitVerification:
     """What the tools found."""
 
     complaints: tuple[str, ...]
@@ -39,7 +39,7 @@ def has_tool() -> bool:
     return shutil.which(TOOL) is not None
 
 
-def examine(unit: Unit) -> Examined:
+def examine(unit: Unit) -> UnitVerification:
     """Have the unit looked at; nothing is installed or started. Raises UnitError where the tool is missing."""
     tool = shutil.which(TOOL)
     if tool is None:
@@ -56,7 +56,7 @@ def examine(unit: Unit) -> Examined:
             f"{TOOL} security says no exposure: {' '.join(security.split())[-200:]!r}", do="look at it yourself"
         )
     found = tuple(f"{setting} {meaning} ({share})" for setting, meaning, share in _OPEN.findall(security))
-    return Examined(complaints, float(overall[1]), found)
+    return UnitVerification(complaints, float(overall[1]), found)
 
 
 def _say(tool: str, *words: str) -> "subprocess.CompletedProcess[str]":

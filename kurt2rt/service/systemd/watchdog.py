@@ -8,7 +8,7 @@ LATE_SHARE = 0.5
 """Of the ticks since the last ping; when more of them were missed the program is not well."""
 
 
-class Heartbeat:
+class WatchdogNotifier:
     """Pings at half the manager's interval, from inside the tick, while ticks come in time and all parts are alive.
 
     There is no timer: a loop that hangs sends nothing.

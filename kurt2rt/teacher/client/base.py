@@ -3,30 +3,30 @@
 from collections.abc import Callable
 
 from kurt2rt.teacher.client.connection import Connection
-from kurt2rt.teacher.client.manual_drive import Hand
-from kurt2rt.teacher.client.request_sender import Asking
-from kurt2rt.teacher.client.state_stream import Pictures
-from kurt2rt.teacher.client.stop_sender import Stopping
+from kurt2rt.teacher.client.manual_drive import ManualDrive
+from kurt2rt.teacher.client.request_sender import RequestSender
+from kurt2rt.teacher.client.state_stream import StateStream
+from kurt2rt.teacher.client.stop_sender import StopSender
 
 
-class Connected:
+class ClientBase:
     """Base of the parts of a `TeacherClient`. What asks the robot raises RuntimeError while it is not open."""
 
     def __init__(self, now: Callable[[], float]) -> None:
         """`now` is a monotonic clock in seconds."""
-        self._pictures = Pictures(now)
+        self._pictures = StateStream(now)
         self._connection: Connection | None = None
 
     @property
-    def _asking(self) -> Asking:
+    def _asking(self) -> RequestSender:
         return self._open.asking
 
     @property
-    def _stopping(self) -> Stopping:
+    def _stopping(self) -> StopSender:
         return self._open.stopping
 
     @property
-    def _hand(self) -> Hand:
+    def _hand(self) -> ManualDrive:
         return self._open.hand
 
     @property

@@ -33,18 +33,18 @@ from kurt2rt.channel.protocol.requests import (
 from kurt2rt.channel.protocol.simulation import SIMULATION, SimulationView
 from kurt2rt.teacher.client.answer import Answer, RefusedError
 from kurt2rt.teacher.client.connection import open_connection
-from kurt2rt.teacher.client.goals import Goals
-from kurt2rt.teacher.client.lessons import Lessons
-from kurt2rt.teacher.client.motion import Moving
+from kurt2rt.teacher.client.goals import GoalsMixin
+from kurt2rt.teacher.client.lessons import LessonsMixin
+from kurt2rt.teacher.client.motion import MotionMixin
 from kurt2rt.teacher.client.request_sender import facts_of
-from kurt2rt.teacher.client.session import Charge
+from kurt2rt.teacher.client.session import SessionMixin
 from kurt2rt.teacher.client.transport import Response
 
 ANSWER_WITHIN_S = 3.5
 _PART_EACH_S = 0.008
 
 
-class TeacherClient(Lessons, Goals, Charge, Moving):
+class TeacherClient(LessonsMixin, GoalsMixin, SessionMixin, MotionMixin):
     """An async context manager: inside it pictures come, and while this device is in charge the robot is told that its
     teacher is there.
 

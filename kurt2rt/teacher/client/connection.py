@@ -11,10 +11,10 @@ import anyio.to_thread
 from kurt2rt.channel.protocol.requests import COMMAND_ID_BYTES, StopRequest
 from kurt2rt.channel.security.pairing import PORT, Device, read_device
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
-from kurt2rt.teacher.client.manual_drive import BEAT_S, Hand
-from kurt2rt.teacher.client.request_sender import Asking
-from kurt2rt.teacher.client.state_stream import Pictures
-from kurt2rt.teacher.client.stop_sender import Stopping
+from kurt2rt.teacher.client.manual_drive import BEAT_S, ManualDrive
+from kurt2rt.teacher.client.request_sender import RequestSender
+from kurt2rt.teacher.client.state_stream import StateStream
+from kurt2rt.teacher.client.stop_sender import StopSender
 from kurt2rt.teacher.client.subscribe import observe
 from kurt2rt.teacher.client.transport import OscoreRequests, open_requests
 
@@ -24,7 +24,9 @@ _STOP_WITHIN_S = 0.5
 class Connection:
     """A device that is heard by its robot: requests out, pictures in, and the teacher's hand."""
 
-    def __init__(self, name: str, requests: OscoreRequests, asking: Asking, stopping: Stopping, hand: Hand) -> None:
+    def __init__(
+        self, name: str, requests: OscoreRequests, asking: RequestSender, stopping: StopSender, hand: ManualDrive
+    ) -> None:
         self.name = name
         """Of the device, and so of the teacher."""
         self.requests = requests
@@ -51,7 +53,7 @@ async def open_connection(
     folder: Path,
     host: str | None,
     port: int | None,
-    pictures: Pictures,
+    pictures: StateStream,
     patience_s: float,
     now: Callable[[], float],
 ) -> AsyncIterator[Connection]:
@@ -61,11 +63,11 @@ async def open_connection(
     """
     device = await anyio.to_thread.run_sync(_read_device, folder)
     requests = await open_requests(folder, host or device.host, port or device.port)
-    asking = Asking(requests, pictures, patience_s)
+    asking = RequestSender(requests, pictures, patience_s)
     try:
         async with anyio.create_task_group() as tasks:
-            stopping = Stopping(asking, tasks)
-            hand = Hand(device.name, pictures, requests, now=now, on_begin=stopping.wish_anew)
+            stopping = StopSender(asking, tasks)
+            hand = ManualDrive(device.name, pictures, requests, now=now, on_begin=stopping.wish_anew)
             connection = Connection(device.name, requests, asking, stopping, hand)
             tasks.start_soon(observe, requests, pictures, now)
             tasks.start_soon(_beat, hand)
@@ -82,7 +84,7 @@ async def open_connection(
             await requests.close()
 
 
-async def _beat(hand: Hand) -> None:
+async def _beat(hand: ManualDrive) -> None:
     due_s = anyio.current_time()
     while True:
         hand.beat()

@@ -12,11 +12,11 @@ from kurt2rt.channel.protocol.requests import (
     SituationsRequest,
 )
 from kurt2rt.teacher.client.answer import Answer
-from kurt2rt.teacher.client.base import Connected
+from kurt2rt.teacher.client.base import ClientBase
 from kurt2rt.teacher.client.request_sender import facts_of
 
 
-class Goals(Connected):
+class GoalsMixin(ClientBase):
     """What the robot is to follow and to seek. Each raises NoAnswerError when nobody answers."""
 
     async def pursue(self, behaviour: str) -> Answer:

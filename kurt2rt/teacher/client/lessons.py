@@ -17,11 +17,11 @@ from kurt2rt.channel.protocol.requests import (
 )
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.teacher.client.answer import Answer
-from kurt2rt.teacher.client.base import Connected
+from kurt2rt.teacher.client.base import ClientBase
 from kurt2rt.teacher.client.request_sender import facts_of
 
 
-class Lessons(Connected):
+class LessonsMixin(ClientBase):
     """The lessons of a `TeacherClient`. Each raises NoAnswerError when nobody answers."""
 
     async def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:

@@ -9,7 +9,7 @@ _ANSWERS = 100
 
 
 @dataclass(frozen=True, slots=True)
-class Link:
+class LinkQuality:
     """Of the last seconds. Presence and driving are measured, so only who is in charge has round trips."""
 
     rtt_ms: float | None
@@ -36,9 +36,9 @@ class LinkMeter:
         """One more message was not answered in time."""
         self._answered.append(False)
 
-    def link(self, pictures_per_s: float) -> Link:
+    def link(self, pictures_per_s: float) -> LinkQuality:
         """What was measured so far."""
-        return Link(
+        return LinkQuality(
             rtt_ms=statistics.median(self._round_trips_s) * 1000.0 if self._round_trips_s else None,
             answered=sum(self._answered) / len(self._answered) if self._answered else None,
             pictures_per_s=pictures_per_s,

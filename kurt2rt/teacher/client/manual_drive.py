@@ -11,7 +11,7 @@ from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode
 from kurt2rt.teacher.client.answer import Answer, answer_of, local_refusal
 from kurt2rt.teacher.client.link_quality import LinkMeter
-from kurt2rt.teacher.client.state_stream import Pictures
+from kurt2rt.teacher.client.state_stream import StateStream
 from kurt2rt.teacher.client.transport import Exchange, OscoreRequests, Response
 
 BEAT_S = 0.02
@@ -43,13 +43,13 @@ class _Sent:
     answered: bool = False
 
 
-class Hand:
+class ManualDrive:
     """Says that the teacher is there while he is in charge and watches, and drives while a press is on."""
 
     def __init__(
         self,
         name: str,
-        pictures: Pictures,
+        pictures: StateStream,
         requests: OscoreRequests,
         *,
         now: Callable[[], float],

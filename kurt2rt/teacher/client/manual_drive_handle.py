@@ -1,12 +1,12 @@
 """One press of the hand at the wheels, as `TeacherClient.driving` gives it."""
 
-from kurt2rt.teacher.client.manual_drive import Hand
+from kurt2rt.teacher.client.manual_drive import ManualDrive
 
 
-class Wheel:
+class ManualDriveHandle:
     """Set speeds as often as you like; they go out 50 times a second. Once the press has ended it stays ended."""
 
-    def __init__(self, hand: Hand) -> None:
+    def __init__(self, hand: ManualDrive) -> None:
         self._hand = hand
         self._hold: int | None = None
 

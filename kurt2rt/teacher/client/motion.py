@@ -7,11 +7,11 @@ import anyio
 
 from kurt2rt.channel.protocol.requests import BehaviourRequest, ResumeRequest
 from kurt2rt.teacher.client.answer import Answer
-from kurt2rt.teacher.client.manual_drive_handle import Wheel
-from kurt2rt.teacher.client.state import Sight
+from kurt2rt.teacher.client.manual_drive_handle import ManualDriveHandle
+from kurt2rt.teacher.client.state import StateMixin
 
 
-class Moving(Sight):
+class MotionMixin(StateMixin):
     """To stop, to let go, to drive by hand. Each raises NoAnswerError when nobody answers."""
 
     def __init__(self, now: Callable[[], float]) -> None:
@@ -93,9 +93,9 @@ class Moving(Sight):
         return await self._open.release(self._hand.hold)
 
     @asynccontextmanager
-    async def driving(self) -> AsyncIterator[Wheel]:
+    async def driving(self) -> AsyncIterator[ManualDriveHandle]:
         """Drive by hand inside the block; the press begins with the first speeds and ends with a stop."""
-        wheel = Wheel(self._hand)
+        wheel = ManualDriveHandle(self._hand)
         try:
             yield wheel
         except BaseException:

@@ -13,7 +13,7 @@ from kurt2rt.channel.protocol.requests import COMMAND_ID_BYTES, CommandRequest, 
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError, answer_of, local_refusal
-from kurt2rt.teacher.client.state_stream import Pictures
+from kurt2rt.teacher.client.state_stream import StateStream
 from kurt2rt.teacher.client.transport import Exchange, OscoreRequests, Response
 
 RESEND_S = 0.1
@@ -36,10 +36,10 @@ def answer_to(response: Response) -> Answer:
     return answer_of(response.code, _body(response))
 
 
-class Asking:
+class RequestSender:
     """Requests to one robot. All of them raise NoAnswerError when nobody answers within the patience."""
 
-    def __init__(self, requests: OscoreRequests, pictures: Pictures, patience_s: float) -> None:
+    def __init__(self, requests: OscoreRequests, pictures: StateStream, patience_s: float) -> None:
         self._requests = requests
         self._pictures = pictures
         self.patience_s = patience_s

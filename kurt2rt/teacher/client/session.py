@@ -4,7 +4,7 @@ from collections.abc import AsyncIterator
 
 import anyio
 
-from kurt2rt.channel.protocol.exam_status import EXAM, ExamStanding
+from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus
 from kurt2rt.channel.protocol.requests import (
     LARGEST_NUMBER,
     PART_BYTES,
@@ -19,18 +19,18 @@ from kurt2rt.channel.protocol.requests import (
     SessionRequest,
     TakeRequest,
 )
-from kurt2rt.channel.protocol.schema import Whole, WireError
+from kurt2rt.channel.protocol.schema import Int, WireError
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.teacher.client.answer import Answer, RefusedError
 from kurt2rt.teacher.client.request_sender import answer_to, facts_of
-from kurt2rt.teacher.client.state import Sight
+from kurt2rt.teacher.client.state import StateMixin
 from kurt2rt.teacher.client.transport import Response
 
 _SEEN_IN_CHARGE_WITHIN_S = 1.0
 
 
-class Charge(Sight):
+class SessionMixin(StateMixin):
     """To be the teacher, and to organise the lessons. Each raises NoAnswerError when nobody answers."""
 
     name: str
@@ -71,10 +71,10 @@ class Charge(Sight):
         """Examine a copy of the present knowledge, a simulated robot's only; `exam` tells how it stands."""
         return await self._asking.command(ExamRequest)
 
-    async def exam(self) -> ExamStanding | None:
+    async def exam(self) -> ExamStatus | None:
         """Return how the newest exam stands; None for a robot that is not simulated in its own program."""
 
-        def read(response: Response) -> ExamStanding | None:
+        def read(response: Response) -> ExamStatus | None:
             return None if response.code.startswith("4.04") else EXAM.read(facts_of(response).get("exam"))
 
         return await self._asking.told(ExamStandingRequest(), read)
@@ -108,4 +108,4 @@ def _part_of(response: Response) -> FilePart:
     content = body.get("part")
     if not isinstance(content, bytes) or len(content) > PART_BYTES:
         raise WireError(f"part has to be up to {PART_BYTES} bytes")
-    return FilePart(Whole(0, LARGEST_NUMBER)("size", body.get("size")), content)
+    return FilePart(Int(0, LARGEST_NUMBER)("size", body.get("size")), content)

@@ -10,13 +10,13 @@ from kurt2rt.channel.protocol.requests import HealthRequest, HelloRequest, WhyRe
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.protocol.world import World, world_of
 from kurt2rt.runs.explain.facts import DecisionFacts
-from kurt2rt.teacher.client.base import Connected
-from kurt2rt.teacher.client.link_quality import Link
+from kurt2rt.teacher.client.base import ClientBase
+from kurt2rt.teacher.client.link_quality import LinkQuality
 from kurt2rt.teacher.client.request_sender import facts_of
 from kurt2rt.teacher.client.transport import Response
 
 
-class Sight(Connected):
+class StateMixin(ClientBase):
     """What is seen of the robot. What asks it raises NoAnswerError when nobody answers."""
 
     @property
@@ -35,7 +35,7 @@ class Sight(Connected):
         return self._pictures.restarts
 
     @property
-    def link(self) -> Link:
+    def link(self) -> LinkQuality:
         """How well the robot is heard."""
         return self._hand.meter.link(self._pictures.per_s)
 

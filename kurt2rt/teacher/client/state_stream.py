@@ -11,7 +11,7 @@ from kurt2rt.channel.protocol.state import State
 _RATE_OVER_S = 1.0
 
 
-class Pictures:
+class StateStream:
     """Keeps the newest one and wakes whoever waits for it; nothing queues."""
 
     def __init__(self, now: Callable[[], float]) -> None:

@@ -11,13 +11,13 @@ import anyio.abc
 from kurt2rt.channel.protocol.requests import COMMAND_ID_BYTES, StopRequest
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError, local_refusal
-from kurt2rt.teacher.client.request_sender import Asking
+from kurt2rt.teacher.client.request_sender import RequestSender
 
 
-class Stopping:
+class StopSender:
     """The stops of one device, and the commands that they end."""
 
-    def __init__(self, asking: Asking, tasks: anyio.abc.TaskGroup) -> None:
+    def __init__(self, asking: RequestSender, tasks: anyio.abc.TaskGroup) -> None:
         """A stop that is not answered in time is sent on in `tasks`."""
         self._asking = asking
         self._tasks = tasks

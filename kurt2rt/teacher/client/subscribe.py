@@ -5,7 +5,7 @@ from collections.abc import Callable
 import anyio
 
 from kurt2rt.channel.protocol.codec import WireError, decode_state
-from kurt2rt.teacher.client.state_stream import Pictures
+from kurt2rt.teacher.client.state_stream import StateStream
 from kurt2rt.teacher.client.transport import OscoreRequests, Response
 
 SILENT_AFTER_S = 1.0
@@ -14,7 +14,7 @@ _LOOK_EVERY_S = 0.1
 _STATE = "/state"
 
 
-async def observe(requests: OscoreRequests, pictures: Pictures, now: Callable[[], float]) -> None:
+async def observe(requests: OscoreRequests, pictures: StateStream, now: Callable[[], float]) -> None:
     """Fill `pictures` until cancelled; `now` is a monotonic clock in seconds."""
     while True:
         before, began_s, newest = pictures.count, now(), -2
@@ -40,7 +40,7 @@ async def observe(requests: OscoreRequests, pictures: Pictures, now: Callable[[]
             await requests.find_robot()  # it may have another address by now
 
 
-def _show(response: Response, requests: OscoreRequests, pictures: Pictures) -> None:
+def _show(response: Response, requests: OscoreRequests, pictures: StateStream) -> None:
     if not response.successful:
         requests.trouble = f"the robot shows no picture: {response.code}"
         return

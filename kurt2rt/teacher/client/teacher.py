@@ -24,7 +24,7 @@ from kurt2rt.core.rla.rla import BASIC, Phase
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.client.client import ANSWER_WITHIN_S, TeacherClient
-from kurt2rt.teacher.client.link_quality import Link
+from kurt2rt.teacher.client.link_quality import LinkQuality
 
 LOCAL_DEVICE = Path("var/devices/local")
 """Pairing that `kurt2rt run` makes for programs of its own machine."""
@@ -126,7 +126,7 @@ class Teacher:
         return self._call(self._newest)
 
     @property
-    def link(self) -> Link:
+    def link(self) -> LinkQuality:
         """Round trip, answered share and states a second."""
         return self._client.link
 

@@ -13,11 +13,11 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from kurt2rt.channel.protocol.schema import WireError
 from kurt2rt.teacher.page.access import Access
-from kurt2rt.teacher.page.auth_middleware import Door
+from kurt2rt.teacher.page.auth_middleware import AuthMiddleware
 from kurt2rt.teacher.page.bridge import Bridge
 from kurt2rt.teacher.page.downloads import Downloads
 from kurt2rt.teacher.page.messages import parse
-from kurt2rt.teacher.page.page_connection import Visitor
+from kurt2rt.teacher.page.page_connection import PageConnection
 from kurt2rt.teacher.page.robot_link import RobotLink
 from kurt2rt.teacher.page.uploads import Uploads
 
@@ -43,7 +43,7 @@ def build_app(bridge: Bridge, access: Access, robot: RobotLink) -> Starlette:
             Route("/upload", Uploads(robot, access), methods=["POST"]),
             Mount("/", StaticFiles(directory=STATIC, html=True)),
         ],
-        middleware=[Middleware(Door, access=access)],
+        middleware=[Middleware(AuthMiddleware, access=access)],
     )
 
 
@@ -59,7 +59,7 @@ async def _serve_page(websocket: WebSocket, bridge: Bridge) -> None:
         bridge.leave(visitor)
 
 
-async def _receive(websocket: WebSocket, bridge: Bridge, visitor: Visitor) -> None:
+async def _receive(websocket: WebSocket, bridge: Bridge, visitor: PageConnection) -> None:
     try:
         while True:
             bridge.hear(visitor, parse(await _text_of(websocket)))
@@ -82,7 +82,7 @@ async def _text_of(websocket: WebSocket) -> str:
     return told
 
 
-async def _send(websocket: WebSocket, visitor: Visitor, scope: anyio.CancelScope) -> None:
+async def _send(websocket: WebSocket, visitor: PageConnection, scope: anyio.CancelScope) -> None:
     try:
         while True:
             await visitor.next()

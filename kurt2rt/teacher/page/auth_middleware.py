@@ -10,7 +10,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from kurt2rt.teacher.page.access import Access
 from kurt2rt.teacher.page.http_timeouts import shown_cookie
-from kurt2rt.teacher.page.login_throttle import Attempts
+from kurt2rt.teacher.page.login_throttle import LoginThrottle
 from kurt2rt.teacher.page.public_address import PublicAddress
 
 _LONGEST_COOKIE_S = 90 * 24 * 3600
@@ -31,13 +31,13 @@ _WELCOME = """<!doctype html>
 """
 
 
-class Door:
+class AuthMiddleware:
     """In front of everything else. Checks the host, then the pairing, then where a WebSocket comes from."""
 
     def __init__(self, app: ASGIApp, access: Access, *, now: Callable[[], float] = time.monotonic) -> None:
         self._app = app
         self._access = access
-        self._attempts = Attempts()
+        self._attempts = LoginThrottle()
         self._now = now
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:

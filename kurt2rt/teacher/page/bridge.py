@@ -15,13 +15,13 @@ from kurt2rt.core.rla.outcome_text import Surface, text_of
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.page.commands import carry_out, ends_run, lets_drive, oldest_picture_s
-from kurt2rt.teacher.page.control_lease import Seat
-from kurt2rt.teacher.page.messages import Beat, Hidden, Order, PageMessage, Press, Release, StopNow, Why
-from kurt2rt.teacher.page.operator_presence import Attention
-from kurt2rt.teacher.page.page_connection import Visitor
+from kurt2rt.teacher.page.control_lease import ControlLease
+from kurt2rt.teacher.page.messages import Hidden, PageHeartbeat, PageMessage, PageOrder, Press, Release, StopNow, Why
+from kurt2rt.teacher.page.operator_presence import OperatorPresence
+from kurt2rt.teacher.page.page_connection import PageConnection
 from kurt2rt.teacher.page.robot_link import RobotLink
-from kurt2rt.teacher.page.sent_states import SentPicture
-from kurt2rt.teacher.page.slow_state import RarelyTold
+from kurt2rt.teacher.page.sent_states import SentState
+from kurt2rt.teacher.page.slow_state import SlowState
 from kurt2rt.teacher.page.views import answer_view, refusal_view, state_view
 from kurt2rt.teacher.page.why_view import why_view
 
@@ -55,9 +55,9 @@ class Bridge:
         self._device = device
         self._robot_place = robot_place
         self._now = now
-        self._seat = Seat()
-        self._attention = Attention()
-        self._visitors: dict[int, Visitor] = {}
+        self._seat = ControlLease()
+        self._attention = OperatorPresence()
+        self._visitors: dict[int, PageConnection] = {}
         self._opened = 0
         self._carried_out = 0
         self._newest: State | None = None
@@ -68,7 +68,7 @@ class Bridge:
         self._ending = 0
         self._said_silent_s = float("-inf")
         self._tasks: anyio.abc.TaskGroup | None = None
-        self._rarely = RarelyTold(robot, self._tell_all, lambda: self._carried_out)
+        self._rarely = SlowState(robot, self._tell_all, lambda: self._carried_out)
 
     async def run(self, *, task_status: anyio.abc.TaskStatus[None] = anyio.TASK_STATUS_IGNORED) -> None:
         """Serve until cancelled; the wheels are let go at the end."""
@@ -101,10 +101,10 @@ class Bridge:
             visitor.lost = True
             visitor.look()
 
-    def arrive(self) -> Visitor:
+    def arrive(self) -> PageConnection:
         """A page was opened."""
         self._opened += 1
-        visitor = Visitor(self._opened)
+        visitor = PageConnection(self._opened)
         before = self._seat.holder
         self._visitors[visitor.number] = visitor
         self._seat.arrive(visitor.number, self._now())
@@ -113,7 +113,7 @@ class Bridge:
             visitor.tell(copy, about=about)
         return visitor
 
-    def leave(self, visitor: Visitor) -> None:
+    def leave(self, visitor: PageConnection) -> None:
         """A page was closed, or lost."""
         before = self._seat.holder
         self._seat.leave(visitor.number)
@@ -121,10 +121,10 @@ class Bridge:
         self._let_go(visitor)
         del self._visitors[visitor.number]
 
-    def hear(self, visitor: Visitor, message: PageMessage) -> None:
+    def hear(self, visitor: PageConnection, message: PageMessage) -> None:
         """Do what a page says."""
         match message:
-            case Beat():
+            case PageHeartbeat():
                 self._heartbeat(visitor, message)
             case Hidden():
                 visitor.visible = False
@@ -147,13 +147,13 @@ class Bridge:
                     visitor.tell(refusal_view(message.number, "busy", _BUSY))
                 else:
                     self._spawn(self._explain, visitor, message.number)
-            case Order():
+            case PageOrder():
                 self._order(visitor, message)
 
-    def _has_pad(self, visitor: Visitor) -> bool:
+    def _has_pad(self, visitor: PageConnection) -> bool:
         return self._seat.holder == visitor.number
 
-    def _heartbeat(self, visitor: Visitor, beat: Beat) -> None:
+    def _heartbeat(self, visitor: PageConnection, beat: PageHeartbeat) -> None:
         now_s = self._now()
         visitor.visible = True
         visitor.beat = (beat.at_ms, now_s)
@@ -165,7 +165,7 @@ class Bridge:
             self._look()
         visitor.look()
 
-    def _press(self, visitor: Visitor, press: Press) -> None:
+    def _press(self, visitor: PageConnection, press: Press) -> None:
         if self._ending:
             return  # the press before is on until its end was begun; the next message of this one comes in 50 ms
         if not self._has_pad(visitor):
@@ -180,7 +180,7 @@ class Bridge:
         elif visitor.grip.press(press.hold, age_s, now_s):
             self._robot.press(press.left_m_s, press.right_m_s)
 
-    def _order(self, visitor: Visitor, order: Order) -> None:
+    def _order(self, visitor: PageConnection, order: PageOrder) -> None:
         if order.name != "take" and not self._has_pad(visitor):
             visitor.tell(refusal_view(order.number, "watching", _NOT_YOURS))
             return
@@ -197,26 +197,26 @@ class Bridge:
         else:
             self._start(visitor, order.number, partial(self._carry_out, order, picture))
 
-    async def _carry_out(self, order: Order, picture: SentPicture) -> Answer:
+    async def _carry_out(self, order: PageOrder, picture: SentState) -> Answer:
         answer = await carry_out(order, self._robot, picture.tick)
         if answer.accepted and ends_run(order):
             self._ended_boot = picture.boot
         return answer
 
-    def _take_pad(self, visitor: Visitor) -> bool:
+    def _take_pad(self, visitor: PageConnection) -> bool:
         """Give a page the pad; whether this device is the robot's teacher already."""
         before = self._seat.holder
         self._seat.take(visitor.number, self._now())
         self._seat_changed(before)
         return self._newest is not None and self._newest.teacher == self._device
 
-    def _start(self, visitor: Visitor, number: int, command: Callable[[], Any]) -> None:
+    def _start(self, visitor: PageConnection, number: int, command: Callable[[], Any]) -> None:
         if visitor.orders >= _MOST_ORDERS:
             visitor.tell(refusal_view(number, "busy", _BUSY))
             return
         self._spawn(self._answer, visitor, number, command)
 
-    async def _answer(self, visitor: Visitor, number: int, command: Callable[[], Any]) -> None:
+    async def _answer(self, visitor: PageConnection, number: int, command: Callable[[], Any]) -> None:
         visitor.orders += 1
         try:
             view = answer_view(number, await command())
@@ -230,7 +230,7 @@ class Bridge:
         if self._newest is not None:
             self._rarely.see_lessons(self._newest)
 
-    async def _explain(self, visitor: Visitor, number: int) -> None:
+    async def _explain(self, visitor: PageConnection, number: int) -> None:
         visitor.orders += 1
         try:
             view = why_view(number, await self._robot.why(), self._rarely.words)
@@ -255,7 +255,7 @@ class Bridge:
             page = {"kind": "page", "device": self._device, "robot": self._robot_place, "seat": seat}
             visitor.tell(page, about="page")
 
-    def _let_go(self, visitor: Visitor) -> None:
+    def _let_go(self, visitor: PageConnection) -> None:
         if visitor.grip.held:
             visitor.grip.release()
             self._ending += 1

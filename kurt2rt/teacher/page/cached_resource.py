@@ -8,7 +8,7 @@ import anyio
 from kurt2rt.teacher.client.answer import NoAnswerError
 
 
-class Mirror:
+class CachedResource:
     """What the robot says rarely: what robot it is, its world, its lessons."""
 
     def __init__(

@@ -3,7 +3,7 @@
 from kurt2rt.channel.protocol.requests import PACKAGE
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.teacher.client.answer import Answer
-from kurt2rt.teacher.page.messages import Order
+from kurt2rt.teacher.page.messages import PageOrder
 from kurt2rt.teacher.page.robot_link import RobotLink
 
 _MOVING = ("take", "place", "put_back", "pursue", "seek", "stop_seeking")
@@ -11,22 +11,22 @@ _MOVING_S = 1.0
 _OTHERS_S = 3.0
 
 
-def oldest_picture_s(order: Order) -> float:
+def oldest_picture_s(order: PageOrder) -> float:
     """How long ago the page's picture may have been sent, in s: the robot's own borders, for the page's own link."""
     return _MOVING_S if lets_drive(order) or order.name in _MOVING else _OTHERS_S
 
 
-def lets_drive(order: Order) -> bool:
+def lets_drive(order: PageOrder) -> bool:
     """Whether a robot that stands may drive by it: never one that was stopped after the picture."""
     return order.name == "resume" or (order.name == "phase" and order.arguments["phase"] == Phase.AUTONOMOUS)
 
 
-def ends_run(order: Order) -> bool:
+def ends_run(order: PageOrder) -> bool:
     """Whether the robot's run ends by it: no more pictures come of that one, and its wheels stand."""
     return order.name in ("next_run", "load")
 
 
-async def carry_out(order: Order, robot: RobotLink, of: int | None) -> Answer:
+async def carry_out(order: PageOrder, robot: RobotLink, of: int | None) -> Answer:
     """Tell the robot, `of` being the tick of the picture that the page showed. Raises NoAnswerError."""
     given = order.arguments
     match order.name:

@@ -4,7 +4,7 @@ from collections import OrderedDict
 from collections.abc import Callable
 
 
-class Crowd:
+class ConnectionLimiter:
     """Strangers at the door. Each new one may be the teacher, so it is the oldest that goes, not the newest.
 
     One address holds only so many places: who opens many connections pushes out his own.

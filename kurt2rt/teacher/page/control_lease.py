@@ -1,7 +1,7 @@
 """Which of the open pages has the pad."""
 
 
-class Seat:
+class ControlLease:
     """One page drives, the others watch. Times are seconds of any clock that only grows."""
 
     def __init__(self, silent_s: float = 1.0) -> None:

@@ -1,7 +1,7 @@
 """Hold-to-drive as the page's server sees it."""
 
 
-class Grip:
+class DeadmanSwitch:
     """One press after another; each ends with a release or with silence, and what ended never begins again.
 
     TCP hands over late heartbeats in a burst, so a press counts by the age of the picture it was given on, not by its

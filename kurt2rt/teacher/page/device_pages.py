@@ -17,7 +17,7 @@ from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, Device
 from kurt2rt.teacher.client.answer import NoAnswerError
 from kurt2rt.teacher.page.access import Access
 from kurt2rt.teacher.page.app import build_app
-from kurt2rt.teacher.page.auth_middleware import Door
+from kurt2rt.teacher.page.auth_middleware import AuthMiddleware
 from kurt2rt.teacher.page.bridge import Bridge
 from kurt2rt.teacher.page.robot_link import RobotLink
 
@@ -131,7 +131,7 @@ class DevicePages:
         self._idle_s = idle_s
         self._pages: Mapping[str, _DevicePage] = {}
         # Opened by no token: it tells strangers, also those who try tokens, what they are told anywhere.
-        self._refusal = Door(_nothing, Access.without_device(names))
+        self._refusal = AuthMiddleware(_nothing, Access.without_device(names))
 
     def serve(self, devices: Collection[Device]) -> None:
         """Serve these devices from now on; who was revoked or renewed meanwhile loses every connection."""

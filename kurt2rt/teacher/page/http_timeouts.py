@@ -6,7 +6,7 @@ from typing import Any
 import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from kurt2rt.teacher.page.connection_limiter import Crowd
+from kurt2rt.teacher.page.connection_limiter import ConnectionLimiter
 
 KNOWN = "kurt2rt.known"
 """In the state of an ASGI scope: to be called when its connection has shown the cookie."""
@@ -14,7 +14,7 @@ KNOWN = "kurt2rt.known"
 REQUEST_WITHIN_S = 5.0
 
 
-def guarded_http(crowd: Crowd, request_within_s: float = REQUEST_WITHIN_S) -> type[H11Protocol]:
+def guarded_http(crowd: ConnectionLimiter, request_within_s: float = REQUEST_WITHIN_S) -> type[H11Protocol]:
     """A protocol class for uvicorn; a connection has `request_within_s` for each request, all of it."""
 
     class GuardedHttp(H11Protocol):

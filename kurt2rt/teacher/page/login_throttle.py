@@ -3,7 +3,7 @@
 from collections import OrderedDict
 
 
-class Attempts:
+class LoginThrottle:
     """A bucket of tries per address that fills up again. Times are seconds of any clock that only grows."""
 
     def __init__(self, most: int = 5, per_s: float = 0.2, addresses: int = 256) -> None:

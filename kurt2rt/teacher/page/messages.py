@@ -6,16 +6,16 @@ from dataclasses import dataclass
 from typing import Any
 
 from kurt2rt.channel.protocol.requests import FASTEST, SHA256_BYTES, UPLOAD_ID_BYTES
-from kurt2rt.channel.protocol.schema import Check, Flag, Octets, OneOf, OneWord, OrNone, Real, Text, Whole, WireError
+from kurt2rt.channel.protocol.schema import Bytes, Check, Flag, Float, Int, OneOf, OneWord, OrNone, Text, WireError
 from kurt2rt.core.rla.rla import BASIC, MID, Phase
 
 LONGEST_MESSAGE = 1024
 """In characters."""
 
-_COUNTER = Whole(1, 2**53)
+_COUNTER = Int(1, 2**53)
 _PICTURE = OrNone(_COUNTER)
-_SPEED_M_S = Real(2.0, "m/s")
-_PLACE_M = Real(100.0, "m")
+_SPEED_M_S = Float(2.0, "m/s")
+_PLACE_M = Float(100.0, "m")
 _NAME = Text(64, least=1)
 _LEVEL = OneWord((BASIC, MID))
 
@@ -23,7 +23,7 @@ _LEVEL = OneWord((BASIC, MID))
 def _hexadecimal(length: int) -> Check:
     def check(what: str, value: object) -> bytes:
         try:
-            return Octets(length)(what, bytes.fromhex(value) if isinstance(value, str) else None)
+            return Bytes(length)(what, bytes.fromhex(value) if isinstance(value, str) else None)
         except ValueError as error:
             raise WireError(f"{what} has to be {2 * length} hexadecimal digits") from error
 
@@ -31,7 +31,7 @@ def _hexadecimal(length: int) -> Check:
 
 
 @dataclass(frozen=True, slots=True)
-class Beat:
+class PageHeartbeat:
     """The page is open, visible and alive; ten times a second."""
 
     picture: int | None
@@ -78,7 +78,7 @@ class Why:
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class PageOrder:
     """A command that is answered."""
 
     number: int
@@ -89,7 +89,7 @@ class Order:
     """What the page showed when it was given."""
 
 
-PageMessage = Beat | Hidden | Press | Release | StopNow | Why | Order
+PageMessage = PageHeartbeat | Hidden | Press | Release | StopNow | Why | PageOrder
 
 ORDERS: Mapping[str, Mapping[str, Check]] = {
     "answer": {"action": _NAME, "level": _LEVEL, "beside": Flag()},
@@ -114,15 +114,15 @@ ORDERS: Mapping[str, Mapping[str, Check]] = {
     "examine": {},
     "move": {"name": _NAME, "dx_m": _PLACE_M, "dy_m": _PLACE_M},
     "put_back": {},
-    "speed": {"times": Whole(1, FASTEST)},
+    "speed": {"times": Int(1, FASTEST)},
     "load": {"upload": _hexadecimal(UPLOAD_ID_BYTES), "sha256": _hexadecimal(SHA256_BYTES)},
     "next_run": {"world": OrNone(_NAME), "task": OrNone(_NAME), "fresh": Flag()},
-    "place": {"x_m": _PLACE_M, "y_m": _PLACE_M, "heading_rad": Real(7.0, "rad")},
+    "place": {"x_m": _PLACE_M, "y_m": _PLACE_M, "heading_rad": Float(7.0, "rad")},
 }
 """Orders by name, and the arguments of each."""
 
 _FIELDS: Mapping[str, Mapping[str, Check]] = {
-    "beat": {"picture": _PICTURE, "at_ms": Real(1e15, "ms")},
+    "beat": {"picture": _PICTURE, "at_ms": Float(1e15, "ms")},
     "hidden": {},
     "press": {"hold": _COUNTER, "left_m_s": _SPEED_M_S, "right_m_s": _SPEED_M_S, "picture": _PICTURE},
     "release": {},
@@ -148,7 +148,7 @@ def parse(text: str) -> PageMessage:
     fields = _checked(kind, _FIELDS[kind], content)
     match kind:
         case "beat":
-            return Beat(**fields)
+            return PageHeartbeat(**fields)
         case "hidden":
             return Hidden()
         case "press":
@@ -163,7 +163,7 @@ def parse(text: str) -> PageMessage:
     if name not in ORDERS:
         raise WireError(f"an order has to be one of {', '.join(ORDERS)}")
     fields["arguments"] = _checked(name, ORDERS[name], fields["arguments"])
-    return Order(**fields)
+    return PageOrder(**fields)
 
 
 def _checked(what: str, checks: Mapping[str, Check], content: object) -> dict[str, Any]:

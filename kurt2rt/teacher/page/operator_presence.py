@@ -1,7 +1,7 @@
 """Whether the one at the page looks at the robot."""
 
 
-class Attention:
+class OperatorPresence:
     """Lasts from heartbeat to heartbeat of a visible page with a fresh picture. Times are seconds, and only grow."""
 
     def __init__(self, lease_s: float = 0.3, oldest_picture_s: float = 0.5) -> None:

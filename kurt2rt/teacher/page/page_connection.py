@@ -7,19 +7,19 @@ from typing import Any
 
 import anyio
 
-from kurt2rt.teacher.page.deadman_switch import Grip
-from kurt2rt.teacher.page.sent_states import Pictures
+from kurt2rt.teacher.page.deadman_switch import DeadmanSwitch
+from kurt2rt.teacher.page.sent_states import SentStates
 
 _MOST_WAITING = 64
 
 
-class Visitor:
+class PageConnection:
     """What goes to the page. Of the robot's state only the newest waits, of everything else only so much."""
 
     def __init__(self, number: int) -> None:
         self.number = number
-        self.grip = Grip()
-        self.pictures = Pictures()
+        self.grip = DeadmanSwitch()
+        self.pictures = SentStates()
         self.visible = False
         self.lost = False
         """So far behind that it has to begin anew."""

@@ -3,7 +3,7 @@
 from collections.abc import AsyncIterator
 from typing import Protocol
 
-from kurt2rt.channel.protocol.exam_status import ExamStanding
+from kurt2rt.channel.protocol.exam_status import ExamStatus
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.channel.protocol.lesson_list import LessonLine
@@ -15,7 +15,7 @@ from kurt2rt.core.rla.rla import BASIC, Phase
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.answer import Answer
-from kurt2rt.teacher.client.link_quality import Link
+from kurt2rt.teacher.client.link_quality import LinkQuality
 
 
 class RobotLink(Protocol):
@@ -35,7 +35,7 @@ class RobotLink(Protocol):
         ...
 
     @property
-    def link(self) -> Link:
+    def link(self) -> LinkQuality:
         """How well the robot is heard."""
         ...
 
@@ -170,7 +170,7 @@ class RobotLink(Protocol):
         """Examine a copy of the knowledge of a simulated robot."""
         ...
 
-    async def exam(self) -> ExamStanding | None:
+    async def exam(self) -> ExamStatus | None:
         """Return the exam's status; None if the robot is not simulated in its own program."""
         ...
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class SentPicture:
+class SentState:
     """What a page shows: one state of the robot."""
 
     boot: bytes
@@ -13,7 +13,7 @@ class SentPicture:
     sent_s: float
 
 
-class Pictures:
+class SentStates:
     """Numbers them, so that what a page says can name the picture it was said on.
 
     A page that does not answer for its pictures gets no more of them: they would wait in TCP's buffers and be old.
@@ -23,7 +23,7 @@ class Pictures:
         """At most `window` unanswered ones are on their way; the last `kept` can still be named."""
         self._window = window
         self._kept = kept
-        self._sent: OrderedDict[int, SentPicture] = OrderedDict()
+        self._sent: OrderedDict[int, SentState] = OrderedDict()
         self._newest = 0
         self._seen = 0
 
@@ -35,7 +35,7 @@ class Pictures:
     def send(self, boot: bytes, tick: int, now_s: float) -> int:
         """Note a picture as sent; its number."""
         self._newest += 1
-        self._sent[self._newest] = SentPicture(boot, tick, now_s)
+        self._sent[self._newest] = SentState(boot, tick, now_s)
         if len(self._sent) > self._kept:
             self._sent.popitem(last=False)
         return self._newest
@@ -45,7 +45,7 @@ class Pictures:
         if self._seen < number <= self._newest:
             self._seen = number
 
-    def get(self, number: int | None) -> SentPicture | None:
+    def get(self, number: int | None) -> SentState | None:
         """A picture by its number; None for one that was never sent, or too long ago."""
         return None if number is None else self._sent.get(number)
 

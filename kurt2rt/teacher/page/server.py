@@ -15,7 +15,7 @@ from kurt2rt.teacher.client.answer import NoAnswerError
 from kurt2rt.teacher.page.access import Access
 from kurt2rt.teacher.page.app import build_app
 from kurt2rt.teacher.page.bridge import Bridge
-from kurt2rt.teacher.page.connection_limiter import Crowd
+from kurt2rt.teacher.page.connection_limiter import ConnectionLimiter
 from kurt2rt.teacher.page.http_timeouts import REQUEST_WITHIN_S, guarded_http
 from kurt2rt.teacher.page.public_address import PageError
 from kurt2rt.teacher.page.robot_link import RobotLink
@@ -143,7 +143,7 @@ async def _serve(
 ) -> None:
     config = uvicorn.Config(
         app,
-        http=guarded_http(Crowd(), request_within_s),
+        http=guarded_http(ConnectionLimiter(), request_within_s),
         ws=GuardedWebSocket,
         ws_max_size=4096,
         ws_per_message_deflate=False,

@@ -9,7 +9,7 @@ import anyio.abc
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.perception.sensor_words import NO_WORDS
 from kurt2rt.teacher.client.answer import NoAnswerError
-from kurt2rt.teacher.page.cached_resource import Mirror
+from kurt2rt.teacher.page.cached_resource import CachedResource
 from kurt2rt.teacher.page.robot_link import RobotLink
 from kurt2rt.teacher.page.views import (
     exam_view,
@@ -31,7 +31,7 @@ Tell = Callable[[dict[str, Any], str], None]
 """Takes a message for all pages, and what it is about."""
 
 
-class RarelyTold:
+class SlowState:
     """Copies of it, each fetched anew when a picture shows that it has changed."""
 
     def __init__(self, robot: RobotLink, tell: Tell, carried_out: Callable[[], int]) -> None:
@@ -51,7 +51,7 @@ class RarelyTold:
             "exam": self._fetch_exam,
             "simulation": self._fetch_simulation,
         }
-        self._mirrors = {about: Mirror(fetch, partial(_tell, tell, about)) for about, fetch in fetches.items()}
+        self._mirrors = {about: CachedResource(fetch, partial(_tell, tell, about)) for about, fetch in fetches.items()}
 
     def start(self, tasks: anyio.abc.TaskGroup) -> None:
         """Begin to ask, for as long as the task group lives."""

@@ -6,7 +6,7 @@ from dataclasses import asdict, is_dataclass
 from typing import Any
 
 from hal.guard_reason import GuardReason
-from kurt2rt.channel.protocol.exam_status import EXAM, ExamStanding
+from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.health_text import headline, name_of, rows_of, trouble_in
 from kurt2rt.channel.protocol.hello import Hello
@@ -19,13 +19,15 @@ from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.outcome_text import Surface
 from kurt2rt.core.teaching.question import FeatureDifference
 from kurt2rt.teacher.client.answer import Answer
-from kurt2rt.teacher.client.link_quality import Link
+from kurt2rt.teacher.client.link_quality import LinkQuality
 
 _EACH_CHANGE_OF_SPEED = (GuardReason.SLEW_LIMIT, GuardReason.SPEED_LIMIT)
 """Limits that every change of speed meets; the page leaves them out."""
 
 
-def state_view(state: State, link: Link, age_s: float, refused: str, words: SensorWords = NO_WORDS) -> dict[str, Any]:
+def state_view(
+    state: State, link: LinkQuality, age_s: float, refused: str, words: SensorWords = NO_WORDS
+) -> dict[str, Any]:
     """Return one picture of the robot.
 
     `age_s` is how long ago it came here, `refused` why hold-to-drive does nothing; `words` are for its sensors.
@@ -156,7 +158,7 @@ def health_view(report: HealthReport | None) -> dict[str, Any]:
     }
 
 
-def exam_view(standing: ExamStanding) -> dict[str, Any]:
+def exam_view(standing: ExamStatus) -> dict[str, Any]:
     """Return the exam's status for the page."""
     return {"kind": "exam", **EXAM.plain_of(standing)}
 

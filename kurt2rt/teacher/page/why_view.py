@@ -6,7 +6,7 @@ from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.runs.explain.attribution import shares
-from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaStory
+from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaFacts
 from kurt2rt.runs.explain.reasons import because, headline
 from kurt2rt.runs.explain.sentences import beside, guarded, mid_lines, taught, used
 
@@ -32,7 +32,7 @@ def why_view(number: int, facts: DecisionFacts | None, words: SensorWords = NO_W
     }
 
 
-def _leading(facts: DecisionFacts) -> tuple[LevelFacts, RlaStory | None]:
+def _leading(facts: DecisionFacts) -> tuple[LevelFacts, RlaFacts | None]:
     """The level that it went by, and the RLA there that drives, or is nearest."""
     if facts.asks_at == MID and facts.mid is not None:
         return facts.mid, facts.mid.nearest
@@ -40,7 +40,7 @@ def _leading(facts: DecisionFacts) -> tuple[LevelFacts, RlaStory | None]:
     return facts.basic, driver or facts.basic.nearest
 
 
-def _features(level: LevelFacts, story: RlaStory, words: SensorWords) -> list[dict[str, Any]]:
+def _features(level: LevelFacts, story: RlaFacts, words: SensorWords) -> list[dict[str, Any]]:
     return [
         {
             "name": words.place(each.name),

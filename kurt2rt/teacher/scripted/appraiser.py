@@ -17,7 +17,7 @@ _NAME = "scripted teacher"
 
 
 @dataclass(frozen=True, slots=True)
-class Habits:
+class FeedbackTiming:
     """How the teacher gives signals, in ticks."""
 
     reaction: int
@@ -30,7 +30,7 @@ class Habits:
     """He blames no more often than this; 0: as often as he likes."""
 
 
-class Signs(Protocol):
+class RewardSource(Protocol):
     """What a teacher has to say of what he sees."""
 
     def look(self, record: TickRecord) -> tuple[int, int] | None:
@@ -38,7 +38,7 @@ class Signs(Protocol):
         ...
 
 
-class Judged:
+class JudgeReward:
     """Says of every picture what a judge thinks of it, while something drives the robot."""
 
     def __init__(self, judge: Judge, patience: int = 0) -> None:
@@ -57,7 +57,7 @@ class Judged:
         return None if 0 < self._bad < self._patience else (value, record.tick)
 
 
-class UnknownIsBad:
+class UnknownPenalty:
     """Knows only that to be in an unknown situation is bad: blames what led there."""
 
     def __init__(self) -> None:
@@ -70,7 +70,7 @@ class UnknownIsBad:
         return (-1, record.tick - 1) if asking and drove else None
 
 
-class BlamedByChance:
+class RandomPenalty:
     """Blames whatever drives, so many times: what a teacher does to whom it does not matter what he sees."""
 
     def __init__(self, times: int, ticks: int, gap: int, seed: int) -> None:
@@ -104,8 +104,8 @@ class ScriptedAppraiser:
     def __init__(
         self,
         answering: ScriptedTeacher,
-        habits: Habits,
-        signs: Signs | None,
+        habits: FeedbackTiming,
+        signs: RewardSource | None,
         appraisals: Mapping[int, str],
         *,
         session: str,
@@ -184,7 +184,7 @@ class ScriptedAppraiser:
             said.append(self._waiting.popleft().command)
         return said
 
-    def _look(self, record: TickRecord, signs: Signs) -> None:
+    def _look(self, record: TickRecord, signs: RewardSource) -> None:
         seen = signs.look(record)
         if seen is None:
             return

@@ -9,7 +9,7 @@ EACH_S = 30.0
 _SAY_AGAIN_S = 1.0
 
 
-class InTurn:
+class BehaviourCycler:
     """Which behaviour is wanted now, and when to tell the robot; of a task with one there is nothing to tell."""
 
     def __init__(self, behaviours: Sequence[str], period_s: float) -> None:

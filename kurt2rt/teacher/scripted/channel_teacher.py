@@ -17,8 +17,8 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, Teach
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError, RefusedError
 from kurt2rt.teacher.client.client import TeacherClient
-from kurt2rt.teacher.scripted.supervisor import Leading
-from kurt2rt.teacher.scripted.teacher import Picture, share_of_radius, teacher_of
+from kurt2rt.teacher.scripted.supervisor import ScriptedSupervisor
+from kurt2rt.teacher.scripted.teacher import TeacherView, share_of_radius, teacher_of
 
 Say = Callable[[str], None]
 
@@ -52,7 +52,7 @@ async def teach_by_script(
     await _must(robot, lambda: robot.set_phase(Phase.SUPERVISED), lambda state: state.phase == Phase.SUPERVISED)
     if task.teaching.reposition_every_s:
         say(_nobody_sets_it_down(task))
-    leading = Leading(robot, task, hello.period_s, seed, say)
+    leading = ScriptedSupervisor(robot, task, hello.period_s, seed, say)
     if leading.plan:
         say(leading.plan)
     say(f"phase 1 for {task.teaching.supervised_s:.0f} s: answers")
@@ -167,9 +167,9 @@ async def _picture(robot: TeacherClient, tick: int) -> State:
     raise NoAnswerError("no more pictures come")
 
 
-def picture_in(state: State) -> Picture:
+def picture_in(state: State) -> TeacherView:
     """What the picture on the wire shows a teacher."""
-    return Picture(
+    return TeacherView(
         state.cause in (Cause.UNKNOWN, Cause.TOUCHES),
         state.action is not None,
         state.action,

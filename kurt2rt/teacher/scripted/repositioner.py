@@ -10,7 +10,7 @@ from kurt2rt.channel.protocol.state import State
 _MOST_PLACES = 50
 
 
-class SettingDown:
+class RobotRepositioner:
     """Notes where the robot came through, and puts it there again after it has stayed about one place for too long."""
 
     def __init__(self, after_s: float, least_m: float, period_s: float, chance: random.Random) -> None:

@@ -11,11 +11,11 @@ from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.teacher.client.answer import NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
-from kurt2rt.teacher.scripted.behaviour_cycler import EACH_S, InTurn
-from kurt2rt.teacher.scripted.repositioner import SettingDown
+from kurt2rt.teacher.scripted.behaviour_cycler import EACH_S, BehaviourCycler
+from kurt2rt.teacher.scripted.repositioner import RobotRepositioner
 
 
-class Leading:
+class ScriptedSupervisor:
     """Tells the robot which behaviour is wanted, and sets it down elsewhere; says each time what it does.
 
     A task of one behaviour needs none of it.
@@ -28,8 +28,8 @@ class Leading:
         self._robot = robot
         self._task = task
         self._say = say
-        self._in_turn = InTurn(task.behaviours, period_s)
-        self._setting_down = SettingDown(
+        self._in_turn = BehaviourCycler(task.behaviours, period_s)
+        self._setting_down = RobotRepositioner(
             task.teaching.rescue_after_s, task.exam.stuck_within_m, period_s, random.Random(seed)
         )
 

@@ -15,7 +15,7 @@ from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, Pursue, 
 from kurt2rt.core.tick import TickRecord
 
 
-class Picture(NamedTuple):
+class TeacherView(NamedTuple):
     """What a teacher sees of the robot."""
 
     asking: bool
@@ -36,13 +36,13 @@ def share_of_radius(driving: int | None, nearest: int | None, distance: float, r
     return distance / radius if driving is not None and driving == nearest else math.inf
 
 
-def picture_of(record: TickRecord) -> Picture:
+def picture_of(record: TickRecord) -> TeacherView:
     """What a tick looks like to a teacher."""
     decision, match = record.decision, record.decision.match
     nearest = math.inf
     if match is not None:
         nearest = share_of_radius(decision.rla_id, match.rla.rla_id, match.distance, match.radius)
-    return Picture(
+    return TeacherView(
         decision.asking and decision.asks_at == BASIC,
         decision.driving,
         decision.action,
@@ -121,7 +121,7 @@ class ScriptedTeacher:
         """The robot shall drive again after an alarm: what to tell it."""
         return Resume(self._next_id(), SCRIPTED)
 
-    def watch(self, picture: Picture, ticks: int = 1) -> Command | None:
+    def watch(self, picture: TeacherView, ticks: int = 1) -> Command | None:
         """See a picture, so many ticks after the one before; what the teacher says to it, if anything."""
         if picture.behaviour != self._behaviour:  # what was asked, and what was wrong, is over
             self._behaviour = picture.behaviour
@@ -140,7 +140,7 @@ class ScriptedTeacher:
             return None
         return self._correct(picture, ticks)
 
-    def _correct(self, picture: Picture, ticks: int) -> Command | None:
+    def _correct(self, picture: TeacherView, ticks: int) -> Command | None:
         wanted = self._policy.choose(picture.infrared_counts, picture.behaviour)
         if wanted == picture.action:
             self._ticks_otherwise = 0
@@ -162,7 +162,7 @@ class ScriptedTeacher:
             return False
         return distance_share <= self._replace_within_share
 
-    def _note_replaced(self, picture: Picture) -> None:
+    def _note_replaced(self, picture: TeacherView) -> None:
         """An RLA that drives otherwise than before has had its action replaced."""
         if picture.rla_id is None or picture.action is None:
             return
@@ -170,7 +170,7 @@ class ScriptedTeacher:
             self._replaced[picture.rla_id] += 1
         self._action_of[picture.rla_id] = picture.action
 
-    def _choose(self, picture: Picture) -> str:
+    def _choose(self, picture: TeacherView) -> str:
         right = self._policy.choose(picture.infrared_counts, picture.behaviour)
         if self._chance.random() >= self._error_rate:
             return right

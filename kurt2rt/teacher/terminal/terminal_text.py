@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from kurt2rt.channel.protocol.hello import AppraisalName, Hello, MidIntroduction
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
-from kurt2rt.core.critic.state import Role
+from kurt2rt.core.critic.state import CriticState
 from kurt2rt.core.decision.standing import StandReason
 from kurt2rt.core.decision.standing_text import GO_IN_TERMINAL, headline_of, what_it_asks
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.rla import ASK, MID, rla_title
-from kurt2rt.core.teaching.question import FeatureDifference, Question, WayQuestion
+from kurt2rt.core.teaching.question import FeatureDifference, MidQuestion, Question
 
 HISTORY = "history"
 LOUD_FROM = 4.0
@@ -68,12 +68,12 @@ def name_lines(hello: Hello) -> tuple[str, ...]:
     return tuple(lines)
 
 
-def question_in(state: State, words: SensorWords = NO_WORDS) -> Question | WayQuestion:
+def question_in(state: State, words: SensorWords = NO_WORDS) -> Question | MidQuestion:
     """Return the question that a picture shows, in the robot's `words` for its sensors."""
     if state.asks_at == MID and state.mid is not None:
         mid = state.mid
         came_by = tuple(word for word in mid.here if word)
-        return WayQuestion(mid.nearest, mid.nearest_behaviour, mid.distance, mid.radius, came_by)
+        return MidQuestion(mid.nearest, mid.nearest_behaviour, mid.distance, mid.radius, came_by)
     differing = tuple(FeatureDifference(each.name, each.here, each.in_condition) for each in state.question)
     return Question(
         state.nearest,
@@ -172,11 +172,11 @@ def trust_in(state: State) -> str:
 def role_in(state: State) -> str:
     """What a critic does that is alone with the robot; empty while it only listens."""
     match state.role:
-        case Role.LISTENS:
+        case CriticState.LISTENS:
             return ""
-        case Role.MEASURES:
+        case CriticState.MEASURES:
             return "measures how well it goes"
-        case Role.NOT_NEEDED:
+        case CriticState.NOT_NEEDED:
             percent = math.floor((state.bad_share or 0.0) * 100)  # not rounded up to what it would be needed for
             return f"not needed: {percent} % of the driving was bad"
         case other:

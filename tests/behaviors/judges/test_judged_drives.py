@@ -6,10 +6,10 @@ import pytest
 
 from behaviors.repertoire import load_repertoire
 from kurt2rt.core.basic.policy_level import PolicyLevel
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.experiments.lockstep.exam import NothingIsTaught
+from kurt2rt.experiments.lockstep.exam import NoTeachingAllowed
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
 from simbridge.simulation import Kurt2Simulation
@@ -32,12 +32,12 @@ async def judged(task_name: str, seconds: float, action: str | None = None) -> d
     assert task.judge is not None
     judge = task.judge.build()
     simulation = Kurt2Simulation(ROBOT, task.teaching.world, 1, "exam")
-    wanted = Wanted(task.behaviours)
+    wanted = ActiveBehaviour(task.behaviours)
     policy = task.policy.build(ROBOT.infrared) if action is None else Always(action)
     level = PolicyLevel(policy, load_repertoire(task.repertoire, ROBOT), 10, wanted)
     clock = LockstepClock(simulation.step)
     runtime = build_runtime(
-        simulation.robot, ROBOT, task, (), NothingIsTaught(), clock, level_override=level, wanted=wanted
+        simulation.robot, ROBOT, task, (), NoTeachingAllowed(), clock, level_override=level, wanted=wanted
     )
     heard: Counter[int] = Counter()
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from behaviors.metrics.task_metric import Course
+from behaviors.metrics.task_metric import TaskMetric
 from hal.simulation import Pose
 
 Point = tuple[float, float]
@@ -27,11 +27,11 @@ def arc(centre: Point, radius_m: float, from_deg: float, to_deg: float) -> list[
     return [(centre[0] + radius_m * math.cos(angle), centre[1] + radius_m * math.sin(angle)) for angle in angles]
 
 
-def put(course: Course, at: Point, towards_deg: float) -> None:
+def put(course: TaskMetric, at: Point, towards_deg: float) -> None:
     course.put(Pose(*at, math.radians(towards_deg)))
 
 
-def follow(course: Course, points: Sequence[Point]) -> None:
+def follow(course: TaskMetric, points: Sequence[Point]) -> None:
     """Drive there; stops where the course says that the robot is stranded."""
     for pose in along(points):
         course.follow(pose)

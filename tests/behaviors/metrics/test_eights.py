@@ -2,7 +2,7 @@ import pytest
 
 from behaviors.metrics.eights import Eights, EightsSettings
 from hal.settings import SettingsError
-from hal.simulation import Post
+from hal.simulation import SimulatedPost
 from tests.behaviors.metrics.paths import Point, arc, follow, put
 from tests.behaviors.metrics.worlds import course_in
 
@@ -16,7 +16,7 @@ MIDDLE = (2.45, 1.8)
 
 
 def eights() -> Eights:
-    course = Eights(SETTINGS, Post("west", *WEST, 0.2), Post("east", *EAST, 0.2), "")
+    course = Eights(SETTINGS, SimulatedPost("west", *WEST, 0.2), SimulatedPost("east", *EAST, 0.2), "")
     put(course, MIDDLE, 90.0)
     return course
 

@@ -5,7 +5,7 @@ import pytest
 
 from behaviors.metrics.junctions import Junctions, JunctionsSettings
 from behaviors.metrics.streets import StreetMap
-from behaviors.metrics.task_metric import Course
+from behaviors.metrics.task_metric import TaskMetric
 from hal.settings import SettingsError
 from tests.behaviors.metrics.paths import Point, follow, put
 from tests.behaviors.metrics.worlds import course_in
@@ -26,17 +26,17 @@ def manhattan() -> StreetMap:
     return StreetMap(simulation.plan)
 
 
-def in_manhattan(behaviours: tuple[str, ...], seed: int = 1) -> Course:
+def in_manhattan(behaviours: tuple[str, ...], seed: int = 1) -> TaskMetric:
     return Junctions(manhattan(), behaviours, random.Random(seed))
 
 
-def set_down(behaviours: tuple[str, ...], at: Point = SOUTH_OF_A_CROSSING, towards_deg: float = 90.0) -> Course:
+def set_down(behaviours: tuple[str, ...], at: Point = SOUTH_OF_A_CROSSING, towards_deg: float = 90.0) -> TaskMetric:
     course = in_manhattan(behaviours)
     put(course, at, towards_deg)
     return course
 
 
-def passed(course: Course) -> tuple[float, float]:
+def passed(course: TaskMetric) -> tuple[float, float]:
     """Junctions that were passed, and those of them that were right."""
     return course.findings["junctions"], course.findings["junctions right"]
 

@@ -4,7 +4,7 @@ import random
 import pytest
 
 from behaviors.metrics.laps import LapsSettings
-from behaviors.metrics.task_metric import Course
+from behaviors.metrics.task_metric import TaskMetric
 from behaviors.metrics.way import WaySettings
 from hal.robot import WheelSpeeds
 from hal.simulation import Pose
@@ -18,12 +18,12 @@ WANTED_M = 0.365
 ROUND: list[Point] = [(0.4, 0.4), (0.4, 4.0), (4.0, 4.0), (4.0, 0.4), (0.4, 0.4)]
 
 
-def laps_in(simulation: Kurt2Simulation) -> Course:
+def laps_in(simulation: Kurt2Simulation) -> TaskMetric:
     settings = LapsSettings(kind="laps", wanted_m=WANTED_M)
     return settings.build(simulation, ("",), random.Random(1))
 
 
-def carry(simulation: Kurt2Simulation, course: Course, pose: Pose) -> None:
+def carry(simulation: Kurt2Simulation, course: TaskMetric, pose: Pose) -> None:
     simulation.simulated_robot.place(pose)
     course.follow(pose)
 

@@ -2,11 +2,11 @@ import pytest
 
 from behaviors.metrics.rounds import Rounds, RoundsSettings
 from hal.settings import SettingsError
-from hal.simulation import Post
+from hal.simulation import SimulatedPost
 from tests.behaviors.metrics.paths import arc, follow, put
 from tests.behaviors.metrics.worlds import course_in
 
-POST = Post("post", 2.0, 2.0, 0.05)
+POST = SimulatedPost("post", 2.0, 2.0, 0.05)
 LEFT = RoundsSettings(kind="rounds", wanted_m=0.45, within_m=0.8, turning="left")
 RIGHT = LEFT.model_copy(update={"turning": "right"})
 CENTRE = (2.0, 2.0)

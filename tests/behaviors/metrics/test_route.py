@@ -6,7 +6,7 @@ import pytest
 from behaviors.metrics.route import FixedRoute, RouteSettings
 from behaviors.metrics.routes import Leg, Route
 from behaviors.metrics.streets import StreetMap
-from behaviors.metrics.task_metric import RouteCourse
+from behaviors.metrics.task_metric import RouteMetric
 from hal.settings import SettingsError
 from tests.behaviors.metrics.paths import Point, follow
 from tests.behaviors.metrics.worlds import course_in
@@ -63,7 +63,7 @@ def with_a_choice(course: FixedRoute) -> None:
 
 def test_it_begins_in_the_middle_of_the_first_street_and_says_what_is_right_at_its_end() -> None:
     course = set_down()
-    assert isinstance(course, RouteCourse)
+    assert isinstance(course, RouteMetric)
     assert course.set_down_at == course.route.legs[0].middle
     assert MEANING[course.behaviour] == course.route.quarters[0]
     passed, inside, here, after = course.ahead

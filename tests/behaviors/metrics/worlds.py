@@ -2,11 +2,11 @@
 
 import random
 
-from behaviors.metrics.task_metric import Course, CourseSettings
+from behaviors.metrics.task_metric import MetricSettings, TaskMetric
 from tests.experiments.helpers import STAGE
 
 
-def course_in(world: str, settings: CourseSettings, behaviours: tuple[str, ...] = ("",), seed: int = 1) -> Course:
+def course_in(world: str, settings: MetricSettings, behaviours: tuple[str, ...] = ("",), seed: int = 1) -> TaskMetric:
     """The course at its beginning."""
     simulation = STAGE.open(world, 1, "test")
     try:

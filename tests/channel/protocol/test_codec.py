@@ -35,18 +35,18 @@ from kurt2rt.channel.protocol.requests import (
     checks_of,
 )
 from kurt2rt.channel.protocol.schema import (
+    Bytes,
+    BytesUpTo,
     Check,
     Flag,
+    Float,
+    Int,
     ManyOf,
-    Octets,
-    OctetsUpTo,
     OneOf,
     OneWord,
     OrNone,
-    Real,
     Row,
     Text,
-    Whole,
 )
 from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
@@ -70,13 +70,13 @@ LEVELS = st.sampled_from((BASIC, MID))
 def values(check: Check) -> st.SearchStrategy[Any]:
     """Whatever a check lets pass."""
     match check:
-        case Octets(length=length):
+        case Bytes(length=length):
             return st.binary(min_size=length, max_size=length)
-        case OctetsUpTo(most=most):
+        case BytesUpTo(most=most):
             return st.binary(min_size=1, max_size=min(most, 64))
-        case Whole(least=least, most=most):
+        case Int(least=least, most=most):
             return st.integers(least, most)
-        case Real(most=most):
+        case Float(most=most):
             return st.floats(-most, most)
         case OneOf(numbers=numbers, kind=kind):
             return st.sampled_from(numbers).map(kind)

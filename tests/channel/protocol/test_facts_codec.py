@@ -12,7 +12,7 @@ from kurt2rt.channel.protocol.facts_codec import facts_of_plain, plain_of_facts
 from kurt2rt.channel.protocol.schema import WireError
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.runs.explain.facts import MOST_OTHERS
-from kurt2rt.runs.explain.live import Explaining
+from kurt2rt.runs.explain.live import LiveExplainer
 from tests.runs.explain.helpers import Lesson, facts, level, story, with_mid
 from tests.teacher.helpers import teach
 
@@ -65,7 +65,7 @@ def test_live_facts_are_collected_once_per_tick(lesson: Lesson) -> None:
         stamps_read[command_id] += 1
         return ""
 
-    explaining = Explaining(lesson.runtime, stamp_of)
+    explaining = LiveExplainer(lesson.runtime, stamp_of)
     assert explaining.facts() is None
     for record in (lesson.records[-1], lesson.go_on(1)):
         explaining.follow(record)

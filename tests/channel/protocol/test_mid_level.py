@@ -22,7 +22,7 @@ from kurt2rt.channel.protocol.requests import (
 )
 from kurt2rt.channel.protocol.state import State, SurpriseState
 from kurt2rt.channel.server.reply import Verdict
-from kurt2rt.core.decision.plan_step import Course, PlanStep
+from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import BASIC, MID
@@ -164,7 +164,7 @@ async def test_situations_get_names_that_are_listed_sought_and_taken_back(desk: 
     told = picture(desk)
     assert (told.goal, told.plan) == ("door", ())
     assert told.plan_says == "on the way to door: the plan begins behind the next junction"
-    step = PlanStep("door", Course.UNDER_WAY, ("turn_left", "straight_on"), 1, "on the way to door: 2 ways left", 0)
+    step = PlanStep("door", GoalStatus.UNDER_WAY, ("turn_left", "straight_on"), 1, "on the way to door: 2 ways left", 0)
     under_way = desk.record._replace(decision=desk.record.decision._replace(plan=step))
     told = desk.telling.picture(under_way)
     assert (told.goal, told.plan, told.plan_says) == ("door", step.behaviours, step.says)

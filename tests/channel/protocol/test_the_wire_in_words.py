@@ -12,17 +12,17 @@ from kurt2rt.channel.protocol.codec import PATHS, encode_state
 from kurt2rt.channel.protocol.health_codec import plain_of
 from kurt2rt.channel.protocol.requests import VERSION, checks_of
 from kurt2rt.channel.protocol.schema import (
+    Bytes,
+    BytesUpTo,
     Flag,
+    Float,
+    Int,
     ManyOf,
-    Octets,
-    OctetsUpTo,
     OneOf,
     OneWord,
     OrNone,
-    Real,
     Row,
     Text,
-    Whole,
 )
 from kurt2rt.core.decision.standing import Standing
 from tests.channel.jumping_loop import run_jumping
@@ -78,13 +78,13 @@ def ranges() -> dict[str, str]:
 
 def in_words(check: object) -> str:
     match check:
-        case Octets(length):
+        case Bytes(length):
             return f"{length} bytes"
-        case OctetsUpTo(most):
+        case BytesUpTo(most):
             return f"1 to {most} bytes"
-        case Whole(least, most):
+        case Int(least, most):
             return f"whole number, {least} to {most}"
-        case Real(most, unit):
+        case Float(most, unit):
             return f"number, {-most:g} to {most:g} {unit}".strip()
         case Text(most, least):
             return f"text, {least} to {most} printable characters"

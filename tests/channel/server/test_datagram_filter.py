@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurt2rt.channel.server.datagram_filter import Counters, Gate, Limits, SocketAddress, may_be_request
+from kurt2rt.channel.server.datagram_filter import Counters, DatagramFilter, Limits, SocketAddress, may_be_request
 from tests.channel.clock import Clock
 
 REQUEST = bytes([0x50, aiocoap.POST, 0, 1])
@@ -19,7 +19,7 @@ class Door:
     def __init__(self, limits: Limits) -> None:
         self.clock = Clock()
         self.counters = Counters()
-        self.gate = Gate(limits, self.counters, self.clock)
+        self.gate = DatagramFilter(limits, self.counters, self.clock)
 
     def let_in(self, number: int, tries: int, data: bytes = REQUEST) -> int:
         return sum(self.gate.admits(data, sender(number)) for _ in range(tries))

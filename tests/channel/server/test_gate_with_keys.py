@@ -9,7 +9,7 @@ import pytest
 
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.security.pairing import pair
-from kurt2rt.channel.server.datagram_filter import Counters, Gate, Limits, SocketAddress
+from kurt2rt.channel.server.datagram_filter import Counters, DatagramFilter, Limits, SocketAddress
 from kurt2rt.channel.server.sealed_request import SealedRequest
 from tests.channel.clock import Clock
 
@@ -30,7 +30,7 @@ class Door:
         pairing = pair(folder / "teachers", folder / "devices", "phone")
         self.device, self.robot = OscoreContext(pairing.device.folder), OscoreContext(pairing.teacher)
         self.clock, self.counters = Clock(), Counters()
-        self.gate = Gate(limits, self.counters, self.clock, self._key_of)
+        self.gate = DatagramFilter(limits, self.counters, self.clock, self._key_of)
 
     def _key_of(self, sealed: SealedRequest) -> OscoreContext | None:
         return self.robot if sealed.kid == self.robot.recipient_id else None

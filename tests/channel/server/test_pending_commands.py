@@ -2,13 +2,13 @@
 
 import pytest
 
-from kurt2rt.channel.server.pending_commands import Outcomes
+from kurt2rt.channel.server.pending_commands import PendingCommands
 from kurt2rt.channel.server.reply import done, refusal
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
 
 
 async def test_a_command_under_way_has_a_reply_to_come_and_then_that_reply_for_good() -> None:
-    outcomes = Outcomes()
+    outcomes = PendingCommands()
     assert outcomes.get("x") is None
     waiting = outcomes.begin("x")
     assert outcomes.get("x") is waiting
@@ -19,7 +19,7 @@ async def test_a_command_under_way_has_a_reply_to_come_and_then_that_reply_for_g
 
 
 async def test_the_first_reply_stands() -> None:
-    outcomes = Outcomes()
+    outcomes = PendingCommands()
     waiting = outcomes.begin("x")
     outcomes.settle("x", done(7))
     outcomes.settle("x", refusal("refused", Outcome(RefusalCode.TOO_MANY), 8))
@@ -27,14 +27,14 @@ async def test_the_first_reply_stands() -> None:
 
 
 async def test_what_did_not_come_over_the_network_is_nothing_to_settle() -> None:
-    outcomes = Outcomes()
+    outcomes = PendingCommands()
     outcomes.settle("of the scripted teacher", done(7))
     assert outcomes.get("of the scripted teacher") is None
 
 
 @pytest.mark.parametrize("capacity", [1, 3])
 async def test_the_oldest_settled_one_makes_room(capacity: int) -> None:
-    outcomes = Outcomes(capacity)
+    outcomes = PendingCommands(capacity)
     for number in range(5):
         outcomes.begin(f"{number}")
         outcomes.settle(f"{number}", done(number))
@@ -44,14 +44,14 @@ async def test_the_oldest_settled_one_makes_room(capacity: int) -> None:
 
 
 async def test_what_is_under_way_is_never_forgotten() -> None:
-    outcomes = Outcomes(3)
+    outcomes = PendingCommands(3)
     for number in range(6):
         outcomes.begin(f"{number}")
     assert all(outcomes.get(f"{number}") is not None for number in range(6))
 
 
 async def test_one_that_waits_for_the_disk_does_not_keep_all_that_came_after_it() -> None:
-    outcomes = Outcomes(3)
+    outcomes = PendingCommands(3)
     outcomes.begin("waits")
     for number in range(100):
         outcomes.begin(f"{number}")
@@ -61,7 +61,7 @@ async def test_one_that_waits_for_the_disk_does_not_keep_all_that_came_after_it(
 
 
 async def test_when_much_has_settled_at_last_memory_is_given_back() -> None:
-    outcomes = Outcomes(3)
+    outcomes = PendingCommands(3)
     for number in range(50):
         outcomes.begin(f"{number}")
     for number in range(50):

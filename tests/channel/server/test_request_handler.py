@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pytest
 
 from kurt2rt.channel.protocol.codec import PATHS, decode_answer, encode_answer
-from kurt2rt.channel.protocol.exam_status import EXAM, ExamStanding
+from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus
 from kurt2rt.channel.protocol.facts_codec import facts_of_plain
 from kurt2rt.channel.protocol.health_codec import report_of
 from kurt2rt.channel.protocol.requests import (
@@ -532,7 +532,7 @@ async def test_an_exam_is_begun_by_the_teacher_alone_and_once() -> None:
     first = await desk.ask(request, "bob")
     assert (first.verdict, await desk.ask(request, "bob")) == (Verdict.DONE, first)
     assert desk.shelf.examined == 1
-    desk.exam = ExamStanding(True, 0.25, "exam without teacher, world a")
+    desk.exam = ExamStatus(True, 0.25, "exam without teacher, world a")
     assert why(await desk.ask(desk.command(ExamRequest), "bob")) == "refused"
     told = (await desk.ask(ExamStandingRequest())).body["exam"]
     assert EXAM.read(decode_answer(encode_answer(told))) == desk.exam

@@ -34,9 +34,9 @@ from kurt2rt.channel.protocol.requests import (
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.security.pairing import local_pairing, pair, revoke
-from kurt2rt.channel.server.channel import Channel, Surroundings, open_channel
+from kurt2rt.channel.server.channel import Channel, ChannelDependencies, open_channel
 from kurt2rt.channel.server.resources import RobotSite
-from kurt2rt.channel.server.state_builder import Safekeeping
+from kurt2rt.channel.server.state_builder import JournalStatus
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.rla.outcome import RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import Phase
@@ -563,9 +563,9 @@ async def on_line(folder: Path) -> AsyncIterator[OnLine]:
     keys = OscoreContext(pairing.device.folder)
     answer_challenge(keys, teachers.find(header_of(keys)))
     desk = Desk()
-    safekeeping = Safekeeping(lambda: desk.unwritten, lambda: None, lambda _: "")
+    safekeeping = JournalStatus(lambda: desk.unwritten, lambda: None, lambda _: "")
     coap = await aiocoap.Context.create_client_context(transports=["udp6"])
-    surroundings = Surroundings(safekeeping, desk.shelf, lambda: "", None)
+    surroundings = ChannelDependencies(safekeeping, desk.shelf, lambda: "", None)
     async with open_channel(desk.runtime, teachers, 0, surroundings) as channel:
         yield OnLine(desk, channel, Line(coap, channel.endpoint.port, keys))
     await coap.shutdown()
@@ -616,8 +616,10 @@ async def test_with_nobody_paired_it_listens_on_this_machine_alone(tmp_path: Pat
     local_pairing(tmp_path / "teachers", tmp_path / "devices")
     teachers = Teachers(tmp_path / "teachers")
     desk = Desk()
-    safekeeping = Safekeeping(lambda: 0, lambda: None, lambda _: "")
-    async with open_channel(desk.runtime, teachers, 0, Surroundings(safekeeping, desk.shelf, str, None)) as channel:
+    safekeeping = JournalStatus(lambda: 0, lambda: None, lambda _: "")
+    async with open_channel(
+        desk.runtime, teachers, 0, ChannelDependencies(safekeeping, desk.shelf, str, None)
+    ) as channel:
         (tokens,) = channel.endpoint._context.request_interfaces
         transport = tokens.token_interface.message_interface.transport
         assert transport.get_extra_info("socket").getsockname()[0] == "::ffff:127.0.0.1"
@@ -630,8 +632,10 @@ async def test_a_damaged_pairing_keeps_nobody_else_out_and_is_told(tmp_path: Pat
     damaged.write_text("{}", encoding="utf-8")
     desk = Desk()
     teachers = Teachers(tmp_path / "teachers")
-    safekeeping = Safekeeping(int, lambda: None, str)
-    async with open_channel(desk.runtime, teachers, 0, Surroundings(safekeeping, desk.shelf, str, None)) as channel:
+    safekeeping = JournalStatus(int, lambda: None, str)
+    async with open_channel(
+        desk.runtime, teachers, 0, ChannelDependencies(safekeeping, desk.shelf, str, None)
+    ) as channel:
         assert teachers.names == ("local",)
         assert "the pairing is damaged" in channel.trouble
         assert "kurt2rt pair bob --renew" in channel.trouble

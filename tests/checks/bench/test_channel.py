@@ -6,24 +6,26 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.checks.bench.channel import ChannelLengths
-from kurt2rt.checks.bench.channel_load import Shifts
-from kurt2rt.checks.bench.helper_process import PartnerLostError
+from kurt2rt.checks.bench.channel_load import LoadShifts
+from kurt2rt.checks.bench.helper_process import HelperLostError
 from kurt2rt.checks.bench.open_robot import open_robot
-from kurt2rt.checks.bench.robot_under_test import OnProgress, Subject
-from kurt2rt.checks.bench.suite import QUICK, Bench, run_suite
+from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest
+from kurt2rt.checks.bench.suite import QUICK, BenchName, run_suite
 from kurt2rt.knowledge.journal.loading import open_knowledge
 
-SHORT = replace(QUICK, learning_s=3.0, channel=ChannelLengths(presses=1, shifts=Shifts(rounds=1, ticks=20), lessons=2))
+SHORT = replace(
+    QUICK, learning_s=3.0, channel=ChannelLengths(presses=1, shifts=LoadShifts(rounds=1, ticks=20), lessons=2)
+)
 
 
 @pytest.mark.deep
-async def test_presses_reach_the_wheels_and_lessons_the_file(untaught: Subject, tmp_path: Path) -> None:
+async def test_presses_reach_the_wheels_and_lessons_the_file(untaught: RobotUnderTest, tmp_path: Path) -> None:
     told: dict[str, list[float]] = {}
 
     def progress_of(what: str) -> OnProgress:
         return told.setdefault(what, []).append
 
-    results = await run_suite({Bench.CHANNEL}, untaught, tmp_path, SHORT, progress_of)
+    results = await run_suite({BenchName.CHANNEL}, untaught, tmp_path, SHORT, progress_of)
     pressed, on_page, late, work, picture, message, lesson = results
     assert {result.bench for result in results} == {"channel"}
     assert all(shares[-1] == 1.0 for shares in told.values())
@@ -41,7 +43,7 @@ async def test_presses_reach_the_wheels_and_lessons_the_file(untaught: Subject, 
 
 
 async def test_an_open_robot_stands_until_a_teacher_comes_and_closes_when_one_fails(
-    subject: Subject, tmp_path: Path
+    subject: RobotUnderTest, tmp_path: Path
 ) -> None:
     async def lose_a_partner() -> None:
         async with open_robot(subject, tmp_path / "robot") as robot:
@@ -53,7 +55,7 @@ async def test_an_open_robot_stands_until_a_teacher_comes_and_closes_when_one_fa
             await robot.rounds.go_on_for(5)
             assert robot.rounds.newest is not None
             assert robot.rounds.newest.tick > number
-            raise PartnerLostError("gone")
+            raise HelperLostError("gone")
 
-    with pytest.raises(PartnerLostError, match="gone"):
+    with pytest.raises(HelperLostError, match="gone"):
         await lose_a_partner()

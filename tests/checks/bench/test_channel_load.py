@@ -2,25 +2,25 @@
 
 import pytest
 
-from kurt2rt.checks.bench.channel_load import Company, Stay, Stays, load_results
-from kurt2rt.platform.ledger import Share
+from kurt2rt.checks.bench.channel_load import Load, LoadPhase, LoadPhases, load_results
+from kurt2rt.platform.ledger import Percentiles
 
 
-def stays(lateness_p99_us: float, *each: Stay) -> Stays:
-    return Stays(Share(70.0, lateness_p99_us, 2 * lateness_p99_us), each)
+def stays(lateness_p99_us: float, *each: LoadPhase) -> LoadPhases:
+    return LoadPhases(Percentiles(70.0, lateness_p99_us, 2 * lateness_p99_us), each)
 
 
-def stay(work_us: float, messages: int, missed: int = 0) -> Stay:
+def stay(work_us: float, messages: int, missed: int = 0) -> LoadPhase:
     """Two seconds long."""
-    return Stay(seconds=2.0, processor_us=2 * work_us, messages=messages, missed_ticks=missed)
+    return LoadPhase(seconds=2.0, processor_us=2 * work_us, messages=messages, missed_ticks=missed)
 
 
 def test_what_a_picture_and_a_message_take_is_told_from_who_was_there() -> None:
     late, work, picture, message = load_results(
         {
-            Company.NOBODY: stays(200.0, stay(100_000.0, 0), stay(110_000.0, 0)),
-            Company.ONLOOKER: stays(250.0, stay(108_000.0, 2), stay(118_000.0, 2)),
-            Company.TEACHER: stays(400.0, stay(124_000.0, 66), stay(134_000.0, 66)),
+            Load.NOBODY: stays(200.0, stay(100_000.0, 0), stay(110_000.0, 0)),
+            Load.ONLOOKER: stays(250.0, stay(108_000.0, 2), stay(118_000.0, 2)),
+            Load.TEACHER: stays(400.0, stay(124_000.0, 66), stay(134_000.0, 66)),
         },
         period_s=0.01,
         driving_share=0.97,
@@ -39,9 +39,9 @@ def test_what_a_picture_and_a_message_take_is_told_from_who_was_there() -> None:
 def test_a_missed_tick_misses_the_goal() -> None:
     late, *_ = load_results(
         {
-            Company.NOBODY: stays(200.0, stay(100_000.0, 0)),
-            Company.ONLOOKER: stays(200.0, stay(110_000.0, 2)),
-            Company.TEACHER: stays(410.0, stay(150_001.0, 66, missed=1)),
+            Load.NOBODY: stays(200.0, stay(100_000.0, 0)),
+            Load.ONLOOKER: stays(200.0, stay(110_000.0, 2)),
+            Load.TEACHER: stays(410.0, stay(150_001.0, 66, missed=1)),
         },
         period_s=0.01,
         driving_share=1.0,

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.checks.bench.helper_process import PartnerLostError, partner
+from kurt2rt.checks.bench.helper_process import HelperLostError, partner
 
 IDLER = "tests.checks.bench.idler"
 ROOT = Path(__file__).parents[3]
@@ -29,7 +29,7 @@ async def test_a_partner_does_what_it_is_asked_to_and_ends_with_the_block() -> N
 
 
 async def test_a_partner_that_fails_is_missed_and_says_why_itself(capfd: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(PartnerLostError, match=r"tests\.checks\.bench\.idler ended while it was asked to work"):
+    with pytest.raises(HelperLostError, match=r"tests\.checks\.bench\.idler ended while it was asked to work"):
         async with partner(IDLER) as idler:
             await idler.ask("work")
     assert_gone(idler.pid)
@@ -37,7 +37,7 @@ async def test_a_partner_that_fails_is_missed_and_says_why_itself(capfd: pytest.
 
 
 async def test_a_silent_partner_is_given_up_and_ended() -> None:
-    with pytest.raises(PartnerLostError, match="did not idle within 0 s"):
+    with pytest.raises(HelperLostError, match="did not idle within 0 s"):
         async with partner(IDLER) as idler:
             await idler.ask("idle", patience_s=0.0)
     assert_gone(idler.pid)

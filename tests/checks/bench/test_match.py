@@ -3,7 +3,7 @@
 import pytest
 
 from kurt2rt.checks.bench.match import SIZES, Size, WrongWinnerError, measure_match
-from kurt2rt.core.rla.matching import ConditionIndex, Nearest
+from kurt2rt.core.rla.matching import ConditionIndex, NearestCondition
 
 
 def test_each_size_has_its_row_with_reference_and_goal() -> None:
@@ -23,10 +23,10 @@ def test_the_sizes_are_those_of_the_paper_and_beyond() -> None:
 
 
 def test_a_match_that_is_wrong_is_not_timed(monkeypatch: pytest.MonkeyPatch) -> None:
-    def always_the_first(index: ConditionIndex, situation: object) -> Nearest:
+    def always_the_first(index: ConditionIndex, situation: object) -> NearestCondition:
         assert len(index) > 1
         assert situation is not None
-        return Nearest(0, 0.0, 1, 0.0)
+        return NearestCondition(0, 0.0, 1, 0.0)
 
     monkeypatch.setattr(ConditionIndex, "nearest", always_the_first)
     with pytest.raises(WrongWinnerError, match="the index names"):

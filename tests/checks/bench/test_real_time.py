@@ -6,11 +6,11 @@ import pytest
 
 from kurt2rt.checks.bench.lateness import TIMES_BETTER, lateness_result
 from kurt2rt.checks.bench.real_time import RealTimeRun, Turns, run_in_real_time, sleep_bare
-from kurt2rt.checks.bench.robot_under_test import Subject
+from kurt2rt.checks.bench.robot_under_test import RobotUnderTest
 from kurt2rt.checks.bench.tick_budget import tick_results
-from kurt2rt.platform.ledger import Ledger, Share, Stage
+from kurt2rt.platform.ledger import Percentiles, Stage, TickTimer
 
-NOTHING = Share(0.0, 0.0, 0.0)
+NOTHING = Percentiles(0.0, 0.0, 0.0)
 
 
 class LateClock:
@@ -29,20 +29,20 @@ class LateClock:
         self._now_s = deadline_s + self._late_s.pop(0)
 
 
-def run(*, lateness_p99_us: float, asyncio_p99_us: float, missed: int = 0, tick: Share = NOTHING) -> RealTimeRun:
+def run(*, lateness_p99_us: float, asyncio_p99_us: float, missed: int = 0, tick: Percentiles = NOTHING) -> RealTimeRun:
     return RealTimeRun(
         ticks=6000,
         missed_ticks=missed,
         driving_share=0.97,
         rlas=91,
-        lateness=Share(70.0, lateness_p99_us, 2 * lateness_p99_us),
-        asyncio_lateness=Share(1100.0, asyncio_p99_us, 2 * asyncio_p99_us),
+        lateness=Percentiles(70.0, lateness_p99_us, 2 * lateness_p99_us),
+        asyncio_lateness=Percentiles(1100.0, asyncio_p99_us, 2 * asyncio_p99_us),
         tick=tick,
         stages=dict.fromkeys(Stage, NOTHING),
     )
 
 
-async def test_a_drive_tells_where_its_time_went(subject: Subject, tmp_path: Path) -> None:
+async def test_a_drive_tells_where_its_time_went(subject: RobotUnderTest, tmp_path: Path) -> None:
     told: list[float] = []
     drive = await run_in_real_time(subject, tmp_path, Turns(rounds=2, ticks=30, reference_ticks=5), told.append)
     assert told == [0.5, 1.0]
@@ -57,7 +57,7 @@ async def test_a_drive_tells_where_its_time_went(subject: Subject, tmp_path: Pat
 
 
 async def test_the_bare_loop_sleeps_to_multiples_of_the_period() -> None:
-    clock, ledger = LateClock(0.001, 0.002, 0.003), Ledger()
+    clock, ledger = LateClock(0.001, 0.002, 0.003), TickTimer()
     await sleep_bare(clock, 3, 0.01, ledger)
     assert clock.deadlines_s == pytest.approx([100.01, 100.02, 100.03])
     assert ledger.lateness().median_us == pytest.approx(2000.0, rel=0.01)
@@ -66,7 +66,7 @@ async def test_the_bare_loop_sleeps_to_multiples_of_the_period() -> None:
 
 async def test_the_bare_loop_skips_what_it_slept_through() -> None:
     clock = LateClock(0.025, 0.0)
-    await sleep_bare(clock, 2, 0.01, Ledger())
+    await sleep_bare(clock, 2, 0.01, TickTimer())
     assert clock.deadlines_s == pytest.approx([100.01, 100.04])
 
 
@@ -84,7 +84,9 @@ def test_more_than_a_fifth_or_a_missed_tick_will_not() -> None:
 
 
 def test_the_ticks_goals_are_for_all_stages_together() -> None:
-    *stages, whole = tick_results(run(lateness_p99_us=1.0, asyncio_p99_us=1.0, tick=Share(90.0, 260.0, 300.0)), 0.01)
+    *stages, whole = tick_results(
+        run(lateness_p99_us=1.0, asyncio_p99_us=1.0, tick=Percentiles(90.0, 260.0, 300.0)), 0.01
+    )
     assert [result.what.strip() for result in stages] == ["sense", "perceive", "decide", "guard", "learn", "publish"]
     assert not any(result.goals for result in stages)
     assert [goal.met for goal in whole.goals] == [True, False]

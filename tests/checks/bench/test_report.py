@@ -5,19 +5,19 @@ import json
 
 from rich.console import Console
 
-from kurt2rt.checks.bench.report import Machine, as_json, look_at_machine, print_report
-from kurt2rt.checks.bench.result import Goal, Reference, Result
-from kurt2rt.platform.ledger import Share, share_of
+from kurt2rt.checks.bench.report import BenchMachine, as_json, look_at_machine, print_report
+from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
+from kurt2rt.platform.ledger import Percentiles, share_of
 
-MACHINE = Machine(2, (0.5, 0.25, 0.125), "3.11.7", "2.1.0")
+MACHINE = BenchMachine(2, (0.5, 0.25, 0.125), "3.11.7", "2.1.0")
 RESULTS = (
-    Result("tick", "  sense", Share(12.25, 30.0, 31.0)),
-    Result(
+    BenchResult("tick", "  sense", Percentiles(12.25, 30.0, 31.0)),
+    BenchResult(
         "lateness",
         "tick begins late",
-        Share(70.0, 200.0, 900.0),
+        Percentiles(70.0, 200.0, 900.0),
         Reference("asyncio.sleep, p99", 1300.0, 200.0),
-        (Goal("ratio", 6.5, 5.0, at_least=True), Goal("missed", 3, 0)),
+        (BenchGoal("ratio", 6.5, 5.0, at_least=True), BenchGoal("missed", 3, 0)),
         "6000 ticks",
     ),
 )
@@ -58,4 +58,4 @@ def test_this_machine_has_a_core() -> None:
 
 
 def test_times_in_nanoseconds_become_microseconds() -> None:
-    assert share_of([1000, 2000, 9000]) == Share(2.0, 8.86, 9.0)
+    assert share_of([1000, 2000, 9000]) == Percentiles(2.0, 8.86, 9.0)

@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.checks.bench.channel import ChannelLengths
-from kurt2rt.checks.bench.channel_load import Shifts
+from kurt2rt.checks.bench.channel_load import LoadShifts
 from kurt2rt.checks.bench.match import Size
 from kurt2rt.checks.bench.real_time import Turns
-from kurt2rt.checks.bench.robot_under_test import OnProgress, Subject
-from kurt2rt.checks.bench.suite import FULL, QUICK, Bench, Lengths, run_suite
+from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest
+from kurt2rt.checks.bench.suite import FULL, QUICK, BenchName, Lengths, run_suite
 
 TINY = Lengths(
     learning_s=3.0,
@@ -18,8 +18,8 @@ TINY = Lengths(
     loop_blocks=1,
     loop_block_s=1,
     lessons=2,
-    channel=ChannelLengths(presses=1, shifts=Shifts(rounds=1, ticks=10), lessons=1),
-    recording=Shifts(rounds=1, ticks=20),
+    channel=ChannelLengths(presses=1, shifts=LoadShifts(rounds=1, ticks=10), lessons=1),
+    recording=LoadShifts(rounds=1, ticks=20),
 )
 
 
@@ -35,9 +35,13 @@ class Jobs:
 
 
 @pytest.mark.deep
-async def test_everything_is_measured_in_order_with_one_lesson_and_one_drive(untaught: Subject, tmp_path: Path) -> None:
+async def test_everything_is_measured_in_order_with_one_lesson_and_one_drive(
+    untaught: RobotUnderTest, tmp_path: Path
+) -> None:
     jobs = Jobs()
-    benches = [bench for bench in Bench if bench is not Bench.CHANNEL]  # its processes take seconds: test_channel.py
+    benches = [
+        bench for bench in BenchName if bench is not BenchName.CHANNEL
+    ]  # its processes take seconds: test_channel.py
     results = await run_suite(benches, untaught, tmp_path, TINY, jobs)
     assert list(dict.fromkeys(result.bench for result in results)) == [bench.value for bench in benches]
     assert len(jobs.names) == 6
@@ -47,12 +51,12 @@ async def test_everything_is_measured_in_order_with_one_lesson_and_one_drive(unt
 @pytest.mark.parametrize(
     ("chosen", "jobs_begun"),
     [
-        (Bench.MATCH, ["matching"]),
-        (Bench.TICK, ["teaching, to have something to drive with", "driving in real time"]),
+        (BenchName.MATCH, ["matching"]),
+        (BenchName.TICK, ["teaching, to have something to drive with", "driving in real time"]),
     ],
 )
 async def test_only_what_is_asked_for_is_measured(
-    chosen: Bench, jobs_begun: list[str], untaught: Subject, tmp_path: Path
+    chosen: BenchName, jobs_begun: list[str], untaught: RobotUnderTest, tmp_path: Path
 ) -> None:
     jobs = Jobs()
     results = await run_suite({chosen}, untaught, tmp_path, TINY, jobs)

@@ -4,10 +4,10 @@ import pytest
 
 from hal.robot_settings import load_robot
 from hal.simulation import Simulation
-from kurt2rt.checks.bench.robot_under_test import Subject
-from kurt2rt.checks.bench.tick_phase import Pace
+from kurt2rt.checks.bench.robot_under_test import RobotUnderTest
+from kurt2rt.checks.bench.tick_phase import LoopPacer
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.experiments.lockstep.exam import NothingIsTaught
+from kurt2rt.experiments.lockstep.exam import NoTeachingAllowed
 from kurt2rt.runtime import build_runtime
 
 
@@ -24,11 +24,11 @@ class PunctualClock:
         self._now_s = max(self._now_s, deadline_s)
 
 
-async def test_a_shift_moves_all_later_ticks_and_loses_none(untaught: Subject) -> None:
+async def test_a_shift_moves_all_later_ticks_and_loses_none(untaught: RobotUnderTest) -> None:
     clock, settings = PunctualClock(), load_robot()
     simulation: Simulation = untaught.open_simulation("pace")
-    runtime = build_runtime(simulation.robot, settings, untaught.task, (), NothingIsTaught(), clock)
-    pace = Pace(runtime.scheduler, clock)
+    runtime = build_runtime(simulation.robot, settings, untaught.task, (), NoTeachingAllowed(), clock)
+    pace = LoopPacer(runtime.scheduler, clock)
     seen: list[tuple[int, float]] = []
 
     def after_tick(record: TickRecord) -> None:

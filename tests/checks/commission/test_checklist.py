@@ -7,10 +7,10 @@ import pytest
 from hal.robot_settings import SpeedMode
 from hal.settings import SettingsError
 from kurt2rt.checks.commission.checklist import STEPS, barring, open_steps, steps_to_take
-from kurt2rt.checks.commission.operator import SKIP, Asked, Question, Tone
+from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.progress import Progress, load_progress
 from kurt2rt.checks.commission.report import passed
-from kurt2rt.checks.commission.step import Outcome
+from kurt2rt.checks.commission.step import StepOutcome
 from kurt2rt.checks.commission.test_stand_settings import MAXIMUM_SPEED_M_S
 from tests.checks.commission.wired_end import Wiring
 from tests.checks.commission.workshop import TODAY, Instead, Session, Workshop, leaves_at
@@ -33,10 +33,10 @@ async def test_a_good_robot_passes_from_the_first_step_to_the_last(tmp_path: Pat
 
 
 async def test_nothing_moves_before_the_words_were_typed_and_a_key_was_hit(tmp_path: Path) -> None:
-    moved: dict[Asked, float] = {}
-    asked_before = Asked.BEGIN
+    moved: dict[QuestionKind, float] = {}
+    asked_before = QuestionKind.BEGIN
 
-    def note(question: Question) -> None:
+    def note(question: OperatorQuestion) -> None:
         """The fastest wheel since the question before, under what that one was about."""
         nonlocal asked_before
         fastest_m_s = max(map(abs, workshop.take_peaks()))
@@ -47,32 +47,34 @@ async def test_nothing_moves_before_the_words_were_typed_and_a_key_was_hit(tmp_p
         session = Session(workshop, tmp_path, note)
         session.knows(speed_mode=SpeedMode.SPEED_CM)
         await session.walk("identity", "stop", "bumpers")
-    assert {about for about, fastest_m_s in moved.items() if fastest_m_s > 0.0} == {Asked.MOVE}
-    assert moved[Asked.MOVE] <= MAXIMUM_SPEED_M_S
+    assert {about for about, fastest_m_s in moved.items() if fastest_m_s > 0.0} == {QuestionKind.MOVE}
+    assert moved[QuestionKind.MOVE] <= MAXIMUM_SPEED_M_S
 
 
 async def test_without_the_words_no_control_frame_is_sent_at_all(tmp_path: Path) -> None:
     with Workshop() as workshop:
-        session = Session(workshop, tmp_path, lambda question: SKIP if question.about is Asked.LIFTED else None)
+        session = Session(workshop, tmp_path, lambda question: SKIP if question.about is QuestionKind.LIFTED else None)
         await session.walk("identity", "modes", "wheels", "stop", "bumpers")
         assert workshop.wiring.controls == 0
-    assert {session.outcome(step) for step in ("lifted", "modes", "wheels", "stop")} == {Outcome.SKIPPED}
+    assert {session.outcome(step) for step in ("lifted", "modes", "wheels", "stop")} == {StepOutcome.SKIPPED}
     assert session.measured("modes") == ("the wheels were not confirmed off the ground",)
-    assert session.outcome("bumpers") is Outcome.PASSED
+    assert session.outcome("bumpers") is StepOutcome.PASSED
 
 
 async def test_other_words_are_asked_for_again(tmp_path: Path) -> None:
     words = iter(["yes", "", "wheels  up "])
     with Workshop() as workshop:
-        session = Session(workshop, tmp_path, lambda question: next(words) if question.about is Asked.LIFTED else None)
+        session = Session(
+            workshop, tmp_path, lambda question: next(words) if question.about is QuestionKind.LIFTED else None
+        )
         await session.walk("lifted")
     assert session.person.lines(Tone.BAD) == ["That was 'yes', not 'wheels up'.", "That was '', not 'wheels up'."]
-    assert session.outcome("lifted") is Outcome.PASSED
+    assert session.outcome("lifted") is StepOutcome.PASSED
 
 
 async def test_whoever_leaves_goes_on_another_day_and_is_asked_about_the_block_anew(tmp_path: Path) -> None:
     with Workshop() as workshop:
-        first = Session(workshop, tmp_path, leaves_at(Asked.SEEN))
+        first = Session(workshop, tmp_path, leaves_at(QuestionKind.SEEN))
         await first.walk("identity", "modes", "wheels", "stop")
         assert max(map(abs, workshop.robot.wheel_speeds)) == 0.0
         kept = load_progress(first.path)
@@ -82,13 +84,13 @@ async def test_whoever_leaves_goes_on_another_day_and_is_asked_about_the_block_a
         second = Session(workshop, tmp_path)
         second.progress = kept
         await second.walk("wheels", "stop")
-    assert Asked.LIFTED in [question.about for question in second.person.asked]
-    assert [second.outcome(step) for step in ("identity", "modes", "wheels", "stop")] == [Outcome.PASSED] * 4
+    assert QuestionKind.LIFTED in [question.about for question in second.person.asked]
+    assert [second.outcome(step) for step in ("identity", "modes", "wheels", "stop")] == [StepOutcome.PASSED] * 4
 
 
 async def test_the_robot_is_braked_when_somebody_leaves_while_it_stands(tmp_path: Path) -> None:
     with Workshop() as workshop:
-        session = Session(workshop, tmp_path, leaves_at(Asked.SEEN))
+        session = Session(workshop, tmp_path, leaves_at(QuestionKind.SEEN))
         session.knows(speed_mode=SpeedMode.SPEED)
         await session.walk("wheels")
         workshop.step()
@@ -96,8 +98,8 @@ async def test_the_robot_is_braked_when_somebody_leaves_while_it_stands(tmp_path
 
 
 async def test_a_step_that_failed_can_be_repeated_at_once_when_it_is_mended(tmp_path: Path) -> None:
-    def mend(question: Question) -> str | None:
-        if question.about is not Asked.AFTER_FAILURE:
+    def mend(question: OperatorQuestion) -> str | None:
+        if question.about is not QuestionKind.AFTER_FAILURE:
             return None
         workshop.wiring.reversed_motors = ()
         return "r"
@@ -107,7 +109,7 @@ async def test_a_step_that_failed_can_be_repeated_at_once_when_it_is_mended(tmp_
         session.knows(speed_mode=SpeedMode.SPEED_CM)
         await session.walk("wheels")
     assert session.person.lines(Tone.TO_DO) == ["The right motor turns the wrong way: exchange its two leads"]
-    assert session.outcome("wheels") is Outcome.PASSED
+    assert session.outcome("wheels") is StepOutcome.PASSED
     assert barring(session.progress) == []
 
 
@@ -115,23 +117,23 @@ async def test_a_step_that_passed_stays_passed_when_it_is_skipped_later(tmp_path
     with Workshop() as workshop:
         session = Session(workshop, tmp_path)
         await session.walk("bumpers")
-        again = Session(workshop, tmp_path, lambda question: SKIP if question.about is Asked.BEGIN else None)
+        again = Session(workshop, tmp_path, lambda question: SKIP if question.about is QuestionKind.BEGIN else None)
         again.progress = session.progress
         await again.walk("bumpers", "sensors")
-    assert again.outcome("bumpers") is Outcome.PASSED
-    assert again.outcome("sensors") is Outcome.SKIPPED
+    assert again.outcome("bumpers") is StepOutcome.PASSED
+    assert again.outcome("sensors") is StepOutcome.SKIPPED
 
 
 def skips_what_failed(again: str) -> Instead:
     """A person who skips a step that failed: when it is begun once more, or at once in another session."""
     failed = not again
 
-    def skip(question: Question) -> str | None:
+    def skip(question: OperatorQuestion) -> str | None:
         nonlocal failed
-        if question.about is Asked.AFTER_FAILURE:
+        if question.about is QuestionKind.AFTER_FAILURE:
             failed = True
             return again
-        return SKIP if failed and question.about is Asked.BEGIN else None
+        return SKIP if failed and question.about is QuestionKind.BEGIN else None
 
     return skip
 
@@ -159,7 +161,7 @@ async def test_a_step_that_failed_is_passed_over_on_purpose_with_what_is_to_be_d
         await session.walk("wheels")
         await session.walk("bumpers", skipped=("wheels",))
     assert barring(session.progress) == []
-    assert session.outcome("wheels") is Outcome.SKIPPED
+    assert session.outcome("wheels") is StepOutcome.SKIPPED
     assert session.to_do("wheels") == ("The right motor turns the wrong way: exchange its two leads",)
 
 
@@ -183,7 +185,7 @@ async def test_skipped_steps_are_noted_and_do_not_wait_any_longer(tmp_path: Path
         session = Session(workshop, tmp_path)
         await session.walk("identity", skipped=("sensors", "infrared"))
         await session.walk("lifted", skipped=("identity",))
-    assert session.outcome("identity") is Outcome.PASSED
+    assert session.outcome("identity") is StepOutcome.PASSED
     assert [step.name for step in open_steps(session.progress)] == ["modes", "wheels", "stop", "bumpers"]
     assert not passed(session.progress, STEPS)
 

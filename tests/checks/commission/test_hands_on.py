@@ -5,8 +5,8 @@ from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.checks.commission.checklist import barring
-from kurt2rt.checks.commission.operator import SKIP, Asked, Question, Tone
-from kurt2rt.checks.commission.step import Outcome
+from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind, Tone
+from kurt2rt.checks.commission.step import StepOutcome
 from tests.checks.commission.wired_end import Wiring
 from tests.checks.commission.workshop import BASE, CODEC, Session, Workshop, with_channels
 
@@ -19,7 +19,7 @@ async def test_sensors_on_one_anothers_channels_are_found_where_they_are(tmp_pat
         await session.walk("sensors")
     found = session.progress.findings.channels
     assert (found["s1"], found["s2"], found["s11"]) == ("ADC08", "ADC07", "BDC10")
-    assert session.outcome("sensors") is Outcome.PASSED
+    assert session.outcome("sensors") is StepOutcome.PASSED
     table = session.measured("sensors")
     assert len(table) == 18
     assert table[0] == "s1 left front: ADC08, the table says ADC07"
@@ -42,7 +42,7 @@ async def test_no_hand_is_asked_for_while_no_channel_is_heard(tmp_path: Path) ->
         session = Session(workshop, tmp_path)
         session.knows(channels={"s9": "BDC04"})
         await session.walk("sensors")
-    assert Asked.HAND not in [question.about for question in session.person.asked]
+    assert QuestionKind.HAND not in [question.about for question in session.person.asked]
     assert session.to_do("sensors") == (
         "No analog channel is heard: is the robot on? Step identity tells which frames come",
     )
@@ -50,8 +50,8 @@ async def test_no_hand_is_asked_for_while_no_channel_is_heard(tmp_path: Path) ->
 
 
 async def test_a_sensor_that_is_skipped_at_once_is_neither_found_nor_dead(tmp_path: Path) -> None:
-    def skip(question: Question) -> str | None:
-        return SKIP if question.about is Asked.HAND and question.subject != "s9" else None
+    def skip(question: OperatorQuestion) -> str | None:
+        return SKIP if question.about is QuestionKind.HAND and question.subject != "s9" else None
 
     with Workshop() as workshop:
         session = Session(workshop, tmp_path, skip)
@@ -68,8 +68,8 @@ async def test_what_was_found_before_needs_no_hand_again(tmp_path: Path) -> None
         session = Session(workshop, tmp_path)
         session.knows(channels={each.name: each.channel for each in BASE.infrared.sensors if each.name != "s9"})
         await session.walk("sensors")
-    assert [question.subject for question in session.person.asked if question.about is Asked.HAND] == ["s9"]
-    assert session.outcome("sensors") is Outcome.PASSED
+    assert [question.subject for question in session.person.asked if question.about is QuestionKind.HAND] == ["s9"]
+    assert session.outcome("sensors") is StepOutcome.PASSED
     assert len(session.progress.findings.channels) == 18
 
 
@@ -82,8 +82,8 @@ class Clumsy:
     held_before: str
     erred: bool = False
 
-    def __call__(self, question: Question) -> str | None:
-        if question.about is not Asked.HAND:
+    def __call__(self, question: OperatorQuestion) -> str | None:
+        if question.about is not QuestionKind.HAND:
             return None
         if "[f]" in str([f"[{choice.key}]" for choice in question.choices]):
             return "f"
@@ -106,8 +106,8 @@ async def test_a_hand_before_the_wrong_sensor_is_forgotten_when_the_right_ones_t
 async def test_a_hand_that_covers_two_sensors_names_none_of_them(tmp_path: Path) -> None:
     tried: list[str] = []
 
-    def cover(question: Question) -> str | None:
-        if question.about is not Asked.HAND:
+    def cover(question: OperatorQuestion) -> str | None:
+        if question.about is not QuestionKind.HAND:
             return None
         tried.append(question.subject)
         if question.subject != "s9" or tried.count("s9") > 1:
@@ -163,7 +163,7 @@ async def test_two_bumpers_that_answer_together_are_asked_for_again(tmp_path: Pa
         await session.walk("bumpers")
     told, _ = session.person.lines(Tone.BAD)
     assert told == ("bit 1 answered, but that is front left's: press front centre, or skip it and repeat the step")
-    assert session.outcome("bumpers") is Outcome.FAILED
+    assert session.outcome("bumpers") is StepOutcome.FAILED
 
 
 async def test_a_robot_whose_bumpers_are_not_heard_of_is_told_so(tmp_path: Path) -> None:

@@ -9,8 +9,8 @@ from hal.bus import open_bus
 from hal.codec import load_codec
 from hal.control import Mode, SpeedControl, control_frame
 from kurt2rt.checks.commission.checklist import barring
-from kurt2rt.checks.commission.operator import Asked, Question
-from kurt2rt.checks.commission.step import Outcome
+from kurt2rt.checks.commission.operator import OperatorQuestion, QuestionKind
+from kurt2rt.checks.commission.step import StepOutcome
 from tests.checks.commission.wired_end import Wiring
 from tests.checks.commission.workshop import Session, Workshop
 
@@ -73,8 +73,8 @@ async def test_junk_strangers_and_another_sender_of_control_are_found(tmp_path: 
         stranger = open_bus(workshop.spec)
         port = stranger.telemetry_port()
 
-        def disturb(question: Question) -> None:
-            if question.about is not Asked.BEGIN:
+        def disturb(question: OperatorQuestion) -> None:
+            if question.about is not QuestionKind.BEGIN:
                 return
             port.send(can.Message(arbitration_id=0x123, is_extended_id=False, data=b"hello"))
             port.send(can.Message(arbitration_id=0x12345, is_extended_id=True, data=b""))
@@ -84,7 +84,7 @@ async def test_junk_strangers_and_another_sender_of_control_are_found(tmp_path: 
         session = Session(workshop, tmp_path, disturb)
         await session.walk("identity")
         stranger.shutdown()
-    assert session.outcome("identity") is Outcome.FAILED
+    assert session.outcome("identity") is StepOutcome.FAILED
     assert session.to_do("identity") == (
         "1 x ADC00 above 1023 counts: find who sends it, or the loose contact",
         "1 x extended or remote frames: find who sends it, or the loose contact",
@@ -97,8 +97,8 @@ async def test_two_robots_on_one_bus_are_found(tmp_path: Path) -> None:
     with Workshop() as workshop:
         other = open_bus(workshop.spec)
 
-        def join(question: Question) -> None:
-            if question.about is Asked.BEGIN:
+        def join(question: OperatorQuestion) -> None:
+            if question.about is QuestionKind.BEGIN:
                 other.telemetry_port().send(CODEC.message("INFO_1").pack(7, 1, 0))
 
         session = Session(workshop, tmp_path, join)
@@ -114,8 +114,8 @@ async def test_a_robot_without_its_second_controller_can_turn_its_wheels_all_the
     with Workshop(wiring=Wiring(silent_ids=second)) as workshop:
         session = Session(workshop, tmp_path)
         await session.walk("identity", "modes")
-    assert session.outcome("identity") is Outcome.FAILED
-    assert session.outcome("modes") is Outcome.PASSED
+    assert session.outcome("identity") is StepOutcome.FAILED
+    assert session.outcome("modes") is StepOutcome.PASSED
     assert any("s3, s4, s7, s8" in line for line in session.to_do("identity"))
 
 
@@ -124,4 +124,4 @@ async def test_the_wheels_turn_also_when_they_are_all_that_is_tried(tmp_path: Pa
     with Workshop(wiring=Wiring(silent_ids=second)) as workshop:
         session = Session(workshop, tmp_path)
         await session.walk("modes")
-    assert session.outcome("modes") is Outcome.PASSED
+    assert session.outcome("modes") is StepOutcome.PASSED

@@ -8,20 +8,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hal.robot_settings import InfraredSettings, RobotSettings
-from kurt2rt.checks.commission.ir_calibration import Law, LawError, Reading, fit_law
+from kurt2rt.checks.commission.ir_calibration import IrCalibrationError, IrLaw, IrReading, fit_law
 from kurt2rt.checks.commission.ir_calibration_step import DISTANCES_M
-from kurt2rt.checks.commission.operator import SKIP, Asked, Question
-from kurt2rt.checks.commission.step import Outcome
+from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind
+from kurt2rt.checks.commission.step import StepOutcome
 from tests.checks.commission.workshop import BASE, Session, Workshop
 from tests.examples import examples
 
-USUAL = Law(86.016, 0.04, 64.4)
+USUAL = IrLaw(86.016, 0.04, 64.4)
 
 
-def readings(law: Law, noise: float = 0.0, seed: int = 1) -> list[Reading]:
+def readings(law: IrLaw, noise: float = 0.0, seed: int = 1) -> list[IrReading]:
     chance = random.Random(seed)
     return [
-        Reading("s11", distance_m, law.counts_at(distance_m) * (1.0 + noise * chance.uniform(-1.0, 1.0)))
+        IrReading("s11", distance_m, law.counts_at(distance_m) * (1.0 + noise * chance.uniform(-1.0, 1.0)))
         for distance_m in DISTANCES_M
     ]
 
@@ -40,12 +40,12 @@ def test_exact_readings_give_the_law_back() -> None:
 
 @examples(40)
 @given(
-    st.builds(Law, st.floats(70.0, 110.0), st.floats(0.02, 0.06), st.floats(30.0, 80.0)).filter(
+    st.builds(IrLaw, st.floats(70.0, 110.0), st.floats(0.02, 0.06), st.floats(30.0, 80.0)).filter(
         lambda law: 260.0 < law.counts_at(0.10) < 990.0 and 20.0 < law.counts_at(0.60) < 0.35 * law.counts_at(0.10)
     ),
     st.integers(0, 9),
 )
-def test_any_plausible_law_is_found_from_noisy_readings(law: Law, seed: int) -> None:
+def test_any_plausible_law_is_found_from_noisy_readings(law: IrLaw, seed: int) -> None:
     """By what counts: the readings it predicts, a ruler's error apart."""
     fit = fit_law(readings(law, 0.01, seed))
     for distance_m in (0.12, 0.25, 0.35, 0.45):
@@ -66,23 +66,23 @@ def test_one_reading_with_the_board_elsewhere_is_left_out(at: int) -> None:
     ("taken", "why"),
     [
         (
-            [Reading("s11", d, 70.0) for d in DISTANCES_M],
+            [IrReading("s11", d, 70.0) for d in DISTANCES_M],
             "70 counts at 0.10 m and 70 at 0.60 m: they hardly fall",
         ),
-        ([Reading("s11", d, 400.0 - 100.0 * d) for d in DISTANCES_M], "they hardly fall with distance"),
+        ([IrReading("s11", d, 400.0 - 100.0 * d) for d in DISTANCES_M], "they hardly fall with distance"),
         (readings(USUAL)[::-1][:3], "4 distances at least"),
         ([each for each in readings(USUAL) if each.distance_m >= 0.2], "4 distances at least, from 0.15 m or less"),
-        (readings(Law(25.0, 0.04, 0.0)), "179 counts at 0.10 m, plausible are 250 to 1000"),
+        (readings(IrLaw(25.0, 0.04, 0.0)), "179 counts at 0.10 m, plausible are 250 to 1000"),
         (
-            [Reading("s11", d, c) for d, c in zip(DISTANCES_M, (540, 100, 500, 90, 300, 60, 200), strict=True)],
+            [IrReading("s11", d, c) for d, c in zip(DISTANCES_M, (540, 100, 500, 90, 300, 60, 200), strict=True)],
             "scatter too much around any law",
         ),
-        ([Reading("s11", d, USUAL.counts_at(0.7 - d)) for d in DISTANCES_M], "they hardly fall with distance"),
+        ([IrReading("s11", d, USUAL.counts_at(0.7 - d)) for d in DISTANCES_M], "they hardly fall with distance"),
     ],
     ids=["dead", "flat", "too few", "too far", "too weak", "scatter", "upside down"],
 )
-def test_what_is_no_law_is_refused(taken: list[Reading], why: str) -> None:
-    with pytest.raises(LawError, match=why):
+def test_what_is_no_law_is_refused(taken: list[IrReading], why: str) -> None:
+    with pytest.raises(IrCalibrationError, match=why):
         fit_law(taken)
 
 
@@ -107,7 +107,7 @@ async def test_the_law_of_other_sensors_is_found(tmp_path: Path, changes: dict[s
     with Workshop(true, seed=4) as workshop:
         session = Session(workshop, tmp_path, answer_which("s11 s1 s5"))
         await session.walk("infrared")
-    assert session.outcome("infrared") is Outcome.PASSED
+    assert session.outcome("infrared") is StepOutcome.PASSED
     found = session.progress.findings.law
     assert found is not None
     fitted = InfraredSettings.model_construct(**{**BASE.infrared.model_dump(), **found.model_dump()})
@@ -128,15 +128,15 @@ class Which:
     def __init__(self, names: str) -> None:
         self._names = names
 
-    def __call__(self, question: Question) -> str | None:
-        return self._names if question.about is Asked.WHICH else None
+    def __call__(self, question: OperatorQuestion) -> str | None:
+        return self._names if question.about is QuestionKind.WHICH else None
 
 
 async def test_a_board_at_the_wrong_distance_is_asked_for_once_more(tmp_path: Path) -> None:
     wrong = iter([True, False])
 
-    def err(question: Question) -> str | None:
-        if question.about is Asked.BOARD and question.distance_m == 0.30 and next(wrong, False):
+    def err(question: OperatorQuestion) -> str | None:
+        if question.about is QuestionKind.BOARD and question.distance_m == 0.30 and next(wrong, False):
             workshop.hold_before(question.subject, 0.15)
             return ""
         return None
@@ -146,13 +146,13 @@ async def test_a_board_at_the_wrong_distance_is_asked_for_once_more(tmp_path: Pa
         await session.walk("infrared")
     (again,) = [question.text for question in session.person.asked if "do not fit" in question.text]
     assert again.endswith("Once more: The board 0.30 m before front centre (s11).")
-    assert session.outcome("infrared") is Outcome.PASSED
+    assert session.outcome("infrared") is StepOutcome.PASSED
     assert not any("left out" in line for line in session.measured("infrared"))
 
 
 async def test_a_reading_that_stays_odd_is_left_out_and_shown(tmp_path: Path) -> None:
-    def err(question: Question) -> str | None:
-        if question.about is Asked.BOARD and question.distance_m == 0.30:
+    def err(question: OperatorQuestion) -> str | None:
+        if question.about is QuestionKind.BOARD and question.distance_m == 0.30:
             if question.text.startswith("The board"):
                 workshop.hold_before(question.subject, 0.15)
                 return ""
@@ -164,24 +164,24 @@ async def test_a_reading_that_stays_odd_is_left_out_and_shown(tmp_path: Path) ->
         await session.walk("infrared")
     (odd,) = [line for line in session.measured("infrared") if "left out" in line]
     assert odd.startswith("s11 at 0.30 m: 3")
-    assert session.outcome("infrared") is Outcome.PASSED
+    assert session.outcome("infrared") is StepOutcome.PASSED
 
 
 async def test_no_law_is_made_from_a_board_that_was_never_there(tmp_path: Path) -> None:
-    def forget(question: Question) -> str | None:
-        return "" if question.about is Asked.BOARD else None
+    def forget(question: OperatorQuestion) -> str | None:
+        return "" if question.about is QuestionKind.BOARD else None
 
     with Workshop() as workshop:
         session = Session(workshop, tmp_path, forget)
         await session.walk("infrared")
-    assert session.outcome("infrared") is Outcome.FAILED
+    assert session.outcome("infrared") is StepOutcome.FAILED
     assert session.progress.findings.law is None
     assert session.to_do("infrared")[0].startswith("No law was fitted: ")
 
 
 async def test_a_room_that_was_not_clear_makes_no_law(tmp_path: Path) -> None:
-    def stand_in_the_way(question: Question) -> str | None:
-        if question.about is not Asked.CLEAR:
+    def stand_in_the_way(question: OperatorQuestion) -> str | None:
+        if question.about is not QuestionKind.CLEAR:
             return None
         workshop.hold_before("s11", 0.2)
         return ""
@@ -197,10 +197,10 @@ async def test_a_room_that_was_not_clear_makes_no_law(tmp_path: Path) -> None:
 async def test_a_sensor_that_does_not_exist_is_asked_for_again(tmp_path: Path) -> None:
     answers = iter(["s99", "s1"])
 
-    def choose(question: Question) -> str | None:
-        return next(answers) if question.about is Asked.WHICH else None
+    def choose(question: OperatorQuestion) -> str | None:
+        return next(answers) if question.about is QuestionKind.WHICH else None
 
     with Workshop() as workshop:
         session = Session(workshop, tmp_path, choose)
         await session.walk("infrared")
-    assert {question.subject for question in session.person.asked if question.about is Asked.BOARD} == {"s1"}
+    assert {question.subject for question in session.person.asked if question.about is QuestionKind.BOARD} == {"s1"}

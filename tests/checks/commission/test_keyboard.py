@@ -10,9 +10,9 @@ import anyio
 import pytest
 from rich.console import Console
 
-from kurt2rt.checks.commission.console_operator import TypingPerson
+from kurt2rt.checks.commission.console_operator import ConsoleOperator
 from kurt2rt.checks.commission.keyboard import Keyboard
-from kurt2rt.checks.commission.operator import Asked, Choice, LeftError, Question, Tone
+from kurt2rt.checks.commission.operator import AbortedError, AnswerChoice, OperatorQuestion, QuestionKind, Tone
 
 
 async def test_a_pipe_keeps_each_line_for_its_question() -> None:
@@ -70,12 +70,14 @@ async def test_the_loop_goes_on_while_somebody_thinks() -> None:
 
 async def test_a_question_is_asked_until_it_is_answered_and_lines_can_be_told_apart_without_colours() -> None:
     screen = io.StringIO()
-    person = TypingPerson(io.StringIO("maybe\n S \n"), Console(file=screen, no_color=True, width=200))
+    person = ConsoleOperator(io.StringIO("maybe\n S \n"), Console(file=screen, no_color=True, width=200))
     person.tell("Which?", Tone.TITLE)
     person.tell("Exchange them", Tone.TO_DO)
-    question = Question(Asked.MOVE, "The wheels turn.", (Choice("", "turn them"), Choice("s", "skip this step")))
+    question = OperatorQuestion(
+        QuestionKind.MOVE, "The wheels turn.", (AnswerChoice("", "turn them"), AnswerChoice("s", "skip this step"))
+    )
     assert await person.answer(question) == "s"
-    with pytest.raises(LeftError):
+    with pytest.raises(AbortedError):
         await person.answer(question)
     said = screen.getvalue()
     assert said.startswith("\nWhich?\n  TO DO: Exchange them\n")
@@ -86,9 +88,11 @@ async def test_a_question_is_asked_until_it_is_answered_and_lines_can_be_told_ap
 async def test_words_stay_whole_on_a_narrow_terminal() -> None:
     screen = io.StringIO()
     console = Console(file=screen, no_color=True, width=40, force_terminal=True, legacy_windows=False)
-    person = TypingPerson(io.StringIO("\n"), console)
+    person = ConsoleOperator(io.StringIO("\n"), console)
     person.tell("Why: Frames that are missing, slow or junk would stop the robot later.")
-    question = Question(Asked.BEGIN, "Ready?", (Choice("", "begin"), Choice("s", "skip this step")))
+    question = OperatorQuestion(
+        QuestionKind.BEGIN, "Ready?", (AnswerChoice("", "begin"), AnswerChoice("s", "skip this step"))
+    )
     assert await person.answer(question) == ""
     said = re.sub(r"\x1b\[\d*m", "", screen.getvalue())
     assert [line.rstrip() for line in said.splitlines()][:5] == [

@@ -16,7 +16,7 @@ from kurt2rt.checks.commission.checklist import STEPS
 from kurt2rt.checks.commission.findings import Findings, LawFound
 from kurt2rt.checks.commission.progress import Progress, StepRecord
 from kurt2rt.checks.commission.robot_file import commissioned, robot_file, write_robot_file
-from kurt2rt.checks.commission.step import Outcome
+from kurt2rt.checks.commission.step import StepOutcome
 from kurt2rt.service.settings import load_service
 from tests.checks.commission.wired_end import Wiring
 from tests.checks.commission.workshop import BASE, TODAY, Session, Workshop, with_channels
@@ -32,7 +32,7 @@ LAW = LawFound(
 )
 
 
-def progress(findings: Findings, outcome: Outcome = Outcome.PASSED, **other: StepRecord) -> Progress:
+def progress(findings: Findings, outcome: StepOutcome = StepOutcome.PASSED, **other: StepRecord) -> Progress:
     steps = {step.name: StepRecord(outcome=outcome, at=TODAY, who="anna") for step in STEPS}
     return Progress(name="robbie", base="kurt2", bus="can0", findings=findings, steps={**steps, **other})
 
@@ -69,7 +69,7 @@ def test_the_file_is_whole_and_says_what_was_measured_and_what_was_not() -> None
         bumper_bits={"front left": 1, "front centre": 0},
         law=LAW,
     )
-    failed = StepRecord(outcome=Outcome.FAILED, at=TODAY, who="anna", to_do=("s9 answers on no channel",))
+    failed = StepRecord(outcome=StepOutcome.FAILED, at=TODAY, who="anna", to_do=("s9 answers on no channel",))
     text = robot_file(BASE, progress(findings, sensors=failed), STEPS)
     assert text.startswith("# robbie, commissioned with kurt2rt commission can0: NOT PASSED\n")
     for line in (

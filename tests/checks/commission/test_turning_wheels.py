@@ -9,10 +9,10 @@ from hal.guard_reason import GuardReason
 from hal.robot_settings import RobotSettings, SpeedMode
 from kurt2rt.checks.commission.checklist import barring
 from kurt2rt.checks.commission.moving import DRIVE_S
-from kurt2rt.checks.commission.operator import SKIP, Asked, Question, Tone
-from kurt2rt.checks.commission.step import Outcome
+from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind, Tone
+from kurt2rt.checks.commission.step import StepOutcome
 from kurt2rt.checks.commission.test_stand import UNANSWERED
-from kurt2rt.checks.commission.wiring import Motion, Trial, parse_seen, what_to_rewire
+from kurt2rt.checks.commission.wiring import Motion, WheelTrial, parse_seen, what_to_rewire
 from tests.checks.commission.wired_end import Wiring
 from tests.checks.commission.workshop import BASE, Instead, Session, Workshop
 
@@ -41,7 +41,7 @@ async def turned(
 )
 async def test_old_firmware_is_driven_in_the_mode_that_it_knows(tmp_path: Path, modes: tuple[SpeedMode, ...]) -> None:
     session = await turned(tmp_path, "modes", wiring=Wiring(modes=modes))
-    assert session.outcome("modes") is Outcome.PASSED
+    assert session.outcome("modes") is StepOutcome.PASSED
     assert session.progress.findings.speed_mode is modes[0]
     assert session.measured("modes")[0] == "SPEED_CM: no answer"
 
@@ -90,15 +90,15 @@ async def test_wheels_with_other_encoders_seem_slow_and_the_settings_to_mend_are
 
 async def test_what_is_wrong_with_a_mode_that_is_not_needed_is_no_matter(tmp_path: Path) -> None:
     session = await turned(tmp_path, "modes", wiring=Wiring(wild_modes=[SpeedMode.SPEED]))
-    assert session.outcome("modes") is Outcome.PASSED
+    assert session.outcome("modes") is StepOutcome.PASSED
     assert "SPEED: not tried out, the wheels ran away" in session.measured("modes")
 
 
 async def test_a_mode_can_be_left_out(tmp_path: Path) -> None:
     """Where it made the controller crash, for one."""
 
-    def leave_out(question: Question) -> str | None:
-        return SKIP if question.about is Asked.MOVE and "SPEED_CM" in question.text else None
+    def leave_out(question: OperatorQuestion) -> str | None:
+        return SKIP if question.about is QuestionKind.MOVE and "SPEED_CM" in question.text else None
 
     session = await turned(tmp_path, "modes", instead=leave_out)
     assert session.measured("modes")[0] == "SPEED_CM: left out"
@@ -108,15 +108,15 @@ async def test_a_mode_can_be_left_out(tmp_path: Path) -> None:
 async def test_a_controller_that_crashes_is_not_driven_on(tmp_path: Path) -> None:
     with Workshop() as workshop:
 
-        def crash(question: Question) -> None:
-            if question.about is Asked.MOVE:
+        def crash(question: OperatorQuestion) -> None:
+            if question.about is QuestionKind.MOVE:
                 workshop.robot.controller.crashed = True
 
         session = Session(workshop, tmp_path, crash)
         await session.walk("modes")
     (told,) = session.to_do("modes")
     assert told.startswith("The wheels are not heard of any more after the brake: SWITCH THE MOTORS OFF")
-    assert [question.about for question in session.person.asked].count(Asked.MOVE) == 1
+    assert [question.about for question in session.person.asked].count(QuestionKind.MOVE) == 1
 
 
 async def test_somebody_else_on_the_bus_ends_a_drive(tmp_path: Path) -> None:
@@ -125,7 +125,7 @@ async def test_somebody_else_on_the_bus_ends_a_drive(tmp_path: Path) -> None:
         workshop.stranger = open_bus(workshop.spec)
         await session.walk("modes")
     assert any(GuardReason.FOREIGN_CONTROL in line for line in session.to_do("modes"))
-    assert session.outcome("modes") is Outcome.FAILED
+    assert session.outcome("modes") is StepOutcome.FAILED
 
 
 # Sides and directions
@@ -185,16 +185,18 @@ async def test_what_is_wired_wrong_is_told_by_its_name(tmp_path: Path, wiring: W
 
 async def test_a_side_that_nothing_is_counted_of_does_not_turn_for_long(tmp_path: Path) -> None:
     """The speed loop of a real controller would turn it faster and faster."""
-    asked_s: dict[Asked, list[float]] = {}
+    asked_s: dict[QuestionKind, list[float]] = {}
     with Workshop(wiring=Wiring(dead_encoders=[0])) as workshop:
 
-        def note(question: Question) -> None:
+        def note(question: OperatorQuestion) -> None:
             asked_s.setdefault(question.about, []).append(workshop.robot.time_s)
 
         session = Session(workshop, tmp_path, note)
         session.knows(speed_mode=SpeedMode.SPEED_CM)
         await session.walk("wheels", "stop")
-    took_s = [seen_s - move_s for move_s, seen_s in zip(asked_s[Asked.MOVE], asked_s[Asked.SEEN], strict=False)]
+    took_s = [
+        seen_s - move_s for move_s, seen_s in zip(asked_s[QuestionKind.MOVE], asked_s[QuestionKind.SEEN], strict=False)
+    ]
     assert max(took_s[:2]) < DRIVE_S < min(took_s[2:])
     assert session.to_do("stop") == (f"The wheels did not turn, so nothing could stop them: {UNANSWERED}",)
 
@@ -210,19 +212,19 @@ async def test_two_mistakes_that_hide_each_other_from_the_encoders_are_seen_by_t
 async def test_enter_alone_is_no_answer_to_what_was_seen(tmp_path: Path) -> None:
     hurried = iter(["", "y"])
 
-    def hurry(question: Question) -> str | None:
-        return next(hurried, None) if question.about is Asked.SEEN else None
+    def hurry(question: OperatorQuestion) -> str | None:
+        return next(hurried, None) if question.about is QuestionKind.SEEN else None
 
     session = await turned(tmp_path, "wheels", instead=hurry)
     assert session.person.lines(Tone.BAD) == ["Two words, please, such as: left forward. Or: none, or y."]
-    assert session.outcome("wheels") is Outcome.PASSED
+    assert session.outcome("wheels") is StepOutcome.PASSED
 
 
 async def test_where_encoders_disagree_yes_is_no_answer(tmp_path: Path) -> None:
     hurried = iter(["y", "dunno", "left", "left forward"])
 
-    def hurry(question: Question) -> str | None:
-        return next(hurried, None) if question.about is Asked.SEEN else None
+    def hurry(question: OperatorQuestion) -> str | None:
+        return next(hurried, None) if question.about is QuestionKind.SEEN else None
 
     session = await turned(tmp_path, "wheels", wiring=Wiring(reversed_encoders=[0]), instead=hurry)
     assert session.person.lines(Tone.BAD).count("Two words, please, such as: left forward. Or: none.") == 3
@@ -250,7 +252,7 @@ def test_what_a_person_saw_is_two_words(answer: str, seen: Motion | None) -> Non
 
 def test_an_order_that_turns_both_sides_is_a_matter_of_both_motors() -> None:
     both = [
-        Trial(ordered, Motion(sign, sign), Motion(sign, sign))
+        WheelTrial(ordered, Motion(sign, sign), Motion(sign, sign))
         for sign in (1, -1)
         for ordered in (Motion(sign, 0), Motion(0, sign))
     ]
@@ -263,10 +265,10 @@ def test_an_order_that_turns_both_sides_is_a_matter_of_both_motors() -> None:
 def test_a_motor_that_does_not_turn_is_no_matter_of_its_encoder() -> None:
     still = Motion(0, 0)
     trials = [
-        Trial(Motion(1, 0), still, still),
-        Trial(Motion(-1, 0), still, still),
-        Trial(Motion(0, 1), Motion(0, 1), Motion(0, 1)),
-        Trial(Motion(0, -1), Motion(0, -1), Motion(0, -1)),
+        WheelTrial(Motion(1, 0), still, still),
+        WheelTrial(Motion(-1, 0), still, still),
+        WheelTrial(Motion(0, 1), Motion(0, 1), Motion(0, 1)),
+        WheelTrial(Motion(0, -1), Motion(0, -1), Motion(0, -1)),
     ]
     assert what_to_rewire(trials) == ["The left motor does not turn: check its plug, its fuse and its supply"]
 
@@ -277,7 +279,7 @@ def test_a_motor_that_does_not_turn_is_no_matter_of_its_encoder() -> None:
 async def test_brake_and_watchdog_are_timed(tmp_path: Path) -> None:
     slow = BASE.model_copy(update={"motors": BASE.motors.model_copy(update={"controller_watchdog_s": 0.45})})
     session = await turned(tmp_path, "stop", true=slow)
-    assert session.outcome("stop") is Outcome.PASSED
+    assert session.outcome("stop") is StepOutcome.PASSED
     assert session.progress.findings.controller_watchdog_s == pytest.approx(0.45, abs=0.03)
     braked, silent = session.measured("stop")
     assert braked == "braked: the wheels stood 50 ms after the frame"
@@ -300,7 +302,7 @@ async def test_a_brake_that_does_not_hold_says_to_switch_the_motors_off(tmp_path
     never = BASE.model_copy(update={"motors": BASE.motors.model_copy(update={"controller_watchdog_s": 9.0})})
     session = await turned(tmp_path, "modes", wiring=Wiring(brake_works=False), true=never)
     assert session.person.lines(Tone.BAD)[0].startswith("The wheels still turn after the brake: SWITCH THE MOTORS OFF")
-    assert session.outcome("modes") is Outcome.FAILED
+    assert session.outcome("modes") is StepOutcome.FAILED
 
 
 async def test_an_alarm_that_brakes_while_nothing_is_sent_is_not_taken_for_the_controllers_watchdog(

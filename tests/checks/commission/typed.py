@@ -12,7 +12,7 @@ from hal.robot_settings import SpeedMode, load_robot
 from kurt2rt.checks.commission.checklist import STEPS
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.progress import Progress, StepRecord, load_progress
-from kurt2rt.checks.commission.step import Outcome
+from kurt2rt.checks.commission.step import StepOutcome
 from kurt2rt.cli.main import main
 from simbridge.realtime import RealtimeSimulation
 from tests.checks.commission.workshop import TODAY, Workshop
@@ -64,7 +64,9 @@ def live(workshop: Workshop) -> Iterator[None]:
 def earlier(folder: Path, *but: str) -> None:
     """A session before this one that passed all steps but some."""
     steps = {
-        step.name: StepRecord(outcome=Outcome.PASSED, at=TODAY, who="anna") for step in STEPS if step.name not in but
+        step.name: StepRecord(outcome=StepOutcome.PASSED, at=TODAY, who="anna")
+        for step in STEPS
+        if step.name not in but
     }
     found = Findings(hardware_id=SIMULATED_HARDWARE_ID, speed_mode=SpeedMode.SPEED)
     Progress(name="robbie", base="kurt2", bus="can0", findings=found, steps=steps).save(folder / PROGRESS)

@@ -14,10 +14,10 @@ from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings, SensorSettings, load_robot
 from kurt2rt.checks.commission.checklist import STEPS, Checklist, step_named
 from kurt2rt.checks.commission.listener import Listener
-from kurt2rt.checks.commission.operator import LEAVE, SKIP, Asked, LeftError, Question, Tone
+from kurt2rt.checks.commission.operator import LEAVE, SKIP, AbortedError, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.progress import Progress
-from kurt2rt.checks.commission.step import Outcome, Step
-from kurt2rt.checks.commission.test_stand import Bench
+from kurt2rt.checks.commission.step import CommissionStep, StepOutcome
+from kurt2rt.checks.commission.test_stand import TestStand
 from kurt2rt.checks.commission.wheels_off_ground_step import WORDS
 from kurt2rt.platform.clock import LockstepClock
 from simbridge.simulated_robot import SimulatedRobot
@@ -33,7 +33,7 @@ _PARKED_M = (0.5, 0.5)
 
 _numbers = itertools.count()
 
-Instead = Callable[[Question], str | None]
+Instead = Callable[[OperatorQuestion], str | None]
 
 
 class Workshop:
@@ -122,7 +122,7 @@ class SimulatedPerson:
     def __init__(self, workshop: Workshop, instead: Instead = lambda _: None) -> None:
         self._workshop = workshop
         self._instead = instead
-        self.asked: list[Question] = []
+        self.asked: list[OperatorQuestion] = []
         self.told: list[tuple[Tone, str]] = []
 
     def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
@@ -131,7 +131,7 @@ class SimulatedPerson:
     def lines(self, tone: Tone) -> list[str]:
         return [text for its, text in self.told if its is tone]
 
-    async def answer(self, question: Question) -> str:
+    async def answer(self, question: OperatorQuestion) -> str:
         tried = [each for each in self.asked if (each.about, each.subject) == (question.about, question.subject)]
         self.asked.append(question)
         assert len(self.asked) < 200, f"nobody gets past: {question.text}"
@@ -140,28 +140,28 @@ class SimulatedPerson:
             return instead
         return self._do(question, len(tried))
 
-    def _do(self, question: Question, tried: int) -> str:
+    def _do(self, question: OperatorQuestion, tried: int) -> str:
         workshop = self._workshop
         match question.about:
-            case Asked.LIFTED:
+            case QuestionKind.LIFTED:
                 workshop.robot.lifted = True
                 return WORDS
-            case Asked.MOVE:
+            case QuestionKind.MOVE:
                 workshop.take_peaks()
-            case Asked.SEEN:
+            case QuestionKind.SEEN:
                 return _in_words(*workshop.take_peaks())
-            case Asked.CLEAR:
+            case QuestionKind.CLEAR:
                 workshop.take_away()
-            case Asked.UNTOUCHED:
+            case QuestionKind.UNTOUCHED:
                 workshop.wiring.pressed = 0
-            case Asked.HAND:
+            case QuestionKind.HAND:
                 workshop.hold_before(question.subject, 0.15)
                 if tried:
                     return SKIP
-            case Asked.BOARD:
+            case QuestionKind.BOARD:
                 assert question.distance_m is not None
                 workshop.hold_before(question.subject, question.distance_m)
-            case Asked.BUMPER:
+            case QuestionKind.BUMPER:
                 bits = {bumper.name: bit for bit, bumper in enumerate(BASE.bumpers)} | dict(workshop.wiring.bumper_bits)
                 workshop.wiring.pressed = 1 << bits[question.subject]
                 if tried:
@@ -187,11 +187,11 @@ class Session:
 
     async def walk(self, *names: str, skipped: Sequence[str] = ()) -> Progress:
         """Take the named steps, all when none is named; returns how far it came."""
-        chosen: list[Step] = [step_named(name) for name in names] or list(STEPS)
+        chosen: list[CommissionStep] = [step_named(name) for name in names] or list(STEPS)
         spec = self.workshop.spec
         with ExitStack() as ending:
             bench = ending.enter_context(
-                Bench(
+                TestStand(
                     BASE,
                     lambda settings: Kurt2(settings, open_bus(spec)),
                     Listener(open_bus(spec), CODEC),
@@ -203,13 +203,13 @@ class Session:
             checklist = Checklist(bench, self.progress, self.path, "anna", lambda: TODAY)
             try:
                 await checklist.walk(chosen, [step_named(name) for name in skipped])
-            except LeftError:
+            except AbortedError:
                 self.person.tell("left")
             finally:
                 self.progress = checklist.progress
         return self.progress
 
-    def outcome(self, step: str) -> Outcome:
+    def outcome(self, step: str) -> StepOutcome:
         return self.progress.steps[step].outcome
 
     def to_do(self, step: str) -> tuple[str, ...]:
@@ -227,7 +227,7 @@ def with_channels(**channels: str) -> RobotSettings:
     return BASE.model_copy(update={"infrared": BASE.infrared.model_copy(update={"sensors": sensors})})
 
 
-def leaves_at(about: Asked) -> Instead:
+def leaves_at(about: QuestionKind) -> Instead:
     """A person who goes home at a question."""
     return lambda question: LEAVE if question.about is about else None
 

@@ -7,7 +7,7 @@ import pytest
 
 from hal.robot_settings import load_robot
 from kurt2rt.checks.doctor.can_bus import BIT_RATE_BIT_S, check_can_interfaces, check_can_kernel, check_vcan
-from kurt2rt.checks.doctor.check_result import FindingCode, Status
+from kurt2rt.checks.doctor.check_result import CheckStatus, FindingCode
 
 UP = "0x400c1"
 DOWN = "0x400c0"
@@ -60,25 +60,25 @@ def test_the_bit_rate_to_copy_is_that_of_the_robot() -> None:
 
 def test_the_kernel_of_this_machine_speaks_can_or_we_are_told_how() -> None:
     finding = check_can_kernel()
-    assert finding.status in (Status.OK, Status.MISSING)
-    assert (finding.code is FindingCode.CAN) == (finding.status is Status.OK)
+    assert finding.status in (CheckStatus.OK, CheckStatus.MISSING)
+    assert (finding.code is FindingCode.CAN) == (finding.status is CheckStatus.OK)
 
 
 def test_the_socket_that_was_tried_is_closed_again() -> None:
     tried = socket.socket()
-    assert check_can_kernel(lambda: tried).status is Status.OK
+    assert check_can_kernel(lambda: tried).status is CheckStatus.OK
     assert tried.fileno() == -1
 
 
 def test_a_kernel_that_only_lacks_the_module_is_told_to_load_it(modules: Path) -> None:
     finding = check_can_kernel(no_can, modules)
-    assert finding.status is Status.MISSING
+    assert finding.status is CheckStatus.MISSING
     assert finding.code is FindingCode.CAN_UNLOADED
 
 
 def test_a_kernel_without_can_is_missing_it_but_may_run_the_simulation(tmp_path: Path) -> None:
     finding = check_can_kernel(no_can, tmp_path)
-    assert finding.status is Status.MISSING
+    assert finding.status is CheckStatus.MISSING
     assert finding.code is FindingCode.CAN_MISSING
     assert not finding.forbids_run
 
@@ -90,7 +90,7 @@ def test_the_interfaces_of_this_machine_can_be_looked_at() -> None:
 
 def test_no_can_interface_among_the_others(net: Net) -> None:
     (finding,) = check_can_interfaces(net.folder)
-    assert finding.status is Status.MISSING
+    assert finding.status is CheckStatus.MISSING
     assert not finding.forbids_run
     assert finding.code is FindingCode.CAN_INTERFACE_NONE
     assert finding.values["up"] == "sudo ip link set can0 up type can bitrate 1000000"
@@ -98,7 +98,7 @@ def test_no_can_interface_among_the_others(net: Net) -> None:
 
 def test_a_machine_without_sysfs_has_no_interface(tmp_path: Path) -> None:
     (finding,) = check_can_interfaces(tmp_path / "nowhere")
-    assert finding.status is Status.MISSING
+    assert finding.status is CheckStatus.MISSING
 
 
 def test_each_interface_with_hardware_is_looked_at(net: Net) -> None:
@@ -106,15 +106,15 @@ def test_each_interface_with_hardware_is_looked_at(net: Net) -> None:
     net.add("can1", flags=DOWN)
     net.add("vcan0", device=False)
     up, down = check_can_interfaces(net.folder)
-    assert (up.code, up.status, up.values["name"]) == (FindingCode.CAN_INTERFACE, Status.OK, "can0")
-    assert (down.code, down.status) == (FindingCode.CAN_INTERFACE_DOWN, Status.WARNING)
+    assert (up.code, up.status, up.values["name"]) == (FindingCode.CAN_INTERFACE, CheckStatus.OK, "can0")
+    assert (down.code, down.status) == (FindingCode.CAN_INTERFACE_DOWN, CheckStatus.WARNING)
     assert down.values == {"name": "can1", "up": "sudo ip link set can1 up type can bitrate 1000000"}
 
 
 def test_an_interface_that_went_off_the_bus_points_to_the_wiring(net: Net) -> None:
     net.add("can0", carrier="0")
     (finding,) = check_can_interfaces(net.folder)
-    assert finding.status is Status.WARNING
+    assert finding.status is CheckStatus.WARNING
     assert finding.code is FindingCode.CAN_INTERFACE_OFF_BUS
 
 
@@ -134,7 +134,7 @@ def test_a_virtual_interface_that_is_up_will_do(net: Net) -> None:
 def test_a_virtual_interface_that_is_down_is_to_be_set_up(net: Net) -> None:
     net.add("vcan0", flags=DOWN, device=False)
     finding = check_vcan(net.folder)
-    assert finding.status is Status.WARNING
+    assert finding.status is CheckStatus.WARNING
     assert (finding.code, finding.values) == (FindingCode.VCAN_DOWN, {"name": "vcan0"})
 
 
@@ -145,5 +145,5 @@ def test_a_module_that_is_there_can_make_a_virtual_interface(net: Net, modules: 
 
 def test_without_the_module_another_kernel_is_wanted(net: Net, tmp_path: Path) -> None:
     finding = check_vcan(net.folder, tmp_path)
-    assert finding.status is Status.WARNING
+    assert finding.status is CheckStatus.WARNING
     assert finding.code is FindingCode.VCAN_NO_MODULE

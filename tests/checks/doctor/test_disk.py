@@ -7,14 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.checks.doctor.check_result import Finding, FindingCode, Status
+from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 from kurt2rt.checks.doctor.disk import check_disk, check_free_space, check_sync
 
 SPACE = {FindingCode.SPACE, FindingCode.SPACE_LOW}
 SYNC = {FindingCode.SYNC, FindingCode.SYNC_SLOW}
 
 
-def only(findings: tuple[Finding, ...]) -> Finding:
+def only(findings: tuple[CheckResult, ...]) -> CheckResult:
     (finding,) = findings
     return finding
 
@@ -27,7 +27,7 @@ def test_a_folder_that_is_there_is_wholly_looked_at_and_left_as_it_was(tmp_path:
     assert space in SPACE
     assert sync in SYNC
     assert not any(finding.forbids_run for finding in findings)
-    assert findings[0].status is Status.OK
+    assert findings[0].status is CheckStatus.OK
     assert [each.name for each in tmp_path.iterdir()] == ["knowledge.sqlite"]
     assert (tmp_path / "knowledge.sqlite").read_bytes() == b"not ours to touch"
 
@@ -36,7 +36,7 @@ def test_a_folder_that_is_not_there_is_judged_by_its_parent_and_not_made(tmp_pat
     folder = tmp_path / "robots" / "anna's"
     findings = check_disk(folder)
     assert len(findings) == 4
-    assert findings[0].status is Status.OK
+    assert findings[0].status is CheckStatus.OK
     assert findings[0].code is FindingCode.FOLDER_TO_MAKE
     assert not list(tmp_path.iterdir())
 
@@ -67,14 +67,14 @@ def test_a_link_to_a_disk_that_is_not_mounted_forbids_to_run(tmp_path: Path) -> 
 
 def test_room_is_asked_for_in_two_steps(tmp_path: Path) -> None:
     enormous = 2**80
-    assert check_free_space(tmp_path, 0, 0).status is Status.OK
-    assert check_free_space(tmp_path, 0, enormous).status is Status.WARNING
+    assert check_free_space(tmp_path, 0, 0).status is CheckStatus.OK
+    assert check_free_space(tmp_path, 0, enormous).status is CheckStatus.WARNING
     assert check_free_space(tmp_path, enormous, enormous).forbids_run
 
 
 def test_a_disk_that_is_slow_to_sync_is_a_warning(tmp_path: Path) -> None:
-    assert check_sync(tmp_path, math.inf).status is Status.OK
+    assert check_sync(tmp_path, math.inf).status is CheckStatus.OK
     finding = check_sync(tmp_path, limit_s=0.0)
-    assert finding.status is Status.WARNING
+    assert finding.status is CheckStatus.WARNING
     assert finding.code is FindingCode.SYNC_SLOW
     assert not finding.forbids_run

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.checks.doctor.check_result import FindingCode, Status
+from kurt2rt.checks.doctor.check_result import CheckStatus, FindingCode
 from kurt2rt.checks.doctor.privileges import check_memory_lock, check_real_time_priority
 
 NOTHING = "0000000000000000"
@@ -40,7 +40,7 @@ def test_the_trial_asks_for_the_units_highest_priority_in_a_thread_of_its_own() 
     ((thread, policy, priority),) = asked
     assert thread != threading.get_native_id()
     assert (policy, priority) == (os.SCHED_FIFO, 21)
-    assert finding.status is Status.OK
+    assert finding.status is CheckStatus.OK
 
 
 def test_a_refusal_says_how_to_be_granted_it_next_time(tmp_path: Path) -> None:
@@ -48,7 +48,7 @@ def test_a_refusal_says_how_to_be_granted_it_next_time(tmp_path: Path) -> None:
         raise PermissionError(1, f"Operation not permitted: {pid} {policy} {parameters.sched_priority}")
 
     finding = check_real_time_priority(0, refuse, status_file(tmp_path, NOTHING))
-    assert finding.status is Status.WARNING
+    assert finding.status is CheckStatus.WARNING
     assert finding.code is FindingCode.PRIORITY_REFUSED
     assert finding.values == {
         "limit": "0",
@@ -71,16 +71,16 @@ def test_the_memory_lock_of_this_machine_is_shown() -> None:
 @pytest.mark.parametrize(
     ("limit_bytes", "capabilities", "status"),
     [
-        (resource.RLIM_INFINITY, NOTHING, Status.OK),
-        (8 * MIB, IPC_LOCK, Status.OK),
-        (300 * MIB, NOTHING, Status.OK),
-        (300 * MIB - 1, NOTHING, Status.WARNING),
-        (8 * MIB, SYS_NICE, Status.WARNING),
+        (resource.RLIM_INFINITY, NOTHING, CheckStatus.OK),
+        (8 * MIB, IPC_LOCK, CheckStatus.OK),
+        (300 * MIB, NOTHING, CheckStatus.OK),
+        (300 * MIB - 1, NOTHING, CheckStatus.WARNING),
+        (8 * MIB, SYS_NICE, CheckStatus.WARNING),
     ],
 )
 def test_memory_can_be_locked_when_the_whole_process_fits(
-    limit_bytes: int, capabilities: str, status: Status, tmp_path: Path
+    limit_bytes: int, capabilities: str, status: CheckStatus, tmp_path: Path
 ) -> None:
     finding = check_memory_lock(limit_bytes, status_file(tmp_path, capabilities))
     assert finding.status is status
-    assert (finding.code is FindingCode.MEMORY_LOCK_SMALL) == (status is Status.WARNING)
+    assert (finding.code is FindingCode.MEMORY_LOCK_SMALL) == (status is CheckStatus.WARNING)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from threadpoolctl import threadpool_limits
 
-from kurt2rt.checks.doctor.check_result import FindingCode, Status
+from kurt2rt.checks.doctor.check_result import CheckStatus, FindingCode
 from kurt2rt.checks.doctor.processor import check_blas_threads, check_cores, check_governor
 
 
@@ -24,8 +24,8 @@ def test_the_cores_of_this_machine_are_counted() -> None:
 
 
 def test_one_core_is_a_warning_and_two_will_do() -> None:
-    assert check_cores(1).status is Status.WARNING
-    assert check_cores(2).status is Status.OK
+    assert check_cores(1).status is CheckStatus.WARNING
+    assert check_cores(2).status is CheckStatus.OK
 
 
 def test_the_governor_of_this_machine_is_read_or_said_to_be_none() -> None:
@@ -34,26 +34,26 @@ def test_the_governor_of_this_machine_is_read_or_said_to_be_none() -> None:
 
 def test_cores_at_full_clock_are_fine(tmp_path: Path) -> None:
     finding = check_governor(cpu_folder(tmp_path, "performance", "performance"))
-    assert finding.status is Status.OK
+    assert finding.status is CheckStatus.OK
     assert finding.code is FindingCode.GOVERNOR
 
 
 def test_one_core_that_saves_power_is_a_warning(tmp_path: Path) -> None:
     finding = check_governor(cpu_folder(tmp_path, "performance", "powersave", "performance"))
-    assert finding.status is Status.WARNING
+    assert finding.status is CheckStatus.WARNING
     assert finding.code is FindingCode.GOVERNOR_SAVING
     assert finding.values["folder"] == str(tmp_path)
 
 
 def test_a_machine_without_governor_has_nothing_to_mend(tmp_path: Path) -> None:
-    assert check_governor(cpu_folder(tmp_path)).status is Status.OK
+    assert check_governor(cpu_folder(tmp_path)).status is CheckStatus.OK
 
 
 def test_one_blas_thread_is_fine_and_two_are_a_warning() -> None:
     with threadpool_limits(1, user_api="blas"):
-        assert check_blas_threads().status is Status.OK
+        assert check_blas_threads().status is CheckStatus.OK
     with threadpool_limits(2, user_api="blas"):
         finding = check_blas_threads()
-    assert finding.status is Status.WARNING
+    assert finding.status is CheckStatus.WARNING
     assert finding.code is FindingCode.BLAS_MANY
     assert str(finding.values["libraries"]).endswith(" 2")

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.checks.doctor.check_result import FindingCode, Status
+from kurt2rt.checks.doctor.check_result import CheckStatus, FindingCode
 from kurt2rt.checks.doctor.python import check_package, check_python
 
 
 def test_the_python_that_runs_this_will_do() -> None:
-    assert check_python().status is Status.OK
+    assert check_python().status is CheckStatus.OK
 
 
 def test_an_old_python_forbids_to_run() -> None:
@@ -20,13 +20,13 @@ def test_an_old_python_forbids_to_run() -> None:
 
 def test_an_installed_package_is_shown_with_its_version() -> None:
     finding = check_package("rich", "tables")
-    assert finding.status is Status.OK
+    assert finding.status is CheckStatus.OK
     assert str(finding.values["version"])[0].isdigit()
 
 
 def test_a_package_that_is_not_there_is_named_and_does_not_forbid_to_run() -> None:
     finding = check_package("kurt2rt_no_such_package", "nothing")
-    assert finding.status is Status.MISSING
+    assert finding.status is CheckStatus.MISSING
     assert finding.code is FindingCode.PACKAGE_MISSING
     assert "No module named 'kurt2rt_no_such_package'" in str(finding.values["fault"])
     assert not finding.forbids_run
@@ -38,11 +38,11 @@ def test_a_package_that_kills_the_interpreter_does_not_kill_the_doctor(
     (tmp_path / "crashes_on_import.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGKILL)\n")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     finding = check_package("crashes_on_import", "nothing")
-    assert finding.status is Status.MISSING
+    assert finding.status is CheckStatus.MISSING
     assert "-9" in str(finding.values["fault"])
 
 
 def test_a_python_that_cannot_be_started_twice_is_said_so(tmp_path: Path) -> None:
     finding = check_package("rich", "tables", str(tmp_path / "python"))
-    assert finding.status is Status.MISSING
+    assert finding.status is CheckStatus.MISSING
     assert str(tmp_path / "python") in str(finding.values["fault"])

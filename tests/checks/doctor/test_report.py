@@ -6,21 +6,23 @@ from typing import Literal
 
 from rich.console import Console
 
-from kurt2rt.checks.doctor.check_result import Finding, FindingCode, Status
+from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 from kurt2rt.checks.doctor.finding_text import text_of
 from kurt2rt.checks.doctor.report import as_json, print_report, summary
 
-FINE = Finding(FindingCode.PYTHON, Status.OK, {"version": "3.11.7"}, needed=True)
-SLOW = Finding(FindingCode.SPACE_LOW, Status.WARNING, {"free_gb": 0.5}, needed=True)
-NO_CAN = Finding(
+FINE = CheckResult(FindingCode.PYTHON, CheckStatus.OK, {"version": "3.11.7"}, needed=True)
+SLOW = CheckResult(FindingCode.SPACE_LOW, CheckStatus.WARNING, {"free_gb": 0.5}, needed=True)
+NO_CAN = CheckResult(
     FindingCode.CAN_INTERFACE_NONE,
-    Status.MISSING,
+    CheckStatus.MISSING,
     {"folder": "[net]", "up": "sudo ip link set can0 up type can bitrate 1000000"},
 )
-NO_DISK = Finding(FindingCode.FOLDER_UNWRITABLE, Status.MISSING, {"folder": "/x", "error": "full"}, needed=True)
+NO_DISK = CheckResult(
+    FindingCode.FOLDER_UNWRITABLE, CheckStatus.MISSING, {"folder": "/x", "error": "full"}, needed=True
+)
 
 
-def printed(*findings: Finding, width: int = 120, colours: Literal["standard"] | None = None) -> str:
+def printed(*findings: CheckResult, width: int = 120, colours: Literal["standard"] | None = None) -> str:
     text = io.StringIO()
     # What the terminal of whoever runs the tests can do must not matter.
     console = Console(file=text, width=width, color_system=colours, force_terminal=colours is not None, no_color=False)

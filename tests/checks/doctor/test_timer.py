@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.checks.doctor.check_result import FindingCode, Status
+from kurt2rt.checks.doctor.check_result import CheckStatus, FindingCode
 from kurt2rt.checks.doctor.timer import Lateness, check_clock, check_timer, measure_lateness
 from kurt2rt.platform.clock import Clock, LockstepClock
 
@@ -49,19 +49,19 @@ async def test_simulated_time_is_never_late() -> None:
 
 def test_the_timer_of_this_machine_is_there_and_both_ways_are_shown() -> None:
     finding = check_timer(ticks=5, period_s=0.002)
-    assert finding.status in (Status.OK, Status.WARNING)
+    assert finding.status in (CheckStatus.OK, CheckStatus.WARNING)
     assert (finding.values["ticks"], finding.values["period_ms"]) == (5, 2.0)
     assert float(finding.values["asyncio_worst_ms"]) >= float(finding.values["asyncio_median_ms"])
 
 
 def test_a_timer_that_is_a_little_late_will_do() -> None:
-    assert check_timer(3, 0.01, lambda: late_by(0.0001, 0.0001, 0.009)).status is Status.OK
+    assert check_timer(3, 0.01, lambda: late_by(0.0001, 0.0001, 0.009)).status is CheckStatus.OK
 
 
 @pytest.mark.parametrize("late_s", [(0.002, 0.002, 0.002), (0.0001, 0.0001, 0.011)], ids=["always", "once a period"])
 def test_a_timer_that_is_often_late_or_late_by_a_period_is_a_warning(late_s: tuple[float, ...]) -> None:
     finding = check_timer(3, 0.01, lambda: late_by(*late_s))
-    assert finding.status is Status.WARNING
+    assert finding.status is CheckStatus.WARNING
     assert finding.code is FindingCode.TIMER_LATE
     assert not finding.forbids_run
 
@@ -78,13 +78,13 @@ def test_the_clock_of_this_machine_is_shown_with_its_resolution() -> None:
 
 def test_a_clock_that_follows_jiffies_is_a_warning(tmp_path: Path) -> None:
     finding = check_clock(0.004, tmp_path / "no clock source here")
-    assert finding.status is Status.WARNING
+    assert finding.status is CheckStatus.WARNING
     assert finding.code is FindingCode.CLOCK_COARSE
     assert finding.values == {"resolution_ns": 4e6, "source": "unknown"}
 
 
-@pytest.mark.parametrize(("name", "status"), [("tsc", Status.OK), ("hpet", Status.WARNING)])
-def test_a_clock_source_that_is_slow_to_read_is_a_warning(name: str, status: Status, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("name", "status"), [("tsc", CheckStatus.OK), ("hpet", CheckStatus.WARNING)])
+def test_a_clock_source_that_is_slow_to_read_is_a_warning(name: str, status: CheckStatus, tmp_path: Path) -> None:
     source = tmp_path / "current_clocksource"
     source.write_text(f"{name}\n")
     finding = check_clock(1e-9, source)

@@ -3,7 +3,7 @@
 import anyio
 
 from hal.robot_settings import RobotSettings, load_robot
-from kurt2rt.checks.faults.suite import Trial, try_case
+from kurt2rt.checks.faults.suite import FaultTrial, try_case
 from kurt2rt.checks.faults.table import FaultCase, FaultTable, Kind, Target, load_faults
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from simbridge.faults.fault_rig import FaultRigFactory
@@ -17,7 +17,7 @@ def case_of(target: Target, kind: Kind) -> FaultCase:
     return FaultCase(target, kind, TABLE.cases[target][kind])
 
 
-def tried(target: Target, kind: Kind, *, seed: int = 1, robot: RobotSettings = ROBOT, **must: object) -> Trial:
+def tried(target: Target, kind: Kind, *, seed: int = 1, robot: RobotSettings = ROBOT, **must: object) -> FaultTrial:
     """The case, on this robot; `must`: what the table says otherwise."""
     case = case_of(target, kind)
     case = case._replace(must=case.must.model_copy(update=must))

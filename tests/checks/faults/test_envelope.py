@@ -7,7 +7,7 @@ import pytest
 from hal.control import Mode, SpeedControl, control_frame, encode_brake
 from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
 from kurt2rt.checks.faults.envelope import Envelope, told_by
-from kurt2rt.checks.faults.suite import Trial
+from kurt2rt.checks.faults.suite import FaultTrial
 from tests.checks.faults.helpers import TABLE, tried, with_guard
 
 BRAKE = bytes(encode_brake().data)
@@ -183,7 +183,7 @@ def test_a_guard_that_takes_old_commands_is_seen() -> None:
     assert any(each == pytest.approx(30.0, abs=0.05) for each in ages)
 
 
-def late_ms(trial: Trial) -> list[object]:
+def late_ms(trial: FaultTrial) -> list[object]:
     """Return the limits that standstills came too late for."""
     return [each.values["must_ms"] for each in trial.verdict.complaints if each.code is ComplaintCode.STOOD_LATE]
 

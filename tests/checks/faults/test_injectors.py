@@ -10,7 +10,7 @@ from hal.bus import CONTROL_ID
 from hal.frame import Frame
 from kurt2rt.checks.faults.envelope import Envelope
 from kurt2rt.checks.faults.failing_clock import BrokenClockError, DisturbedClock, DrillClock
-from kurt2rt.checks.faults.observer import Stand, Witness
+from kurt2rt.checks.faults.observer import Stand, WheelObserver
 from simbridge.faults.disturbance import Kind, TimedFault
 from simbridge.faults.event_time import EventScheduler
 from simbridge.faults.fault_rig import FaultRigFactory, SimulatedFaultRig
@@ -231,7 +231,7 @@ def place() -> Iterator[SimulatedFaultRig]:
 
 
 def test_the_witness_knows_when_the_robot_stands(place: SimulatedFaultRig) -> None:
-    witness = Witness(place, Envelope(TABLE.envelope), controller_watchdog_s=0.2)
+    witness = WheelObserver(place, Envelope(TABLE.envelope), controller_watchdog_s=0.2)
     go, stand = bytes((0, 2, 0, 1, 0, 1, 0, 1)), bytes((0, 2, 0, 0, 0, 0, 0, 1))
     for at_s, payload in ((0.1, go), (0.2, go), (0.3, stand), (0.4, go), (0.9, go), (1.0, b"\xff" * 8), (1.05, go)):
         place.time.run_until(at_s)

@@ -6,11 +6,11 @@ import pytest
 
 from kurt2rt.checks.faults.complaint import ComplaintCode, complaint
 from kurt2rt.checks.faults.judge import judge
-from kurt2rt.checks.faults.outcome import Outcome, Standstill
+from kurt2rt.checks.faults.outcome import FaultOutcome, Standstill
 from kurt2rt.checks.faults.table import cases_of
 from tests.checks.faults.helpers import TABLE, case_of
 
-STOOD = Outcome(
+STOOD = FaultOutcome(
     target="tick",
     kind="stuck",
     seed=1,
@@ -63,7 +63,7 @@ def test_what_is_as_it_must_be_passes() -> None:
         (replace(STOOD, problems=(TOO_FAST,)), ComplaintCode.TOO_FAST),
     ],
 )
-def test_each_part_of_a_row_is_looked_at(outcome: Outcome, code: ComplaintCode) -> None:
+def test_each_part_of_a_row_is_looked_at(outcome: FaultOutcome, code: ComplaintCode) -> None:
     verdict = judge(HUNG, outcome)
     assert not verdict.passed
     assert code in [each.code for each in verdict.complaints]

@@ -8,7 +8,7 @@ from hal.robot_settings import RobotSettings, load_robot
 from kurt2rt.checks.faults.table import FaultTable, load_faults
 from kurt2rt.checks.soak.result import SoakResult
 from kurt2rt.checks.soak.settings import MoodSettings, SoakSettings, load_soak
-from kurt2rt.checks.soak.soak_run import Day
+from kurt2rt.checks.soak.soak_run import SoakRun
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.runs.recording.recording import Recording
 from kurt2rt.runs.recording.run_files import budget_of
@@ -46,7 +46,7 @@ def soaked(folder: Path, minutes: float, soak: SoakSettings, seed: int = 1) -> S
     """What a day comes to."""
     place = LongRunRig(ROBOT, soak.world, seed)
     try:
-        day = Day(place, soak, TABLE, ROBOT, TASK, service_in(folder), recording_in(folder), seed=seed)
+        day = SoakRun(place, soak, TABLE, ROBOT, TASK, service_in(folder), recording_in(folder), seed=seed)
         return anyio.run(day.run, minutes / 60.0, lambda _: None)
     finally:
         place.close()

@@ -11,20 +11,20 @@ from kurt2rt.checks.soak.checks import fault_check, memory_check, memory_told, s
 from kurt2rt.checks.soak.faults import FaultSeen
 from kurt2rt.checks.soak.picture import draw_soak
 from kurt2rt.checks.soak.report import as_json, print_report
-from kurt2rt.checks.soak.result import Check, CheckCode, Minute, SoakResult, Start
+from kurt2rt.checks.soak.result import CheckCode, SoakCheck, SoakMinute, SoakResult, SoakStart
 from tests.checks.soak.helpers import DAY
 
 LIMITS = DAY.limits
 
 
-def minute(number: int, resident_mb: float = 100.0, open_files: int = 14, threads: int = 2) -> Minute:
+def minute(number: int, resident_mb: float = 100.0, open_files: int = 14, threads: int = 2) -> SoakMinute:
     mood = "patient" if number % 7 else "away"
-    return Minute(
+    return SoakMinute(
         60.0 * number, resident_mb, open_files, threads, 60, 200 + number, 0.8, 0.1, 0.1, 0.01, number % 3, mood
     )
 
 
-def hours(count: float, grown_mb_per_hour: float) -> list[Minute]:
+def hours(count: float, grown_mb_per_hour: float) -> list[SoakMinute]:
     """Memory that grows evenly."""
     return [minute(number, 100.0 + grown_mb_per_hour * number / 60.0) for number in range(1, round(60 * count) + 1)]
 
@@ -46,11 +46,11 @@ RESULT = SoakResult(
     missed_ticks=1_000,
     frames=720_000,
     checks=(
-        Check(CheckCode.TEACHING_CLOCK, passed=True, values={"ticks": 0}),
-        Check(CheckCode.ODOMETRY, passed=False, values={"worst_mm": 40.0}),
+        SoakCheck(CheckCode.TEACHING_CLOCK, passed=True, values={"ticks": 0}),
+        SoakCheck(CheckCode.ODOMETRY, passed=False, values={"worst_mm": 40.0}),
     ),
     minutes=tuple(hours(2, 1.0)),
-    starts=(Start(0.0, 3600.0, "none", ""), Start(3601.0, 3599.0, "lossy", "OSError()", LOST)),
+    starts=(SoakStart(0.0, 3600.0, "none", ""), SoakStart(3601.0, 3599.0, "lossy", "OSError()", LOST)),
     faults=(fault(), fault(drove=False), fault(DROVE, stood_after_s=None)),
     complaints=(TOO_FAST,),
     counted={"set down": 3},
@@ -76,15 +76,15 @@ def test_a_short_soak_is_not_asked_about_memory() -> None:
 
 
 def test_what_knowledge_takes_is_told_apart_from_what_stays() -> None:
-    starts = [Start(600.0 * number, 590.0, "none", "", left_mb=90.0 + 0.1 * number) for number in range(18)]
+    starts = [SoakStart(600.0 * number, 590.0, "none", "", left_mb=90.0 + 0.1 * number) for number in range(18)]
     told = memory_told(hours(3, 1.0), starts)
     assert told.startswith("Of +2.0 MB since the first hour +1.2 MB stay when the program ends, after 12 more starts;")
     assert told.endswith("+0.8 MB are for what it knows: +124 lessons and +0 RLAs, 6.5 kB for each lesson.")
 
 
 def test_a_soak_of_one_program_has_nothing_to_tell_apart() -> None:
-    assert memory_told(hours(3, 1.0), [Start(0.0, 10_800.0, "none", "", left_mb=90.0)]) == ""
-    assert memory_told(hours(0.5, 1.0), [Start(0.0, 600.0, "none", "", left_mb=90.0)] * 3) == ""
+    assert memory_told(hours(3, 1.0), [SoakStart(0.0, 10_800.0, "none", "", left_mb=90.0)]) == ""
+    assert memory_told(hours(0.5, 1.0), [SoakStart(0.0, 600.0, "none", "", left_mb=90.0)] * 3) == ""
 
 
 def test_files_and_threads_that_become_more_are_seen() -> None:
@@ -100,13 +100,13 @@ def test_one_file_that_is_open_for_a_moment_is_none_that_leaks() -> None:
 
 def test_one_fault_that_led_elsewhere_is_enough() -> None:
     assert fault_check([fault(), fault()]).passed
-    assert fault_check([fault(), fault(DROVE)]) == Check(
+    assert fault_check([fault(), fault(DROVE)]) == SoakCheck(
         CheckCode.FAULTS, passed=False, values={"faults": 2, "drove": 2, "wrong": 1}
     )
 
 
 def test_an_end_that_nobody_expected_or_a_lost_lesson_is_enough() -> None:
-    well = Start(0.0, 100.0, "none", "")
+    well = SoakStart(0.0, 100.0, "none", "")
     assert starts_check([well, well._replace(ended_by="a fault")], []).passed
     assert not starts_check([well], [complaint(ComplaintCode.ENDED_UNEXPECTEDLY, 3.0, error="KeyError()")]).passed
     assert not starts_check([well._replace(complaint=LOST)], []).passed

@@ -2,15 +2,15 @@
 
 from kurt2rt.checks.faults.complaint import ComplaintCode, complaint
 from kurt2rt.checks.soak.disk_list import Spool
-from kurt2rt.checks.soak.result import Start
+from kurt2rt.checks.soak.result import SoakStart
 
 LOST = complaint(ComplaintCode.LESSONS_NOT_STORED, taught=3, stored=2, names="")
 
 
 def test_notes_come_back_in_order_also_between_two_more() -> None:
-    spool: Spool[Start] = Spool()
+    spool: Spool[SoakStart] = Spool()
     assert list(spool) == []
-    first, second = Start(0.0, 12.5, "none", ""), Start(13.0, 2.25, "lossy", "ValueError()", LOST)
+    first, second = SoakStart(0.0, 12.5, "none", ""), SoakStart(13.0, 2.25, "lossy", "ValueError()", LOST)
 
     spool.append(first)
     assert list(spool) == [first]

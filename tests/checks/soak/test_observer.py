@@ -8,8 +8,8 @@ import pytest
 
 from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.checks.faults.complaint import ComplaintCode
-from kurt2rt.checks.soak.observer import SoakWitness
-from kurt2rt.checks.soak.program_run import Life
+from kurt2rt.checks.soak.observer import SoakObserver
+from kurt2rt.checks.soak.program_run import ProgramRun
 from kurt2rt.checks.soak.teacher import SoakTeacher
 from kurt2rt.core import tick
 from kurt2rt.core.decision.decision import Cause, Decision
@@ -40,15 +40,15 @@ def place() -> Iterator[LongRunRig]:
 
 
 @pytest.fixture
-def witness(place: LongRunRig) -> SoakWitness:
-    return SoakWitness(place, TABLE.envelope)
+def witness(place: LongRunRig) -> SoakObserver:
+    return SoakObserver(place, TABLE.envelope)
 
 
-def started(folder: Path, place: LongRunRig, witness: SoakWitness, **moods: object) -> Life:
+def started(folder: Path, place: LongRunRig, witness: SoakObserver, **moods: object) -> ProgramRun:
     """A program with a teacher of one mood."""
     soak = DAY.model_copy(update={"moods": moods})
     teacher = SoakTeacher(soak, TASK, ROBOT, ("forward", "stand"), seed=1)
-    return Life(
+    return ProgramRun(
         place,
         witness,
         teacher,
@@ -62,11 +62,11 @@ def started(folder: Path, place: LongRunRig, witness: SoakWitness, **moods: obje
     )
 
 
-def run(life: Life, place: LongRunRig, until_s: float) -> None:
+def run(life: ProgramRun, place: LongRunRig, until_s: float) -> None:
     anyio.run(life.run, lambda _: None, lambda: place.time.now_s() >= until_s)
 
 
-def test_a_robot_that_nobody_told_to_drive_stands(tmp_path: Path, place: LongRunRig, witness: SoakWitness) -> None:
+def test_a_robot_that_nobody_told_to_drive_stands(tmp_path: Path, place: LongRunRig, witness: SoakObserver) -> None:
     life = started(tmp_path, place, witness, away=AWAY)
     run(life, place, 1.0)
     assert (witness.complaints.count, life.ended_by, life.close()) == (0, "", None)
@@ -74,7 +74,7 @@ def test_a_robot_that_nobody_told_to_drive_stands(tmp_path: Path, place: LongRun
 
 
 def test_one_that_drives_though_it_was_only_started_is_seen(
-    tmp_path: Path, place: LongRunRig, witness: SoakWitness, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, place: LongRunRig, witness: SoakObserver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tick, "standing", lambda decision, _: decision)
     life = started(tmp_path, place, witness, away=AWAY)
@@ -87,7 +87,7 @@ def test_one_that_drives_though_it_was_only_started_is_seen(
 
 
 def test_a_layer_that_drives_whatever_it_is_told_does_not_drive_a_program_that_was_only_started(
-    tmp_path: Path, place: LongRunRig, witness: SoakWitness
+    tmp_path: Path, place: LongRunRig, witness: SoakObserver
 ) -> None:
     life = started(tmp_path, place, witness, away=AWAY)
     assert life.level.behind is not None
@@ -97,7 +97,7 @@ def test_a_layer_that_drives_whatever_it_is_told_does_not_drive_a_program_that_w
     assert witness.stands
 
 
-def test_a_tick_that_is_not_accounted_for_is_seen(tmp_path: Path, place: LongRunRig, witness: SoakWitness) -> None:
+def test_a_tick_that_is_not_accounted_for_is_seen(tmp_path: Path, place: LongRunRig, witness: SoakObserver) -> None:
     life = started(tmp_path, place, witness, away=AWAY)
     run(life, place, 0.5)
     assert witness.complaints.count == 0
@@ -108,7 +108,7 @@ def test_a_tick_that_is_not_accounted_for_is_seen(tmp_path: Path, place: LongRun
     assert (first.code, first.values["missed"]) == (ComplaintCode.TICKS_UNACCOUNTED, 1)
 
 
-def test_a_lesson_that_is_not_in_the_file_is_missed(tmp_path: Path, place: LongRunRig, witness: SoakWitness) -> None:
+def test_a_lesson_that_is_not_in_the_file_is_missed(tmp_path: Path, place: LongRunRig, witness: SoakObserver) -> None:
     life = started(tmp_path, place, witness, patient=PATIENT)
     run(life, place, 3.0)
     life.knowledge.submitted.append("soak-999")
@@ -118,7 +118,7 @@ def test_a_lesson_that_is_not_in_the_file_is_missed(tmp_path: Path, place: LongR
 
 
 def test_an_error_in_the_loop_ends_the_program_and_says_where(
-    tmp_path: Path, place: LongRunRig, witness: SoakWitness
+    tmp_path: Path, place: LongRunRig, witness: SoakObserver
 ) -> None:
     life = started(tmp_path, place, witness, away=AWAY)
     life.level.behind = None

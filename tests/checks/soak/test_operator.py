@@ -9,7 +9,7 @@ import pytest
 
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
-from kurt2rt.checks.soak.operator import Person
+from kurt2rt.checks.soak.operator import SoakOperator
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.rla.outcome import Outcome, ResultCode
 from kurt2rt.core.teaching.commands import CommandResult, Resume
@@ -29,7 +29,7 @@ def place() -> Iterator[LongRunRig]:
     place.close()
 
 
-def drive(place: LongRunRig, person: Person, until_s: float, wanted: WheelSpeeds = AHEAD) -> None:
+def drive(place: LongRunRig, person: SoakOperator, until_s: float, wanted: WheelSpeeds = AHEAD) -> None:
     """Tick by tick, with somebody who says *Go* at once whenever the robot stops itself; the person looks on."""
     robot, time = place.robot, place.time
     assert robot is not None
@@ -49,13 +49,13 @@ def seen(grant: GuardResult, *commands: Resume) -> TickRecord:
 
 
 def test_a_robot_that_makes_its_way_is_left_alone(place: LongRunRig) -> None:
-    person = Person(place, PATIENCE_S, CYCLE_S)
+    person = SoakOperator(place, PATIENCE_S, CYCLE_S)
     drive(place, person, 2.5)
     assert (person.set_down, person.switched_on) == (0, 0)
 
 
 def test_one_that_makes_no_way_is_set_down_elsewhere(place: LongRunRig) -> None:
-    person = Person(place, PATIENCE_S, CYCLE_S)
+    person = SoakOperator(place, PATIENCE_S, CYCLE_S)
     drive(place, person, PATIENCE_S + 0.2, WheelSpeeds(0.1, -0.1))
     assert (person.set_down, person.switched_on) == (1, 0)
 
@@ -66,7 +66,7 @@ def test_one_whose_motors_were_switched_off_by_noise_is_switched_off_and_on(
     """ACTUATOR_OFF (docs/the-robot.md#control-modes) holds through any number of programs."""
     monkeypatch.setattr(random.Random, "randbytes", lambda _, count: b"\xff\x01".ljust(count, b"\0"))
     place.begin("bus_out", "garbage", begin_s=0.1, end_s=0.2, period_s=1.0, delay_s=1.0)
-    person = Person(place, PATIENCE_S, CYCLE_S)
+    person = SoakOperator(place, PATIENCE_S, CYCLE_S)
     drive(place, person, 0.3)
     place.end()
     for until_s in (0.8, 1.3):
@@ -80,7 +80,7 @@ def test_one_whose_motors_were_switched_off_by_noise_is_switched_off_and_on(
 
 
 def test_one_that_stopped_itself_waits_for_its_teacher_and_is_not_carried_about(place: LongRunRig) -> None:
-    person, robot, time = Person(place, PATIENCE_S, CYCLE_S), place.robot, place.time
+    person, robot, time = SoakOperator(place, PATIENCE_S, CYCLE_S), place.robot, place.time
     assert robot is not None
     robot.emergency_stop(GuardReason.WHEELS_DISOBEY)
     while time.now_s() < 3 * PATIENCE_S:
@@ -92,7 +92,7 @@ def test_one_that_stopped_itself_waits_for_its_teacher_and_is_not_carried_about(
 
 
 def test_one_that_stops_itself_again_in_the_tick_of_every_go_is_set_down_elsewhere(place: LongRunRig) -> None:
-    person = Person(place, PATIENCE_S, CYCLE_S)
+    person = SoakOperator(place, PATIENCE_S, CYCLE_S)
     again = GuardResult(STANDSTILL, (GuardReason.WHEELS_DISOBEY,), latched=True)
     go = Resume("go", "Ann")
 

@@ -7,8 +7,8 @@ import pytest
 
 from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.basic.epsilon_greedy import Choice
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Cause, Decision
 from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
 from kurt2rt.core.rla.rla import CRITIC, RlaCreated
@@ -142,7 +142,7 @@ def test_knowledge_of_an_action_that_the_repertoire_lacks_is_refused() -> None:
     system = RlaSystem(1, 10.0)
     system.apply_all([A_AT_0, created(2, (8.0,), "fly")])
     with pytest.raises(UnknownActionError, match=r"RLA 2 has the action fly, which the repertoire lacks; .*: a, b$"):
-        BasicLevel(system, {"a": Counted(), "b": Counted()}, 5, Wanted())
+        BasicLevel(system, {"a": Counted(), "b": Counted()}, 5, ActiveBehaviour())
 
 
 TURNS = ("straight_on", "turn_left")
@@ -259,8 +259,8 @@ def test_of_competitors_the_chosen_one_drives_and_the_oldest_where_nothing_choos
     assert SmallLevel(*events).at(0.0).rla_id == 1
     system = RlaSystem(1, RADIUS)
     system.apply_all(events)
-    choice = Choice({1: -0.5, 2: 0.0}.__getitem__, epsilon=0.0, hold_ticks=100, seed=0)
-    level = BasicLevel(system, {name: Counted() for name in "abc"}, 5, Wanted(), choice)
+    choice = EpsilonGreedy({1: -0.5, 2: 0.0}.__getitem__, epsilon=0.0, hold_ticks=100, seed=0)
+    level = BasicLevel(system, {name: Counted() for name in "abc"}, 5, ActiveBehaviour(), choice)
     decision = level.decide(situation(3.0), sensed(), None)
     assert (decision.action, decision.rla_id, decision.answers) == ("b", 2, True)
     assert decision.match is not None
@@ -271,8 +271,8 @@ def test_a_competitor_that_is_held_while_another_one_is_chosen_is_inside_its_rad
     worths = {1: 0.5, 2: 0.0}
     system = RlaSystem(1, RADIUS)
     system.apply_all((created(1, (0.0,), "a"), created(2, (0.0,), "b")))
-    choice = Choice(worths.__getitem__, epsilon=0.0, hold_ticks=100, seed=0)
-    level = BasicLevel(system, {name: Counted() for name in "abc"}, 5, Wanted(), choice)
+    choice = EpsilonGreedy(worths.__getitem__, epsilon=0.0, hold_ticks=100, seed=0)
+    level = BasicLevel(system, {name: Counted() for name in "abc"}, 5, ActiveBehaviour(), choice)
     level.decide(situation(0.0), sensed(), None)
     worths[1] = -1.0
     choice.forget()

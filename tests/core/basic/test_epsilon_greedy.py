@@ -2,7 +2,7 @@
 
 from collections import Counter
 
-from kurt2rt.core.basic.epsilon_greedy import Choice
+from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.rla.rla import ASK, Rla
 from tests.core.rla.helpers import created, origin
 
@@ -22,8 +22,8 @@ class Worths(dict[int, float]):
         return 0.0
 
 
-def choice(worths: Worths, epsilon: float = 0.0, seed: int = 0, *, explores: bool = True) -> Choice:
-    made = Choice(worths.__getitem__, epsilon=epsilon, hold_ticks=HOLD, seed=seed)
+def choice(worths: Worths, epsilon: float = 0.0, seed: int = 0, *, explores: bool = True) -> EpsilonGreedy:
+    made = EpsilonGreedy(worths.__getitem__, epsilon=epsilon, hold_ticks=HOLD, seed=seed)
     made.explores = explores
     return made
 

@@ -2,7 +2,7 @@
 
 from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.basic.policy_level import PolicyLevel
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Cause, Decision
 from tests.core.helpers import MINIMUM_TICKS, Counted, sensed, situation
 
@@ -22,14 +22,14 @@ def driven(level: PolicyLevel, senses: SensorReadings, stand_because: Cause | No
 
 
 def test_it_drives_as_the_policy_says_after_the_minimum_time() -> None:
-    level = PolicyLevel(NearIsB(), {"a": Counted(), "b": Counted()}, MINIMUM_TICKS, Wanted())
+    level = PolicyLevel(NearIsB(), {"a": Counted(), "b": Counted()}, MINIMUM_TICKS, ActiveBehaviour())
     assert driven(level, FAR)[1:5] == (Cause.TEACHER, "a", None, None)
     assert [driven(level, NEAR).action for _ in range(MINIMUM_TICKS)] == ["a"] * (MINIMUM_TICKS - 1) + ["b"]
 
 
 def test_with_a_reason_to_stand_it_stands_and_begins_anew() -> None:
     actions = {"a": Counted(), "b": Counted()}
-    level = PolicyLevel(NearIsB(), actions, MINIMUM_TICKS, Wanted())
+    level = PolicyLevel(NearIsB(), actions, MINIMUM_TICKS, ActiveBehaviour())
     driven(level, FAR)
     assert driven(level, FAR, Cause.STOPPED) == Decision(STANDSTILL, Cause.STOPPED, None, None, None)
     assert driven(level, NEAR).action == "b"
@@ -39,7 +39,7 @@ def test_with_a_reason_to_stand_it_stands_and_begins_anew() -> None:
 
 
 def test_it_follows_the_behaviour_that_is_wanted_and_the_held_action_yields_at_once() -> None:
-    wanted = Wanted(("one", "other"))
+    wanted = ActiveBehaviour(("one", "other"))
     level = PolicyLevel(NearIsB(), {"a": Counted(), "b": Counted()}, MINIMUM_TICKS, wanted)
     assert driven(level, FAR).action == "a"
     wanted.pursue("other")

@@ -8,7 +8,7 @@ from behaviors.repertoire import load_repertoire
 from hal.robot import STANDSTILL, WheelSpeeds
 from hal.settings import SettingsError
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.perception.perception import Perception
 from kurt2rt.core.rla.rla_system import RlaSystem
@@ -91,7 +91,7 @@ def test_the_layer_above_stands_and_asks_for_it_and_the_answer_drives(folder: Pa
     system = RlaSystem(perception.definition.dimensions, 900.0)
     system.apply(created(1, condition_at(WALL), "follow_wall", radius=100_000.0))
     actions = repertoire(folder, FOLLOW, "kind: motor, name: back, left_m_s: -0.1, right_m_s: -0.1")
-    level = BasicLevel(system, actions, 10, Wanted())
+    level = BasicLevel(system, actions, 10, ActiveBehaviour())
     at_wall = perception.perceive(sensed(WALL), history_frozen=True)
     assert level.decide(at_wall, sensed(WALL), None).wheel_speeds == FORWARD
     free = perception.perceive(sensed(FREE), history_frozen=True)

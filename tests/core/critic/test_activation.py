@@ -2,16 +2,16 @@
 
 import pytest
 
-from kurt2rt.core.critic.activation import Need
+from kurt2rt.core.critic.activation import ActivationMonitor
 from kurt2rt.core.critic.settings import NeedSettings
 
 
-def need(first_s: float = 0.0, mean_s: float = 1.0) -> Need:
+def need(first_s: float = 0.0, mean_s: float = 1.0) -> ActivationMonitor:
     """Of ticks of 10 ms."""
-    return Need(NeedSettings(bad_share=0.1, mean_s=mean_s, first_s=first_s), 0.01)
+    return ActivationMonitor(NeedSettings(bad_share=0.1, mean_s=mean_s, first_s=first_s), 0.01)
 
 
-def drive(one: Need, ticks: int, bad_each: int) -> None:
+def drive(one: ActivationMonitor, ticks: int, bad_each: int) -> None:
     """So many ticks; of each so many the last one is bad."""
     for tick in range(1, ticks + 1):
         one.look(driving=True, bad=tick % bad_each == 0)

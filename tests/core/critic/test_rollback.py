@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurt2rt.core.critic.rollback import BestKnowledge
+from kurt2rt.core.critic.rollback import RollbackMonitor
 from kurt2rt.core.critic.settings import BestSettings
 from kurt2rt.core.rla.rla import (
     CRITIC,
@@ -22,12 +22,12 @@ from tests.core.critic.helpers import origin
 from tests.examples import examples
 
 
-def best(margin: float = 0.2) -> BestKnowledge:
+def best(margin: float = 0.2) -> RollbackMonitor:
     """With windows of ten ticks."""
-    return BestKnowledge(BestSettings(window_s=0.1, margin=margin), 0.01)
+    return RollbackMonitor(BestSettings(window_s=0.1, margin=margin), 0.01)
 
 
-def window(kept: BestKnowledge, good: int, tick: int = 0) -> tuple[LessonUndone, ...]:
+def window(kept: RollbackMonitor, good: int, tick: int = 0) -> tuple[LessonUndone, ...]:
     """Ten ticks of driving, so many of them good and the others neutral."""
     undone: tuple[LessonUndone, ...] = ()
     for place in range(10):

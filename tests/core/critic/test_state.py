@@ -3,7 +3,7 @@
 import pytest
 
 from kurt2rt.core.critic.settings import NeedSettings
-from kurt2rt.core.critic.state import Role
+from kurt2rt.core.critic.state import CriticState
 from kurt2rt.core.rla.rla import Phase
 from tests.core.reinforcement.helpers import CALM, CRASHED, QUICK, Track, knows_good_from_bad
 from tests.core.rla.helpers import created
@@ -18,24 +18,24 @@ def alone(*taught_the_critic: bool) -> Track:
     return Track(created(1, (0.0,), "a"), *events, critic=NEEDS_A_TENTH, phase=Phase.AUTONOMOUS)
 
 
-def standing(track: Track) -> tuple[Role, float | None]:
+def standing(track: Track) -> tuple[CriticState, float | None]:
     return track.school.learning.critics_role, track.school.learning.bad_share
 
 
 def test_it_measures_then_waits_until_it_is_needed_and_acts() -> None:
     track = alone()
     track.go(0.0)
-    assert standing(track) == (Role.MEASURES, 0.0)
+    assert standing(track) == (CriticState.MEASURES, 0.0)
     track.go(0.0, WINDOW_TICKS)
-    assert standing(track) == (Role.NOT_NEEDED, 0.0)
+    assert standing(track) == (CriticState.NOT_NEEDED, 0.0)
     track.go(0.0, 5, CRASHED)
     role, share = standing(track)
-    assert role is Role.NOT_NEEDED
+    assert role is CriticState.NOT_NEEDED
     assert share == pytest.approx(0.05, abs=0.005)
     track.go(0.0, 50, CRASHED)
-    assert standing(track)[0] is Role.ACTS
+    assert standing(track)[0] is CriticState.ACTS
     track.go(0.0, 5, CALM)
-    assert standing(track)[0] is Role.ACTS
+    assert standing(track)[0] is CriticState.ACTS
 
 
 def test_before_phase_5_and_without_trust_it_listens() -> None:
@@ -43,7 +43,7 @@ def test_before_phase_5_and_without_trust_it_listens() -> None:
     track.go(0.0)
     track.school.phase = Phase.CRITIC
     track.go(0.0)
-    assert standing(track) == (Role.LISTENS, None)
+    assert standing(track) == (CriticState.LISTENS, None)
     nobodys = alone(False)
     nobodys.go(0.0, 10)
-    assert standing(nobodys) == (Role.LISTENS, None)
+    assert standing(nobodys) == (CriticState.LISTENS, None)

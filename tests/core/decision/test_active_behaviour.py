@@ -2,27 +2,27 @@
 
 import pytest
 
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 
 TURNS = ("straight_on", "turn_left", "turn_right")
 
 
 def test_the_first_is_wanted_until_another_one_is() -> None:
-    wanted = Wanted(TURNS)
+    wanted = ActiveBehaviour(TURNS)
     assert wanted.behaviour == "straight_on"
     wanted.pursue("turn_right")
     assert wanted.behaviour == "turn_right"
 
 
 def test_a_task_that_teaches_one_thing_gives_it_no_name() -> None:
-    assert (Wanted().behaviours, Wanted().behaviour) == (("",), "")
+    assert (ActiveBehaviour().behaviours, ActiveBehaviour().behaviour) == (("",), "")
 
 
 @pytest.mark.parametrize(
     ("behaviours", "known"), [(TURNS, "straight_on, turn_left, turn_right"), (("",), "one, without a name")]
 )
 def test_what_is_not_taught_cannot_be_wanted(behaviours: tuple[str, ...], known: str) -> None:
-    wanted = Wanted(behaviours)
+    wanted = ActiveBehaviour(behaviours)
     with pytest.raises(ValueError, match=f"^there is no taught behaviour 'fly'; this task has: {known}$"):
         wanted.pursue("fly")
     assert wanted.behaviour == behaviours[0]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from kurt2rt.core.decision.decision import MidDecision
-from kurt2rt.core.expectations.transitions import BasicFollowing, MidFollowing
+from kurt2rt.core.expectations.transitions import BasicTransitionTracker, MidTransitionTracker
 from tests.core.expectations.helpers import Small
 from tests.core.rla.helpers import created, replaced
 
@@ -13,7 +13,7 @@ class Drive:
 
     def __init__(self) -> None:
         self.small = Small()
-        self.following = BasicFollowing(self.small.expectations)
+        self.following = BasicTransitionTracker(self.small.expectations)
         self.tick = 0
 
     def see(self, rla_id: int | None, place: float = 0.0, *, ticks: int = 1, behaviour: str = "") -> None:
@@ -27,7 +27,7 @@ class Journey:
 
     def __init__(self) -> None:
         self.small = Small("hamming")
-        self.following = MidFollowing(self.small.expectations)
+        self.following = MidTransitionTracker(self.small.expectations)
         self.situation = np.zeros(3)
 
     def comes_to(self, *symbols: float) -> None:

@@ -13,7 +13,7 @@ from hal.robot import SensorReadings
 from hal.robot_settings import InfraredSettings, RobotSettings
 from hal.simulation import Pose
 from kurt2rt.core.basic.policy_level import PolicyLevel
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector
 from kurt2rt.core.mid.settings import load_mid
@@ -33,7 +33,7 @@ class Drive:
 
     def __init__(self, seed: int, robot: RobotSettings = ROBOT) -> None:
         self.simulation = Kurt2Simulation(robot, "manhattan", seed, "test")
-        self.wanted = Wanted(TASK.behaviours)
+        self.wanted = ActiveBehaviour(TASK.behaviours)
         self._level = PolicyLevel(
             TASK.policy.build(robot.infrared), load_repertoire(TASK.repertoire, robot), 10, self.wanted
         )

@@ -11,7 +11,7 @@ from hal.robot import STANDSTILL, SensorReadings
 from hal.robot_settings import load_robot
 from hal.simulation import Pose
 from kurt2rt.core.basic.policy_level import PolicyLevel
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Cause, Decision
 from kurt2rt.core.mid.place import EAST, NORTH, WALL_LEFT, WALL_RIGHT, Place, X, Y
 from kurt2rt.core.mid.settings import load_mid
@@ -40,7 +40,7 @@ class Drive:
         self.place = place
         self.simulation = Kurt2Simulation(ROBOT, "manhattan", 1, "reckoning")
         self.simulation.simulated_robot.place(start)
-        self._wanted = Wanted(STREETS.behaviours)
+        self._wanted = ActiveBehaviour(STREETS.behaviours)
         self._leader = PolicyLevel(
             STREETS.policy.build(ROBOT.infrared), load_repertoire(STREETS.repertoire, ROBOT), 10, self._wanted
         )

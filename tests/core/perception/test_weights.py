@@ -10,7 +10,7 @@ from kurt2rt.core.perception.weights import weights_of
 from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.task_settings import FeatureWeight, load_task
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.experiments.lockstep.exam import NothingIsTaught
+from kurt2rt.experiments.lockstep.exam import NoTeachingAllowed
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
 from tests.core.rla.helpers import created
@@ -66,7 +66,7 @@ def first_tick(*taught: TeachingEvent, weights: tuple[FeatureWeight, ...] = ()) 
     records: list[TickRecord] = []
     try:
         runtime = build_runtime(
-            simulation.robot, ROBOT, task, taught, NothingIsTaught(), LockstepClock(simulation.step)
+            simulation.robot, ROBOT, task, taught, NoTeachingAllowed(), LockstepClock(simulation.step)
         )
         anyio.run(runtime.scheduler.run, 1, records.append)
     finally:

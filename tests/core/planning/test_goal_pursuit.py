@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
-from kurt2rt.core.decision.plan_step import Course
-from kurt2rt.core.planning.goal_pursuit import PIECES, Seeking
+from kurt2rt.core.decision.plan_step import GoalStatus
+from kurt2rt.core.planning.goal_pursuit import PIECES, GoalPursuit
 from kurt2rt.core.planning.target import Target, Vector, target_of
 from kurt2rt.core.planning.topological_map import charting
 from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode
@@ -43,31 +43,31 @@ def target(town: Town, goal: Goal) -> Target:
 DOOR = NamedGoal("door")
 
 
-def seeking(town: Town, goal: Goal = DOOR) -> Seeking:
-    seeks = Seeking(town.charting, town.group_at)
+def seeking(town: Town, goal: Goal = DOOR) -> GoalPursuit:
+    seeks = GoalPursuit(town.charting, town.group_at)
     seeks.seek(goal, target(town, goal))
     return seeks
 
 
-def think(seeks: Seeking) -> int:
+def think(seeks: GoalPursuit) -> int:
     """Until it is settled how it goes on; after how many ticks."""
     ticks = 0
-    while seeks.course is Course.PLANNING:
+    while seeks.course is GoalStatus.PLANNING:
         seeks.think()
         ticks += 1
     return ticks
 
 
-def arrive(seeks: Seeking, situation: Vector) -> int:
+def arrive(seeks: GoalPursuit, situation: Vector) -> int:
     seeks.arrive(situation)
     return think(seeks)
 
 
-def course(seeks: Seeking) -> Course:
+def course(seeks: GoalPursuit) -> GoalStatus:
     return seeks.course
 
 
-def chosen(town: Town, seeks: Seeking, place: str) -> str | None:
+def chosen(town: Town, seeks: GoalPursuit, place: str) -> str | None:
     rla = seeks.choose(town.group_at(town.at(place)))
     return None if rla is None else rla.action
 
@@ -84,7 +84,7 @@ def test_the_plan_takes_the_robot_to_the_goal_place_by_place() -> None:
     assert chosen(town, seeks, "c") == "turn_left"
     assert not seeks.stands
     arrive(seeks, town.at("e"))
-    assert course(seeks) is Course.ARRIVED
+    assert course(seeks) is GoalStatus.ARRIVED
     assert seeks.stands
     assert seeks.text == "arrived: door"
     assert seeks.surprises == 0
@@ -99,14 +99,14 @@ def test_who_comes_to_another_place_than_planned_is_surprised_and_plans_from_the
     assert seeks.surprises == 1
     assert chosen(town, seeks, "d") == "turn_right"
     arrive(seeks, town.at("e"))
-    assert course(seeks) is Course.ARRIVED
+    assert course(seeks) is GoalStatus.ARRIVED
 
 
 def test_without_a_way_the_robot_stands_and_says_so() -> None:
     town = grid()
     seeks = seeking(town)
     arrive(seeks, town.at("e"))
-    assert course(seeks) is Course.ARRIVED
+    assert course(seeks) is GoalStatus.ARRIVED
     back = RlaGoal(1)
     seeks.seek(back, target(town, back))
     arrive(seeks, town.at("e"))
@@ -119,25 +119,25 @@ def test_off_all_known_places_it_stands_and_is_lost() -> None:
     seeks = seeking(town)
     arrive(seeks, town.at("a"))
     arrive(seeks, np.array([9.0, 9.0, 0.0]))
-    assert course(seeks) is Course.LOST
+    assert course(seeks) is GoalStatus.LOST
     assert seeks.choose(town.group_at(town.at("a"))) is None
     assert seeks.text.startswith("lost on the way to door")
     arrive(seeks, town.at("b"))  # somebody led it back
-    assert course(seeks) is Course.UNDER_WAY
+    assert course(seeks) is GoalStatus.UNDER_WAY
 
 
 def test_a_way_taught_meanwhile_is_taken_when_it_plans_anew() -> None:
     town = grid()
     seeks = seeking(town, RlaGoal(1))
     arrive(seeks, town.at("e"))
-    assert course(seeks) is Course.NO_WAY
+    assert course(seeks) is GoalStatus.NO_WAY
     town.way("e", "turn_left", "a")
     seeks.replan(town.at("e"))
     assert seeks.text == "planning the way to the situation of RLA 1"
     assert seeks.stands  # where it stood without a way it stands until there is one
     think(seeks)
     assert not seeks.stands
-    assert course(seeks) is Course.UNDER_WAY
+    assert course(seeks) is GoalStatus.UNDER_WAY
     assert chosen(town, seeks, "e") == "turn_left"
 
 
@@ -168,13 +168,13 @@ def test_a_place_that_only_looked_like_the_goal_is_not_gone_to_again() -> None:
     assert chosen(fresh, seeks, "b") == "straight_on"
     without_wall = np.array([4.0, 0.0, 0.0])
     arrive(seeks, without_wall)
-    assert course(seeks) is Course.UNDER_WAY
+    assert course(seeks) is GoalStatus.UNDER_WAY
     assert chosen(fresh, seeks, "c") == "turn_right"
     arrive(seeks, fresh.at("a"))
     arrive(seeks, fresh.at("b"))
     assert chosen(fresh, seeks, "b") == "turn_left"
     arrive(seeks, fresh.at("d"))
-    assert course(seeks) is Course.ARRIVED
+    assert course(seeks) is GoalStatus.ARRIVED
     assert seeks.text == "arrived: wall_left 1"
 
 
@@ -184,7 +184,7 @@ def test_when_nobody_seeks_the_mid_level_commands_as_ever() -> None:
     arrive(seeks, town.at("a"))
     seeks.stop()
     arrive(seeks, town.at("b"))
-    assert course(seeks) is Course.NONE
+    assert course(seeks) is GoalStatus.NONE
     assert seeks.text == ""
     assert chosen(town, seeks, "b") is None
     assert not seeks.stands
@@ -222,11 +222,11 @@ def test_a_plan_in_a_large_town_is_made_over_many_ticks_and_is_the_same_again() 
 
     took = []
     for _ in range(2):
-        seeks = Seeking(lambda: charting(row.system.rlas_at(MID), group_at, row.followed, row.seen.get), group_at)
+        seeks = GoalPursuit(lambda: charting(row.system.rlas_at(MID), group_at, row.followed, row.seen.get), group_at)
         seeks.seek(last, target(row, last))
         seeks.arrive(row.at("p0"))
         ticks = most = 0
-        while seeks.course is Course.PLANNING:
+        while seeks.course is GoalStatus.PLANNING:
             matched = 0
             seeks.think()
             ticks, most = ticks + 1, max(most, matched)
@@ -245,4 +245,4 @@ def test_nowhere_is_no_goal() -> None:
         assert not target(town, goal).met_by(nowhere)
         seeks = seeking(town, goal)
         arrive(seeks, nowhere)
-        assert course(seeks) is Course.LOST
+        assert course(seeks) is GoalStatus.LOST

@@ -4,7 +4,7 @@ import numpy as np
 
 from kurt2rt.core.planning.plan import Plan, plan_to
 from kurt2rt.core.planning.target import Having, Near, Target
-from kurt2rt.core.planning.topological_map import Chart
+from kurt2rt.core.planning.topological_map import TopologicalMap
 from tests.core.planning.town import RADIUS, Town
 from tests.core.rla.helpers import withdrawn
 
@@ -23,7 +23,7 @@ def place_id(town: Town, place: str) -> int:
     return town.group_at(town.at(place))[0].rla_id
 
 
-def meeting(chart: Chart, target: Target) -> set[int]:
+def meeting(chart: TopologicalMap, target: Target) -> set[int]:
     return {each for each, place in chart.places.items() if target.met_by(np.array(place.condition))}
 
 

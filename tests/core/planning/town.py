@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurt2rt.core.planning.map_builder import Survey
+from kurt2rt.core.planning.map_builder import MapBuilder
 from kurt2rt.core.planning.target import Having, Vector
-from kurt2rt.core.planning.topological_map import Chart, Charting, charting
+from kurt2rt.core.planning.topological_map import Charting, TopologicalMap, charting
 from kurt2rt.core.rla.rla import MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
@@ -59,9 +59,9 @@ class Town:
         """Begin a chart of what is known now."""
         return charting(self.system.rlas_at(MID), self.group_at, self.followed, self.seen.get)
 
-    def chart(self) -> Chart:
+    def chart(self) -> TopologicalMap:
         """As it is known now."""
-        survey = Survey(self.charting(), Having({}, 0.0))
+        survey = MapBuilder(self.charting(), Having({}, 0.0))
         while not survey.step(1):
             pass
         assert survey.chart is not None

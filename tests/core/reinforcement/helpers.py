@@ -11,18 +11,18 @@ from kurt2rt.core.critic.settings import (
     NeedSettings,
     SignalEverySettings,
 )
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Cause, Decision
-from kurt2rt.core.reinforcement.decision_history import RecentDecisions
+from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
-from kurt2rt.core.reinforcement.settings import LonelyWorths, ReinforcementSettings, TaughtWorths
+from kurt2rt.core.reinforcement.settings import AutonomousValues, ReinforcementSettings, TaughtValues
 from kurt2rt.core.rla.rla import CRITIC, Appraised, Phase, RlaDeleted, RlaRewarded, TeachingEvent
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.core.teaching.authority import Authority
-from kurt2rt.core.teaching.command_handler import School
+from kurt2rt.core.teaching.authority import ControlAuthority
+from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import Command, CommandResult, Drive, Reward, Watch
 from tests.core.critic.helpers import FREE, SETTINGS, appraisal, origin
 from tests.core.helpers import MINIMUM_TICKS, RADIUS, Counted, sensed, situation
@@ -30,10 +30,10 @@ from tests.core.helpers import MINIMUM_TICKS, RADIUS, Counted, sensed, situation
 PERIOD_S = 0.01
 SIGNALS_ONLY = ReinforcementSettings(
     step_s=100.0,
-    with_teacher=TaughtWorths(
+    with_teacher=TaughtValues(
         first_value=0.5, highest_value=None, sunk_below=-0.2, well_above=-0.2, blamed_share=0.001
     ),
-    alone=LonelyWorths(first_value=0.5, sunk_below=-0.2, well_above=-0.2, blamed_share=0.001),
+    alone=AutonomousValues(first_value=0.5, sunk_below=-0.2, well_above=-0.2, blamed_share=0.001),
 )
 """Values change by signals alone, so that they can be told in one's head; three blames sink an RLA."""
 
@@ -78,20 +78,20 @@ class Track:
     ) -> None:
         space = Space(len(critic.names), critic.learning.radius, critic.weight_vector)
         self.system = RlaSystem(1, RADIUS, others={CRITIC: space})
-        self.recent = RecentDecisions(1)
+        self.recent = DecisionHistory(1)
         self.reinforcement = Reinforcement(self.system, self.recent, reinforcement or SIGNALS_ONLY, PERIOD_S)
         self.reinforcement.recall(events, saved)
         actions = {name: Counted() for name in "abc"}
         choice = self.reinforcement.choice
-        self.level = BasicLevel(self.system, actions, MINIMUM_TICKS, Wanted(), choice)
+        self.level = BasicLevel(self.system, actions, MINIMUM_TICKS, ActiveBehaviour(), choice)
         self.critic = Critic(self.system, critic)
         self.agreement = Agreement(critic.agreement, critic.values, PERIOD_S)
         self.agreement.hear_all(events)
         self.self_teaching = SelfTeaching(self.reinforcement, self.system, critic, self.agreement, PERIOD_S)
         self.self_teaching.recall(events, saved)
-        self.school = School(
+        self.school = CommandHandler(
             self.level,
-            Authority(actions, attended=False),
+            ControlAuthority(actions, attended=False),
             insert_beyond_share=SHARE,
             taken_command_ids=(event.origin.command_id for event in events),
             reinforcement=self.reinforcement,

@@ -7,21 +7,21 @@ from hal.robot import STANDSTILL
 from kurt2rt.core.critic.critic import Opinion
 from kurt2rt.core.decision.decision import Cause, Decision
 from kurt2rt.core.perception.perception import Situation
-from kurt2rt.core.reinforcement.decision_history import RecentDecisions
+from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from tests.core.critic.helpers import FREE
 
 SITUATION = Situation(np.zeros(2), history_frozen=False)
 
 
-def remembered(*ticks: int, capacity: int = 10) -> RecentDecisions:
+def remembered(*ticks: int, capacity: int = 10) -> DecisionHistory:
     """In each tick the situation is its number, and RLA 100 + number drives."""
-    recent = RecentDecisions(2, capacity)
+    recent = DecisionHistory(2, capacity)
     for tick in ticks:
         remember(recent, tick)
     return recent
 
 
-def remember(recent: RecentDecisions, tick: int, behaviour: str = "", *, blind: bool = False) -> None:
+def remember(recent: DecisionHistory, tick: int, behaviour: str = "", *, blind: bool = False) -> None:
     situation = Situation(np.array([tick, -tick], dtype=np.float64), history_frozen=False)
     recent.remember(
         tick, situation, Decision(STANDSTILL, Cause.RLA, "a", 100 + tick, None, True), behaviour, blind=blind
@@ -72,14 +72,14 @@ def test_a_tick_in_which_the_robot_saw_nothing_is_known_as_such() -> None:
 
 
 def test_a_thousand_ticks_are_kept() -> None:
-    recent = RecentDecisions(2)
+    recent = DecisionHistory(2)
     for tick in range(1, 1002):
         remember(recent, tick)
     assert [recent.knows(tick) for tick in (1, 2, 1001)] == [False, True, True]
 
 
 def test_each_tick_has_the_behaviour_that_was_wanted_then() -> None:
-    recent = RecentDecisions(2, capacity=2)
+    recent = DecisionHistory(2, capacity=2)
     remember(recent, 1, "straight_on")
     remember(recent, 2, "turn_left")
     assert [recent.behaviour(tick) for tick in (1, 2)] == ["straight_on", "turn_left"]

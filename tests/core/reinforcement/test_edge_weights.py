@@ -3,13 +3,13 @@
 import pytest
 
 from kurt2rt.core.reinforcement.edge_weights import EdgeWeights
-from kurt2rt.core.reinforcement.eligibility_trace import Trace
-from kurt2rt.core.reinforcement.rule import Booking
+from kurt2rt.core.reinforcement.eligibility_trace import EligibilityTrace
+from kurt2rt.core.reinforcement.rule import CreditUpdate
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.statistics import Statistics
 
-LAST = Trace({}, ((3, 4), (2, 3), (1, 2)))
+LAST = EligibilityTrace({}, ((3, 4), (2, 3), (1, 2)))
 
 
 def rule(*way: int | None) -> EdgeWeights:
@@ -35,7 +35,7 @@ def test_praise_multiplies_the_last_three_newest_first_and_blame_divides() -> No
 def test_an_rla_is_worth_the_mean_of_the_edges_into_it_that_were_used() -> None:
     learner = rule(1, 4, 2, 4, 3, 4)
     assert learner.worth(4) == 0.0
-    learner.take(-1, Trace({}, ((3, 4),)))
+    learner.take(-1, EligibilityTrace({}, ((3, 4),)))
     assert learner.worth(4) == pytest.approx(-(100 / 0.9 - 100) / 3 / 100)
     assert learner.worth(9) == 0.0
 
@@ -43,13 +43,13 @@ def test_an_rla_is_worth_the_mean_of_the_edges_into_it_that_were_used() -> None:
 def test_a_worth_stays_between_minus_one_and_one() -> None:
     learner = rule(3, 4)
     for _ in range(30):
-        learner.take(-1, Trace({}, ((3, 4),)))
+        learner.take(-1, EligibilityTrace({}, ((3, 4),)))
     assert learner.worth(4) == -1.0
 
 
 def test_praise_heals_as_fast_as_blame_hurt_however_often_it_came() -> None:
     learner = rule(3, 4)
-    last = Trace({}, ((3, 4),))
+    last = EligibilityTrace({}, ((3, 4),))
     hurt = 0
     for _ in range(10_000):
         before = learner.edge_weights
@@ -71,7 +71,7 @@ def test_undoing_and_restoring_leave_no_weight_beyond_the_bounds() -> None:
     learner = rule()
     learner.restore(Statistics(edge_weights={(3, 4): 1e300, (2, 5): 20.0}))
     assert learner.edge_weights == {(3, 4): 1000.0, (2, 5): 20.0}
-    learner.book([Booking(Credit(5, 0.5), 0)], 1)
+    learner.book([CreditUpdate(Credit(5, 0.5), 0)], 1)
     assert learner.edge_weights[2, 5] == 10.0
 
 
@@ -89,8 +89,8 @@ def test_credits_tell_which_edges_changed_and_an_undo_changes_those_back_and_no_
     for rla_id, change, edge_from in credits_:
         assert edge_from is not None
         assert blamed[edge_from, rla_id] == pytest.approx(100 - 100 * change)
-    learner.take(1, Trace({}, ((2, 4),)))
-    bookings = [Booking(credit, 0) for credit in credits_]
+    learner.take(1, EligibilityTrace({}, ((2, 4),)))
+    bookings = [CreditUpdate(credit, 0) for credit in credits_]
     learner.book(bookings, -1)
     assert learner.edge_weights == pytest.approx({**before, (2, 4): 90.0})
     learner.book(bookings, 1)
@@ -99,25 +99,25 @@ def test_credits_tell_which_edges_changed_and_an_undo_changes_those_back_and_no_
 
 def test_credits_from_the_journal_make_the_edges_that_they_are_of() -> None:
     learner = rule()
-    learner.book([Booking(Credit(4, 0.1, 3), 0), Booking(Credit(4, -0.5, 2), 0)], 1)
+    learner.book([CreditUpdate(Credit(4, 0.1, 3), 0), CreditUpdate(Credit(4, -0.5, 2), 0)], 1)
     assert learner.edge_weights == pytest.approx({(3, 4): 90.0, (2, 4): 150.0})
-    learner.book([Booking(Credit(9, 0.1, 3), 0)], -1)
+    learner.book([CreditUpdate(Credit(9, 0.1, 3), 0)], -1)
     assert (3, 9) not in learner.edge_weights
 
 
 def test_credits_of_an_earlier_kurt2rt_shift_all_edges_into_an_rla() -> None:
     learner = rule(3, 4, 2, 4)
-    learner.book([Booking(Credit(4, 0.1), 0)], 1)
+    learner.book([CreditUpdate(Credit(4, 0.1), 0)], 1)
     assert learner.edge_weights[3, 4] == learner.edge_weights[2, 4] == pytest.approx(90.0)
 
 
 def test_another_action_begins_anew_and_the_former_one_comes_back() -> None:
     learner = rule(3, 4)
-    learner.take(-1, Trace({}, ((3, 4),)))
+    learner.take(-1, EligibilityTrace({}, ((3, 4),)))
     worth = learner.worth(4)
     learner.renew(4)
     assert (learner.worth(4), learner.depth(4)) == (0.0, 1)
-    learner.book([Booking(Credit(4, worth), 0)], -1)
+    learner.book([CreditUpdate(Credit(4, worth), 0)], -1)
     learner.go_back(4)
     assert (learner.worth(4), learner.depth(4)) == pytest.approx((0.0, 0))
 

@@ -9,29 +9,29 @@ from hypothesis import strategies as st
 
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import Cause, Decision
-from kurt2rt.core.reinforcement.decision_history import RecentDecisions
-from kurt2rt.core.reinforcement.eligibility_trace import Trace, trace_of
+from kurt2rt.core.reinforcement.decision_history import DecisionHistory
+from kurt2rt.core.reinforcement.eligibility_trace import EligibilityTrace, trace_of
 from tests.core.helpers import situation
 
 TRACE_TICKS = 70.0
 D = math.exp(-1 / TRACE_TICKS)
 
 
-def drives(*rlas: int | None, answers: bool = True, first_tick: int = 1) -> RecentDecisions:
+def drives(*rlas: int | None, answers: bool = True, first_tick: int = 1) -> DecisionHistory:
     """One RLA a tick; None: the robot stood."""
-    recent = RecentDecisions(1)
+    recent = DecisionHistory(1)
     for tick, rla_id in enumerate(rlas, first_tick):
         remember(recent, tick, rla_id, answers=answers)
     return recent
 
 
-def remember(recent: RecentDecisions, tick: int, rla_id: int | None, *, answers: bool = True) -> None:
+def remember(recent: DecisionHistory, tick: int, rla_id: int | None, *, answers: bool = True) -> None:
     action = None if rla_id is None else "a"
     decision = Decision(STANDSTILL, Cause.RLA, action, rla_id, None, answers and rla_id is not None)
     recent.remember(tick, situation(0.0), decision, blind=False)
 
 
-def trace(recent: RecentDecisions, tick: int, since: dict[int, int] | None = None) -> Trace:
+def trace(recent: DecisionHistory, tick: int, since: dict[int, int] | None = None) -> EligibilityTrace:
     return trace_of(recent, tick, trace_ticks=TRACE_TICKS, most_transitions=3, since=since or {})
 
 
@@ -52,8 +52,8 @@ def test_a_late_signal_does_not_mean_the_one_that_drives_now() -> None:
 
 
 def test_a_robot_that_stands_or_is_outside_the_radius_blames_nobody() -> None:
-    assert trace(drives(None, None, None), 3) == Trace({}, ())
-    assert trace(drives(7, 8, 7, answers=False), 3) == Trace({}, ())
+    assert trace(drives(None, None, None), 3) == EligibilityTrace({}, ())
+    assert trace(drives(7, 8, 7, answers=False), 3) == EligibilityTrace({}, ())
 
 
 def test_while_the_robot_stands_what_was_before_fades() -> None:

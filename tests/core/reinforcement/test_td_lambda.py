@@ -4,18 +4,18 @@ import math
 
 import pytest
 
-from kurt2rt.core.reinforcement.eligibility_trace import Trace
-from kurt2rt.core.reinforcement.rule import Booking
-from kurt2rt.core.reinforcement.settings import ReinforcementSettings, TaughtWorths
+from kurt2rt.core.reinforcement.eligibility_trace import EligibilityTrace
+from kurt2rt.core.reinforcement.rule import CreditUpdate
+from kurt2rt.core.reinforcement.settings import ReinforcementSettings, TaughtValues
 from kurt2rt.core.reinforcement.td_lambda import TdLambda
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.statistics import Statistics
 
 ALPHA, GAMMA, V0, TRACE_S = 0.3, 0.9, 0.5, 0.7
 D = math.exp(-0.01 / TRACE_S)
-WORTHS = TaughtWorths(first_value=V0, highest_value=None)
+WORTHS = TaughtValues(first_value=V0, highest_value=None)
 SETTINGS = ReinforcementSettings(alpha=ALPHA, gamma=GAMMA, trace_s=TRACE_S, step_s=0.1, with_teacher=WORTHS)
-HALF_EACH = Trace({1: 0.5, 2: 0.25}, ())
+HALF_EACH = EligibilityTrace({1: 0.5, 2: 0.25}, ())
 
 
 def rule() -> TdLambda:
@@ -71,7 +71,7 @@ def test_after_a_pause_there_is_no_step_and_no_trace() -> None:
 
 def test_credits_of_the_journal_are_booked_and_taken_off() -> None:
     learner = rule()
-    bookings = [Booking(Credit(1, -0.3), 0), Booking(Credit(2, 0.2), 0)]
+    bookings = [CreditUpdate(Credit(1, -0.3), 0), CreditUpdate(Credit(2, 0.2), 0)]
     learner.book(bookings, 1)
     assert (learner.worth(1), learner.worth(2)) == pytest.approx((0.2, 0.7))
     learner.book(bookings, -1)
@@ -80,12 +80,12 @@ def test_credits_of_the_journal_are_booked_and_taken_off() -> None:
 
 def test_another_action_begins_anew_and_the_former_one_comes_back_with_its_value() -> None:
     learner = rule()
-    learner.take(-1, Trace({1: 1.0}, ()))
+    learner.take(-1, EligibilityTrace({1: 1.0}, ()))
     assert learner.depth(1) == 0
     learner.renew(1)
     assert (learner.worth(1), learner.depth(1)) == (V0, 1)
-    learner.take(1, Trace({1: 1.0}, ()))
-    learner.book([Booking(Credit(1, -ALPHA), 0)], -1)  # the blame of the former action is taken back
+    learner.take(1, EligibilityTrace({1: 1.0}, ()))
+    learner.book([CreditUpdate(Credit(1, -ALPHA), 0)], -1)  # the blame of the former action is taken back
     assert learner.worth(1) == pytest.approx(V0 + ALPHA)
     learner.go_back(1)
     assert (learner.worth(1), learner.depth(1)) == pytest.approx((V0, 0))
@@ -122,7 +122,7 @@ CAPPED = ReinforcementSettings(alpha=ALPHA, step_s=0.1)
 def test_with_a_teacher_praise_heals_and_lifts_no_higher() -> None:
     learner = TdLambda(CAPPED, CAPPED.with_teacher, 0.01)
     assert learner.credits_of(1, HALF_EACH) == ()
-    learner.take(-1, Trace({1: 0.2}, ()))
+    learner.take(-1, EligibilityTrace({1: 0.2}, ()))
     assert learner.credits_of(1, HALF_EACH) == (Credit(1, pytest.approx(0.06)),)  # type: ignore[arg-type]
     learner.take(1, HALF_EACH)
     assert (learner.worth(1), learner.worth(2)) == (0.0, 0.0)
@@ -130,17 +130,17 @@ def test_with_a_teacher_praise_heals_and_lifts_no_higher() -> None:
 
 def test_alone_values_begin_higher_and_praise_lifts_them() -> None:
     learner = TdLambda(CAPPED, CAPPED.alone, 0.01)
-    learner.take(-1, Trace({1: 0.5}, ()))
+    learner.take(-1, EligibilityTrace({1: 0.5}, ()))
     assert (learner.worth(1), learner.worth(2)) == pytest.approx((0.35, 0.5))
-    learner.take(1, Trace({1: 0.5, 2: 1.0}, ()))
+    learner.take(1, EligibilityTrace({1: 0.5, 2: 1.0}, ()))
     assert learner.values == pytest.approx({1: 0.5, 2: 0.8})
 
 
 def test_some_values_come_back_and_the_others_stay() -> None:
     learner = rule()
-    learner.take(-1, Trace({1: 1.0, 2: 1.0}, ()))
+    learner.take(-1, EligibilityTrace({1: 1.0, 2: 1.0}, ()))
     then = Statistics(values=dict(learner.values))
-    learner.take(-1, Trace({1: 1.0, 2: 1.0, 3: 1.0, 4: 1.0}, ()))
+    learner.take(-1, EligibilityTrace({1: 1.0, 2: 1.0, 3: 1.0, 4: 1.0}, ()))
     learner.restore(then, {1, 3, 5})
     assert [learner.worth(n) for n in range(1, 6)] == pytest.approx([0.2, -0.1, V0, 0.2, V0])
 
@@ -148,11 +148,11 @@ def test_some_values_come_back_and_the_others_stay() -> None:
 def test_blame_of_a_teacher_counts_from_the_highest_value_wherever_it_stood() -> None:
     learner = TdLambda(CAPPED, CAPPED.with_teacher, 0.01)
     learner.restore(Statistics(values={1: 0.3}))
-    assert learner.credits_of(1, Trace({1: 1.0}, ())) == ()
-    (credit,) = learner.credits_of(-1, Trace({1: 1.0}, ()))
-    learner.take(-1, Trace({1: 1.0}, ()))
+    assert learner.credits_of(1, EligibilityTrace({1: 1.0}, ())) == ()
+    (credit,) = learner.credits_of(-1, EligibilityTrace({1: 1.0}, ()))
+    learner.take(-1, EligibilityTrace({1: 1.0}, ()))
     assert learner.worth(1) == pytest.approx(-ALPHA)
-    learner.book([Booking(credit, 0)], -1)
+    learner.book([CreditUpdate(credit, 0)], -1)
     assert learner.worth(1) == pytest.approx(0.3)
 
 

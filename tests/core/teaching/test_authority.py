@@ -4,7 +4,7 @@ import pytest
 
 from hal.robot import WheelSpeeds
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode
-from kurt2rt.core.teaching.authority import Authority
+from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.commands import Drive
 from tests.core.helpers import Counted, sensed
 
@@ -17,7 +17,7 @@ class Hands:
 
     def __init__(self, *, attended: bool = True) -> None:
         self.action = Counted()
-        self.authority = Authority({"a": self.action}, attended=attended)
+        self.authority = ControlAuthority({"a": self.action}, attended=attended)
         self.authority.claim("Ann")
 
     def drive(self, tick: int = NOW, *, seen: int | None = None, hold: int = 1) -> None:
@@ -151,7 +151,7 @@ def test_nobody_has_to_be_there_where_the_robot_needs_nobody() -> None:
 
 
 def test_who_speaks_first_teaches_and_the_next_one_has_to_ask() -> None:
-    authority = Authority({}, attended=True)
+    authority = ControlAuthority({}, attended=True)
     assert authority.held_by_another("Ann") is None
     authority.claim("Ann")
     authority.claim("Ben")
@@ -225,7 +225,7 @@ def test_a_hand_on_the_wheels_ends_a_behaviour_and_a_behaviour_the_hand() -> Non
 
 
 def test_a_device_with_new_keys_counts_its_presses_anew() -> None:
-    authority = Authority({}, attended=False)
+    authority = ControlAuthority({}, attended=False)
     authority.claim("Ann")
     authority.drive(Drive("Ann", 0, 7, 0.1, 0.1), 0)
     authority.end_hand()

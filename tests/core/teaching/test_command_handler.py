@@ -23,8 +23,8 @@ from kurt2rt.core.rla.rla import (
     TeachingEvent,
 )
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.core.teaching.authority import Authority
-from kurt2rt.core.teaching.command_handler import School
+from kurt2rt.core.teaching.authority import ControlAuthority
+from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import (
     BeginSession,
     Command,
@@ -60,9 +60,9 @@ class Lesson:
         self, *events: TeachingEvent, taken: tuple[str, ...] = (), behaviours: tuple[str, ...] = ("",)
     ) -> None:
         self.small = SmallLevel(*events, behaviours=behaviours)
-        self.school = School(
+        self.school = CommandHandler(
             self.small.level,
-            Authority(self.small.actions, attended=False),
+            ControlAuthority(self.small.actions, attended=False),
             insert_beyond_share=SHARE,
             taken_command_ids=taken,
         )

@@ -3,7 +3,7 @@
 import pytest
 
 from kurt2rt.core.teaching.inbox import InboxFullError, TeacherInbox
-from kurt2rt.core.teaching.system_events import PressesForgotten, SetDown
+from kurt2rt.core.teaching.system_events import PairingRenewed, RobotRepositioned
 from tests.teacher.helpers import resume, stop, teach
 
 
@@ -39,15 +39,15 @@ def test_a_stop_finds_room_in_a_full_inbox() -> None:
 def test_what_has_happened_goes_before_what_waits_and_always_finds_room() -> None:
     inbox = TeacherInbox(capacity=1)
     inbox.put(teach("a"))
-    inbox.put(SetDown())
-    inbox.put(PressesForgotten("Ann"))
-    assert inbox.take() == (PressesForgotten("Ann"), SetDown(), teach("a"))
+    inbox.put(RobotRepositioned())
+    inbox.put(PairingRenewed("Ann"))
+    assert inbox.take() == (PairingRenewed("Ann"), RobotRepositioned(), teach("a"))
 
 
 def test_a_replay_says_exactly_what_the_next_tick_takes() -> None:
     inbox = TeacherInbox(capacity=1)
     inbox.put(stop())
-    taken = (teach("a"), SetDown(), resume())
+    taken = (teach("a"), RobotRepositioned(), resume())
     inbox.hold(taken)
     assert inbox.take() == taken
     assert inbox.take() == ()

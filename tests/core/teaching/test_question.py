@@ -11,7 +11,7 @@ from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
-from kurt2rt.core.teaching.question import Question, WayQuestion, ask, ask_the_way
+from kurt2rt.core.teaching.question import MidQuestion, Question, ask, ask_the_way
 from tests.core.rla.helpers import created, withdrawn
 
 NAMES = ("s1", "s2", "s3", "s1 (10 s average)", "s2 (10 s average)", "s3 (10 s average)", "maximum left")
@@ -99,7 +99,7 @@ def test_where_the_action_itself_is_lost_it_says_so() -> None:
     assert str(question) == "RLA 1 says curve_left, which does not know how to go on here; teach me another action"
 
 
-def of_the_way(*conditions: tuple[float, ...]) -> WayQuestion:
+def of_the_way(*conditions: tuple[float, ...]) -> MidQuestion:
     system = RlaSystem(1, 1.0, others={MID: Space(3, 1.0, metric="hamming")})
     for number, condition in enumerate(conditions, 1):
         system.apply(created(number, condition, "turn_left", level=MID))

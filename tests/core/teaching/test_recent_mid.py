@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from kurt2rt.core.teaching.recent_mid import MidMoment, RecentMid
+from kurt2rt.core.teaching.recent_mid import MidHistory, MidSnapshot
 
 
-def remembered(*spells: tuple[int, int, int | None], capacity: int = 64) -> RecentMid:
+def remembered(*spells: tuple[int, int, int | None], capacity: int = 64) -> MidHistory:
     """Of each (first tick, last tick, RLA) one situation, which is the number of its first tick."""
-    recent = RecentMid(capacity)
+    recent = MidHistory(capacity)
     for first, last, rla_id in spells:
         vector = np.array([float(first)])
         for tick in range(first, last + 1):
@@ -15,13 +15,13 @@ def remembered(*spells: tuple[int, int, int | None], capacity: int = 64) -> Rece
     return recent
 
 
-def told(moment: MidMoment | None) -> tuple[float, int | None] | None:
+def told(moment: MidSnapshot | None) -> tuple[float, int | None] | None:
     return None if moment is None else (moment.vector.item(), moment.rla_id)
 
 
 def test_nothing_is_remembered_before_the_first_tick_or_after_the_newest() -> None:
-    assert RecentMid().at(0) is None
-    assert RecentMid().newest is None
+    assert MidHistory().at(0) is None
+    assert MidHistory().newest is None
     recent = remembered((5, 9, 1))
     assert [told(recent.at(tick)) for tick in (4, 5, 9, 10)] == [None, (5.0, 1), (5.0, 1), None]
 
@@ -39,7 +39,7 @@ def test_a_situation_lasts_from_junction_to_junction_however_many_ticks() -> Non
 
 
 def test_another_rla_at_the_same_place_is_another_moment() -> None:
-    recent = RecentMid()
+    recent = MidHistory()
     vector = np.zeros(1)
     for tick, rla_id in enumerate((None, None, 7, 7, 8)):
         recent.remember(tick, vector, rla_id)

@@ -7,8 +7,8 @@ from kurt2rt.core.critic.settings import NAMES
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import CRITIC, ActionReplaced, Appraised, Phase, RlaCreated
-from kurt2rt.core.teaching.authority import Authority
-from kurt2rt.core.teaching.command_handler import School
+from kurt2rt.core.teaching.authority import ControlAuthority
+from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import Appraise, CommandResult, ReplaceAction, Reward, Undo
 from tests.core.critic.helpers import appraisal
 from tests.core.helpers import SmallLevel, situation
@@ -163,8 +163,8 @@ def test_an_appraisal_does_not_end_the_action_that_is_held() -> None:
 
 def test_a_robot_without_a_critic_says_so() -> None:
     small = SmallLevel()
-    school = School(
-        small.level, Authority(small.actions, attended=False), insert_beyond_share=0.5, taken_command_ids=()
+    school = CommandHandler(
+        small.level, ControlAuthority(small.actions, attended=False), insert_beyond_share=0.5, taken_command_ids=()
     )
     result, event = school.attend(Appraise("x-1", "Ann", "bad"), situation(0.0), 1)
     assert (result.outcome, event) == (Outcome(RefusalCode.NO_CRITIC), None)

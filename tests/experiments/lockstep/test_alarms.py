@@ -9,7 +9,7 @@ from hal.guard_reason import GuardReason
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams, run_lesson
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
-from kurt2rt.experiments.lockstep.lesson import LessonResult
+from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
 from kurt2rt.experiments.lockstep.report import render_exams
 from simbridge.simulation import Kurt2Simulation, Kurt2SimulationFactory
@@ -43,7 +43,7 @@ STAGE = StageWithAnAlarm(ROBOT)
 
 
 def test_the_teacher_says_go_and_the_lesson_goes_on(tmp_path: Path) -> None:
-    async def lesson() -> LessonResult:
+    async def lesson() -> TrainingResult:
         result, _ = await run_lesson(STAGE, ROBOT, TASK, tmp_path / "knowledge", seed=1, report=lambda *_: None)
         return result
 
@@ -55,7 +55,7 @@ def test_the_teacher_says_go_and_the_lesson_goes_on(tmp_path: Path) -> None:
 
 
 def test_an_alarm_that_the_end_of_what_was_shown_lifts_is_one_all_the_same(tmp_path: Path) -> None:
-    async def lesson() -> LessonResult:
+    async def lesson() -> TrainingResult:
         # Shown from 4.5 s on; the alarm comes at 5 s, and Resume before the second is over after which he says Go.
         plan = LessonPlan(((Phase.CRITIC, 8.0),), signs="judge", set_down_every_s=4.5, shown_s=1.0)
         result, _ = await run_lesson(

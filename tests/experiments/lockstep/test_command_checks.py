@@ -7,7 +7,7 @@ import anyio
 import pytest
 import yaml
 
-from behaviors.metrics.task_metric import Course, CourseSettings
+from behaviors.metrics.task_metric import MetricSettings, TaskMetric
 from behaviors.metrics.way import WaySettings
 from config import CONFIG_DIR
 from hal.simulation import Simulation
@@ -34,10 +34,10 @@ def examined(task: TaskSettings) -> None:
     anyio.run(exams)
 
 
-class FlySettings(CourseSettings):
+class FlySettings(MetricSettings):
     """Wants what no task teaches."""
 
-    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> Course:
+    def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:
         course = WaySettings(kind="way").build(simulation, behaviours, chance)
         course.behaviour = "fly"  # type: ignore[misc]
         return course

@@ -12,7 +12,7 @@ from kurt2rt.core.task_settings import SuccessSettings, TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Teach
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams
-from kurt2rt.experiments.lockstep.exam import ExamResult, NothingIsTaught, examine
+from kurt2rt.experiments.lockstep.exam import ExamResult, NoTeachingAllowed, examine
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
@@ -119,7 +119,7 @@ def test_where_it_asks_the_wheels_are_told_to_stand(taught: Taught) -> None:
     records: list[TickRecord] = []
     try:
         clock = LockstepClock(simulation.step)
-        runtime = build_runtime(simulation.robot, ROBOT, task, taught.events, NothingIsTaught(), clock)
+        runtime = build_runtime(simulation.robot, ROBOT, task, taught.events, NoTeachingAllowed(), clock)
         anyio.run(runtime.scheduler.run, 400, records.append)
     finally:
         simulation.close()
@@ -134,7 +134,7 @@ def test_a_lesson_in_an_exam_is_a_defect_and_no_silence() -> None:
     simulation = STAGE.open("a", 1, "exam")
     try:
         clock = LockstepClock(simulation.step)
-        runtime = build_runtime(simulation.robot, ROBOT, short_task(), [], NothingIsTaught(), clock)
+        runtime = build_runtime(simulation.robot, ROBOT, short_task(), [], NoTeachingAllowed(), clock)
         runtime.inbox.put(Teach("t-1", "Ann", "forward"))
         with pytest.raises(RuntimeError, match="a lesson was given in an exam"):
             anyio.run(runtime.scheduler.run, 1, lambda _: None)

@@ -12,7 +12,7 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
 from kurt2rt.experiments.lockstep.exam import examine
-from kurt2rt.experiments.lockstep.lesson import LessonResult
+from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, SignalTimes, plan_of
 from kurt2rt.knowledge.journal.journal import Journal
 from tests.experiments.helpers import ROBOT, STAGE, Taught, short_task
@@ -21,12 +21,12 @@ from tests.experiments.lockstep.test_exam import knows_only
 
 def go_on(
     taught: Taught, folder: Path, plan: LessonPlan, task: TaskSettings | None = None
-) -> tuple[LessonResult, list[TeachingEvent]]:
+) -> tuple[TrainingResult, list[TeachingEvent]]:
     """Another lesson behind the first one; the events that it brought."""
     knowledge = folder / "knowledge"
     knowledge.write_bytes(taught.knowledge.read_bytes())
 
-    async def lesson() -> tuple[LessonResult, list[TeachingEvent]]:
+    async def lesson() -> tuple[TrainingResult, list[TeachingEvent]]:
         return await run_lesson(STAGE, ROBOT, task or taught.task, knowledge, seed=1, report=lambda *_: None, plan=plan)
 
     result, events = anyio.run(lesson)
@@ -72,7 +72,7 @@ def test_in_phase_5_nobody_answers_and_a_robot_that_knows_nothing_is_set_down_el
     task = short_task()
     task = task.model_copy(update={"teaching": task.teaching.model_copy(update={"rescue_after_s": 1.5})})
 
-    async def lesson() -> tuple[LessonResult, list[TeachingEvent]]:
+    async def lesson() -> tuple[TrainingResult, list[TeachingEvent]]:
         plan = of_phase(Phase.AUTONOMOUS)
         return await run_lesson(STAGE, ROBOT, task, tmp_path / "k", seed=1, report=lambda *_: None, plan=plan)
 

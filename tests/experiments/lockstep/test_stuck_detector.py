@@ -3,12 +3,12 @@ import math
 import pytest
 
 from hal.simulation import Position
-from kurt2rt.experiments.lockstep.stuck_detector import WayMade
+from kurt2rt.experiments.lockstep.stuck_detector import StuckDetector
 
 PERIOD_S = 0.01
 
 
-def stuck_after_s(way: WayMade, path: list[Position]) -> float | None:
+def stuck_after_s(way: StuckDetector, path: list[Position]) -> float | None:
     """Seconds into a drive until no way was made for a whole window."""
     for tick, position in enumerate(path):
         if way.none_since_window(position):
@@ -28,17 +28,17 @@ TRAVELLING = [Position(0.003 * i, 0.0) for i in ticks(20)]
 
 @pytest.mark.parametrize("path", [STANDING, CIRCLING])
 def test_standing_and_going_round_in_circles_is_no_way_once_the_window_is_full(path: list[Position]) -> None:
-    assert stuck_after_s(WayMade(5.0, PERIOD_S), path) == 5.0
+    assert stuck_after_s(StuckDetector(5.0, PERIOD_S), path) == 5.0
 
 
 @pytest.mark.parametrize("path", [TRAVELLING, ROUND_A_ROOM])
 def test_travelling_is_way_made_also_round_the_same_room(path: list[Position]) -> None:
-    assert stuck_after_s(WayMade(5.0, PERIOD_S), path) is None
+    assert stuck_after_s(StuckDetector(5.0, PERIOD_S), path) is None
 
 
 def test_a_robot_that_stops_is_found_a_window_later() -> None:
     path = TRAVELLING[:1000] + [TRAVELLING[999]] * 2000
-    found_s = stuck_after_s(WayMade(5.0, PERIOD_S), path)
+    found_s = stuck_after_s(StuckDetector(5.0, PERIOD_S), path)
     # Its last metre took 3.3 s, and positions are kept each half second.
     assert found_s is not None
     assert 10.0 + 5.0 - 3.34 <= found_s <= 10.0 + 5.0 - 3.33 + 0.5
@@ -46,12 +46,12 @@ def test_a_robot_that_stops_is_found_a_window_later() -> None:
 
 def test_the_least_way_is_what_tells_slow_from_stuck() -> None:
     crawling = [Position(0.0005 * i, 0.0) for i in ticks(20)]
-    assert stuck_after_s(WayMade(5.0, PERIOD_S), crawling) == 5.0
-    assert stuck_after_s(WayMade(5.0, PERIOD_S, least_m=0.2), crawling) is None
+    assert stuck_after_s(StuckDetector(5.0, PERIOD_S), crawling) == 5.0
+    assert stuck_after_s(StuckDetector(5.0, PERIOD_S, least_m=0.2), crawling) is None
 
 
 def test_a_restart_gives_a_whole_new_window() -> None:
-    way = WayMade(5.0, PERIOD_S)
+    way = StuckDetector(5.0, PERIOD_S)
     assert stuck_after_s(way, STANDING[:499]) is None
     way.restart()
     assert stuck_after_s(way, STANDING) == 5.0

@@ -10,7 +10,7 @@ from config import CONFIG_DIR
 from hal.settings import SettingsError
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
-from kurt2rt.experiments.lockstep.lesson import LessonResult
+from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from tests.experiments.helpers import ROBOT, STAGE, teachers_drive
 
 TASKS = sorted(path.stem for path in (CONFIG_DIR / "tasks").glob("*.yaml"))
@@ -30,8 +30,8 @@ def lasting(name: str, supervised_s: float = 4.0, corrections_s: float = 4.0, ex
     return task.model_copy(update={"teaching": teaching, "exam": exam})
 
 
-def lesson(task: TaskSettings, folder: Path) -> LessonResult:
-    async def teach() -> LessonResult:
+def lesson(task: TaskSettings, folder: Path) -> TrainingResult:
+    async def teach() -> TrainingResult:
         result, _ = await run_lesson(STAGE, ROBOT, task, folder / "knowledge", seed=1, report=lambda *_: None)
         return result
 

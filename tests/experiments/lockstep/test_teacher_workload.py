@@ -2,35 +2,35 @@
 
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import Appraise, Correct, DeleteRla, Pursue, Reward, SetPhase, Teach
-from kurt2rt.experiments.lockstep.teacher_workload import Load, Minute
+from kurt2rt.experiments.lockstep.teacher_workload import TeacherWorkload, WorkloadMinute
 
 
 def test_each_kind_is_counted_in_its_minute() -> None:
-    load = Load(ticks=15_000, period_s=0.01)
+    load = TeacherWorkload(ticks=15_000, period_s=0.01)
     load.note(1, Teach("1", "Ann", "a"))
     load.note(6_000, Correct("2", "Ann", "a"))
     load.note(6_001, DeleteRla("3", "Ann", 1))
     load.note(12_001, Reward("4", "Ann", 1))
     load.note(15_000, Appraise("5", "Ann", "good"))
     assert load.minutes == (
-        Minute(lessons=1, corrections=1),
-        Minute(corrections=1),
-        Minute(rewards=1, appraisals=1),
+        WorkloadMinute(lessons=1, corrections=1),
+        WorkloadMinute(corrections=1),
+        WorkloadMinute(rewards=1, appraisals=1),
     )
 
 
 def test_the_work_of_the_hands_is_load_too() -> None:
-    load = Load(ticks=12_000, period_s=0.01)
+    load = TeacherWorkload(ticks=12_000, period_s=0.01)
     load.note_hands(1, "set_down")
     load.note_hands(6_000, "set_down")
     load.note_hands(6_001, "shown")
     load.note_hands(6_001, "rescued")
     load.note_hands(12_000, "go")
-    assert load.minutes == (Minute(set_down=2), Minute(shown=1, rescued=1, go=1))
+    assert load.minutes == (WorkloadMinute(set_down=2), WorkloadMinute(shown=1, rescued=1, go=1))
 
 
 def test_what_teaches_nothing_is_no_load() -> None:
-    load = Load(ticks=100, period_s=0.01)
+    load = TeacherWorkload(ticks=100, period_s=0.01)
     load.note(1, SetPhase("1", "Ann", Phase.CRITIC))
     load.note(2, Pursue("2", "Ann", ""))
-    assert load.minutes == (Minute(),)
+    assert load.minutes == (WorkloadMinute(),)

@@ -12,7 +12,7 @@ from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.navigation.figures import draw_errands
 from kurt2rt.experiments.navigation.lesson import errands_of
 from kurt2rt.experiments.navigation.outcome import ErrandsOutcome
-from kurt2rt.experiments.navigation.plan import Programme, conduct, plan, read_outcomes, robot_time_s
+from kurt2rt.experiments.navigation.plan import NavigationPlan, conduct, plan, read_outcomes, robot_time_s
 from kurt2rt.experiments.navigation.tables import sheets
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.knowledge.journal.journal import Journal
@@ -24,7 +24,7 @@ def short(name: str, teaching_s: float, exam_s: float) -> TaskSettings:
     return task.model_copy(update={"exam": task.exam.model_copy(update={"duration_s": exam_s})})
 
 
-def a_programme(results: Results, streets_s: float, errands_s: float, exam_s: float) -> Programme:
+def a_programme(results: Results, streets_s: float, errands_s: float, exam_s: float) -> NavigationPlan:
     errands, streets = short("errands", errands_s, exam_s), short("streets", streets_s, 6.0)
     return plan(errands, streets, (1,), STAGE, ROBOT, results, controls=True, source_of=lambda _: "tested")
 
@@ -32,7 +32,7 @@ def a_programme(results: Results, streets_s: float, errands_s: float, exam_s: fl
 @dataclass(frozen=True)
 class Done:
     results: Results
-    programme: Programme
+    programme: NavigationPlan
     outcome: ErrandsOutcome
 
 

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.paper.outcome import DriveOutcome, Reading, TaughtOutcome
-from kurt2rt.experiments.paper.plan import Experiment
+from kurt2rt.experiments.paper.plan import PaperExperiment
 from kurt2rt.experiments.paper.settings import ExperimentSettings, load_paper
-from kurt2rt.experiments.paper.summary import Summary, summarize
-from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.paper.summary import PaperSummary, summarize
+from kurt2rt.experiments.study.provenance import Provenance
 
-MADE_OF = MadeOf(task="t", robot="r", worlds="w", source="s", versions="Python 3")
+MADE_OF = Provenance(task="t", robot="r", worlds="w", source="s", versions="Python 3")
 
 
 def drive(
@@ -70,5 +70,5 @@ def settings_of(task: str) -> ExperimentSettings:
     return next(each for each in load_paper().experiments if each.task == task)
 
 
-def summary_of(task: str, robots: Sequence[TaughtOutcome], reading: Reading = "shipped") -> Summary:
-    return summarize(Experiment(settings_of(task), reading, load_task(task), ()), robots)
+def summary_of(task: str, robots: Sequence[TaughtOutcome], reading: Reading = "shipped") -> PaperSummary:
+    return summarize(PaperExperiment(settings_of(task), reading, load_task(task), ()), robots)

@@ -8,7 +8,7 @@ import pytest
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.paper.extent import QUICK, WHOLE
 from kurt2rt.experiments.paper.judging import reasons_not_to_judge
-from kurt2rt.experiments.paper.plan import Experiment, Programme, unseen_of
+from kurt2rt.experiments.paper.plan import PaperExperiment, PaperPlan, unseen_of
 from kurt2rt.experiments.paper.settings import ExperimentSettings, load_paper
 from kurt2rt.experiments.paper.taught_job import TaughtJob
 from kurt2rt.experiments.study.results import Results
@@ -19,13 +19,13 @@ TASK = load_task("wall_following")
 NOT_SEEN = range(100, 120)
 
 
-def programme(seeds: range | tuple[int, ...], settings: ExperimentSettings) -> Programme:
+def programme(seeds: range | tuple[int, ...], settings: ExperimentSettings) -> PaperPlan:
     jobs = tuple(
         TaughtJob(STAGE, ROBOT, TASK, "shipped", seed, unseen_of(seed, settings), MADE_OF, Results(Path("never-made")))
         for seed in seeds
     )
-    experiment = Experiment(settings, "shipped", TASK, jobs)
-    return Programme(load_paper(), WHOLE, tuple(seeds), "s", (experiment,), ())
+    experiment = PaperExperiment(settings, "shipped", TASK, jobs)
+    return PaperPlan(load_paper(), WHOLE, tuple(seeds), "s", (experiment,), ())
 
 
 SETTINGS = settings_of("wall_following")

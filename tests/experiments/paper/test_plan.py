@@ -12,7 +12,7 @@ from hal.settings import SettingsError
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.paper.extent import QUICK, WHOLE, Extent
 from kurt2rt.experiments.paper.outcome import Reading
-from kurt2rt.experiments.paper.plan import Programme, plan, unseen_of
+from kurt2rt.experiments.paper.plan import PaperPlan, plan, unseen_of
 from kurt2rt.experiments.paper.settings import PaperSettings, load_paper
 from kurt2rt.experiments.study.results import Results, StudyError
 from tests.experiments.helpers import ROBOT, STAGE
@@ -32,7 +32,7 @@ def planned(
     seeds: tuple[int, ...] = (100, 101, 102),
     readings: tuple[Reading, ...] = ("shipped",),
     paper: PaperSettings | None = None,
-) -> Programme:
+) -> PaperPlan:
     return plan(
         paper or load_paper(),
         extent,

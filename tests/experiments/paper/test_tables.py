@@ -14,11 +14,11 @@ from kurt2rt.experiments.paper.tables import (
     knowledge_sheet,
     unseen_sheet,
 )
-from kurt2rt.experiments.study.table import Sheet, as_rich
+from kurt2rt.experiments.study.table import Table, as_rich
 from tests.experiments.paper.outcomes import MADE_OF, drive, robot, summary_of
 
 
-def verdicts_of(sheet: Sheet) -> dict[str, tuple[str, ...]]:
+def verdicts_of(sheet: Table) -> dict[str, tuple[str, ...]]:
     return {row[1]: row[2:] for row in sheet.rows}
 
 

@@ -5,11 +5,11 @@ from pathlib import Path
 
 from kurt2rt.experiments.paper.extent import Extent
 from kurt2rt.experiments.paper.figure_files import draw_pictures
-from kurt2rt.experiments.paper.plan import Programme, plan
+from kurt2rt.experiments.paper.plan import PaperPlan, plan
 from kurt2rt.experiments.paper.report import write_report
 from kurt2rt.experiments.paper.settings import load_paper
-from kurt2rt.experiments.paper.study import Study, conduct, read_study
-from kurt2rt.experiments.study.figure import Picture
+from kurt2rt.experiments.paper.study import PaperStudy, conduct, read_study
+from kurt2rt.experiments.study.figure import SavedFigure
 from kurt2rt.experiments.study.results import Results
 from tests.experiments.helpers import ROBOT, STAGE
 
@@ -20,13 +20,13 @@ COMMAND = "kurt2rt paper --seeds 100"
 @dataclass(frozen=True)
 class Tiny:
     results: Results
-    programme: Programme
-    study: Study
-    pictures: list[Picture]
+    programme: PaperPlan
+    study: PaperStudy
+    pictures: list[SavedFigure]
     report: Path
 
 
-def tiny_programme(results: Results, *tasks: str) -> Programme:
+def tiny_programme(results: Results, *tasks: str) -> PaperPlan:
     paper = load_paper()
     return plan(
         paper, EXTENT, (100,), ("shipped", "plain"), STAGE, ROBOT, results, source_of=lambda _: "tested", tasks=tasks

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.experiments.lockstep.teacher_workload import Minute
+from kurt2rt.experiments.lockstep.teacher_workload import WorkloadMinute
 from kurt2rt.experiments.phases.outcome import ExamOutcome, StageOutcome, TeachingOutcome
-from kurt2rt.experiments.phases.plan import Programme
+from kurt2rt.experiments.phases.plan import PhasesPlan
 from kurt2rt.experiments.phases.steps import (
     ASKS,
     BLAME_BY_CHANCE,
@@ -24,7 +24,7 @@ from kurt2rt.experiments.phases.steps import (
     UNKNOWN_BAD,
     UNTAUGHT,
 )
-from kurt2rt.experiments.phases.study import Study
+from kurt2rt.experiments.phases.study import PhasesStudy
 
 TASK = load_task("wall_following")
 ALL = (
@@ -63,7 +63,7 @@ def teaching(
 ) -> TeachingOutcome:
     return TeachingOutcome(
         duration_s=duration_s,
-        load=(Minute(lessons=4, corrections=6), Minute(rewards=blame, appraisals=2)),
+        load=(WorkloadMinute(lessons=4, corrections=6), WorkloadMinute(rewards=blame, appraisals=2)),
         asks=4,
         praise=0,
         blame=blame,
@@ -87,7 +87,7 @@ def stage(name: str, *exams: ExamOutcome, taught: TeachingOutcome | None = None)
     )
 
 
-def study(robots: int = 2, task: TaskSettings = TASK, **changed: Sequence[StageOutcome]) -> Study:
+def study(robots: int = 2, task: TaskSettings = TASK, **changed: Sequence[StageOutcome]) -> PhasesStudy:
     """All stages of some robots, alike but for those that are given (with _ for - in their names)."""
     stages = {
         name: tuple(
@@ -97,5 +97,5 @@ def study(robots: int = 2, task: TaskSettings = TASK, **changed: Sequence[StageO
         for name in ALL
     }
     stages |= {name.replace("_", "-"): tuple(each) for name, each in changed.items()}
-    programme = Programme(task, tuple(range(100, 100 + robots)), False, "s", ())
-    return Study(programme, stages, ((exam(),),) * robots)
+    programme = PhasesPlan(task, tuple(range(100, 100 + robots)), False, "s", ())
+    return PhasesStudy(programme, stages, ((exam(),),) * robots)

@@ -6,7 +6,7 @@ from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.phases.job import StepJob
 from kurt2rt.experiments.phases.outcome import JobOutcome
-from kurt2rt.experiments.phases.plan import DECIDING, Programme, plan
+from kurt2rt.experiments.phases.plan import DECIDING, PhasesPlan, plan
 from kurt2rt.experiments.phases.steps import BLAME_BY_CHANCE, CRITIC_ALONE, LONG_RUN, PHASE_2, PHASE_4, PHASE_5, REWARDS
 from kurt2rt.experiments.study.import_graph import modules_needed
 from kurt2rt.experiments.study.results import Results
@@ -16,7 +16,7 @@ from tests.experiments.phases.outcomes import stage, teaching
 TASK = load_task("wall_following")
 
 
-def planned(task: TaskSettings = TASK, seeds: tuple[int, ...] = (100, 101), *, quick: bool = False) -> Programme:
+def planned(task: TaskSettings = TASK, seeds: tuple[int, ...] = (100, 101), *, quick: bool = False) -> PhasesPlan:
     results = Results(Path("never-made"))
     return plan(task, seeds, STAGE, ROBOT, results, quick=quick, source_of=lambda _: "s")
 

@@ -5,10 +5,10 @@ from pathlib import Path
 
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.phases.figures import draw_pictures
-from kurt2rt.experiments.phases.plan import Programme, plan
+from kurt2rt.experiments.phases.plan import PhasesPlan, plan
 from kurt2rt.experiments.phases.report import reasons_not_to_judge, write_report
-from kurt2rt.experiments.phases.study import Study, conduct, read_study
-from kurt2rt.experiments.study.figure import Picture
+from kurt2rt.experiments.phases.study import PhasesStudy, conduct, read_study
+from kurt2rt.experiments.study.figure import SavedFigure
 from kurt2rt.experiments.study.results import Results
 from tests.experiments.helpers import ROBOT, STAGE
 
@@ -18,9 +18,9 @@ COMMAND = "kurt2rt phases --task wall_following --seeds 100"
 @dataclass(frozen=True)
 class Tiny:
     results: Results
-    programme: Programme
-    study: Study
-    pictures: list[Picture]
+    programme: PhasesPlan
+    study: PhasesStudy
+    pictures: list[SavedFigure]
     report: Path
     reasons: list[str]
 
@@ -34,7 +34,7 @@ def tiny_task() -> TaskSettings:
     return task.model_copy(update={"teaching": teaching, "exam": exam, "phases": phases})
 
 
-def tiny_programme(results: Results) -> Programme:
+def tiny_programme(results: Results) -> PhasesPlan:
     return plan(tiny_task(), (100,), STAGE, ROBOT, results, source_of=lambda _: "tested")
 
 

@@ -1,9 +1,9 @@
 """What jobs leave, written by hand."""
 
 from kurt2rt.experiments.route.outcome import Layer, RouteDrive, RouteOutcome, Wrong
-from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.study.provenance import Provenance
 
-MADE_OF = MadeOf(task="t", robot="r", worlds="w", source="s", versions="v")
+MADE_OF = Provenance(task="t", robot="r", worlds="w", source="s", versions="v")
 SQUARE = ((2.2, 2.2), (2.2, 4.0), (4.0, 4.0), (4.0, 2.2))
 
 

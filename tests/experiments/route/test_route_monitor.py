@@ -14,7 +14,7 @@ from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.route.outcome import Layer
-from kurt2rt.experiments.route.route_monitor import Watching
+from kurt2rt.experiments.route.route_monitor import RouteMonitor
 from tests.behaviors.metrics.test_route import a_route, streets
 from tests.core.helpers import sensed
 
@@ -37,7 +37,7 @@ class ARoute(FixedRoute):
 class Watched:
     """A drive, junction by junction."""
 
-    watching: Watching = field(default_factory=Watching)
+    watching: RouteMonitor = field(default_factory=RouteMonitor)
     course: ARoute = field(default_factory=ARoute)
     tick: int = 0
 
@@ -144,6 +144,6 @@ def test_without_a_mid_level_it_is_always_the_basic_one() -> None:
 
 
 def test_a_drive_that_never_began_has_nothing_to_blame() -> None:
-    watching = Watching()
+    watching = RouteMonitor()
     watching.end()
     assert watching.wrong == []

@@ -8,12 +8,12 @@ from matplotlib.image import imread
 
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.experiments.route.plan import Programme, basic_file, basic_task_of, plan
+from kurt2rt.experiments.route.plan import RoutePlan, basic_file, basic_task_of, plan
 from kurt2rt.experiments.route.report import draw_pictures, write_report
-from kurt2rt.experiments.route.summary import Study, conduct, read_study, robot_time_s
+from kurt2rt.experiments.route.summary import RouteStudy, conduct, read_study, robot_time_s
 from kurt2rt.experiments.route.tables import sheets
 from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT
-from kurt2rt.experiments.study.figure import Picture
+from kurt2rt.experiments.study.figure import SavedFigure
 from kurt2rt.experiments.study.pool import Standing
 from kurt2rt.experiments.study.results import Results, StudyError
 from kurt2rt.knowledge.journal.fold import fold_journal
@@ -31,7 +31,7 @@ def short(task: TaskSettings, teaching_s: float) -> TaskSettings:
     return task.model_copy(update={"teaching": teaching, "exam": exam})
 
 
-def a_programme(results: Results, basic_folder: Path | None = None, teaching_s: float = 8.0) -> Programme:
+def a_programme(results: Results, basic_folder: Path | None = None, teaching_s: float = 8.0) -> RoutePlan:
     route, streets = short(load_task("route"), teaching_s), short(load_task("streets"), 10.0)
     return plan(
         route,
@@ -50,9 +50,9 @@ def a_programme(results: Results, basic_folder: Path | None = None, teaching_s: 
 @dataclass(frozen=True)
 class Done:
     results: Results
-    programme: Programme
-    study: Study
-    pictures: list[Picture]
+    programme: RoutePlan
+    study: RouteStudy
+    pictures: list[SavedFigure]
     report: Path
     standings: list[Standing]
 

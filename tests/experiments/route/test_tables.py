@@ -3,32 +3,32 @@ from pathlib import Path
 
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.route.outcome import RouteOutcome
-from kurt2rt.experiments.route.plan import Experiment, Programme, plan
-from kurt2rt.experiments.route.summary import Study, Summary
+from kurt2rt.experiments.route.plan import RouteExperiment, RoutePlan, plan
+from kurt2rt.experiments.route.summary import RouteStudy, RouteSummary
 from kurt2rt.experiments.route.tables import errors_of, sheets
 from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT, Variant
 from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.table import Sheet
+from kurt2rt.experiments.study.table import Table
 from tests.experiments.helpers import ROBOT, STAGE
 from tests.experiments.route.outcomes import drive, outcome
 
 
-def programme(seeds: Sequence[int], variants: Sequence[Variant] = (TAUGHT,)) -> Programme:
+def programme(seeds: Sequence[int], variants: Sequence[Variant] = (TAUGHT,)) -> RoutePlan:
     route, streets = load_task("route"), load_task("streets")
     results = Results(Path("unused"))
     return plan(route, streets, seeds, (8,), variants, STAGE, ROBOT, results, source_of=lambda _: "tested")
 
 
-def study(outcomes: Sequence[RouteOutcome], variants: Sequence[Variant] = (TAUGHT,)) -> Study:
+def study(outcomes: Sequence[RouteOutcome], variants: Sequence[Variant] = (TAUGHT,)) -> RouteStudy:
     planned = programme([each.seed for each in outcomes], variants)
-    return Study(planned, tuple(Summary(each, tuple(outcomes)) for each in planned.experiments))
+    return RouteStudy(planned, tuple(RouteSummary(each, tuple(outcomes)) for each in planned.experiments))
 
 
-def sheet_of(of: Study, title: str) -> Sheet:
+def sheet_of(of: RouteStudy, title: str) -> Table:
     return next(each for each in sheets(of) if each.title.startswith(title))
 
 
-def column(sheet: Sheet, heading: str) -> list[str]:
+def column(sheet: Table, heading: str) -> list[str]:
     place = sheet.columns.index(heading)
     return [row[place] for row in sheet.rows]
 
@@ -72,4 +72,4 @@ def test_every_robot_is_known_by_its_own_route_and_streets() -> None:
     jobs = [job for each in programme((1, 2)).experiments for job in each.jobs]
     assert len({job.made_of.task for job in jobs}) == 2
     assert [job.basic.name for job in jobs] == ["streets-1.knowledge", "streets-2.knowledge"]
-    assert isinstance(programme((1,)).experiments[0], Experiment)
+    assert isinstance(programme((1,)).experiments[0], RouteExperiment)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.experiments.paper.outcome import TaughtOutcome
-from kurt2rt.experiments.study.provenance import MadeOf
+from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.results import Results, StudyError
 from tests.experiments.paper.outcomes import MADE_OF, drive, robot
 
@@ -15,7 +15,7 @@ from tests.experiments.paper.outcomes import MADE_OF, drive, robot
 @dataclass(frozen=True)
 class Job:
     file: str
-    made_of: MadeOf = MADE_OF
+    made_of: Provenance = MADE_OF
     outcome: type[TaughtOutcome] = TaughtOutcome
 
 
@@ -36,7 +36,7 @@ def test_only_what_is_not_there_yet_is_missing(tmp_path: Path) -> None:
     assert results.missing(JOBS) == [0, 2]
 
 
-@pytest.mark.parametrize("what", list(MadeOf.model_fields))
+@pytest.mark.parametrize("what", list(Provenance.model_fields))
 def test_results_of_another_make_are_refused_with_what_differs(what: str, tmp_path: Path) -> None:
     results = Results(tmp_path)
     results.write(JOBS[0], robot(1, 90))

@@ -16,12 +16,12 @@ from hal.kurt2 import Kurt2
 from hal.robot import SensorReadings
 from hal.robot_settings import load_robot
 from kurt2rt.core.basic.policy_level import PolicyLevel
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Cause, Decision
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.experiments.lockstep.exam import NothingIsTaught
+from kurt2rt.experiments.lockstep.exam import NoTeachingAllowed
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 from kurt2rt.runtime import build_runtime
 
@@ -50,7 +50,7 @@ async def drive(bus: str, seconds: float, hangs_at: int) -> None:
         policy,
         load_repertoire(task.repertoire, settings),
         round(task.learning.minimum_action_s / period_s),
-        Wanted(),
+        ActiveBehaviour(),
     )
     level.hangs_at = hangs_at
     robot = Kurt2(settings, open_bus(bus))
@@ -65,7 +65,7 @@ async def drive(bus: str, seconds: float, hangs_at: int) -> None:
             turns.append({"tick": record.tick, "reasons": reasons, "infrared_age_s": record.senses.infrared_age_s})
 
     with TimerfdClock() as clock, robot.watchdog:
-        runtime = build_runtime(robot, settings, task, (), NothingIsTaught(), clock, level_override=level)
+        runtime = build_runtime(robot, settings, task, (), NoTeachingAllowed(), clock, level_override=level)
         await runtime.scheduler.run(round(seconds / period_s), after_tick)
     robot.close()
     ledger = runtime.ledger

@@ -19,7 +19,7 @@ from kurt2rt.core.rla.rla import RlaCreated, RlaRewarded
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.knowledge.exchange.archive import MANIFEST, SIGNATURE, pack, unpack
-from kurt2rt.knowledge.exchange.package import Taken, export_knowledge, import_knowledge, read_given
+from kurt2rt.knowledge.exchange.package import ImportResult, export_knowledge, import_knowledge, read_given
 from kurt2rt.knowledge.exchange.signing import make_key, read_private_key, read_public_key
 from kurt2rt.knowledge.journal.entry import JournalEntry, StoredEntry
 from kurt2rt.knowledge.journal.event_codec import encode_event
@@ -57,7 +57,7 @@ def export(path: Path, out: Path, key: Path | None = None) -> Path:
     return out
 
 
-def take(path: Path, into: Path, task: TaskSettings = TASK, trusted: Path | None = None) -> Taken:
+def take(path: Path, into: Path, task: TaskSettings = TASK, trusted: Path | None = None) -> ImportResult:
     return import_knowledge(path, into, ROBOT, task, None if trusted is None else read_public_key(trusted), stamp=NOW)
 
 

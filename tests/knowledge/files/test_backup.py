@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.knowledge.files.atomic_write import SavedCopy
-from kurt2rt.knowledge.files.backup import Safe
+from kurt2rt.knowledge.files.backup import BackupService
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.writer import JournalWriter
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
@@ -21,7 +21,7 @@ async def test_lessons_are_durable_once_settled_and_a_failing_disk_is_told_at_on
 ) -> None:
     path = tmp_path / "a.knowledge"
     with JournalWriter(Journal.open(path, BINDING), lambda: STAMP) as writer:
-        safe = Safe(path, writer, never)
+        safe = BackupService(path, writer, never)
         writer.submit(created(1))
         await safe.settle()
         assert writer.unwritten == 0

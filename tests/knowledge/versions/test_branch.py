@@ -11,7 +11,7 @@ from kurt2rt.knowledge.journal.entry import JournalEntry, StoredEntry
 from kurt2rt.knowledge.journal.fold import check_knowledge
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.versions.branch import Branched, Whence, branch, whence_of
+from kurt2rt.knowledge.versions.branch import BranchOrigin, BranchResult, branch, whence_of
 from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, replaced
 
 LATER = "2004-04-26T11:00:00.000+00:00"
@@ -41,7 +41,7 @@ def test_a_branch_of_all_holds_the_same_lessons_and_counts(taught: Path, tmp_pat
         assert new.statistics() == old.statistics()
         assert new.binding == old.binding
         assert check_knowledge(new) == []
-        assert whence_of(new) == told == Whence("knowledge.db", 4, "replace-2-left", NOW)
+        assert whence_of(new) == told == BranchOrigin("knowledge.db", 4, "replace-2-left", NOW)
         assert whence_of(old) is None
 
 
@@ -65,7 +65,9 @@ def test_where_the_clock_was_set_back_a_branch_ends_with_the_first_later_date_an
     made = branch(taught, tmp_path / "b", "2004-04-26T10:30+00:00", stamp=NOW)
     assert (made.whence.rows, made.left_earlier) == (3, 1)
     assert branch(taught, tmp_path / "c", "2004-04-26T11:00+00:00", stamp=NOW).left_earlier == 0
-    assert branch(taught, tmp_path / "d", "create-4", stamp=NOW) == Branched(Whence(taught.name, 5, "create-4", NOW), 0)
+    assert branch(taught, tmp_path / "d", "create-4", stamp=NOW) == BranchResult(
+        BranchOrigin(taught.name, 5, "create-4", NOW), 0
+    )
 
 
 def test_a_date_that_is_none_is_told(taught: Path, tmp_path: Path) -> None:

@@ -29,10 +29,10 @@ from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.versions.branch import branch
-from kurt2rt.knowledge.versions.contradictions import Borders
+from kurt2rt.knowledge.versions.contradictions import Radii
 from kurt2rt.knowledge.versions.diff import difference
 from kurt2rt.knowledge.versions.lesson_identity import read_taught
-from kurt2rt.knowledge.versions.merge import ConflictCode, Merge, Side, merge
+from kurt2rt.knowledge.versions.merge import ConflictCode, MergePlan, Side, merge
 from tests.examples import examples
 from tests.knowledge.journal.test_writer import largest_file
 from tests.knowledge.lessons import (
@@ -49,7 +49,7 @@ from tests.knowledge.lessons import (
     undone,
 )
 
-BORDERS = Borders({BASIC: Space(4, 10.0)}, {BASIC: 0.2})
+BORDERS = Radii({BASIC: Space(4, 10.0)}, {BASIC: 0.2})
 FAR = 1000.0
 
 
@@ -75,7 +75,7 @@ def theirs(mine: Path, tmp_path: Path) -> Path:
     return tmp_path / "branch.knowledge"
 
 
-def bring(mine: Path, theirs: Path, prefer: Side | None = None, *, dry_run: bool = False) -> Merge:
+def bring(mine: Path, theirs: Path, prefer: Side | None = None, *, dry_run: bool = False) -> MergePlan:
     return merge(mine, theirs, BORDERS, prefer, teacher="command line", stamp=STAMP, dry_run=dry_run)
 
 

@@ -12,8 +12,8 @@ from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.tick import InMemoryEventStore, TickRecord
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runs.explain.collect import facts_of
-from kurt2rt.runs.explain.counterfactual import Tip, tips
-from kurt2rt.runs.explain.facts import Act, DecisionFacts, LevelFacts, RlaStory
+from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, tips
+from kurt2rt.runs.explain.facts import DecisionFacts, LessonFact, LevelFacts, RlaFacts
 from kurt2rt.runs.recording.entries import TickEntry, tick_entry_of
 from kurt2rt.runtime import build_runtime
 from simbridge.simulation import Kurt2SimulationFactory
@@ -54,7 +54,7 @@ class Lesson:
         return facts_of(self.runtime, self.records[-1], lambda command_id: f"2026-11-22T03:10:05+00:00 {command_id}")
 
     @property
-    def tips(self) -> tuple[Tip, ...]:
+    def tips(self) -> tuple[SensorCounterfactual, ...]:
         return tips(self.facts, self.runtime.definition, ROBOT.infrared)
 
     @property
@@ -62,12 +62,12 @@ class Lesson:
         return [tick_entry_of(record, saved=False, knowledge=None) for record in self.records]
 
 
-def story(rla_id: int, condition: tuple[float, ...], action: str, distance: float, radius: float = 10.0) -> RlaStory:
-    taught = Act(f"RLA {rla_id} taught: {action}", "Ann", 1, 100 * rla_id, "2026-11-22T03:10:05+00:00")
-    return RlaStory(rla_id, f"RLA {rla_id}", action, condition, distance, radius, (taught,), 7, 7, 0, 0, None, False)
+def story(rla_id: int, condition: tuple[float, ...], action: str, distance: float, radius: float = 10.0) -> RlaFacts:
+    taught = LessonFact(f"RLA {rla_id} taught: {action}", "Ann", 1, 100 * rla_id, "2026-11-22T03:10:05+00:00")
+    return RlaFacts(rla_id, f"RLA {rla_id}", action, condition, distance, radius, (taught,), 7, 7, 0, 0, None, False)
 
 
-def level(vector: tuple[float, ...], *stories: RlaStory, weights: tuple[float, ...] | None = None) -> LevelFacts:
+def level(vector: tuple[float, ...], *stories: RlaFacts, weights: tuple[float, ...] | None = None) -> LevelFacts:
     """The first of the stories is the nearest, and drives."""
     nearest = stories[0] if stories else None
     names = tuple(f"f{place}" for place in range(len(vector)))

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.runs.explain.counterfactual import Tip
-from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaStory
+from kurt2rt.runs.explain.counterfactual import SensorCounterfactual
+from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaFacts
 from kurt2rt.runs.explain.picture import draw_why
 from tests.runs.explain.helpers import ROBOT, Lesson, level, story, with_mid
 from tests.teacher.helpers import teach
@@ -21,7 +21,7 @@ class Now:
     """What is known of a robot's newest decision."""
 
     facts: DecisionFacts
-    tips: tuple[Tip, ...]
+    tips: tuple[SensorCounterfactual, ...]
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def now() -> Now:
     return now
 
 
-def titled(rla_id: int, condition: tuple[float, ...], action: str, distance: float, radius: float) -> RlaStory:
+def titled(rla_id: int, condition: tuple[float, ...], action: str, distance: float, radius: float) -> RlaFacts:
     return replace(story(rla_id, condition, action, distance, radius), title=f"mid-level RLA {rla_id}")
 
 

@@ -9,7 +9,7 @@ from hal.robot import WheelSpeeds
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.runs.explain.facts import Act, DecisionFacts
+from kurt2rt.runs.explain.facts import DecisionFacts, LessonFact
 from kurt2rt.runs.explain.reasons import because, headline
 from kurt2rt.runs.explain.sentences import beside, guarded, mid_lines, still_kept, taught, used, when
 from tests.runs.explain.helpers import facts, level, story, with_mid
@@ -182,7 +182,7 @@ def test_an_alarm_goes_before_whatever_was_decided() -> None:
 
 
 def test_who_taught_it_is_told_by_the_newest_lesson_that_stands() -> None:
-    corrected = Act("RLA 17 corrected: back instead of forward", "Bob", 2, 2000, "2026-11-22T04:00:00+00:00")
+    corrected = LessonFact("RLA 17 corrected: back instead of forward", "Bob", 2, 2000, "2026-11-22T04:00:00+00:00")
     undone = replace(corrected, text="RLA 17 corrected: spin", changes=False, undone=True)
     told = replace(NEAR, acts=(*NEAR.acts, corrected, undone))
     assert taught(told) == (

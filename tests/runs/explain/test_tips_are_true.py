@@ -9,7 +9,7 @@ import pytest
 from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.runs.explain.collect import facts_of
-from kurt2rt.runs.explain.counterfactual import Tip, tips
+from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, tips
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.replay.replay import Replay
@@ -56,7 +56,7 @@ def looked_at(name: str, every_ticks: int, every_kept: int) -> Iterator[tuple[Be
             yield before, entry, facts_of(replay.runtime, record, lambda _: "")
 
 
-def decided_with(before: Before, entry: TickEntry, tip: Tip, counts: int) -> str | None:
+def decided_with(before: Before, entry: TickEntry, tip: SensorCounterfactual, counts: int) -> str | None:
     """What the robot does in that tick where this sensor reads something else."""
     names = before.replay.run.robot.infrared.names
     readings = tuple(

@@ -12,7 +12,7 @@ from mcap.reader import make_reader
 
 from hal.guard_reason import GuardReason
 from hal.odometry import PlanePose
-from hal.simulation import Post, SimulatedPlace, Wall, WorldPlan
+from hal.simulation import SimulatedPlace, SimulatedPost, Wall, WorldPlan
 from kurt2rt.channel.protocol.health_codec import plain_of, report_of
 from kurt2rt.core.rla.fingerprint import knowledge_hash_of
 from kurt2rt.core.teaching.commands import Teach
@@ -433,7 +433,9 @@ class Elsewhere:
 
     def world(self) -> WorldPlan:
         corners = ((0.0, 0.0), (3.0, 0.0), (3.0, 0.1))
-        return WorldPlan(0, "a", (3.0, 3.0), corners, (Wall("north", corners),), (Post("post", 1.0, 1.0, 0.1),))
+        return WorldPlan(
+            0, "a", (3.0, 3.0), corners, (Wall("north", corners),), (SimulatedPost("post", 1.0, 1.0, 0.1),)
+        )
 
     def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:
         raise AssertionError(name, dx_m, dy_m)

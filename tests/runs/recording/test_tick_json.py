@@ -11,18 +11,18 @@ from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.decision.junction_event import JunctionEvent
-from kurt2rt.core.decision.plan_step import Course, PlanStep
+from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.rla import LessonUndone, Origin, Phase, Rla, RlaCreated, RlaRewarded
 from kurt2rt.core.teaching.commands import Command, Seek, SetPhase
-from kurt2rt.core.teaching.system_events import Happening
+from kurt2rt.core.teaching.system_events import SystemEvent
 from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.runs.recording.command_json import decode_command, encode_command
 from kurt2rt.runs.recording.entries import DecisionEntry, MatchEntry, MidEntry, OpinionEntry, ResultEntry, TickEntry
 from kurt2rt.runs.recording.tick_json import decode_tick, encode_tick
 
-KINDS = (*get_args(Command), *get_args(Happening))
+KINDS = (*get_args(Command), *get_args(SystemEvent))
 
 number = some.floats(allow_nan=False)
 text = some.text(some.characters(codec="utf-8"), max_size=8)
@@ -48,7 +48,7 @@ mids = some.builds(
     MidEntry, text, maybe_id, some.none() | matches, some.booleans(), some.booleans(), some.none() | junctions
 )
 plans = some.builds(
-    PlanStep, text, some.sampled_from(Course), some.lists(text).map(tuple), maybe_id, text, some.integers(0)
+    PlanStep, text, some.sampled_from(GoalStatus), some.lists(text).map(tuple), maybe_id, text, some.integers(0)
 )
 decisions = some.builds(
     DecisionEntry,

@@ -2,11 +2,11 @@
 
 import threading
 
-from kurt2rt.runs.recording.writer_thread import WritingThread
+from kurt2rt.runs.recording.writer_thread import WriterThread
 
 
 def test_what_finds_no_room_is_lost_and_counted() -> None:
-    thread = WritingThread[int]("writer", 3, lambda: None)
+    thread = WriterThread[int]("writer", 3, lambda: None)
     thread.put(1, held=2)
     thread.put(2, held=2)  # with those that were taken and wait still, that is one too many
     for number in (3, 4, 5):
@@ -26,7 +26,7 @@ def test_at_the_end_the_writer_looks_once_more() -> None:
             ended = thread.pause()
             written.extend(thread.take())
 
-    thread = WritingThread[int]("writer", 10, write)
+    thread = WriterThread[int]("writer", 10, write)
     assert not thread.started
     thread.start()
     assert thread.started
@@ -37,7 +37,7 @@ def test_at_the_end_the_writer_looks_once_more() -> None:
 
 def test_a_writer_that_hangs_is_left_behind() -> None:
     disk_answers = threading.Event()
-    thread = WritingThread[int]("writer", 10, lambda: hang(disk_answers))
+    thread = WriterThread[int]("writer", 10, lambda: hang(disk_answers))
     thread.start()
     assert not thread.end(0.0)
     disk_answers.set()

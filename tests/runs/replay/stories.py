@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 from mcap.writer import CompressionType, Writer
 
 from hal.robot_settings import load_robot
-from kurt2rt.core.decision.active_behaviour import Wanted
+from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.active_stop import STARTED, ActiveStop
 from kurt2rt.core.decision.goal import NamedGoal
 from kurt2rt.core.decision.standing_text import stop_text
@@ -36,9 +36,9 @@ from kurt2rt.core.teaching.commands import (
     Undo,
     Watch,
 )
-from kurt2rt.core.teaching.system_events import PressesForgotten
+from kurt2rt.core.teaching.system_events import PairingRenewed
 from kurt2rt.core.tick import InMemoryEventStore, TickRecord
-from kurt2rt.experiments.navigation.guided_tour import HOME, Guide
+from kurt2rt.experiments.navigation.guided_tour import HOME, TourGuide
 from kurt2rt.experiments.navigation.lesson import errands_of
 from kurt2rt.knowledge.exchange.attachments import attachments_of, fingerprints_of
 from kurt2rt.platform.clock import LockstepClock
@@ -107,7 +107,7 @@ def walls(scene: Scene, record: TickRecord) -> None:
         case 1700 | 1900:
             say(lambda name: Undo(name, NAME))
         case 2400:
-            runtime.inbox.put(PressesForgotten(NAME))
+            runtime.inbox.put(PairingRenewed(NAME))
         case 2800:
             say(lambda name: RunBehaviour(name, NAME, "curve_left", 60))
         case 3000:
@@ -130,7 +130,7 @@ class Errand:
 
     def __init__(self, scene: Scene, task: TaskSettings) -> None:
         self._walk = errands_of(task).walk_in(scene.simulation.plan, task.behaviours)
-        self._guide = Guide(self._walk, 5, task.teaching.teacher, period_s=0.01, seed=3, session="errand")
+        self._guide = TourGuide(self._walk, 5, task.teaching.teacher, period_s=0.01, seed=3, session="errand")
         self._walk.put(scene.simulation.pose)
         self._guide.begin()
         scene.runtime.inbox.put(scene.teacher.enter(Phase.CORRECTIONS))
@@ -199,7 +199,7 @@ def record_story(
         behaviour=task.behaviours[0],
         fingerprints=fingerprints_of(attachments),
     )
-    wanted = Wanted(task.behaviours)
+    wanted = ActiveBehaviour(task.behaviours)
     runtime = build_runtime(
         simulation.robot, settings, task, (), notebook, clock, attended=told.attended, wanted=wanted
     )

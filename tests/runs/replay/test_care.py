@@ -38,7 +38,7 @@ from kurt2rt.runs.replay.compaction import TEACHER, Compaction, compact
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
 from kurt2rt.runs.replay.run import Run
-from kurt2rt.runs.replay.trial import Known, answers, newest_to_try, runs_to_try
+from kurt2rt.runs.replay.trial import TrialKnowledge, answers, newest_to_try, runs_to_try
 from kurt2rt.runs.replay.undo_preview import preview, preview_on_newest
 from kurt2rt.teacher.scripted.teacher import picture_of
 from tests.cli.helpers import CommandLine
@@ -136,7 +136,7 @@ def test_what_no_decision_needs_is_deleted_and_every_decision_comes_out_the_same
 def test_each_rla_that_is_left_is_needed(knowledge: Path, recordings: Path) -> None:
     compacted(knowledge, recordings)
     with Journal.read_only(knowledge) as journal:
-        known = Known(tuple(journal.events()), Statistics())
+        known = TrialKnowledge(tuple(journal.events()), Statistics())
         (run,) = runs_to_try(recordings, journal.binding).runs
     nearest = {answered.basic.nearest for _, (answered,) in answers(run, (known,), quietly)}
     assert {rla.rla_id for rla in nearest if rla is not None} == {rla.rla_id for rla in folded(knowledge).rlas}

@@ -22,7 +22,7 @@ from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.runs.replay.counterfactual import Counterfactual, counterfactual
-from kurt2rt.runs.replay.counterfactual_policy import Shadow, answers_then, shadow_of
+from kurt2rt.runs.replay.counterfactual_policy import CounterfactualPolicy, answers_then, shadow_of
 from kurt2rt.runs.replay.replay import Replay, ReplayedTick
 from kurt2rt.runs.replay.run import Run
 from tests.runs.replay.stored_runs import NAMES, stored
@@ -50,7 +50,7 @@ def test_what_was_known_in_the_end_would_never_have_otherwise_decided_than_itsel
     name: str, seconds: float, lessons: dict[str, list[TeachingEvent]]
 ) -> None:
     run = stored(name, seconds)
-    found = counterfactual(run, Shadow(run, lessons[name]), Shadow(run, lessons[name]))
+    found = counterfactual(run, CounterfactualPolicy(run, lessons[name]), CounterfactualPolicy(run, lessons[name]))
     assert found.same
     assert found.ticks == round(seconds * 100)
 
@@ -60,8 +60,8 @@ def test_who_knows_nothing_would_have_asked_wherever_it_drove(
     name: str, seconds: float, lessons: dict[str, list[TeachingEvent]]
 ) -> None:
     run = stored(name, seconds)
-    whole = Shadow(run, lessons[name])
-    found = counterfactual(run, Shadow(run, ()), whole)
+    whole = CounterfactualPolicy(run, lessons[name])
+    found = counterfactual(run, CounterfactualPolicy(run, ()), whole)
     assert found.would_ask > 500
     assert (found.other_action, found.would_drive) == (0, 0)
     stretch = next(each for each in found.stretches if each.level == BASIC)
@@ -74,13 +74,13 @@ def test_who_knows_nothing_would_have_asked_wherever_it_drove(
 
 def test_what_was_learnt_later_would_have_spared_questions(lessons: dict[str, list[TeachingEvent]]) -> None:
     run = stored("errand", 24)
-    assert counterfactual(run, Shadow(run, lessons["errand"])).would_drive > 100
+    assert counterfactual(run, CounterfactualPolicy(run, lessons["errand"])).would_drive > 100
 
 
 def test_where_its_teacher_drove_or_stopped_it_no_knowledge_had_a_say(lessons: dict[str, list[TeachingEvent]]) -> None:
     run = stored("walls", 16)
     stood = sum(entry.decision.cause.value in ("teacher", "stopped", "unsaved") for entry in run.entries())
-    assert counterfactual(run, Shadow(run, lessons["walls"])).decided == 1600 - stood
+    assert counterfactual(run, CounterfactualPolicy(run, lessons["walls"])).decided == 1600 - stood
 
 
 def test_a_corrected_rla_is_named_where_it_would_have_driven_otherwise(
@@ -88,20 +88,20 @@ def test_a_corrected_rla_is_named_where_it_would_have_driven_otherwise(
 ) -> None:
     run = stored("walls", 12)
     known = lessons["walls"]
-    used = Shadow(run, known)
+    used = CounterfactualPolicy(run, known)
     counted: dict[int, int] = {}
-    for each in counterfactual(run, Shadow(run, ()), used).stretches:
+    for each in counterfactual(run, CounterfactualPolicy(run, ()), used).stretches:
         assert each.was.rla is not None
         counted[each.was.rla.rla_id] = counted.get(each.was.rla.rla_id, 0) + each.ticks
     most = max(counted, key=lambda rla_id: counted[rla_id])
     other = "back" if used_action(used, most) != "back" else "forward"
-    found = counterfactual(run, Shadow(run, [*known, ActionReplaced(most, other, "", ORIGIN)]), used)
+    found = counterfactual(run, CounterfactualPolicy(run, [*known, ActionReplaced(most, other, "", ORIGIN)]), used)
     assert found.other_action == counted[most]
     assert {each.would_be.action for each in found.stretches} == {other}
     assert {each.would_be.rla.rla_id for each in found.stretches if each.would_be.rla is not None} == {most}
 
 
-def used_action(shadow: Shadow, rla_id: int) -> str:
+def used_action(shadow: CounterfactualPolicy, rla_id: int) -> str:
     rla = shadow._system.get(rla_id)
     assert rla is not None
     return rla.action
@@ -110,10 +110,10 @@ def used_action(shadow: Shadow, rla_id: int) -> str:
 def test_the_mid_level_is_looked_at_by_itself(lessons: dict[str, list[TeachingEvent]]) -> None:
     run = stored("errand", 14)
     known = lessons["errand"]
-    whole = Shadow(run, known)
+    whole = CounterfactualPolicy(run, known)
     ways = [event.rla for event in known if isinstance(event, RlaCreated) and event.rla.level == MID]
     less = [event for event in known if not isinstance(event, RlaCreated) or event.rla.level != MID]
-    found = counterfactual(run, Shadow(run, less), whole)
+    found = counterfactual(run, CounterfactualPolicy(run, less), whole)
     assert ways
     assert found.mid_otherwise > 100
     assert (found.other_action, found.would_ask, found.would_drive) == (0, 0, 0)
@@ -161,14 +161,14 @@ def test_where_nobody_could_be_asked_withdrawn_rlas_are_passed_over(
 ) -> None:
     run = stored("walls")
     events = [event for event in lessons["walls"] if isinstance(event, RlaCreated) and event.rla.level == BASIC]
-    known = Shadow(run, events)
+    known = CounterfactualPolicy(run, events)
     replay = Replay(run)
     for _entry, record in replay:
         if record.decision.cause is Cause.RLA and record.tick > 1200:
             break
     asked = known.look(record, replay.runtime).basic
     assert asked.rla is not None
-    withdrawn = Shadow(run, [*events, ActionWithdrawn(asked.rla.rla_id, "", ORIGIN)])
+    withdrawn = CounterfactualPolicy(run, [*events, ActionWithdrawn(asked.rla.rla_id, "", ORIGIN)])
     assert withdrawn.look(record, replay.runtime).basic.rla is None
     replay.runtime.level.nobody_is_asked = True
     passed_over = withdrawn.look(record, replay.runtime).basic
@@ -179,7 +179,7 @@ def test_where_nobody_could_be_asked_withdrawn_rlas_are_passed_over(
 def test_each_tick_is_told_of() -> None:
     run = stored("walls", 5)
     seen: list[ReplayedTick] = []
-    found = counterfactual(run, Shadow(run, ()), on_tick=seen.append)
+    found = counterfactual(run, CounterfactualPolicy(run, ()), on_tick=seen.append)
     assert isinstance(found, Counterfactual)
     assert [tick.entry.number for tick in seen] == list(range(1, 501))
     assert not found.trouble
@@ -193,11 +193,11 @@ def test_knowledge_comes_from_a_file_and_the_file_stays_as_it_is(
     with open_knowledge(path, run.robot, run.task) as journal:
         journal.append([JournalEntry(event, "2026-11-22T03:00:00Z") for event in lessons["walls"]])
     before = path.read_bytes()
-    assert counterfactual(run, shadow_of(run, path), Shadow(run, lessons["walls"])).same
+    assert counterfactual(run, shadow_of(run, path), CounterfactualPolicy(run, lessons["walls"])).same
     assert path.read_bytes() == before
 
 
 def test_knowledge_of_other_features_is_refused() -> None:
     run = stored("walls")
     with pytest.raises(RecordingError, match="this knowledge cannot decide there"):
-        Shadow(run, [RlaCreated(Rla(1, (1.0, 2.0), "forward", None, ORIGIN))])
+        CounterfactualPolicy(run, [RlaCreated(Rla(1, (1.0, 2.0), "forward", None, ORIGIN))])

@@ -78,7 +78,7 @@ def test_the_stored_run_holds_what_a_run_may_hold() -> None:
     """Or it would prove little."""
     walls = list(stored("walls").entries())
     kinds = {type(command).__name__ for entry in walls for command in entry.commands}
-    assert {"Watch", "Drive", "Teach", "Correct", "Undo", "Reward", "Appraise", "PressesForgotten"} <= kinds
+    assert {"Watch", "Drive", "Teach", "Correct", "Undo", "Reward", "Appraise", "PairingRenewed"} <= kinds
     events = {type(event).__name__ for entry in walls for event in entry.events}
     assert {"RlaCreated", "ActionReplaced", "ActionWithdrawn", "RlaRewarded", "LessonUndone"} <= events
     causes = {entry.decision.cause.value for entry in walls}

@@ -7,10 +7,10 @@ from kurt2rt.channel.protocol.health import (
     DiskSpace,
     Drops,
     HealthReport,
-    Machine,
-    Punctuality,
-    Safety,
+    JournalHealth,
+    MachineHealth,
     SensorAges,
+    TickLateness,
     Trouble,
 )
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
@@ -27,12 +27,12 @@ WELL = HealthReport(
     doing="forward by RLA 12",
     rlas=90,
     lessons=123,
-    punctuality=Punctuality(0.13, 0.08, 0.31, 0.9, 0.36, 738_399, 0, 0),
+    punctuality=TickLateness(0.13, 0.08, 0.31, 0.9, 0.36, 738_399, 0, 0),
     ages=SensorAges(0.004, 0.004, 0.004),
     bus=BusHealth("error-active", 5_168_800, 0, 0, 0, 0, 0),
     disks=(DiskSpace("knowledge", 79_893_155_840),),
-    safety=Safety(0, 4.2),
-    machine=Machine(136_183_808, 24_383_254_528, 0.12, 9, 0.83, True),
+    safety=JournalHealth(0, 4.2),
+    machine=MachineHealth(136_183_808, 24_383_254_528, 0.12, 9, 0.83, True),
     drops=(Drops("lines for the terminal", 0),),
     troubles=(),
 )
@@ -41,10 +41,10 @@ LATE = Trouble(TroubleCode.TICKS_MISSED, 185.0, False, numbers=(3, 7))
 ILL = replace(
     WELL,
     doing="stands: blind",
-    punctuality=Punctuality(4.5, 0.1, 2.9, 31.0, 0.9, 738_392, 7, 3),
+    punctuality=TickLateness(4.5, 0.1, 2.9, 31.0, 0.9, 738_392, 7, 3),
     ages=SensorAges(2.5, 0.004, None),
     disks=(DiskSpace("knowledge", 412_000_000), DiskSpace("recordings", None)),
-    safety=Safety(2, 840.0),
+    safety=JournalHealth(2, 840.0),
     drops=(Drops("lines for the terminal", 12),),
     troubles=(SILENT, LATE),
 )

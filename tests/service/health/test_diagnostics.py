@@ -11,7 +11,7 @@ from hal.health import Health
 from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.health import DiskSpace, Trouble
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
-from kurt2rt.service.health.diagnostics import LATELY_S, Counted, TroubleBook
+from kurt2rt.service.health.diagnostics import LATELY_S, Counted, Diagnostics
 from kurt2rt.service.health.snapshot import Snapshot
 from tests.service.health.reports import WELL
 
@@ -40,7 +40,7 @@ class Ward:
     """One robot, looked at once a second."""
 
     def __init__(self, *, tolerates_stalls: bool = False) -> None:
-        self.book = TroubleBook(load_robot(), tolerates_stalls=tolerates_stalls)
+        self.book = Diagnostics(load_robot(), tolerates_stalls=tolerates_stalls)
         self.counted = Counted()
         self.now_s = 50.0
         self.counters = {"missed": 0, "junk": 0, "drops lines": 0}

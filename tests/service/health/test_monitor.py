@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.channel.protocol.health import DiskSpace, HealthReport
-from kurt2rt.service.health.disk_monitor import DiskLook
-from kurt2rt.service.health.machine import MachineWatch, battery_of
-from kurt2rt.service.health.monitor import HealthWatch
-from kurt2rt.service.health.probes import Instruments
+from kurt2rt.service.health.disk_monitor import DiskMonitor
+from kurt2rt.service.health.machine import MachineMonitor, battery_of
+from kurt2rt.service.health.monitor import HealthMonitor
+from kurt2rt.service.health.probes import Probes
 from tests.channel.desk import Desk
 
 PATIENCE_S = 10.0
@@ -31,8 +31,8 @@ class Robot:
         self.keeping = Keeping()
         self.now_s = 1000.0
         self.dropped = 0
-        instruments = Instruments(drops={"lines": lambda: self.dropped})
-        self.watch = HealthWatch(
+        instruments = Probes(drops={"lines": lambda: self.dropped})
+        self.watch = HealthMonitor(
             self.desk.runtime,
             self.keeping,
             instruments,
@@ -125,7 +125,7 @@ def test_parts_that_come_later_are_read_from_then_on(robot: Robot) -> None:
 
 
 def test_there_is_room_where_the_folder_will_be_made(tmp_path: Path) -> None:
-    look = DiskLook({"knowledge": tmp_path / "not" / "there"}, now=lambda: now_s)
+    look = DiskMonitor({"knowledge": tmp_path / "not" / "there"}, now=lambda: now_s)
     now_s = 0.0
     assert look.spaces() == (DiskSpace("knowledge", None),)
     look.look("knowledge")
@@ -149,4 +149,4 @@ def test_the_battery_is_the_machines_own_and_of_two_the_emptier(tmp_path: Path) 
             if text:
                 (tmp_path / name / file).write_text(f"{text}\n")
     assert battery_of(tmp_path) == (0.61, True)
-    assert MachineWatch(tmp_path).look().battery == 0.61
+    assert MachineMonitor(tmp_path).look().battery == 0.61

@@ -15,7 +15,7 @@ import pytest
 
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.health_codec import plain_of
-from kurt2rt.service.health.monitor import HealthWatch
+from kurt2rt.service.health.monitor import HealthMonitor
 from kurt2rt.service.health.status_socket import (
     StatusError,
     StatusSocket,
@@ -54,7 +54,7 @@ def path(tmp_path: Path) -> Path:
 
 @asynccontextmanager
 async def serving(watch: Watch, path: Path) -> AsyncIterator[StatusSocket]:
-    status = StatusSocket(cast(HealthWatch, watch), path)
+    status = StatusSocket(cast(HealthMonitor, watch), path)
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(status.serve)
         await until(lambda: is_told(path) or bool(status.trouble))
@@ -129,7 +129,7 @@ async def test_what_a_killed_program_left_behind_is_taken_over(path: Path) -> No
     watch = Watch()
     watch.tell(WELL)
     async with anyio.create_task_group() as tasks:
-        tasks.start_soon(StatusSocket(cast(HealthWatch, watch), path).serve)
+        tasks.start_soon(StatusSocket(cast(HealthMonitor, watch), path).serve)
         await until(lambda: is_told(path))
         assert await following(reports_at(path, PATIENCE_S)) == WELL
         tasks.cancel_scope.cancel()

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.service.systemd.install import Places, install, require_free, uninstall
+from kurt2rt.service.systemd.install import InstallPaths, install, require_free, uninstall
 from kurt2rt.service.systemd.installation import program
 from kurt2rt.service.systemd.unit import MARK, Unit, UnitError, unit_of
 
@@ -16,7 +16,7 @@ class Machine:
     """Its folders of units, and what its service manager was told."""
 
     def __init__(self, folder: Path) -> None:
-        self.places = Places(folder / "system", folder / "sysusers.d", (folder / "lib",))
+        self.places = InstallPaths(folder / "system", folder / "sysusers.d", (folder / "lib",))
         for each in (self.places.units, self.places.users, *self.places.others):
             each.mkdir()
         self.done: list[Sequence[str]] = []

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.service.systemd.notifier import Notifier
-from kurt2rt.service.systemd.watchdog import Heartbeat
+from kurt2rt.service.systemd.watchdog import WatchdogNotifier
 from tests.service.systemd.manager import Manager, manager
 
 PERIOD_S = 0.01
@@ -24,19 +24,19 @@ def notifier(systemd: Manager) -> Iterator[Notifier]:
         yield opened
 
 
-def ticks(heartbeat: Heartbeat, from_s: float, to_s: float, period_s: float = PERIOD_S) -> None:
+def ticks(heartbeat: WatchdogNotifier, from_s: float, to_s: float, period_s: float = PERIOD_S) -> None:
     for number in range(round(from_s / period_s), round(to_s / period_s)):
         heartbeat.beat(number * period_s)
 
 
 def test_pings_come_at_half_the_interval(systemd: Manager, notifier: Notifier) -> None:
-    heartbeat = Heartbeat(notifier, PERIOD_S, {})
+    heartbeat = WatchdogNotifier(notifier, PERIOD_S, {})
     ticks(heartbeat, 0.0, 10.0)
     assert systemd.heard() == ["WATCHDOG=1"] * 10
 
 
 def test_a_loop_that_is_late_all_the_time_is_not_well(systemd: Manager, notifier: Notifier) -> None:
-    heartbeat = Heartbeat(notifier, PERIOD_S, {})
+    heartbeat = WatchdogNotifier(notifier, PERIOD_S, {})
     ticks(heartbeat, 0.0, 1.5)
     assert systemd.heard() == ["WATCHDOG=1"] * 2
     ticks(heartbeat, 2.0, 4.5, period_s=0.03)
@@ -50,7 +50,7 @@ def test_a_loop_that_is_late_all_the_time_is_not_well(systemd: Manager, notifier
 def test_a_part_that_died_is_named_and_ends_the_pings(systemd: Manager, notifier: Notifier) -> None:
     alive = {"knowledge journal": True, "simulator": True}
     parts = {name: lambda name=name: alive[name] for name in alive}
-    heartbeat = Heartbeat(notifier, PERIOD_S, parts)
+    heartbeat = WatchdogNotifier(notifier, PERIOD_S, parts)
     ticks(heartbeat, 0.0, 1.5)
     systemd.heard()
     alive["knowledge journal"] = False
@@ -61,5 +61,5 @@ def test_a_part_that_died_is_named_and_ends_the_pings(systemd: Manager, notifier
 
 def test_nobody_listens_and_nothing_is_said(systemd: Manager) -> None:
     with Notifier(systemd.environment()) as notifier:
-        ticks(Heartbeat(notifier, PERIOD_S, {}), 0.0, 5.0)
+        ticks(WatchdogNotifier(notifier, PERIOD_S, {}), 0.0, 5.0)
     assert systemd.heard() == []

@@ -15,8 +15,8 @@ from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.knowledge.exchange.package import read_given
-from kurt2rt.service.post_tick import Screen
-from kurt2rt.service.serve import Openness, serve
+from kurt2rt.service.post_tick import ProgramConsole
+from kurt2rt.service.serve import ChannelOptions, serve
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import RefusedError
 from simbridge.simulated_world import Kurt2World
@@ -41,10 +41,10 @@ async def listening_robot(live: Rig, folder: Path) -> AsyncIterator[int]:
     settings = settings_for(folder / "knowledge.sqlite").model_copy(
         update={"teachers": str(folder / "teachers"), "port": 0}
     )
-    screen = Screen(status=live.statuses.append, question=live.questions.append, settled=live.settled.append)
+    screen = ProgramConsole(status=live.statuses.append, question=live.questions.append, settled=live.settled.append)
 
     async def run() -> None:
-        openness = Openness(lambda: "", ground, listening)
+        openness = ChannelOptions(lambda: "", ground, listening)
         await serve(live.robot, SETTINGS, settings, eager_task(), screen, openness=openness, duration_s=LONGEST_S)
 
     async with anyio.create_task_group() as tasks:

@@ -10,7 +10,7 @@ import anyio.lowlevel
 
 from hal.robot_settings import load_robot
 from hal.simulation import SimulatedPlace
-from kurt2rt.channel.protocol.exam_status import NO_EXAM, ExamStanding
+from kurt2rt.channel.protocol.exam_status import NO_EXAM, ExamStatus
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.hello import Hello, SensorPlace
 from kurt2rt.channel.protocol.lesson_list import LessonLine
@@ -22,7 +22,7 @@ from kurt2rt.core.rla.rla import BASIC, Phase
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError, RefusedError
-from kurt2rt.teacher.client.link_quality import Link
+from kurt2rt.teacher.client.link_quality import LinkQuality
 
 A_STATE = State(
     boot=b"boot",
@@ -104,14 +104,14 @@ class FakeRobot:
     greeting: Hello = A_HELLO
     named: tuple[str, ...] = ()
     simulated: SimulationView = A_SIMULATION
-    examined: ExamStanding = NO_EXAM
+    examined: ExamStatus = NO_EXAM
     files: dict[str, bytes] = field(default_factory=dict)
     answers_with: dict[str, object] = field(default_factory=dict)
     """What else its answers hold."""
     report: HealthReport | None = None
     decided: DecisionFacts | None = None
     newest_lessons: tuple[LessonLine, ...] = (A_LESSON,)
-    link: Link = field(default_factory=lambda: Link(4.0, 1.0, 20.0))
+    link: LinkQuality = field(default_factory=lambda: LinkQuality(4.0, 1.0, 20.0))
     _news: anyio.Event = field(default_factory=anyio.Event, init=False)
     _heard: anyio.Event = field(default_factory=anyio.Event, init=False)
 
@@ -245,7 +245,7 @@ class FakeRobot:
     async def examine(self) -> Answer:
         return await self._answer("examine")
 
-    async def exam(self) -> ExamStanding | None:
+    async def exam(self) -> ExamStatus | None:
         if self.silent:
             raise NoAnswerError("no answer")
         await anyio.lowlevel.checkpoint()

@@ -15,8 +15,8 @@ from kurt2rt.core.rla.outcome_text import Surface, text_of
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.teacher.client.answer import local_refusal
 from kurt2rt.teacher.page.bridge import Bridge
-from kurt2rt.teacher.page.messages import Beat, Hidden, Order, PageMessage, Press, Release, StopNow
-from kurt2rt.teacher.page.page_connection import Visitor
+from kurt2rt.teacher.page.messages import Hidden, PageHeartbeat, PageMessage, PageOrder, Press, Release, StopNow
+from kurt2rt.teacher.page.page_connection import PageConnection
 from tests.teacher.page.clock import Clock
 from tests.teacher.page.fake_robot import A_PLACE, FakeRobot
 
@@ -39,7 +39,7 @@ class Page:
 
     def __init__(self, hall: "Hall") -> None:
         self.hall = hall
-        self.visitor: Visitor = hall.bridge.arrive()
+        self.visitor: PageConnection = hall.bridge.arrive()
         self.heard: list[dict[str, Any]] = []
         self.picture: int | None = None
 
@@ -61,13 +61,13 @@ class Page:
         return [each for each in self.heard if each["kind"] == kind][-1]
 
     def beat(self) -> None:
-        self.say(Beat(self.picture, 0.0))
+        self.say(PageHeartbeat(self.picture, 0.0))
 
     def press(self, hold: int = 1, speed: float = 0.2) -> None:
         self.say(Press(hold, speed, speed, self.picture))
 
     async def order(self, name: str, /, **arguments: object) -> dict[str, Any]:
-        self.say(Order(1, name, arguments, self.picture))
+        self.say(PageOrder(1, name, arguments, self.picture))
         await settled()
         return self.last("answer")
 
@@ -556,7 +556,7 @@ async def test_a_page_has_only_so_many_orders_under_way_but_can_always_stop() ->
 
         hall.robot.resume = wait_for_ever  # type: ignore[method-assign]
         for _ in range(8):
-            page.say(Order(1, "resume", {}, page.picture))
+            page.say(PageOrder(1, "resume", {}, page.picture))
             await settled()
         assert (await page.order("resume"))["why"] == "busy"
         page.say(StopNow(2))

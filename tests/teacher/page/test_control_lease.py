@@ -1,15 +1,15 @@
-from kurt2rt.teacher.page.control_lease import Seat
+from kurt2rt.teacher.page.control_lease import ControlLease
 
 
 def test_the_first_page_has_the_pad_and_the_next_one_watches() -> None:
-    seat = Seat()
+    seat = ControlLease()
     seat.arrive(1, now_s=0.0)
     seat.arrive(2, now_s=0.5)
     assert seat.holder == 1
 
 
 def test_the_newest_that_takes_it_has_it() -> None:
-    seat = Seat()
+    seat = ControlLease()
     seat.arrive(1, now_s=0.0)
     seat.take(2, now_s=0.1)
     seat.take(3, now_s=0.2)
@@ -17,7 +17,7 @@ def test_the_newest_that_takes_it_has_it() -> None:
 
 
 def test_a_page_that_is_not_heard_of_gives_way_to_one_that_is_opened() -> None:
-    seat = Seat(silent_s=1.0)
+    seat = ControlLease(silent_s=1.0)
     seat.arrive(1, now_s=0.0)
     seat.hear(1, now_s=5.0)
     seat.arrive(2, now_s=5.9)
@@ -27,7 +27,7 @@ def test_a_page_that_is_not_heard_of_gives_way_to_one_that_is_opened() -> None:
 
 
 def test_a_hidden_page_gives_way_at_once_unless_it_is_seen_again() -> None:
-    seat = Seat()
+    seat = ControlLease()
     seat.arrive(1, now_s=0.0)
     seat.hide(1)
     seat.hear(1, now_s=0.1)
@@ -39,7 +39,7 @@ def test_a_hidden_page_gives_way_at_once_unless_it_is_seen_again() -> None:
 
 
 def test_nobody_moves_up_when_the_pad_is_left() -> None:
-    seat = Seat()
+    seat = ControlLease()
     seat.arrive(1, now_s=0.0)
     seat.arrive(2, now_s=0.0)
     seat.leave(1)

@@ -6,22 +6,20 @@ from dataclasses import replace
 import pytest
 from matplotlib.figure import Figure
 
-from kurt2rt.channel.protocol.exam_status import ExamStanding, WorldVerdict
+from kurt2rt.channel.protocol.exam_status import ExamStatus, WorldVerdict
 from tests.teacher.page.axe import violations
 from tests.teacher.page.fake_robot import FakeRobot
 from tests.teacher.page.lesson import Lesson
 from tests.teacher.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL
 from tests.teacher.page.test_browser import assert_handy
 
-DRIVES = ExamStanding(True, 0.42, "exam without teacher, world b")
+DRIVES = ExamStatus(True, 0.42, "exam without teacher, world b")
 VERDICTS = (
     WorldVerdict("A", True, "4.86 of the teacher's 5.00 laps, no collision"),
     WorldVerdict("B", False, "1.02 of the teacher's 3.58 laps, 2 collisions, stuck after 113 s"),
     WorldVerdict("cave", False, "not judged: the policy itself gets nowhere here (0.02 laps)", judged=False),
 )
-OVER = ExamStanding(
-    False, 1.0, "Passed in 1 of 2 worlds; 1 not judged.", VERDICTS, "wall-following-20261122T180000.png"
-)
+OVER = ExamStatus(False, 1.0, "Passed in 1 of 2 worlds; 1 not judged.", VERDICTS, "wall-following-20261122T180000.png")
 LOADED = "const e = document.querySelector('#exam-picture'); return e.complete && e.naturalWidth;"
 
 
@@ -40,7 +38,7 @@ def lesson(a_lesson: Lesson) -> Lesson:
     return a_lesson
 
 
-def later(lesson: Lesson, standing: ExamStanding) -> None:
+def later(lesson: Lesson, standing: ExamStatus) -> None:
     """Half a second of the robot later the exam stands so."""
     state = lesson.robot.state
     assert state is not None

@@ -7,7 +7,17 @@ from hypothesis import strategies as st
 
 from kurt2rt.channel.protocol.schema import WireError
 from kurt2rt.core.rla.rla import Phase
-from kurt2rt.teacher.page.messages import LONGEST_MESSAGE, ORDERS, Beat, Hidden, Order, Press, Release, StopNow, parse
+from kurt2rt.teacher.page.messages import (
+    LONGEST_MESSAGE,
+    ORDERS,
+    Hidden,
+    PageHeartbeat,
+    PageOrder,
+    Press,
+    Release,
+    StopNow,
+    parse,
+)
 
 
 def lesson(name: str, arguments: dict[str, object]) -> dict[str, object]:
@@ -17,40 +27,40 @@ def lesson(name: str, arguments: dict[str, object]) -> dict[str, object]:
 @pytest.mark.parametrize(
     ("said", "understood"),
     [
-        ({"kind": "beat", "picture": 7, "at_ms": 12.5}, Beat(7, 12.5)),
-        ({"kind": "beat", "picture": None, "at_ms": 0}, Beat(None, 0.0)),
+        ({"kind": "beat", "picture": 7, "at_ms": 12.5}, PageHeartbeat(7, 12.5)),
+        ({"kind": "beat", "picture": None, "at_ms": 0}, PageHeartbeat(None, 0.0)),
         ({"kind": "hidden"}, Hidden()),
         ({"kind": "press", "hold": 2, "left_m_s": 0.3, "right_m_s": -1, "picture": 9}, Press(2, 0.3, -1.0, 9)),
         ({"kind": "release"}, Release()),
         ({"kind": "stop", "number": 3}, StopNow(3)),
         (
             lesson("correct", {"action": "turn_left", "level": "mid"}),
-            Order(1, "correct", {"action": "turn_left", "level": "mid"}, 4),
+            PageOrder(1, "correct", {"action": "turn_left", "level": "mid"}, 4),
         ),
         (
             lesson("answer", {"action": "forward", "level": "basic", "beside": False}),
-            Order(1, "answer", {"action": "forward", "level": "basic", "beside": False}, 4),
+            PageOrder(1, "answer", {"action": "forward", "level": "basic", "beside": False}, 4),
         ),
-        (lesson("seek", {"name": "door"}), Order(1, "seek", {"name": "door"}, 4)),
+        (lesson("seek", {"name": "door"}), PageOrder(1, "seek", {"name": "door"}, 4)),
         (
             lesson("name", {"name": "door"}),
-            Order(1, "name", {"name": "door"}, 4),
+            PageOrder(1, "name", {"name": "door"}, 4),
         ),
         (
             {"kind": "order", "number": 1, "name": "phase", "arguments": {"phase": 2}, "picture": 4},
-            Order(1, "phase", {"phase": Phase.CORRECTIONS}, 4),
+            PageOrder(1, "phase", {"phase": Phase.CORRECTIONS}, 4),
         ),
         (
             {"kind": "order", "number": 1, "name": "appraise", "arguments": {"appraisal": "bad"}, "picture": 4},
-            Order(1, "appraise", {"appraisal": "bad"}, 4),
+            PageOrder(1, "appraise", {"appraisal": "bad"}, 4),
         ),
         (
             {"kind": "order", "number": 1, "name": "pursue", "arguments": {"behaviour": "turn_left"}, "picture": 4},
-            Order(1, "pursue", {"behaviour": "turn_left"}, 4),
+            PageOrder(1, "pursue", {"behaviour": "turn_left"}, 4),
         ),
         (
             {"kind": "order", "number": 1, "name": "undo", "arguments": {"lesson": "phone-0a"}, "picture": 4},
-            Order(1, "undo", {"lesson": "phone-0a"}, 4),
+            PageOrder(1, "undo", {"lesson": "phone-0a"}, 4),
         ),
     ],
 )
@@ -155,7 +165,7 @@ def test_an_upload_is_named_in_hexadecimal() -> None:
         return json.dumps({"kind": "order", "number": 1, "name": "load", "arguments": arguments, "picture": 1})
 
     order = parse(load("0f" * 8))
-    assert isinstance(order, Order)
+    assert isinstance(order, PageOrder)
     assert order.arguments == {"upload": b"\x0f" * 8, "sha256": b"\xab" * 32}
     for wrong in ("0f" * 7, "0f" * 9, "zz" * 8):
         with pytest.raises(WireError, match="upload has to be 16 hexadecimal digits"):

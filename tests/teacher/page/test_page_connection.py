@@ -1,18 +1,18 @@
 import json
 from typing import Any
 
-from kurt2rt.teacher.page.page_connection import Visitor
+from kurt2rt.teacher.page.page_connection import PageConnection
 
 
-def taken(visitor: Visitor, now_s: float = 0.0) -> list[dict[str, Any]]:
+def taken(visitor: PageConnection, now_s: float = 0.0) -> list[dict[str, Any]]:
     found = []
     while (text := visitor.take(now_s)) is not None:
         found.append(json.loads(text))
     return found
 
 
-def visible() -> Visitor:
-    visitor = Visitor(1)
+def visible() -> PageConnection:
+    visitor = PageConnection(1)
     visitor.visible = True
     return visitor
 
@@ -25,7 +25,7 @@ def test_of_the_robot_s_state_only_the_newest_waits() -> None:
 
 
 def test_a_page_that_nobody_sees_gets_no_pictures_but_hears_the_rest() -> None:
-    visitor = Visitor(1)
+    visitor = PageConnection(1)
     visitor.show(b"boot", {"kind": "state", "tick": 1})
     visitor.tell({"kind": "hello"})
     assert [each["kind"] for each in taken(visitor)] == ["hello"]
@@ -45,7 +45,7 @@ def test_a_slow_page_is_sent_nothing_old_when_it_wakes_up() -> None:
 
 
 def test_of_what_is_about_the_same_thing_the_last_word_counts() -> None:
-    visitor = Visitor(1)
+    visitor = PageConnection(1)
     for number in range(1000):
         visitor.tell({"kind": "lessons", "number": number}, about="lessons")
     visitor.tell({"kind": "answer"})
@@ -54,7 +54,7 @@ def test_of_what_is_about_the_same_thing_the_last_word_counts() -> None:
 
 
 def test_a_page_that_takes_no_answers_is_lost() -> None:
-    visitor = Visitor(1)
+    visitor = PageConnection(1)
     for number in range(1000):
         visitor.tell({"kind": "answer", "number": number})
     assert visitor.lost

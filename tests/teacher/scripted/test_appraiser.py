@@ -14,11 +14,18 @@ from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.rla import MID, Phase
 from kurt2rt.core.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour, SetPhase, Teach
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.teacher.scripted.appraiser import BlamedByChance, Habits, Judged, ScriptedAppraiser, Signs, UnknownIsBad
+from kurt2rt.teacher.scripted.appraiser import (
+    FeedbackTiming,
+    JudgeReward,
+    RandomPenalty,
+    RewardSource,
+    ScriptedAppraiser,
+    UnknownPenalty,
+)
 from tests.core.helpers import sensed
 from tests.teacher.scripted.test_teacher import teacher
 
-HABITS = Habits(reaction=10, every={-1: 20, 0: 40, 1: 40})
+HABITS = FeedbackTiming(reaction=10, every={-1: 20, 0: 40, 1: 40})
 GOOD, NEUTRAL, BAD = 1, 0, -1
 
 
@@ -40,11 +47,11 @@ def record(tick: int, verdict: int, cause: Cause = Cause.RLA) -> TickRecord:
     return TickRecord(tick, 0.01 * tick, sensed(100), situation, decision, grant, (), circumstances=circumstances)
 
 
-def appraiser(phase: Phase, signs: Signs | None = None, habits: Habits = HABITS) -> ScriptedAppraiser:
+def appraiser(phase: Phase, signs: RewardSource | None = None, habits: FeedbackTiming = HABITS) -> ScriptedAppraiser:
     person = ScriptedAppraiser(
         teacher(Phase.SUPERVISED),
         habits,
-        signs or Judged(LeftIsTheVerdict()),
+        signs or JudgeReward(LeftIsTheVerdict()),
         {-1: "bad", 0: "neutral", 1: "good"},
         session="s",
         shown=("a", "b"),
@@ -79,7 +86,7 @@ def test_blame_and_praise_come_no_more_often_than_a_person_speaks() -> None:
 
 
 def test_a_patient_one_says_nothing_of_what_is_bad_for_a_moment() -> None:
-    person = appraiser(Phase.REINFORCEMENT, Judged(LeftIsTheVerdict(), patience=5))
+    person = appraiser(Phase.REINFORCEMENT, JudgeReward(LeftIsTheVerdict(), patience=5))
     verdicts = [BAD] * 4 + [NEUTRAL] + [BAD] * 5 + [NEUTRAL] * 10
     told = said(person, [record(tick, verdict) for tick, verdict in enumerate(verdicts, start=1)])
     assert signals(told) == [(20, -1, 10)]
@@ -145,13 +152,13 @@ def test_in_phase_5_nobody_is_there() -> None:
 
 
 def test_where_only_the_unknown_is_bad_what_led_there_is_blamed_once() -> None:
-    person = appraiser(Phase.REINFORCEMENT, UnknownIsBad())
+    person = appraiser(Phase.REINFORCEMENT, UnknownPenalty())
     seen = [record(1, BAD), record(2, BAD), *(record(tick, BAD, Cause.UNKNOWN) for tick in range(3, 60))]
     assert signals(said(person, seen)) == [(13, -1, 2)]
 
 
 def test_where_only_the_unknown_is_bad_nobody_is_blamed_for_a_way_that_the_mid_level_does_not_know() -> None:
-    person = appraiser(Phase.REINFORCEMENT, UnknownIsBad())
+    person = appraiser(Phase.REINFORCEMENT, UnknownPenalty())
     asks = record(3, BAD, Cause.UNKNOWN)
     which_way = asks._replace(decision=asks.decision._replace(asks_at=MID))
     assert (
@@ -162,7 +169,7 @@ def test_where_only_the_unknown_is_bad_nobody_is_blamed_for_a_way_that_the_mid_l
 
 def test_blame_by_chance_is_the_same_for_the_same_seed_and_exactly_as_often_as_was_said() -> None:
     def told(seed: int) -> list[tuple[int, int, int | None]]:
-        person = appraiser(Phase.REINFORCEMENT, BlamedByChance(50, 5000, 20, seed))
+        person = appraiser(Phase.REINFORCEMENT, RandomPenalty(50, 5000, 20, seed))
         return signals(said(person, [record(tick, GOOD) for tick in range(1, 5111)]))
 
     first, other = told(1), told(2)
@@ -175,7 +182,7 @@ def test_blame_by_chance_is_the_same_for_the_same_seed_and_exactly_as_often_as_w
 
 
 def test_blame_by_chance_that_finds_nobody_driving_waits() -> None:
-    person = appraiser(Phase.REINFORCEMENT, BlamedByChance(3, 100, 20, 1))
+    person = appraiser(Phase.REINFORCEMENT, RandomPenalty(3, 100, 20, 1))
     stands = [record(tick, GOOD, Cause.STOPPED) for tick in range(1, 101)]
     assert signals(said(person, [*stands, *(record(tick, GOOD) for tick in range(101, 200))])) == [
         (111, -1, 101),

@@ -1,7 +1,7 @@
 """Which of several behaviours is wanted when, seen in pictures of a robot whose ticks are a tenth of a second."""
 
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.teacher.scripted.behaviour_cycler import EACH_S, InTurn
+from kurt2rt.teacher.scripted.behaviour_cycler import EACH_S, BehaviourCycler
 from tests.channel.states import state
 
 TURNS = ("straight_on", "turn_left", "turn_right")
@@ -14,7 +14,7 @@ def at(tick: int, behaviour: str) -> State:
 
 
 def test_it_begins_with_what_the_robot_follows_and_goes_round() -> None:
-    in_turn = InTurn(TURNS, PERIOD_S)
+    in_turn = BehaviourCycler(TURNS, PERIOD_S)
     wanted = []
     follows = "turn_left"
     for tick in range(1000, 1000 + 4 * EACH, 5):
@@ -26,7 +26,7 @@ def test_it_begins_with_what_the_robot_follows_and_goes_round() -> None:
 
 
 def test_what_was_not_heard_is_told_again_each_second() -> None:
-    in_turn = InTurn(TURNS, PERIOD_S)
+    in_turn = BehaviourCycler(TURNS, PERIOD_S)
     in_turn.see(at(0, "straight_on"), stopped=False)
     told = [tick for tick in range(EACH + 31) if in_turn.see(at(tick, "straight_on"), stopped=False)]
     assert told == [EACH, EACH + 10, EACH + 20, EACH + 30]
@@ -34,7 +34,7 @@ def test_what_was_not_heard_is_told_again_each_second() -> None:
 
 
 def test_a_robot_that_somebody_stopped_is_told_nothing_and_its_turn_is_not_over_meanwhile() -> None:
-    in_turn = InTurn(TURNS, PERIOD_S)
+    in_turn = BehaviourCycler(TURNS, PERIOD_S)
     in_turn.see(at(0, "straight_on"), stopped=False)
     assert not any(in_turn.see(at(tick, "straight_on"), stopped=True) for tick in range(1, 2 * EACH))
     assert in_turn.wanted == "straight_on"
@@ -43,5 +43,5 @@ def test_a_robot_that_somebody_stopped_is_told_nothing_and_its_turn_is_not_over_
 
 
 def test_a_task_with_one_behaviour_is_told_nothing() -> None:
-    in_turn = InTurn(("",), PERIOD_S)
+    in_turn = BehaviourCycler(("",), PERIOD_S)
     assert not any(in_turn.see(at(tick, ""), stopped=False) for tick in range(0, 3 * EACH, 5))

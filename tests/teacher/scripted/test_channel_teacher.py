@@ -28,7 +28,7 @@ from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import RefusedError
 from kurt2rt.teacher.scripted.channel_teacher import picture_in, teach_by_script
-from kurt2rt.teacher.scripted.teacher import Picture
+from kurt2rt.teacher.scripted.teacher import TeacherView
 from tests.channel.states import state
 from tests.teacher.client.test_client import HELLO
 from tests.teacher.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
@@ -348,6 +348,6 @@ async def test_a_robot_that_a_person_stops_at_the_last_moment_stays_where_it_is(
 
 def test_it_sees_in_a_picture_what_is_wanted_and_which_rla_drives() -> None:
     seen = picture_in(state(cause="rla", action="forward", rla=3, behaviour="turn_left"))
-    assert seen == Picture(False, True, "forward", state().infrared_counts, "turn_left", 3)
+    assert seen == TeacherView(False, True, "forward", state().infrared_counts, "turn_left", 3)
     nearest = picture_in(state(cause="rla", action="forward", rla=3, nearest=3, distance=60.0, radius=600.0))
     assert nearest.share_of_radius == 0.1

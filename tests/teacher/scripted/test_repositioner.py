@@ -3,7 +3,7 @@
 import random
 
 from hal.simulation import SimulatedPlace
-from kurt2rt.teacher.scripted.repositioner import SettingDown
+from kurt2rt.teacher.scripted.repositioner import RobotRepositioner
 from tests.channel.states import state
 
 AFTER_S = 15.0
@@ -18,7 +18,7 @@ class Watched:
     """A robot on a line, and the hand that watches it."""
 
     def __init__(self) -> None:
-        self.hand = SettingDown(AFTER_S, 1.0, PERIOD_S, random.Random(3))
+        self.hand = RobotRepositioner(AFTER_S, 1.0, PERIOD_S, random.Random(3))
         self.tick = 0
 
     def is_at(self, x_m: float, *, collisions: int = 0, waits: bool = False) -> SimulatedPlace | None:
@@ -76,5 +76,5 @@ def test_one_that_never_came_away_is_set_down_where_it_began() -> None:
 
 
 def test_a_robot_whose_place_nobody_knows_is_not_moved() -> None:
-    hand = SettingDown(AFTER_S, 1.0, PERIOD_S, random.Random(3))
+    hand = RobotRepositioner(AFTER_S, 1.0, PERIOD_S, random.Random(3))
     assert not any(hand.see(state(tick=tick, place=None), waits=False) for tick in range(0, 1000, 5))

@@ -6,9 +6,9 @@ from typing import Annotated, ClassVar
 from kurt2rt.channel.protocol.requests.field_types import Name, NameOrNone, Number
 from kurt2rt.channel.protocol.requests.limits import LONGEST_TEXT, MOST_GOAL_FEATURES
 from kurt2rt.channel.protocol.requests.request import CommandRequest
-from kurt2rt.channel.protocol.schema import ManyOf, Real, Row, Text
+from kurt2rt.channel.protocol.schema import Float, ManyOf, Row, Text
 
-_FEATURE = Row((Text(LONGEST_TEXT, least=1), Real(1e6)))
+_FEATURE = Row((Text(LONGEST_TEXT, least=1), Float(1e6)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ class SeekLikeRequest(CommandRequest):
     depth: ClassVar[int] = 3
     features: Annotated[tuple[tuple[str, float], ...], ManyOf(_FEATURE, most=MOST_GOAL_FEATURES)]
     """Names and values."""
-    tolerance: Annotated[float, Real(1e6)]
+    tolerance: Annotated[float, Float(1e6)]
     """How far each may be off."""
 
 

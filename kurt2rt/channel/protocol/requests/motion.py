@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar
 from kurt2rt.channel.protocol.requests.field_types import CommandId, Name, Number, Speed, TickOrNone
 from kurt2rt.channel.protocol.requests.limits import LONGEST_BEHAVIOUR_TICKS
 from kurt2rt.channel.protocol.requests.request import CommandRequest, Request, StreamRequest
-from kurt2rt.channel.protocol.schema import Whole
+from kurt2rt.channel.protocol.schema import Int
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,7 @@ class BehaviourRequest(CommandRequest):
 
     path: ClassVar[str] = "/behaviour"
     action: Name
-    ticks: Annotated[int, Whole(1, LONGEST_BEHAVIOUR_TICKS)]
+    ticks: Annotated[int, Int(1, LONGEST_BEHAVIOUR_TICKS)]
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar
 from kurt2rt.channel.protocol.requests.field_types import Number
 from kurt2rt.channel.protocol.requests.limits import LONGEST_FILE_NAME, MOST_LESSONS
 from kurt2rt.channel.protocol.requests.request import Request
-from kurt2rt.channel.protocol.schema import Text, Whole
+from kurt2rt.channel.protocol.schema import Int, Text
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +21,7 @@ class LessonsRequest(Request):
     """The newest lessons."""
 
     path: ClassVar[str] = "/lessons"
-    count: Annotated[int, Whole(0, MOST_LESSONS)]
+    count: Annotated[int, Int(0, MOST_LESSONS)]
 
 
 @dataclass(frozen=True, slots=True)

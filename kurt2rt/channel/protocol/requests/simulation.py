@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar
 from kurt2rt.channel.protocol.requests.field_types import NameOrNone
 from kurt2rt.channel.protocol.requests.limits import FASTEST
 from kurt2rt.channel.protocol.requests.request import CommandRequest, Request
-from kurt2rt.channel.protocol.schema import Flag, Whole
+from kurt2rt.channel.protocol.schema import Flag, Int
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class SpeedRequest(CommandRequest):
     """Let robot time pass faster than real time, or as fast."""
 
     path: ClassVar[str] = "/simulation/speed"
-    times: Annotated[int, Whole(1, FASTEST)]
+    times: Annotated[int, Int(1, FASTEST)]
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,9 @@ from typing import Annotated, ClassVar
 from kurt2rt.channel.protocol.requests.field_types import Boot, Number
 from kurt2rt.channel.protocol.requests.limits import SHA256_BYTES, UPLOAD_ID_BYTES, UPLOAD_PART_BYTES
 from kurt2rt.channel.protocol.requests.request import CommandRequest, Request
-from kurt2rt.channel.protocol.schema import Octets, OctetsUpTo
+from kurt2rt.channel.protocol.schema import Bytes, BytesUpTo
 
-UploadId = Annotated[bytes, Octets(UPLOAD_ID_BYTES)]
+UploadId = Annotated[bytes, Bytes(UPLOAD_ID_BYTES)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +21,7 @@ class UploadRequest(Request):
     """Random, the same for all parts of one file."""
     offset: Number
     """Position of the part's first byte in the file; 0 begins the file."""
-    part: Annotated[bytes, OctetsUpTo(UPLOAD_PART_BYTES)]
+    part: Annotated[bytes, BytesUpTo(UPLOAD_PART_BYTES)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,5 +30,5 @@ class LoadRequest(CommandRequest):
 
     path: ClassVar[str] = "/load"
     upload: UploadId
-    sha256: Annotated[bytes, Octets(SHA256_BYTES)]
+    sha256: Annotated[bytes, Bytes(SHA256_BYTES)]
     """Of the whole file."""

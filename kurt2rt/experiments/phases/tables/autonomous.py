@@ -2,14 +2,14 @@
 
 from kurt2rt.experiments.lockstep.report import quartiles
 from kurt2rt.experiments.phases.steps import CRITIC_ALONE, INTACT, LONG_RUN, PHASE_5, SHUFFLED, TITLES
-from kurt2rt.experiments.phases.study import Study
+from kurt2rt.experiments.phases.study import PhasesStudy
 from kurt2rt.experiments.phases.tables.taught import taught_of
 from kurt2rt.experiments.phases.verdict import interventions, robots_of_the_long_run
 from kurt2rt.experiments.study.intervals import rate_of
-from kurt2rt.experiments.study.table import Sheet
+from kurt2rt.experiments.study.table import Table
 
 
-def alone_sheet(study: Study) -> Sheet:
+def alone_sheet(study: PhasesStudy) -> Table:
     """What happened while nobody taught."""
     rows = []
     for name in (CRITIC_ALONE, SHUFFLED, INTACT, PHASE_5):
@@ -27,10 +27,10 @@ def alone_sheet(study: Study) -> Sheet:
             )
         )
     columns = ("step", "lasts, s", "collisions in 10 min", "95 %", "rescues in 10 min", "unknown")
-    return Sheet("While it learnt alone", columns, tuple(rows), note="In the world that is taught in.")
+    return Table("While it learnt alone", columns, tuple(rows), note="In the world that is taught in.")
 
 
-def long_run_sheet(study: Study) -> Sheet:
+def long_run_sheet(study: PhasesStudy) -> Table:
     """How often a person had to come."""
     taught = taught_of(study.stages[LONG_RUN])
     rate = interventions(study)
@@ -44,7 +44,7 @@ def long_run_sheet(study: Study) -> Sheet:
         f"{rate.low:.2f} to {rate.high:.2f}",
     )
     columns = ("hours", "collisions", "stuck", "unknown for long", "stopped", "an hour", "95 %")
-    return Sheet(
+    return Table(
         "Interventions in the long run after phase 5",
         columns,
         (row,),

@@ -12,12 +12,12 @@ from kurt2rt.experiments.phases.steps import (
     TITLES,
     UNKNOWN_BAD,
 )
-from kurt2rt.experiments.phases.study import Study
+from kurt2rt.experiments.phases.study import PhasesStudy
 from kurt2rt.experiments.phases.summary import alike
 from kurt2rt.experiments.phases.tables.taught import taught_of
 
 
-def words_of_controls(study: Study) -> Iterator[str]:
+def words_of_controls(study: PhasesStudy) -> Iterator[str]:
     """Sentences on controls that say nothing, because what they are to show did not happen."""
     stages = study.stages
     robots = len(stages[ASKS])

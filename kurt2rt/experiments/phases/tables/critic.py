@@ -4,13 +4,13 @@ import math
 
 from kurt2rt.experiments.lockstep.report import quartiles
 from kurt2rt.experiments.phases.steps import CRITIC_ALONE, INTACT, JUDGED, PHASE_4, PHASE_5, SHUFFLED, TITLES
-from kurt2rt.experiments.phases.study import Study
+from kurt2rt.experiments.phases.study import PhasesStudy
 from kurt2rt.experiments.phases.summary import score_of
 from kurt2rt.experiments.phases.tables.taught import taught_of
-from kurt2rt.experiments.study.table import Sheet
+from kurt2rt.experiments.study.table import Table
 
 
-def critic_sheet(study: Study) -> Sheet:
+def critic_sheet(study: PhasesStudy) -> Table:
     """What the critic was taught, and how far it agrees."""
     rows = []
     for name in (PHASE_4, PHASE_5, CRITIC_ALONE, SHUFFLED, INTACT):
@@ -32,7 +32,7 @@ def critic_sheet(study: Study) -> Sheet:
             )
         )
     columns = ("step", "appraisal RLAs", "agreement at its end", "quartiles", "trusted", "changes", "undone")
-    return Sheet(
+    return Table(
         "The critic",
         columns,
         tuple(rows),
@@ -41,7 +41,7 @@ def critic_sheet(study: Study) -> Sheet:
     )
 
 
-def judged_sheet(study: Study) -> Sheet:
+def judged_sheet(study: PhasesStudy) -> Table:
     """What the critic says where it learns nothing, beside what the judge thinks."""
     robots = [stage.judgements for stage in study.stages[JUDGED]]
     together = score_of([each for robot in robots for each in robot])
@@ -58,7 +58,7 @@ def judged_sheet(study: Study) -> Sheet:
         value: float | None = getattr(together, name)
         told = ("nothing", "", "") if value is None else (f"{value:.2f}", f"{median:.2f}", f"{low:.2f} to {high:.2f}")
         rows.append((words, *told))
-    return Sheet(
+    return Table(
         "The critic, judged",
         ("share", "all robots together", "median robot", "quartiles"),
         tuple(rows),

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 from kurt2rt.experiments.lockstep.report import quartiles
 from kurt2rt.experiments.phases.steps import TITLES
-from kurt2rt.experiments.phases.study import Study
+from kurt2rt.experiments.phases.study import PhasesStudy
 from kurt2rt.experiments.phases.summary import worlds_of
-from kurt2rt.experiments.study.table import Sheet
+from kurt2rt.experiments.study.table import Table
 
 
-def exam_sheet(title: str, stages: Sequence[str], study: Study, note: str) -> Sheet:
+def exam_sheet(title: str, stages: Sequence[str], study: PhasesStudy, note: str) -> Table:
     """How robots drive at each stage, world by world."""
     rows = []
     for name in stages:
@@ -52,4 +52,4 @@ def exam_sheet(title: str, stages: Sequence[str], study: Study, note: str) -> Sh
         "distance error, m",
         "still withdrawn",
     )
-    return Sheet(title, columns, tuple(rows), words=2, note=note)
+    return Table(title, columns, tuple(rows), words=2, note=note)

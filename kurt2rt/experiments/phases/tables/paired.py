@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 from kurt2rt.experiments.lockstep.report import label_of
 from kurt2rt.experiments.phases.summary import Paired
-from kurt2rt.experiments.study.table import Sheet
+from kurt2rt.experiments.study.table import Table
 
 
-def paired_sheet(title: str, pairs: Sequence[Paired], note: str) -> Sheet:
+def paired_sheet(title: str, pairs: Sequence[Paired], note: str) -> Table:
     """The same robots at two stages."""
     rows = []
     for each in pairs:
@@ -28,4 +28,4 @@ def paired_sheet(title: str, pairs: Sequence[Paired], note: str) -> Sheet:
             )
         )
     columns = ("world", "measure", "before", "after", "change", "95 %", "better", "worse", "no longer clean", "surely")
-    return Sheet(title, columns, tuple(rows), words=2, note=note)
+    return Table(title, columns, tuple(rows), words=2, note=note)

@@ -3,14 +3,14 @@
 from collections.abc import Sequence
 
 from kurt2rt.experiments.lockstep.report import quartiles
-from kurt2rt.experiments.lockstep.teacher_workload import Minute
+from kurt2rt.experiments.lockstep.teacher_workload import WorkloadMinute
 from kurt2rt.experiments.phases.steps import TITLES
-from kurt2rt.experiments.phases.study import Study
+from kurt2rt.experiments.phases.study import PhasesStudy
 from kurt2rt.experiments.phases.tables.taught import taught_of
-from kurt2rt.experiments.study.table import Sheet
+from kurt2rt.experiments.study.table import Table
 
 
-def load_sheet(title: str, stages: Sequence[str], study: Study) -> Sheet:
+def load_sheet(title: str, stages: Sequence[str], study: PhasesStudy) -> Table:
     """What the teacher said, in all and in a minute."""
     rows = []
     for name in stages:
@@ -18,7 +18,7 @@ def load_sheet(title: str, stages: Sequence[str], study: Study) -> Sheet:
         said = [_all_of(each.load) for each in taught]
         minutes = taught[0].duration_s / 60.0
         cells = []
-        for kind in Minute._fields:
+        for kind in WorkloadMinute._fields:
             median = quartiles([getattr(each, kind) for each in said])[1]
             cells.append(f"{median:g} ({median / minutes:.1f})")
         rows.append(
@@ -48,7 +48,7 @@ def load_sheet(title: str, stages: Sequence[str], study: Study) -> Sheet:
         "too late",
         "withdrawn",
     )
-    return Sheet(
+    return Table(
         title,
         columns,
         tuple(rows),
@@ -59,5 +59,5 @@ def load_sheet(title: str, stages: Sequence[str], study: Study) -> Sheet:
     )
 
 
-def _all_of(load: Sequence[Minute]) -> Minute:
-    return Minute(*(sum(getattr(minute, kind) for minute in load) for kind in Minute._fields))
+def _all_of(load: Sequence[WorkloadMinute]) -> WorkloadMinute:
+    return WorkloadMinute(*(sum(getattr(minute, kind) for minute in load) for kind in WorkloadMinute._fields))

@@ -1,11 +1,11 @@
 """The yardstick: how the teacher drives himself."""
 
-from kurt2rt.experiments.phases.study import Study
+from kurt2rt.experiments.phases.study import PhasesStudy
 from kurt2rt.experiments.phases.summary import collisions_of, summarize
-from kurt2rt.experiments.study.table import Sheet
+from kurt2rt.experiments.study.table import Table
 
 
-def teachers_sheet(study: Study) -> Sheet:
+def teachers_sheet(study: PhasesStudy) -> Table:
     """The yardstick: how the teacher's own policy drives from the same starts."""
     rows = []
     for world in dict.fromkeys(exam.world for robot in study.teachers for exam in robot):
@@ -28,7 +28,7 @@ def teachers_sheet(study: Study) -> Sheet:
             )
         )
     columns = ("world", "without fault", "collisions in 10 min", "stuck", "progress", "quartiles", "seeds that failed")
-    return Sheet(
+    return Table(
         "How the teacher drives himself",
         columns,
         tuple(rows),
