@@ -93,7 +93,6 @@ class SimulatedRobot:
 
     @property
     def pose(self) -> Pose:
-        """Return the true pose."""
         return self._body.pose
 
     @property
@@ -108,12 +107,10 @@ class SimulatedRobot:
 
     @property
     def touching(self) -> bool:
-        """Return whether a wall touches the body."""
         return self._body.touching
 
     @property
     def bumped(self) -> bool:
-        """Return whether a bumper is pressed."""
         return self._pressed != 0
 
     @property
@@ -128,7 +125,6 @@ class SimulatedRobot:
 
     @property
     def infrared_counts(self) -> tuple[int, ...]:
-        """Return the present readings in the order of the sensor table."""
         return tuple(self._infrared.counts)
 
     def state_hash(self) -> str:

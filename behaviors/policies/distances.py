@@ -26,7 +26,7 @@ class Distances:
     """Lookup table from counts to distances from the sensors' faces."""
 
     def __init__(self, infrared: InfraredSettings) -> None:
-        # Looked up, for a teacher asks in every tick of a lesson.
+        # A table, because a teacher asks in every tick of a lesson.
         self._distance_m = tuple(infrared.distance_m(counts) for counts in range(HIGHEST_COUNTS + 1))
         self._index = {name: index for index, name in enumerate(infrared.names)}
         self._x_m = {name: sensor.x_m for name, sensor in zip(infrared.names, infrared.sensors, strict=True)}

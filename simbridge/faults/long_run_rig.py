@@ -128,7 +128,6 @@ class LongRunRig:
 
     @property
     def collisions(self) -> int:
-        """Return the number of collisions."""
         return self.simulation.collisions
 
     @property

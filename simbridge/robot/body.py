@@ -118,7 +118,6 @@ class Body:
 
     @property
     def touching(self) -> bool:
-        """Return whether a wall touches the body."""
         return bool(self._points)
 
     def contacts(self) -> list[Contact]:

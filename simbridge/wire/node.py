@@ -53,7 +53,6 @@ class WireNode:
 
     @property
     def is_bus_off(self) -> bool:
-        """Return whether the controller is bus-off."""
         return self.state is ErrorState.BUS_OFF
 
     def enqueue(self, frame: can.Message) -> None:

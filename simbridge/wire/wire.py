@@ -151,7 +151,7 @@ class Wire:
         self._now_ns = max(self._now_ns, to_ns)
 
     def _next_start_ns(self) -> int:
-        # A queued frame that could have started earlier would have.
+        # A waiting frame cannot start before the present: `_advance` would have started it.
         waits_ns = [node.waits_until_ns for node in self._nodes if node.queue]
         return max(self._now_ns, self._free_ns, min(waits_ns)) if waits_ns else _FAR_NS
 

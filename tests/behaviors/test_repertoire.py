@@ -1,4 +1,4 @@
-"""The repertoire: built by name from its file, for one robot."""
+"""Repertoires: built by name from their files, for one robot."""
 
 from pathlib import Path
 

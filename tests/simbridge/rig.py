@@ -136,12 +136,19 @@ class Rig:
                 return values[signals.index(channel)]
         raise LookupError(f"{channel} was never heard")
 
-    def mean_reading(self, sensor: str, seconds: float = 2.0) -> float:
-        total = 0
+    def readings(self, sensor: str, seconds: float) -> list[int]:
+        """Stand for this time, and return a sensor's count of each cycle."""
+        found = []
         for _ in range(round(seconds / 0.01)):
             self.step(STAND)
-            total += self.reading(sensor)
-        return total / round(seconds / 0.01)
+            found.append(self.reading(sensor))
+        return found
+
+    def seen_from(self, pose: Pose, sensor: str) -> int:
+        """Return a sensor's count after 0.1 s at a pose."""
+        self.robot.place(pose)
+        self.run(0.1, STAND)
+        return self.reading(sensor)
 
 
 def facing_wall(distance_m: float, side_m: float = 4.0) -> Pose:

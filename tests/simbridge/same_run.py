@@ -1,4 +1,4 @@
-"""A run to be compared: `python -m tests.simbridge.same_run` prints its hashes."""
+"""Run to be compared; `python -m tests.simbridge.same_run` prints its hashes."""
 
 from simbridge.worlds.world_loading import load_world
 from tests.simbridge.rig import Rig
@@ -7,7 +7,7 @@ SEED = 7
 
 
 def hashes(seed: int = SEED) -> list[str]:
-    """State once a second of a run through world B with curves, collisions and a moved robot."""
+    """Return the state hash of each second of a run through world B with collisions and a moved robot."""
     found = []
     with Rig(load_world("b"), seed) as rig:
         for second in range(8):

@@ -1,4 +1,4 @@
-"""A simulated robot alone on its end of a bus: a runtime elsewhere finds it there, once."""
+"""Simulated robot as a program of its own on a bus."""
 
 import itertools
 import threading
@@ -37,7 +37,7 @@ def test_standalone_is_driven_by_a_runtime(name: str, notebook: CanBus) -> None:
     robot = standalone.robot
     assert robot.pose == WORLD.start_poses[1].pose
     kurt2 = Kurt2(ROBOT, notebook)
-    for tick in range(20):  # by hand as yet, so that nothing waits for the time of day
+    for tick in range(20):  # stepped here, so that the test waits for no clock
         robot.step()
         now_s = tick * ROBOT.can.cycle_s
         kurt2.sense(now_s)
@@ -77,9 +77,9 @@ def test_standalone_second_robot_is_refused(name: str) -> None:
         end = open_bus(name)
         first.simulation.submit(stepped.set)
         assert stepped.wait(30.0)
-        with pytest.raises(BusError, match=r"a robot is on it already; end that one, or take another bus"):
+        with pytest.raises(BusError, match=name):
             StandaloneRobot(ROBOT, WORLD, end, seed=2)
-        with pytest.raises(BusError, match="is shut down"):
+        with pytest.raises(BusError):
             end.drain()
 
 

@@ -1,4 +1,4 @@
-"""The simulated robot behind the code that drives the real one."""
+"""Simulated robot behind the driver of the real robot."""
 
 import itertools
 from collections.abc import Iterator
@@ -19,7 +19,7 @@ Pair = tuple[Kurt2, SimulatedRobot]
 
 @pytest.fixture(params=list(SpeedMode))
 def pair(request: pytest.FixtureRequest) -> Iterator[Pair]:
-    """Driver and simulated robot on one bus, in each speed mode."""
+    """Return driver and simulated robot on one bus, in each speed mode."""
     settings = load_robot()
     settings = settings.model_copy(update={"can": settings.can.model_copy(update={"speed_mode": request.param})})
     name = f"virtual:simbridge-driver-{next(_numbers)}"

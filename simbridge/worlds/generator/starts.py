@@ -35,14 +35,14 @@ def starts_along_walls(room: shapely.Polygon, rng: SeededRandom) -> tuple[StartP
 
 
 def _clockwise(room: shapely.Polygon) -> Iterator[Edge]:
-    # Without the corners that lie on a straight line, where a wall stands against another.
+    # Simplified: a wall that touches another adds corners on a straight line.
     ring = shapely.normalize(shapely.Polygon(room.exterior).simplify(0.001))  # normal is clockwise
     yield from edges_of([(float(x), float(y)) for x, y in shapely.get_coordinates(ring)[:-1]])
 
 
 def _start(a: tuple[float, float], b: tuple[float, float], share: float, away_m: float) -> StartPoseSettings:
     heading_rad = math.atan2(b[1] - a[1], b[0] - a[0])
-    # Clockwise round the room, its inside lies on the right.
+    # The edge runs clockwise, so the inside is on its right.
     return StartPoseSettings(
         x_m=round(a[0] + share * (b[0] - a[0]) + away_m * math.sin(heading_rad), 3),
         y_m=round(a[1] + share * (b[1] - a[1]) - away_m * math.cos(heading_rad), 3),

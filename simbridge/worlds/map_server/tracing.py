@@ -38,7 +38,7 @@ def trace(free: NDArray[np.bool_]) -> list[shapely.Polygon]:
     sides = np.count_nonzero(free[1:] != free[:-1]) + np.count_nonzero(free[:, 1:] != free[:, :-1])
     if sides > _MOST_SIDES:
         raise TooRaggedError(f"too many sides between free and other cells (got {sides}, allowed {_MOST_SIDES})")
-    # A margin that is not free closes what reaches the edge of the map.
+    # A margin of occupied cells closes areas that reach the edge of the map.
     padded = np.pad(free, 1).astype(np.float64)
     generator = contourpy.contour_generator(z=padded, fill_type=contourpy.FillType.OuterOffset)
     # Level 0.5 passes halfway between the centres of a free and an occupied cell.
@@ -59,13 +59,13 @@ def trace(free: NDArray[np.bool_]) -> list[shapely.Polygon]:
 
 def _straightened(rings: list[Ring]) -> Iterator[shapely.Polygon]:
     polygon = _polygon(rings)
-    # Where cells meet at a corner only, an outline may touch itself there now that its corners are back.
+    # An outline may touch itself at a corner that two cells share, now that corners are restored.
     for part in polygons_of(shapely.make_valid(polygon, method="structure", keep_collapsed=False)):
         yield from polygons_of(part.simplify(_TOLERANCE_CELLS, preserve_topology=True))
 
 
 def _polygon(rings: list[Ring]) -> shapely.Polygon:
-    # From the leftmost corner on, since the first one stays whatever is made straight.
+    # Start at the leftmost corner, because straightening always keeps the first point.
     rolled = [np.roll(ring, -int(np.lexsort((ring[:, 1], ring[:, 0]))[0]), axis=0) for ring in rings]
     return shapely.Polygon(rolled[0], rolled[1:])
 

@@ -1,4 +1,4 @@
-"""A bus that goes and comes back does not end the simulated robot; it stands meanwhile."""
+"""Bus that goes and comes back under the simulated robot."""
 
 from collections.abc import Iterator
 
@@ -16,7 +16,7 @@ SLOWLY = control_frame(SpeedControl(Mode.SPEED_CM, 20, 20))
 
 
 class Adapter:
-    """A bus at the controller's end whose adapter can be unplugged, and a clock that the test moves."""
+    """Controller's bus whose adapter can be unplugged, and a clock moved by the test."""
 
     def __init__(self) -> None:
         self.plugged_in = True
@@ -68,7 +68,7 @@ def test_reconnecting_bus_robot_stands_while_it_is_gone(adapter: Adapter) -> Non
     assert adapter.steady.error_text
     assert adapter.steady.lost > 100
     cycles(300)
-    assert 3 <= adapter.tries - 1 <= 4  # once a second, and no oftener
+    assert 3 <= adapter.tries - 1 <= 4  # once a second
     assert adapter.steady.error_text == "bus 'desk': no such network interface"
     adapter.plugged_in = True
     cycles(150)

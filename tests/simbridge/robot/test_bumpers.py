@@ -1,4 +1,4 @@
-"""Which bumpers a contact presses, by where on the body it is."""
+"""Bumpers pressed by contacts."""
 
 import pytest
 

@@ -8,16 +8,12 @@ from matplotlib.figure import Figure
 
 from hal.simulation import Pose
 from simbridge.survey.drawing import draw_robot, draw_trail, draw_world
-from simbridge.worlds.obstacle_settings import PolygonObstacleSettings, RoundObstacleSettings, WallSettings
-from tests.simbridge.rig import ROBOT, room
+from tests.simbridge.rig import ROBOT, board, box, post, room
 
 
 def test_drawing_of_a_world_with_a_robot_is_saved(tmp_path: Path) -> None:
-    world = room(
-        walls=[WallSettings(name="board", from_m=(1.0, 0.0), to_m=(1.0, 1.5), thickness_m=0.1)],
-        posts=[RoundObstacleSettings(name="post", x_m=3.0, y_m=3.0, radius_m=0.2)],
-        boxes=[PolygonObstacleSettings(name="box", corners=((2.6, 1.0), (3.1, 1.2), (2.7, 1.6)))],
-    )
+    wall, block = board((1.0, 0.0), (1.0, 1.5), 0.1), box((2.6, 1.0), (3.1, 1.2), (2.7, 1.6))
+    world = room(walls=[wall], posts=[post(3.0, 3.0, 0.2)], boxes=[block])
     figure = Figure(figsize=(4, 4), dpi=50)
     axes = figure.add_subplot()
     draw_world(axes, world)

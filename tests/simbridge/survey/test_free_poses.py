@@ -1,3 +1,5 @@
+"""Free poses, and the clearance to the nearest face."""
+
 import math
 import random
 
@@ -9,9 +11,8 @@ from simbridge.robot.world import World
 from simbridge.survey import free_poses
 from simbridge.survey.clearance import Clearance
 from simbridge.survey.free_poses import FreePoses
-from simbridge.worlds.obstacle_settings import RoundObstacleSettings
 from simbridge.worlds.world_loading import load_world
-from tests.simbridge.rig import ROBOT, Rig, quiet_robot
+from tests.simbridge.rig import ROBOT, Rig, post, quiet_robot
 
 FARTHEST_SENSOR_M = max(math.hypot(sensor.x_m, sensor.y_m) for sensor in ROBOT.infrared.sensors)
 
@@ -26,10 +27,10 @@ def test_free_poses_see_the_post_from_all_sides() -> None:
     world = load_world("one_object")
     found = poses("one_object")
     assert all(clear_m >= 0.1 for clear_m in world.clearances_m(found, ROBOT.geometry))
-    (post,) = world.round_obstacles
-    away_m = [math.dist(pose[:2], (post.x_m, post.y_m)) for pose in found]
-    assert all(away < post.radius_m + 0.45 + FARTHEST_SENSOR_M for away in away_m)
-    assert len({int(2 * math.atan2(pose.y_m - post.y_m, pose.x_m - post.x_m)) for pose in found}) > 4
+    (target,) = world.round_obstacles
+    away_m = [math.dist(pose[:2], (target.x_m, target.y_m)) for pose in found]
+    assert all(away < target.radius_m + 0.45 + FARTHEST_SENSOR_M for away in away_m)
+    assert len({int(2 * math.atan2(pose.y_m - target.y_m, pose.x_m - target.x_m)) for pose in found}) > 4
     assert len({round(pose.heading_rad) for pose in found}) > 3
 
 
@@ -86,7 +87,7 @@ def test_clearance_follows_a_moved_wall() -> None:
 
 def test_free_poses_without_any_name_the_world(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(free_poses, "_TRIES", 200)
-    nook = RoundObstacleSettings(name="post", x_m=0.0, y_m=0.0, radius_m=0.002)  # in a corner, hardly visible
+    nook = post(0.0, 0.0, 0.002)  # in a corner, hardly visible
     world = load_world("one_object").model_copy(update={"round_obstacles": (nook,)})
     with pytest.raises(SettingsError, match=world.name):
         FreePoses(World(world), ROBOT).draw(random.Random(1))

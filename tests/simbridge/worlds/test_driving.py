@@ -1,3 +1,5 @@
+"""Motion of the simulated robot: modes, limits, slip, collisions."""
+
 import itertools
 import math
 
@@ -6,8 +8,7 @@ import pytest
 from hal.control import Control, Mode, RawControl, RawSide, SpeedControl
 from hal.robot_settings import RobotSettings
 from hal.simulation import Pose
-from simbridge.worlds.obstacle_settings import RoundObstacleSettings, WallSettings
-from tests.simbridge.rig import ROBOT, STAND, Rig, facing_wall, half_turn, room
+from tests.simbridge.rig import ROBOT, STAND, Rig, board, facing_wall, half_turn, post, room
 
 RAW_DRIVE = RawControl(RawSide(650), RawSide(650))
 
@@ -128,8 +129,7 @@ def test_wall_behind_presses_the_rear_bumpers(rig: Rig) -> None:
 
 @pytest.mark.parametrize(("left_m", "bits"), [(0.14, 0b001), (0.0, 0b010), (-0.14, 0b100)])
 def test_post_presses_the_bumper_it_meets(left_m: float, bits: int) -> None:
-    post = RoundObstacleSettings(name="post", x_m=2.6, y_m=2.0 + left_m, radius_m=0.02)
-    with Rig(room(posts=[post])) as rig:
+    with Rig(room(posts=[post(2.6, 2.0 + left_m, 0.02)])) as rig:
         while not rig.robot.touching:
             rig.drive(15, 15, 0.01)
         assert rig.heard["BUMPERC"] == (bits, 0)
@@ -137,7 +137,7 @@ def test_post_presses_the_bumper_it_meets(left_m: float, bits: int) -> None:
 
 @pytest.mark.parametrize(("heading_deg", "bits"), [(10, 0b100), (20, 0b100), (30, 0b100), (-20, 0b001)])
 def test_body_corner_at_a_wall_presses_its_bumper(heading_deg: float, bits: int) -> None:
-    """The contact lies at the very edge of the bar, where rounding must not decide."""
+    """The contact lies at the edge of the bar, where rounding must not decide."""
     with Rig() as rig:
         rig.robot.place(Pose(3.5, 2.0, math.radians(heading_deg)))
         pressed: list[int] = []
@@ -162,9 +162,8 @@ def test_side_contact_presses_no_bumper(rig: Rig) -> None:
 
 @pytest.mark.parametrize("speed_cm_s", [15, 60, 90])
 def test_thin_wall_stops_the_robot_at_any_speed(speed_cm_s: int) -> None:
-    board = WallSettings(name="board", from_m=(3.0, 0.0), to_m=(3.0, 4.0), thickness_m=0.02)
     for heading_rad in (0.0, 0.8):
-        with Rig(room(walls=[board])) as rig:
+        with Rig(room(walls=[board((3.0, 0.0), (3.0, 4.0))])) as rig:
             rig.robot.place(Pose(2.3, 1.5, heading_rad))
             rig.drive(speed_cm_s, speed_cm_s, 3.0)
             assert rig.robot.pose.x_m < 2.99 - ROBOT.geometry.outline_width_m / 2 + 0.01

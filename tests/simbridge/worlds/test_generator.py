@@ -1,4 +1,4 @@
-"""Worlds by their seeds: all of them can be driven in, and each is always the same."""
+"""Generated worlds: drivable, and equal for equal seeds."""
 
 import hashlib
 import math

@@ -47,7 +47,7 @@ Shades = NDArray[np.uint8]
 
 
 def drawn(free: shapely.Geometry, width: int = 100, height: int = 80) -> Shades:
-    """Image of what is free and unknown elsewhere, first row on top as images are."""
+    """Return an image of the free area, unknown elsewhere, first row on top."""
     x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
     return np.where(shapely.contains_xy(free, x, y), FREE, UNKNOWN).astype(np.uint8)[::-1]
 

@@ -10,9 +10,8 @@ import yaml
 
 from config import CONFIG_DIR
 from simbridge.robot.world import World
-from simbridge.worlds.obstacle_settings import PolygonObstacleSettings
 from simbridge.worlds.world_loading import load_world
-from tests.simbridge.rig import ROBOT, Rig, left_clearances_m, refusal, room
+from tests.simbridge.rig import ROBOT, Rig, box, left_clearances_m, refusal, room
 
 NAMES = ("a", "b", "c")
 PLAIN = {
@@ -122,8 +121,7 @@ def test_load_world_unusual_worlds_are_accepted(change: dict[str, object], tmp_p
 
 
 def test_concave_obstacle_lets_the_robot_in() -> None:
-    bay = PolygonObstacleSettings(name="bay", corners=tuple((x + 1.0, y - 0.5) for x, y in BAY))
-    with Rig(room(boxes=[bay])) as rig:
+    with Rig(room(boxes=[box(*((x + 1.0, y - 0.5) for x, y in BAY))])) as rig:
         rig.run(0.5)
         assert ROBOT.infrared.distance_m(rig.reading("s11")) > 0.5
         rig.drive(20, 20, 6.0)
