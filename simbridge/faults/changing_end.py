@@ -35,8 +35,37 @@ class Links:
         self.inward: FrameLink | None = None
 
 
-class SwitchableInterface:
-    """Wrapper of an interface that stamps frames and receives its own (hal.can_interface.CanInterface)."""
+class InterfaceWrapper:
+    """Base of interfaces that pass frames over links (hal.can_interface.CanInterface)."""
+
+    def __init__(self, inner: CanInterface, now_s: Callable[[], float]) -> None:
+        """Wrap an interface; `now_s` returns the time in s."""
+        self._inner = inner
+        self._now_s = now_s
+        self._waiting: deque[can.Message] = deque()
+        self.overruns = 0
+        """Number of frames dropped because a queue was full."""
+
+    def now_s(self) -> float | None:
+        """Return the time in s."""
+        return self._now_s()
+
+    def set_id_filter(self, frame_ids: frozenset[int]) -> None:
+        """Accept only these standard identifiers and error frames."""
+        self._inner.set_id_filter(frame_ids)
+
+    def shutdown(self) -> None:
+        """Close the wrapped interface."""
+        self._inner.shutdown()
+
+    def _on_delivered(self, frame: can.Message) -> None:
+        if not frame.timestamp:  # made by the link
+            frame.timestamp = self._now_s()
+        self._waiting.append(frame)
+
+
+class SwitchableInterface(InterfaceWrapper):
+    """Wrapper of an interface that stamps frames and receives its own; its links can change at any time."""
 
     receives_own_frames = True
 
@@ -54,23 +83,11 @@ class SwitchableInterface:
         `on_send` gets each CONTROL frame before its link and returns the frame to send. `on_heard` gets each numbered
         frame that the reader receives. `now_s` returns the time in s.
         """
-        self._inner = inner
+        super().__init__(inner, now_s)
         self._links = links
-        self._now_s = now_s
         self._on_send = on_send
         self._on_heard = on_heard
-        self.overruns = 0
-        """Number of frames dropped because a queue was full."""
         self._sending = False
-        self._waiting: deque[can.Message] = deque()
-
-    def now_s(self) -> float | None:
-        """Return the time in s."""
-        return self._now_s()
-
-    def set_id_filter(self, frame_ids: frozenset[int]) -> None:
-        """Accept only these standard identifiers and error frames."""
-        self._inner.set_id_filter(frame_ids)
 
     def recv(self, timeout: float | None = None) -> can.Message | None:  # noqa: ARG002 - nothing here waits
         """Return the oldest frame or None without waiting `timeout` s. Raises can.CanError, OSError."""
@@ -100,10 +117,6 @@ class SwitchableInterface:
         finally:
             self._sending = False
 
-    def shutdown(self) -> None:
-        """Close the wrapped interface."""
-        self._inner.shutdown()
-
     def _send_to_bus(self, frame: can.Message) -> None:
         try:
             self._inner.send(frame, 0)
@@ -111,11 +124,6 @@ class SwitchableInterface:
             if self._sending:
                 raise
             # A delayed frame meets a bus that is gone or full; no caller is left to handle the error.
-
-    def _on_delivered(self, frame: can.Message) -> None:
-        if not frame.timestamp:  # made by the link
-            frame.timestamp = self._now_s()
-        self._waiting.append(frame)
 
     def _received(self, frame: can.Message) -> can.Message:
         if self._on_heard is not None and isinstance(frame, NumberedFrame):
