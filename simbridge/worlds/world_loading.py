@@ -11,11 +11,11 @@ from simbridge.worlds.geometry import polygons_of
 from simbridge.worlds.world_settings import WorldSettings
 
 START_CLEARANCE_M = 0.05
-"""A start pose nearer to a wall than this would begin with a collision as soon as the robot turns."""
+"""Least wall clearance of a start pose; a robot that turns at a smaller one collides."""
 
 
 _IMAGES = (".png", ".pgm", ".ppm", ".pbm", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".svg")
-"""Endings of files that are never opened as a world, whatever they are."""
+"""Suffixes of images, which are no worlds."""
 
 
 def load_world(name_or_path: str = "a", robot: RobotSettings | None = None) -> WorldSettings:
@@ -72,7 +72,7 @@ def _find(name_or_path: str) -> Path:
 
 
 def require_drivable(world: WorldSettings, geometry: GeometrySettings, source: str) -> None:
-    """See that each start is free, each other one within reach, and each street wide enough.
+    """Check that each start is free and reachable, and that the robot fits into each street.
 
     Raises SettingsError that names the source and the key.
     """
@@ -85,7 +85,7 @@ def require_drivable(world: WorldSettings, geometry: GeometrySettings, source: s
                 where=source,
                 do="move the pose away from it",
             )
-    # Where the robot's centre can be at all: it gets through a gap that is as wide as itself.
+    # Possible positions of the robot's centre: it passes a gap as wide as itself.
     within_reach = world.free_space.buffer(-geometry.outline_width_m / 2)
     pieces = polygons_of(within_reach)
     first = world.start_poses[0]
