@@ -15,12 +15,12 @@ from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings
 from hal.tap import Tap
 from hal.watchdog import POLL_S
-from simbridge.faults.disturbance import Kind, TimedFault
-from simbridge.faults.disturbed_end import FaultyInterface
-from simbridge.faults.event_time import EventScheduler
+from simbridge.faults.event_scheduler import EventScheduler
+from simbridge.faults.faulty_interface import FaultyInterface
 from simbridge.faults.frame_link import Deliver, FrameLink, IdealLink
 from simbridge.faults.motors import FaultyWheels
 from simbridge.faults.parts import Part, faulty_rx_link, faulty_telemetry_link, faulty_tx_link, part_of
+from simbridge.faults.timed_fault import Kind, TimedFault
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.worlds.world_settings import StartPoseSettings, WorldSettings
 

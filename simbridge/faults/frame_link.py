@@ -8,8 +8,8 @@ from typing import Protocol
 import can
 
 from hal.frame import Frame
-from simbridge.faults.disturbance import TimedFault
-from simbridge.faults.event_time import EventScheduler
+from simbridge.faults.event_scheduler import EventScheduler
+from simbridge.faults.timed_fault import TimedFault
 
 _ROUNDING_S = 1e-9
 

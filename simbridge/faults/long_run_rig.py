@@ -17,16 +17,16 @@ from hal.simulation import Pose
 from hal.tap import Tap
 from hal.watchdog import POLL_S
 from simbridge.faults.cable import Cable
-from simbridge.faults.changing_end import Links, NumberedFrame, SwitchableInterface
-from simbridge.faults.disturbance import Kind, TimedFault
-from simbridge.faults.event_time import EventScheduler
+from simbridge.faults.event_scheduler import EventScheduler
 from simbridge.faults.motors import FaultyWheels
 from simbridge.faults.parts import faulty_rx_link, faulty_telemetry_link, faulty_tx_link, part_of
+from simbridge.faults.switchable_interface import Links, NumberedFrame, SwitchableInterface
+from simbridge.faults.timed_fault import Kind, TimedFault
 from simbridge.simulated_robot import SimulatedRobot
-from simbridge.wire.end import WireInterface
 from simbridge.wire.line import NO_WIRE
 from simbridge.wire.settings import load_wire
 from simbridge.wire.wire import Wire
+from simbridge.wire.wire_interface import WireInterface
 from simbridge.worlds.world_loading import load_world
 
 

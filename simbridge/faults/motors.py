@@ -5,8 +5,8 @@ from collections import deque
 from typing import NamedTuple
 
 from hal.robot_settings import RobotSettings
-from simbridge.faults.disturbance import TimedFault
-from simbridge.faults.event_time import EventScheduler
+from simbridge.faults.event_scheduler import EventScheduler
+from simbridge.faults.timed_fault import TimedFault
 from simbridge.robot.wheels import Wheels
 
 _FASTEST_M_S = 0.9

@@ -9,9 +9,9 @@ import can
 from hal.bus import CONTROL_ID
 from hal.codec import Codec
 from hal.frame import Frame
-from simbridge.faults.disturbance import TimedFault
-from simbridge.faults.event_time import EventScheduler
+from simbridge.faults.event_scheduler import EventScheduler
 from simbridge.faults.frame_link import FaultyLink, FrameLink
+from simbridge.faults.timed_fault import TimedFault
 from simbridge.faults.tx_link import FaultyTxLink
 
 Part = Literal["sensor_board_1", "sensor_board_2", "encoders", "left_motor", "right_motor", "bus_in", "bus_out"]

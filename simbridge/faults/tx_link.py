@@ -5,9 +5,9 @@ import random
 import can
 
 from hal.frame import Frame
-from simbridge.faults.disturbance import TimedFault
-from simbridge.faults.event_time import EventScheduler
+from simbridge.faults.event_scheduler import EventScheduler
 from simbridge.faults.frame_link import DelayedFrames, Deliver
+from simbridge.faults.timed_fault import TimedFault
 
 _OTHER_ID = 0x7E
 """Identifier without receiver."""

@@ -4,7 +4,7 @@ import math
 
 from hal.simulation import Pose
 from simbridge.robot.world import World
-from simbridge.wall_rings import RingPlace, WallRings
+from simbridge.survey.wall_rings import RingPlace, WallRings
 
 _GATE_M = 0.02
 """Largest distance between two gates of a ring."""

@@ -8,9 +8,9 @@ from typing import Protocol
 
 from hal.bus import CONTROL_ID, CanBus, open_bus
 from hal.settings import SettingsError
-from simbridge.wire.end import WireInterface
 from simbridge.wire.settings import WireSettings, load_wire
 from simbridge.wire.wire import Wire
+from simbridge.wire.wire_interface import WireInterface
 
 NO_WIRE = "none"
 """Name of the line without a wire, on which frames arrive at once."""

@@ -7,7 +7,7 @@ from threading import RLock
 import can
 
 from simbridge.wire.bits import INTERFRAME_BITS, bits_before_ack, bits_to_difference
-from simbridge.wire.disturbance import BusNoise, FrameLoss
+from simbridge.wire.bus_noise import BusNoise, FrameLoss
 from simbridge.wire.error_counters import ErrorState
 from simbridge.wire.node import Queued, WireNode
 from simbridge.wire.settings import NodeSettings, WireSettings

@@ -8,9 +8,9 @@ import yaml
 
 from config import CONFIG_DIR
 from hal.frame import Frame
-from simbridge.wire.end import WireInterface
 from simbridge.wire.settings import LossSettings, NodeSettings, NoiseSettings, SendingOrder, WireSettings
 from simbridge.wire.wire import Wire
+from simbridge.wire.wire_interface import WireInterface
 
 US = 1e-6
 FIFO = NodeSettings(order=SendingOrder.FIFO, queue_frames=64, restart_s=0.1)

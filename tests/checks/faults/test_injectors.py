@@ -11,11 +11,11 @@ from hal.frame import Frame
 from kurt2rt.checks.faults.envelope import Envelope
 from kurt2rt.checks.faults.failing_clock import BrokenClockError, DisturbedClock, DrillClock
 from kurt2rt.checks.faults.observer import Stand, WheelObserver
-from simbridge.faults.disturbance import Kind, TimedFault
-from simbridge.faults.event_time import EventScheduler
+from simbridge.faults.event_scheduler import EventScheduler
 from simbridge.faults.fault_rig import FaultRigFactory, SimulatedFaultRig
 from simbridge.faults.frame_link import FaultyLink, IdealLink
 from simbridge.faults.motors import FaultyWheels
+from simbridge.faults.timed_fault import Kind, TimedFault
 from simbridge.faults.tx_link import FaultyTxLink
 from tests.checks.faults.helpers import ROBOT, TABLE
 

@@ -7,8 +7,8 @@ import pytest
 
 from hal.bus import CanBus
 from simbridge.faults.cable import Cable
-from simbridge.faults.changing_end import Links, SwitchableInterface
-from simbridge.faults.event_time import EventScheduler
+from simbridge.faults.event_scheduler import EventScheduler
+from simbridge.faults.switchable_interface import Links, SwitchableInterface
 from tests.hal.bus_conformance import Behind, ErrorFrameConformance, Join, joining
 
 

@@ -9,9 +9,9 @@ from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.checks.faults.envelope import Envelope
 from kurt2rt.checks.soak.failing_clock import SoakClock
-from simbridge.faults.disturbance import TimedFault
-from simbridge.faults.event_time import EventScheduler
+from simbridge.faults.event_scheduler import EventScheduler
 from simbridge.faults.long_run_rig import LongRunRig
+from simbridge.faults.timed_fault import TimedFault
 from tests.checks.soak.helpers import CYCLE_S, ROBOT, TABLE
 
 AHEAD = WheelSpeeds(0.2, 0.2)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from hal.simulation import Pose
 from simbridge.robot.world import World
 from simbridge.survey.laps import WallProgress
-from simbridge.wall_rings import WallRings
+from simbridge.survey.wall_rings import WallRings
 from simbridge.worlds.geometry import Point, polygons_of
 from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import WorldSettings

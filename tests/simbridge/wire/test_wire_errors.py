@@ -5,12 +5,12 @@ import itertools
 import can
 import pytest
 
-from simbridge.wire.disturbance import BusNoise
-from simbridge.wire.end import WireInterface
+from simbridge.wire.bus_noise import BusNoise
 from simbridge.wire.error_counters import ErrorCounters, ErrorState
 from simbridge.wire.error_frames import restarted_frame, state_frame
 from simbridge.wire.settings import LossSettings, NodeSettings
 from simbridge.wire.wire import Wire
+from simbridge.wire.wire_interface import WireInterface
 from tests.simbridge.wires import (
     BY_IDENTIFIER,
     CONTROL,

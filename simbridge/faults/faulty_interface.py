@@ -6,9 +6,9 @@ from collections.abc import Callable
 import can
 
 from hal.can_interface import CanInterface
-from simbridge.faults.changing_end import InterfaceWrapper
-from simbridge.faults.event_time import EventScheduler
+from simbridge.faults.event_scheduler import EventScheduler
 from simbridge.faults.frame_link import FrameLink
+from simbridge.faults.switchable_interface import InterfaceWrapper
 
 
 class FaultyInterface(InterfaceWrapper):

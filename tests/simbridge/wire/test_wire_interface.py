@@ -8,8 +8,8 @@ import can
 import pytest
 
 from hal.bus import BusError, CanBus
-from simbridge.wire.end import WireInterface
 from simbridge.wire.settings import NodeSettings, SendingOrder
+from simbridge.wire.wire_interface import WireInterface
 from tests.hal.bus_conformance import Behind, BusConformance, Join, joining
 from tests.simbridge.wires import ends_on, frame, new_wire, numbered, others_frames
 
