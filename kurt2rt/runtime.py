@@ -37,7 +37,7 @@ from kurt2rt.core.teaching.inbox import TeacherInbox
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 from kurt2rt.core.teaching.system_events import RobotRepositioned
 from kurt2rt.core.tick import EventStore, Tick, TickRecord
-from kurt2rt.knowledge.task_repertoire import repertoire_of
+from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.platform.clock import Clock
 from kurt2rt.platform.ledger import TickTimer
 from kurt2rt.platform.scheduler import Scheduler
@@ -136,7 +136,7 @@ def build_runtime(
     reinforcement = Reinforcement(system, recent, task.reinforcement, period_s)
     # The rest of what was saved is kept by those who count on from it, and would be kept twice.
     reinforcement.recall(events, saved and replace(saved, uses={}, transitions={}, expectations={}))
-    repertoire = repertoire_of(task, settings)
+    repertoire = load_task_repertoire(task, settings)
     wanted = wanted or ActiveBehaviour(task.behaviours)
     level = BasicLevel(
         system, repertoire, round(task.learning.minimum_action_s / period_s), wanted, reinforcement.choice
@@ -151,7 +151,7 @@ def build_runtime(
     navigator = None if mid is None else Navigator(mid, statistics.follow_ups, expecting.of)
     lessons = None if mid is None else MidLessons(mid)
     # Instances of its own: a behaviour that the hand runs must not disturb the one that an RLA runs later.
-    hand = repertoire_of(task, settings)
+    hand = load_task_repertoire(task, settings)
     agreement = Agreement(critic.agreement, critic.values, period_s)
     agreement.hear_all(events)
     self_teaching = SelfTeaching(reinforcement, system, critic, agreement, period_s)

@@ -14,7 +14,7 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_exams, run_lesson
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum
-from kurt2rt.knowledge.files.archive_existing import set_aside
+from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.platform.text_table import print_whole
 
 
@@ -56,7 +56,7 @@ def demo(
     require_course(stage, taught, worlds)
     out.mkdir(parents=True, exist_ok=True)
     knowledge, picture = out / f"{taught.name}-{seed}.knowledge", out / f"{taught.name}-{seed}.png"
-    set_aside(knowledge)
+    archive_existing(knowledge)
 
     async def run(report: Report) -> CurriculumResult:
         lesson, events = await run_lesson(stage, settings, taught, knowledge, seed=seed, report=report)

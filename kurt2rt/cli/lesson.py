@@ -37,7 +37,7 @@ from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_lesson
 from kurt2rt.experiments.lockstep.many_seeds import SeedJob, run_seeds
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum, render_seeds
-from kurt2rt.knowledge.files.archive_existing import set_aside
+from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.platform.text_table import print_whole
 
@@ -196,7 +196,7 @@ def _lesson(
     if seeds is None:
         file = knowledge or out / f"{task.name}-{seed}.knowledge"
         if knowledge is None:
-            set_aside(file)
+            archive_existing(file)
 
         async def run(report: Report) -> CurriculumResult:
             result, _ = await run_lesson(stage, settings, task, file, seed=seed, report=report)
@@ -212,7 +212,7 @@ def _lesson(
     work = []
     for each in parse_seeds(seeds):
         file = out / f"{task.name}-{each}.knowledge"
-        set_aside(file)
+        archive_existing(file)
         work.append(SeedJob(stage, settings, task, task.exam.worlds, each, file))
     columns = (TextColumn("seeds"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True)) as progress:

@@ -24,7 +24,7 @@ from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT
 from kurt2rt.experiments.study.eligibility import reasons_of_robots
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.table import as_rich
-from kurt2rt.knowledge.files.archive_existing import set_aside
+from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.platform.text_table import print_whole
 
 ROUTES = Path("results/route")
@@ -83,13 +83,13 @@ def one_route(
     stem = f"{task.name}-{decisions}-{seed}"
     file = knowledge or out / f"{stem}.knowledge"
     if knowledge is None:
-        set_aside(file)
+        archive_existing(file)
 
     async def run(report: Report) -> TaughtRoute:
         if not file.exists():
             streets = given or out / f"{basic.name}-{seed}.knowledge"
             if given is None:
-                set_aside(streets)
+                archive_existing(streets)
                 await run_lesson(stage, robot, basic, streets, seed=seed, report=report)
             copy_knowledge(streets, file)
         return await teach_route(stage, robot, task, TAUGHT, file, seed=seed, report=report)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import typer
 
-from kurt2rt.cli.knowledge.people import people_in
+from kurt2rt.cli.knowledge.people import read_teachers
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 _SUFFIX = ".auto"
@@ -20,7 +20,7 @@ def own_file(knowledge: Path) -> Path:
 def require_agreement(knowledge: Path) -> None:
     """Ask before a scripted teacher teaches into a file in which people taught. Raises KnowledgeError, typer.Exit."""
     instead = "leave out --knowledge, then the scripted teacher has a file of its own"
-    if knowledge.exists() and not people_agree(str(knowledge), people_in(knowledge), instead):
+    if knowledge.exists() and not people_agree(str(knowledge), read_teachers(knowledge), instead):
         raise typer.Exit(1)
 
 

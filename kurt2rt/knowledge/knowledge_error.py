@@ -28,7 +28,7 @@ _ADVICE = {
 }
 
 
-def explained(error: sqlite3.Error, path: Path) -> KnowledgeError:
+def from_sqlite(error: sqlite3.Error, path: Path) -> KnowledgeError:
     """Return the error with file, advice and SQLite's own message, which a search engine finds."""
     code: int | None = getattr(error, "sqlite_errorcode", None)  # absent where Python itself raised the error
     primary = None if code is None else code & 0xFF  # the upper bits tell which read, write or sync it was

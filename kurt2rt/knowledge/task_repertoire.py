@@ -17,7 +17,7 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.taught_actions import build_taught_system
 
 
-def repertoire_of(task: TaskSettings, robot: RobotSettings) -> dict[str, Behaviour]:
+def load_task_repertoire(task: TaskSettings, robot: RobotSettings) -> dict[str, Behaviour]:
     """The actions that RLAs of a task may have, each an instance of its own. Raises SettingsError."""
     return _Building(robot, ()).load(task.repertoire)
 
@@ -73,6 +73,6 @@ def _lessons(
             do=f"teach the task {task.name} first, or give the path of what was taught",
         )
     try:
-        return read_lessons(path, robot, task, beside_its_writer=True)
+        return read_lessons(path, robot, task, in_writer_process=True)
     except KnowledgeError as error:
         raise SettingsError(str(error)) from error

@@ -23,7 +23,7 @@ from kurt2rt.channel.server.channel import EVERYWHERE, LOOPBACK, Channel
 from kurt2rt.channel.server.udp_port import require_port
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.question import MidQuestion, Question
-from kurt2rt.knowledge.journal.loading import OpenedKnowledge, go_on_teaching
+from kurt2rt.knowledge.journal.loading import OpenedKnowledge, open_for_teaching
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.malloc import pin_mmap_threshold
@@ -310,7 +310,7 @@ class RobotProgram:
     def _take_knowledge(self) -> None:
         path = Path(self._service.knowledge)
         require_folder(path.parent)
-        self._knowledge = go_on_teaching(path, self._robot, self._task)
+        self._knowledge = open_for_teaching(path, self._robot, self._task)
 
     def _pair(self) -> None:
         """Let programs of this machine in."""

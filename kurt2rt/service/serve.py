@@ -27,7 +27,7 @@ from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.exchange.package import package_knowledge
 from kurt2rt.knowledge.files.backup import BackupService
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.journal.loading import OpenedKnowledge, go_on_teaching
+from kurt2rt.knowledge.journal.loading import OpenedKnowledge, open_for_teaching
 from kurt2rt.knowledge.journal.writer import JournalWriter, utc_now
 from kurt2rt.platform.clock import Clock
 from kurt2rt.platform.gc_control import quiet_gc
@@ -119,7 +119,7 @@ async def serve(
             clock = speed = SimulatedClock(clock, openness.world, FASTEST)
         upkeep = upkeep or ProcessContext(around.enter_context(ShutdownHandler()), Notifier({}))
         ending = upkeep.ending
-        opened = knowledge or go_on_teaching(path, settings, task)
+        opened = knowledge or open_for_teaching(path, settings, task)
         stamps = opened.stamps
         boot = secrets.token_bytes(BOOT_BYTES)
         measure = None if openness is None else openness.measure

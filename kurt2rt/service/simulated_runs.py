@@ -24,12 +24,12 @@ from kurt2rt.core.rla.rla import Phase, TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import BeginSession, Command, SetPhase, Take
 from kurt2rt.knowledge.exchange.package import import_knowledge
-from kurt2rt.knowledge.files.archive_existing import set_aside
+from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.knowledge.journal import journal_file
-from kurt2rt.knowledge.journal.loading import go_on_teaching, read_lessons
+from kurt2rt.knowledge.journal.loading import open_for_teaching, read_lessons
 from kurt2rt.knowledge.journal.writer import utc_now
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.task_repertoire import repertoire_of
+from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.runtime import empty_system
 
 _GENERATED = re.compile(r"(rooms|streets)-\d{1,9}", re.ASCII)
@@ -128,7 +128,7 @@ class SimulatedRuns:
             return ""
         loaded, knowledge = self.present.loaded, self.present.knowledge
         self.present = replace(self.present, fresh=False, loaded=None)
-        kept = set_aside(knowledge)
+        kept = archive_existing(knowledge)
         if loaded is not None:
             loaded.rename(knowledge)
         return "" if kept is None else f"the knowledge up to now is kept as {kept}"
@@ -180,7 +180,7 @@ class SimulatedRuns:
                 self._look_at_knowledge(knowledge, settings)
         if knowledge == present.knowledge and name != present.task_name and not fresh:
             # This very program writes it, for the present task.
-            _require_able(read_lessons(knowledge, self._robot, settings, beside_its_writer=True), self._robot, settings)
+            _require_able(read_lessons(knowledge, self._robot, settings, in_writer_process=True), self._robot, settings)
         return SimulatedRun(where, settings, name, knowledge, fresh, teacher=teacher)
 
     def _look_at_knowledge(self, path: Path, task: TaskSettings) -> int:
@@ -188,7 +188,7 @@ class SimulatedRuns:
 
         Raises KnowledgeError; UnknownActionError or UnknownBehaviourError for knowledge that cannot act here.
         """
-        opened = go_on_teaching(path, self._robot, task)
+        opened = open_for_teaching(path, self._robot, task)
         opened.journal.close()
         _require_able(opened.events, self._robot, task)
         return len(opened.entries)
@@ -206,6 +206,6 @@ def _require_able(events: Iterable[TeachingEvent], robot: RobotSettings, task: T
     system = empty_system(task, definition, load_critic(task.critic), mid)
     system.apply_all(events)
     wanted = ActiveBehaviour(task.behaviours)
-    BasicLevel(system, repertoire_of(task, robot), 1, wanted)
+    BasicLevel(system, load_task_repertoire(task, robot), 1, wanted)
     if mid is not None:
         MidLevel(system, mid.build(robot), mid, wanted)

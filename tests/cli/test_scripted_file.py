@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from hal.robot_settings import load_robot
-from kurt2rt.cli.knowledge.people import people_in
+from kurt2rt.cli.knowledge.people import read_teachers
 from kurt2rt.cli.scripted_file import own_file, people_agree
 from kurt2rt.core.rla.programs import AUTO
 from kurt2rt.core.rla.rla import Origin, Phase, SessionBegun
@@ -64,8 +64,8 @@ def test_run_auto_on_a_persons_file_is_refused_where_nobody_can_be_asked(kurt2rt
 
 def test_people_are_those_who_are_no_program(tmp_path: Path) -> None:
     file = taught_by(tmp_path / "a.knowledge", "critic", "scripted teacher", AUTO)
-    assert people_in(file) == ()
-    assert people_agree(str(file), people_in(file), INSTEAD)
+    assert read_teachers(file) == ()
+    assert people_agree(str(file), read_teachers(file), INSTEAD)
 
 
 @pytest.mark.parametrize("answer", [True, False])

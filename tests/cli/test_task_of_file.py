@@ -6,7 +6,7 @@ import pytest
 
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.journal.loading import binding_of
+from kurt2rt.knowledge.journal.loading import binding_for
 from tests.cli.helpers import CommandLine
 from tests.cli.test_bad_input import changed
 from tests.experiments.helpers import ROBOT
@@ -16,7 +16,7 @@ from tests.experiments.helpers import ROBOT
 def fleeing(tmp_path: Path) -> Path:
     """A knowledge file of the task fleeing, in which nothing was taught yet."""
     path = tmp_path / "mine.knowledge"
-    Journal.open(path, binding_of(ROBOT, load_task("fleeing"))).close()
+    Journal.open(path, binding_for(ROBOT, load_task("fleeing"))).close()
     return path
 
 
@@ -61,7 +61,7 @@ def test_task_that_contradicts_the_file_is_refused(kurt2rt: CommandLine, words: 
 
 def test_file_of_a_task_that_is_not_shipped_asks_for_its_settings(kurt2rt: CommandLine, tmp_path: Path) -> None:
     task = changed("tasks", "fleeing", tmp_path, lambda content: content.update(name="sneaking"))
-    Journal.open(tmp_path / "mine.knowledge", binding_of(ROBOT, load_task(str(task)))).close()
+    Journal.open(tmp_path / "mine.knowledge", binding_for(ROBOT, load_task(str(task)))).close()
     refusal = kurt2rt.refused("exam", "mine.knowledge")
     assert "mine.knowledge: was taught for the task 'sneaking', whose settings are not found" in refusal
     assert refusal.endswith("give them: --task PATH.yaml")
@@ -70,7 +70,7 @@ def test_file_of_a_task_that_is_not_shipped_asks_for_its_settings(kurt2rt: Comma
 
 
 def test_route_and_errands_go_on_in_a_file_of_the_streets(kurt2rt: CommandLine, tmp_path: Path) -> None:
-    Journal.open(tmp_path / "mine.knowledge", binding_of(ROBOT, load_task("streets"))).close()
+    Journal.open(tmp_path / "mine.knowledge", binding_for(ROBOT, load_task("streets"))).close()
     short = ("--set", "exam.duration_s=1")
     assert kurt2rt("exam", "mine.knowledge", "--task", "route", *short).exit_code == 0
 

@@ -10,7 +10,7 @@ import pytest
 from kurt2rt.core.rla.rla import Rla, RlaCreated
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.entry import JournalEntry
-from kurt2rt.knowledge.journal.loading import go_on_teaching, open_knowledge
+from kurt2rt.knowledge.journal.loading import open_for_teaching, open_knowledge
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.crash.power_cut import SECTOR_BYTES
 from tests.experiments.helpers import ROBOT, short_task
@@ -59,7 +59,7 @@ def look_at_all(path: Path, every: int) -> Counter[str]:
             each.unlink()
         path.write_bytes(content)
         try:
-            opened = go_on_teaching(path, ROBOT, short_task())
+            opened = open_for_teaching(path, ROBOT, short_task())
         except KnowledgeError as error:
             said = str(error)
         else:

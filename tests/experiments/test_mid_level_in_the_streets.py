@@ -15,7 +15,7 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Command, Correct, Teach
 from kurt2rt.core.teaching.question import MidQuestion, Question
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.knowledge.journal.loading import go_on_teaching
+from kurt2rt.knowledge.journal.loading import open_for_teaching
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
@@ -34,7 +34,7 @@ class Service:
     """The robot in Manhattan and its knowledge file, from when the program is started until it ends."""
 
     def __init__(self, simulation: Kurt2Simulation, clock: LockstepClock, path: Path) -> None:
-        opened = go_on_teaching(path, ROBOT, ROUTE)
+        opened = open_for_teaching(path, ROBOT, ROUTE)
         self.writer = JournalWriter(opened.journal, lambda: STAMP)
         self.settled: list[Acknowledgement] = []
         self.questions: list[Question | MidQuestion] = []

@@ -34,7 +34,7 @@ async def _hang_in_the_loop(*_: Any) -> None:
 
 def _let_hang(thing: str) -> None:
     hangs: dict[str, tuple[object, str, object]] = {
-        "start": (program, "go_on_teaching", _hang),
+        "start": (program, "open_for_teaching", _hang),
         "disk": (Journal, "checkpoint", _hang),
         "recorder": (RunFiles, "tend", _hang),
         "keys": (Teachers, "close", _hang),

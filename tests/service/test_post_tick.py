@@ -14,7 +14,7 @@ from kurt2rt.core.teaching.commands import Command, Teach
 from kurt2rt.core.teaching.question import MidQuestion, Question
 from kurt2rt.core.tick import InMemoryEventStore, TickRecord
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.journal.loading import go_on_teaching
+from kurt2rt.knowledge.journal.loading import open_for_teaching
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
@@ -32,7 +32,7 @@ class Shift:
 
     def __init__(self, path: Path, *, with_channel: bool = False) -> None:
         self.path = path
-        self.writer = JournalWriter(go_on_teaching(path, ROBOT, TASK).journal, lambda: STAMP)
+        self.writer = JournalWriter(open_for_teaching(path, ROBOT, TASK).journal, lambda: STAMP)
         self.desk = Desk(keeper=self.writer)
         self.stamps: dict[str, str] = {}
         self.statuses: list[ProgramStatus] = []

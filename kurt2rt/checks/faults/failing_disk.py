@@ -14,7 +14,7 @@ from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_knowledge, read_lessons
 from kurt2rt.knowledge.journal.writer import JournalWriter, RetryDelays, utc_now
-from kurt2rt.knowledge.knowledge_error import explained
+from kurt2rt.knowledge.knowledge_error import from_sqlite
 
 _LOOK_S = 0.0002
 _PATIENCE_S = 20.0
@@ -44,9 +44,9 @@ class DisturbedJournal(Journal):
             return super().append(entries)
         match disturbance.kind:
             case "off" | "intermittent":
-                raise explained(_sqlite_error("disk I/O error", sqlite3.SQLITE_IOERR), self.path)
+                raise from_sqlite(_sqlite_error("disk I/O error", sqlite3.SQLITE_IOERR), self.path)
             case "garbage":
-                raise explained(_sqlite_error("database disk image is malformed", sqlite3.SQLITE_CORRUPT), self.path)
+                raise from_sqlite(_sqlite_error("database disk image is malformed", sqlite3.SQLITE_CORRUPT), self.path)
             case "stuck":
                 self._wait(disturbance.end_s)
             case "slow":

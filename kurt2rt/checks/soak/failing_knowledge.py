@@ -10,7 +10,7 @@ from kurt2rt.checks.faults.failing_disk import DiskOutOfStepError, DisturbedJour
 from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.journal.loading import OpenedKnowledge, go_on_teaching
+from kurt2rt.knowledge.journal.loading import OpenedKnowledge, open_for_teaching
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter, RetryDelays, utc_now
 
 _LOOK_S = 0.0002
@@ -21,7 +21,7 @@ _FAIL = ("off", "intermittent", "garbage", "wrong")
 
 def open_soak_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> OpenedKnowledge:
     """What the file holds already, with its journal closed: the soak's own, which may fail, takes its place."""
-    opened = go_on_teaching(path, settings, task)
+    opened = open_for_teaching(path, settings, task)
     opened.journal.close()
     return opened
 
@@ -95,7 +95,7 @@ class SoakKnowledge:
         # looked at when it is opened again.
         awaited = chain(self._before, self.submitted)
         with Journal.read_only(self._path) as journal:
-            agree = [entry.event.origin.command_id == next(awaited, None) for entry in journal.each_entry()]
+            agree = [entry.event.origin.command_id == next(awaited, None) for entry in journal.iter_entries()]
         if not all(agree) or len(agree) != self.lessons:
             taught = len(self._before) + len(self.submitted)
             return complaint(ComplaintCode.LESSONS_NOT_STORED, taught=taught, stored=len(agree), names="")

@@ -26,7 +26,7 @@ from kurt2rt.checks.soak.teacher import SoakTeacher
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.task_repertoire import repertoire_of
+from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.runs.recording.recording import Recording
 from kurt2rt.service.settings import ServiceSettings
 
@@ -60,7 +60,7 @@ class SoakRun:
         self._period_s = settings.can.cycle_s
         self._chance = random.Random(f"day {soak.name}, seed {seed}")
         self._witness = SoakObserver(rig, table.envelope)
-        actions = tuple(repertoire_of(task, settings))
+        actions = tuple(load_task_repertoire(task, settings))
         self._teacher = SoakTeacher(soak, task, settings, actions, seed)
         self._faults = SoakFaults(rig, self._witness, table, soak.fault_gap_s, seed)
         self._person = SoakOperator(rig, soak.picked_up_after_s, self._period_s)

@@ -26,9 +26,9 @@ def branch(
         kurt2rt knowledge branch mine.knowledge try.knowledge --at LESSON-ID
     """
     made = make_branch(file, new, at, stamp=utc_now())
-    say(f"branch  {new}: the first {made.whence.rows} rows of {made.whence.file}")
-    if made.left_earlier:
+    say(f"branch  {new}: the first {made.origin.rows} rows of {made.origin.file}")
+    if made.skipped_earlier:
         say(
-            f"{made.left_earlier} later rows bear dates before that, too: the clock was set back meanwhile. They are "
-            "not in it; --at with the id of a lesson says how far to go"
+            f"{made.skipped_earlier} later rows bear dates before that, too: the clock was set back meanwhile. "
+            "They are not in it; --at with the id of a lesson says how far to go"
         )

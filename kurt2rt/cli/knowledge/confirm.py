@@ -9,7 +9,7 @@ import typer
 
 from kurt2rt.cli.knowledge.shared import replaying, say
 from kurt2rt.core.rla.lesson_history import LessonRecord
-from kurt2rt.knowledge.versions.editing import require_at_rest
+from kurt2rt.knowledge.versions.editing import require_no_robot
 from kurt2rt.knowledge.versions.undo import UndoPlan
 from kurt2rt.runs.replay.trial import said
 from kurt2rt.runs.replay.undo_preview import TrialResult, preview, preview_on_newest
@@ -41,7 +41,7 @@ def agreed(
     # Python has no standard input where it was closed.
     asks = not (dry_run or yes or no_preview) and sys.stdin is not None and sys.stdin.isatty()
     if not dry_run and not no_preview:
-        require_at_rest(planned.path)
+        require_no_robot(planned.path)
     if dry_run or asks:
         for record in planned.lessons:
             say(f"{planned.path}: would be {become}: {told(record)}")

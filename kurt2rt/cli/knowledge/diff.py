@@ -11,10 +11,10 @@ from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.rla import Rla
-from kurt2rt.knowledge.journal.binding import require_same
+from kurt2rt.knowledge.journal.binding import require_compatible
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.versions.diff import KnowledgeDiff, difference
-from kurt2rt.knowledge.versions.lesson_identity import read_taught
+from kurt2rt.knowledge.versions.lesson_identity import read_content
 
 
 def diff(
@@ -29,8 +29,8 @@ def diff(
         kurt2rt knowledge diff mine.knowledge yours.knowledge
     """
     with Journal.read_only(file) as a, Journal.read_only(other) as b:
-        require_same(b.binding, a.binding, other, b.has_lessons_at)
-        found = difference(read_taught(a), read_taught(b))
+        require_compatible(b.binding, a.binding, other, b.has_lessons_at)
+        found = difference(read_content(a), read_content(b))
     if as_json:
         typer.echo(json.dumps(_as_json(found), indent=2))
         return

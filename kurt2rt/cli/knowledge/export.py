@@ -9,7 +9,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
 from kurt2rt.cli.options import RobotName, TaskOfTheFile, task_option
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.knowledge.exchange.package import export_knowledge, import_knowledge, read_given
+from kurt2rt.knowledge.exchange.package import export_knowledge, import_knowledge, read_package
 from kurt2rt.knowledge.exchange.signing import fingerprint, make_key, read_private_key, read_public_key
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.knowledge.journal.writer import utc_now
@@ -55,7 +55,7 @@ def import_(
         kurt2rt knowledge import walls.zip --into walls.knowledge --trusted ann.pub
     """
     public = None if trusted is None else read_public_key(trusted)
-    robot, task = load_robot(robot_name), load_task(task_name or read_given(file).task)
+    robot, task = load_robot(robot_name), load_task(task_name or read_package(file).task)
     taken = import_knowledge(file, into, robot, task, public, stamp=utc_now())
     given = taken.given
     signer = "not signed" if given.signed_by is None else f"signed by {fingerprint(given.signed_by)}"

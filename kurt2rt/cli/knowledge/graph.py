@@ -8,7 +8,7 @@ import typer
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.knowledge.graph.file import FORMATS, write_network
-from kurt2rt.knowledge.graph.graph import read_network, without_rare
+from kurt2rt.knowledge.graph.graph import drop_rare_edges, read_network
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.show.table_cells import plain
 
@@ -35,7 +35,7 @@ def graph(
         raise typer.BadParameter(f"{out.name}: give a file that ends with {', '.join(FORMATS)}", param_hint="--out")
     with Journal.read_only(file) as journal:
         whole = read_network(journal, level=level, behaviour=behaviour)
-    shown = without_rare(whole, at_least)
+    shown = drop_rare_edges(whole, at_least)
     what = " of ".join(part for part in (f"{len(shown)} RLAs", behaviour) if part)
     title = f"{plain(file.stem)}, level {level}: {what}; numbers: what followed, in % (from {at_least:g} %)"
     write_network(shown, title, out)

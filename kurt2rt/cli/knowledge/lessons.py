@@ -8,7 +8,7 @@ from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import KnowledgeFile
 from kurt2rt.cli.tables import console_of
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.show.knowledge import lessons_as_data, render_lessons
+from kurt2rt.knowledge.show.knowledge import lessons_data, render_lessons
 from kurt2rt.platform.text_table import print_whole
 
 
@@ -27,6 +27,6 @@ def lessons(
     """
     with Journal.read_only(file) as journal:
         if as_json:
-            print_json(lessons_as_data(journal, limit, of))
+            print_json(lessons_data(journal, limit, of))
         else:
             print_whole(console_of(), render_lessons(journal, limit, of))

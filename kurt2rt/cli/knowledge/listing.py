@@ -8,12 +8,12 @@ import typer
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import say
 from kurt2rt.cli.tables import console_of
-from kurt2rt.knowledge.exchange.package import COME_FROM
+from kurt2rt.knowledge.exchange.package import IMPORTED_FROM
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.show.table_cells import plain
-from kurt2rt.knowledge.versions.branch import whence_of
-from kurt2rt.knowledge.versions.lesson_identity import read_taught
+from kurt2rt.knowledge.versions.branch import branch_origin
+from kurt2rt.knowledge.versions.lesson_identity import read_content
 from kurt2rt.platform.text_table import TextTable, print_whole
 
 
@@ -70,8 +70,8 @@ def list_files(
 
 def _row(path: Path) -> tuple[str, str, str, str, str]:
     with Journal.read_only(path) as journal:
-        taught, whence, imported = read_taught(journal), whence_of(journal), journal.notes().get(COME_FROM, "")
+        taught, origin, imported = read_content(journal), branch_origin(journal), journal.notes().get(IMPORTED_FROM, "")
     newest = taught.entries[-1].stamped_at[:19].replace("T", " ") if taught.entries else ""
-    came = imported if whence is None else f"{whence.file}, {whence.rows} rows"
+    came = imported if origin is None else f"{origin.file}, {origin.rows} rows"
     system = taught.system
     return journal.binding.system, str(len(system)), str(system.standing_lessons), newest, came

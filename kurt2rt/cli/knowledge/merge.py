@@ -11,7 +11,7 @@ from kurt2rt.cli.options import RobotName, TaskOfTheFile
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.knowledge.journal.writer import utc_now
-from kurt2rt.knowledge.versions.contradictions import borders_of
+from kurt2rt.knowledge.versions.contradictions import load_radii
 from kurt2rt.knowledge.versions.merge import Conflict, ConflictCode, MergePlan, Side
 from kurt2rt.knowledge.versions.merge import merge as bring_in
 
@@ -36,7 +36,7 @@ def merge(
         kurt2rt knowledge merge mine.knowledge yours.knowledge --dry-run
         kurt2rt knowledge merge mine.knowledge yours.knowledge --prefer mine
     """
-    borders = borders_of(load_task(task_of_file(file, task_name)), load_robot(robot_name))
+    borders = load_radii(load_task(task_of_file(file, task_name)), load_robot(robot_name))
     merged = bring_in(file, other, borders, prefer, teacher=TEACHER, stamp=utc_now(), dry_run=dry_run)
     for conflict in merged.conflicts:
         say(f"conflict  here {conflict.mine}, there {conflict.theirs}: {reason_of(conflict)}")

@@ -8,8 +8,8 @@ from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import WIDE, KnowledgeFile
 from kurt2rt.cli.tables import console_of
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.show.knowledge import knowledge_as_data, render_knowledge
-from kurt2rt.knowledge.show.rla import expectation_as_data, render_rla
+from kurt2rt.knowledge.show.knowledge import knowledge_data, render_knowledge
+from kurt2rt.knowledge.show.rla import expectation_data, render_rla
 from kurt2rt.platform.text_table import print_whole
 
 
@@ -44,9 +44,9 @@ def show(
 
 def _as_data(journal: Journal, rla_id: int | None, limit: int | None) -> dict[str, Any]:
     """Return all RLAs, the first `limit` of them, or one with what is expected to follow it."""
-    told = knowledge_as_data(journal)
+    told = knowledge_data(journal)
     if rla_id is None:
         return {**told, "rlas": told["rlas"][:limit], "hidden": len(told["rlas"][limit:]) if limit else 0}
-    expected = expectation_as_data(journal, rla_id)
+    expected = expectation_data(journal, rla_id)
     (rla,) = (each for each in told["rlas"] if each["rla"] == rla_id)
     return {"file": told["file"], **rla, "expected": expected}

@@ -7,7 +7,7 @@ import typer
 from kurt2rt.cli.knowledge.confirm import DryRun, NoPreview, Runs, Yes, agreed, told
 from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, say
 from kurt2rt.knowledge.journal.writer import utc_now
-from kurt2rt.knowledge.versions.undo import carry_out, plan_redo, plan_undo
+from kurt2rt.knowledge.versions.undo import apply_plan, plan_redo, plan_undo
 
 
 def undo(
@@ -40,7 +40,7 @@ def undo(
     planned = plan_undo(file, lesson, of, teacher=TEACHER)
     if not agreed(planned, "undo", "undone", runs, no_preview=no_preview, dry_run=dry_run, yes=yes):
         return
-    carry_out(planned, utc_now())
+    apply_plan(planned, utc_now())
     for record in planned.lessons:
         say(f"{file}: undone: {told(record)}")
     if of is not None:
@@ -74,7 +74,7 @@ def redo(
     planned = plan_redo(file, lesson, of, teacher=TEACHER)
     if not agreed(planned, "redo", "standing again", runs, no_preview=no_preview, dry_run=dry_run, yes=yes):
         return
-    carry_out(planned, utc_now())
+    apply_plan(planned, utc_now())
     for record in planned.lessons:
         say(f"{file}: stands again: {told(record)}")
     for reason in planned.stay:

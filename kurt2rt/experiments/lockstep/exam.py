@@ -19,7 +19,7 @@ from kurt2rt.experiments.lockstep.command_checks import require_carried_out
 from kurt2rt.experiments.lockstep.drive import Drive
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.lesson import TRAIL_STRIDE
-from kurt2rt.knowledge.task_repertoire import repertoire_of
+from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
 
@@ -126,7 +126,7 @@ async def examine(
         task = task.model_copy(update={"mid": None})  # its place is the teacher's, too
         level = PolicyLevel(
             task.policy.build(settings.infrared),
-            repertoire_of(task, settings),
+            load_task_repertoire(task, settings),
             round(task.learning.minimum_action_s / period_s),
             wanted,
         )

@@ -8,7 +8,7 @@ from hal.errors import UserError
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.knowledge.journal.loading import OpenedKnowledge, go_on_teaching
+from kurt2rt.knowledge.journal.loading import OpenedKnowledge, open_for_teaching
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter, utc_now
 
 
@@ -63,6 +63,6 @@ def lessons_kept(
     on_saved: Callable[[Acknowledgement], None] = lambda _: None,
 ) -> Iterator[LessonKeeping]:
     """Go on teaching into a file. `on_saved` hears of each lesson once it is durable. Raises KnowledgeError."""
-    opened = go_on_teaching(file, settings, task)
+    opened = open_for_teaching(file, settings, task)
     with JournalWriter(opened.journal, utc_now) as writer:
         yield LessonKeeping(file, opened, writer, on_saved)

@@ -30,7 +30,7 @@ from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.experiments.study.results import Results, StudyError
 from kurt2rt.knowledge.journal.fold import fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.journal.loading import go_on_teaching, read_lessons
+from kurt2rt.knowledge.journal.loading import open_for_teaching, read_lessons
 from kurt2rt.knowledge.journal.writer import JournalWriter, utc_now
 
 
@@ -243,7 +243,7 @@ class StepJob:
         if not lessons:
             return
         robot = self.robot
-        with JournalWriter(go_on_teaching(knowledge, robot.settings, robot.task).journal, utc_now) as writer:
+        with JournalWriter(open_for_teaching(knowledge, robot.settings, robot.task).journal, utc_now) as writer:
             for lesson in lessons:
                 writer.submit(lesson)
             writer.flush(timeout_s=30.0)

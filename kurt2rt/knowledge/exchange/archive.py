@@ -14,7 +14,7 @@ from typing import Any
 
 from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
-from kurt2rt.knowledge.exchange.attachment_files import LARGEST_BYTES, trouble_of
+from kurt2rt.knowledge.exchange.attachment_files import LARGEST_BYTES, unsafe_reason
 from kurt2rt.knowledge.exchange.signing import is_signed, signature_of
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
@@ -93,7 +93,7 @@ def _content(archive: zipfile.ZipFile, path: Path) -> dict[str, bytes]:
     sizes = {entry.orig_filename: entry.file_size for entry in entries}  # before anything in it was cut off
     if len(sizes) < len(entries) or len({name.casefold() for name in sizes}) < len(entries):
         raise KnowledgeError("holds a file twice", where=path, do="get it anew")
-    trouble = trouble_of(sizes)
+    trouble = unsafe_reason(sizes)
     if trouble:
         raise KnowledgeError(trouble, where=path, do="nothing of it was read: get it anew from whom you trust")
     if not all(entry.compress_type in _SMALL_ENOUGH_TO_UNPACK for entry in entries):

@@ -17,7 +17,7 @@ _DRIVE = re.compile(r"[A-Za-z]:")
 _DEVICE = re.compile(r"(con|prn|aux|nul|(com|lpt)[0-9])(\..*)?", re.IGNORECASE)
 
 
-def trouble_of(sizes: Mapping[str, int]) -> str:
+def unsafe_reason(sizes: Mapping[str, int]) -> str:
     """Why files of these names and sizes in bytes are not taken, in a few words; empty where they are.
 
     Whoever made them may mean ill: no name may lead out of the folder that they are laid out in.
@@ -36,10 +36,10 @@ def trouble_of(sizes: Mapping[str, int]) -> str:
 
 
 @contextmanager
-def laid_out(files: Mapping[str, bytes]) -> Iterator[None]:
+def extracted_settings(files: Mapping[str, bytes]) -> Iterator[None]:
     """While it lasts all settings are those among these files, by name, and no others.
 
-    Of files that `trouble_of` has nothing against. Raises OSError where there is no room for them.
+    Of files that `unsafe_reason` has nothing against. Raises OSError where there is no room for them.
     """
     with TemporaryDirectory(prefix="kurt2rt-kept-") as folder:
         for name, data in files.items():

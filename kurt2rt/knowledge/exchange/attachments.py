@@ -39,7 +39,7 @@ class KnownLesson:
     """UTC, ISO 8601; empty where nobody knows."""
 
 
-def attachments_of(
+def collect_attachments(
     robot: RobotSettings,
     task: TaskSettings,
     entries: Iterable[StoredEntry | KnownLesson] = (),
@@ -58,12 +58,12 @@ def attachments_of(
     return attached
 
 
-def fingerprints_of(attached: Mapping[str, bytes]) -> dict[str, str]:
+def hash_attachments(attached: Mapping[str, bytes]) -> dict[str, str]:
     """SHA-256 of each attachment, hexadecimal."""
     return {name: hashlib.sha256(data).hexdigest() for name, data in attached.items()}
 
 
-def read_lessons_of(data: bytes) -> list[KnownLesson]:
+def decode_lessons(data: bytes) -> list[KnownLesson]:
     """What `knowledge.jsonl` says. Raises ValueError in a sentence."""
     lessons = []
     try:
@@ -169,7 +169,7 @@ def _used_by_actions(repertoire: Path, seen: set[tuple[str, str]]) -> Iterator[t
         if isinstance(action, TaughtAction | TaskAction):
             yield "tasks", action.task, find_config("tasks", action.task).read_bytes()
             yield from _used_by(load_task(action.task), seen)
-            with Journal.beside_its_writer(find_beside(repertoire.resolve(), action.knowledge)) as journal:
+            with Journal.in_writer_process(find_beside(repertoire.resolve(), action.knowledge)) as journal:
                 yield FILES, action.knowledge, journal.image()
 
 

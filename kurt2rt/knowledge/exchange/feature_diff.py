@@ -8,7 +8,7 @@ from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import AVERAGED, SituationDefinition, load_situation
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.knowledge.exchange.attachment_files import laid_out
+from kurt2rt.knowledge.exchange.attachment_files import extracted_settings
 from kurt2rt.knowledge.exchange.attachments import ROBOT, TASK
 
 _MOST = 6
@@ -22,7 +22,7 @@ def differing_features(settings: Mapping[str, bytes], robot: RobotSettings, task
     try:
         there_robot = RobotSettings.model_validate_json(settings[ROBOT])
         there_task = TaskSettings.model_validate_json(settings[TASK])
-        with laid_out(settings):
+        with extracted_settings(settings):
             there = load_situation(there_task.situation, there_robot.infrared.names)
     except (KeyError, ValidationError, SettingsError, OSError) as error:
         return f"its settings cannot be used here ({' '.join(str(error).split())})"

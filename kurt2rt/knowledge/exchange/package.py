@@ -13,30 +13,30 @@ from kurt2rt.core.rla.feature_set import LevelFeatures
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.exchange.archive import Archive, pack, unpack
-from kurt2rt.knowledge.exchange.attachment_files import trouble_of
+from kurt2rt.knowledge.exchange.attachment_files import unsafe_reason
 from kurt2rt.knowledge.exchange.attachments import (
     KNOWLEDGE,
     SETTINGS,
     STATISTICS,
     KnownLesson,
-    attachments_of,
+    collect_attachments,
+    decode_lessons,
     decode_statistics,
-    read_lessons_of,
 )
 from kurt2rt.knowledge.exchange.feature_diff import differing_features
 from kurt2rt.knowledge.exchange.manifest import read_manifest
 from kurt2rt.knowledge.exchange.signing import fingerprint
 from kurt2rt.knowledge.exchange.validation import require_fitting, require_times
-from kurt2rt.knowledge.files.atomic_write import SavedCopy, plain_part, save_new, save_whole, stamp_part
-from kurt2rt.knowledge.files.create import bear
-from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_same
+from kurt2rt.knowledge.files.atomic_write import SavedCopy, plain_part, stamp_part, write_new, write_numbered
+from kurt2rt.knowledge.files.create import create_knowledge
+from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.journal.loading import binding_of
+from kurt2rt.knowledge.journal.loading import binding_for
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
-COME_FROM = "imported from"
+IMPORTED_FROM = "imported from"
 """Name of the note in a knowledge file that was imported."""
 
 
@@ -82,7 +82,7 @@ def export_knowledge(
     """
     with Journal.read_only(path) as journal:
         content = _package(journal, robot, task, key, stamp)
-    save_new(content, out)
+    write_new(content, out)
     return len(content)
 
 
@@ -91,17 +91,17 @@ def package_knowledge(path: Path, folder: Path, stamp: str, *, robot: RobotSetti
 
     Waits and raises as `kurt2rt.knowledge.files.copy.save_copy`.
     """
-    with Journal.beside_its_writer(path) as journal:
+    with Journal.in_writer_process(path) as journal:
         content = _package(journal, robot, task, None, stamp)
         system = journal.binding.system
-    return save_whole(content, folder, (plain_part(system), stamp_part(stamp)), ".zip")
+    return write_numbered(content, folder, (plain_part(system), stamp_part(stamp)), ".zip")
 
 
 def _package(
     journal: Journal, robot: RobotSettings, task: TaskSettings, key: Ed25519PrivateKey | None, stamp: str
 ) -> bytes:
     path, binding = journal.path, journal.binding
-    require_same(binding, binding_of(robot, task), path, journal.has_lessons_at)
+    require_compatible(binding, binding_for(robot, task), path, journal.has_lessons_at)
     entries, statistics = journal.read_all()
     system = fold_entries(journal, entries, radius=0.0)
     about: dict[str, Any] = {
@@ -115,14 +115,14 @@ def _package(
         "rlas": len(system),
         "lessons": system.standing_lessons,
     }
-    files = attachments_of(robot, task, entries, statistics)
-    trouble = trouble_of({name: len(data) for name, data in files.items()})
+    files = collect_attachments(robot, task, entries, statistics)
+    trouble = unsafe_reason({name: len(data) for name, data in files.items()})
     if trouble:  # nobody could take it
         raise KnowledgeError(f"cannot be exported: it {trouble}", where=path, do="name its settings otherwise")
     return pack(about, files, key)
 
 
-def read_given(path: Path) -> KnowledgePackage:
+def read_package(path: Path) -> KnowledgePackage:
     """Read an exported file whole. Raises KnowledgeError."""
     archive = unpack(path)
     try:
@@ -142,11 +142,11 @@ def import_knowledge(
 
     `trusted`: raw public key of the only one whose knowledge is taken; None: anybody's, signed or not.
     """
-    given = read_given(path)
+    given = read_package(path)
     if trusted is not None and given.signed_by != trusted:
         by = "by nobody" if given.signed_by is None else f"by {fingerprint(given.signed_by)}"
         raise KnowledgeError(f"is signed {by}, not by {fingerprint(trusted)}", where=path, do="nothing was imported")
-    here = binding_of(robot, task)
+    here = binding_for(robot, task)
     if given.binding.feature_hash != here.feature_hash:
         differing = differing_features(given.settings, robot, task) or "in what its settings do not tell"
         raise KnowledgeError(
@@ -156,15 +156,15 @@ def import_knowledge(
         )
     levels = {getattr(each.event, "level", "") for each in given.lessons}
     levels |= {each.event.rla.level for each in given.lessons if hasattr(each.event, "rla")}
-    require_same(given.binding, here, path, lambda level: level in levels)
+    require_compatible(given.binding, here, path, lambda level: level in levels)
     entries = [JournalEntry(each.event, each.stamped_at) for each in given.lessons]
     note = f"{path.name}, exported {given.exported_at}, imported {stamp}"
-    bear(into, given.binding, entries, given.statistics, {COME_FROM: note}, source=path)
+    create_knowledge(into, given.binding, entries, given.statistics, {IMPORTED_FROM: note}, source=path)
     return ImportResult(given, _otherwise_here(given, robot, task))
 
 
 def _otherwise_here(given: KnowledgePackage, robot: RobotSettings, task: TaskSettings) -> tuple[str, ...]:
-    here = attachments_of(robot, task)
+    here = collect_attachments(robot, task)
     return tuple(name for name, content in given.settings.items() if here.get(name) != content)
 
 
@@ -176,7 +176,7 @@ def _given(path: Path, archive: Archive) -> KnowledgePackage:
     """Raises KeyError for a file that is not in it, ValueError."""
     manifest = read_manifest(archive.manifest)
     binding = manifest.binding
-    lessons = tuple(read_lessons_of(archive.files[KNOWLEDGE]))
+    lessons = tuple(decode_lessons(archive.files[KNOWLEDGE]))
     statistics = decode_statistics(archive.files[STATISTICS])
     require_times(lessons)
     require_fitting(statistics, lessons, binding)

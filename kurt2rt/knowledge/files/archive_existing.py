@@ -5,7 +5,7 @@ from pathlib import Path
 from kurt2rt.knowledge.journal import journal_file
 
 
-def set_aside(path: Path) -> Path | None:
+def archive_existing(path: Path) -> Path | None:
     """Give what stands at `path` a name with a number of its own, and return it; None where nothing stands.
 
     Raises KnowledgeError while another program writes the file.

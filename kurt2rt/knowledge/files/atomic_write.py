@@ -25,7 +25,7 @@ class SavedCopy:
     size_bytes: int
 
 
-def save_whole(content: bytes, folder: Path, parts: tuple[str, ...], ending: str) -> SavedCopy:
+def write_numbered(content: bytes, folder: Path, parts: tuple[str, ...], ending: str) -> SavedCopy:
     """Save `content` in `folder`, which is made where it is missing, durable on return.
 
     The name is made of `parts`, as far as they have letters, and `ending`, with a number where such a file is there
@@ -46,7 +46,7 @@ def save_whole(content: bytes, folder: Path, parts: tuple[str, ...], ending: str
     return SavedCopy(name, hashlib.sha256(content).hexdigest(), len(content))
 
 
-def save_new(content: bytes, path: Path) -> None:
+def write_new(content: bytes, path: Path) -> None:
     """Save `content` at `path`, where nothing may be yet; durable on return. Raises KnowledgeError.
 
     What a program that was killed began there is in nobody's way: nothing but a whole file ever has the name.

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from kurt2rt.knowledge.files.atomic_write import SavedCopy, plain_part, save_whole, stamp_part
+from kurt2rt.knowledge.files.atomic_write import SavedCopy, plain_part, stamp_part, write_numbered
 from kurt2rt.knowledge.journal.journal import Journal
 
 __all__ = ["SavedCopy", "save_copy"]
@@ -14,7 +14,7 @@ def save_copy(journal_path: Path, folder: Path, label: str, stamp: str) -> Saved
     `label` may be any text, `stamp` is UTC in ISO 8601. Waits for the disk: not for the thread that the robot runs in.
     Raises KnowledgeError.
     """
-    with Journal.beside_its_writer(journal_path) as journal:
+    with Journal.in_writer_process(journal_path) as journal:
         content = journal.image()
         task = journal.binding.system
-    return save_whole(content, folder, (plain_part(task), stamp_part(stamp), plain_part(label)), ".knowledge")
+    return write_numbered(content, folder, (plain_part(task), stamp_part(stamp), plain_part(label)), ".knowledge")

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.knowledge.files.atomic_write import save_new
+from kurt2rt.knowledge.files.atomic_write import write_new
 from kurt2rt.knowledge.journal import journal_file
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding
 from kurt2rt.knowledge.journal.entry import JournalEntry
@@ -17,7 +17,7 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.durable_files import make_private_folder
 
 
-def bear(
+def create_knowledge(
     path: Path,
     binding: KnowledgeBinding,
     entries: Iterable[JournalEntry],
@@ -41,7 +41,7 @@ def bear(
             f"cannot be made ({error})", where=path.parent, do="give a file in another folder"
         ) from error
     with journal_file.lock_for_writing(path):  # a robot may begin a file there at this very moment
-        save_new(image, path)
+        write_new(image, path)
 
 
 def _image_of(

@@ -8,7 +8,7 @@ from pathlib import Path
 from unicodedata import normalize
 
 from kurt2rt.core.rla.rla import BASIC, Rla
-from kurt2rt.knowledge.files.atomic_write import SavedCopy, plain_part, save_whole, stamp_part
+from kurt2rt.knowledge.files.atomic_write import SavedCopy, plain_part, stamp_part, write_numbered
 from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.platform.yield_gil import politely
@@ -29,15 +29,15 @@ def export_table(journal_path: Path, folder: Path, stamp: str) -> SavedCopy:
     behaviours have a column where one has a name. Numbers are exact. UTF-8. A text that a spreadsheet would run as a
     formula gets an apostrophe before it. Waits and raises as `save_copy`.
     """
-    with Journal.beside_its_writer(journal_path) as journal:
+    with Journal.in_writer_process(journal_path) as journal:
         task = journal.binding.system
         content = _table(journal).encode()
-    return save_whole(content, folder, (plain_part(task), stamp_part(stamp), "rlas"), ".csv")
+    return write_numbered(content, folder, (plain_part(task), stamp_part(stamp), "rlas"), ".csv")
 
 
 def _table(journal: Journal) -> str:
     # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
-    entries = list(politely(journal.each_entry()))
+    entries = list(politely(journal.iter_entries()))
     system = fold_entries(journal, politely(entries), radius=math.inf)
     statistics = journal.statistics()
     stamps = {entry.event.origin.command_id: entry.stamped_at for entry in entries}

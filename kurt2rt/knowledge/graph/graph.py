@@ -15,7 +15,7 @@ from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 RlaNetwork: TypeAlias = "nx.DiGraph[int]"
-"""Nodes are ids of RLAs, with the attributes of `network_of`; edges have `times` and `percent`."""
+"""Nodes are ids of RLAs, with the attributes of `build_network`; edges have `times` and `percent`."""
 
 
 def read_network(journal: Journal, *, level: str = BASIC, behaviour: str | None = None) -> RlaNetwork:
@@ -24,13 +24,13 @@ def read_network(journal: Journal, *, level: str = BASIC, behaviour: str | None 
     entries = journal.entries()
     system = fold_entries(journal, entries, radius=math.inf)
     features = journal.binding.levels[level].feature_names if level in journal.binding.levels else ()
-    network = network_of(system, journal.statistics(), level=level, behaviour=behaviour, features=features)
+    network = build_network(system, journal.statistics(), level=level, behaviour=behaviour, features=features)
     if not network:
         _refuse(journal, system, level, behaviour)
     return network
 
 
-def network_of(
+def build_network(
     system: RlaSystem,
     statistics: Statistics,
     *,
@@ -67,7 +67,7 @@ def network_of(
     return network
 
 
-def without_rare(network: RlaNetwork, at_least_percent: float) -> RlaNetwork:
+def drop_rare_edges(network: RlaNetwork, at_least_percent: float) -> RlaNetwork:
     """The same without edges of a smaller share, and without RLAs that are then alone and were never used."""
     kept: RlaNetwork = nx.DiGraph()
     edges = [edge for edge in network.edges(data=True) if edge[2]["percent"] >= at_least_percent]

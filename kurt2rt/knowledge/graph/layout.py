@@ -23,7 +23,7 @@ _WEAK = 1.2
 """So much farther apart stand RLAs of which the one hardly ever follows the other."""
 
 
-def layout_of(network: RlaNetwork) -> Places:
+def compute_layout(network: RlaNetwork) -> Places:
     """Places with at least APART between any two; where the RLAs know where they are, that is it."""
     nodes = network.nodes
     known = {rla_id: (nodes[rla_id]["x_m"], nodes[rla_id]["y_m"]) for rla_id in network if "x_m" in nodes[rla_id]}

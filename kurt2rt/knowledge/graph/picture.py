@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from kurt2rt.knowledge.graph.graph import RlaNetwork
-from kurt2rt.knowledge.graph.layout import Places, layout_of, span
+from kurt2rt.knowledge.graph.layout import Places, compute_layout, span
 
 _INCHES_PER_UNIT = 0.62
 _MARGIN = 0.9
@@ -32,7 +32,7 @@ def draw_network(network: RlaNetwork, title: str, path: Path) -> None:
     Each behaviour has a panel: from one to the other it is commands that lead, so there are no edges between them.
     """
     parts = _parts(network)
-    laid = [layout_of(part) for part in parts.values()]
+    laid = [compute_layout(part) for part in parts.values()]
     columns = math.ceil(math.sqrt(len(parts)))
     rows = [laid[first : first + columns] for first in range(0, len(laid), columns)]
     wide = max((sum(_extent(places)[0] for places in row) for row in rows), default=_LEAST_INCHES)

@@ -24,7 +24,7 @@ class KnowledgeBinding:
     """Features of further levels than the basic one, by the level's name."""
 
 
-def require_same(
+def require_compatible(
     taught: KnowledgeBinding, wanted: KnowledgeBinding, path: Path, has_lessons: Callable[[str], bool]
 ) -> None:
     """Refuse knowledge of other features or of another task: raises KnowledgeError that names the difference.

@@ -11,11 +11,11 @@ from typing import BinaryIO, Self
 from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal import journal_file
-from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_same
+from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible
 from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt, StoredEntry, checksum, read_row
 from kurt2rt.knowledge.journal.event_codec import decode_event, encode_event
 from kurt2rt.knowledge.journal.statistics_tables import Change, changes, read_statistics
-from kurt2rt.knowledge.knowledge_error import KnowledgeError, explained
+from kurt2rt.knowledge.knowledge_error import KnowledgeError, from_sqlite
 
 _NOTE = "note "
 """Notes stand in table binding under keys such as `note branch of`; an earlier kurt2rt leaves them alone."""
@@ -48,7 +48,9 @@ class Journal:
             connection = journal_file.connect(path, "mode=rw")
             try:
                 taught = journal_file.read_binding(connection, path)
-                require_same(taught, binding, path, lambda level: journal_file.has_lessons(connection, path, level))
+                require_compatible(
+                    taught, binding, path, lambda level: journal_file.has_lessons(connection, path, level)
+                )
                 journal_file.make_durable(connection, path)
                 journal_file.complete(connection, path, binding.levels)
                 return cls(path, connection, lock)
@@ -68,10 +70,10 @@ class Journal:
         """
         path = Path(os.path.realpath(path))
         journal_file.require_ours(path)
-        return cls.beside_its_writer(path)
+        return cls.in_writer_process(path)
 
     @classmethod
-    def beside_its_writer(cls, path: Path) -> Self:
+    def in_writer_process(cls, path: Path) -> Self:
         """Open to look at a file that this very process may be writing.
 
         Nothing but SQLite opens it here: closing a handle that SQLite does not know of would silently drop the locks
@@ -146,7 +148,7 @@ class Journal:
 
     def entries(self) -> list[StoredEntry]:
         """All lessons in the order of writing. Raises KnowledgeError that names file and row of a damaged one."""
-        return list(self.each_entry())
+        return list(self.iter_entries())
 
     def read_all(self) -> tuple[list[StoredEntry], Statistics]:
         """Lessons and statistics of one and the same moment, also while a robot writes both. Raises as `entries`."""
@@ -158,7 +160,7 @@ class Journal:
                 if self._connection.in_transaction:
                     self._connection.execute("COMMIT")
 
-    def each_entry(self) -> Iterator[StoredEntry]:
+    def iter_entries(self) -> Iterator[StoredEntry]:
         """The same one by one, all of one moment. Raises as `entries`."""
         with self._reading():
             for row in self._connection.execute(_ROWS):
@@ -193,17 +195,17 @@ class Journal:
         with self._reading():
             return read_statistics(self._connection)
 
-    def damage(self) -> list[str]:
+    def integrity_errors(self) -> list[str]:
         """What SQLite finds wrong with the file's pages, one line each: lessons may be missing without a trace."""
         try:
             lines = [line for (line,) in self._connection.execute("PRAGMA integrity_check")]
         except sqlite3.Error as error:
-            return [str(explained(error, self.path))]
+            return [str(from_sqlite(error, self.path))]
         return [f"{self.path}: {each}" for line in lines if line != "ok" for each in line.splitlines()]
 
     def check(self) -> list[str]:
         """Everything that is wrong with the file, one line each; empty when it is sound."""
-        problems = self.damage()
+        problems = self.integrity_errors()
         try:
             for expected, row in enumerate(self._connection.execute(_ROWS), start=1):
                 if row[0] != expected:
@@ -213,7 +215,7 @@ class Journal:
                 except KnowledgeError as error:
                     problems.append(str(error))
         except sqlite3.Error as error:
-            problems.append(str(explained(error, self.path)))
+            problems.append(str(from_sqlite(error, self.path)))
         return problems
 
     def note(self, name: str, text: str) -> None:
@@ -264,7 +266,7 @@ class Journal:
                     self._connection.execute("ROLLBACK")
                 raise
         except sqlite3.Error as error:
-            raise explained(error, self.path) from error
+            raise from_sqlite(error, self.path) from error
         self._require_in_place()
 
     def _require_in_place(self) -> None:
@@ -281,7 +283,7 @@ class Journal:
         try:
             yield
         except sqlite3.Error as error:
-            raise explained(error, self.path) from error
+            raise from_sqlite(error, self.path) from error
 
 
 def _as_written_now(text: str) -> str | None:

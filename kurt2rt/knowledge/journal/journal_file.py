@@ -20,7 +20,7 @@ from kurt2rt.knowledge.journal.journal_schema import (
     require_our_schema,
 )
 from kurt2rt.knowledge.journal.statistics_tables import LATER_TABLES, has_table
-from kurt2rt.knowledge.knowledge_error import KnowledgeError, explained
+from kurt2rt.knowledge.knowledge_error import KnowledgeError, from_sqlite
 from kurt2rt.platform.durable_files import sync_file, sync_folder
 
 BUSY_TIMEOUT_S = 0.2
@@ -182,7 +182,7 @@ def connect(path: Path, options: str) -> sqlite3.Connection:
     except sqlite3.Error as error:
         if connection is not None:
             connection.close()
-        raise explained(error, path) from error
+        raise from_sqlite(error, path) from error
     try:
         require_our_mark(connection, path)
         require_known_version(version, path)
@@ -206,7 +206,7 @@ def connect_to_look(path: Path) -> sqlite3.Connection:
         connection.execute("PRAGMA query_only = ON")
     except sqlite3.Error as error:
         connection.close()
-        raise explained(error, path) from error
+        raise from_sqlite(error, path) from error
     return connection
 
 
@@ -253,7 +253,7 @@ def make_durable(connection: sqlite3.Connection, path: Path) -> None:
             sync_file(log_of(path))
             sync_folder(path.parent)
     except sqlite3.Error as error:
-        raise explained(error, path) from error
+        raise from_sqlite(error, path) from error
     except OSError as error:
         raise KnowledgeError(
             f"its log cannot be synced ({error})", where=path, do="look at the disk's health"
@@ -286,7 +286,7 @@ def complete(connection: sqlite3.Connection, path: Path, levels: Mapping[str, Le
                 connection.execute("ROLLBACK")
             raise
     except sqlite3.Error as error:
-        raise explained(error, path) from error
+        raise from_sqlite(error, path) from error
 
 
 def has_lessons(connection: sqlite3.Connection, path: Path, level: str) -> bool:
@@ -295,7 +295,7 @@ def has_lessons(connection: sqlite3.Connection, path: Path, level: str) -> bool:
     try:
         found = connection.execute("SELECT 1 FROM lesson WHERE instr(event, ?) LIMIT 1", (about,)).fetchone()
     except sqlite3.Error as error:
-        raise explained(error, path) from error
+        raise from_sqlite(error, path) from error
     return found is not None
 
 
@@ -308,7 +308,7 @@ def read_binding(connection: sqlite3.Connection, path: Path) -> KnowledgeBinding
             meaning["feature_hash"], tuple(names), meaning["system"], meaning["robot"], _levels(meaning)
         )
     except sqlite3.Error as error:
-        raise explained(error, path) from error
+        raise from_sqlite(error, path) from error
     except (KeyError, TypeError, ValueError, RecursionError) as error:
         raise KnowledgeError(
             f"table binding is damaged ({error!r})", where=path, do="keep the file, and go on with a backup copy"

@@ -7,7 +7,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from kurt2rt.knowledge.journal.statistics_tables import LATER_TABLES
-from kurt2rt.knowledge.knowledge_error import KnowledgeError, explained
+from kurt2rt.knowledge.knowledge_error import KnowledgeError, from_sqlite
 
 APPLICATION_ID = 0x4B525432
 """'KRT2' in SQLite's header: tells a knowledge file from every other SQLite file."""
@@ -39,7 +39,7 @@ def require_our_mark(connection: sqlite3.Connection, path: Path) -> None:
     try:
         (application_id,) = connection.execute("PRAGMA application_id").fetchone()
     except sqlite3.Error as error:
-        raise explained(error, path) from error
+        raise from_sqlite(error, path) from error
     if application_id != APPLICATION_ID:
         raise KnowledgeError(
             "is an SQLite file of another program", where=path, do="give the path of a kurt2rt knowledge file"
@@ -65,7 +65,7 @@ def require_our_schema(connection: sqlite3.Connection, path: Path) -> None:
     try:
         found = connection.execute("SELECT type, name, sql FROM sqlite_schema").fetchall()
     except sqlite3.Error as error:
-        raise explained(error, path) from error
+        raise from_sqlite(error, path) from error
     ours = _our_schema()
     for kind, name, sql in found:
         text = _one_line(sql)

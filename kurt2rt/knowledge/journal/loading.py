@@ -12,7 +12,7 @@ from kurt2rt.core.rla.rla import CRITIC, MID, TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_same
+from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible
 from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal
@@ -48,7 +48,7 @@ def open_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> J
 
     Raises KnowledgeError for one that does not belong here, or where none can be made.
     """
-    binding = binding_of(settings, task)
+    binding = binding_for(settings, task)
     try:
         make_folder(path.parent)
     except OSError as error:
@@ -58,7 +58,7 @@ def open_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> J
     return Journal.open(path, binding)
 
 
-def go_on_teaching(path: Path, settings: RobotSettings, task: TaskSettings) -> OpenedKnowledge:
+def open_for_teaching(path: Path, settings: RobotSettings, task: TaskSettings) -> OpenedKnowledge:
     """The journal at `path`, what it holds already, and its counts to count on from. Raises as `open_knowledge`."""
     journal = open_knowledge(path, settings, task)
     try:
@@ -73,22 +73,22 @@ def go_on_teaching(path: Path, settings: RobotSettings, task: TaskSettings) -> O
 
 
 def _require_sound(journal: Journal) -> None:
-    damage = journal.damage()
-    if damage:  # a page that stands in another's place hides lessons, and nothing else would tell
-        first = damage[0].removeprefix(f"{journal.path}: ")
+    integrity_errors = journal.integrity_errors()
+    if integrity_errors:  # a page that stands in another's place hides lessons, and nothing else would tell
+        first = integrity_errors[0].removeprefix(f"{journal.path}: ")
         raise KnowledgeError(
             f"the file is damaged ({first})", where=journal.path, do="keep it, and go on with a backup copy"
         )
 
 
 def read_lessons(
-    path: Path, settings: RobotSettings, task: TaskSettings, *, beside_its_writer: bool = False
+    path: Path, settings: RobotSettings, task: TaskSettings, *, in_writer_process: bool = False
 ) -> list[TeachingEvent]:
     """All teaching events of the file at `path`, also while a robot writes it. Raises KnowledgeError.
 
-    `beside_its_writer`: it may be this very process that writes it.
+    `in_writer_process`: it may be this very process that writes it.
     """
-    with Journal.beside_its_writer(path) if beside_its_writer else Journal.read_only(path) as journal:
+    with Journal.in_writer_process(path) if in_writer_process else Journal.read_only(path) as journal:
         return _read_fitting(journal, path, settings, task)[0]
 
 
@@ -101,13 +101,13 @@ def read_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> t
 def _read_fitting(
     journal: Journal, path: Path, settings: RobotSettings, task: TaskSettings
 ) -> tuple[list[TeachingEvent], Statistics]:
-    require_same(journal.binding, binding_of(settings, task), path, journal.has_lessons_at)
+    require_compatible(journal.binding, binding_for(settings, task), path, journal.has_lessons_at)
     entries, statistics = journal.read_all()
     fold_entries(journal, entries, radius=math.inf)
     return [entry.event for entry in entries], statistics
 
 
-def binding_of(settings: RobotSettings, task: TaskSettings) -> KnowledgeBinding:
+def binding_for(settings: RobotSettings, task: TaskSettings) -> KnowledgeBinding:
     """What knowledge of a task on a robot is bound to. Raises hal.settings.SettingsError."""
     sensors = settings.infrared.names
     definition = load_situation(task.situation, sensors)

@@ -29,7 +29,7 @@ from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.show.level import level_table
 from kurt2rt.knowledge.show.mid import mid_table, named_table
-from kurt2rt.knowledge.show.table_cells import answer, appraised, instead_of, plain, valued, when_and_who
+from kurt2rt.knowledge.show.table_cells import answer, appraised, instead_of, plain, stamp_and_teacher, valued
 from kurt2rt.platform.text_table import TextTable
 
 TICK_S = 0.01
@@ -61,7 +61,7 @@ def render_knowledge(journal: Journal, limit: int | None = None, *, wide: bool =
             *((plain(rla.behaviour),) if named else ()),
             answer(rla),
             instead_of(entry),
-            when_and_who(entry.stamped_at, rla.origin.teacher),
+            stamp_and_teacher(entry.stamped_at, rla.origin.teacher),
             f"{rla.origin.phase.value}",
             *((str(rla.origin.tick),) if wide or not any_value else ()),
             str(statistics.uses.get(rla.rla_id, 0)),
@@ -111,14 +111,14 @@ def render_lessons(journal: Journal, limit: int | None = None, taught_by: str | 
         table.add_row(
             plain(record.text),
             plain(origin.command_id),
-            when_and_who(stamps[origin.command_id], origin.teacher),
+            stamp_and_teacher(stamps[origin.command_id], origin.teacher),
             plain(undone_by[origin.command_id] if record.undone else ""),
         )
     hidden = len(records) - table.row_count
     return Group(table, Text(f"and {hidden} older lessons")) if hidden else table
 
 
-def knowledge_as_data(journal: Journal) -> dict[str, Any]:
+def knowledge_data(journal: Journal) -> dict[str, Any]:
     """Return binding, RLAs of all levels and named situations, for JSON. Raises KnowledgeError."""
     # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
     entries = journal.entries()
@@ -175,7 +175,7 @@ def _rla_as_data(
     }
 
 
-def lessons_as_data(journal: Journal, limit: int | None = None, taught_by: str | None = None) -> dict[str, Any]:
+def lessons_data(journal: Journal, limit: int | None = None, taught_by: str | None = None) -> dict[str, Any]:
     """Return the lessons that `render_lessons` shows, for JSON. Raises KnowledgeError."""
     entries = journal.entries()
     stamps = {entry.event.origin.command_id: entry.stamped_at for entry in entries}

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 
 from kurt2rt.core.rla.rla import CRITIC, Rla
 from kurt2rt.knowledge.journal.entry import StoredEntry
-from kurt2rt.knowledge.show.table_cells import answer, instead_of, plain, when_and_who
+from kurt2rt.knowledge.show.table_cells import answer, instead_of, plain, stamp_and_teacher
 from kurt2rt.platform.text_table import TextTable
 
 
@@ -24,7 +24,7 @@ def level_table(
             str(rla.rla_id),
             answer(rla),
             instead_of(entry),
-            when_and_who(entry.stamped_at, rla.origin.teacher),
+            stamp_and_teacher(entry.stamped_at, rla.origin.teacher),
             plain(_circumstances(rla, feature_names)),
         )
     return table

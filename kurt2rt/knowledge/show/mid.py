@@ -8,7 +8,7 @@ from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.feature_set import LevelFeatures
 from kurt2rt.core.rla.rla import Rla
 from kurt2rt.knowledge.journal.entry import StoredEntry
-from kurt2rt.knowledge.show.table_cells import answer, instead_of, plain, when_and_who
+from kurt2rt.knowledge.show.table_cells import answer, instead_of, plain, stamp_and_teacher
 from kurt2rt.platform.text_table import TextTable
 
 _FOLLOW_UPS = 3
@@ -40,7 +40,7 @@ def mid_table(
             str(rla.rla_id),
             answer(rla),
             instead_of(entry),
-            when_and_who(entry.stamped_at, rla.origin.teacher),
+            stamp_and_teacher(entry.stamped_at, rla.origin.teacher),
             str(uses.get(rla.rla_id, 0)),
             plain(_where(rla.condition, settings, features.feature_names)),
             ", ".join(f"{rla_id} ({percent:.0f} %)" for rla_id, percent in following),

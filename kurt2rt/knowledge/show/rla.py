@@ -51,7 +51,7 @@ def render_rla(journal: Journal, rla_id: int, limit: int | None = None) -> Rende
     return Group(*parts)
 
 
-def expectation_as_data(journal: Journal, rla_id: int) -> dict[str, Any] | None:
+def expectation_data(journal: Journal, rla_id: int) -> dict[str, Any] | None:
     """Return what is expected to follow an RLA, for JSON; None if nothing is yet.
 
     Raises KnowledgeError if no such RLA lives.

@@ -14,7 +14,7 @@ def plain(text: str) -> Text:
     return Text("".join(character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text))
 
 
-def when_and_who(stamped_at: str, teacher: str) -> Text:
+def stamp_and_teacher(stamped_at: str, teacher: str) -> Text:
     """To the second."""
     return plain(f"{stamped_at[:19].replace('T', ' ')}, {teacher}")
 

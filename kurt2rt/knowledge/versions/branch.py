@@ -9,7 +9,7 @@ from pathlib import Path
 from kurt2rt.core.rla.rla import BASIC, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import FIRST_VALUE, Statistics
-from kurt2rt.knowledge.files.create import bear
+from kurt2rt.knowledge.files.create import create_knowledge
 from kurt2rt.knowledge.journal.entry import JournalEntry, StoredEntry
 from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal
@@ -36,8 +36,8 @@ class BranchOrigin:
 class BranchResult:
     """A branch that was made."""
 
-    whence: BranchOrigin
-    left_earlier: int
+    origin: BranchOrigin
+    skipped_earlier: int
     """Rows that were left out though they are stamped by the time that was asked for: the clock was set back there."""
 
 
@@ -52,21 +52,21 @@ def branch(path: Path, new: Path, at: str | None, *, stamp: str) -> BranchResult
     """
     with Journal.read_only(path) as journal:
         entries, statistics = journal.read_all()
-        rows, left_earlier = (len(entries), 0) if at is None else _rows_up_to(entries, at, path)
+        rows, skipped_earlier = (len(entries), 0) if at is None else _rows_up_to(entries, at, path)
         binding = journal.binding
         if rows < len(entries):
             then = fold_entries(journal, entries[:rows], radius=0.0)
             now = fold_entries(journal, entries, radius=0.0)
             statistics = _of_the_same(statistics, then, now, (BASIC, *binding.levels))
     last = entries[rows - 1].event.origin.command_id if rows else ""
-    whence = BranchOrigin(path.name, rows, last, stamp)
+    origin = BranchOrigin(path.name, rows, last, stamp)
     kept = [JournalEntry(entry.event, entry.stamped_at) for entry in entries[:rows]]
-    note = json.dumps([whence.file, whence.rows, whence.lesson, whence.branched_at])
-    bear(new, binding, kept, statistics, {_NOTE: note}, source=path)
-    return BranchResult(whence, left_earlier)
+    note = json.dumps([origin.file, origin.rows, origin.lesson, origin.branched_at])
+    create_knowledge(new, binding, kept, statistics, {_NOTE: note}, source=path)
+    return BranchResult(origin, skipped_earlier)
 
 
-def whence_of(journal: Journal) -> BranchOrigin | None:
+def branch_origin(journal: Journal) -> BranchOrigin | None:
     """Where a file was branched from; None for one that was begun by itself. Raises KnowledgeError."""
     note = journal.notes().get(_NOTE)
     if note is None:

@@ -21,7 +21,7 @@ class Radii(NamedTuple):
 
     spaces: Mapping[str, Space]
     """By level."""
-    shares: Mapping[str, float]
+    fractions: Mapping[str, float]
     """By level: within this share of R a correction replaces, and does not insert."""
 
 
@@ -33,7 +33,7 @@ class Overlap(NamedTuple):
     radius: float
 
 
-def borders_of(task: TaskSettings, robot: RobotSettings) -> Radii:
+def load_radii(task: TaskSettings, robot: RobotSettings) -> Radii:
     """Those of a task on a robot. Raises hal.settings.SettingsError."""
     definition = load_situation(task.situation, robot.infrared.names)
     changed = ((each.features, each.weight) for each in task.learning.weights)
@@ -44,11 +44,11 @@ def borders_of(task: TaskSettings, robot: RobotSettings) -> Radii:
         BASIC: Space(definition.dimensions, task.learning.radius, weights),
         CRITIC: Space(len(critic.names), radius, critic.weight_vector),
     }
-    shares = {BASIC: task.learning.insert_beyond_share, CRITIC: critic.learning.insert_beyond_share}
+    fractions = {BASIC: task.learning.insert_beyond_share, CRITIC: critic.learning.insert_beyond_share}
     if task.mid is not None:
         mid = load_mid(task.mid)
-        spaces[MID], shares[MID] = mid.space, mid.learning.insert_beyond_share
-    return Radii(spaces, shares)
+        spaces[MID], fractions[MID] = mid.space, mid.learning.insert_beyond_share
+    return Radii(spaces, fractions)
 
 
 class Contradictions:
@@ -56,7 +56,7 @@ class Contradictions:
 
     def __init__(self, rlas: Iterable[Rla], borders: Radii) -> None:
         """Of levels that the task does not have nothing is near. RLAs that ask contradict nobody."""
-        self._shares = borders.shares
+        self._shares = borders.fractions
         basic = borders.spaces[BASIC]
         self._system = RlaSystem(basic.dimensions, basic.radius, basic.weights, others=borders.spaces)
         for rla in sorted(rlas, key=lambda each: each.rla_id):

@@ -31,19 +31,17 @@ class KnowledgeDiff:
 
 def difference(a: KnowledgeContent, b: KnowledgeContent) -> KnowledgeDiff:
     """Compare two files of the same features: RLAs are the same where the same lesson made them."""
-    stands_a = {a.marks[record.event.origin.command_id] for record in a.system.lessons if not record.undone}
-    stands_b = {b.marks[record.event.origin.command_id] for record in b.system.lessons if not record.undone}
-    rlas_a = {a.rla_marks[rla.rla_id]: rla for rla in living(a)}
-    rlas_b = {b.rla_marks[rla.rla_id]: rla for rla in living(b)}
+    stands_a = {a.lesson_keys[record.event.origin.command_id] for record in a.system.lessons if not record.undone}
+    stands_b = {b.lesson_keys[record.event.origin.command_id] for record in b.system.lessons if not record.undone}
+    rlas_a = {a.rla_keys[rla.rla_id]: rla for rla in living(a)}
+    rlas_b = {b.rla_keys[rla.rla_id]: rla for rla in living(b)}
     return KnowledgeDiff(
         common_rows(a.entries, b.entries),
         _standing_only_in(a, stands_b),
         _standing_only_in(b, stands_a),
-        tuple(rla for mark, rla in rlas_a.items() if mark not in rlas_b),
-        tuple(rla for mark, rla in rlas_b.items() if mark not in rlas_a),
-        tuple(
-            (rla, rlas_b[mark]) for mark, rla in rlas_a.items() if mark in rlas_b and rlas_b[mark].action != rla.action
-        ),
+        tuple(rla for key, rla in rlas_a.items() if key not in rlas_b),
+        tuple(rla for key, rla in rlas_b.items() if key not in rlas_a),
+        tuple((rla, rlas_b[key]) for key, rla in rlas_a.items() if key in rlas_b and rlas_b[key].action != rla.action),
     )
 
 
@@ -51,7 +49,7 @@ def _standing_only_in(one: KnowledgeContent, other: AbstractSet[LessonKey]) -> t
     return tuple(
         record
         for record in one.system.lessons
-        if not record.undone and one.marks[record.event.origin.command_id] not in other
+        if not record.undone and one.lesson_keys[record.event.origin.command_id] not in other
     )
 
 

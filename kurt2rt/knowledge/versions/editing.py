@@ -18,14 +18,14 @@ from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.journal_file import require_no_writer
 
 
-def open_again(path: Path) -> Journal:
+def open_for_editing(path: Path) -> Journal:
     """To write in a file that is there, whatever task it belongs to. Raises KnowledgeError, also while a robot runs."""
     with Journal.read_only(path) as look:
         binding = look.binding
     return Journal.open(path, binding)
 
 
-def require_at_rest(path: Path) -> None:
+def require_no_robot(path: Path) -> None:
     """Raises KnowledgeError while a robot runs on the file, before a user waits for what comes first."""
     require_no_writer(Path(os.path.realpath(path)))
 
@@ -41,11 +41,11 @@ def write(journal: Journal, entries: Sequence[JournalEntry], saved: Statistics |
     `saved`: the statistics to go on from; those of the file unless given.
     """
     before, saved = journal.events(), saved or journal.statistics()
-    after = worths_after(before, [entry.event for entry in entries], saved, len(journal.binding.feature_names))
+    after = statistics_after(before, [entry.event for entry in entries], saved, len(journal.binding.feature_names))
     journal.append_and_checkpoint(entries, after)
 
 
-def worths_after(
+def statistics_after(
     before: Sequence[TeachingEvent], new: Sequence[TeachingEvent], saved: Statistics, dimensions: int
 ) -> Statistics:
     """What the statistics become, by the same account as a robot keeps."""

@@ -17,10 +17,10 @@ from kurt2rt.knowledge.journal.event_codec import encode_event
 from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal
 
-PileMark = tuple[str, str] | tuple[str, int, int]
+StackKey = tuple[str, str] | tuple[str, int, int]
 """A pile in whichever file: a level and a name, or what created its RLA, and the how manieth of such it was."""
 
-NO_PILE: PileMark = ("", "")
+NO_STACK: StackKey = ("", "")
 """Of events that are no lessons."""
 
 
@@ -31,7 +31,7 @@ class LessonKey(NamedTuple):
     """The one that it was taught under."""
     content: int
     """CRC-32 of what it says, without ids that are of its file."""
-    pile: PileMark
+    stack: StackKey
     is_reward: bool
 
     def name(self, taken: Container[str]) -> str:
@@ -59,43 +59,44 @@ class KnowledgeContent:
         return {record.event.origin.command_id: record for record in self.system.lessons}
 
     @cached_property
-    def marks(self) -> Mapping[str, LessonKey]:
+    def lesson_keys(self) -> Mapping[str, LessonKey]:
         """Of all lessons, in their order, by the command id that they have here."""
-        marks, created = dict[str, LessonKey](), Counter[tuple[str, int]]()
-        of_rla = dict[Pile, PileMark]()
+        lesson_keys, created = dict[str, LessonKey](), Counter[tuple[str, int]]()
+        of_rla = dict[Pile, StackKey]()
         for record in self.system.lessons:
             lesson = record.event
             first, content = _as_first_taught(lesson)
-            pile = pile_of(lesson)
+            stack = pile_of(lesson)
             if isinstance(lesson, RlaCreated):
-                of_rla[pile] = (first, content, created[first, content])
+                of_rla[stack] = (first, content, created[first, content])
                 created[first, content] += 1
-            mark = pile if isinstance(pile, tuple) else of_rla[pile]
-            marks[lesson.origin.command_id] = LessonKey(first, content, mark, isinstance(lesson, RlaRewarded))
-        return marks
+            key = stack if isinstance(stack, tuple) else of_rla[stack]
+            lesson_keys[lesson.origin.command_id] = LessonKey(first, content, key, isinstance(lesson, RlaRewarded))
+        return lesson_keys
 
     @cached_property
-    def piles(self) -> Mapping[PileMark, Pile]:
+    def stacks(self) -> Mapping[StackKey, Pile]:
         """All piles that ever were, in their order."""
         return {
-            self.marks[record.event.origin.command_id].pile: pile_of(record.event) for record in self.system.lessons
+            self.lesson_keys[record.event.origin.command_id].stack: pile_of(record.event)
+            for record in self.system.lessons
         }
 
     @cached_property
-    def rla_marks(self) -> Mapping[int, PileMark]:
+    def rla_keys(self) -> Mapping[int, StackKey]:
         """Of all RLAs that ever lived, by their ids here."""
-        return {pile: mark for mark, pile in self.piles.items() if isinstance(pile, int)}
+        return {stack: key for key, stack in self.stacks.items() if isinstance(stack, int)}
 
 
-def read_taught(journal: Journal) -> KnowledgeContent:
+def read_content(journal: Journal) -> KnowledgeContent:
     """Read a file whole. Raises KnowledgeError."""
     entries = tuple(journal.entries())
     return KnowledgeContent(journal, entries, fold_entries(journal, entries, radius=math.inf))
 
 
-def mark_of(event: TeachingEvent) -> LessonKey:
+def event_key(event: TeachingEvent) -> LessonKey:
     """Of an event that is no lesson."""
-    return LessonKey(*_as_first_taught(event), NO_PILE, is_reward=False)
+    return LessonKey(*_as_first_taught(event), NO_STACK, is_reward=False)
 
 
 def named(event: TeachingEvent, command_id: str) -> TeachingEvent:
@@ -116,16 +117,16 @@ def common_rows(one: Sequence[StoredEntry], other: Sequence[StoredEntry]) -> int
     return same
 
 
-def standing_piles(
-    lessons: Iterable[LessonRecord], marks: Mapping[str, LessonKey]
-) -> dict[PileMark, tuple[LessonKey, ...]]:
+def standing_stacks(
+    lessons: Iterable[LessonRecord], lesson_keys: Mapping[str, LessonKey]
+) -> dict[StackKey, tuple[LessonKey, ...]]:
     """The lessons that stand, by what they are about; the order in which each was put on the other."""
-    piles = dict[PileMark, tuple[LessonKey, ...]]()
+    stacks = dict[StackKey, tuple[LessonKey, ...]]()
     for record in lessons:
         if not record.undone:
-            mark = marks[record.event.origin.command_id]
-            piles[mark.pile] = (*piles.get(mark.pile, ()), mark)
-    return piles
+            key = lesson_keys[record.event.origin.command_id]
+            stacks[key.stack] = (*stacks.get(key.stack, ()), key)
+    return stacks
 
 
 def lessons_up_to(taught: KnowledgeContent, rows: int) -> tuple[LessonRecord, ...]:

@@ -14,7 +14,7 @@ from pathlib import Path
 from kurt2rt.core.rla.expectation import Expectation
 from kurt2rt.core.rla.rla import KnowledgeMerged, Rla, rla_title
 from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.knowledge.journal.binding import require_same
+from kurt2rt.knowledge.journal.binding import require_compatible
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
@@ -24,11 +24,11 @@ from kurt2rt.knowledge.versions.editing import new_origin, write
 from kurt2rt.knowledge.versions.lesson_identity import (
     KnowledgeContent,
     LessonKey,
-    PileMark,
-    read_taught,
-    standing_piles,
+    StackKey,
+    read_content,
+    standing_stacks,
 )
-from kurt2rt.knowledge.versions.merge_base import Side, StackPair, ThreeWayDiff, Way
+from kurt2rt.knowledge.versions.merge_base import Resolution, Side, StackPair, ThreeWayDiff
 from kurt2rt.knowledge.versions.merge_writer import MergeWriter, TargetStack
 
 __all__ = ["Conflict", "ConflictCode", "MergePlan", "Merger", "Side", "merge"]
@@ -79,56 +79,56 @@ class MergePlan:
 
 
 @dataclass(frozen=True, slots=True)
-class _Pile:
+class _StackChange:
     """A pile, what becomes of its lessons here, and of its rewards."""
 
-    mark: PileMark
+    key: StackKey
     sides: StackPair
-    way: Way
+    resolution: Resolution
     came: tuple[LessonKey, ...]
     """Praise and blame that comes."""
     went: tuple[LessonKey, ...]
     """Praise and blame that goes."""
 
     @property
-    def homeless(self) -> frozenset[LessonKey]:
+    def orphaned(self) -> frozenset[LessonKey]:
         """Praise and blame of this file that stands on something that is not there any more."""
         theirs, at = set(self.sides.theirs), self._under()
-        own = (mark for mark in self.sides.mine if mark.is_reward and mark not in theirs and mark not in self.went)
-        return frozenset(mark for mark in own if at[mark] not in theirs)
+        own = (key for key in self.sides.mine if key.is_reward and key not in theirs and key not in self.went)
+        return frozenset(key for key in own if at[key] not in theirs)
 
-    def as_there(self) -> TargetStack:
+    def take_theirs(self) -> TargetStack:
         """The lessons of theirs, with the rewards of mine where they were given."""
         at, theirs = self._under(), set(self.sides.theirs)
-        own = [mark for mark in self.sides.mine if mark.is_reward and mark not in theirs and mark not in self.went]
+        own = [key for key in self.sides.mine if key.is_reward and key not in theirs and key not in self.went]
         then = list[LessonKey]()
-        for mark in self.sides.theirs:
-            if not mark.is_reward:
-                then += [mark, *(reward for reward in own if at[reward] == mark)]
-            elif mark in self.came or mark in self.sides.mine:
-                then.append(mark)
-        return TargetStack(self.mark, self.sides.mine, tuple(then))
+        for key in self.sides.theirs:
+            if not key.is_reward:
+                then += [key, *(reward for reward in own if at[reward] == key)]
+            elif key in self.came or key in self.sides.mine:
+                then.append(key)
+        return TargetStack(self.key, self.sides.mine, tuple(then))
 
-    def as_here(self) -> TargetStack:
+    def keep_mine(self) -> TargetStack:
         """The lessons of mine; a reward under one of them stays."""
-        then = tuple(mark for mark in self.sides.mine if mark not in self.went or mark in self.stuck)
-        return TargetStack(self.mark, self.sides.mine, (*then, *self.came))
+        then = tuple(key for key in self.sides.mine if key not in self.went or key in self.buried)
+        return TargetStack(self.key, self.sides.mine, (*then, *self.came))
 
     @property
-    def stuck(self) -> frozenset[LessonKey]:
+    def buried(self) -> frozenset[LessonKey]:
         """Rewards that went there, and on which a lesson of this file lies."""
         mine = self.sides.mine
-        tops = [place for place, mark in enumerate(mine) if not mark.is_reward]
-        return frozenset(mark for mark in self.went if tops and mine.index(mark) < tops[-1])
+        tops = [place for place, key in enumerate(mine) if not key.is_reward]
+        return frozenset(key for key in self.went if tops and mine.index(key) < tops[-1])
 
     def _under(self) -> dict[LessonKey, LessonKey | None]:
         """On which lesson each reward of mine was given."""
         at, lesson = dict[LessonKey, LessonKey | None](), None
-        for mark in self.sides.mine:
-            if mark.is_reward:
-                at[mark] = lesson
+        for key in self.sides.mine:
+            if key.is_reward:
+                at[key] = lesson
             else:
-                lesson = mark
+                lesson = key
         return at
 
 
@@ -146,33 +146,39 @@ class Merger:
 
     def plan(self, saved: Statistics, of_theirs: Statistics, prefer: Side | None) -> MergePlan:
         """What to write, given the statistics of both files. Raises KnowledgeError where it does not fit together."""
-        bringing, piles = self._bringing, self._piles()
-        both = [each for each in piles if each.way == "both"]
+        bringing, stacks = self._bringing, self._stack_changes()
+        both = [each for each in stacks if each.resolution == "both"]
         conflicts = [self._conflict_of(each) for each in both]
-        moved = [each for each in piles if each.way == "as there" or (each.way == "both" and prefer == "theirs")]
-        changed = {each.mark for each in moved}
+        moved = [
+            each
+            for each in stacks
+            if each.resolution == "as there" or (each.resolution == "both" and prefer == "theirs")
+        ]
+        changed = {each.key for each in moved}
         contradictions = Contradictions(self._unknown_there(moved), self._borders)
-        left_out, deletions = set[PileMark](), list[int]()
+        left_out, deletions = set[StackKey](), list[int]()
         for each in moved:
             rla = self._created(each)
             near = None if rla is None else contradictions.of(rla)
             if rla is not None and near is not None:
-                fraction = self._borders.shares[rla.level]
+                fraction = self._borders.fractions[rla.level]
                 conflicts.append(Conflict(_says(near.rla), _says(rla), ConflictCode.NEAR, near.distance, fraction))
                 if prefer == "theirs":
                     deletions.append(near.rla.rla_id)
                 else:
-                    left_out.add(each.mark)
-        stuck = [self._stays(mark) for each in piles if each.mark not in changed for mark in each.stuck]
-        known = frozenset(self._mine.marks.values())
+                    left_out.add(each.key)
+        buried = [self._stays(key) for each in stacks if each.key not in changed for key in each.buried]
+        known = frozenset(self._mine.lesson_keys.values())
         wanted = [
-            each.as_there() if each.mark in changed else each.as_here() for each in piles if each.mark not in left_out
+            each.take_theirs() if each.key in changed else each.keep_mine()
+            for each in stacks
+            if each.key not in left_out
         ]
-        bringing.bring(wanted, deletions)
-        stands = {mark for each in wanted for mark in each.then if bringing.name_of(mark) is not None}
-        stood = {mark for each in wanted for mark in each.now}
-        bringing.bring_sessions()
-        entries, told = list(bringing.entries), (*stuck, *bringing.left_out)
+        bringing.write(wanted, deletions)
+        stands = {key for each in wanted for key in each.then if bringing.name_of(key) is not None}
+        stood = {key for each in wanted for key in each.now}
+        bringing.write_sessions()
+        entries, told = list(bringing.entries), (*buried, *bringing.left_out)
         if entries or conflicts or told:
             last = self._theirs.entries[-1].event.origin.command_id
             name = self._theirs.journal.path.name
@@ -189,71 +195,71 @@ class Merger:
             left_out=told,
         )
 
-    def _piles(self) -> list[_Pile]:
+    def _stack_changes(self) -> list[_StackChange]:
         """Piles of theirs that are not the same here, and what becomes of them."""
-        here = standing_piles(self._mine.system.lessons, self._mine.marks)
-        there = standing_piles(self._theirs.system.lessons, self._theirs.marks)
-        parting, found = ThreeWayDiff(self._mine, self._theirs), list[_Pile]()
-        for mark in self._theirs.piles:
-            sides = StackPair(here.get(mark, ()), there.get(mark, ()))
+        here = standing_stacks(self._mine.system.lessons, self._mine.lesson_keys)
+        there = standing_stacks(self._theirs.system.lessons, self._theirs.lesson_keys)
+        parting, found = ThreeWayDiff(self._mine, self._theirs), list[_StackChange]()
+        for key in self._theirs.stacks:
+            sides = StackPair(here.get(key, ()), there.get(key, ()))
             if sides.mine == sides.theirs:
                 continue
-            way = parting.way_of(mark, sides)
-            if way == "both" and self._come_to_the_same(mark):
-                way = "stays"
-            came, went = parting.rewards_that_came(sides), parting.rewards_that_went(sides)
-            pile = _Pile(mark, sides, way, came, went)
-            found.append(replace(pile, way="both") if way == "as there" and pile.homeless else pile)
+            resolution = parting.resolve(key, sides)
+            if resolution == "both" and self._come_to_the_same(key):
+                resolution = "stays"
+            came, went = parting.new_rewards(sides), parting.withdrawn_rewards(sides)
+            stack = _StackChange(key, sides, resolution, came, went)
+            found.append(replace(stack, resolution="both") if resolution == "as there" and stack.orphaned else stack)
         return found
 
-    def _unknown_there(self, moved: Sequence[_Pile]) -> list[Rla]:
+    def _unknown_there(self, moved: Sequence[_StackChange]) -> list[Rla]:
         """RLAs of mine that theirs was taught without, or against, and that stay."""
-        piles, marks = {each.mark for each in moved}, self._mine.rla_marks
-        actions = {self._theirs.rla_marks[rla.rla_id]: rla.action for rla in living(self._theirs)}
+        stacks, lesson_keys = {each.key for each in moved}, self._mine.rla_keys
+        actions = {self._theirs.rla_keys[rla.rla_id]: rla.action for rla in living(self._theirs)}
         return [
             rla
             for rla in living(self._mine)
-            if marks[rla.rla_id] not in piles and actions.get(marks[rla.rla_id]) != rla.action
+            if lesson_keys[rla.rla_id] not in stacks and actions.get(lesson_keys[rla.rla_id]) != rla.action
         ]
 
-    def _come_to_the_same(self, mark: PileMark) -> bool:
-        pile = self._theirs.piles[mark]
-        if isinstance(pile, tuple):
-            level, name = pile
+    def _come_to_the_same(self, key: StackKey) -> bool:
+        stack = self._theirs.stacks[key]
+        if isinstance(stack, tuple):
+            level, name = stack
             return self._theirs.system.named_at(level).get(name) == self._mine.system.named_at(level).get(name)
-        theirs, mine = self._theirs.system.get(pile), self._rla_here(mark)
+        theirs, mine = self._theirs.system.get(stack), self._rla_here(key)
         return (theirs and theirs.action) == (mine and mine.action)
 
-    def _rla_here(self, mark: PileMark) -> Rla | None:
-        pile = self._mine.piles.get(mark)
-        return self._mine.system.get(pile) if isinstance(pile, int) else None
+    def _rla_here(self, key: StackKey) -> Rla | None:
+        stack = self._mine.stacks.get(key)
+        return self._mine.system.get(stack) if isinstance(stack, int) else None
 
-    def _conflict_of(self, each: _Pile) -> Conflict:
-        pile, of_mine = self._theirs.piles[each.mark], self._mine.piles.get(each.mark)
-        if isinstance(pile, tuple):
-            level, name = pile
+    def _conflict_of(self, each: _StackChange) -> Conflict:
+        stack, of_mine = self._theirs.stacks[each.key], self._mine.stacks.get(each.key)
+        if isinstance(stack, tuple):
+            level, name = stack
             title = f"the name {name}"
             there, here = (
                 f"{title} is given" if name in side.system.named_at(level) else f"{title} is not given"
                 for side in (self._theirs, self._mine)
             )
             return Conflict(here, there, ConflictCode.OTHER_SITUATION)
-        there = _state(self._theirs.system.get(pile), pile)
+        there = _state(self._theirs.system.get(stack), stack)
         if not isinstance(of_mine, int):
             return Conflict("it was left out here before", there, ConflictCode.CHANGED_ON_BOTH_SIDES)
-        code = ConflictCode.REWARDED_HERE if each.homeless else ConflictCode.CHANGED_ON_BOTH_SIDES
-        return Conflict(_state(self._rla_here(each.mark), of_mine), there, code)
+        code = ConflictCode.REWARDED_HERE if each.orphaned else ConflictCode.CHANGED_ON_BOTH_SIDES
+        return Conflict(_state(self._rla_here(each.key), of_mine), there, code)
 
-    def _created(self, each: _Pile) -> Rla | None:
+    def _created(self, each: _StackChange) -> Rla | None:
         """The RLA that a pile brings anew, as it lives there."""
-        pile = self._theirs.piles[each.mark]
-        if isinstance(pile, tuple) or each.mark in self._mine.piles:
+        stack = self._theirs.stacks[each.key]
+        if isinstance(stack, tuple) or each.key in self._mine.stacks:
             return None
-        rla = self._theirs.system.get(pile)
+        rla = self._theirs.system.get(stack)
         return None if rla is None or rla.asks else rla
 
-    def _stays(self, mark: LessonKey) -> str:
-        names = [name for name, other in self._mine.marks.items() if other == mark]
+    def _stays(self, key: LessonKey) -> str:
+        names = [name for name, other in self._mine.lesson_keys.items() if other == key]
         record = self._mine.records[names[-1]]
         return (
             f"{record.text} by {record.event.origin.teacher} was taken back there, and stays under what came here since"
@@ -281,8 +287,8 @@ class Merger:
         )
 
     def _renamed(self, expectation: Expectation) -> Expectation:
-        mark = self._theirs.marks.get(expectation.lesson)
-        name = None if mark is None else self._bringing.name_of(mark)
+        key = self._theirs.lesson_keys.get(expectation.lesson)
+        name = None if key is None else self._bringing.name_of(key)
         return expectation if name is None else replace(expectation, lesson=name)
 
 
@@ -295,11 +301,11 @@ def merge(
     meanwhile. Raises KnowledgeError, also for knowledge of other features or another task.
     """
     with Journal.read_only(path) as look:
-        mine, saved = read_taught(look), look.statistics()
+        mine, saved = read_content(look), look.statistics()
     binding = mine.journal.binding
     with Journal.read_only(other) as look:
-        require_same(look.binding, binding, other, look.has_lessons_at)
-        theirs, of_theirs = read_taught(look), look.statistics()
+        require_compatible(look.binding, binding, other, look.has_lessons_at)
+        theirs, of_theirs = read_content(look), look.statistics()
     planned = Merger(mine, theirs, borders, teacher=teacher, stamp=stamp).plan(saved, of_theirs, prefer)
     if not planned.entries or dry_run or (prefer is None and planned.conflicts):
         return planned

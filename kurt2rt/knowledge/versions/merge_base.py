@@ -9,14 +9,14 @@ from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.versions.lesson_identity import (
     KnowledgeContent,
     LessonKey,
-    PileMark,
+    StackKey,
     common_rows,
     lessons_up_to,
-    standing_piles,
+    standing_stacks,
 )
 
 Side = Literal["mine", "theirs"]
-Way = Literal["stays", "as there", "both"]
+Resolution = Literal["stays", "as there", "both"]
 """What becomes of a pile here; both: it changed on both sides."""
 
 
@@ -27,7 +27,7 @@ class MergeBase:
     mine: int
     """Rows of mine then, what was brought in among them."""
     theirs: int
-    shown: Side
+    seen_in: Side
     """Whose lessons the other one saw."""
 
     def is_after(self, other: "MergeBase") -> bool:
@@ -39,7 +39,7 @@ class MergeBase:
 class BaseState:
     """What both knew at a meeting."""
 
-    piles: Mapping[PileMark, tuple[LessonKey, ...]]
+    stacks: Mapping[StackKey, tuple[LessonKey, ...]]
     """As they stood in the file that was shown."""
     undone_here: frozenset[LessonKey]
     """Lessons that were undone in mine after it."""
@@ -59,12 +59,12 @@ class StackPair:
         return StackPair(lessons_of(self.mine), lessons_of(self.theirs))
 
 
-def lessons_of(pile: Sequence[LessonKey]) -> tuple[LessonKey, ...]:
+def lessons_of(stack: Sequence[LessonKey]) -> tuple[LessonKey, ...]:
     """The lessons of a pile that are neither praise nor blame: those whose order matters."""
-    return tuple(mark for mark in pile if not mark.is_reward)
+    return tuple(key for key in stack if not key.is_reward)
 
 
-def last_meetings(mine: Sequence[StoredEntry], theirs: Sequence[StoredEntry]) -> tuple[MergeBase, ...]:
+def find_merge_bases(mine: Sequence[StoredEntry], theirs: Sequence[StoredEntry]) -> tuple[MergeBase, ...]:
     """Where they parted, or the last merge of one into the other; two where each was merged into an older other."""
     common = common_rows(mine, theirs)
     found = [MergeBase(common, common, "mine")]
@@ -87,12 +87,12 @@ def _merges(into: Sequence[StoredEntry], other: Sequence[StoredEntry]) -> list[t
     ]
 
 
-def base_of(meeting: MergeBase, mine: KnowledgeContent, theirs: KnowledgeContent) -> BaseState:
+def base_state(meeting: MergeBase, mine: KnowledgeContent, theirs: KnowledgeContent) -> BaseState:
     """What both knew at that meeting."""
     here, there = lessons_up_to(mine, meeting.mine), lessons_up_to(theirs, meeting.theirs)
-    on_mine, on_theirs = standing_piles(here, mine.marks), standing_piles(there, theirs.marks)
+    on_mine, on_theirs = standing_stacks(here, mine.lesson_keys), standing_stacks(there, theirs.lesson_keys)
     return BaseState(
-        on_mine if meeting.shown == "mine" else on_theirs,
+        on_mine if meeting.seen_in == "mine" else on_theirs,
         undone_here=_undone_since(meeting.mine, mine),
         undone_there=_undone_since(meeting.theirs, theirs),
     )
@@ -100,61 +100,59 @@ def base_of(meeting: MergeBase, mine: KnowledgeContent, theirs: KnowledgeContent
 
 def _undone_since(rows: int, taught: KnowledgeContent) -> frozenset[LessonKey]:
     later = taught.entries[rows:]
-    return frozenset(taught.marks[entry.event.lesson] for entry in later if isinstance(entry.event, LessonUndone))
+    return frozenset(taught.lesson_keys[entry.event.lesson] for entry in later if isinstance(entry.event, LessonUndone))
 
 
 class ThreeWayDiff:
     """How both went on since they met."""
 
     def __init__(self, mine: KnowledgeContent, theirs: KnowledgeContent) -> None:
-        self._bases = [base_of(each, mine, theirs) for each in last_meetings(mine.entries, theirs.entries)]
-        self._here, self._there = frozenset(mine.marks.values()), frozenset(theirs.marks.values())
+        self._bases = [base_state(each, mine, theirs) for each in find_merge_bases(mine.entries, theirs.entries)]
+        self._here, self._there = frozenset(mine.lesson_keys.values()), frozenset(theirs.lesson_keys.values())
         heard = max(
             [common_rows(mine.entries, theirs.entries), *(rows for _, rows in _merges(mine.entries, theirs.entries))]
         )
         self._news = frozenset(
-            theirs.marks[name]
+            theirs.lesson_keys[name]
             for entry in theirs.entries[heard:]
             for name in (
                 entry.event.lesson if isinstance(entry.event, LessonRedone) else entry.event.origin.command_id,
             )
-            if name in theirs.marks
+            if name in theirs.lesson_keys
         )
         """Lessons that were taught there, or stand there again, and of which mine did not hear yet."""
         self._taken_back = _undone_since(heard, theirs)
         """Lessons that were undone there, of which mine did not hear yet."""
 
-    def way_of(self, pile: PileMark, sides: StackPair) -> Way:
+    def resolve(self, stack: StackKey, sides: StackPair) -> Resolution:
         """Who changed the lessons of a pile, praise and blame apart."""
         sides = sides.without_rewards
-        ways = {self._way(lessons_of(base.piles.get(pile, ())), base, sides) for base in self._bases}
-        return ways.pop() if len(ways) == 1 else "both"
+        found = {self._side_resolution(lessons_of(base.stacks.get(stack, ())), base, sides) for base in self._bases}
+        return found.pop() if len(found) == 1 else "both"
 
-    def rewards_that_came(self, sides: StackPair) -> tuple[LessonKey, ...]:
+    def new_rewards(self, sides: StackPair) -> tuple[LessonKey, ...]:
         """Praise and blame that are new there, or stand there again."""
-        rewards = [mark for mark in sides.theirs if mark.is_reward and mark not in sides.mine]
-        return tuple(mark for mark in rewards if all(self._came(mark, base) for base in self._bases))
+        rewards = [key for key in sides.theirs if key.is_reward and key not in sides.mine]
+        return tuple(key for key in rewards if all(self._came(key, base) for base in self._bases))
 
-    def rewards_that_went(self, sides: StackPair) -> tuple[LessonKey, ...]:
+    def withdrawn_rewards(self, sides: StackPair) -> tuple[LessonKey, ...]:
         """Praise and blame that stand here and were taken back there."""
-        rewards = [
-            mark for mark in sides.mine if mark.is_reward and mark not in sides.theirs and mark in self._taken_back
-        ]
+        rewards = [key for key in sides.mine if key.is_reward and key not in sides.theirs and key in self._taken_back]
         return tuple(
-            mark
-            for mark in rewards
-            if any(mark in base.piles.get(mark.pile, ()) or mark in base.undone_there for base in self._bases)
+            key
+            for key in rewards
+            if any(key in base.stacks.get(key.stack, ()) or key in base.undone_there for base in self._bases)
         )
 
-    def _came(self, mark: LessonKey, base: BaseState) -> bool:
-        if mark in base.piles.get(mark.pile, ()):
+    def _came(self, key: LessonKey, base: BaseState) -> bool:
+        if key in base.stacks.get(key.stack, ()):
             return False  # it was undone here since, or left out
-        if mark not in self._here:
+        if key not in self._here:
             return True
         # Of one that came here on another way the undo counts; one that they kept although it was undone is not new.
-        return mark not in base.undone_here and mark in self._news
+        return key not in base.undone_here and key in self._news
 
-    def _way(self, before: tuple[LessonKey, ...], base: BaseState, sides: StackPair) -> Way:
+    def _side_resolution(self, before: tuple[LessonKey, ...], base: BaseState, sides: StackPair) -> Resolution:
         mine, theirs = sides.mine, sides.theirs
         if mine == theirs:
             return "stays"

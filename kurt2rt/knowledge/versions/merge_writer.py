@@ -22,14 +22,14 @@ from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.versions.editing import new_origin
-from kurt2rt.knowledge.versions.lesson_identity import NO_PILE, KnowledgeContent, LessonKey, PileMark, mark_of, named
+from kurt2rt.knowledge.versions.lesson_identity import NO_STACK, KnowledgeContent, LessonKey, StackKey, event_key, named
 
 
 @dataclass(frozen=True, slots=True)
 class TargetStack:
     """One pile: what stands on it here, and what shall."""
 
-    pile: PileMark
+    stack: StackKey
     now: tuple[LessonKey, ...]
     then: tuple[LessonKey, ...]
 
@@ -57,11 +57,11 @@ class MergeWriter:
         self._teacher, self._stamp = teacher, stamp
         self._taken = {entry.event.origin.command_id for entry in mine.entries}
         self._rlas = {
-            rla_id: here for rla_id, mark in theirs.rla_marks.items() if isinstance(here := mine.piles.get(mark), int)
+            rla_id: here for rla_id, key in theirs.rla_keys.items() if isinstance(here := mine.stacks.get(key), int)
         }
-        self._names = {mark: list[str]() for mark in mine.marks.values()}
-        for name, mark in mine.marks.items():
-            self._names[mark].append(name)
+        self._names = {key: list[str]() for key in mine.lesson_keys.values()}
+        for name, key in mine.lesson_keys.items():
+            self._names[key].append(name)
         self._stamps = {entry.event.origin.command_id: entry.stamped_at for entry in theirs.entries}
         self._own_stamps = {entry.event.origin.command_id: entry.stamped_at for entry in mine.entries}
 
@@ -70,69 +70,71 @@ class MergeWriter:
         """RLA id there -> here, of all that are in both."""
         return self._rlas
 
-    def name_of(self, mark: LessonKey) -> str | None:
+    def name_of(self, key: LessonKey) -> str | None:
         """Command id of a lesson here, the newest where it was brought again; None where it is not here."""
-        names = self._names.get(mark)
+        names = self._names.get(key)
         return names[-1] if names else None
 
-    def bring(self, wanted: Sequence[TargetStack], deletions: Iterable[int]) -> None:
+    def write(self, wanted: Sequence[TargetStack], deletions: Iterable[int]) -> None:
         """Undos, the newest lesson first, deletions, then lessons in the order in which they were taught there.
 
         Raises KnowledgeError where they do not fit.
         """
-        own = {self._mine.marks[name]: record.event for name, record in _by_name(self._mine)}
-        place = {name: number for number, name in enumerate(self._mine.marks)}
-        taken_off = [self._standing(mark) for each in wanted for mark in each.now[each.same :]]
+        own = {self._mine.lesson_keys[name]: record.event for name, record in _by_name(self._mine)}
+        place = {name: number for number, name in enumerate(self._mine.lesson_keys)}
+        taken_off = [self._standing(key) for each in wanted for key in each.now[each.same :]]
         for name in sorted(taken_off, key=lambda name: -place[name]):
             self._add(LessonUndone(name, new_origin("undo", self._teacher)), self._stamp)
         for rla_id in dict.fromkeys(deletions):
             self._add(RlaDeleted(rla_id, new_origin("delete", self._teacher)), self._stamp)
-        queues = {each.pile: list(each.then[each.same :]) for each in wanted}
-        standing = {self._theirs.marks[name]: record for name, record in _by_name(self._theirs) if not record.undone}
+        queues = {each.stack: list(each.then[each.same :]) for each in wanted}
+        standing = {
+            self._theirs.lesson_keys[name]: record for name, record in _by_name(self._theirs) if not record.undone
+        }
         actions = _actions_when_rewarded(self._theirs)
-        for mark in list(standing):
-            queue = queues.get(mark.pile, [])
-            while mark in queue:  # one that was put in before it goes first
+        for key in list(standing):
+            queue = queues.get(key.stack, [])
+            while key in queue:  # one that was put in before it goes first
                 self._put(queue.pop(0), standing, own, actions)
         for queue in queues.values():
-            for mark in queue:
-                self._put(mark, standing, own, actions)
+            for key in queue:
+                self._put(key, standing, own, actions)
 
-    def bring_sessions(self) -> None:
+    def write_sessions(self) -> None:
         """Sessions and agreements that are not here."""
         kinds = SessionBegun | SessionEnded | Appraised
-        here = {mark_of(entry.event) for entry in self._mine.entries if isinstance(entry.event, kinds)}
+        here = {event_key(entry.event) for entry in self._mine.entries if isinstance(entry.event, kinds)}
         for entry in self._theirs.entries:
             if isinstance(entry.event, kinds):
-                mark = mark_of(entry.event)
-                if mark not in here:
-                    assert mark.pile == NO_PILE
-                    self._add(named(entry.event, mark.name(self._taken)), entry.stamped_at)
+                key = event_key(entry.event)
+                if key not in here:
+                    assert key.stack == NO_STACK
+                    self._add(named(entry.event, key.name(self._taken)), entry.stamped_at)
 
     def _put(
         self,
-        mark: LessonKey,
+        key: LessonKey,
         standing: Mapping[LessonKey, LessonRecord],
         own: Mapping[LessonKey, Lesson],
         actions: Mapping[str, Mapping[int, str]],
     ) -> None:
         """Let a lesson stand on its pile: again, where that can be, else as a new one."""
-        for name in reversed(self._names.get(mark, [])):
+        for name in reversed(self._names.get(key, [])):
             if self._system.why_not_redo(name) is None:
                 self._add(LessonRedone(name, new_origin("redo", self._teacher)), self._stamp)
                 return
-        name = mark.name(self._taken)
-        if mark in own and not (mark.is_reward and mark in standing):
-            before = own[mark]
+        name = key.name(self._taken)
+        if key in own and not (key.is_reward and key in standing):
+            before = own[key]
             self._add(named(before, name), self._own_stamps[before.origin.command_id])
         else:
-            record = standing[mark]
+            record = standing[key]
             lesson = self._here(record.event, actions)
             if lesson is None:
                 self.left_out.append(self._why_left_out(record, actions))
                 return
             self._add(named(lesson, name), self._stamps[record.event.origin.command_id])
-        self._names.setdefault(mark, []).append(name)
+        self._names.setdefault(key, []).append(name)
 
     def _here(self, lesson: Lesson, actions: Mapping[str, Mapping[int, str]]) -> Lesson | None:
         """A lesson of theirs as it is here; None for praise or blame of another action than the RLA has here.
@@ -171,12 +173,12 @@ class MergeWriter:
         says = "is gone here" if here is None else f"is {here.title} here and says {here.action}"
         return f"{record.text} there by {lesson.origin.teacher} for {meant}; it {says}"
 
-    def _standing(self, mark: LessonKey) -> str:
-        for name in self._names[mark]:
+    def _standing(self, key: LessonKey) -> str:
+        for name in self._names[key]:
             record = self._system.lesson(name)
             if record is not None and not record.undone:
                 return name
-        raise AssertionError(mark)
+        raise AssertionError(key)
 
     def _add(self, event: TeachingEvent, stamp: str) -> None:
         try:

@@ -16,7 +16,7 @@ from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import fold_entries, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.versions.editing import new_origin, open_again, write
+from kurt2rt.knowledge.versions.editing import new_origin, open_for_editing, write
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ def plan_redo(path: Path, lesson: str | None = None, of: str | None = None, *, t
     return reading.planned(changes, reasons)
 
 
-def carry_out(planned: UndoPlan, stamp: str) -> None:
+def apply_plan(planned: UndoPlan, stamp: str) -> None:
     """Make what was planned, all or nothing; durable on return.
 
     Values become what a robot would make of it: those whom a reward was given lose its credits, and an RLA that gets
@@ -89,7 +89,7 @@ def carry_out(planned: UndoPlan, stamp: str) -> None:
     is worth what it was worth then. Weights of edges follow when a robot starts next. Raises KnowledgeError, and
     changes nothing, where a robot runs on the file, or has changed it since so that it does not fit any more.
     """
-    with open_again(planned.path) as journal:
+    with open_for_editing(planned.path) as journal:
         _apply(fold_journal(journal, radius=math.inf), planned.changes, f"{planned.path}: nothing was changed")
         write(journal, [JournalEntry(event, stamp) for event in planned.changes])
 

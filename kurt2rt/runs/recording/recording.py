@@ -12,7 +12,7 @@ from kurt2rt.core.decision.active_stop import ActiveStop
 from kurt2rt.core.decision.standing_text import stop_text
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.knowledge.exchange.attachments import attachments_of, fingerprints_of
+from kurt2rt.knowledge.exchange.attachments import collect_attachments, hash_attachments
 from kurt2rt.knowledge.journal.loading import OpenedKnowledge
 from kurt2rt.runs.recording.live_view import LiveView
 from kurt2rt.runs.recording.recorder import RunRecorder, open_run_recorder
@@ -69,7 +69,7 @@ class Recording:
         begins there; None: now. Raises SettingsError, KnowledgeError.
         """
         entries = () if knowledge is None else knowledge.entries
-        attachments = attachments_of(settings, task, entries, None if knowledge is None else knowledge.saved)
+        attachments = collect_attachments(settings, task, entries, None if knowledge is None else knowledge.saved)
         began = started or datetime.now(UTC)
         head = RunHead(
             kurt2rt=version("kurt2rt"),
@@ -83,7 +83,7 @@ class Recording:
             asked=circumstances.asked,
             stopped=stop_text(circumstances.stopped),
             behaviour=circumstances.behaviour,
-            fingerprints=fingerprints_of(attachments),
+            fingerprints=hash_attachments(attachments),
             tolerates_stalls=circumstances.tolerates_stalls,
         )
         return open_run_recorder(

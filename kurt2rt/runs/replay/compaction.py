@@ -11,7 +11,7 @@ from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.versions.editing import new_origin, open_again, worths_after, write
+from kurt2rt.knowledge.versions.editing import new_origin, open_for_editing, statistics_after, write
 from kurt2rt.runs.replay.run import Run
 from kurt2rt.runs.replay.trial import Report, TrialKnowledge, answers, runs_to_try, told
 
@@ -63,7 +63,7 @@ def compact(path: Path, recordings: Path, *, stamp: str, dry_run: bool, report: 
         with Journal.read_only(path) as journal:
             compaction, _ = _planned(journal, recordings, report)
         return compaction
-    with open_again(path) as journal:
+    with open_for_editing(path) as journal:
         compaction, deletions = _planned(journal, recordings, report)
         if deletions:
             write(journal, [JournalEntry(event, stamp) for event in deletions])
@@ -86,7 +86,7 @@ def _planned(journal: Journal, recordings: Path, report: Report) -> tuple[Compac
     unneeded = tuple(rla for rla in rlas if rla.behaviour in seen.behaviours and rla.rla_id not in seen.needed)
     deletions = [RlaDeleted(rla.rla_id, new_origin("compact", TEACHER)) for rla in unneeded]
     if deletions:
-        after = worths_after(now.events, deletions, now.statistics, len(journal.binding.feature_names))
+        after = statistics_after(now.events, deletions, now.statistics, len(journal.binding.feature_names))
         _prove(tried.runs, now, TrialKnowledge((*now.events, *deletions), after), report)
     notes = (*tried.notes, *(f"{run}: nothing drove in it, so it proves nothing" for run in seen.standing))
     others = tuple(sorted({rla.behaviour for rla in rlas} - seen.behaviours))

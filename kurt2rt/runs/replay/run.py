@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.knowledge.exchange.attachment_files import laid_out, trouble_of
+from kurt2rt.knowledge.exchange.attachment_files import extracted_settings, unsafe_reason
 from kurt2rt.knowledge.exchange.attachments import (
     KNOWLEDGE,
     ROBOT,
@@ -18,9 +18,9 @@ from kurt2rt.knowledge.exchange.attachments import (
     STATISTICS,
     TASK,
     KnownLesson,
+    decode_lessons,
     decode_statistics,
-    fingerprints_of,
-    read_lessons_of,
+    hash_attachments,
 )
 from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.runs.recording.entries import TickEntry
@@ -114,7 +114,7 @@ class Run:
     def lessons(self) -> tuple[KnownLesson, ...]:
         """What had been taught before the run; nothing where its beginning is gone."""
         data = self._attachments.get(KNOWLEDGE)
-        return () if data is None else tuple(_decoded(read_lessons_of, data))
+        return () if data is None else tuple(_decoded(decode_lessons, data))
 
     def stamps_of(self, command_ids: Collection[str]) -> dict[str, str]:
         """When these lessons of the run became durable, as the journal has it, UTC; those that never did are left out.
@@ -142,7 +142,7 @@ class Run:
         kept = {name: data for name, data in self._attachments.items() if name.startswith(SETTINGS)}
         with ExitStack() as stack:
             try:
-                stack.enter_context(laid_out(kept))
+                stack.enter_context(extracted_settings(kept))
             except OSError as error:
                 raise RecordingError(
                     f"its settings cannot be laid out ({error})",
@@ -211,10 +211,10 @@ class Run:
         self._require(ROBOT, TASK)
         if not self._in_part:
             self.require_beginning()
-        trouble = trouble_of({name: len(data) for name, data in self._attachments.items()})
+        trouble = unsafe_reason({name: len(data) for name, data in self._attachments.items()})
         if trouble:
             raise RecordingError(trouble, where=self.name, do="give a run as kurt2rt run recorded it")
-        found = fingerprints_of(self._attachments)
+        found = hash_attachments(self._attachments)
         for name, fingerprint in self.head.fingerprints.items():
             if name in found and found[name] != fingerprint:
                 raise RecordingError(f"{name} is damaged", where=self.name, do="give another copy of the run")

@@ -10,8 +10,8 @@ from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.exchange.json_checks import RecordingError
-from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_same
-from kurt2rt.knowledge.journal.loading import binding_of
+from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible
+from kurt2rt.knowledge.journal.loading import binding_for
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runs.recording.run_folder import runs_in, segments_in
 from kurt2rt.runs.replay.counterfactual_policy import CounterfactualPolicy, PolicyAnswer, PolicyAnswers
@@ -153,7 +153,7 @@ def _why_not(run: Run, binding: KnowledgeBinding) -> str | None:
     """Why this knowledge could not have been used in a run. Raises RecordingError for one of another kurt2rt."""
     try:
         with run.settings():
-            require_same(binding, binding_of(run.robot, run.task), Path(run.name), lambda _: False)
+            require_compatible(binding, binding_for(run.robot, run.task), Path(run.name), lambda _: False)
     except KnowledgeError as error:
         return str(error)
     except SettingsError as error:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Final
 
 from kurt2rt.knowledge.exchange.json_checks import RecordingError
-from kurt2rt.knowledge.versions.editing import worths_after
+from kurt2rt.knowledge.versions.editing import statistics_after
 from kurt2rt.knowledge.versions.undo import UndoPlan
 from kurt2rt.runs.replay.counterfactual import Counterfactual, counterfactual
 from kurt2rt.runs.replay.counterfactual_policy import CounterfactualPolicy
@@ -67,7 +67,9 @@ def _try_on(planned: UndoPlan, runs: RecentRuns, report: Report, last_s: float) 
     events, statistics = planned.events, planned.statistics
     dimensions = len(planned.binding.feature_names)
     before = TrialKnowledge(events, statistics)
-    after = TrialKnowledge((*events, *planned.changes), worths_after(events, planned.changes, statistics, dimensions))
+    after = TrialKnowledge(
+        (*events, *planned.changes), statistics_after(events, planned.changes, statistics, dimensions)
+    )
     tried, troubles = list[TrialResult](), list[str]()
     for run in runs.runs:
         try:

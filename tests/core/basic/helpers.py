@@ -10,7 +10,7 @@ from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_knowledge
-from kurt2rt.knowledge.task_repertoire import repertoire_of
+from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from tests.behaviors.helpers import ROBOT, SENSORS, sensed
 
 STAMP = "2004-04-26T10:00:00.000+00:00"
@@ -24,7 +24,7 @@ def keep(path: Path, task: TaskSettings, *events: TeachingEvent) -> None:
 
 def repertoire(folder: Path, *actions: str) -> dict[str, Behaviour]:
     """What a task has whose repertoire holds these actions, and stands in `folder`."""
-    return repertoire_of(with_repertoire(load_task("wall_following"), folder, *actions), ROBOT)
+    return load_task_repertoire(with_repertoire(load_task("wall_following"), folder, *actions), ROBOT)
 
 
 def with_repertoire(task: TaskSettings, folder: Path, *actions: str) -> TaskSettings:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from hal.settings import find_beside, find_config
-from kurt2rt.knowledge.exchange.attachment_files import LARGEST_BYTES, MOST_FILES, laid_out, trouble_of
+from kurt2rt.knowledge.exchange.attachment_files import LARGEST_BYTES, MOST_FILES, extracted_settings, unsafe_reason
 
 
 @pytest.mark.parametrize(
@@ -32,18 +32,20 @@ from kurt2rt.knowledge.exchange.attachment_files import LARGEST_BYTES, MOST_FILE
     ],
 )
 def test_a_name_that_leads_elsewhere_is_told(name: str) -> None:
-    assert "which is none that kurt2rt gives" in trouble_of({"settings/task.json": 1, name: 1})
+    assert "which is none that kurt2rt gives" in unsafe_reason({"settings/task.json": 1, name: 1})
 
 
 def test_too_much_is_told() -> None:
-    assert "files, 1000 are taken at most" in trouble_of({f"settings/{number}": 1 for number in range(MOST_FILES + 1)})
-    assert "holds more than 256 MB" in trouble_of({"a": LARGEST_BYTES, "b": 1})
-    assert trouble_of({"a": 1, "a/b": 1}) == "holds 'a' as a file and as a folder"
-    assert trouble_of({"settings/situations/Ann's own é.yaml": LARGEST_BYTES}) == ""
+    assert "files, 1000 are taken at most" in unsafe_reason(
+        {f"settings/{number}": 1 for number in range(MOST_FILES + 1)}
+    )
+    assert "holds more than 256 MB" in unsafe_reason({"a": LARGEST_BYTES, "b": 1})
+    assert unsafe_reason({"a": 1, "a/b": 1}) == "holds 'a' as a file and as a folder"
+    assert unsafe_reason({"settings/situations/Ann's own é.yaml": LARGEST_BYTES}) == ""
 
 
 def test_while_they_are_laid_out_nothing_else_is_found() -> None:
-    with laid_out({"settings/tasks/mine.yaml": b"name: mine\n", "settings/files/x": b""}):
+    with extracted_settings({"settings/tasks/mine.yaml": b"name: mine\n", "settings/files/x": b""}):
         path = find_config("tasks", "mine")
         assert path.read_bytes() == b"name: mine\n"
         assert find_beside(Path("anywhere"), "x").is_relative_to(path.parents[1])

@@ -17,11 +17,11 @@ from kurt2rt.knowledge.exchange.attachments import (
     ROBOT,
     TASK,
     KnownLesson,
-    attachments_of,
+    collect_attachments,
+    decode_lessons,
     decode_statistics,
     encode_statistics,
-    fingerprints_of,
-    read_lessons_of,
+    hash_attachments,
 )
 from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.runs.recording.run_head import RunHead, decode_head, encode_head
@@ -33,7 +33,7 @@ TASKS = sorted(path.stem for path in (CONFIG_DIR / "tasks").glob("*.yaml"))
 def test_a_task_comes_back_as_it_was_in_force(task: str) -> None:
     settings = load_task(task, changes={"learning.radius": "123.25"})
     robot = load_robot()
-    attached = attachments_of(robot, settings)
+    attached = collect_attachments(robot, settings)
     assert TaskSettings.model_validate_json(attached[TASK]) == settings
     assert RobotSettings.model_validate_json(attached[ROBOT]) == robot
 
@@ -42,14 +42,14 @@ def test_values_that_come_from_a_default_are_in_force_too() -> None:
     """Or a replay by a kurt2rt with other defaults would go by those."""
     task = load_task("wall_following")
     assert {"reinforcement", "critic", "mid", "behaviours"}.isdisjoint(task.model_fields_set)
-    kept = json.loads(attachments_of(load_robot(), task)[TASK])
+    kept = json.loads(collect_attachments(load_robot(), task)[TASK])
     assert kept["reinforcement"] == task.reinforcement.model_dump(mode="json", exclude_none=True)
     assert kept["critic"] == task.critic
     assert kept.keys().isdisjoint({"mid", "behaviours"})  # which must not be there where they mean nothing
 
 
 def test_settings_are_found_where_the_run_has_kept_them_and_nowhere_else(tmp_path: Path) -> None:
-    for name, data in attachments_of(load_robot(), load_task("errands")).items():
+    for name, data in collect_attachments(load_robot(), load_task("errands")).items():
         path = tmp_path / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data)
@@ -64,7 +64,7 @@ def test_a_file_that_a_task_names_by_its_path_is_kept_under_a_name_of_its_own(tm
     mine = tmp_path / "basic.yaml"
     mine.write_bytes(find_config("situations", "basic").read_bytes())
     task = load_task("wall_following").model_copy(update={"situation": str(mine)})
-    for name, data in attachments_of(load_robot(), task).items():
+    for name, data in collect_attachments(load_robot(), task).items():
         path = tmp_path / "kept" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data)
@@ -87,10 +87,10 @@ def test_whatever_a_recording_names_is_looked_for_in_its_own_folder(name: str) -
 def test_lessons_come_back_with_their_stamps() -> None:
     origin = Origin("ann-1", "Ann", Phase.SUPERVISED, 7)
     lesson = KnownLesson(RlaCreated(Rla(1, (0.1, 1 / 3), "forward", None, origin)), "2026-11-22T03:00:00Z")
-    attached = attachments_of(load_robot(), load_task("wall_following"), [lesson])
-    assert read_lessons_of(attached[KNOWLEDGE]) == [lesson]
+    attached = collect_attachments(load_robot(), load_task("wall_following"), [lesson])
+    assert decode_lessons(attached[KNOWLEDGE]) == [lesson]
     with pytest.raises(ValueError, match=r"knowledge\.jsonl"):
-        read_lessons_of(attached[KNOWLEDGE][:-9])
+        decode_lessons(attached[KNOWLEDGE][:-9])
 
 
 def test_statistics_come_back_to_the_last_bit_and_in_their_order() -> None:
@@ -118,4 +118,4 @@ def test_a_head_comes_back_and_one_of_a_newer_program_is_refused() -> None:
 
 
 def test_fingerprints_tell_contents_apart() -> None:
-    assert fingerprints_of({"a": b"1"})["a"] != fingerprints_of({"a": b"2"})["a"]
+    assert hash_attachments({"a": b"1"})["a"] != hash_attachments({"a": b"2"})["a"]

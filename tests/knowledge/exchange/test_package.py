@@ -19,7 +19,7 @@ from kurt2rt.core.rla.rla import RlaCreated, RlaRewarded
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.knowledge.exchange.archive import MANIFEST, SIGNATURE, pack, unpack
-from kurt2rt.knowledge.exchange.package import ImportResult, export_knowledge, import_knowledge, read_given
+from kurt2rt.knowledge.exchange.package import ImportResult, export_knowledge, import_knowledge, read_package
 from kurt2rt.knowledge.exchange.signing import make_key, read_private_key, read_public_key
 from kurt2rt.knowledge.journal.entry import JournalEntry, StoredEntry
 from kurt2rt.knowledge.journal.event_codec import encode_event
@@ -90,15 +90,15 @@ def test_any_zip_program_shows_what_is_in_it(exported: Path) -> None:
 
 
 def test_a_file_that_was_cut_or_changed_is_refused_or_says_the_same(exported: Path, tmp_path: Path) -> None:
-    whole, unchanged = exported.read_bytes(), read_given(exported)
+    whole, unchanged = exported.read_bytes(), read_package(exported)
     other = tmp_path / "other.zip"
     for place in range(0, len(whole), 97):
         other.write_bytes(whole[:place])
         with pytest.raises(KnowledgeError):
-            read_given(other)
+            read_package(other)
         other.write_bytes(whole[:place] + bytes([whole[place] ^ 0x41]) + whole[place + 1 :])
         try:
-            found = read_given(other)
+            found = read_package(other)
         except KnowledgeError:
             continue
         assert replace(found, path=exported) == unchanged  # a byte that means nothing: a file's date, for instance
@@ -109,7 +109,7 @@ def test_a_file_that_was_cut_or_changed_is_refused_or_says_the_same(exported: Pa
 def test_nonsense_is_refused_in_one_line(tmp_path: Path, nonsense: bytes) -> None:
     (tmp_path / "nonsense.zip").write_bytes(nonsense)
     with pytest.raises(KnowledgeError, match=r"nonsense\.zip: is torn or changed") as refused:
-        read_given(tmp_path / "nonsense.zip")
+        read_package(tmp_path / "nonsense.zip")
     assert "\n" not in str(refused.value)
 
 
@@ -138,11 +138,11 @@ def test_what_somebody_changed_on_purpose_is_named(exported: Path, tmp_path: Pat
     )
     for number, (changes, why) in enumerate(cases):
         with pytest.raises(KnowledgeError, match=why):
-            read_given(rewritten(exported, tmp_path / f"{number}.zip", **changes))
-    assert read_given(rewritten(exported, tmp_path / "bare.zip", **{SIGNATURE: None})).signed_by is None
+            read_package(rewritten(exported, tmp_path / f"{number}.zip", **changes))
+    assert read_package(rewritten(exported, tmp_path / "bare.zip", **{SIGNATURE: None})).signed_by is None
     (tmp_path / "empty.zip").write_bytes(pack({}, {}, None))
     with pytest.raises(KnowledgeError, match="cannot be understood"):
-        read_given(tmp_path / "empty.zip")
+        read_package(tmp_path / "empty.zip")
 
 
 def made_over(
@@ -174,18 +174,18 @@ def test_an_archive_that_would_fill_the_memory_is_not_unpacked(tmp_path: Path) -
             part.write(megabyte)
     assert bomb.stat().st_size < 2 * 10**6
     with pytest.raises(KnowledgeError, match="holds more than 256 MB"):
-        read_given(bomb)
+        read_package(bomb)
     with zipfile.ZipFile(bomb, "w", zipfile.ZIP_LZMA) as archive:
         archive.writestr("manifest.json", b"{}")
     with pytest.raises(KnowledgeError, match="is packed in a way"):
-        read_given(bomb)
+        read_package(bomb)
     with zipfile.ZipFile(bomb, "w") as archive:
         archive.writestr("settings/a", b"")
         archive.writestr("settings/A", b"")
     with pytest.raises(KnowledgeError, match="holds a file twice"):
-        read_given(bomb)
+        read_package(bomb)
     with pytest.raises(KnowledgeError, match="is a folder or device"):
-        read_given(tmp_path)
+        read_package(tmp_path)
 
 
 def test_lessons_that_do_not_fit_are_not_taken(exported: Path, tmp_path: Path) -> None:
@@ -232,7 +232,7 @@ NOTHING: dict[str, object] = {
 def test_counts_of_a_wrong_type_are_refused(exported: Path, tmp_path: Path, counts: object) -> None:
     odd = made_over(exported, tmp_path / "odd.zip", {"statistics.json": json.dumps(counts).encode()})
     with pytest.raises(KnowledgeError, match=r"odd\.zip: cannot be understood .*statistics\.json"):
-        read_given(odd)
+        read_package(odd)
 
 
 @pytest.mark.parametrize(
@@ -249,7 +249,7 @@ def test_counts_of_a_wrong_type_are_refused(exported: Path, tmp_path: Path, coun
 def test_a_manifest_of_a_wrong_type_is_refused(exported: Path, tmp_path: Path, about: Mapping[str, object]) -> None:
     (key,) = about
     with pytest.raises(KnowledgeError, match=rf"odd\.zip: cannot be understood \(its manifest: {key}"):
-        read_given(made_over(exported, tmp_path / "odd.zip", None, about))
+        read_package(made_over(exported, tmp_path / "odd.zip", None, about))
 
 
 @pytest.mark.parametrize("stamp", [5, None, "", "yesterday", "2026-11-22T03:10:05"])
@@ -257,17 +257,17 @@ def test_a_lesson_without_a_time_is_refused(exported: Path, tmp_path: Path, stam
     lines = unpack(exported).files["knowledge.jsonl"].decode().splitlines()
     lesson = json.dumps({**json.loads(lines[0]), "stamped_at": stamp})
     with pytest.raises(KnowledgeError, match=r"odd\.zip: cannot be understood \(knowledge\.jsonl"):
-        read_given(made_over(exported, tmp_path / "odd.zip", {"knowledge.jsonl": lesson.encode()}))
+        read_package(made_over(exported, tmp_path / "odd.zip", {"knowledge.jsonl": lesson.encode()}))
 
 
 def test_json_that_nests_without_end_is_refused(exported: Path, tmp_path: Path) -> None:
     deep = b"[" * 100_000
     for name in (MANIFEST, SIGNATURE):
         with pytest.raises(KnowledgeError, match="is damaged"):
-            read_given(rewritten(exported, tmp_path / "deep.zip", **{name: deep}))
+            read_package(rewritten(exported, tmp_path / "deep.zip", **{name: deep}))
     for name in ("knowledge.jsonl", "statistics.json"):
         with pytest.raises(KnowledgeError, match="cannot be understood"):
-            read_given(made_over(exported, tmp_path / "deep.zip", {name: deep}))
+            read_package(made_over(exported, tmp_path / "deep.zip", {name: deep}))
 
 
 def test_lessons_and_counts_of_an_export_are_of_one_moment(
@@ -279,14 +279,14 @@ def test_lessons_and_counts_of_an_export_are_of_one_moment(
     with open_knowledge(path, ROBOT, TASK) as robot:
 
         def taught_meanwhile(journal: Journal) -> Iterator[StoredEntry]:
-            yield from each_entry(journal)
+            yield from iter_entries(journal)
             praise = RlaRewarded(1, 1, 390, origin("praise"), (Credit(1, 0.1),))
             robot.append_and_checkpoint([JournalEntry(praise, STAMP)], Statistics({1: 6}))
 
-        each_entry = Journal.each_entry
-        monkeypatch.setattr(Journal, "each_entry", taught_meanwhile)
+        iter_entries = Journal.iter_entries
+        monkeypatch.setattr(Journal, "iter_entries", taught_meanwhile)
         export(path, tmp_path / "out.zip")
-    found = read_given(tmp_path / "out.zip")
+    found = read_package(tmp_path / "out.zip")
     assert ([lesson.event for lesson in found.lessons], found.statistics) == (
         [entry.event for entry in before[0]],
         before[1],

@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.knowledge.files.archive_existing import set_aside
+from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.journal_file import log_of
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
@@ -30,13 +30,13 @@ def stored(path: Path) -> int:
 
 def test_knowledge_stays_under_a_number_of_its_own(path: Path) -> None:
     for lessons in (1, 2, 3):
-        set_aside(begun(path, lessons))
+        archive_existing(begun(path, lessons))
         assert not path.exists()
     assert [stored(path.with_name(f"{path.name}.{number}")) for number in (1, 2, 3)] == [1, 2, 3]
 
 
 def test_lessons_of_a_killed_program_go_along(path: Path) -> None:
-    set_aside(killed(path, lessons=4))
+    archive_existing(killed(path, lessons=4))
     assert stored(begun(path, lessons=1)) == 1
     assert stored(path.with_name(f"{path.name}.1")) == 4
 
@@ -44,10 +44,10 @@ def test_lessons_of_a_killed_program_go_along(path: Path) -> None:
 def test_knowledge_in_use_is_left_where_it_is(path: Path) -> None:
     with Journal.open(begun(path), BINDING):
         with pytest.raises(KnowledgeError, match="another kurt2rt is writing it"):
-            set_aside(path)
+            archive_existing(path)
         assert path.exists()
 
 
 def test_where_nothing_is_nothing_is_done(path: Path) -> None:
-    set_aside(path)
+    archive_existing(path)
     assert list(path.parent.iterdir()) == []

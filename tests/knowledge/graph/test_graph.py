@@ -12,7 +12,7 @@ from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.graph.file import write_network
-from kurt2rt.knowledge.graph.graph import RlaNetwork, network_of, read_network, without_rare
+from kurt2rt.knowledge.graph.graph import RlaNetwork, build_network, drop_rare_edges, read_network
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.core.rla.helpers import created
@@ -41,12 +41,12 @@ def edges(network: RlaNetwork) -> dict[tuple[int, int], tuple[int, float]]:
 
 
 def test_edges_have_the_share_of_all_that_followed() -> None:
-    network = network_of(system(), DROVE)
+    network = build_network(system(), DROVE)
     assert edges(network) == {(1, 2): (9, 90.0), (1, 3): (1, 10.0), (2, 1): (8, 80.0), (3, 3): (1, 100.0)}
 
 
 def test_a_node_says_what_the_rla_does_how_often_and_for_how_long() -> None:
-    network = network_of(system(), DROVE)
+    network = build_network(system(), DROVE)
     assert network.nodes[1] == {
         "level": BASIC,
         "behaviour": "left",
@@ -59,24 +59,24 @@ def test_a_node_says_what_the_rla_does_how_often_and_for_how_long() -> None:
 
 
 def test_one_behaviour_is_shown_with_shares_among_all() -> None:
-    network = network_of(system(), DROVE, behaviour="left")
+    network = build_network(system(), DROVE, behaviour="left")
     assert edges(network) == {(1, 2): (9, 90.0), (2, 1): (8, 80.0)}
 
 
 def test_a_level_is_shown_by_itself_with_the_places_it_is_about() -> None:
-    network = network_of(system(), Statistics(transitions={(5, 6): 2}), level=MID, features=("x_m", "y_m"))
+    network = build_network(system(), Statistics(transitions={(5, 6): 2}), level=MID, features=("x_m", "y_m"))
     assert edges(network) == {(5, 6): (2, 100.0)}
     assert [(network.nodes[rla_id]["x_m"], network.nodes[rla_id]["y_m"]) for rla_id in network] == [(3, 4), (5, 4)]
 
 
 def test_what_is_rare_can_be_left_out_and_with_it_who_never_drove() -> None:
-    network = without_rare(network_of(system(), DROVE), 20.0)
+    network = drop_rare_edges(build_network(system(), DROVE), 20.0)
     assert edges(network) == {(1, 2): (9, 90.0), (2, 1): (8, 80.0), (3, 3): (1, 100.0)}
     assert sorted(network) == [1, 2, 3]
 
 
 def test_graphml_is_read_back_as_it_was(tmp_path: Path) -> None:
-    network = network_of(system(), DROVE)
+    network = build_network(system(), DROVE)
     write_network(network, "a title", tmp_path / "made" / "network.graphml")
     again = nx.read_graphml(tmp_path / "made" / "network.graphml", node_type=int)
     assert (dict(again.nodes), dict(again.edges), again.graph["title"]) == (
@@ -90,14 +90,14 @@ def test_graphml_is_read_back_as_it_was(tmp_path: Path) -> None:
 def test_the_picture_is_the_same_each_time(tmp_path: Path, kind: str) -> None:
     pictures = [tmp_path / f"{name}.{kind}" for name in ("first", "second")]
     for picture in pictures:
-        write_network(network_of(system(), DROVE), "RLAs", picture)
+        write_network(build_network(system(), DROVE), "RLAs", picture)
     first, second = (picture.read_bytes() for picture in pictures)
     assert first == second
     assert len(first) > 5000
 
 
 def test_the_picture_has_a_panel_for_each_behaviour_percentages_and_the_actions(tmp_path: Path) -> None:
-    write_network(network_of(system(), DROVE), "the title", tmp_path / "network.svg")
+    write_network(build_network(system(), DROVE), "the title", tmp_path / "network.svg")
     text = (tmp_path / "network.svg").read_text(encoding="utf-8")
     for shown in ("the title", "left: 2 RLAs", "right: 2 RLAs", ">90<", ">80<", ">forward<", ">4<"):
         assert shown in text, shown
@@ -105,7 +105,7 @@ def test_the_picture_has_a_panel_for_each_behaviour_percentages_and_the_actions(
 
 
 def test_rlas_that_never_drove_are_a_picture_too(tmp_path: Path) -> None:
-    write_network(network_of(system(), Statistics()), "just taught", tmp_path / "network.svg")
+    write_network(build_network(system(), Statistics()), "just taught", tmp_path / "network.svg")
     assert ">3<" in (tmp_path / "network.svg").read_text(encoding="utf-8")
 
 

@@ -7,7 +7,7 @@ import networkx as nx
 import pytest
 
 from kurt2rt.knowledge.graph.graph import RlaNetwork
-from kurt2rt.knowledge.graph.layout import APART, Places, layout_of
+from kurt2rt.knowledge.graph.layout import APART, Places, compute_layout
 
 
 def network(*edges: tuple[int, int, float], alone: int = 0) -> RlaNetwork:
@@ -28,23 +28,23 @@ def nearest(places: Places) -> float:
 
 def test_who_follows_another_stands_beside_it() -> None:
     chain = network(*((rla_id, rla_id + 1, 100.0) for rla_id in range(1, 9)))
-    places = layout_of(chain)
+    places = compute_layout(chain)
     assert between(places, 1, 2) < between(places, 1, 5) < between(places, 1, 9)
     assert between(places, 1, 9) == pytest.approx(8 * 1.4, rel=0.1)  # a chain is drawn as one
 
 
 def test_frequent_follow_ups_stand_nearer() -> None:
-    places = layout_of(network((1, 2, 95.0), (1, 3, 5.0)))
+    places = compute_layout(network((1, 2, 95.0), (1, 3, 5.0)))
     assert between(places, 1, 2) < between(places, 1, 3)
 
 
 def test_no_two_stand_on_each_other_also_in_a_dense_network() -> None:
     dense = network(*((one, other, 5.0) for one in range(40) for other in range(40) if (7 * one + other) % 5 == 0))
-    assert nearest(layout_of(dense)) > 0.95 * APART
+    assert nearest(compute_layout(dense)) > 0.95 * APART
 
 
 def test_parts_without_an_edge_between_them_stand_apart() -> None:
-    places = layout_of(network((1, 2, 100.0), (3, 4, 100.0), alone=5))
+    places = compute_layout(network((1, 2, 100.0), (3, 4, 100.0), alone=5))
     assert len(places) == 9
     assert nearest(places) > 0.95 * APART
 
@@ -53,7 +53,7 @@ def test_places_are_laid_out_where_they_are() -> None:
     streets = network((1, 2, 100.0), (2, 3, 100.0))
     for rla_id, x_m, y_m in ((1, 0.0, 0.0), (2, 1.8, 0.0), (3, 1.8, 1.8)):
         streets.add_node(rla_id, x_m=x_m, y_m=y_m)
-    places = layout_of(streets)
+    places = compute_layout(streets)
     across, up = places[2][0] - places[1][0], places[3][1] - places[2][1]
     assert across == pytest.approx(up, rel=0.01)
     assert across > 2 * APART

@@ -16,7 +16,7 @@ from kurt2rt.knowledge.journal.binding import KnowledgeBinding
 from kurt2rt.knowledge.journal.entry import JournalEntry, StoredEntry
 from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.journal.loading import go_on_teaching, open_knowledge, read_knowledge
+from kurt2rt.knowledge.journal.loading import open_for_teaching, open_knowledge, read_knowledge
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.experiments.helpers import ROBOT, short_task
 from tests.knowledge.lessons import (
@@ -305,7 +305,7 @@ def test_teaching_goes_on_from_what_is_there_and_from_when_it_was_taught(path: P
         saved = Statistics({1: 5}, {(1, 2): 3}, {1: 0.25}, {(1, 2): 90.0})
         journal.checkpoint(saved)
 
-    opened = go_on_teaching(path, ROBOT, task)
+    opened = open_for_teaching(path, ROBOT, task)
     with opened.journal as journal:
         assert opened.events == journal.events() == lessons
         assert opened.stamps == {"c1": "stamp 1", "c2": "stamp 2"}
@@ -320,7 +320,7 @@ def test_lessons_that_do_not_fit_together_are_not_taught_on_with_and_the_file_is
         journal.append([JournalEntry(undone("create-1"), STAMP)])
     for _ in range(2):
         with pytest.raises(KnowledgeError, match=r"row 1: does not fit .*: there is no lesson 'create-1'; keep the"):
-            go_on_teaching(path, ROBOT, task)
+            open_for_teaching(path, ROBOT, task)
 
 
 def test_a_damaged_binding_is_refused(path: Path) -> None:
@@ -343,11 +343,11 @@ def test_lessons_and_counts_of_a_robot_that_runs_are_of_one_moment(path: Path, m
         journal.append_and_checkpoint([JournalEntry(first, STAMP)], Statistics({1: 1}))
 
         def taught_meanwhile(look: Journal) -> Iterator[StoredEntry]:
-            yield from each_entry(look)
+            yield from iter_entries(look)
             journal.append_and_checkpoint([JournalEntry(second, STAMP)], Statistics({1: 2, 2: 1}))
 
-        each_entry = Journal.each_entry
+        iter_entries = Journal.iter_entries
         with monkeypatch.context() as meanwhile:
-            meanwhile.setattr(Journal, "each_entry", taught_meanwhile)
+            meanwhile.setattr(Journal, "iter_entries", taught_meanwhile)
             assert read_knowledge(path, ROBOT, task) == ([first], Statistics({1: 1}))
     assert read_knowledge(path, ROBOT, task) == ([first, second], Statistics({1: 2, 2: 1}))

@@ -12,7 +12,7 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.journal.loading import go_on_teaching, open_knowledge, read_lessons
+from kurt2rt.knowledge.journal.loading import open_for_teaching, open_knowledge, read_lessons
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.show.knowledge import render_knowledge, render_lessons
 from tests.experiments.helpers import ROBOT
@@ -36,7 +36,7 @@ def way(rla_id: int, *symbols: int, action: str = "turn_left") -> RlaCreated:
 
 
 def write(path: Path, *events: TeachingEvent) -> None:
-    with go_on_teaching(path, ROBOT, ROUTE).journal as journal:
+    with open_for_teaching(path, ROBOT, ROUTE).journal as journal:
         journal.append([JournalEntry(event, STAMP) for event in events])
 
 
@@ -53,7 +53,7 @@ def test_knowledge_of_the_streets_is_gone_on_with_on_a_route(path: Path) -> None
 
 def test_knowledge_of_a_route_is_good_for_the_streets(path: Path) -> None:
     write(path, basic(1), way(2, 1, 2))
-    opened = go_on_teaching(path, ROBOT, STREETS)
+    opened = open_for_teaching(path, ROBOT, STREETS)
     with opened.journal as journal:
         assert opened.events == [basic(1), way(2, 1, 2)]
         assert journal.binding.levels[MID] == TURNS.level_features  # stays for who comes with a mid level
@@ -63,9 +63,9 @@ def test_a_route_that_nobody_taught_yet_leaves_the_file_free_for_places(path: Pa
     write(path, basic(1))
     assert read_lessons(path, ROBOT, ERRANDS) == [basic(1)]
     place = RlaCreated(Rla(2, (0.0,) * 6, "turn_left", None, origin("create-2"), level=MID))
-    with go_on_teaching(path, ROBOT, ERRANDS).journal as journal:
+    with open_for_teaching(path, ROBOT, ERRANDS).journal as journal:
         journal.append([JournalEntry(place, STAMP)])
-    with go_on_teaching(path, ROBOT, ERRANDS).journal as journal:
+    with open_for_teaching(path, ROBOT, ERRANDS).journal as journal:
         assert journal.binding.levels[MID] == load_mid("places").level_features
         assert journal.events() == [basic(1), place]
     with pytest.raises(KnowledgeError, match="its level mid was taught with other features"):
@@ -85,7 +85,7 @@ def test_ways_are_not_told_from_other_junctions(path: Path) -> None:
     junctions = TURNS.junctions.model_copy(update={"wall_m": 0.3})
     other = ROUTE.model_copy(update={"mid": TURNS.model_copy(update={"junctions": junctions})})
     with pytest.raises(KnowledgeError, match=r"its level mid was taught with other features: the names are the same, "):
-        go_on_teaching(path, ROBOT, other)
+        open_for_teaching(path, ROBOT, other)
 
 
 def test_another_radius_or_distance_is_no_other_situation(path: Path) -> None:
@@ -108,7 +108,7 @@ def test_ways_are_shown_apart_in_words_with_who_taught_them_and_what_follows(pat
         *(basic(1), way(2), way(3, 2, 1), way(4, 3, 3, 4, action="straight_on")),
         replaced(4, "turn_right", instead_of="straight_on"),
     )
-    with go_on_teaching(path, ROBOT, ROUTE).journal as journal:
+    with open_for_teaching(path, ROBOT, ROUTE).journal as journal:
         journal.checkpoint(Statistics({1: 7, 2: 3, 3: 1}, {(2, 3): 1, (2, 4): 3}))
         lines = printed(render_knowledge(journal))
         lessons = "\n".join(printed(render_lessons(journal)))

@@ -11,7 +11,7 @@ from kurt2rt.knowledge.journal.entry import JournalEntry, StoredEntry
 from kurt2rt.knowledge.journal.fold import check_knowledge
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.versions.branch import BranchOrigin, BranchResult, branch, whence_of
+from kurt2rt.knowledge.versions.branch import BranchOrigin, BranchResult, branch, branch_origin
 from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, replaced
 
 LATER = "2004-04-26T11:00:00.000+00:00"
@@ -35,14 +35,14 @@ def taught(path: Path) -> Path:
 
 
 def test_a_branch_of_all_holds_the_same_lessons_and_counts(taught: Path, tmp_path: Path) -> None:
-    told = branch(taught, tmp_path / "b.knowledge", None, stamp=NOW).whence
+    told = branch(taught, tmp_path / "b.knowledge", None, stamp=NOW).origin
     with Journal.read_only(taught) as old, Journal.read_only(tmp_path / "b.knowledge") as new:
         assert new.entries() == old.entries()
         assert new.statistics() == old.statistics()
         assert new.binding == old.binding
         assert check_knowledge(new) == []
-        assert whence_of(new) == told == BranchOrigin("knowledge.db", 4, "replace-2-left", NOW)
-        assert whence_of(old) is None
+        assert branch_origin(new) == told == BranchOrigin("knowledge.db", 4, "replace-2-left", NOW)
+        assert branch_origin(old) is None
 
 
 @pytest.mark.parametrize("at", ["create-2", "2004-04-26T10:30+00:00"])
@@ -63,8 +63,8 @@ def test_where_the_clock_was_set_back_a_branch_ends_with_the_first_later_date_an
     with Journal.open(taught, BINDING) as journal:
         journal.append([JournalEntry(created(4), "2004-04-26T10:01:00.000+00:00"), JournalEntry(created(5), LATER)])
     made = branch(taught, tmp_path / "b", "2004-04-26T10:30+00:00", stamp=NOW)
-    assert (made.whence.rows, made.left_earlier) == (3, 1)
-    assert branch(taught, tmp_path / "c", "2004-04-26T11:00+00:00", stamp=NOW).left_earlier == 0
+    assert (made.origin.rows, made.skipped_earlier) == (3, 1)
+    assert branch(taught, tmp_path / "c", "2004-04-26T11:00+00:00", stamp=NOW).skipped_earlier == 0
     assert branch(taught, tmp_path / "d", "create-4", stamp=NOW) == BranchResult(
         BranchOrigin(taught.name, 5, "create-4", NOW), 0
     )
@@ -83,12 +83,12 @@ def test_what_is_taught_while_a_branch_is_made_is_in_it_whole_or_not_at_all(
     with Journal.open(taught, BINDING) as robot:
 
         def taught_meanwhile(journal: Journal) -> Iterator[StoredEntry]:
-            yield from each_entry(journal)
+            yield from iter_entries(journal)
             robot.append_and_checkpoint([JournalEntry(created(4), LATER)], replace(COUNTED, uses={4: 1}))
 
-        each_entry = Journal.each_entry
+        iter_entries = Journal.iter_entries
         with monkeypatch.context() as meanwhile:
-            meanwhile.setattr(Journal, "each_entry", taught_meanwhile)
+            meanwhile.setattr(Journal, "iter_entries", taught_meanwhile)
             branch(taught, tmp_path / "b", None, stamp=NOW)
     with Journal.read_only(tmp_path / "b") as new:
         assert (len(new.entries()), new.statistics()) == (4, COUNTED)
@@ -105,7 +105,7 @@ def test_a_file_whose_lessons_do_not_fit_is_not_branched(taught: Path, tmp_path:
 
 
 def test_before_the_first_lesson_nothing_is_known(taught: Path, tmp_path: Path) -> None:
-    assert branch(taught, tmp_path / "b", "1999-12-31", stamp=NOW).whence.rows == 0
+    assert branch(taught, tmp_path / "b", "1999-12-31", stamp=NOW).origin.rows == 0
 
 
 def test_nothing_is_overwritten_and_nonsense_is_refused(taught: Path, tmp_path: Path) -> None:

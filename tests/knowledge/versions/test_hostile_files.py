@@ -7,7 +7,7 @@ import pytest
 
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.versions.branch import whence_of
+from kurt2rt.knowledge.versions.branch import branch_origin
 from tests.knowledge.lessons import BINDING, begun, entry, tamper
 
 ENDLESS = "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n)"
@@ -73,7 +73,7 @@ def test_a_damaged_note_on_the_branch_is_told(path: Path, note: str) -> None:
     with Journal.open(begun(path), BINDING) as journal:
         journal.note("branch of", note)
         with pytest.raises(KnowledgeError, match="its note on where it was branched from is damaged"):
-            whence_of(journal)
+            branch_origin(journal)
 
 
 def test_a_second_name_of_a_file_in_use_is_refused_and_no_lesson_is_lost(path: Path) -> None:

@@ -31,7 +31,7 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.versions.branch import branch
 from kurt2rt.knowledge.versions.contradictions import Radii
 from kurt2rt.knowledge.versions.diff import difference
-from kurt2rt.knowledge.versions.lesson_identity import read_taught
+from kurt2rt.knowledge.versions.lesson_identity import read_content
 from kurt2rt.knowledge.versions.merge import ConflictCode, MergePlan, Side, merge
 from tests.examples import examples
 from tests.knowledge.journal.test_writer import largest_file
@@ -75,7 +75,7 @@ def theirs(mine: Path, tmp_path: Path) -> Path:
     return tmp_path / "branch.knowledge"
 
 
-def bring(mine: Path, theirs: Path, prefer: Side | None = None, *, dry_run: bool = False) -> MergePlan:
+def merge_files(mine: Path, theirs: Path, prefer: Side | None = None, *, dry_run: bool = False) -> MergePlan:
     return merge(mine, theirs, BORDERS, prefer, teacher="command line", stamp=STAMP, dry_run=dry_run)
 
 
@@ -96,13 +96,13 @@ def events(path: Path) -> list[TeachingEvent]:
 
 def the_same(one: Path, other: Path) -> bool:
     with Journal.read_only(one) as a, Journal.read_only(other) as b:
-        return difference(read_taught(a), read_taught(b)).none
+        return difference(read_content(a), read_content(b)).none
 
 
 def test_what_was_taught_there_comes_with_new_ids_and_its_own_teacher(mine: Path, theirs: Path) -> None:
     append(mine, at(4, FAR, "left", "mine-4"))
     append(theirs, at(4, 2 * FAR, "right", "theirs-4"), replaced(4, "back", "right"), replaced(2, "left", "forward"))
-    merged = bring(mine, theirs)
+    merged = merge_files(mine, theirs)
     assert (merged.lessons, merged.undone, merged.redone, merged.conflicts) == (3, 0, 0, ())
     assert merged.new_ids == {4: 5}
     assert actions(mine) == {1: "forward", 2: "left", 3: "forward", 4: "left", 5: "back"}
@@ -116,13 +116,13 @@ def test_what_was_taught_there_comes_with_new_ids_and_its_own_teacher(mine: Path
 
 def test_merged_twice_is_merged_once_and_what_comes_later_is_brought_later(mine: Path, theirs: Path) -> None:
     append(theirs, at(4, FAR, "left", "theirs-4"), *session(100))
-    bring(mine, theirs)
+    merge_files(mine, theirs)
     once = events(mine)
-    again = bring(mine, theirs)
+    again = merge_files(mine, theirs)
     assert events(mine) == once
     assert (again.entries, again.lessons) == ((), 0)
     append(theirs, replaced(4, "back", "left"), undone("create-3"))
-    bring(mine, theirs)
+    merge_files(mine, theirs)
     assert actions(mine) == {1: "forward", 2: "forward", 4: "back"}
     assert folded(mine).teaching_ticks == 100
     assert the_same(mine, theirs)
@@ -131,24 +131,24 @@ def test_merged_twice_is_merged_once_and_what_comes_later_is_brought_later(mine:
 def test_after_it_was_merged_there_and_back_both_know_the_same(mine: Path, theirs: Path) -> None:
     append(mine, at(4, FAR, "left", "mine-4"), deleted(1))
     append(theirs, at(4, 2 * FAR, "right", "theirs-4"))
-    bring(mine, theirs)
-    bring(theirs, mine)
+    merge_files(mine, theirs)
+    merge_files(theirs, mine)
     assert the_same(mine, theirs)
     assert actions(theirs) == {2: "forward", 3: "forward", 4: "right", 5: "left"}
 
 
 def test_what_was_undone_there_is_undone_here_and_redone_again(mine: Path, theirs: Path) -> None:
     append(theirs, undone("create-2"))
-    assert bring(mine, theirs).undone == 1
+    assert merge_files(mine, theirs).undone == 1
     assert actions(mine) == {1: "forward", 3: "forward"}
     append(theirs, LessonRedone("create-2", origin("redo-2")))
-    assert bring(mine, theirs).redone == 1
+    assert merge_files(mine, theirs).redone == 1
     assert actions(mine) == {1: "forward", 2: "forward", 3: "forward"}
 
 
 def test_what_was_taught_and_taken_back_there_is_not_brought(mine: Path, theirs: Path) -> None:
     append(theirs, at(4, FAR), undone("create-4"), rewarded(1, 1, "praise"), undone("praise"))
-    assert bring(mine, theirs).entries == ()
+    assert merge_files(mine, theirs).entries == ()
 
 
 @pytest.mark.parametrize(("prefer", "action"), [(None, "left"), ("mine", "left"), ("theirs", "right")])
@@ -156,7 +156,7 @@ def test_an_rla_that_both_changed_is_a_conflict(mine: Path, theirs: Path, prefer
     append(mine, replaced(2, "left", "forward"))
     append(theirs, replaced(2, "right", "forward"), at(4, FAR, command_id="theirs-4"))
     before = events(mine)
-    merged = bring(mine, theirs, prefer)
+    merged = merge_files(mine, theirs, prefer)
     (conflict,) = merged.conflicts
     assert (conflict.mine, conflict.theirs) == ("RLA 2 says left", "RLA 2 says right")
     assert actions(mine)[2] == action
@@ -164,7 +164,7 @@ def test_an_rla_that_both_changed_is_a_conflict(mine: Path, theirs: Path, prefer
         assert events(mine) == before
     else:
         assert actions(mine)[4] == "forward"
-        assert bring(mine, theirs).conflicts == ()  # settled once
+        assert merge_files(mine, theirs).conflicts == ()  # settled once
 
 
 def test_both_made_the_same_of_it_and_nothing_is_to_do(mine: Path, theirs: Path) -> None:
@@ -172,7 +172,7 @@ def test_both_made_the_same_of_it_and_nothing_is_to_do(mine: Path, theirs: Path)
     append(theirs, replaced(2, "right", "forward"), replaced(2, "left", "right"))
     append(mine, deleted(3))
     append(theirs, undone("create-3"))
-    assert bring(mine, theirs).conflicts == ()
+    assert merge_files(mine, theirs).conflicts == ()
     assert actions(mine) == {1: "forward", 2: "left"}
 
 
@@ -180,7 +180,7 @@ def test_both_made_the_same_of_it_and_nothing_is_to_do(mine: Path, theirs: Path)
 def test_another_action_at_nearly_the_same_place_is_a_conflict(mine: Path, theirs: Path, prefer: Side | None) -> None:
     append(mine, at(4, FAR, "left", "mine-4"))
     append(theirs, at(4, FAR + 2.0, "right", "theirs-4"), at(5, FAR + 2.1, "right", "theirs-5"))
-    (conflict,) = bring(mine, theirs, prefer).conflicts
+    (conflict,) = merge_files(mine, theirs, prefer).conflicts
     assert (conflict.mine, conflict.theirs) == ("RLA 4 says left", "RLA 4 says right")
     assert conflict.code is ConflictCode.NEAR
     assert conflict.distance == pytest.approx(2.0)
@@ -193,10 +193,10 @@ def test_what_they_put_beside_something_that_they_knew_or_deleted_is_no_conflict
     first = created(1).rla.condition
     beside = RlaCreated(replace(created(4, "theirs-4", "left").rla, condition=first))
     append(theirs, beside)
-    assert bring(mine, theirs).conflicts == ()
+    assert merge_files(mine, theirs).conflicts == ()
     second = RlaCreated(replace(created(5, "theirs-5", "right").rla, condition=created(2).rla.condition))
     append(theirs, deleted(2), second)
-    assert bring(mine, theirs).conflicts == ()
+    assert merge_files(mine, theirs).conflicts == ()
     assert actions(mine) == {1: "forward", 3: "forward", 4: "left", 5: "right"}
 
 
@@ -205,7 +205,7 @@ def test_praise_of_both_adds_up(mine: Path, theirs: Path) -> None:
     blame = RlaRewarded(1, -1, 390, origin("theirs"), (Credit(1, -0.5), Credit(4, -0.25), Credit(9, -1.0)))
     append(theirs, at(4, FAR, command_id="theirs-4"), blame, replaced(1, "left", "forward"))
     append(mine, at(4, -FAR, command_id="mine-4"))
-    bring(mine, theirs)
+    merge_files(mine, theirs)
     system = folded(mine)
     assert system.appraisal(1) == (1, 1)
     assert actions(mine)[1] == "left"
@@ -213,15 +213,15 @@ def test_praise_of_both_adds_up(mine: Path, theirs: Path) -> None:
     assert record is not None
     assert isinstance(record.event, RlaRewarded)
     assert record.event.credits == (Credit(1, -0.5), Credit(5, -0.25))  # of the ninth nobody knows anything
-    assert bring(mine, theirs).entries == ()
+    assert merge_files(mine, theirs).entries == ()
 
 
 def test_a_name_for_two_places_is_a_conflict(mine: Path, theirs: Path) -> None:
     for path, x in ((mine, 1.0), (theirs, 2.0)):
         append(path, SituationNamed("door", (x, 0.0, 0.0, 0.0), BASIC, origin(f"name-{x}")))
-    (conflict,) = bring(mine, theirs).conflicts
+    (conflict,) = merge_files(mine, theirs).conflicts
     assert conflict.code is ConflictCode.OTHER_SITUATION
-    bring(mine, theirs, "theirs")
+    merge_files(mine, theirs, "theirs")
     assert folded(mine).named_at(BASIC)["door"][0] == 2.0
 
 
@@ -231,10 +231,10 @@ def test_two_files_that_were_never_one_share_ids_of_lessons_and_are_merged_all_t
     stranger = tmp_path / "stranger"
     append(stranger, *(at(number, FAR * number, "left", f"create-{number}") for number in (1, 2)))
     append(stranger, replaced(2, "back", "left"))
-    bring(mine, stranger)
+    merge_files(mine, stranger)
     assert actions(mine) == {1: "forward", 2: "forward", 3: "forward", 4: "left", 5: "back"}
     once = events(mine)
-    bring(mine, stranger)
+    merge_files(mine, stranger)
     assert events(mine) == once
 
 
@@ -245,7 +245,7 @@ def test_what_was_counted_of_new_rlas_comes_with_them(mine: Path, theirs: Path) 
     for path in (mine, theirs):
         with Journal.open(path, BINDING) as journal:
             journal.checkpoint(Statistics({1: 9, 4: 5}, {(1, 4): 3, (1, 2): 8}, expectations={4: expected}))
-    bring(mine, theirs)
+    merge_files(mine, theirs)
     with Journal.read_only(mine) as journal:
         counted = journal.statistics()
     assert counted.uses == {1: 9, 4: 5, 5: 5}
@@ -259,11 +259,11 @@ def test_another_kind_of_features_a_running_robot_and_a_dry_run_change_nothing(
     append(theirs, at(4, FAR))
     before = events(mine)
     with Journal.open(mine, BINDING), pytest.raises(KnowledgeError, match="another kurt2rt is writing it"):
-        bring(mine, theirs)
-    assert bring(mine, theirs, dry_run=True).lessons == 1
+        merge_files(mine, theirs)
+    assert merge_files(mine, theirs, dry_run=True).lessons == 1
     Journal.open(tmp_path / "other", replace(BINDING, feature_hash="another")).close()
     with pytest.raises(KnowledgeError, match="other: taught with other features"):
-        bring(mine, tmp_path / "other")
+        merge_files(mine, tmp_path / "other")
     assert events(mine) == before
 
 
@@ -274,12 +274,12 @@ def test_on_a_disk_without_room_all_of_a_merge_is_written_or_nothing(mine: Path,
     for room in range(0, 80_000, 4_000):
         with largest_file(room):
             try:
-                bring(mine, theirs)
+                merge_files(mine, theirs)
             except KnowledgeError:
                 failed += 1
         assert len(events(mine)) in (len(before), len(before) + 37)
     assert failed
-    bring(mine, theirs)
+    merge_files(mine, theirs)
     assert the_same(mine, theirs)
 
 
@@ -287,31 +287,31 @@ def both_taught(mine: Path, theirs: Path) -> None:
     """One lesson in each since they parted, so that what comes here has another number there; then merged there."""
     append(mine, at(4, FAR, "left", "mine-4"))
     append(theirs, at(4, -FAR, "right", "theirs-4"))
-    bring(theirs, mine)
+    merge_files(theirs, mine)
     assert actions(theirs) == {1: "forward", 2: "forward", 3: "forward", 4: "right", 5: "left"}
 
 
 def test_what_was_undone_here_after_they_took_it_does_not_come_back_from_there(mine: Path, theirs: Path) -> None:
     both_taught(mine, theirs)
     append(mine, undone("mine-4"))
-    merged = bring(mine, theirs)
+    merged = merge_files(mine, theirs)
     assert (merged.lessons, merged.redone, merged.conflicts) == (1, 0, ())
     assert actions(mine) == {1: "forward", 2: "forward", 3: "forward", 5: "right"}
-    bring(theirs, mine)
+    merge_files(theirs, mine)
     assert the_same(mine, theirs)
 
 
 def test_what_they_took_and_undid_is_undone_here(mine: Path, theirs: Path) -> None:
     both_taught(mine, theirs)
     append(theirs, undone("mine-4"))
-    assert bring(mine, theirs).undone == 1
+    assert merge_files(mine, theirs).undone == 1
     assert the_same(mine, theirs)
 
 
 def test_what_they_took_and_corrected_is_corrected_here_without_a_conflict(mine: Path, theirs: Path) -> None:
     both_taught(mine, theirs)
     append(theirs, replaced(5, "back", "left"))
-    assert bring(mine, theirs).conflicts == ()
+    assert merge_files(mine, theirs).conflicts == ()
     assert actions(mine)[4] == "back"
     assert the_same(mine, theirs)
 
@@ -323,10 +323,10 @@ def test_what_came_by_way_of_a_third_file_and_was_undone_here_is_a_conflict(
     branch(mine, third, None, stamp=STAMP)
     append(mine, at(4, FAR, "left", "mine-4"))
     append(theirs, at(4, -FAR, "right", "theirs-4"))
-    bring(third, mine)
-    bring(theirs, third)
+    merge_files(third, mine)
+    merge_files(theirs, third)
     append(mine, undone("mine-4"))
-    (conflict,) = bring(mine, theirs).conflicts
+    (conflict,) = merge_files(mine, theirs).conflicts
     assert (conflict.mine, conflict.theirs) == ("RLA 4 is gone", "RLA 5 says left")
     assert 4 not in actions(mine)
 
@@ -338,12 +338,12 @@ def test_where_each_was_merged_into_an_older_other_a_change_of_both_is_a_conflic
     append(theirs, at(4, -FAR, "right", "theirs-4"))
     older = tmp_path / "older" / "branch.knowledge"
     branch(theirs, older, None, stamp=STAMP)
-    bring(theirs, mine)
-    bring(mine, older)
+    merge_files(theirs, mine)
+    merge_files(mine, older)
     assert the_same(mine, theirs)
     append(theirs, undone("mine-4"))
     append(mine, replaced(4, "back", "left"))
-    assert len(bring(mine, theirs).conflicts) == 1
+    assert len(merge_files(mine, theirs).conflicts) == 1
 
 
 def test_praise_comes_also_where_an_older_one_was_undone(mine: Path, tmp_path: Path) -> None:
@@ -351,7 +351,7 @@ def test_praise_comes_also_where_an_older_one_was_undone(mine: Path, tmp_path: P
     branch(mine, tmp_path / "new", None, stamp=STAMP)
     append(mine, undone("old"))
     append(tmp_path / "new", rewarded(1, -1, "blame"))
-    bring(mine, tmp_path / "new")
+    merge_files(mine, tmp_path / "new")
     assert folded(mine).appraisal(1) == (0, 1)
 
 
@@ -361,10 +361,10 @@ def test_praise_that_was_taken_back_there_is_taken_back_here_from_under_a_newer_
     branch(mine, theirs, None, stamp=STAMP)
     append(mine, rewarded(1, -1, "blame"))
     append(theirs, undone("old"))
-    merged = bring(mine, theirs)
+    merged = merge_files(mine, theirs)
     assert (merged.lessons, merged.undone, merged.redone) == (0, 1, 0)
     assert folded(mine).appraisal(1) == (0, 1)
-    bring(theirs, mine)
+    merge_files(theirs, mine)
     assert the_same(mine, theirs)
 
 
@@ -374,16 +374,16 @@ def test_praise_under_a_correction_of_mine_stays_and_that_is_told(mine: Path, tm
     branch(mine, theirs, None, stamp=STAMP)
     append(mine, replaced(1, "left", "forward"))
     append(theirs, undone("old"))
-    (told,) = bring(mine, theirs).left_out
+    (told,) = merge_files(mine, theirs).left_out
     assert told == "RLA 1 rewarded by Hertha was taken back there, and stays under what came here since"
-    assert bring(mine, theirs).left_out == ()
+    assert merge_files(mine, theirs).left_out == ()
 
 
 def test_blame_of_the_old_action_is_not_put_on_the_corrected_one(mine: Path, theirs: Path) -> None:
     append(mine, replaced(1, "left", "forward"))
     of_another = RlaRewarded(2, -1, 390, origin("of-2"), (Credit(2, -0.5), Credit(1, -0.25)))
     append(theirs, rewarded(1, -1, "of-1"), of_another)
-    merged = bring(mine, theirs)
+    merged = merge_files(mine, theirs)
     assert merged.left_out == ("RLA 1 punished there by Hertha for forward; it is RLA 1 here and says left",)
     system = folded(mine)
     assert (system.appraisal(1), system.appraisal(2)) == ((0, 0), (0, 1))
@@ -391,17 +391,17 @@ def test_blame_of_the_old_action_is_not_put_on_the_corrected_one(mine: Path, the
     assert record is not None
     assert isinstance(record.event, RlaRewarded)
     assert record.event.credits == (Credit(2, -0.5),)
-    assert bring(mine, theirs).left_out == ()
+    assert merge_files(mine, theirs).left_out == ()
 
 
 def test_praise_here_of_what_was_taken_back_there_is_a_conflict(mine: Path, theirs: Path) -> None:
     append(theirs, replaced(1, "left", "forward"))
-    bring(mine, theirs)
+    merge_files(mine, theirs)
     append(mine, rewarded(1, 1, "praise"))
     append(theirs, undone("replace-1-left"))
-    (conflict,) = bring(mine, theirs).conflicts
+    (conflict,) = merge_files(mine, theirs).conflicts
     assert conflict.code is ConflictCode.REWARDED_HERE
-    bring(mine, theirs, "theirs")
+    merge_files(mine, theirs, "theirs")
     assert (actions(mine)[1], folded(mine).appraisal(1)) == ("forward", (0, 0))
 
 
@@ -414,24 +414,24 @@ def test_a_plan_and_a_refused_merge_leave_the_file_as_it_is_and_a_plan_needs_no_
         journal.append([JournalEntry(replaced(1, "left", "forward"), STAMP)])
     whole = mine.read_bytes()
     with Journal.open(mine, BINDING):
-        assert bring(mine, theirs, dry_run=True).lessons == 1
+        assert merge_files(mine, theirs, dry_run=True).lessons == 1
     assert mine.read_bytes() == whole
     append(mine, replaced(1, "right", "forward"))
     whole = mine.read_bytes()
-    assert len(bring(mine, theirs).conflicts) == 1
+    assert len(merge_files(mine, theirs).conflicts) == 1
     assert mine.read_bytes() == whole
 
 
 def test_a_lesson_that_cannot_stand_again_comes_as_a_new_one(mine: Path, theirs: Path) -> None:
     append(mine, rewarded(1, 1, "praise"))
     append(theirs, replaced(1, "left", "forward"))
-    bring(mine, theirs)
+    merge_files(mine, theirs)
     append(mine, undone("replace-1-left"), undone("praise"))
     append(theirs, replaced(1, "right", "left"))
-    assert len(bring(mine, theirs).conflicts) == 1
-    bring(mine, theirs, "theirs")
+    assert len(merge_files(mine, theirs).conflicts) == 1
+    merge_files(mine, theirs, "theirs")
     assert actions(mine)[1] == "right"
-    bring(theirs, mine)
+    merge_files(theirs, mine)
     assert the_same(mine, theirs)
 
 
@@ -440,8 +440,8 @@ def test_lessons_and_sessions_of_the_same_ids_are_there_once_each_when_merged_bo
 ) -> None:
     append(mine, at(4, FAR, "left", "same"), *session(100))
     append(theirs, at(4, -FAR, "right", "same"), *session(20))
-    bring(mine, theirs)
-    bring(theirs, mine)
+    merge_files(mine, theirs)
+    merge_files(theirs, mine)
     assert the_same(mine, theirs)
     for path in (mine, theirs):
         assert sorted(actions(path).values()) == ["forward", "forward", "forward", "left", "right"]
@@ -495,9 +495,9 @@ def test_whatever_was_taught_a_merge_fits_once_and_then_there_is_nothing_to_do(
     teach(mine, "mine", here)
     teach(theirs, "theirs", there)
     unchanged = events(theirs)
-    bring(mine, theirs, prefer)
+    merge_files(mine, theirs, prefer)
     folded(mine)
     once = events(mine)
-    assert bring(mine, theirs).entries == ()
+    assert merge_files(mine, theirs).entries == ()
     assert events(mine) == once
     assert events(theirs) == unchanged

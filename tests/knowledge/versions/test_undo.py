@@ -16,7 +16,7 @@ from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.versions.undo import carry_out, plan_redo, plan_undo
+from kurt2rt.knowledge.versions.undo import apply_plan, plan_redo, plan_undo
 from tests.core.reinforcement.helpers import SIGNALS_ONLY, Track
 from tests.core.rla.helpers import created as known_at
 from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, origin, replaced, rewarded
@@ -31,20 +31,20 @@ def rlas(path: Path) -> tuple[Rla, ...]:
 
 def undo(path: Path, lesson: str | None = None) -> LessonRecord:
     planned = plan_undo(path, lesson, teacher="command line")
-    carry_out(planned, STAMP)
+    apply_plan(planned, STAMP)
     (record,) = planned.lessons
     return record
 
 
 def undo_all_of(path: Path, of: str) -> tuple[LessonRecord, ...]:
     planned = plan_undo(path, of=of, teacher="command line")
-    carry_out(planned, STAMP)
+    apply_plan(planned, STAMP)
     return planned.lessons
 
 
 def redo(path: Path, lesson: str | None = None) -> LessonRecord:
     planned = plan_redo(path, lesson, teacher="command line")
-    carry_out(planned, STAMP)
+    apply_plan(planned, STAMP)
     (record,) = planned.lessons
     return record
 
@@ -103,16 +103,16 @@ def test_what_was_planned_is_made_as_it_was_planned_or_not_at_all(path: Path) ->
     assert [record.event for record in planned.lessons] == [created(2)]
     with Journal.open(path, BINDING) as journal:
         journal.append([JournalEntry(created(3), STAMP)])
-    carry_out(planned, STAMP)  # not the lesson that came meanwhile
+    apply_plan(planned, STAMP)  # not the lesson that came meanwhile
     assert rlas(path) == (created(1).rla, created(3).rla)
     with pytest.raises(KnowledgeError, match=f"^{path}: nothing was changed: lesson 'create-2' was undone already"):
-        carry_out(planned, STAMP)
+        apply_plan(planned, STAMP)
     assert rlas(path) == (created(1).rla, created(3).rla)
 
 
 def redo_all_of(path: Path, of: str) -> tuple[tuple[LessonRecord, ...], tuple[str, ...]]:
     planned = plan_redo(path, of=of, teacher="command line")
-    carry_out(planned, STAMP)
+    apply_plan(planned, STAMP)
     return planned.lessons, planned.stay
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from hal.simulation import SimulatedWorld
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.knowledge.exchange.attachments import attachments_of, fingerprints_of
+from kurt2rt.knowledge.exchange.attachments import collect_attachments, hash_attachments
 from kurt2rt.runs.recording.disk import Disk
 from kurt2rt.runs.recording.live_view import LiveView
 from kurt2rt.runs.recording.recorder import RunRecorder, open_run_recorder
@@ -15,7 +15,7 @@ from tests.channel.desk import ROBOT, TASK, Desk
 
 BEGAN_AT_NS = 1_795_318_200_000_000_000
 NAME = "20261122T031005Z-wall_following"
-ATTACHMENTS = attachments_of(ROBOT, TASK)
+ATTACHMENTS = collect_attachments(ROBOT, TASK)
 HEAD = RunHead(
     kurt2rt="0.1.0",
     boot="626f6f74",
@@ -28,7 +28,7 @@ HEAD = RunHead(
     asked=True,
     stopped="",
     behaviour="",
-    fingerprints=fingerprints_of(ATTACHMENTS),
+    fingerprints=hash_attachments(ATTACHMENTS),
 )
 
 

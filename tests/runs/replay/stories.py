@@ -40,7 +40,7 @@ from kurt2rt.core.teaching.system_events import PairingRenewed
 from kurt2rt.core.tick import InMemoryEventStore, TickRecord
 from kurt2rt.experiments.navigation.guided_tour import HOME, TourGuide
 from kurt2rt.experiments.navigation.lesson import errands_of
-from kurt2rt.knowledge.exchange.attachments import attachments_of, fingerprints_of
+from kurt2rt.knowledge.exchange.attachments import collect_attachments, hash_attachments
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runs.recording.recorder import RunRecorder, open_run_recorder
 from kurt2rt.runs.recording.run_files import budget_of
@@ -184,7 +184,7 @@ def record_story(
     simulation = Kurt2Simulation(settings, task.teaching.world, 3, f"story {name}")
     notebook = InMemoryEventStore()
     clock = LockstepClock(simulation.step)
-    attachments = attachments_of(settings, task)
+    attachments = collect_attachments(settings, task)
     head = RunHead(
         kurt2rt="story",
         boot="00",
@@ -197,7 +197,7 @@ def record_story(
         asked=True,
         stopped=stop_text(told.stopped),
         behaviour=task.behaviours[0],
-        fingerprints=fingerprints_of(attachments),
+        fingerprints=hash_attachments(attachments),
     )
     wanted = ActiveBehaviour(task.behaviours)
     runtime = build_runtime(

@@ -27,7 +27,7 @@ from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.versions.undo import carry_out, plan_redo, plan_undo
+from kurt2rt.knowledge.versions.undo import apply_plan, plan_redo, plan_undo
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.recover import _copy as copy_records
 from kurt2rt.runs.recording.run_head import RUN_METADATA
@@ -129,7 +129,7 @@ def test_what_no_decision_needs_is_deleted_and_every_decision_comes_out_the_same
 
     again = compacted(knowledge, recordings)
     assert (again.deleted, again.kept) == ((), done.kept)
-    carry_out(plan_undo(knowledge, of=TEACHER, teacher="command line"), STAMP)
+    apply_plan(plan_undo(knowledge, of=TEACHER, teacher="command line"), STAMP)
     assert folded(knowledge).rlas == before.rlas
 
 
@@ -197,7 +197,7 @@ def test_an_undo_is_tried_before_it_is_made(knowledge: Path, recordings: Path, l
     with pytest.raises(KnowledgeError, match="there is no lesson 'far-9'"):
         plan_undo(knowledge, "far-9", teacher="Ann")
 
-    carry_out(planned, STAMP)
+    apply_plan(planned, STAMP)
     (back,) = preview(plan_redo(knowledge, of=first.origin.teacher, teacher="Ann"), recordings, quietly).runs
     assert (back.found.would_ask, back.found.would_drive) == (0, tried.found.would_ask)
 

@@ -14,7 +14,7 @@ from kurt2rt.channel.security.pairing import Pairing, pair
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import Phase
-from kurt2rt.knowledge.exchange.package import read_given
+from kurt2rt.knowledge.exchange.package import read_package
 from kurt2rt.service.post_tick import ProgramConsole
 from kurt2rt.service.serve import ChannelOptions, serve
 from kurt2rt.teacher import TeacherClient
@@ -116,7 +116,7 @@ async def test_copies_come_over_a_bad_link_whole(tmp_path: Path) -> None:
                 assert content == (tmp_path / folder / made.extra["name"]).read_bytes()
             with pytest.raises(RefusedError, match="no copy of this run"):
                 await anext(robot.file_parts("knowledge.sqlite"))
-    given = read_given(tmp_path / "exported" / str(made.extra["name"]))
+    given = read_package(tmp_path / "exported" / str(made.extra["name"]))
     assert len(given.lessons) == 1
 
 
