@@ -12,9 +12,9 @@ from hal.bus import BusError
 from hal.errors import UserError
 from kurt2rt.channel.protocol.schema import ChannelError
 from kurt2rt.channel.security.context_folder import CredentialsError
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.durable_files import make_private_folder
+from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.service.systemd.notifier import Notifier
 
 AGAIN_S = 1.0

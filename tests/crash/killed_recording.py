@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_folder import runs_in, segments_in
 from kurt2rt.runs.replay.comparison import compare
 from kurt2rt.runs.replay.reader import read_run

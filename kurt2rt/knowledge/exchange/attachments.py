@@ -15,7 +15,7 @@ from kurt2rt.core.rla.expectation import Expectation
 from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.knowledge.exchange.json_checks import number_of, text_of, whole_of
+from kurt2rt.knowledge.exchange.json_checks import require_int, require_number, require_text
 from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.journal.event_codec import decode_event, encode_event
 from kurt2rt.knowledge.journal.journal import Journal
@@ -70,7 +70,7 @@ def decode_lessons(data: bytes) -> list[KnownLesson]:
         for number, line in enumerate(data.decode().splitlines(), start=1):
             content = json.loads(line)
             event = decode_event(json.dumps(content["event"]), f"{KNOWLEDGE}: line {number}")
-            lessons.append(KnownLesson(event, text_of(content["stamped_at"])))
+            lessons.append(KnownLesson(event, require_text(content["stamped_at"])))
     except (KnowledgeError, ValueError, KeyError, TypeError, RecursionError) as error:
         raise ValueError(f"{KNOWLEDGE} cannot be read: {error}") from error
     return lessons
@@ -98,17 +98,17 @@ def decode_statistics(data: bytes) -> Statistics:
     try:
         content: dict[str, Any] = json.loads(data)
         return Statistics(
-            {whole_of(rla_id): whole_of(count) for rla_id, count in content["uses"]},
-            {(whole_of(before), whole_of(after)): whole_of(count) for before, after, count in content["transitions"]},
-            {whole_of(rla_id): number_of(value) for rla_id, value in content["values"]},
+            {require_int(rla_id): require_int(count) for rla_id, count in content["uses"]},
+            {(require_int(before), require_int(after)): require_int(count) for before, after, count in content["transitions"]},
+            {require_int(rla_id): require_number(value) for rla_id, value in content["values"]},
             {
-                (whole_of(before), whole_of(after)): number_of(weight)
+                (require_int(before), require_int(after)): require_number(weight)
                 for before, after, weight in content["edge_weights"]
             },
-            {text_of(name): number_of(value) for name, value in content["numbers"].items()},
+            {require_text(name): require_number(value) for name, value in content["numbers"].items()},
             {
-                whole_of(rla_id): Expectation(
-                    text_of(lesson), whole_of(count, 1), number_of(ticks), _packed(mean), _packed(squares)
+                require_int(rla_id): Expectation(
+                    require_text(lesson), require_int(count, 1), require_number(ticks), _packed(mean), _packed(squares)
                 )
                 for rla_id, lesson, count, ticks, mean, squares in content["expectations"]
             },
@@ -178,4 +178,4 @@ def _text(packed: bytes) -> str:
 
 
 def _packed(text: object) -> bytes:
-    return base64.b64decode(text_of(text), validate=True)
+    return base64.b64decode(require_text(text), validate=True)

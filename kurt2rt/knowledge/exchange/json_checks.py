@@ -2,16 +2,10 @@
 
 import math
 
-from hal.errors import UserError
-
 _HIGHEST = 2**63 - 1
 
 
-class RecordingError(UserError):
-    """A recording cannot be made or read."""
-
-
-def text_of(value: object) -> str:
+def require_text(value: object) -> str:
     """A text. Raises ValueError."""
     if not isinstance(value, str):
         raise ValueError(f"{_shown(value)} stands where a text should")  # noqa: TRY004 - all problems are of one type
@@ -19,14 +13,14 @@ def text_of(value: object) -> str:
     return value
 
 
-def whole_of(value: object, least: int = 0) -> int:
+def require_int(value: object, least: int = 0) -> int:
     """A whole number of 63 bits. Raises ValueError."""
     if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= _HIGHEST:
         raise ValueError(f"{_shown(value)} stands where a whole number from {least} should")
     return value
 
 
-def number_of(value: object) -> float:
+def require_number(value: object) -> float:
     """A number, which may be infinite. Raises ValueError, also for NaN."""
     try:
         number = math.nan if not isinstance(value, (int, float)) or isinstance(value, bool) else float(value)

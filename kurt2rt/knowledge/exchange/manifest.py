@@ -6,10 +6,10 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
 
 from kurt2rt.core.rla.feature_set import LevelFeatures
-from kurt2rt.knowledge.exchange.json_checks import text_of
+from kurt2rt.knowledge.exchange.json_checks import require_text
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding
 
-_Text = Annotated[str, AfterValidator(text_of)]
+_Text = Annotated[str, AfterValidator(require_text)]
 
 
 class _Features(BaseModel):

@@ -15,10 +15,10 @@ from kurt2rt.core.rla.rla import (
     TeachingEvent,
 )
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.runs.explain.collect import facts_of
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, tips
 from kurt2rt.runs.explain.facts import DecisionFacts
+from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.replay.comparison import TickDifference, compare
 from kurt2rt.runs.replay.replay import Replay
 from kurt2rt.runs.replay.run import Run

@@ -7,7 +7,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.teaching.system_events import Input, PairingRenewed, RobotRepositioned, SystemEvent
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.runs.recording.recording_error import RecordingError
 
 _NAMES: dict[type[Any], str] = {
     **{kind: kind.__name__ for kind in (*get_args(Command), *get_args(SystemEvent))},

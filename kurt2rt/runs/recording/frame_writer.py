@@ -6,8 +6,8 @@ from typing import Protocol
 
 import can
 
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.platform.yield_gil import politely
+from kurt2rt.runs.recording.recording_error import RecordingError
 
 ENDINGS = (".log", ".asc", ".blf", ".csv", ".trc", ".mf4")
 """File formats, by ending: candump, Vector ASC and BLF, table, PEAK trace, ASAM MF4. Not python-can's SQLite, whose

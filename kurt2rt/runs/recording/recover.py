@@ -6,7 +6,7 @@ from typing import BinaryIO
 from mcap.records import Attachment, Channel, Header, Message, Metadata, Schema
 from mcap.writer import Writer
 
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.segment_reader import SegmentReader
 
 TORN_METADATA = "kurt2rt.torn"

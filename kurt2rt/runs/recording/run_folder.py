@@ -5,8 +5,8 @@ import re
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.runs.recording.disk import is_held
+from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.segment_reader import TICK_TOPIC, SegmentReader
 
 SEGMENT_ENDING = ".mcap"

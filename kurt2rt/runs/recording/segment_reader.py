@@ -11,7 +11,7 @@ from mcap.exceptions import McapError
 from mcap.records import Attachment, Channel, Chunk, McapRecord, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader, breakup_chunk
 
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.runs.recording.recording_error import RecordingError
 
 TICK_TOPIC = "/tick"
 """Topic of the ticks, of which a run is made."""

@@ -12,11 +12,11 @@ from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.rla.rla import BASIC
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.knowledge.journal.event_codec import decode_event, encode_event
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runs.recording.command_json import decode_command, encode_command
 from kurt2rt.runs.recording.entries import DecisionEntry, MatchEntry, MidEntry, OpinionEntry, ResultEntry, TickEntry
+from kurt2rt.runs.recording.recording_error import RecordingError
 
 _Value = TypeVar("_Value")
 

@@ -22,8 +22,8 @@ from kurt2rt.core.rla.rla import BASIC, MID, Rla, TeachingEvent
 from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.knowledge.journal.loading import read_knowledge
+from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.replay.run import Run
 from kurt2rt.runtime import Runtime, empty_system
 

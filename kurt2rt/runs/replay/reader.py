@@ -5,8 +5,8 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.runs.recording.entries import TickEntry
+from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_folder import segments_in
 from kurt2rt.runs.recording.run_head import RUN_METADATA, decode_head
 from kurt2rt.runs.recording.segment_reader import TICK_TOPIC, SegmentHead, SegmentReader

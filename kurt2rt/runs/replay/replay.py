@@ -10,9 +10,9 @@ from kurt2rt.core.decision.standing_text import stop_of_text
 from kurt2rt.core.rla.rla_system import InvalidEventError
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runs.recording.entries import TickEntry
+from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.replay.environment import ReplayEnvironment
 from kurt2rt.runs.replay.run import Run
 from kurt2rt.runtime import Runtime, build_runtime

@@ -22,8 +22,8 @@ from kurt2rt.knowledge.exchange.attachments import (
     decode_statistics,
     hash_attachments,
 )
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.runs.recording.entries import TickEntry
+from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_head import RunHead
 
 DecodedT = TypeVar("DecodedT")

@@ -9,10 +9,10 @@ from hal.settings import SettingsError
 from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible
 from kurt2rt.knowledge.journal.loading import binding_for
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_folder import runs_in, segments_in
 from kurt2rt.runs.replay.counterfactual_policy import CounterfactualPolicy, PolicyAnswer, PolicyAnswers
 from kurt2rt.runs.replay.reader import read_run

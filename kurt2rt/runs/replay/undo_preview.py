@@ -4,9 +4,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.knowledge.versions.editing import statistics_after
 from kurt2rt.knowledge.versions.undo import UndoPlan
+from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.replay.counterfactual import Counterfactual, counterfactual
 from kurt2rt.runs.replay.counterfactual_policy import CounterfactualPolicy
 from kurt2rt.runs.replay.run import Run

@@ -23,7 +23,7 @@ from kurt2rt.knowledge.exchange.attachments import (
     encode_statistics,
     hash_attachments,
 )
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_head import RunHead, decode_head, encode_head
 
 TASKS = sorted(path.stem for path in (CONFIG_DIR / "tasks").glob("*.yaml"))

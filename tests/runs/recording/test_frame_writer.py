@@ -5,8 +5,8 @@ from pathlib import Path
 import can
 import pytest
 
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.runs.recording.frame_writer import ENDINGS, LogFile
+from kurt2rt.runs.recording.recording_error import RecordingError
 
 FRAMES = (
     can.Message(

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.recover import TORN_METADATA, copy_whole
 from kurt2rt.runs.recording.run_folder import segments_in
 from kurt2rt.runs.recording.segment_reader import SegmentReader

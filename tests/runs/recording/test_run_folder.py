@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
+from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_folder import (
     find_run,
     later_name,

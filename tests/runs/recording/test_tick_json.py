@@ -17,9 +17,9 @@ from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.rla import LessonUndone, Origin, Phase, Rla, RlaCreated, RlaRewarded
 from kurt2rt.core.teaching.commands import Command, Seek, SetPhase
 from kurt2rt.core.teaching.system_events import SystemEvent
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.runs.recording.command_json import decode_command, encode_command
 from kurt2rt.runs.recording.entries import DecisionEntry, MatchEntry, MidEntry, OpinionEntry, ResultEntry, TickEntry
+from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.tick_json import decode_tick, encode_tick
 
 KINDS = (*get_args(Command), *get_args(SystemEvent))

@@ -18,9 +18,9 @@ from kurt2rt.core.rla.rla import (
     RlaCreated,
     TeachingEvent,
 )
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_knowledge
+from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.replay.counterfactual import Counterfactual, counterfactual
 from kurt2rt.runs.replay.counterfactual_policy import CounterfactualPolicy, answers_then, shadow_of
 from kurt2rt.runs.replay.replay import Replay, ReplayedTick

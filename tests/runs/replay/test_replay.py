@@ -15,8 +15,8 @@ from kurt2rt.core.rla.rla import BASIC, MID, Phase, RlaCreated
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Resume, Stop, Teach, Watch
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.runs.recording.entries import TickEntry
+from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_folder import segments_in
 from kurt2rt.runs.recording.run_head import RunHead
 from kurt2rt.runs.replay.comparison import compare

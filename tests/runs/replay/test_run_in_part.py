@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.knowledge.exchange.json_checks import RecordingError
 from kurt2rt.runs.explain.timeline import summary, timeline_of
 from kurt2rt.runs.recording.entries import TickEntry
+from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_folder import segments_in
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay, replay_until

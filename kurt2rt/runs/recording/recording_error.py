@@ -1,0 +1,7 @@
+"""Error of a recording that cannot be made or read."""
+
+from hal.errors import UserError
+
+
+class RecordingError(UserError):
+    """Error of a recording that cannot be made or read."""
