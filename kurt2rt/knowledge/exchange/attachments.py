@@ -99,7 +99,10 @@ def decode_statistics(data: bytes) -> Statistics:
         content: dict[str, Any] = json.loads(data)
         return Statistics(
             {require_int(rla_id): require_int(count) for rla_id, count in content["uses"]},
-            {(require_int(before), require_int(after)): require_int(count) for before, after, count in content["transitions"]},
+            {
+                (require_int(before), require_int(after)): require_int(count)
+                for before, after, count in content["transitions"]
+            },
             {require_int(rla_id): require_number(value) for rla_id, value in content["values"]},
             {
                 (require_int(before), require_int(after)): require_number(weight)
