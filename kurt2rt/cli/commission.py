@@ -31,7 +31,7 @@ from kurt2rt.checks.commission.test_stand import TestStand
 from kurt2rt.cli.options import RobotName
 from kurt2rt.platform.durable_files import write_durably
 from kurt2rt.platform.timerfd_clock import TimerfdClock
-from kurt2rt.service.shutdown import ENDING
+from kurt2rt.service.shutdown import SHUTDOWN_SIGNALS
 
 _NAMES = ", ".join(step.name for step in STEPS)
 
@@ -159,7 +159,7 @@ async def _walk(
 
 
 async def _leave_on_signal(scope: anyio.CancelScope, *, task_status: anyio.abc.TaskStatus[None]) -> None:
-    with anyio.open_signal_receiver(*ENDING) as signals:
+    with anyio.open_signal_receiver(*SHUTDOWN_SIGNALS) as signals:
         task_status.started()
         async for _ in signals:
             scope.cancel()

@@ -225,7 +225,7 @@ def run(
         behaviour=behaviour,
         page=page or phone,
         phones=phone,
-        auto=auto,
+        scripted_teacher=auto,
         page_port=page_port,
         can_log=can_log,
         record=not no_record,

@@ -9,13 +9,13 @@ from rich.console import Console
 from hal.settings import find_config
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.service.settings import load_service
-from kurt2rt.service.systemd.access import RequiredAccess, closed_to_others, to_hand_over
+from kurt2rt.service.systemd.access import RequiredAccess, paths_to_chown, private_paths
 from kurt2rt.service.systemd.install import install as install_unit
 from kurt2rt.service.systemd.install import require_free
 from kurt2rt.service.systemd.install import uninstall as uninstall_unit
-from kurt2rt.service.systemd.installation import program
-from kurt2rt.service.systemd.unit import STATE, Unit, UnitError, require_name, unit_of
-from kurt2rt.service.systemd.verify import MOST_EXPOSURE, examine
+from kurt2rt.service.systemd.installation import start_command
+from kurt2rt.service.systemd.unit import STATE, Unit, UnitError, build_unit, require_name
+from kurt2rt.service.systemd.verify import MOST_EXPOSURE, verify
 
 service = typer.Typer(
     help="Run the robot's program as a unit of systemd, which starts it with the machine and again whenever it fell.",
@@ -65,8 +65,8 @@ def check(
     """
     require_free(name)
     unit, wanted = _unit(robot, settings, name, page=page)
-    found = examine(unit)
-    wrong = (*found.complaints, *closed_to_others(wanted), *to_hand_over(name, wanted))
+    found = verify(unit)
+    wrong = (*found.complaints, *private_paths(wanted), *paths_to_chown(name, wanted))
     passed = found.passed and not wrong
     if as_json:
         told = {
@@ -106,11 +106,11 @@ def install(
         sudo systemctl enable --now kurt2rt
     """
     unit, wanted = _unit(robot, settings, name, page=page)
-    for line in closed_to_others(wanted):
+    for line in private_paths(wanted):
         raise UnitError(line)
     for path in install_unit(unit):
         typer.echo(f"{path} is written")
-    for line in to_hand_over(name, wanted):
+    for line in paths_to_chown(name, wanted):
         typer.echo(f"first of all: {line}")
     typer.echo(f"start it, now and with the machine: systemctl enable --now {name}")
 
@@ -134,7 +134,16 @@ def _unit(robot: str, settings: str, name: str, *, page: bool) -> tuple[Unit, Re
     found = find_config("runtime", settings)
     loaded = load_service(settings)
     named = settings if found.stem == settings else str(found.absolute())
-    command = (*program(), "run", "--service", "--robot", robot, "--settings", named, *(("--page",) if page else ()))
+    command = (
+        *start_command(),
+        "run",
+        "--service",
+        "--robot",
+        robot,
+        "--settings",
+        named,
+        *(("--page",) if page else ()),
+    )
     state = STATE / name
     files = [found.absolute(), _as_the_service_finds("robot", loaded.robot, state)]
     files.append(_as_the_service_finds("task", loaded.task, state))
@@ -143,7 +152,7 @@ def _unit(robot: str, settings: str, name: str, *, page: bool) -> tuple[Unit, Re
         tuple(each for each in files if not each.is_relative_to(state)),
         tuple(each for each in sorted(set(folders)) if each.is_absolute() and not each.is_relative_to(state)),
     )
-    return unit_of(name, robot, command, wanted.folders), wanted
+    return build_unit(name, robot, command, wanted.folders), wanted
 
 
 def _as_the_service_finds(key: str, given: str, state: Path) -> Path:

@@ -16,7 +16,7 @@ from hal.robot_settings import load_robot
 from hal.settings import SettingsError
 from kurt2rt.cli.options import RobotName, world_option
 from kurt2rt.platform.signal_handlers import SignalHandlers
-from kurt2rt.platform.switch_interval import short_turns
+from kurt2rt.platform.switch_interval import short_switch_interval
 from kurt2rt.service.console_thread import ConsoleThread
 
 _ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -100,11 +100,11 @@ def sim(
         printer = ending.enter_context(ConsoleThread())
 
         def say(text: str) -> None:
-            printer.put(lambda: tell(text))
+            printer.submit(lambda: tell(text))
 
         standalone = StandaloneRobot(settings, ground_plan, open_bus(bus), seed, start=start)
         say(f"a simulated {settings.name} in world {world} is on bus {bus}; type help, Ctrl-C switches it off")
-        ending.enter_context(short_turns())
+        ending.enter_context(short_switch_interval())
         ending.enter_context(standalone)
         simulation = standalone.simulation
         desk = SimConsole(

@@ -114,7 +114,7 @@ def _first_ctrl_c(end: Callable[[], None]) -> SignalHandlers:
     """Who hears the first one; the second one does what it did before."""
 
     def hear(_number: int, _frame: FrameType | None) -> None:
-        hearing.give_back()
+        hearing.restore()
         end()
 
     hearing = SignalHandlers({signal.SIGINT: hear})

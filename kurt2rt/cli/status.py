@@ -20,7 +20,7 @@ from kurt2rt.channel.security.pairing import Device, read_device
 from kurt2rt.cli.options import task_option
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.platform.text_table import TextTable, print_whole
-from kurt2rt.service.health.status_socket import StatusError, reports_at, socket_of
+from kurt2rt.service.health.status_socket import StatusError, read_reports, status_socket_path
 from kurt2rt.service.settings import load_service
 from kurt2rt.teacher.client.answer import NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
@@ -84,7 +84,7 @@ def status(
         if task is not None:
             beside = beside.with_name(f"{load_task(task).name}.knowledge")
         _require_name(knowledge)
-        reports = reports_at(socket_of(knowledge or beside), _PATIENCE_S)
+        reports = read_reports(status_socket_path(knowledge or beside), _PATIENCE_S)
     newest = _show(reports, watch=watch, json=json)
     if newest.urgent:
         raise typer.Exit(1)

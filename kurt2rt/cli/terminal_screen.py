@@ -10,7 +10,15 @@ from hal.health import Health
 from kurt2rt.cli.browser import has_desktop, open_link
 from kurt2rt.cli.live_screen import LiveScreen
 from kurt2rt.service.post_tick import ProgramStatus
-from kurt2rt.service.status_line import alarms, doing, guarded, numbers, status_line, timed_doing, troubles
+from kurt2rt.service.status_line import (
+    format_activity,
+    format_alarms,
+    format_guard,
+    format_numbers,
+    format_problems,
+    format_timed_activity,
+    status_line,
+)
 from kurt2rt.teacher.page.served_pages import NO_PAGES, PageAddress, ServedPages, of_line
 
 _LEVELS = {"red": "<3>", "yellow": "<5>"}
@@ -47,7 +55,7 @@ class TerminalScreen:
         """Links to the teacher's page, with their tokens."""
         return tuple(each.link for each in self._pages.addresses)
 
-    def tell(self, text: str, style: str | None = None) -> None:
+    def print_line(self, text: str, style: str | None = None) -> None:
         """Print a line. `style`: red for an error, yellow for a warning, another colour of rich, or None."""
         if self._live is not None:
             self._live.print(text, style)
@@ -55,33 +63,33 @@ class TerminalScreen:
         level = _LEVELS.get(style or "", "") if self._to_journal else ""
         self._console.print(f"{level}{text}", style=style, markup=False, highlight=False, soft_wrap=True)
 
-    def taught(self, text: str) -> None:
+    def lesson_saved(self, text: str) -> None:
         """Tell that a lesson is durable, in words; on a live terminal only."""
         if self._live is not None:
-            self.tell(text, "green")
+            self.print_line(text, "green")
 
-    def show(self, status: ProgramStatus, health: Health, trouble: str) -> None:
+    def show_status(self, status: ProgramStatus, health: Health, trouble: str) -> None:
         """Show the status. `trouble`: of simulator and CAN log; empty where neither has any."""
         more = [trouble] if trouble else []
         if self._live is not None:
-            wrong = [*alarms(status, health), *more]
-            behind = " | ".join(each.strip() for each in (*numbers(status), *guarded(status)))
-            self._live.show(timed_doing(status), behind, wrong)
-            held = [doing(status)] if status.record.grant.latched else []
+            wrong = [*format_alarms(status, health), *more]
+            behind = " | ".join(each.strip() for each in (*format_numbers(status), *format_guard(status)))
+            self._live.show(format_timed_activity(status), behind, wrong)
+            held = [format_activity(status)] if status.record.grant.latched else []
             self._tell_alarm(" | ".join([*held, *wrong]), "yellow")
         elif self._as_service:
             # A log is read by the day: what changes stands there, the rest is the unit's status.
-            stands = [doing(status)] if status.runtime.school.stopped else []
-            told = " | ".join([*stands, *troubles(status, health), *more])
+            stands = [format_activity(status)] if status.runtime.school.stopped else []
+            told = " | ".join([*stands, *format_problems(status, health), *more])
             self._tell_alarm(told, None if stands else "red")
         else:
-            self.tell(status_line(status, health, trouble))
+            self.print_line(status_line(status, health, trouble))
 
     def page_line(self, line: str) -> None:
         """Take a line that the page's program printed: the pages it serves, or a message."""
         pages = of_line(line)
         if pages is None:
-            self.tell(line, "yellow")
+            self.print_line(line, "yellow")
         else:
             self._pin(pages)
 
@@ -100,21 +108,21 @@ class TerminalScreen:
             return
         for each in pages.addresses:
             if each not in before.addresses:
-                self.tell(f"page for {each.device}:")
-                self.tell(each.link)
+                self.print_line(f"page for {each.device}:")
+                self.print_line(each.link)
         if pages.trouble and pages.trouble != before.trouble:
-            self.tell(pages.trouble, "yellow")
+            self.print_line(pages.trouble, "yellow")
 
     def _open_browser(self, page: PageAddress) -> None:
         try:
             open_link(page.link, self._devices / page.device)
         except OSError as error:
-            self.tell(f"the browser was not opened ({error}); open {page.link}", "yellow")
+            self.print_line(f"the browser was not opened ({error}); open {page.link}", "yellow")
 
     def _tell_alarm(self, told: str, style: str | None) -> None:
         """Tell what is wrong if it changed in more than its numbers. `style`: unless nothing is wrong."""
         if _without_numbers(told) != _without_numbers(self._alarm):
-            self.tell(told or "nothing is wrong any more", style if told else None)
+            self.print_line(told or "nothing is wrong any more", style if told else None)
         self._alarm = told
 
 

@@ -150,7 +150,7 @@ class Tick:
 
     def run(self, tick: int, now_s: float) -> TickRecord:
         """One tick at `now_s` of the runtime's clock."""
-        mark = self._ledger.mark
+        mark = self._ledger.lap
         self._run += 1
         if self._tolerates_stalls and self._last_tick is not None and tick > self._last_tick + 1:
             self._school.authority.pause(tick - self._last_tick - 1)

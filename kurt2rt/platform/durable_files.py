@@ -5,7 +5,7 @@ import shutil
 from pathlib import Path
 
 
-def sync_folder(folder: Path) -> None:
+def fsync_folder(folder: Path) -> None:
     """Make the names in a folder durable: what was made, renamed or deleted in it. Raises OSError."""
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
@@ -30,7 +30,7 @@ def make_private_folder(folder: Path) -> list[Path]:
 def make_folder(folder: Path) -> None:
     """Make a folder that outlives a power cut, as `make_private_folder` does. Raises OSError."""
     for each in make_private_folder(folder):
-        sync_folder(each.parent)
+        fsync_folder(each.parent)
 
 
 def free_bytes(path: Path) -> int:
@@ -39,7 +39,7 @@ def free_bytes(path: Path) -> int:
     return shutil.disk_usage(next(each for each in (path, *path.parents) if each.exists())).free
 
 
-def sync_file(path: Path) -> None:
+def fsync_file(path: Path) -> None:
     """Make durable what any program wrote to a file. Raises OSError."""
     descriptor = os.open(path, os.O_RDWR)
     try:
@@ -57,4 +57,4 @@ def write_durably(path: Path, text: str) -> None:
         file.flush()
         os.fsync(file.fileno())
     fresh.replace(path)
-    sync_folder(path.parent)
+    fsync_folder(path.parent)

@@ -7,7 +7,7 @@ from typing import BinaryIO
 _PAGE_BYTES = 4096
 
 
-def sync_ns(file: BinaryIO) -> int:
+def fsync_ns(file: BinaryIO) -> int:
     """Nanoseconds until one more page of an unbuffered file is durable."""
     file.write(bytes(_PAGE_BYTES))
     begun_ns = time.perf_counter_ns()

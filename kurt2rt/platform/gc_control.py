@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def quiet_gc() -> Iterator[None]:
+def gc_frozen() -> Iterator[None]:
     """Collect now, then not again until the end; what exists is set aside until then, so that no collection walks it.
 
     Reference counting goes on: only cycles wait.
@@ -25,9 +25,9 @@ def quiet_gc() -> Iterator[None]:
             gc.enable()
 
 
-def sweep() -> None:
+def collect_young() -> None:
     """Collect the cycles among what was made lately; a fraction of a millisecond, for between two ticks.
 
-    Network libraries leave cycles behind with each message. What was set aside by `quiet_gc` is not walked.
+    Network libraries leave cycles behind with each message. What was set aside by `gc_frozen` is not walked.
     """
     gc.collect(1)

@@ -29,7 +29,7 @@ class Percentiles:
     worst_us: float
 
 
-def share_of(took_ns: Sequence[int] | np.ndarray[tuple[int, ...], np.dtype[np.int64]]) -> Percentiles:
+def percentiles_of(took_ns: Sequence[int] | np.ndarray[tuple[int, ...], np.dtype[np.int64]]) -> Percentiles:
     """Median, p99 and worst of times in nanoseconds; zeros where there are none."""
     if len(took_ns) == 0:
         return Percentiles(0.0, 0.0, 0.0)
@@ -54,7 +54,7 @@ class TickTimer:
         self._lateness[self._row] = int(lateness_s * 1e9)
         self._last_ns = time.perf_counter_ns()
 
-    def mark(self, stage: Stage) -> None:
+    def lap(self, stage: Stage) -> None:
         """`stage` has ended just now."""
         now_ns = time.perf_counter_ns()
         self._stages[stage][self._row] = now_ns - self._last_ns
@@ -81,7 +81,7 @@ class TickTimer:
         """How late the last so many ticks began, those that are kept and over."""
         kept = min(ticks, self.ticks, self._capacity)
         rows = np.arange(self.ticks - kept, self.ticks) % self._capacity
-        return share_of(np.array(self._lateness)[rows])
+        return percentiles_of(np.array(self._lateness)[rows])
 
     def _share(self, nanoseconds: np.ndarray[tuple[int, ...], np.dtype[np.int64]]) -> Percentiles:
-        return share_of(nanoseconds[: min(self.ticks, self._capacity)])
+        return percentiles_of(nanoseconds[: min(self.ticks, self._capacity)])

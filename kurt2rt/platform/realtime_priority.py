@@ -9,7 +9,7 @@ UNIT_PRIORITY: Final = 20
 """Real-time priority of a unit's loop; with 4 busy programs 36.8 % of ticks were missed without it, 0.5 % with it."""
 
 
-def take_real_time_priority(priority: int, guards: Iterable[threading.Thread] = ()) -> str:
+def set_sched_fifo(priority: int, guards: Iterable[threading.Thread] = ()) -> str:
     """Run this thread under SCHED_FIFO, with 0 as any other; says what came of it.
 
     `guards`: threads that get one more than this one. All others of the program, those too that it starts later, and

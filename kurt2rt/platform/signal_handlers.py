@@ -18,21 +18,21 @@ class SignalHandlers:
         self._before: dict[signal.Signals, signal._HANDLER] = {}
 
     def __enter__(self) -> Self:
-        self.hear()
+        self.install()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self.give_back()
+        self.restore()
 
-    def hear(self) -> None:
+    def install(self) -> None:
         """Begin to. Raises ValueError outside the main thread."""
         for number, handler in self._handlers.items():
             # None is a handler that is not Python's: it cannot be given back.
             self._before[number] = signal.signal(number, handler) or signal.SIG_DFL
 
-    def give_back(self) -> None:
+    def restore(self) -> None:
         """Hear nothing any more, from now on; also out of a handler, so that the next signal is handled as before."""
         for number, before in self._before.items():
             signal.signal(number, before)

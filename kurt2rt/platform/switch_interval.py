@@ -9,7 +9,7 @@ _TURN_S = 0.0005
 
 
 @contextmanager
-def short_turns() -> Iterator[None]:
+def short_switch_interval() -> Iterator[None]:
     """Let the interpreter change threads more often than it would."""
     before_s = sys.getswitchinterval()
     sys.setswitchinterval(_TURN_S)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import anyio.to_thread
 
 from hal.settings import SettingsError
-from kurt2rt.service.settings import ServiceSettings, while_running
+from kurt2rt.service.settings import ServiceSettings, reloaded_settings
 from kurt2rt.service.systemd.notifier import Notifier
 
 Tell = Callable[[str], None]
@@ -24,13 +24,13 @@ class ConfigReloader:
         self._read = read
         self._current = current
         self._notifier = notifier
-        self._tell = tell
-        self._asked = False
+        self._log = tell
+        self._requested = False
         self._wake: Callable[[], object] | None = None
 
-    def ask(self) -> None:
+    def request(self) -> None:
         """Read the settings soon; from any thread."""
-        self._asked = True
+        self._requested = True
         if self._wake is not None:
             self._wake()
 
@@ -41,8 +41,8 @@ class ConfigReloader:
         try:
             while True:
                 awake.clear()
-                if self._asked:
-                    self._asked = False
+                if self._requested:
+                    self._requested = False
                     await self._reload(take)
                 await awake.wait()
         finally:
@@ -51,16 +51,16 @@ class ConfigReloader:
     async def _reload(self, take: Callable[[ServiceSettings], None]) -> None:
         self._notifier.reloading(time.monotonic_ns() // 1000)
         try:
-            reloaded = while_running(self._current, await anyio.to_thread.run_sync(self._read))
+            reloaded = reloaded_settings(self._current, await anyio.to_thread.run_sync(self._read))
         except (SettingsError, OSError) as error:
-            self._tell(f"settings stay as they were: {error}")
+            self._log(f"settings stay as they were: {error}")
         else:
             self._current = reloaded.settings
             take(reloaded.settings)
-            if reloaded.taken:
-                self._tell(f"settings taken: {', '.join(reloaded.taken)}")
-            if reloaded.refused:
-                self._tell(f"settings for the next start, not for a robot that runs: {', '.join(reloaded.refused)}")
-            if not reloaded.taken and not reloaded.refused:
-                self._tell("settings are as they were")
+            if reloaded.applied:
+                self._log(f"settings taken: {', '.join(reloaded.applied)}")
+            if reloaded.postponed:
+                self._log(f"settings for the next start, not for a robot that runs: {', '.join(reloaded.postponed)}")
+            if not reloaded.applied and not reloaded.postponed:
+                self._log("settings are as they were")
         self._notifier.ready()

@@ -15,12 +15,12 @@ class ConsoleThread:
 
     def __init__(self, patience_s: Callable[[float], float] = lambda most_s: most_s) -> None:
         """`patience_s`: how long it may be waited for at the end, of what it would like."""
-        self._patience_s = patience_s
+        self._remaining_s = patience_s
         self._jobs: queue.Queue[Callable[[], None] | None] = queue.Queue(_CAPACITY)
         self._thread = threading.Thread(target=self._run, name="printer", daemon=True)
         self.dropped = 0
 
-    def put(self, job: Callable[[], None]) -> None:
+    def submit(self, job: Callable[[], None]) -> None:
         """Run `job` soon; never waits."""
         try:
             self._jobs.put_nowait(job)
@@ -35,10 +35,10 @@ class ConsoleThread:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         try:
-            self._jobs.put(None, timeout=self._patience_s(_LAST_LINES_S))
+            self._jobs.put(None, timeout=self._remaining_s(_LAST_LINES_S))
         except queue.Full:
             return  # whoever reads the terminal has stopped reading; the thread ends with the process
-        self._thread.join(timeout=self._patience_s(_LAST_LINES_S))
+        self._thread.join(timeout=self._remaining_s(_LAST_LINES_S))
 
     def _run(self) -> None:
         while (job := self._jobs.get()) is not None:

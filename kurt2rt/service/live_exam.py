@@ -28,13 +28,13 @@ class LiveExam:
         self._reading: threading.Thread | None = None
         self._lock = threading.Lock()
         self._closed = False
-        self.standing = NO_EXAM
+        self.status = NO_EXAM
         """Replaced whole by the thread that reads."""
 
     def begin(self, knowledge: Path, picture: Path) -> None:
         """Examine a copy of the knowledge, which is deleted at the end. Raises KnowledgeError while an exam runs."""
         with self._lock:
-            if self._closed or self.standing.running:
+            if self._closed or self.status.running:
                 knowledge.unlink(missing_ok=True)
                 raise KnowledgeError("an exam is under way", do="wait for its end")
             try:
@@ -47,7 +47,7 @@ class LiveExam:
             except OSError as error:
                 knowledge.unlink(missing_ok=True)
                 raise KnowledgeError(f"the exam cannot be started ({error})", do="install kurt2rt whole") from error
-            self.standing = ExamStatus(True, 0.0, "the exam begins")
+            self.status = ExamStatus(True, 0.0, "the exam begins")
             self._reading = threading.Thread(
                 target=self._read, args=(self._process, knowledge, picture), name="exam", daemon=True
             )
@@ -80,7 +80,7 @@ class LiveExam:
                 with suppress(WireError, ValueError):  # what a library prints between is no news of the exam
                     told = EXAM.read(json.loads(line))
                     if told.running:
-                        self.standing = told
+                        self.status = told
                     else:
                         verdict = told
             code = process.wait()
@@ -91,8 +91,8 @@ class LiveExam:
         # At once with its picture: pages do not ask again once the exam is over.
         if verdict is None:
             trouble = f"the exam ended without a verdict (code {code}); examine again"
-            self.standing = replace(self.standing, running=False, trouble=trouble)
+            self.status = replace(self.status, running=False, trouble=trouble)
         elif verdict.trouble:
-            self.standing = verdict
+            self.status = verdict
         else:
-            self.standing = replace(verdict, picture=picture.name if picture.is_file() else "")
+            self.status = replace(verdict, picture=picture.name if picture.is_file() else "")

@@ -39,7 +39,7 @@ class LiveMeasure:
         """Unit of `progress`: laps, rounds, eights, m."""
         return self._course.unit
 
-    def follow(self, record: TickRecord) -> None:
+    def on_tick(self, record: TickRecord) -> None:
         """Look at the robot, once in a few ticks; call it after each tick."""
         if any(isinstance(each, RobotRepositioned) for each in record.commands):
             self._course.put(self._simulation.pose)

@@ -17,10 +17,10 @@ class OpenedRobot(NamedTuple):
     """A robot, and the ground it stands on where that is simulated."""
 
     robot: Kurt2
-    ground: SimulatedWorld | None
-    lives: Callable[[], bool]
+    simulated_world: SimulatedWorld | None
+    is_alive: Callable[[], bool]
     """Whether the simulator still runs; always so where there is none."""
-    world: HeldWorld | None = None
+    held_world: HeldWorld | None = None
     """Of a simulated robot whose time may pass faster than real time."""
     simulation: Simulation | None = None
     """The simulated robot seen from above, for measures."""
@@ -28,7 +28,7 @@ class OpenedRobot(NamedTuple):
     """Raises SettingsError unless the simulator can load the world of that name; None for a real robot."""
 
 
-class Opening(Protocol):
+class RobotOpener(Protocol):
     """Gives a robot for as long as it is needed; `open_robot` is one."""
 
     def __call__(

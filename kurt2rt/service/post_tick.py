@@ -13,14 +13,14 @@ from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.teaching.question import MidQuestion, Question, ask, ask_the_way
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
-from kurt2rt.platform.gc_control import sweep
+from kurt2rt.platform.gc_control import collect_young
 from kurt2rt.runs.recording.recorder import RunRecorder
 from kurt2rt.runs.recording.run_files import budget_of
 from kurt2rt.runtime import Runtime
 from kurt2rt.service.health.monitor import HealthMonitor
 from kurt2rt.service.settings import ServiceSettings
 
-Watcher = Callable[[TickRecord], Command | None]
+TickCallback = Callable[[TickRecord], Command | None]
 """Sees each tick's record and may answer with a command, inside the robot's own program."""
 
 
@@ -46,7 +46,7 @@ class ProgramConsole:
     """Once per status period."""
     question: Callable[[Question | MidQuestion], None]
     """When the robot begins to ask, at most once a second: at the border of R it asks for moments at a time."""
-    settled: Callable[[Acknowledgement], None]
+    acknowledged: Callable[[Acknowledgement], None]
     """A lesson is durable, or never can be, and why."""
     taught: Callable[[str], None] = lambda _: None
     """A lesson is durable; in words."""
@@ -62,7 +62,7 @@ class PostTick:
         stamps: dict[str, str],
         service: ServiceSettings,
         screen: ProgramConsole,
-        teacher: Watcher | None,
+        teacher: TickCallback | None,
         channel: Channel | None,
         health: HealthMonitor | None = None,
         recorder: RunRecorder | None = None,
@@ -78,7 +78,7 @@ class PostTick:
         self._recorder = recorder
         self._words = words_for(runtime.robot.infrared)
         self._ticks_per_second = round(1 / runtime.robot.can.cycle_s)
-        self._go_by(service)
+        self._set_periods(service)
         self._unsettled: dict[str, str] = {}
         """Lessons that are not durable yet, in words, by command id."""
         self._asking = False
@@ -108,7 +108,7 @@ class PostTick:
             self._recorder.note(record, saved=saves)
         self._ask(record)
         for acknowledgement in writer.acknowledged():
-            self.settled(acknowledgement)
+            self.on_acknowledged(acknowledgement)
         if saves:
             self.save_statistics()
         if ticks % (self._status_ticks * speed) == 0:
@@ -119,20 +119,20 @@ class PostTick:
             )
             self._screen.status(self.last)
         if ticks % self._ticks_per_second == 0:
-            sweep()
+            collect_young()
 
-    def take(self, service: ServiceSettings) -> None:
+    def apply_settings(self, service: ServiceSettings) -> None:
         """Go by these periods, and this budget for recordings, from now on."""
-        self._go_by(service)
+        self._set_periods(service)
         if self._recorder is not None:
             self._recorder.take(budget_of(service.recordings_mb))
 
-    def _go_by(self, service: ServiceSettings) -> None:
+    def _set_periods(self, service: ServiceSettings) -> None:
         period_s = self._runtime.robot.can.cycle_s
         self._checkpoint_ticks = round(service.checkpoint_period_s / period_s)
         self._status_ticks = round(service.status_period_s / period_s)
 
-    def settled(self, acknowledgement: Acknowledgement) -> None:
+    def on_acknowledged(self, acknowledgement: Acknowledgement) -> None:
         """A lesson is durable, or never can be."""
         if acknowledgement.stamped_at:
             self._stamps[acknowledgement.command_id] = acknowledgement.stamped_at
@@ -140,7 +140,7 @@ class PostTick:
             self._channel.settled(acknowledgement)
         if self._recorder is not None:
             self._recorder.acknowledged(acknowledgement)
-        self._screen.settled(acknowledgement)
+        self._screen.acknowledged(acknowledgement)
         text = self._unsettled.pop(acknowledgement.command_id, "")
         if text and acknowledgement.error is None:
             self._screen.taught(text)

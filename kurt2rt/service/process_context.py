@@ -13,13 +13,13 @@ from kurt2rt.service.systemd.notifier import Notifier
 class ProcessContext:
     """Made by the program around its service."""
 
-    ending: ShutdownHandler
+    shutdown: ShutdownHandler
     notifier: Notifier
-    reloading: ConfigReloader | None = None
+    reloader: ConfigReloader | None = None
     """None: settings stay as they were at the start."""
-    parts: Mapping[str, Callable[[], bool]] = field(default_factory=dict)
+    liveness: Mapping[str, Callable[[], bool]] = field(default_factory=dict)
     """What has to be alive beside the loop, by name."""
-    guards: Callable[[], Iterable[Thread]] = tuple
+    guard_threads: Callable[[], Iterable[Thread]] = tuple
     """Threads that have to overtake the loop."""
-    tell: Callable[[str], None] = lambda _: None
+    log: Callable[[str], None] = lambda _: None
     """Takes what whoever reads the log should know. Called from the loop: it may not wait."""

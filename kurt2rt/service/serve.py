@@ -30,20 +30,20 @@ from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import OpenedKnowledge, open_for_teaching
 from kurt2rt.knowledge.journal.writer import JournalWriter, utc_now
 from kurt2rt.platform.clock import Clock
-from kurt2rt.platform.gc_control import quiet_gc
-from kurt2rt.platform.realtime_priority import take_real_time_priority
+from kurt2rt.platform.gc_control import gc_frozen
+from kurt2rt.platform.realtime_priority import set_sched_fifo
 from kurt2rt.platform.simulated_clock import HeldWorld, SimulatedClock, Speed
-from kurt2rt.platform.switch_interval import short_turns
+from kurt2rt.platform.switch_interval import short_switch_interval
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 from kurt2rt.runs.recording.recorder import RunRecorder
 from kurt2rt.runs.recording.recording import Recording, RunContext
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.service.health.monitor import HealthMonitor
 from kurt2rt.service.health.probes import Probes
-from kurt2rt.service.health.status_socket import StatusSocket, socket_of
+from kurt2rt.service.health.status_socket import StatusSocket, status_socket_path
 from kurt2rt.service.live_exam import LiveExam
 from kurt2rt.service.live_measure import LiveMeasure
-from kurt2rt.service.post_tick import PostTick, ProgramConsole, ProgramStatus, Watcher
+from kurt2rt.service.post_tick import PostTick, ProgramConsole, ProgramStatus, TickCallback
 from kurt2rt.service.process_context import ProcessContext
 from kurt2rt.service.settings import ServiceSettings
 from kurt2rt.service.shutdown import ShutdownHandler, ShutdownStage
@@ -64,19 +64,19 @@ class ChannelOptions:
 
     bus_trouble: Callable[[], str]
     """What is wrong with the robot's bus, in a line; empty when nothing is."""
-    ground: SimulatedWorld | None
+    simulated_world: SimulatedWorld | None
     """Of a simulated robot."""
-    listening: Callable[[Channel], None]
+    on_open: Callable[[Channel], None]
     """Called when the channel is open."""
     exam: LiveExam | None = None
     """Of a robot that is simulated in this program."""
-    simulation: RunControl | None = None
+    run_control: RunControl | None = None
     """The same."""
-    world: HeldWorld | None = None
+    held_world: HeldWorld | None = None
     """The same, where robot time may pass faster than real time."""
     measure: LiveMeasure | None = None
     """The same: how far the robot came with its task."""
-    begin_with: tuple[Command, ...] = ()
+    first_commands: tuple[Command, ...] = ()
     """Commands of the first tick: they let the teacher of the run before teach on."""
 
 
@@ -87,7 +87,7 @@ async def serve(
     task: TaskSettings,
     screen: ProgramConsole,
     *,
-    teacher: Watcher | None = None,
+    teacher: TickCallback | None = None,
     openness: ChannelOptions | None = None,
     duration_s: float | None,
     stopped: bool = False,
@@ -115,15 +115,15 @@ async def serve(
     with ExitStack() as around:
         clock: Clock = around.enter_context(TimerfdClock())
         speed = None
-        if openness is not None and openness.world is not None:
-            clock = speed = SimulatedClock(clock, openness.world, FASTEST)
+        if openness is not None and openness.held_world is not None:
+            clock = speed = SimulatedClock(clock, openness.held_world, FASTEST)
         upkeep = upkeep or ProcessContext(around.enter_context(ShutdownHandler()), Notifier({}))
-        ending = upkeep.ending
+        ending = upkeep.shutdown
         opened = knowledge or open_for_teaching(path, settings, task)
         stamps = opened.stamps
         boot = secrets.token_bytes(BOOT_BYTES)
         measure = None if openness is None else openness.measure
-        begin_with = () if openness is None else openness.begin_with
+        begin_with = () if openness is None else openness.first_commands
         stop = None if not stopped else NEXT_RUN if begin_with else STARTED
         circumstances = RunContext(
             boot.hex(),
@@ -162,15 +162,15 @@ async def serve(
                 knowledge=path,
                 tolerates_stalls=tolerates_stalls,
             )
-            status = StatusSocket(watch, socket_of(path), (instruments or Probes()).pages)
-            watch.include(says={"status": lambda: status.trouble})
+            status = StatusSocket(watch, status_socket_path(path), (instruments or Probes()).pages)
+            watch.include(errors={"status": lambda: status.trouble})
             if recorder is not None:
                 watch.include(
-                    drops={"the recording": lambda: recorder.dropped}, says={"recording": lambda: recorder.trouble}
+                    drops={"the recording": lambda: recorder.dropped}, errors={"recording": lambda: recorder.trouble}
                 )
-                watch.listen(lambda report: recorder.healthy(plain_of(report)))
-            parts = {"knowledge journal": lambda: writer.is_alive, **upkeep.parts}
-            heartbeat = WatchdogNotifier(upkeep.notifier, settings.can.cycle_s, parts, upkeep.tell)
+                watch.add_listener(lambda report: recorder.healthy(plain_of(report)))
+            parts = {"knowledge journal": lambda: writer.is_alive, **upkeep.liveness}
+            heartbeat = WatchdogNotifier(upkeep.notifier, settings.can.cycle_s, parts, upkeep.log)
             async with (
                 anyio.create_task_group() as tasks,
                 _channel(runtime, writer, stamps, service, openness, boot, watch, ending, speed) as channel,
@@ -180,18 +180,18 @@ async def serve(
                 def after_tick(record: TickRecord) -> None:
                     rounds(record)
                     if measure is not None:
-                        measure.follow(record)
-                    heartbeat.beat(record.now_s)
+                        measure.on_tick(record)
+                    heartbeat.on_tick(record.now_s)
 
                 tasks.start_soon(status.serve)
-                if upkeep.reloading is not None:
-                    tasks.start_soon(upkeep.reloading.serve, _SettingsApplier(rounds, service, upkeep))
+                if upkeep.reloader is not None:
+                    tasks.start_soon(upkeep.reloader.serve, _SettingsApplier(rounds, service, upkeep))
                 ticks = None if duration_s is None else round(duration_s / settings.can.cycle_s)
                 # The wheels first, also where the loop hangs.
                 stop_wheels = partial(robot.emergency_stop, GuardReason.SERVICE_ENDS)
                 acts = (stop_wheels, runtime.scheduler.end, upkeep.notifier.stopping)
                 ending.stage = ShutdownStage.LOOP
-                with quiet_gc(), short_turns(), watch, ending.first(*acts):
+                with gc_frozen(), short_switch_interval(), watch, ending.on_shutdown(*acts):
                     try:
                         await runtime.scheduler.run(ticks, after_tick)
                     finally:
@@ -203,7 +203,7 @@ async def serve(
         for acknowledgement in writer.acknowledged():
             if recorder is not None:
                 recorder.acknowledged(acknowledgement)
-            screen.settled(acknowledgement)
+            screen.acknowledged(acknowledgement)
         ending.stage = ShutdownStage.RECORDING
     return rounds.last
 
@@ -235,11 +235,11 @@ async def _channel(
         safekeeping,
         safe,
         openness.bus_trouble,
-        openness.ground,
+        openness.simulated_world,
         boot=boot,
         health=lambda: watch.newest,
-        exam=None if exam is None else lambda: exam.standing,
-        simulation=openness.simulation,
+        exam=None if exam is None else lambda: exam.status,
+        simulation=openness.run_control,
         speed=speed,
         measure=openness.measure,
     )
@@ -248,13 +248,13 @@ async def _channel(
         async with open_channel(runtime, teachers, service.port, surroundings) as channel:
             watch.include(
                 drops={"pictures for teachers": lambda: channel.pictures_skipped},
-                says={"channel": lambda: channel.trouble},
+                errors={"channel": lambda: channel.trouble},
             )
-            openness.listening(channel)
+            openness.on_open(channel)
             yield channel
     finally:
         # In a thread, for the disk may hang; what was reserved and not used is skipped at the next start.
-        with anyio.move_on_after(ending.patience_s(_KEYS_S), shield=True):
+        with anyio.move_on_after(ending.remaining_s(_KEYS_S), shield=True):
             await anyio.to_thread.run_sync(teachers.close, abandon_on_cancel=True)
 
 
@@ -264,7 +264,7 @@ def _writing(journal: Journal, ending: ShutdownHandler) -> Iterator[JournalWrite
     try:
         yield writer
     finally:
-        writer.close(ending.patience_s(_JOURNAL_S))
+        writer.close(ending.remaining_s(_JOURNAL_S))
 
 
 @contextmanager
@@ -281,7 +281,7 @@ def _recording(
     try:
         yield recorder
     finally:
-        recorder.close(ending.patience_s(_RECORDING_S))
+        recorder.close(ending.remaining_s(_RECORDING_S))
         recording.ended(recorder)
 
 
@@ -294,7 +294,7 @@ class _SettingsApplier:
         self._upkeep = upkeep
 
     def __call__(self, service: ServiceSettings) -> None:
-        self._rounds.take(service)
+        self._rounds.apply_settings(service)
         if service.priority != self._priority:
             self._priority = service.priority
-            self._upkeep.tell(take_real_time_priority(self._priority, self._upkeep.guards()))
+            self._upkeep.log(set_sched_fifo(self._priority, self._upkeep.guard_threads()))

@@ -50,9 +50,9 @@ class Reloaded(NamedTuple):
 
     settings: ServiceSettings
     """As before, with what may change as it was read."""
-    taken: tuple[str, ...]
+    applied: tuple[str, ...]
     """Keys that changed."""
-    refused: tuple[str, ...]
+    postponed: tuple[str, ...]
     """Keys that say something else in the file, and go on as they were."""
 
 
@@ -61,14 +61,14 @@ def load_service(name_or_path: str = "default") -> ServiceSettings:
     return load_settings(find_config("runtime", name_or_path), ServiceSettings)
 
 
-def for_a_unit(settings: ServiceSettings) -> ServiceSettings:
+def with_unit_priority(settings: ServiceSettings) -> ServiceSettings:
     """Return the settings with the priority of a unit for `auto`."""
     if settings.real_time_priority != AUTO:
         return settings
     return settings.model_copy(update={"real_time_priority": UNIT_PRIORITY})
 
 
-def while_running(current: ServiceSettings, read: ServiceSettings) -> Reloaded:
+def reloaded_settings(current: ServiceSettings, read: ServiceSettings) -> Reloaded:
     """Take over what may change while the robot runs."""
     fields = ServiceSettings.model_fields
     changed = [key for key in fields if getattr(current, key) != getattr(read, key)]

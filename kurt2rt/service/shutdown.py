@@ -15,7 +15,7 @@ from typing import Final, Self
 
 from kurt2rt.platform.signal_handlers import SignalHandlers
 
-ENDING = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP)
+SHUTDOWN_SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP)
 """Ctrl-\\ and Ctrl-Z among them: a program that is stopped or dies on the spot does not brake."""
 
 LONGEST_S = 1.0
@@ -26,7 +26,7 @@ _KEPT_BACK_S = 0.2
 _LAST_WORD_S = 0.05
 _STDERR = 2
 
-Act = Callable[[], object]
+Callback = Callable[[], object]
 
 
 class ShutdownStage(StrEnum):
@@ -64,25 +64,25 @@ class ShutdownHandler:
     def __init__(
         self,
         *,
-        others: Mapping[signal.Signals, Act] | None = None,
+        others: Mapping[signal.Signals, Callback] | None = None,
         give_up: Callable[[ShutdownStage], None] | None = None,
     ) -> None:
         """`others`: what other signals ask for, done in this thread, too; they end nothing.
 
         `give_up` ends the process when the time is over; it takes the stage that did not end. None: wait for ever.
         """
-        self._others: dict[int, Act] = {int(number): act for number, act in (others or {}).items()}
+        self._others: dict[int, Callback] = {int(number): act for number, act in (others or {}).items()}
         self._give_up = give_up
-        self._acts: list[Act] = []
+        self._callbacks: list[Callback] = []
         self._failures: list[Exception] = []
         self._deadline_s = math.inf
         self._lock = threading.Lock()
-        self._hearing = SignalHandlers(
-            dict.fromkeys((*ENDING, *map(signal.Signals, self._others)), _is_heard_elsewhere)
+        self._handlers = SignalHandlers(
+            dict.fromkeys((*SHUTDOWN_SIGNALS, *map(signal.Signals, self._others)), _is_heard_elsewhere)
         )
         self._wakeup_before = -1
-        self._bell, self._ear = socket.socketpair()
-        self._bell.setblocking(False)
+        self._wakeup_send, self._wakeup_recv = socket.socketpair()
+        self._wakeup_send.setblocking(False)
         self._thread = threading.Thread(target=self._listen, name="ending", daemon=True)
         self.stage = ShutdownStage.START
         """Part of the program at work, for the last word when the time is over."""
@@ -93,47 +93,47 @@ class ShutdownHandler:
         return self._thread
 
     @property
-    def asked(self) -> bool:
+    def requested(self) -> bool:
         """Whether the program was told to end."""
         return self._deadline_s < math.inf
 
-    def patience_s(self, most_s: float) -> float:
+    def remaining_s(self, most_s: float) -> float:
         """How long somebody may be waited for who would like `most_s`: less when the program was told to end."""
         return max(0.0, min(most_s, self._deadline_s - _KEPT_BACK_S - time.monotonic()))
 
     @contextmanager
-    def first(self, *acts: Act) -> Iterator[None]:
+    def on_shutdown(self, *acts: Callback) -> Iterator[None]:
         """What to do at once when the program is told to end while the block runs, in this order; none may wait.
 
         Done by the thread that hears, or here where it was told so before.
         """
         with self._lock:
-            self._acts += acts
-            late = self.asked
+            self._callbacks += acts
+            late = self.requested
         if late:
-            self._do(acts)
+            self._run_callbacks(acts)
         try:
             yield
         finally:
             with self._lock:
-                self._acts = [each for each in self._acts if each not in acts]
+                self._callbacks = [each for each in self._callbacks if each not in acts]
 
     def __enter__(self) -> Self:
-        self._wakeup_before = signal.set_wakeup_fd(self._bell.fileno(), warn_on_full_buffer=False)
+        self._wakeup_before = signal.set_wakeup_fd(self._wakeup_send.fileno(), warn_on_full_buffer=False)
         self._thread.start()
-        self._hearing.hear()
+        self._handlers.install()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self.asked and self._give_up is not None:
+        if self.requested and self._give_up is not None:
             return  # the interpreter's own end may hang as well
-        self._hearing.give_back()
+        self._handlers.restore()
         signal.set_wakeup_fd(self._wakeup_before)
-        self._bell.close()
+        self._wakeup_send.close()
         self._thread.join()
-        self._ear.close()
+        self._wakeup_recv.close()
         if error is None and self._failures:
             raise self._failures[0]
 
@@ -143,30 +143,30 @@ class ShutdownHandler:
             if left_s <= 0 and self._give_up is not None:
                 self._give_up(self.stage)
                 return
-            self._ear.settimeout(left_s if 0 < left_s < math.inf else None)
+            self._wakeup_recv.settimeout(left_s if 0 < left_s < math.inf else None)
             try:
-                numbers = self._ear.recv(64)
+                numbers = self._wakeup_recv.recv(64)
             except TimeoutError:
                 continue
             if not numbers:
                 return
             for number in numbers:
-                self._hear(number)
+                self._on_signal(number)
 
-    def _hear(self, number: int) -> None:
+    def _on_signal(self, number: int) -> None:
         other = self._others.get(number)
         if other is not None:
-            self._do((other,))
-        elif number in ENDING and not self.asked:
+            self._run_callbacks((other,))
+        elif number in SHUTDOWN_SIGNALS and not self.requested:
             with self._lock:
                 self._deadline_s = time.monotonic() + _GIVES_UP_S
-                acts = tuple(self._acts)
+                acts = tuple(self._callbacks)
             if self._give_up is not None:
                 # Of the kernel, for an interpreter that hangs as a whole.
                 signal.setitimer(signal.ITIMER_REAL, LONGEST_S)
-            self._do(acts)
+            self._run_callbacks(acts)
 
-    def _do(self, acts: tuple[Act, ...]) -> None:
+    def _run_callbacks(self, acts: tuple[Callback, ...]) -> None:
         for act in acts:
             try:
                 act()
@@ -174,7 +174,7 @@ class ShutdownHandler:
                 self._failures.append(error)
 
 
-def last_word(stage: ShutdownStage) -> str:
+def timeout_message(stage: ShutdownStage) -> str:
     """Return the line for the log of a program whose end took too long."""
     return f"kurt2rt: ended without {_STAGES[stage]}, which did not end in time; look at disk and network"
 
@@ -183,7 +183,7 @@ def force_exit(stage: ShutdownStage) -> None:
     """End this process now, whatever hangs, with a last word and exit code 2. What was acknowledged is on the disk."""
     # A terminal may hang as well; one that takes something takes a short line.
     if select.select([], [_STDERR], [], _LAST_WORD_S)[1]:
-        os.write(_STDERR, f"{last_word(stage)}\n".encode())
+        os.write(_STDERR, f"{timeout_message(stage)}\n".encode())
     os._exit(2)
 
 

@@ -55,7 +55,7 @@ class SimulatedRun:
     """Teacher of the run before, who teaches on; None in the first run."""
 
     @property
-    def begin_with(self) -> tuple[Command, ...]:
+    def first_commands(self) -> tuple[Command, ...]:
         """Commands of the first tick, so that the teacher need not take the robot again."""
         if self.teacher is None:
             return ()
@@ -98,7 +98,7 @@ class SimulatedRuns:
     async def view(self) -> SimulationView:
         """Return the simulated world and task, and those to choose from."""
         if self._view is None:
-            self._view = await anyio.to_thread.run_sync(self._look)
+            self._view = await anyio.to_thread.run_sync(self._list_choices)
         return self._view
 
     async def prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> str:
@@ -156,7 +156,7 @@ class SimulatedRuns:
                 else:
                     brought.rename(loaded)
                 # Opened as the next run opens it: damage, another task's lessons.
-                lessons = self._look_at_knowledge(loaded, present.task)
+                lessons = self._check_knowledge(loaded, present.task)
             except (KnowledgeError, UnknownActionError, UnknownBehaviourError) as error:
                 text = str(error)
                 for path in (brought.resolve(), loaded.resolve(), brought, loaded):
@@ -177,13 +177,13 @@ class SimulatedRuns:
             if fresh:
                 journal_file.lock_for_writing(knowledge).close()
             else:
-                self._look_at_knowledge(knowledge, settings)
+                self._check_knowledge(knowledge, settings)
         if knowledge == present.knowledge and name != present.task_name and not fresh:
             # This very program writes it, for the present task.
             _require_able(read_lessons(knowledge, self._robot, settings, in_writer_process=True), self._robot, settings)
         return SimulatedRun(where, settings, name, knowledge, fresh, teacher=teacher)
 
-    def _look_at_knowledge(self, path: Path, task: TaskSettings) -> int:
+    def _check_knowledge(self, path: Path, task: TaskSettings) -> int:
         """Open it as the next run does; how many lessons it holds.
 
         Raises KnowledgeError; UnknownActionError or UnknownBehaviourError for knowledge that cannot act here.
@@ -193,7 +193,7 @@ class SimulatedRuns:
         _require_able(opened.events, self._robot, task)
         return len(opened.entries)
 
-    def _look(self) -> SimulationView:
+    def _list_choices(self) -> SimulationView:
         tasks = tuple(TaskName(name, load_task(name).sentence) for name in shipped_names("tasks"))
         worlds = tuple(shipped_names("worlds"))
         return SimulationView(self.present.world, self.present.task_name, worlds, tasks)

@@ -17,7 +17,7 @@ from kurt2rt.platform.durable_files import make_private_folder
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.service.systemd.notifier import Notifier
 
-AGAIN_S = 1.0
+RETRY_S = 1.0
 """Between two looks at what is not there."""
 HOLD_S = 0.05
 """Between two brakes of a robot that waits; its controller forgets after 0.2 s."""
@@ -35,7 +35,7 @@ class Dependency:
     """One thing that the program cannot do without."""
 
     name: str
-    look: Callable[[], object]
+    check: Callable[[], object]
     """Takes it, or raises one line that says what is missing. Called outside the loop, again and again."""
 
 
@@ -48,16 +48,16 @@ class StartupGate:
         notifier: Notifier,
         tell: Callable[[str], None],
         hold: Callable[[], None],
-        again_s: float = AGAIN_S,
+        again_s: float = RETRY_S,
     ) -> None:
         """`tell`: a line for the log. `hold` has the robot stand, if it is there. Both are called in the loop."""
-        self._needs = needs
+        self._dependencies = needs
         self._notifier = notifier
-        self._tell = tell
+        self._log = tell
         self._hold = hold
-        self._again_s = again_s
+        self._retry_s = again_s
         self._missing = {each.name: "" for each in needs}
-        self._there = {each.name: anyio.Event() for each in needs}
+        self._available = {each.name: anyio.Event() for each in needs}
 
     @property
     def missing(self) -> tuple[str, ...]:
@@ -69,44 +69,44 @@ class StartupGate:
         """What is known to be missing and why, in a line; of what is only being looked for, the names."""
         return "; ".join([each for each in self.missing if ": " in each] or self.missing)
 
-    async def until(self, name: str) -> None:
+    async def wait_for(self, name: str) -> None:
         """Return when one of the needs is there."""
-        await self._there[name].wait()
+        await self._available[name].wait()
 
-    async def wait(self) -> None:
+    async def wait_for_all(self) -> None:
         """Return when all is there. Raises what no waiting mends."""
         async with anyio.create_task_group() as standing:
-            standing.start_soon(self._stand)
+            standing.start_soon(self._hold_still)
             async with anyio.create_task_group() as looking:
-                for need in self._needs:
-                    looking.start_soon(self._look, need)
+                for need in self._dependencies:
+                    looking.start_soon(self._check, need)
             standing.cancel_scope.cancel()
 
-    async def _look(self, need: Dependency) -> None:
+    async def _check(self, need: Dependency) -> None:
         while True:
             try:
-                await anyio.to_thread.run_sync(need.look, abandon_on_cancel=True)
+                await anyio.to_thread.run_sync(need.check, abandon_on_cancel=True)
             except _COMES_LATER as error:
-                self._note(need.name, str(error))
+                self._report_missing(need.name, str(error))
             else:
                 break
-            await anyio.sleep(self._again_s)
+            await anyio.sleep(self._retry_s)
         if self._missing.pop(need.name):
-            self._tell(f"{need.name} is there")
-        self._there[need.name].set()
-        self._say()
+            self._log(f"{need.name} is there")
+        self._available[need.name].set()
+        self._publish_status()
 
-    def _note(self, name: str, why: str) -> None:
+    def _report_missing(self, name: str, why: str) -> None:
         if self._missing[name] != why:
             self._missing[name] = why
-            self._tell(f"stands and waits for {name}: {why}")
-        self._say()
+            self._log(f"stands and waits for {name}: {why}")
+        self._publish_status()
 
-    def _say(self) -> None:
+    def _publish_status(self) -> None:
         known = [each for each in self.missing if ": " in each]
         self._notifier.status(f"stands and waits for {'; '.join(known)}" if known else "starts")
 
-    async def _stand(self) -> None:
+    async def _hold_still(self) -> None:
         pings_every_s = None if self._notifier.watchdog_s is None else self._notifier.watchdog_s / 2
         pinged_s = -float("inf")
         while True:

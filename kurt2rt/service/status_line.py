@@ -8,11 +8,11 @@ from kurt2rt.service.post_tick import ProgramStatus
 
 def status_line(status: ProgramStatus, health: Health, trouble: str = "") -> str:
     """Return one line: what drives the wheels and why, lessons, lateness, and what is wrong, `trouble` last."""
-    parts = [f"{_clock_s(status):8.1f} s", f"{doing(status):<48}", *numbers(status)]
-    return " | ".join([*parts, *troubles(status, health), *([trouble] if trouble else [])])
+    parts = [f"{_clock_s(status):8.1f} s", f"{format_activity(status):<48}", *format_numbers(status)]
+    return " | ".join([*parts, *format_problems(status, health), *([trouble] if trouble else [])])
 
 
-def numbers(status: ProgramStatus) -> list[str]:
+def format_numbers(status: ProgramStatus) -> list[str]:
     """Return how many RLAs there are, and how punctual the loop is, each in words."""
     runtime = status.runtime
     lateness = runtime.ledger.lateness()
@@ -23,16 +23,16 @@ def numbers(status: ProgramStatus) -> list[str]:
     ]
 
 
-def timed_doing(status: ProgramStatus) -> str:
+def format_timed_activity(status: ProgramStatus) -> str:
     """Return the time since the start, and what drives the wheels or why they stand."""
-    return f"{_clock_s(status):.1f} s  {doing(status)}"
+    return f"{_clock_s(status):.1f} s  {format_activity(status)}"
 
 
 def _clock_s(status: ProgramStatus) -> float:
     return status.record.tick * status.runtime.robot.can.cycle_s
 
 
-def doing(status: ProgramStatus) -> str:
+def format_activity(status: ProgramStatus) -> str:
     """What drives the wheels and why, or why the robot stands."""
     record = status.record
     decision, match, stands = record.decision, record.decision.match, in_short(record.standing)
@@ -54,18 +54,18 @@ def doing(status: ProgramStatus) -> str:
     return text
 
 
-def troubles(status: ProgramStatus, health: Health) -> list[str]:
+def format_problems(status: ProgramStatus, health: Health) -> list[str]:
     """What is wrong, each part in words; empty when nothing is."""
-    return [*guarded(status), *alarms(status, health)]
+    return [*format_guard(status), *format_alarms(status, health)]
 
 
-def guarded(status: ProgramStatus) -> list[str]:
+def format_guard(status: ProgramStatus) -> list[str]:
     """Return what the guard changed in this tick, in words; empty when it let through what was decided."""
     reasons = status.record.grant.reasons
     return ["guard: " + ", ".join(reasons)] if reasons else []
 
 
-def alarms(status: ProgramStatus, health: Health) -> list[str]:
+def format_alarms(status: ProgramStatus, health: Health) -> list[str]:
     """Return what is wrong besides what the guard changes in passing, each part in words."""
     runtime = status.runtime
     parts = []

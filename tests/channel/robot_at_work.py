@@ -136,7 +136,7 @@ async def robot_at_work(folder: Path) -> AsyncIterator[RobotAtWork]:
             SETTINGS,
             service,
             load_task("wall_following"),
-            ProgramConsole(status=_nothing, question=_nothing, settled=_nothing),
+            ProgramConsole(status=_nothing, question=_nothing, acknowledged=_nothing),
             teacher=records.append,
             openness=ChannelOptions(lambda: "", None, listening),
             duration_s=None,

@@ -16,7 +16,7 @@ import pytest
 from hal.robot import Robot
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.platform.gc_control import sweep
+from kurt2rt.platform.gc_control import collect_young
 from kurt2rt.service.post_tick import ProgramConsole, ProgramStatus
 from kurt2rt.service.serve import ChannelOptions, serve
 from tests.channel.robot_at_work import SETTINGS, CheapRobot, service_settings
@@ -66,7 +66,7 @@ async def work(folder: Path, sweeper: _Sweeper) -> None:
         print(json.dumps(line), flush=True)
 
     robot: Robot = CheapRobot()
-    quiet = ProgramConsole(status=tell, question=lambda _: None, settled=lambda _: None)
+    quiet = ProgramConsole(status=tell, question=lambda _: None, acknowledged=lambda _: None)
     openness = ChannelOptions(lambda: "", None, listening)
     task = load_task("wall_following")
     await serve(robot, SETTINGS, service_settings(folder), task, quiet, openness=openness, duration_s=None)
@@ -74,6 +74,6 @@ async def work(folder: Path, sweeper: _Sweeper) -> None:
 
 if __name__ == "__main__":
     with pytest.MonkeyPatch.context() as patch:
-        sweeper = _Sweeper(sweep if sys.argv[2] == "sweep" else lambda: None)
+        sweeper = _Sweeper(collect_young if sys.argv[2] == "sweep" else lambda: None)
         patch.setattr("kurt2rt.service.post_tick.sweep", sweeper)
         anyio.run(work, Path(sys.argv[1]), sweeper)

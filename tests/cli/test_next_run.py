@@ -51,7 +51,7 @@ async def test_another_task_brings_its_world_and_a_file_of_its_own_and_the_first
     await runs.prepare("rooms-3", "wall_following", False, TEACHER)
     runs.advance()
     assert (runs.present.world, runs.present.knowledge) == ("rooms-3", tmp_path / "walls.knowledge")
-    take, phase, session = runs.present.begin_with
+    take, phase, session = runs.present.first_commands
     assert isinstance(take, Take)
     assert isinstance(phase, SetPhase)
     assert isinstance(session, BeginSession)
@@ -65,7 +65,7 @@ async def test_a_run_that_begins_in_phase_5_with_a_session_stands_until_go(tmp_p
     desk = Desk()
     school = desk.runtime.school
     school.stop(NEXT_RUN)
-    for command in runs.present.begin_with:
+    for command in runs.present.first_commands:
         desk.runtime.inbox.put(command)
     record = desk.run(10, counts=300)
     assert (school.phase, school.session, school.authority.teacher) == (Phase.AUTONOMOUS, "noon", "ann")

@@ -60,30 +60,30 @@ def test_page_line_that_is_no_address_is_printed() -> None:
 def test_show_on_a_stream_prints_every_status(status: ProgramStatus) -> None:
     shown = Shown()
     for trouble in ("", "no simulator"):
-        shown.screen.show(status, WELL, trouble)
+        shown.screen.show_status(status, WELL, trouble)
         (line,) = shown.lines()
         assert line.endswith(trouble)
 
 
 def test_show_in_a_log_prints_changes_other_than_numbers(status: ProgramStatus) -> None:
     shown = Shown(as_service=True)
-    shown.screen.show(status, WELL, "")
+    shown.screen.show_status(status, WELL, "")
     assert shown.lines() == []
     for errors in (130, 131):
-        shown.screen.show(status, replace(PASSIVE, controller_trouble=f"{errors} errors"), "")
+        shown.screen.show_status(status, replace(PASSIVE, controller_trouble=f"{errors} errors"), "")
     assert len(shown.lines()) == 1
-    shown.screen.show(status, WELL, "no simulator")
+    shown.screen.show_status(status, WELL, "no simulator")
     assert len(shown.lines()) == 1
-    shown.screen.show(status, WELL, "")
+    shown.screen.show_status(status, WELL, "")
     assert len(shown.lines()) == 1
 
 
 def test_tell_in_the_journal_marks_the_level(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("JOURNAL_STREAM", "8:1")
     shown = Shown(as_service=True)
-    shown.screen.tell("disk full", "red")
-    shown.screen.tell("no browser", "yellow")
-    shown.screen.tell("ready")
+    shown.screen.print_line("disk full", "red")
+    shown.screen.print_line("no browser", "yellow")
+    shown.screen.print_line("ready")
     assert shown.lines() == ["<3>disk full", "<5>no browser", "ready"]
 
 
@@ -92,12 +92,12 @@ def test_show_in_the_journal_tells_a_stop_without_level(monkeypatch: pytest.Monk
     desk = Desk()
     desk.runtime.school.stop(STARTED)
     shown = Shown(as_service=True)
-    shown.screen.show(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), PASSIVE, "")
+    shown.screen.show_status(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), PASSIVE, "")
     (line,) = shown.lines()
     assert not line.startswith("<")
 
 
 def test_taught_on_a_stream_prints_nothing() -> None:
     shown = Shown()
-    shown.screen.taught("RLA 1: forward")
+    shown.screen.lesson_saved("RLA 1: forward")
     assert shown.lines() == []

@@ -100,7 +100,7 @@ def test_the_log_is_synced_also_where_a_reader_keeps_it_from_being_merged(
 ) -> None:
     path = new_file(tmp_path)
     synced: list[Path] = []
-    monkeypatch.setattr(journal_file, "sync_file", synced.append)
+    monkeypatch.setattr(journal_file, "fsync_file", synced.append)
     killed = Journal.open(path, BINDING)
     killed.append([entry(1), entry(2), entry(3)])
     with Journal.read_only(path) as reader:

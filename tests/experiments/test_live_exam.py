@@ -35,7 +35,7 @@ def saying(*lines: str, after: str = "") -> "LiveExam":
 def ended(exam: LiveExam) -> ExamStatus:
     assert exam._reading is not None
     exam._reading.join(10.0)
-    return exam.standing
+    return exam.status
 
 
 def test_a_verdict_comes_with_the_picture_and_the_copy_is_deleted(copy: Path, tmp_path: Path) -> None:
@@ -77,7 +77,7 @@ def test_one_exam_at_a_time_and_the_end_of_the_program_ends_it(copy: Path, tmp_p
     with pytest.raises(KnowledgeError, match="an exam is under way"):
         exam.begin(tmp_path / "second.knowledge", tmp_path / "second.png")
     exam.close()
-    assert not exam.standing.running
+    assert not exam.status.running
     assert not copy.exists()
 
 

@@ -52,7 +52,7 @@ class Service:
             wanted=wanted,
             saved=opened.saved,
         )
-        screen = ProgramConsole(status=lambda _: None, question=self.questions.append, settled=self.settled.append)
+        screen = ProgramConsole(status=lambda _: None, question=self.questions.append, acknowledged=self.settled.append)
         self.rounds = PostTick(self.runtime, self.writer, opened.stamps, load_service(), screen, None, None)
         self.record: TickRecord
         self.health: Health = simulation.robot.health

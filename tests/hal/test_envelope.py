@@ -11,7 +11,7 @@ import pytest
 
 from hal.guard_reason import GuardReason
 from hal.robot_settings import SpeedMode
-from kurt2rt.platform.gc_control import quiet_gc
+from kurt2rt.platform.gc_control import gc_frozen
 from tests.hal.careless_guards import CARELESS
 from tests.hal.envelope import APPROACHES_FOR, STANDS_FOR, violations
 from tests.hal.playing import SIGNAL, Played, play
@@ -35,13 +35,13 @@ def hold_the_envelope(seed: int, streams_drawn: int = STREAMS_PER_SEED) -> None:
 
 
 def test_the_envelope_holds_for_ten_thousand_ticks() -> None:
-    with quiet_gc():
+    with gc_frozen():
         hold_the_envelope(0, FAST_STREAMS)
 
 
 @pytest.mark.deep
 def test_the_envelope_holds_for_a_hundred_thousand_ticks() -> None:
-    with quiet_gc():
+    with gc_frozen():
         for seed in MORE_SEEDS:
             hold_the_envelope(int(seed))
 
@@ -49,7 +49,7 @@ def test_the_envelope_holds_for_a_hundred_thousand_ticks() -> None:
 @pytest.mark.deep
 @pytest.mark.parametrize("seeds", np.split(DEEP_SEEDS, 100), ids=lambda seeds: f"from seed {seeds[0]}")
 def test_the_envelope_holds_for_a_hundred_million_ticks(seeds: list[int]) -> None:
-    with quiet_gc():
+    with gc_frozen():
         for seed in seeds:
             hold_the_envelope(int(seed))
 

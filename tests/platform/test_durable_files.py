@@ -11,13 +11,13 @@ from kurt2rt.platform import durable_files
 def synced(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     """Folders whose names were made durable, in order."""
     folders: list[Path] = []
-    sound = durable_files.sync_folder
+    sound = durable_files.fsync_folder
 
-    def sync_folder(folder: Path) -> None:
+    def fsync_folder(folder: Path) -> None:
         sound(folder)
         folders.append(folder)
 
-    monkeypatch.setattr(durable_files, "sync_folder", sync_folder)
+    monkeypatch.setattr(durable_files, "fsync_folder", fsync_folder)
     return folders
 
 

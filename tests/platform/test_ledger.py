@@ -8,7 +8,7 @@ from kurt2rt.platform.ledger import Percentiles, Stage, TickTimer
 def tick(ledger: TickTimer, lateness_s: float) -> None:
     ledger.begin(lateness_s)
     for stage in Stage:
-        ledger.mark(stage)
+        ledger.lap(stage)
     ledger.end()
 
 

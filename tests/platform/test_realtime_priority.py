@@ -8,12 +8,12 @@ from contextlib import contextmanager
 
 import pytest
 
-from kurt2rt.platform.realtime_priority import take_real_time_priority
+from kurt2rt.platform.realtime_priority import set_sched_fifo
 
 
 def _is_permitted() -> bool:
     def take() -> None:
-        said.append(take_real_time_priority(1))
+        said.append(set_sched_fifo(1))
 
     said: list[str] = []
     trying = threading.Thread(target=take)
@@ -65,7 +65,7 @@ def priority_of(thread: threading.Thread) -> int:
 @needs_permission
 def test_what_the_loop_starts_is_as_any_other() -> None:
     def story() -> None:
-        assert take_real_time_priority(5) == "real-time priority 5 (SCHED_FIFO)"
+        assert set_sched_fifo(5) == "real-time priority 5 (SCHED_FIFO)"
         assert priority_of(threading.current_thread()) == 5
         with waiting() as later:
             assert priority_of(later) == 0
@@ -80,11 +80,11 @@ def test_the_guards_come_before_the_loop_however_its_priority_changes() -> None:
     def story() -> None:
         with waiting() as guard, waiting() as other:
             for priority in (5, 20, 3):
-                take_real_time_priority(priority, [guard])
+                set_sched_fifo(priority, [guard])
                 assert priority_of(threading.current_thread()) == priority
                 assert priority_of(guard) == priority + 1
                 assert priority_of(other) == 0
-            assert take_real_time_priority(0, [guard]) == "no real-time priority"
+            assert set_sched_fifo(0, [guard]) == "no real-time priority"
             assert priority_of(threading.current_thread()) == priority_of(guard) == priority_of(other) == 0
 
     in_a_thread(story)
@@ -95,6 +95,6 @@ def test_a_guard_that_has_ended_is_passed_over() -> None:
     def story() -> None:
         with waiting() as guard:
             pass
-        assert take_real_time_priority(5, [guard, threading.Thread()]) == "real-time priority 5 (SCHED_FIFO)"
+        assert set_sched_fifo(5, [guard, threading.Thread()]) == "real-time priority 5 (SCHED_FIFO)"
 
     in_a_thread(story)

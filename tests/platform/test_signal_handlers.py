@@ -33,7 +33,7 @@ def test_who_gives_it_back_when_he_hears_it_hears_it_once() -> None:
     always, once = Ear(), Ear()
 
     def hear(number: int, frame: FrameType | None) -> None:
-        hearing.give_back()
+        hearing.restore()
         once.hear(number, frame)
 
     with SignalHandlers({signal.SIGUSR1: always.hear}), (hearing := SignalHandlers({signal.SIGUSR1: hear})):
@@ -55,7 +55,7 @@ def test_other_threads_hear_no_signals() -> None:
 
     def try_to() -> None:
         try:
-            SignalHandlers({signal.SIGUSR1: signal.SIG_IGN}).hear()
+            SignalHandlers({signal.SIGUSR1: signal.SIG_IGN}).install()
         except ValueError as error:
             problems.append(error)
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
-from kurt2rt.platform.yield_gil import BITE_S, PAUSE_S, politely
+from kurt2rt.platform.yield_gil import PAUSE_S, SLICE_S, yield_gil
 
 
 @pytest.fixture
@@ -13,7 +13,7 @@ def slept(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     slept: list[float] = []
     looks = iter(range(1_000_000))
     monkeypatch.setattr(time, "sleep", slept.append)
-    monkeypatch.setattr(time, "perf_counter", lambda: next(looks) * BITE_S)
+    monkeypatch.setattr(time, "perf_counter", lambda: next(looks) * SLICE_S)
     return slept
 
 
@@ -24,16 +24,16 @@ def in_a_thread(work: Callable[[], object]) -> None:
 
 
 def test_the_items_are_the_same() -> None:
-    assert list(politely(iter(range(10_000)))) == list(range(10_000))
-    assert list(politely([])) == []
+    assert list(yield_gil(iter(range(10_000)))) == list(range(10_000))
+    assert list(yield_gil([])) == []
     found: list[int] = []
-    in_a_thread(lambda: found.extend(politely(range(10))))
+    in_a_thread(lambda: found.extend(yield_gil(range(10))))
     assert found == list(range(10))
 
 
 def test_a_thread_beside_the_loop_pauses_and_the_loops_own_does_not(slept: list[float]) -> None:
-    list(politely(range(10)))
+    list(yield_gil(range(10)))
     assert slept == []
-    in_a_thread(lambda: list(politely(range(10))))
+    in_a_thread(lambda: list(yield_gil(range(10))))
     assert len(slept) > 5
     assert set(slept) == {PAUSE_S}

@@ -82,7 +82,7 @@ class Rig:
             return watch(record)
 
         screen = ProgramConsole(
-            status=self.statuses.append, question=self.questions.append, settled=self.settled.append
+            status=self.statuses.append, question=self.questions.append, acknowledged=self.settled.append
         )
         return await serve(
             self.robot,

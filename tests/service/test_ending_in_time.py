@@ -8,17 +8,17 @@ import anyio.to_thread
 import can
 import pytest
 
-from kurt2rt.service.shutdown import ShutdownStage, last_word
+from kurt2rt.service.shutdown import ShutdownStage, timeout_message
 from tests.cli.helpers import started
 from tests.cli.three_programs import brakes, is_control, onlooker
 
 SAYS = {
-    "start": last_word(ShutdownStage.DISK),
+    "start": timeout_message(ShutdownStage.DISK),
     "disk": "disk does not answer; look at its health; closed with 0 lessons not written",
     "recorder": "recording: the disk does not answer; the end is missing",
-    "keys": last_word(ShutdownStage.DISK),
-    "network": last_word(ShutdownStage.CHANNEL),
-    "loop": last_word(ShutdownStage.LOOP),
+    "keys": timeout_message(ShutdownStage.DISK),
+    "network": timeout_message(ShutdownStage.CHANNEL),
+    "loop": timeout_message(ShutdownStage.LOOP),
 }
 RARE = {"start", "recorder", "keys"}
 

@@ -39,7 +39,7 @@ class Drive:
         for happening in (happened, *((),) * 4):
             self._tick += 1
             record = A_RECORD._replace(tick=self._tick, commands=happening)
-            self.measure.follow(record)
+            self.measure.on_tick(record)
 
 
 def test_rounds_about_the_post_are_counted_and_being_set_down_is_none() -> None:

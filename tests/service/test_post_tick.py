@@ -41,7 +41,7 @@ class Shift:
         self.seen: list[TickRecord] = []
         self.next_command: Command | None = None
         screen = ProgramConsole(
-            status=self.statuses.append, question=self.questions.append, settled=self.settled.append
+            status=self.statuses.append, question=self.questions.append, acknowledged=self.settled.append
         )
         channel = self.desk.channel if with_channel else None
         self.rounds = PostTick(self.desk.runtime, self.writer, self.stamps, SERVICE, screen, self._watch, channel)

@@ -12,7 +12,7 @@ import yaml
 from config import CONFIG_DIR
 from hal.settings import SettingsError
 from kurt2rt.service.config_reload import ConfigReloader
-from kurt2rt.service.settings import ServiceSettings, for_a_unit, load_service, while_running
+from kurt2rt.service.settings import ServiceSettings, load_service, reloaded_settings, with_unit_priority
 from kurt2rt.service.systemd.notifier import Notifier
 from tests.service.systemd.manager import manager
 
@@ -52,7 +52,7 @@ async def test_what_may_change_is_taken_and_what_may_not_is_told(tmp_path: Path)
         systemd = around.enter_context(manager(tmp_path))
         program = Program(tmp_path / "mine.yaml", around.enter_context(Notifier(systemd.environment())))
         program.change(status_period_s=5.0, port=9, task="circle")
-        await program.reload(program.reloading.ask)
+        await program.reload(program.reloading.request)
         assert program.told == [
             "settings taken: status_period_s",
             "settings for the next start, not for a robot that runs: task, port",
@@ -68,12 +68,12 @@ async def test_a_file_that_is_wrong_changes_nothing(tmp_path: Path) -> None:
     with Notifier({}) as notifier:
         program = Program(tmp_path / "mine.yaml", notifier)
         program.change(status_period_s=0.0)
-        await program.reload(program.reloading.ask)
+        await program.reload(program.reloading.request)
         assert program.taken == []
         assert "settings stay as they were: " in program.told[0]
         assert "status_period_s" in program.told[0]
         (tmp_path / "mine.yaml").unlink()
-        await program.reload(program.reloading.ask)
+        await program.reload(program.reloading.request)
         assert program.taken == []
         assert len(program.told) == 2
 
@@ -81,7 +81,7 @@ async def test_a_file_that_is_wrong_changes_nothing(tmp_path: Path) -> None:
 async def test_who_asked_before_it_ran_is_not_forgotten(tmp_path: Path) -> None:
     with Notifier({}) as notifier:
         program = Program(tmp_path / "mine.yaml", notifier)
-        asking = threading.Thread(target=program.reloading.ask)
+        asking = threading.Thread(target=program.reloading.request)
         asking.start()
         asking.join()
         await program.reload(lambda: None)
@@ -92,22 +92,22 @@ async def test_who_asked_before_it_ran_is_not_forgotten(tmp_path: Path) -> None:
 def test_what_the_robot_is_stays_as_it_is(key: str) -> None:
     now = load_service()
     read = now.model_copy(update={key: 9 if key == "port" else "other"})
-    reloaded = while_running(now, read)
+    reloaded = reloaded_settings(now, read)
     assert reloaded == (now, (), (key,))
 
 
 def test_the_periods_of_the_rounds_may_change() -> None:
     now = load_service()
     read = now.model_copy(update={"checkpoint_period_s": 2.0, "real_time_priority": 5, "recordings_mb": 500})
-    assert while_running(now, read) == (read, ("checkpoint_period_s", "real_time_priority", "recordings_mb"), ())
+    assert reloaded_settings(now, read) == (read, ("checkpoint_period_s", "real_time_priority", "recordings_mb"), ())
 
 
 def test_the_delivered_priority_is_that_of_a_unit_and_none_by_hand() -> None:
     shipped = load_service()
-    assert (shipped.priority, for_a_unit(shipped).priority) == (0, 20)
+    assert (shipped.priority, with_unit_priority(shipped).priority) == (0, 20)
     for given in (0, 5):
         mine = shipped.model_copy(update={"real_time_priority": given})
-        assert (mine.priority, for_a_unit(mine).priority) == (given, given)
+        assert (mine.priority, with_unit_priority(mine).priority) == (given, given)
 
 
 @pytest.mark.parametrize("given", ["fast", 81, -1, 1.5, True, None])

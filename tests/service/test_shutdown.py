@@ -8,14 +8,14 @@ import threading
 
 import pytest
 
-from kurt2rt.service.shutdown import ENDING, ShutdownHandler, ShutdownStage, last_word
+from kurt2rt.service.shutdown import SHUTDOWN_SIGNALS, ShutdownHandler, ShutdownStage, timeout_message
 
 HANGS = """
 import ctypes, time
 from kurt2rt.service.shutdown import ShutdownHandler, ShutdownStage, force_exit
 with ShutdownHandler(give_up=force_exit) as ending:
     ending.stage = ShutdownStage.LESSONS
-    with ending.first(lambda: print("wheels", flush=True), lambda: print("loop", flush=True), lambda: {act}):
+    with ending.on_shutdown(lambda: print("wheels", flush=True), lambda: print("loop", flush=True), lambda: {act}):
         print("begun", flush=True)
         {body}
 """
@@ -25,22 +25,22 @@ def raise_here(number: signal.Signals) -> None:
     os.kill(os.getpid(), number)
 
 
-@pytest.mark.parametrize("number", ENDING)
+@pytest.mark.parametrize("number", SHUTDOWN_SIGNALS)
 def test_what_comes_first_is_done_once_and_in_order(number: signal.Signals) -> None:
     done: list[str] = []
     ended = threading.Event()
     before = signal.getsignal(number)
     with (
         ShutdownHandler() as ending,
-        ending.first(lambda: done.append("wheels"), lambda: done.append("loop"), ended.set),
+        ending.on_shutdown(lambda: done.append("wheels"), lambda: done.append("loop"), ended.set),
     ):
-        assert not ending.asked
-        assert ending.patience_s(10.0) == 10.0
+        assert not ending.requested
+        assert ending.remaining_s(10.0) == 10.0
         raise_here(number)
         assert ended.wait(60)
         raise_here(number)
-        assert ending.asked
-        assert ending.patience_s(10.0) < 1.0
+        assert ending.requested
+        assert ending.remaining_s(10.0) < 1.0
     assert done == ["wheels", "loop"]
     assert signal.getsignal(number) is before
 
@@ -49,10 +49,10 @@ def test_who_begins_after_the_signal_ends_at_once() -> None:
     done: list[str] = []
     heard = threading.Event()
     with ShutdownHandler() as ending:
-        with ending.first(heard.set):
+        with ending.on_shutdown(heard.set):
             raise_here(signal.SIGTERM)
             assert heard.wait(60)
-        with ending.first(lambda: done.append("late")):
+        with ending.on_shutdown(lambda: done.append("late")):
             assert done == ["late"]
     assert done == ["late"]
 
@@ -62,7 +62,7 @@ def test_a_signal_that_asks_for_something_else_ends_nothing() -> None:
     with ShutdownHandler(others={signal.SIGHUP: heard.set}) as ending:
         raise_here(signal.SIGHUP)
         assert heard.wait(60)
-        assert not ending.asked
+        assert not ending.requested
 
 
 def test_one_that_fails_does_not_keep_the_next_from_being_done() -> None:
@@ -72,7 +72,7 @@ def test_one_that_fails_does_not_keep_the_next_from_being_done() -> None:
         raise ValueError("the brake is gone")
 
     def end() -> None:
-        with ShutdownHandler() as ending, ending.first(fail, stopped.set):
+        with ShutdownHandler() as ending, ending.on_shutdown(fail, stopped.set):
             raise_here(signal.SIGTERM)
             assert stopped.wait(60)
 
@@ -83,8 +83,8 @@ def test_one_that_fails_does_not_keep_the_next_from_being_done() -> None:
 @pytest.mark.parametrize(
     ("body", "act", "exit_code", "says"),
     [
-        ("time.sleep(1000)", "None", 2, last_word(ShutdownStage.LESSONS)),
-        ("while True: pass", "None", 2, last_word(ShutdownStage.LESSONS)),
+        ("time.sleep(1000)", "None", 2, timeout_message(ShutdownStage.LESSONS)),
+        ("while True: pass", "None", 2, timeout_message(ShutdownStage.LESSONS)),
         # The interpreter as a whole, as soon as the signal was heard: the kernel ends it.
         ("time.sleep(1000)", "ctypes.PyDLL(None).sleep(1000)", -signal.SIGALRM, ""),
     ],

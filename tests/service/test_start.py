@@ -24,7 +24,7 @@ from kurt2rt.cli.terminal_screen import TerminalScreen
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Command, Teach
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.service.health.status_socket import StatusError, reports_at, socket_of
+from kurt2rt.service.health.status_socket import StatusError, read_reports, status_socket_path
 from kurt2rt.service.open_robot import OpenedRobot
 from kurt2rt.service.program import RobotProgram, RunOptions
 from kurt2rt.service.settings import ServiceSettings, load_service
@@ -46,7 +46,7 @@ ORDERS = RunOptions(
     behaviour=None,
     page=False,
     phones=False,
-    auto=False,
+    scripted_teacher=False,
     page_port=None,
     can_log=None,
     record=False,
@@ -257,5 +257,5 @@ def program_in(world: World) -> RobotProgram:
 def status_of(knowledge: Path) -> str:
     """Why another program gets no report."""
     with pytest.raises(StatusError) as told:
-        next(reports_at(socket_of(knowledge), 60.0))
+        next(read_reports(status_socket_path(knowledge), 60.0))
     return str(told.value)

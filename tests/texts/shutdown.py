@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
-from kurt2rt.service.shutdown import ShutdownStage, last_word
+from kurt2rt.service.shutdown import ShutdownStage, timeout_message
 
 
 def stages() -> Iterator[tuple[str, str]]:
     """Yield the last line of a program that ended without each stage."""
     for stage in ShutdownStage:
-        yield stage, last_word(stage)
+        yield stage, timeout_message(stage)

@@ -21,7 +21,7 @@ from typing import Any
 from kurt2rt.channel.security.context_folder import PAIRED_AT, SECRET, SEQUENCE, SETTINGS, UNKNOWN, CredentialsError
 from kurt2rt.core.rla.programs import AUTO
 from kurt2rt.core.rla.rla import CRITIC
-from kurt2rt.platform.durable_files import make_private_folder, sync_folder
+from kurt2rt.platform.durable_files import fsync_folder, make_private_folder
 
 LOCAL = "local"
 """Name of whoever teaches at the robot's own machine, with the page or a program of his own."""
@@ -250,7 +250,7 @@ def _make(teachers: Path, devices: Path, name: str, host: str, port: int) -> Pai
     aside = [_write_aside(devices, name, of_device), _write_aside(teachers, name, of_robot)]
     for unborn, folder in zip(aside, (devices, teachers), strict=True):
         unborn.rename(folder / name)
-        sync_folder(folder)
+        fsync_folder(folder)
     return Pairing(teachers / name, device)
 
 
@@ -263,7 +263,7 @@ def _write_aside(folder: Path, name: str, files: dict[str, dict[str, Any]]) -> P
             json.dump(content, file, indent=2)
             file.flush()
             os.fsync(file.fileno())
-    sync_folder(unborn)
+    fsync_folder(unborn)
     return unborn
 
 
@@ -276,7 +276,7 @@ def _remove(teachers: Path, devices: Path, name: str) -> None:
         # Away in one step, whatever happens while its files are deleted.
         revoked = side / f"{_REVOKED}{name}"
         (side / name).rename(revoked)
-        sync_folder(side)
+        fsync_folder(side)
         shutil.rmtree(revoked)
 
 

@@ -12,7 +12,7 @@ from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
 from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest
 from kurt2rt.core.teaching.commands import Teach
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
-from kurt2rt.platform.ledger import share_of
+from kurt2rt.platform.ledger import percentiles_of
 
 P99_LIMIT_US = 35_000.0
 """20 ms until the lesson is durable, 10 ms until a tick sees that, the rest for the way there and back."""
@@ -40,7 +40,7 @@ async def measure_channel_lessons(
             for number in range(len(inside_ns), len(took_ns)):
                 inside_ns.append(await _teach_inside(robot, number))
             on_progress(len(took_ns) / lessons)
-    took, inside = share_of(took_ns), share_of(inside_ns)
+    took, inside = percentiles_of(took_ns), percentiles_of(inside_ns)
     return BenchResult(
         "channel",
         "lesson answered",

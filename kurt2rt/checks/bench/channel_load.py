@@ -13,7 +13,7 @@ from kurt2rt.checks.bench.open_robot import OpenRobot, open_robot
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
 from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest
 from kurt2rt.core.rla.rla import Phase
-from kurt2rt.platform.ledger import Percentiles, TickTimer, share_of
+from kurt2rt.platform.ledger import Percentiles, TickTimer, percentiles_of
 
 _SETTLING_S = 0.3
 
@@ -128,7 +128,7 @@ def load_results(stays: dict[Load, LoadPhases], *, period_s: float, driving_shar
     nobody, onlooker, teacher = (stays[company] for company in Load)
     late = Reference("alone, p99", nobody.lateness.p99_us, teacher.lateness.p99_us)
     channel = _more(nobody.each, teacher.each, [1.0] * len(teacher.each))
-    alone_us = share_of([round(stay.work_us * 1e3) for stay in nobody.each]).median_us
+    alone_us = percentiles_of([round(stay.work_us * 1e3) for stay in nobody.each]).median_us
     picture = _more(nobody.each, onlooker.each, [PICTURES_PER_S] * len(onlooker.each))
     more_messages = [
         taught.messages_per_s - looked.messages_per_s
@@ -160,7 +160,7 @@ def load_results(stays: dict[Load, LoadPhases], *, period_s: float, driving_shar
 
 def _more(less: Sequence[LoadPhase], more: Sequence[LoadPhase], things_per_s: Sequence[float]) -> Percentiles:
     """How much more work there was for each thing, round by round."""
-    return share_of(
+    return percentiles_of(
         [
             round((with_it.work_us - without.work_us) / per_s * 1e3)
             for without, with_it, per_s in zip(less, more, things_per_s, strict=True)

@@ -8,7 +8,7 @@ from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
 from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, RobotUnderTest, kept_knowledge, lasting
 from kurt2rt.checks.bench.tick_budget import share_result
 from kurt2rt.experiments.lockstep.lesson import teach
-from kurt2rt.platform.ledger import share_of
+from kurt2rt.platform.ledger import percentiles_of
 
 TIMES_REAL_TIME = 60.0
 
@@ -46,7 +46,7 @@ async def measure_closed_loop(
             )
     finally:
         simulation.close()
-    tick = share_of(tick_ns)
+    tick = percentiles_of(tick_ns)
     reference = Reference("period", period_s * 1e6, tick.median_us)
     best = period_s * 1e9 / min(tick_ns)
     loop = BenchResult(

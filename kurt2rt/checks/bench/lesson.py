@@ -13,9 +13,9 @@ from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, RobotUnderTe
 from kurt2rt.core.teaching.commands import Teach
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
-from kurt2rt.platform.fsync_probe import sync_ns
-from kurt2rt.platform.gc_control import quiet_gc
-from kurt2rt.platform.ledger import share_of
+from kurt2rt.platform.fsync_probe import fsync_ns
+from kurt2rt.platform.gc_control import gc_frozen
+from kurt2rt.platform.ledger import percentiles_of
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 from kurt2rt.runtime import build_runtime
 
@@ -40,7 +40,7 @@ async def measure_lessons(
             (folder / "sync").open("wb", buffering=0) as file,
             TimerfdClock() as clock,
             simulation.live(),
-            quiet_gc(),
+            gc_frozen(),
         ):
             runtime = build_runtime(simulation.robot, subject.settings, subject.task, subject.events, writer, clock)
             actions = tuple(runtime.level.repertoire)
@@ -53,7 +53,7 @@ async def measure_lessons(
             async with anyio.create_task_group() as tasks:
                 tasks.start_soon(partial(runtime.scheduler.run, None, after_tick))
                 for number in range(lessons):
-                    syncs_ns.append(await to_thread.run_sync(sync_ns, file))
+                    syncs_ns.append(await to_thread.run_sync(fsync_ns, file))
                     # The teacher does not know when ticks begin.
                     await anyio.sleep(chance.uniform(0.0, 2 * period_s))
                     taken = anyio.Event()
@@ -72,12 +72,12 @@ async def measure_lessons(
                 raise LessonLostError(f"{durable} of {lessons} lessons became durable: {why}")
     finally:
         simulation.close()
-    took = share_of(took_ns)
+    took = percentiles_of(took_ns)
     return BenchResult(
         "lesson",
         "lesson durable",
         took,
-        Reference("bare fsync", share_of(syncs_ns).median_us, took.median_us),
+        Reference("bare fsync", percentiles_of(syncs_ns).median_us, took.median_us),
         (BenchGoal("p99 us", took.p99_us, P99_LIMIT_US),),
         f"{lessons} lessons, the wait for the next tick ({period_s * 500:g} ms on average) included",
     )

@@ -8,7 +8,7 @@ import numpy as np
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
 from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress
 from kurt2rt.core.rla.matching import ConditionIndex, exact_distances
-from kurt2rt.platform.ledger import share_of
+from kurt2rt.platform.ledger import percentiles_of
 
 DIMENSIONS = 72
 """Of the basic situation (paper, VI.B.1)."""
@@ -65,11 +65,11 @@ def _measure(size: Size) -> BenchResult:
                     f"{size.rlas} RLAs, call {call}: the index names {nearest}, float64 names {winner}; "
                     "run the tests of kurt2rt/core/rla"
                 )
-    took = share_of(took_ns)
+    took = percentiles_of(took_ns)
     return BenchResult(
         "match",
         f"nearest of {size.rlas} RLAs",
         took,
-        Reference("brute force", share_of(reference_ns).median_us, took.median_us),
+        Reference("brute force", percentiles_of(reference_ns).median_us, took.median_us),
         (BenchGoal("median us", took.median_us, size.limit_us),),
     )

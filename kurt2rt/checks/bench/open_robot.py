@@ -22,7 +22,7 @@ from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.exchange.package import package_knowledge
 from kurt2rt.knowledge.files.backup import BackupService
 from kurt2rt.knowledge.journal.writer import JournalWriter
-from kurt2rt.platform.gc_control import quiet_gc
+from kurt2rt.platform.gc_control import gc_frozen
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.service.post_tick import PostTick, ProgramConsole
@@ -104,7 +104,7 @@ async def open_robot(subject: RobotUnderTest, folder: Path) -> AsyncIterator[Ope
             kept_knowledge(subject, Path(service.knowledge)) as writer,
             TimerfdClock() as real_clock,
             simulation.live(),
-            quiet_gc(),
+            gc_frozen(),
         ):
             clock = NotingClock(real_clock)
             witness = WitnessedRobot(simulation.robot, clock)
@@ -121,7 +121,7 @@ async def open_robot(subject: RobotUnderTest, folder: Path) -> AsyncIterator[Ope
             package = partial(package_knowledge, robot=subject.settings, task=subject.task)
             safe = BackupService(Path(service.knowledge), writer, package)
             surroundings = ChannelDependencies(safekeeping, safe, lambda: "", None)
-            screen = ProgramConsole(status=lambda _: None, question=lambda _: None, settled=lambda _: None)
+            screen = ProgramConsole(status=lambda _: None, question=lambda _: None, acknowledged=lambda _: None)
             teachers = await anyio.to_thread.run_sync(Teachers, folder / "teachers")
             try:
                 async with (

@@ -10,7 +10,7 @@ from kurt2rt.checks.bench.open_robot import OpenRobot, open_robot
 from kurt2rt.checks.bench.press_schedule import Press, waits_ns
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
 from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest
-from kurt2rt.platform.ledger import share_of
+from kurt2rt.platform.ledger import percentiles_of
 
 MEDIAN_LIMIT_US = 25_000.0
 P99_LIMIT_US = 60_000.0
@@ -58,7 +58,7 @@ async def _pressed(robot: OpenRobot, ask: _Ask, presses: int, what: str, on_prog
 
 def press_result(what: str, waits_ns: list[int], *, lost: int, period_s: float) -> BenchResult:
     """What became of so many presses, beside the period of the loop."""
-    took = share_of(waits_ns)
+    took = percentiles_of(waits_ns)
     return BenchResult(
         "channel",
         what,

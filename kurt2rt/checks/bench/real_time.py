@@ -9,7 +9,7 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.platform.asyncio_clock import AsyncioClock
 from kurt2rt.platform.clock import Clock
-from kurt2rt.platform.gc_control import quiet_gc
+from kurt2rt.platform.gc_control import gc_frozen
 from kurt2rt.platform.ledger import Percentiles, Stage, TickTimer
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 from kurt2rt.runtime import build_runtime
@@ -52,7 +52,7 @@ async def run_in_real_time(subject: RobotUnderTest, folder: Path, turns: Turns, 
     driving = 0
     simulation = subject.open_simulation("bench real_time")
     try:
-        with kept_knowledge(subject, folder / "real_time.knowledge") as writer, TimerfdClock() as clock, quiet_gc():
+        with kept_knowledge(subject, folder / "real_time.knowledge") as writer, TimerfdClock() as clock, gc_frozen():
             runtime = build_runtime(simulation.robot, subject.settings, subject.task, subject.events, writer, clock)
             actions = tuple(runtime.level.repertoire)
             teacher = teacher_of(subject.task, subject.settings, actions, seed=SEED, session="bench")

@@ -11,9 +11,9 @@ from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
 from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest, kept_knowledge
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.platform.gc_control import quiet_gc
-from kurt2rt.platform.ledger import Percentiles, TickTimer, share_of
-from kurt2rt.platform.switch_interval import short_turns
+from kurt2rt.platform.gc_control import gc_frozen
+from kurt2rt.platform.ledger import Percentiles, TickTimer, percentiles_of
+from kurt2rt.platform.switch_interval import short_switch_interval
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 from kurt2rt.runs.recording.recording import Recording, RunContext
 from kurt2rt.runs.recording.run_files import budget_of
@@ -82,8 +82,8 @@ async def drive_recorded(
         with (
             kept_knowledge(subject, folder / "recording.knowledge") as writer,
             TimerfdClock() as timer,
-            quiet_gc(),
-            short_turns(),
+            gc_frozen(),
+            short_switch_interval(),
             recorder,
         ):
             clock = NotingClock(timer)
@@ -104,7 +104,7 @@ async def drive_recorded(
         ticks=shifts.ticks,
         lateness=ledgers[True].lateness(),
         alone_lateness=ledgers[False].lateness(),
-        note=share_of(noted_ns),
+        note=percentiles_of(noted_ns),
         recorded=tuple(stretches[True]),
         alone=tuple(stretches[False]),
         bytes_written=used_bytes(runs),
@@ -127,8 +127,8 @@ def recording_results(drive: RecordedDrive) -> tuple[BenchResult, ...]:
     """How late ticks begin while the run is recorded, what a note takes, and the recorder's work beside the loop."""
     stretch_s = drive.ticks * drive.period_s
     pairs = list(zip(drive.alone, drive.recorded, strict=True))
-    more = share_of([round((each.processor_us - alone.processor_us) / stretch_s * 1e3) for alone, each in pairs])
-    alone_us = share_of([round(alone.processor_us / stretch_s * 1e3) for alone in drive.alone]).median_us
+    more = percentiles_of([round((each.processor_us - alone.processor_us) / stretch_s * 1e3) for alone, each in pairs])
+    alone_us = percentiles_of([round(alone.processor_us / stretch_s * 1e3) for alone in drive.alone]).median_us
     hours = len(drive.recorded) * stretch_s / 3600
     missed = sum(each.missed_ticks for each in drive.recorded)
     missed_alone = sum(each.missed_ticks for each in drive.alone)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 from kurt2rt.checks.doctor.sqlite_log import check_sqlite_log
-from kurt2rt.platform.fsync_probe import sync_ns
+from kurt2rt.platform.fsync_probe import fsync_ns
 
 SYNC_TIMES = 20
 SYNC_LIMIT_S = 0.02
@@ -55,7 +55,7 @@ def check_free_space(folder: Path, least_bytes: int = LEAST_BYTES, wanted_bytes:
 def check_sync(folder: Path, limit_s: float = SYNC_LIMIT_S) -> CheckResult:
     """How long does the disk take until a page is durable?"""
     with (folder / "sync").open("wb", buffering=0) as file:
-        took_s = [sync_ns(file) / 1e9 for _ in range(SYNC_TIMES)]
+        took_s = [fsync_ns(file) / 1e9 for _ in range(SYNC_TIMES)]
     median_s = statistics.median(took_s)
     took = {"median_ms": median_s * 1000, "times": SYNC_TIMES, "worst_ms": max(took_s) * 1000}
     values = {**took, "limit_ms": limit_s * 1000}

@@ -23,7 +23,7 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Command, ReplaceAction, Take
 from kurt2rt.core.teaching.inbox import InboxFullError
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.platform.gc_control import quiet_gc
+from kurt2rt.platform.gc_control import gc_frozen
 from kurt2rt.runs.recording.recording import Recording, RunContext
 from kurt2rt.runtime import Runtime, build_runtime
 from kurt2rt.service.post_tick import PostTick, ProgramConsole
@@ -96,7 +96,7 @@ class ProgramRun:
         )
         self.level.behind = self.runtime.level
         self.runtime.school.stop(STARTED)
-        screen = ProgramConsole(status=lambda _: None, question=lambda _: None, settled=self.knowledge.settled)
+        screen = ProgramConsole(status=lambda _: None, question=lambda _: None, acknowledged=self.knowledge.settled)
         circumstances = RunContext(f"{number:016x}", service.knowledge, attended=True, stopped=STARTED)
         started = _FIRST_DAY + timedelta(seconds=rig.time.now_s())
         # Without its thread: it writes when it is told to, as far as simulated time has gone.
@@ -133,7 +133,7 @@ class ProgramRun:
             if is_over():
                 runtime.scheduler.end()
 
-        with quiet_gc():
+        with gc_frozen():
             try:
                 await runtime.scheduler.run(None, after_tick)
             except Exception as error:  # noqa: BLE001  # whatever a fault raised ends the program, and is judged

@@ -16,7 +16,7 @@ from cryptography.hazmat.primitives.serialization import (
 )
 
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.platform.durable_files import sync_folder
+from kurt2rt.platform.durable_files import fsync_folder
 
 PUBLIC_KEY_BYTES = 32
 
@@ -41,7 +41,7 @@ def make_key(path: Path) -> Path:
                 file.write(content)
                 file.flush()
                 os.fsync(file.fileno())
-        sync_folder(path.parent)
+        fsync_folder(path.parent)
     except OSError as error:
         for place in written:
             place.unlink(missing_ok=True)

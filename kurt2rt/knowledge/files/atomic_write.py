@@ -9,7 +9,7 @@ from itertools import count
 from pathlib import Path
 
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.platform.durable_files import sync_folder
+from kurt2rt.platform.durable_files import fsync_folder
 
 _LONGEST_PART = 32
 
@@ -38,7 +38,7 @@ def write_numbered(content: bytes, folder: Path, parts: tuple[str, ...], ending:
             name = f"{stem}{ending}" if number == 1 else f"{stem}-{number}{ending}"
             if _is_born(content, folder, name):
                 break
-        sync_folder(folder)
+        fsync_folder(folder)
     except OSError as error:
         raise KnowledgeError(
             f"nothing can be saved there ({error})", where=folder, do="give a folder that may be written and has room"
@@ -56,7 +56,7 @@ def write_new(content: bytes, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         unborn.unlink(missing_ok=True)
         born = _is_born(content, path.parent, path.name)
-        sync_folder(path.parent)
+        fsync_folder(path.parent)
     except OSError as error:
         raise KnowledgeError(
             f"cannot be saved ({error})", where=path, do="give a path in a folder that may be written and has room"

@@ -11,7 +11,7 @@ from kurt2rt.core.rla.rla import BASIC, Rla
 from kurt2rt.knowledge.files.atomic_write import SavedCopy, plain_part, stamp_part, write_numbered
 from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.platform.yield_gil import politely
+from kurt2rt.platform.yield_gil import yield_gil
 
 _COLUMNS = (
     *("id", "action", "radius", "teacher", "phase", "tick", "taught_at"),
@@ -37,8 +37,8 @@ def export_table(journal_path: Path, folder: Path, stamp: str) -> SavedCopy:
 
 def _table(journal: Journal) -> str:
     # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
-    entries = list(politely(journal.iter_entries()))
-    system = fold_entries(journal, politely(entries), radius=math.inf)
+    entries = list(yield_gil(journal.iter_entries()))
+    system = fold_entries(journal, yield_gil(entries), radius=math.inf)
     statistics = journal.statistics()
     stamps = {entry.event.origin.command_id: entry.stamped_at for entry in entries}
     text = io.StringIO(newline="")
@@ -50,7 +50,7 @@ def _table(journal: Journal) -> str:
     named = any(rla.behaviour for rla in rlas)
     behaviour_column = ("behaviour",) if named else ()
     table.writerow(map(_harmless, (*_COLUMNS, *behaviour_column, *_feature_columns(levels))))
-    for rla in politely(rlas):
+    for rla in yield_gil(rlas):
         origin = rla.origin
         cells = (
             rla.rla_id,

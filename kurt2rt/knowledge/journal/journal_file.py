@@ -21,7 +21,7 @@ from kurt2rt.knowledge.journal.journal_schema import (
 )
 from kurt2rt.knowledge.journal.statistics_tables import LATER_TABLES, has_table
 from kurt2rt.knowledge.knowledge_error import KnowledgeError, from_sqlite
-from kurt2rt.platform.durable_files import sync_file, sync_folder
+from kurt2rt.platform.durable_files import fsync_file, fsync_folder
 
 BUSY_TIMEOUT_S = 0.2
 """How long SQLite itself waits for another program's lock; after that the writer says so and tries again."""
@@ -107,7 +107,7 @@ def create(path: Path, binding: KnowledgeBinding) -> None:
             file.flush()
             os.fsync(file.fileno())
         unborn.rename(path)
-        sync_folder(path.parent)
+        fsync_folder(path.parent)
     except OSError as error:
         raise KnowledgeError(
             f"cannot be created ({error})", where=path, do="give a path in a folder that may be written and has room"
@@ -250,8 +250,8 @@ def make_durable(connection: sqlite3.Connection, path: Path) -> None:
         # what is found here counts as saved, so it is written to the disk anew.
         busy, in_log, merged = connection.execute("PRAGMA wal_checkpoint(PASSIVE)").fetchone()
         if busy or merged < in_log:  # somebody reads in it, and what he does not see yet stays in the log
-            sync_file(log_of(path))
-            sync_folder(path.parent)
+            fsync_file(log_of(path))
+            fsync_folder(path.parent)
     except sqlite3.Error as error:
         raise from_sqlite(error, path) from error
     except OSError as error:

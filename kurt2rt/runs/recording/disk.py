@@ -7,7 +7,7 @@ import os
 from pathlib import Path
 from typing import Protocol
 
-from kurt2rt.platform.durable_files import free_bytes, make_private_folder, sync_folder
+from kurt2rt.platform.durable_files import free_bytes, fsync_folder, make_private_folder
 
 _NO_LOCKS = frozenset({errno.ENOLCK, errno.EOPNOTSUPP, errno.EBADF, errno.ENOSYS})
 """What a disk answers that knows no locks: of a folder, NFS says EBADF."""
@@ -76,7 +76,7 @@ class RealDisk:
         make_private_folder(path.parent)
         path.mkdir()
         try:
-            sync_folder(path.parent)
+            fsync_folder(path.parent)
         except OSError:
             with contextlib.suppress(OSError):  # the first error is the one to tell
                 path.rmdir()
@@ -86,7 +86,7 @@ class RealDisk:
         """Make a file whose name outlives a power cut. Raises OSError."""
         file = RealFile(path)
         try:
-            sync_folder(path.parent)
+            fsync_folder(path.parent)
         except OSError:
             file.close()
             raise

@@ -6,7 +6,7 @@ from typing import Protocol
 
 import can
 
-from kurt2rt.platform.yield_gil import politely
+from kurt2rt.platform.yield_gil import yield_gil
 from kurt2rt.runs.recording.recording_error import RecordingError
 
 ENDINGS = (".log", ".asc", ".blf", ".csv", ".trc", ".mf4")
@@ -52,7 +52,7 @@ class LogFile:
 
     def write(self, frames: Sequence[can.Message]) -> None:
         """Frames in candump's, Vector's, ... words; see FrameWriter. Raises OSError."""
-        for frame in politely(frames):
+        for frame in yield_gil(frames):
             self._writer.on_message_received(_as_candump_says_it(frame) if self._is_candump else frame)
         flush = getattr(getattr(self._writer, "file", None), "flush", None)
         if flush is not None:

@@ -13,7 +13,7 @@ from hal.robot_settings import RobotSettings
 from hal.simulation import SimulatedWorld
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
-from kurt2rt.platform.yield_gil import politely
+from kurt2rt.platform.yield_gil import yield_gil
 from kurt2rt.runs.recording.disk import Disk
 from kurt2rt.runs.recording.live_view import LiveView
 from kurt2rt.runs.recording.notes import HealthNote, Note, NoteLog, QuestionNote, TickNote
@@ -129,14 +129,14 @@ class RunRecorder:
 
     def write_waiting(self) -> None:
         """Show all that waits, and log it to a file; while there is none, it goes on waiting."""
-        for note in politely(self._thread.take()):
+        for note in yield_gil(self._thread.take()):
             if self._shown is not None and self._live is not None and self._live.is_open:
                 self._log(self._shown, note)
             if self._files is not None:
                 self._held.append(note)
         if self._kept is None or self._files is None or not self._files.takes:
             return
-        for note in politely(self._held.popleft() for _ in range(len(self._held))):
+        for note in yield_gil(self._held.popleft() for _ in range(len(self._held))):
             if not self._log(self._kept, note):
                 self._not_written += 1
             elif isinstance(note, TickNote):

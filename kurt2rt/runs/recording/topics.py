@@ -26,7 +26,7 @@ from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.event_codec import encode_event
 from kurt2rt.knowledge.journal.writer import Acknowledgement
-from kurt2rt.platform.yield_gil import politely
+from kurt2rt.platform.yield_gil import yield_gil
 from kurt2rt.runs.recording.entries import tick_entry_of
 from kurt2rt.runs.recording.foxglove_scene import (
     ROBOT,
@@ -90,7 +90,7 @@ class Topics:
         if self._tick.has_sinks():  # the most work of all, for which a live view seldom asks
             knowledge = None
             if record.knowledge is not None:
-                knowledge = knowledge_hash_of(politely(sorted(record.knowledge, key=lambda rla: rla.rla_id)))
+                knowledge = knowledge_hash_of(yield_gil(sorted(record.knowledge, key=lambda rla: rla.rla_id)))
             self._tick.log(encode_tick(tick_entry_of(record, saved=saved, knowledge=knowledge)), log_time=time_ns)
         for event in record.events:
             self._taught(event, time_ns)

@@ -46,12 +46,12 @@ class Counted:
         self._past: deque[Mapping[str, int]] = deque([{}], maxlen=LATELY_S + 1)  # all begin at nothing
         self._now: Mapping[str, int] = {}
 
-    def see(self, counters: Mapping[str, int]) -> None:
+    def update(self, counters: Mapping[str, int]) -> None:
         """Their values, once a second."""
         self._now = counters
         self._past.append(counters)
 
-    def lately(self, name: str) -> int:
+    def growth(self, name: str) -> int:
         """How much one grew; nothing for one that is not counted."""
         return self._now.get(name, 0) - self._past[0].get(name, 0)
 
@@ -63,7 +63,7 @@ class _Writes:
         self._newest_s: float | None = None
         self._slow: deque[tuple[float, float]] = deque()
 
-    def see(self, now_s: float, last_write_s: float | None) -> None:
+    def update(self, now_s: float, last_write_s: float | None) -> None:
         """What the newest one took; a value that is there still is of the same write."""
         if last_write_s != self._newest_s:
             self._newest_s = last_write_s
@@ -97,7 +97,7 @@ class Diagnostics:
         counted: Counted,
     ) -> tuple[Trouble, ...]:
         """The troubles of one report: the urgent ones first, then those that have lasted longest."""
-        self._writes.see(snapshot.now_s, snapshot.last_write_s)
+        self._writes.update(snapshot.now_s, snapshot.last_write_s)
         found = [
             *self._of_senses(snapshot),
             *_of_bus(snapshot, counted),
@@ -105,7 +105,7 @@ class Diagnostics:
             *self._of_ticks(punctuality),
             *_of_machine(machine),
             *_of_drops(snapshot, counted),
-            *(_Found(TroubleCode.PROGRAM, name=part, line=line) for part, line in snapshot.says.items()),
+            *(_Found(TroubleCode.PROGRAM, name=part, line=line) for part, line in snapshot.errors.items()),
         ]
         now_s = snapshot.now_s
         self._since_s = {each.key: self._since_s.get(each.key, now_s) for each in found}
@@ -154,14 +154,14 @@ def _of_bus(snapshot: Snapshot, counted: Counted) -> Iterator[_Found]:
     if bus.trouble:
         yield _Found(TroubleCode.BUS_ALARM, bus.latched is not None, line=bus.trouble)
     for name, code in _COUNTERS.items():
-        lately = counted.lately(name)
+        lately = counted.growth(name)
         if lately:
             yield _Found(code, numbers=(lately,))
 
 
 def _of_keeping(snapshot: Snapshot, slowest_write_s: float | None, disks: tuple[DiskSpace, ...]) -> Iterator[_Found]:
-    if snapshot.keeper_trouble:
-        yield _Found(TroubleCode.LESSONS_UNSAVED, True, line=snapshot.keeper_trouble)
+    if snapshot.journal_error:
+        yield _Found(TroubleCode.LESSONS_UNSAVED, True, line=snapshot.journal_error)
     if slowest_write_s is not None:
         yield _Found(TroubleCode.SLOW_DISK, numbers=(slowest_write_s,))
     for disk in disks:
@@ -182,6 +182,6 @@ def _of_machine(machine: MachineHealth) -> Iterator[_Found]:
 
 def _of_drops(snapshot: Snapshot, counted: Counted) -> Iterator[_Found]:
     for queue in snapshot.drops:
-        lately = counted.lately(f"drops {queue}")
+        lately = counted.growth(f"drops {queue}")
         if lately:
             yield _Found(TroubleCode.DROPS, name=queue, numbers=(lately,))

@@ -27,7 +27,7 @@ class DiskMonitor:
             threading.Thread(target=self._run, args=(of,), name=f"room for {of}", daemon=True) for of in self._folders
         ]
 
-    def look(self, of: str) -> None:
+    def poll(self, of: str) -> None:
         """Ask one disk, and wait for it; what the thread does again and again."""
         try:
             found = free_bytes(self._folders[of])
@@ -55,6 +55,6 @@ class DiskMonitor:
         self._ending.set()  # not joined: one that hangs would hang us
 
     def _run(self, of: str) -> None:
-        self.look(of)
+        self.poll(of)
         while not self._ending.wait(_EVERY_S):
-            self.look(of)
+            self.poll(of)

@@ -21,7 +21,7 @@ class MachineMonitor:
         self._looked_at_s = time.monotonic()
         self._used_s = time.process_time()
 
-    def look(self) -> MachineHealth:
+    def poll(self) -> MachineHealth:
         """As it is now."""
         now_s, used_s = time.monotonic(), time.process_time()
         share = (used_s - self._used_s) / max(now_s - self._looked_at_s, 1e-3)

@@ -69,12 +69,12 @@ class HealthMonitor:
         self,
         *,
         drops: Mapping[str, Callable[[], int]] | None = None,
-        says: Mapping[str, Callable[[], str]] | None = None,
+        errors: Mapping[str, Callable[[], str]] | None = None,
     ) -> None:
         """Read these of the program's parts as well, from now on: a channel opens when the network is there."""
-        self._instruments = self._instruments.with_more(drops, says)
+        self._instruments = self._instruments.with_more(drops, errors)
 
-    def listen(self, listener: Callable[[HealthReport], None]) -> None:
+    def add_listener(self, listener: Callable[[HealthReport], None]) -> None:
         """Call `listener` with each report, in the loop, after a tick; it must not wait."""
         self._listeners.append(listener)
 
@@ -95,9 +95,9 @@ class HealthMonitor:
 
     def report(self, snapshot: Snapshot) -> HealthReport:
         """The report of one snapshot, once a second: what grew lately is counted by reports. Takes about 1 ms."""
-        self._counted.see(_counters(snapshot))
+        self._counted.update(_counters(snapshot))
         punctuality = self._punctuality(snapshot)
-        disks, machine = self._disks.spaces(), self._machine.look()
+        disks, machine = self._disks.spaces(), self._machine.poll()
         last_write_s = snapshot.last_write_s
         return HealthReport(
             version=self._version,
@@ -147,7 +147,7 @@ class HealthMonitor:
             took_p99_ms=ledger.tick().p99_us / 1000,
             ticks=snapshot.ticks,
             missed=snapshot.missed_ticks,
-            missed_lately=self._counted.lately("missed"),
+            missed_lately=self._counted.growth("missed"),
         )
 
     def _run(self) -> None:

@@ -35,7 +35,7 @@ class Probes:
     """Counters of the robot's bus; None where there is none."""
     drops: Mapping[str, Callable[[], int]] = field(default_factory=dict)
     """By queue, how much it threw away so far."""
-    says: Mapping[str, Callable[[], str]] = field(default_factory=dict)
+    errors: Mapping[str, Callable[[], str]] = field(default_factory=dict)
     """By part, what is wrong with it and what to do, in a line; empty when nothing is."""
     folders: Mapping[str, Path] = field(default_factory=dict)
     """What is kept, and in which folder there has to be room for it."""
@@ -45,7 +45,7 @@ class Probes:
     def with_more(
         self,
         drops: Mapping[str, Callable[[], int]] | None = None,
-        says: Mapping[str, Callable[[], str]] | None = None,
+        errors: Mapping[str, Callable[[], str]] | None = None,
     ) -> "Probes":
         """These and others."""
-        return replace(self, drops={**self.drops, **(drops or {})}, says={**self.says, **(says or {})})
+        return replace(self, drops={**self.drops, **(drops or {})}, errors={**self.errors, **(errors or {})})

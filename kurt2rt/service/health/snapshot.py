@@ -25,10 +25,10 @@ class Snapshot:
     """Infinite before the first frame, as in SensorReadings."""
     bus: Health | None
     unwritten: int
-    keeper_trouble: str | None
+    journal_error: str | None
     last_write_s: float | None
     drops: Mapping[str, int]
-    says: Mapping[str, str]
+    errors: Mapping[str, str]
     """Lines of trouble that are not empty, by part."""
     ticks: int
     missed_ticks: int
@@ -43,8 +43,8 @@ def take_snapshot(
 ) -> Snapshot:
     """Read everything; some ten microseconds, and nothing waits."""
     senses, system, ledger = record.senses, runtime.level.system, runtime.ledger
-    says = {part: say() for part, say in instruments.says.items()}
-    says["teaching"] = runtime.school.learning.trouble
+    errors = {part: error() for part, error in instruments.errors.items()}
+    errors["teaching"] = runtime.school.learning.trouble
     return Snapshot(
         tick=record.tick,
         now_s=now_s,
@@ -53,10 +53,10 @@ def take_snapshot(
         bumper_age_s=senses.bumper_age_s,
         bus=None if instruments.bus is None else instruments.bus(),
         unwritten=keeping.unwritten,
-        keeper_trouble=keeping.trouble,
+        journal_error=keeping.trouble,
         last_write_s=keeping.last_write_s,
         drops={queue: count() for queue, count in instruments.drops.items()},
-        says={part: line for part, line in says.items() if line},
+        errors={part: line for part, line in errors.items() if line},
         ticks=ledger.ticks,
         missed_ticks=ledger.missed_ticks,
         rlas=len(system),

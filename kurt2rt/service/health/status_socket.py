@@ -30,7 +30,7 @@ class StatusError(UserError):
     """The status of a robot program cannot be read."""
 
 
-def socket_of(knowledge: Path) -> Path:
+def status_socket_path(knowledge: Path) -> Path:
     """Where the program that teaches on in a knowledge file tells how it is; there is one such program at most."""
     return knowledge.with_name(f"{knowledge.name}.status")
 
@@ -47,7 +47,7 @@ class StatusSocket:
         self._readers = 0
         self.trouble = ""
         """Why nobody can read; empty while somebody could."""
-        watch.listen(self._wake)
+        watch.add_listener(self._wake)
 
     async def serve(self) -> None:
         """Until cancelled. A place where no socket can be made is told, and nothing else ends."""
@@ -80,7 +80,7 @@ class StatusSocket:
             self._readers -= 1
 
 
-async def tell_waiting(path: Path, waits_for: Callable[[], str]) -> None:
+async def serve_waiting(path: Path, waits_for: Callable[[], str]) -> None:
     """Tell every reader what the program still waits for, until cancelled; its status then takes the socket's place.
 
     `waits_for`: in a line with what to do.
@@ -99,7 +99,7 @@ async def tell_waiting(path: Path, waits_for: Callable[[], str]) -> None:
             await listener.serve(tell)
 
 
-def reports_at(path: Path, patience_s: float) -> Iterator[HealthReport]:
+def read_reports(path: Path, patience_s: float) -> Iterator[HealthReport]:
     """Each report of the program that tells at `path`, the newest first; waits for each, so not in a loop of events.
 
     Raises StatusError when none runs, when it still waits for something, when nothing comes for `patience_s`, or for

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from shlex import quote
 
-from kurt2rt.service.systemd.installation import places
+from kurt2rt.service.systemd.installation import required_paths
 
 _HOMES = (Path("/home"), Path("/root"), Path("/run/user"))
 _OF_ITS_OWN = (Path("/tmp"), Path("/var/tmp"), Path("/dev"))  # PrivateTmp and PrivateDevices
@@ -24,20 +24,22 @@ class RequiredAccess:
     """That it writes; absolute, and there later perhaps, when their disk is."""
 
 
-def sees_homes() -> bool:
+def needs_home_access() -> bool:
     """Whether the unit lets its program see homes, for this installation is in one."""
-    return any(_is_within(path, _HOMES) for path in places())
+    return any(_is_within(path, _HOMES) for path in required_paths())
 
 
-def closed_to_others(wanted: RequiredAccess) -> tuple[str, ...]:
+def private_paths(wanted: RequiredAccess) -> tuple[str, ...]:
     """Why the service's own user could not start, a line for each reason with what to do; empty when he can."""
-    installation = (_unreadable(path, f"install kurt2rt where everybody may read, {_ELSEWHERE}") for path in places())
+    installation = (
+        _unreadable(path, f"install kurt2rt where everybody may read, {_ELSEWHERE}") for path in required_paths()
+    )
     files = (_unreadable(path, _to_copy(path)) or _hidden(path, _to_copy(path)) for path in wanted.files)
     folders = (_hidden(path, "name a folder elsewhere") or _impassable(path) for path in wanted.folders)
     return tuple(dict.fromkeys(line for line in (*installation, *files, *folders) if line))
 
 
-def to_hand_over(user: str, wanted: RequiredAccess) -> tuple[str, ...]:
+def paths_to_chown(user: str, wanted: RequiredAccess) -> tuple[str, ...]:
     """Folders that are there and that `user`, who may not be there yet, may not write; a line each, with what to do."""
     return tuple(
         f"{folder}: belongs to {_owner(folder)}; say: sudo chown {user}: {quote(str(folder))}"
@@ -47,7 +49,7 @@ def to_hand_over(user: str, wanted: RequiredAccess) -> tuple[str, ...]:
 
 
 def _hidden(path: Path, to_do: str) -> str:
-    hides = _OF_ITS_OWN if sees_homes() else (*_HOMES, *_OF_ITS_OWN)
+    hides = _OF_ITS_OWN if needs_home_access() else (*_HOMES, *_OF_ITS_OWN)
     for folder in hides:
         if _is_within(path, (folder,)):
             return f"{path}: the service does not see what is in {folder}; {to_do}"

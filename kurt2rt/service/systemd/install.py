@@ -9,7 +9,7 @@ from pathlib import Path
 from kurt2rt.platform.durable_files import write_durably
 from kurt2rt.service.systemd.unit import MARK, USER, Unit, UnitError, require_name
 
-Do = Callable[[Sequence[str]], None]
+CommandRunner = Callable[[Sequence[str]], None]
 """Runs one of systemd's commands. Raises UnitError."""
 
 
@@ -29,7 +29,7 @@ class InstallPaths:
         return self.units / f"{name}.service", self.users / f"{name}.conf"
 
 
-def do(command: Sequence[str]) -> None:
+def run_command(command: Sequence[str]) -> None:
     """Run a command of systemd. Raises UnitError when it fails or is not there."""
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -55,7 +55,7 @@ def require_free(name: str, places: InstallPaths | None = None) -> None:
         raise UnitError("is a user of this machine already", where=name, do=to_do)
 
 
-def install(unit: Unit, run: Do = do, places: InstallPaths | None = None) -> tuple[Path, ...]:
+def install(unit: Unit, run: CommandRunner = run_command, places: InstallPaths | None = None) -> tuple[Path, ...]:
     """Write the unit and make its user; starts nothing. Returns the files. Raises UnitError."""
     places = places or InstallPaths()
     require_free(unit.name, places)
@@ -70,7 +70,7 @@ def install(unit: Unit, run: Do = do, places: InstallPaths | None = None) -> tup
     return files
 
 
-def uninstall(name: str, run: Do = do, places: InstallPaths | None = None) -> tuple[Path, ...]:
+def uninstall(name: str, run: CommandRunner = run_command, places: InstallPaths | None = None) -> tuple[Path, ...]:
     """End and disable the unit and remove its files; what was taught and its user stay. Raises UnitError."""
     require_name(name)
     places = places or InstallPaths()

@@ -6,7 +6,7 @@ from pathlib import Path
 from hal.settings import SHIPPED_DIR
 
 
-def program() -> tuple[str, ...]:
+def start_command() -> tuple[str, ...]:
     """The words that start it, absolute."""
     script = Path(sys.executable).with_name("kurt2rt")
     if script.is_file():
@@ -15,6 +15,6 @@ def program() -> tuple[str, ...]:
     return (sys.executable, "-P", "-m", "kurt2rt.cli.main")
 
 
-def places() -> tuple[Path, ...]:
+def required_paths() -> tuple[Path, ...]:
     """Files and folders that it does not run without."""
-    return (Path(program()[0]), Path(sys.prefix), Path(sys.base_prefix), SHIPPED_DIR)
+    return (Path(start_command()[0]), Path(sys.prefix), Path(sys.base_prefix), SHIPPED_DIR)

@@ -31,32 +31,32 @@ class Notifier:
         self._status = ""
 
     @property
-    def is_heard(self) -> bool:
+    def has_manager(self) -> bool:
         """Whether there is a service manager."""
         return self._socket is not None
 
     def ready(self) -> None:
         """The service is up, or up again after a reload."""
-        self._say("READY=1")
+        self._send("READY=1")
 
     def reloading(self, monotonic_us: int) -> None:
         """Settings are read anew; `ready` ends it."""
-        self._say(f"RELOADING=1\nMONOTONIC_USEC={monotonic_us}")
+        self._send(f"RELOADING=1\nMONOTONIC_USEC={monotonic_us}")
 
     def stopping(self) -> None:
         """The service ends."""
-        self._say("STOPPING=1")
+        self._send("STOPPING=1")
 
     def ping(self) -> None:
         """The service is well."""
-        self._say("WATCHDOG=1")
+        self._send("WATCHDOG=1")
 
     def status(self, text: str) -> None:
         """One line for whoever looks at the unit; said only when it is another one than before."""
         line = " ".join(text.split())
         if line != self._status:
             self._status = line
-            self._say(f"STATUS={line}")
+            self._send(f"STATUS={line}")
 
     def close(self) -> None:
         """Say nothing more; may be called twice."""
@@ -72,7 +72,7 @@ class Notifier:
     ) -> None:
         self.close()
 
-    def _say(self, lines: str) -> None:
+    def _send(self, lines: str) -> None:
         opened = self._socket
         if opened is None or self._address is None:
             return

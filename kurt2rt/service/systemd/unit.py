@@ -8,7 +8,7 @@ from string import Template
 
 from hal.errors import UserError
 from hal.settings import SHIPPED_DIR
-from kurt2rt.service.systemd.access import sees_homes
+from kurt2rt.service.systemd.access import needs_home_access
 
 MARK = "# Made by kurt2rt service install:"
 """How our files begin; others are not touched."""
@@ -37,7 +37,7 @@ class Unit:
     """Text of NAME.conf, which makes the user."""
 
 
-def unit_of(name: str, bus: str, command: Sequence[str], folders: Iterable[Path] = ()) -> Unit:
+def build_unit(name: str, bus: str, command: Sequence[str], folders: Iterable[Path] = ()) -> Unit:
     """The unit that runs `command`, whose first word is an absolute path.
 
     `folders`: beyond its own state it writes there, too. Raises UnitError for a name that is none, or words that
@@ -50,7 +50,7 @@ def unit_of(name: str, bus: str, command: Sequence[str], folders: Iterable[Path]
         "called": USER,
         "mark": MARK,
         "command": " ".join(map(quoted, command)),
-        "protect_home": "read-only" if sees_homes() else "yes",
+        "protect_home": "read-only" if needs_home_access() else "yes",
         "writable": "".join(f"ReadWritePaths=-{quoted(str(each))}\n" for each in sorted(set(folders))).rstrip(),
     }
     return Unit(name, _filled("kurt2rt.service", words), _filled("sysusers.conf", words))

@@ -39,7 +39,7 @@ def has_tool() -> bool:
     return shutil.which(TOOL) is not None
 
 
-def examine(unit: Unit) -> UnitVerification:
+def verify(unit: Unit) -> UnitVerification:
     """Have the unit looked at; nothing is installed or started. Raises UnitError where the tool is missing."""
     tool = shutil.which(TOOL)
     if tool is None:

@@ -27,15 +27,15 @@ class WatchdogNotifier:
         """
         self._notifier = notifier
         self._period_s = period_s
-        self._parts = parts
-        self._tell = tell
+        self._liveness = parts
+        self._log = tell
         self._pings_every_s = None if notifier.watchdog_s is None else notifier.watchdog_s / 2
         self._ticks = 0
         self._since_s: float | None = None
         self.trouble = ""
         """Why no pings are sent at present, in a line; empty while they are."""
 
-    def beat(self, now_s: float) -> None:
+    def on_tick(self, now_s: float) -> None:
         """A tick is done, at `now_s` of any clock that does not jump."""
         if self._pings_every_s is None:
             return
@@ -48,12 +48,12 @@ class WatchdogNotifier:
             self._since_s, self._ticks = now_s, 0
             if self.trouble:
                 self._notifier.status(f"not well: {self.trouble}")
-                self._tell(f"not well: {self.trouble}")
+                self._log(f"not well: {self.trouble}")
             else:
                 self._notifier.ping()
 
     def _trouble(self, passed_s: float) -> str:
-        dead = [name for name, is_alive in self._parts.items() if not is_alive()]
+        dead = [name for name, is_alive in self._liveness.items() if not is_alive()]
         if dead:
             return f"{', '.join(dead)} ended; the service manager starts the program anew"
         due = passed_s / self._period_s

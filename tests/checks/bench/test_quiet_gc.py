@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from kurt2rt.platform.gc_control import quiet_gc
+from kurt2rt.platform.gc_control import gc_frozen
 
 
 class Loop:
@@ -38,11 +38,11 @@ def nothing_set_aside() -> Iterator[None]:
 def test_garbage_from_before_is_gone_and_nothing_is_collected_until_the_end_of_the_outermost() -> None:
     gone = weakref.ref(Loop())
     gc.enable()
-    with quiet_gc():
+    with gc_frozen():
         assert gone() is None
         assert not gc.isenabled()
         assert gc.get_freeze_count() > 0
-        with quiet_gc():
+        with gc_frozen():
             pass
         assert not gc.isenabled()
         assert gc.get_freeze_count() > 0
@@ -52,13 +52,13 @@ def test_garbage_from_before_is_gone_and_nothing_is_collected_until_the_end_of_t
 
 def test_an_error_is_an_end_too() -> None:
     gc.enable()
-    with pytest.raises(KeyError), quiet_gc():
+    with pytest.raises(KeyError), gc_frozen():
         raise KeyError
     assert gc.isenabled()
 
 
 def test_who_collects_by_hand_goes_on_doing_so() -> None:
     gc.disable()
-    with quiet_gc():
+    with gc_frozen():
         pass
     assert not gc.isenabled()

@@ -7,7 +7,7 @@ from rich.console import Console
 
 from kurt2rt.checks.bench.report import BenchMachine, as_json, look_at_machine, print_report
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
-from kurt2rt.platform.ledger import Percentiles, share_of
+from kurt2rt.platform.ledger import Percentiles, percentiles_of
 
 MACHINE = BenchMachine(2, (0.5, 0.25, 0.125), "3.11.7", "2.1.0")
 RESULTS = (
@@ -58,4 +58,4 @@ def test_this_machine_has_a_core() -> None:
 
 
 def test_times_in_nanoseconds_become_microseconds() -> None:
-    assert share_of([1000, 2000, 9000]) == Percentiles(2.0, 8.86, 9.0)
+    assert percentiles_of([1000, 2000, 9000]) == Percentiles(2.0, 8.86, 9.0)

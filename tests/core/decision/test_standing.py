@@ -33,7 +33,7 @@ from kurt2rt.core.teaching.commands import Stop, Teach, Watch
 from kurt2rt.service.health.probes import Probes
 from kurt2rt.service.health.snapshot import take_snapshot
 from kurt2rt.service.post_tick import ProgramStatus
-from kurt2rt.service.status_line import doing
+from kurt2rt.service.status_line import format_activity
 from kurt2rt.teacher.client.link_quality import LinkQuality
 from kurt2rt.teacher.page.views import state_view
 from kurt2rt.teacher.scripted.channel_teacher import picture_in
@@ -94,7 +94,7 @@ def test_a_latched_stall_is_told_with_its_length_and_go_on_every_surface() -> No
     assert page_of(desk.picture) == "Stands: the computer was too slow for 0.1 s. GO lets it drive on"
     assert sentence_of(desk.picture) == "Stands: the computer was too slow for 0.1 s. Type go to let it drive on"
     short = "stands until Go: the computer was too slow for 0.1 s"
-    assert doing(ProgramStatus(desk.record, desk.runtime, 0, None, "")) == short
+    assert format_activity(ProgramStatus(desk.record, desk.runtime, 0, None, "")) == short
     snapshot = take_snapshot(desk.runtime, desk.record, _Keeping(), Probes(), 0.0)
     assert snapshot.doing == short
 
@@ -237,7 +237,7 @@ def test_a_robot_that_is_held_at_a_bumper_asks_on_every_surface() -> None:
     assert page_of(picture) == question
     assert str(question_in(picture)) == f"{question} RLA 1 says forward"
     short = f"stands: {question}"
-    assert doing(ProgramStatus(desk.record, desk.runtime, 0, None, "")) == short
+    assert format_activity(ProgramStatus(desk.record, desk.runtime, 0, None, "")) == short
     assert take_snapshot(desk.runtime, desk.record, _Keeping(), Probes(), 0.0).doing == short
     assert picture.question == ()  # the situation is known: nothing differs
     assert not asks_in(picture)  # an action that is typed corrects the RLA

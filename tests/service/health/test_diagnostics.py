@@ -24,10 +24,10 @@ CALM = Snapshot(
     bumper_age_s=0.004,
     bus=A_BUS,
     unwritten=0,
-    keeper_trouble=None,
+    journal_error=None,
     last_write_s=0.004,
     drops={"lines": 0},
-    says={},
+    errors={},
     ticks=100,
     missed_ticks=0,
     rlas=0,
@@ -48,11 +48,11 @@ class Ward:
     def look(self, snapshot: Snapshot = CALM, **changes: object) -> tuple[Trouble, ...]:
         """`changes` of the other parts of a report."""
         self.now_s += 1.0
-        self.counted.see(dict(self.counters))
+        self.counted.update(dict(self.counters))
         parts = {"punctuality": WELL.punctuality, "disks": WELL.disks, "machine": WELL.machine} | changes
         missed = replace(
             parts["punctuality"],  # type: ignore[type-var]
-            missed_lately=self.counted.lately("missed"),
+            missed_lately=self.counted.growth("missed"),
             missed=self.counters["missed"],
         )
         return self.book.judge(
@@ -130,7 +130,7 @@ def test_the_bus_says_itself_what_is_wrong_and_what_to_do(ward: Ward) -> None:
 
 
 def test_a_disk_that_fails_fills_up_hangs_or_takes_its_time(ward: Ward) -> None:
-    failing = ward.one(replace(CALM, keeper_trouble="k: disk full; make room", unwritten=3))
+    failing = ward.one(replace(CALM, journal_error="k: disk full; make room", unwritten=3))
     assert failing == Trouble(TroubleCode.LESSONS_UNSAVED, 0.0, True, line="k: disk full; make room")
     little = ward.one(disks=(DiskSpace("recordings", 499_000_000),))
     assert little == Trouble(TroubleCode.LITTLE_ROOM, 0.0, False, "recordings", (499.0,))
@@ -160,12 +160,12 @@ def test_what_queues_throw_away_and_what_parts_say_of_themselves(ward: Ward) -> 
     ward.counters["drops lines"] = 40
     assert ward.one() == Trouble(TroubleCode.DROPS, 0.0, False, "lines", (40,))
     ward = Ward()
-    said = ward.one(replace(CALM, says={"channel": "phone: no key; pair it anew"}))
+    said = ward.one(replace(CALM, errors={"channel": "phone: no key; pair it anew"}))
     assert said == Trouble(TroubleCode.PROGRAM, 0.0, False, "channel", line="phone: no key; pair it anew")
 
 
 def test_the_urgent_ones_come_first_then_those_that_have_lasted_longest(ward: Ward) -> None:
-    ward.look(replace(CALM, says={"channel": "a"}))
-    ward.look(replace(CALM, says={"channel": "a", "recording": "b"}))
-    troubles = ward.look(replace(CALM, encoder_age_s=1.0, says={"recording": "b", "channel": "a"}))
+    ward.look(replace(CALM, errors={"channel": "a"}))
+    ward.look(replace(CALM, errors={"channel": "a", "recording": "b"}))
+    troubles = ward.look(replace(CALM, encoder_age_s=1.0, errors={"recording": "b", "channel": "a"}))
     assert [each.name for each in troubles] == ["encoders", "channel", "recording"]

@@ -41,7 +41,7 @@ class Robot:
             now=lambda: self.now_s,
         )
         self.heard: list[HealthReport] = []
-        self.watch.listen(self.heard.append)
+        self.watch.add_listener(self.heard.append)
 
     def tick(self, count: int = 1) -> None:
         for _ in range(count):
@@ -117,7 +117,7 @@ def test_sensors_that_were_never_heard_have_no_age(robot: Robot) -> None:
 
 def test_parts_that_come_later_are_read_from_then_on(robot: Robot) -> None:
     robot.tick()
-    robot.watch.include(drops={"pictures": lambda: 7}, says={"channel": lambda: "the port is taken; free it"})
+    robot.watch.include(drops={"pictures": lambda: 7}, errors={"channel": lambda: "the port is taken; free it"})
     robot.dropped = 3
     report = robot.report()
     assert {each.of: each.count for each in report.drops} == {"lines": 3, "pictures": 7}
@@ -128,7 +128,7 @@ def test_there_is_room_where_the_folder_will_be_made(tmp_path: Path) -> None:
     look = DiskMonitor({"knowledge": tmp_path / "not" / "there"}, now=lambda: now_s)
     now_s = 0.0
     assert look.spaces() == (DiskSpace("knowledge", None),)
-    look.look("knowledge")
+    look.poll("knowledge")
     (space,) = look.spaces()
     assert space.free_bytes is not None
     assert space.free_bytes > 0
@@ -149,4 +149,4 @@ def test_the_battery_is_the_machines_own_and_of_two_the_emptier(tmp_path: Path) 
             if text:
                 (tmp_path / name / file).write_text(f"{text}\n")
     assert battery_of(tmp_path) == (0.61, True)
-    assert MachineMonitor(tmp_path).look().battery == 0.61
+    assert MachineMonitor(tmp_path).poll().battery == 0.61

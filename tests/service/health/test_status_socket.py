@@ -19,10 +19,10 @@ from kurt2rt.service.health.monitor import HealthMonitor
 from kurt2rt.service.health.status_socket import (
     StatusError,
     StatusSocket,
-    reports_at,
+    read_reports,
+    serve_waiting,
     short_name,
-    socket_of,
-    tell_waiting,
+    status_socket_path,
 )
 from tests.service.health.reports import ILL, WELL
 
@@ -36,7 +36,7 @@ class Watch:
         self.newest: HealthReport | None = None
         self._listeners: list[object] = []
 
-    def listen(self, listener: object) -> None:
+    def add_listener(self, listener: object) -> None:
         self._listeners.append(listener)
 
     def tell(self, report: HealthReport) -> None:
@@ -49,7 +49,7 @@ class Watch:
 def path(tmp_path: Path) -> Path:
     folder = tmp_path / ("a folder with a name that is too long for the kernel's names of sockets " * 2)
     folder.mkdir()
-    return socket_of(folder / "x.knowledge")
+    return status_socket_path(folder / "x.knowledge")
 
 
 @asynccontextmanager
@@ -96,7 +96,7 @@ async def test_a_reader_gets_the_newest_report_at_once_and_then_each(path: Path)
     watch = Watch()
     watch.tell(WELL)
     async with serving(watch, path):
-        reports = reports_at(path, PATIENCE_S)
+        reports = read_reports(path, PATIENCE_S)
         assert await following(reports) == WELL
         watch.tell(ILL)
         assert await following(reports) == ILL
@@ -112,7 +112,7 @@ async def test_in_its_first_second_a_reader_waits_for_the_report(path: Path) -> 
         got: list[HealthReport] = []
 
         async def read() -> None:
-            got.append(await following(reports_at(path, PATIENCE_S)))
+            got.append(await following(read_reports(path, PATIENCE_S)))
 
         tasks.start_soon(read)
         await anyio.sleep(0.01)
@@ -125,41 +125,41 @@ async def test_what_a_killed_program_left_behind_is_taken_over(path: Path) -> No
         pass
     assert mode_of(path)
     with pytest.raises(StatusError, match="no robot program runs"):
-        next(reports_at(path, PATIENCE_S))
+        next(read_reports(path, PATIENCE_S))
     watch = Watch()
     watch.tell(WELL)
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(StatusSocket(cast(HealthMonitor, watch), path).serve)
         await until(lambda: is_told(path))
-        assert await following(reports_at(path, PATIENCE_S)) == WELL
+        assert await following(read_reports(path, PATIENCE_S)) == WELL
         tasks.cancel_scope.cancel()
 
 
 async def test_a_program_that_waits_says_for_what_until_there_is_a_status(path: Path) -> None:
     async with anyio.create_task_group() as tasks:
-        tasks.start_soon(tell_waiting, path, lambda: "bus: no such interface; set it up")
+        tasks.start_soon(serve_waiting, path, lambda: "bus: no such interface; set it up")
         await until(lambda: is_told(path))
         for _ in range(2):
             with pytest.raises(StatusError, match="stands and waits for bus: no such interface; set it up"):
-                await anyio.to_thread.run_sync(lambda: list(reports_at(path, PATIENCE_S)))
+                await anyio.to_thread.run_sync(lambda: list(read_reports(path, PATIENCE_S)))
         assert mode_of(path) & 0o077 == 0
         tasks.cancel_scope.cancel()
     watch = Watch()
     watch.tell(WELL)
     async with serving(watch, path):
-        assert await following(reports_at(path, PATIENCE_S)) == WELL
+        assert await following(read_reports(path, PATIENCE_S)) == WELL
 
 
 def test_where_none_runs_the_reader_is_told_what_to_do(path: Path) -> None:
     with pytest.raises(
         StatusError, match=r"no robot program runs with the knowledge .*x\.knowledge, or it .*; start one"
     ):
-        next(reports_at(path, PATIENCE_S))
+        next(read_reports(path, PATIENCE_S))
 
 
 def test_one_that_says_nothing_hangs(path: Path) -> None:
     with bound(path), pytest.raises(StatusError, match="it hangs or was stopped"):
-        next(reports_at(path, 0.05))
+        next(read_reports(path, 0.05))
 
 
 def test_another_version_is_not_guessed_at(path: Path) -> None:
@@ -175,7 +175,7 @@ def test_another_version_is_not_guessed_at(path: Path) -> None:
         answering = threading.Thread(target=answer)
         answering.start()
         with pytest.raises(StatusError, match=r"has no machine.*use the kurt2rt that the robot runs"):
-            next(reports_at(path, PATIENCE_S))
+            next(read_reports(path, PATIENCE_S))
         answering.join()
 
 

@@ -8,15 +8,15 @@ import yaml
 
 from config import CONFIG_DIR
 from kurt2rt.service.systemd import access
-from kurt2rt.service.systemd.access import RequiredAccess, closed_to_others, to_hand_over
-from kurt2rt.service.systemd.installation import program
+from kurt2rt.service.systemd.access import RequiredAccess, paths_to_chown, private_paths
+from kurt2rt.service.systemd.installation import start_command
 from tests.cli.helpers import CommandLine
 
 
 @pytest.fixture(autouse=True)
 def _well_installed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where everybody may read, as /opt would be; this copy may be in a home."""
-    monkeypatch.setattr(access, "places", lambda: (Path("/usr"),))
+    monkeypatch.setattr(access, "required_paths", lambda: (Path("/usr"),))
 
 
 def settings_in(folder: Path, **changes: object) -> Path:
@@ -27,13 +27,13 @@ def settings_in(folder: Path, **changes: object) -> Path:
 
 
 def test_nothing_is_in_the_way_of_the_shipped_settings() -> None:
-    assert closed_to_others(RequiredAccess((Path("/usr"),), (Path("/mnt/a disk that comes later"),))) == ()
+    assert private_paths(RequiredAccess((Path("/usr"),), (Path("/mnt/a disk that comes later"),))) == ()
 
 
 def test_settings_that_only_their_owner_may_read_are_to_be_copied(tmp_path: Path) -> None:
     mine = settings_in(tmp_path)
     mine.chmod(0o600)
-    (line,) = closed_to_others(RequiredAccess((mine,)))
+    (line,) = private_paths(RequiredAccess((mine,)))
     assert f"may not read it, for {mine} is closed to others" in line
     assert line.endswith(f"say: sudo install -D -m 644 {mine} /etc/kurt2rt/mine.yaml, and name that one")
 
@@ -41,30 +41,30 @@ def test_settings_that_only_their_owner_may_read_are_to_be_copied(tmp_path: Path
 @pytest.mark.parametrize("place", ["/home/ann", "/tmp", "/var/tmp", "/run/user/1000"])
 def test_what_the_unit_hides_is_neither_read_nor_written(place: str) -> None:
     settings, lessons = Path(place, "nowhere", "my.yaml"), Path(place, "nowhere", "lessons")
-    of_settings, of_lessons = closed_to_others(RequiredAccess((settings,), (lessons,)))
+    of_settings, of_lessons = private_paths(RequiredAccess((settings,), (lessons,)))
     assert of_settings.startswith(f"{settings}: the service ")
     assert of_lessons.startswith(f"{lessons}: the service does not see what is in ")
     assert of_lessons.endswith("; name a folder elsewhere")
 
 
 def test_homes_are_seen_where_kurt2rt_itself_is_in_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(access, "places", lambda: (Path("/home/nobody-of-this-machine/venv"),))
-    assert closed_to_others(RequiredAccess((), (Path("/home/nobody-of-this-machine/lessons"),))) == ()
-    assert closed_to_others(RequiredAccess((), (Path("/tmp/lessons"),))) != ()
+    monkeypatch.setattr(access, "required_paths", lambda: (Path("/home/nobody-of-this-machine/venv"),))
+    assert private_paths(RequiredAccess((), (Path("/home/nobody-of-this-machine/lessons"),))) == ()
+    assert private_paths(RequiredAccess((), (Path("/tmp/lessons"),))) != ()
 
 
 def test_a_link_into_a_home_is_looked_through(tmp_path: Path) -> None:
     link = tmp_path / "my.yaml"
     link.symlink_to("/home/nobody-of-this-machine/my.yaml")
-    assert closed_to_others(RequiredAccess((link,)))
+    assert private_paths(RequiredAccess((link,)))
 
 
 def test_a_folder_of_somebody_else_is_to_be_handed_over(tmp_path: Path) -> None:
     tmp_path.chmod(0o755)
-    (line,) = to_hand_over("kurt2rt", RequiredAccess((), (tmp_path,)))
+    (line,) = paths_to_chown("kurt2rt", RequiredAccess((), (tmp_path,)))
     assert line == f"{tmp_path}: belongs to {getpass.getuser()}; say: sudo chown kurt2rt: {tmp_path}"
-    assert to_hand_over(tmp_path.owner(), RequiredAccess((), (tmp_path,))) == ()
-    assert to_hand_over("kurt2rt", RequiredAccess((), (tmp_path / "comes later",))) == ()
+    assert paths_to_chown(tmp_path.owner(), RequiredAccess((), (tmp_path,))) == ()
+    assert paths_to_chown("kurt2rt", RequiredAccess((), (tmp_path / "comes later",))) == ()
 
 
 def test_install_refuses_what_could_never_start(kurt2rt: CommandLine, tmp_path: Path) -> None:
@@ -86,6 +86,6 @@ def test_a_robot_beside_the_terminal_is_not_beside_the_service(
 
 def test_show_prints_the_unit_for_this_installation(kurt2rt: CommandLine) -> None:
     said = kurt2rt("service", "show", "--robot", "can1", "--page")
-    assert f"ExecStart={program()[0]} " in said.out
+    assert f"ExecStart={start_command()[0]} " in said.out
     assert " run --service --robot can1 --settings default --page\n" in said.out
     assert "Traceback" not in kurt2rt.refused("service", "show", "--settings", "mine.yaml")

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.service.systemd.install import InstallPaths, install, require_free, uninstall
-from kurt2rt.service.systemd.installation import program
-from kurt2rt.service.systemd.unit import MARK, Unit, UnitError, unit_of
+from kurt2rt.service.systemd.installation import start_command
+from kurt2rt.service.systemd.unit import MARK, Unit, UnitError, build_unit
 
 SSH = "[Unit]\nDescription=OpenBSD Secure Shell server\n"
 
@@ -38,7 +38,7 @@ def machine(tmp_path: Path) -> Machine:
 
 
 def unit(name: str = "kurt2rt") -> Unit:
-    return unit_of(name, "can0", (*program(), "run", "--service"))
+    return build_unit(name, "can0", (*start_command(), "run", "--service"))
 
 
 def test_it_is_installed_and_taken_away_again(machine: Machine) -> None:

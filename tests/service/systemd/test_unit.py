@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from config import CONFIG_DIR
-from kurt2rt.service.systemd.installation import program
-from kurt2rt.service.systemd.unit import Unit, UnitError, quoted, unit_of
-from kurt2rt.service.systemd.verify import MOST_EXPOSURE, examine, has_tool
+from kurt2rt.service.systemd.installation import start_command
+from kurt2rt.service.systemd.unit import Unit, UnitError, build_unit, quoted
+from kurt2rt.service.systemd.verify import MOST_EXPOSURE, has_tool, verify
 
 needs_systemd = pytest.mark.skipif(
     not has_tool(), reason="systemd-analyze is not here; on Debian: apt-get install systemd"
@@ -17,7 +17,9 @@ needs_systemd = pytest.mark.skipif(
 
 
 def unit(**changes: str) -> Unit:
-    return unit_of(changes.get("name", "kurt2rt"), changes.get("bus", "can0"), (*program(), "run", "--service"))
+    return build_unit(
+        changes.get("name", "kurt2rt"), changes.get("bus", "can0"), (*start_command(), "run", "--service")
+    )
 
 
 def settings_of(text: str) -> list[tuple[str, str]]:
@@ -45,7 +47,7 @@ def test_it_orders_itself_after_nothing() -> None:
 
 
 def test_a_folder_elsewhere_may_be_written_also_when_it_comes_late() -> None:
-    made = unit_of("kurt2rt", "can0", program(), [Path("/mnt/my disk/kurt")])
+    made = build_unit("kurt2rt", "can0", start_command(), [Path("/mnt/my disk/kurt")])
     assert ("ReadWritePaths", '-"/mnt/my disk/kurt"') in settings_of(made.service)
 
 
@@ -68,7 +70,7 @@ def test_a_bus_with_a_line_break_does_not_add_a_line() -> None:
 
 @needs_systemd
 def test_systemd_takes_it_and_finds_it_shut() -> None:
-    found = examine(unit())
+    found = verify(unit())
     assert found.complaints == ()
     assert found.exposure <= MOST_EXPOSURE
     assert found.passed
@@ -78,7 +80,7 @@ def test_systemd_takes_it_and_finds_it_shut() -> None:
 def test_a_misspelt_setting_is_found() -> None:
     made = unit()
     broken = Unit(made.name, made.service.replace("Restart=always", "Restart=alwys"), made.sysusers)
-    found = examine(broken)
+    found = verify(broken)
     assert any("alwys" in line for line in found.complaints)
     assert not found.passed
 

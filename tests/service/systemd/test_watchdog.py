@@ -26,7 +26,7 @@ def notifier(systemd: Manager) -> Iterator[Notifier]:
 
 def ticks(heartbeat: WatchdogNotifier, from_s: float, to_s: float, period_s: float = PERIOD_S) -> None:
     for number in range(round(from_s / period_s), round(to_s / period_s)):
-        heartbeat.beat(number * period_s)
+        heartbeat.on_tick(number * period_s)
 
 
 def test_pings_come_at_half_the_interval(systemd: Manager, notifier: Notifier) -> None:

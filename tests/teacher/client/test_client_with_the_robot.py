@@ -41,7 +41,9 @@ async def listening_robot(live: Rig, folder: Path) -> AsyncIterator[int]:
     settings = settings_for(folder / "knowledge.sqlite").model_copy(
         update={"teachers": str(folder / "teachers"), "port": 0}
     )
-    screen = ProgramConsole(status=live.statuses.append, question=live.questions.append, settled=live.settled.append)
+    screen = ProgramConsole(
+        status=live.statuses.append, question=live.questions.append, acknowledged=live.settled.append
+    )
 
     async def run() -> None:
         openness = ChannelOptions(lambda: "", ground, listening)
