@@ -175,7 +175,7 @@ def run(
         from kurt2rt.runs.recording.live_view import parse_address
         from kurt2rt.service.program import RobotProgram, RunOptions
         from kurt2rt.service.settings import load_service
-        from kurt2rt.teacher.scripted.channel_teacher import two_levels
+        from kurt2rt.teacher.scripted.channel_teacher import mid_level_refusal
 
     if seconds is not None and not math.isfinite(seconds):
         raise typer.BadParameter("a number of seconds has an end", param_hint="--seconds")
@@ -210,7 +210,7 @@ def run(
     loaded = read()
     robot_settings, taught = load_robot(loaded.robot), load_task(loaded.task)
     if auto and taught.mid is not None:
-        raise typer.BadParameter(two_levels(taught), param_hint="--auto")
+        raise typer.BadParameter(mid_level_refusal(taught), param_hint="--auto")
     if behaviour is not None:
         try:
             ActiveBehaviour(taught.behaviours).pursue(behaviour)

@@ -13,7 +13,7 @@ from kurt2rt.cli.teach_shutdown import end_of_teaching, told_to_end
 from kurt2rt.service.settings import ServiceSettings
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.page.access import Access
-from kurt2rt.teacher.page.device_server import Pairings, link_of, run_device_pages
+from kurt2rt.teacher.page.device_server import Pairings, page_link, run_device_pages
 from kurt2rt.teacher.page.host_names import own_address, own_names
 from kurt2rt.teacher.page.public_address import PageError
 from kurt2rt.teacher.page.public_address import public_address as read_public_address
@@ -48,7 +48,7 @@ def serve_page(
     listener = listen(page_port, everywhere=everywhere, further=further)
     served_port: int = listener.getsockname()[1]
     if public is None:
-        link = link_of(device, own_address() if everywhere else ROBOT_HERE, served_port)
+        link = page_link(device, own_address() if everywhere else ROBOT_HERE, served_port)
     else:
         link = f"{public.origin}/pair?token={device.token}"
     access = Access(device.name, device.token, own_names() | {each.lower() for each in host_names}, public)

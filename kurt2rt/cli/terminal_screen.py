@@ -19,7 +19,7 @@ from kurt2rt.service.status_line import (
     format_timed_activity,
     status_line,
 )
-from kurt2rt.teacher.page.served_pages import NO_PAGES, PageAddress, ServedPages, of_line
+from kurt2rt.teacher.page.served_pages import NO_PAGES, PageAddress, ServedPages, from_line
 
 _LEVELS = {"red": "<3>", "yellow": "<5>"}
 """Levels of systemd's journal, by the style of a line."""
@@ -87,7 +87,7 @@ class TerminalScreen:
 
     def page_line(self, line: str) -> None:
         """Take a line that the page's program printed: the pages it serves, or a message."""
-        pages = of_line(line)
+        pages = from_line(line)
         if pages is None:
             self.print_line(line, "yellow")
         else:

@@ -44,7 +44,13 @@ from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.question import FeatureDifference
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.terminal.terminal import TerminalTeacher
-from kurt2rt.teacher.terminal.terminal_text import change_in, is_worth_saying, opinion_in, question_in, sentence_of
+from kurt2rt.teacher.terminal.terminal_text import (
+    build_question,
+    format_critic_change,
+    format_opinion,
+    format_state,
+    is_notable,
+)
 from tests.channel.states import COMMANDS, SURPRISED, state
 from tests.service.health.reports import ILL
 from tests.teacher.client.test_client import HELLO, Clock, seen
@@ -339,13 +345,13 @@ async def test_terminal_says_the_task_and_asks_by_place_and_centimetres(pairing:
 
 
 def test_a_question_is_about_the_behaviour_that_is_wanted() -> None:
-    told = str(question_in(state(nearest=None, behaviour="turn_left")))
+    told = str(build_question(state(nearest=None, behaviour="turn_left")))
     assert told == "I know nothing of turn_left yet, teach me"
 
 
 def test_what_drives_is_told_with_the_behaviour_that_it_belongs_to() -> None:
-    assert sentence_of(state(action="forward", rla=3)) == "forward by RLA 3"
-    assert sentence_of(state(action="forward", rla=3, behaviour="turn_left")) == "forward by RLA 3 of turn_left"
+    assert format_state(state(action="forward", rla=3)) == "forward by RLA 3"
+    assert format_state(state(action="forward", rla=3, behaviour="turn_left")) == "forward by RLA 3 of turn_left"
 
 
 async def test_the_critic_is_taught_by_the_names_of_its_appraisals(pairing: Pairing, robot: StandInRobot) -> None:
@@ -392,12 +398,12 @@ async def test_what_is_typed_where_an_action_was_withdrawn_is_an_answer(pairing:
 
 def test_what_the_critic_thinks_and_changed_is_told_in_a_line() -> None:
     appraisals = (AppraisalName("bad", -1), AppraisalName("neutral", 0), AppraisalName("good", 1))
-    assert opinion_in(state(agreement=0.799), appraisals) == (
+    assert format_opinion(state(agreement=0.799), appraisals) == (
         "critic: does not know this situation · agrees with you 0.79 (not trusted)"
     )
     changed = LessonLine("c", "RLA 7 corrected: back instead of stand", "critic", 5, 9, "", False)
-    assert change_in(changed) == "critic: changed last: RLA 7 corrected: back instead of stand"
-    assert change_in(changed._replace(undone=True)).endswith("stand, undone")
+    assert format_critic_change(changed) == "critic: changed last: RLA 7 corrected: back instead of stand"
+    assert format_critic_change(changed._replace(undone=True)).endswith("stand, undone")
 
 
 async def test_the_mid_level_is_taught_by_the_names_of_behaviours(pairing: Pairing, robot: StandInRobot) -> None:
@@ -460,9 +466,9 @@ async def test_places_are_named_and_sought_by_typing(pairing: Pairing, robot: St
 
 
 def test_of_surprises_of_the_basic_level_only_the_great_ones_are_told() -> None:
-    assert is_worth_saying(SURPRISED)
-    assert not is_worth_saying(replace(SURPRISED, level="basic"))
-    assert is_worth_saying(replace(SURPRISED, level="basic", times=5.0))
+    assert is_notable(SURPRISED)
+    assert not is_notable(replace(SURPRISED, level="basic"))
+    assert is_notable(replace(SURPRISED, level="basic", times=5.0))
 
 
 async def test_a_robot_that_stands_tells_why_also_where_it_would_ask(pairing: Pairing, robot: StandInRobot) -> None:

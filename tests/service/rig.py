@@ -21,7 +21,7 @@ from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.service.post_tick import ProgramConsole, ProgramStatus
 from kurt2rt.service.serve import serve
 from kurt2rt.service.settings import ServiceSettings, load_service
-from kurt2rt.teacher.scripted.teacher import picture_of, teacher_of
+from kurt2rt.teacher.scripted.teacher import build_teacher, view_of_tick
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.worlds.world_loading import load_world
@@ -122,13 +122,13 @@ def scripted(task: TaskSettings | None = None, seed: int = 1) -> Callable[[TickR
     """The scripted teacher in the robot's own program: answers, and corrects after the task's time of phase 1."""
     task = task or eager_task()
     actions = tuple(load_repertoire(task.repertoire, SETTINGS))
-    teacher = teacher_of(task, SETTINGS, actions, seed=seed, session=f"scripted-{uuid.uuid4().hex[:12]}")
+    teacher = build_teacher(task, SETTINGS, actions, seed=seed, session=f"scripted-{uuid.uuid4().hex[:12]}")
     corrections_from = round(task.teaching.supervised_s / SETTINGS.can.cycle_s)
 
     def watch(record: TickRecord) -> Command | None:
         if teacher.phase is Phase.SUPERVISED and record.tick >= corrections_from:
-            return teacher.enter(Phase.CORRECTIONS)
-        return teacher.watch(picture_of(record))
+            return teacher.begin_phase(Phase.CORRECTIONS)
+        return teacher.update(view_of_tick(record))
 
     return watch
 

@@ -13,7 +13,7 @@ from kurt2rt.platform.gc_control import gc_frozen
 from kurt2rt.platform.ledger import Percentiles, Stage, TickTimer
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 from kurt2rt.runtime import build_runtime
-from kurt2rt.teacher.scripted.teacher import picture_of, teacher_of
+from kurt2rt.teacher.scripted.teacher import build_teacher, view_of_tick
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,14 +55,14 @@ async def run_in_real_time(subject: RobotUnderTest, folder: Path, turns: Turns, 
         with kept_knowledge(subject, folder / "real_time.knowledge") as writer, TimerfdClock() as clock, gc_frozen():
             runtime = build_runtime(simulation.robot, subject.settings, subject.task, subject.events, writer, clock)
             actions = tuple(runtime.level.repertoire)
-            teacher = teacher_of(subject.task, subject.settings, actions, seed=SEED, session="bench")
-            runtime.inbox.put(teacher.enter(Phase.CORRECTIONS))
+            teacher = build_teacher(subject.task, subject.settings, actions, seed=SEED, session="bench")
+            runtime.inbox.put(teacher.begin_phase(Phase.CORRECTIONS))
             ticks_per_checkpoint = round(1 / period_s)
 
             def after_tick(record: TickRecord) -> None:
                 nonlocal driving
                 driving += record.decision.driving
-                command = teacher.watch(picture_of(record))
+                command = teacher.update(view_of_tick(record))
                 if command is not None:
                     runtime.inbox.put(command)
                 if record.tick % ticks_per_checkpoint == 0:

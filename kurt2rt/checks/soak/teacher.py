@@ -22,7 +22,7 @@ from kurt2rt.core.teaching.commands import (
     Watch,
 )
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.teacher.scripted.teacher import ScriptedTeacher, picture_of
+from kurt2rt.teacher.scripted.teacher import ScriptedTeacher, view_of_tick
 
 NAME = "scripted teacher"
 _SIGN_EVERY_TICKS = 2
@@ -108,10 +108,10 @@ class SoakTeacher:
             return [Reward(self._next_id(), NAME, 1 if chance.random() < _MARGIN else -1, record.tick)]
         if self._happens(settings.appraises_every_s):
             return [Appraise(self._next_id(), NAME, chance.choice(self._appraisals), record.tick)]
-        picture = picture_of(record)
+        picture = view_of_tick(record)
         if not picture.asking and self._corrected >= self._most_corrections:
             return []  # he looks on
-        command = self._scripted.watch(picture)
+        command = self._scripted.update(picture)
         if isinstance(command, Correct):
             self._corrected += 1
         return [] if command is None else [command]
@@ -140,7 +140,7 @@ class SoakTeacher:
             TeacherSettings(
                 reaction_s=settings.reaction_s, patience_s=settings.patience_s, error_rate=settings.error_rate
             ),
-            replace_within_share=self._task.learning.insert_beyond_share,
+            replace_radius_fraction=self._task.learning.insert_beyond_share,
             period_s=self._period_s,
             seed=chance.getrandbits(32),
             session=f"mood-{self._moods}",

@@ -33,7 +33,7 @@ from kurt2rt.teacher.scripted.appraiser import (
     UnknownPenalty,
 )
 from kurt2rt.teacher.scripted.dispatcher import ScriptedDispatcher
-from kurt2rt.teacher.scripted.teacher import teacher_of
+from kurt2rt.teacher.scripted.teacher import build_teacher
 
 TRAIL_STRIDE = 10
 """Ticks between two points of a trail."""
@@ -165,11 +165,11 @@ async def teach(
         alarms += 1
 
     def enter(phase: Phase) -> None:
-        runtime.inbox.put(teacher.enter(phase))
+        runtime.inbox.put(teacher.begin_phase(phase))
         if dispatcher is not None:
             dispatcher.phase = phase
             if not plan.corrects_basic:
-                teacher.only_answer()
+                teacher.stop_correcting()
 
     def after_tick(record: TickRecord) -> None:
         nonlocal asking, mid_asks, rescues, unknown_rescues, latched_ticks, refused, unknown, trusted
@@ -177,16 +177,16 @@ async def teach(
         if record.tick in begins:
             enter(begins[record.tick])
         latched_ticks = latched_ticks + 1 if record.grant.latched else 0
-        for command in teacher.watch(record):
+        for command in teacher.on_tick(record):
             say(command, record.tick)
             if isinstance(command, Resume) and record.grant.latched:  # what he had shown ended in an alarm
                 lift_alarm(record.tick)
         if dispatcher is not None:
-            said = dispatcher.watch(record, route_of(drive.course, task).ahead)
+            said = dispatcher.on_tick(record, route_of(drive.course, task).ahead)
             if said is not None:
                 say(said, record.tick)
         if latched_ticks == ticks_per_second:  # he has seen what is wrong, and that it is over or not
-            runtime.inbox.put(teacher.go())
+            runtime.inbox.put(teacher.resume())
             lift_alarm(record.tick)
         if record.decision.asking and not asking:
             ask_positions.append(simulation.position)
@@ -195,7 +195,7 @@ async def teach(
         unknown += asking
         trusted += critics is not None and critics.trusted
         drive.follow()
-        waits = asking and teacher.answers
+        waits = asking and teacher.available
         # A robot that is pressed to a wall and asks again and again is no nearer to getting away.
         if not (waits and plan.rescues_who_asks) and drive.makes_no_way(waits=waits):
             drive.rescue()
@@ -208,11 +208,11 @@ async def teach(
         if set_down_every and teacher.phase is Phase.CRITIC and record.tick % set_down_every == 0:
             drive.reposition(in_sight=True, close=True)
             load.note_hands(record.tick, "set_down")
-            for command in teacher.show(record.tick, shown, plan.shown_share):
+            for command in teacher.demonstrate(record.tick, shown, plan.shown_share):
                 runtime.inbox.put(command)
                 load.note_hands(record.tick, "shown")
         if dispatcher is None and drive.course.behaviour != record.behaviour:
-            runtime.inbox.put(teacher.pursue(drive.course.behaviour))
+            runtime.inbox.put(teacher.select_behaviour(drive.course.behaviour))
         if record.tick % TRAIL_STRIDE == 0:
             trail.append(simulation.position)
         if record.tick % ticks_per_second == 0:
@@ -222,7 +222,7 @@ async def teach(
             agreement.append(None if critics is None else critics.share)
 
     if dispatcher is None and drive.course.behaviour != runtime.wanted.behaviour:
-        runtime.inbox.put(teacher.pursue(drive.course.behaviour))
+        runtime.inbox.put(teacher.select_behaviour(drive.course.behaviour))
     if plan.phases[0][0] is not teacher.phase:
         enter(plan.phases[0][0])
     await runtime.scheduler.run(ticks, after_tick)
@@ -281,29 +281,31 @@ def _teacher_of(
     session: str,
 ) -> ScriptedAppraiser:
     period_s, times = settings.can.cycle_s, plan.times
-    signs: RewardSource | None = None
+    rewards: RewardSource | None = None
     if plan.signs == "unknown":
-        signs = UnknownPenalty()
+        rewards = UnknownPenalty()
     elif plan.signs == "chance":
         # What is meant in the last second would be said when the lesson is over.
         last_s = plan.duration_s - task.teaching.teacher.reaction_s
-        signs = RandomPenalty(plan.blame_by_chance, round(last_s / period_s), round(times.bad_every_s / period_s), seed)
+        rewards = RandomPenalty(
+            plan.blame_by_chance, round(last_s / period_s), round(times.bad_every_s / period_s), seed
+        )
     elif plan.signs == "judge":
         if task.judge is None:
             raise SettingsError(
                 "there is no judge, so nobody can praise or blame", where=f"task {task.name}", do="add `judge:`"
             )
-        signs = JudgeReward(task.judge.build(), round(times.patience_s / period_s))
+        rewards = JudgeReward(task.judge.build(), round(times.patience_s / period_s))
     every_s = {-1: times.bad_every_s, 0: times.neutral_every_s, 1: times.good_every_s}
-    habits = FeedbackTiming(
+    timing = FeedbackTiming(
         reaction=round(task.teaching.teacher.reaction_s / period_s),
         every={value: round(each_s / period_s) for value, each_s in every_s.items()},
         gap=round(times.gap_s / period_s),
-        most_blame=times.most_blame,
+        max_punishments=times.most_blame,
     )
     # Where several opinions are worth the same, the first one says it.
-    named = {value: name for name, value in reversed(load_critic(task.critic).values.items())} if signs else {}
-    answering = teacher_of(task, settings, actions, seed=seed, session=session)
+    named = {value: name for name, value in reversed(load_critic(task.critic).values.items())} if rewards else {}
+    answering = build_teacher(task, settings, actions, seed=seed, session=session)
     return ScriptedAppraiser(
-        answering, habits, signs, named, session=session, seed=seed, shown=primitives(task.repertoire)
+        answering, timing, rewards, named, session=session, seed=seed, demonstrated=primitives(task.repertoire)
     )

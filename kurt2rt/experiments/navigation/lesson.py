@@ -19,7 +19,7 @@ from kurt2rt.experiments.lockstep.lesson_runtime import build_lesson_runtime
 from kurt2rt.experiments.lockstep.stuck_detector import StuckDetector
 from kurt2rt.experiments.navigation.guided_tour import TourGuide
 from kurt2rt.experiments.navigation.outcome import Place
-from kurt2rt.teacher.scripted.teacher import picture_of, teacher_of
+from kurt2rt.teacher.scripted.teacher import build_teacher, view_of_tick
 
 TRAIL_STRIDE = 20
 """Ticks between two points of a trail."""
@@ -88,7 +88,7 @@ async def lead_about(
     walk = walk_in(simulation.plan, task)
     runtime = build_lesson_runtime(simulation, settings, task, keeper, events, statistics=statistics, saved=saved)
     session = f"errands-{seed}-after-{len(events)}"
-    teacher = teacher_of(task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
+    teacher = build_teacher(task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
     guide = TourGuide(
         walk, errands_of(task).names, task.teaching.teacher, period_s=period_s, seed=seed, session=session
     )
@@ -108,13 +108,13 @@ async def lead_about(
         said = guide.watch(record)
         if said is not None:
             runtime.inbox.put(said)
-        lesson = teacher.watch(picture_of(record))
+        lesson = teacher.update(view_of_tick(record))
         if lesson is not None:
             runtime.inbox.put(lesson)
             corrections += isinstance(lesson, Correct)
         latched_ticks = latched_ticks + 1 if record.grant.latched else 0
         if latched_ticks == per_second:
-            runtime.inbox.put(teacher.go())
+            runtime.inbox.put(teacher.resume())
             latched_ticks = 0
         mid_asks += decision.asking and decision.asks_at == MID and not asking
         asking = decision.asking
@@ -135,7 +135,7 @@ async def lead_about(
 
     walk.put(home)
     guide.begin()
-    runtime.inbox.put(teacher.enter(Phase.CORRECTIONS))
+    runtime.inbox.put(teacher.begin_phase(Phase.CORRECTIONS))
     await runtime.scheduler.run(ticks, after_tick)
     system = runtime.level.system
     return TourResult(

@@ -111,10 +111,10 @@ def _needs_network(devices: Collection[Device]) -> bool:
 
 
 def _link(device: Device, port: int) -> str:
-    return link_of(device, "127.0.0.1" if device.name in OF_THIS_MACHINE else own_address(), port)
+    return page_link(device, "127.0.0.1" if device.name in OF_THIS_MACHINE else own_address(), port)
 
 
-def link_of(device: Device, host: str, port: int) -> str:
+def page_link(device: Device, host: str, port: int) -> str:
     """Return what a browser opens to be let in to a device's page."""
     shown = f"[{host}]" if ":" in host else host
     return f"http://{shown}:{port}/pair?token={device.token}"

@@ -33,7 +33,7 @@ def to_line(served: ServedPages) -> str:
     return json.dumps(asdict(served))
 
 
-def of_line(line: str) -> ServedPages | None:
+def from_line(line: str) -> ServedPages | None:
     """Return what `to_line` made a line of; None for any other line."""
     try:
         told = json.loads(line)

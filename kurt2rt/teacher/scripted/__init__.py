@@ -1,1 +1,1 @@
-"""Scripted teachers, for simulated lessons."""
+"""Scripted teachers, for simulated training runs."""

@@ -1,4 +1,4 @@
-"""A scripted teacher of all phases: answers and corrects as ever, praises and blames, and teaches the critic."""
+"""Scripted teacher of all phases: it answers and corrects, gives rewards, and teaches the critic."""
 
 import random
 from collections import deque
@@ -11,44 +11,44 @@ from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.rla.rla import BASIC, Phase
 from kurt2rt.core.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.teacher.scripted.teacher import ScriptedTeacher, picture_of
+from kurt2rt.teacher.scripted.teacher import ScriptedTeacher, view_of_tick
 
 _NAME = "scripted teacher"
 
 
 @dataclass(frozen=True, slots=True)
 class FeedbackTiming:
-    """How the teacher gives signals, in ticks."""
+    """Timing of a teacher's signals, in ticks."""
 
     reaction: int
-    """From the picture that he means to the signal."""
+    """Delay of a signal after the judged tick."""
     every: Mapping[int, int]
-    """The shortest time from one signal to the next of the same value, by value; neutral ones teach the critic only."""
+    """Shortest time between two signals of the same value, by value; signals of value 0 teach the critic only."""
     gap: int = 0
-    """The shortest time between two signals of any value."""
-    most_blame: int = 0
-    """He blames no more often than this; 0: as often as he likes."""
+    """Shortest time between two signals of any value."""
+    max_punishments: int = 0
+    """Limit on rewards of -1; 0: no limit."""
 
 
 class RewardSource(Protocol):
-    """What a teacher has to say of what he sees."""
+    """Source of a teacher's signals."""
 
-    def look(self, record: TickRecord) -> tuple[int, int] | None:
-        """Value of a signal and the tick that it is about; None: nothing. To be asked in every tick."""
+    def on_tick(self, record: TickRecord) -> tuple[int, int] | None:
+        """Return value and tick of a signal, if there is one; call this on every tick."""
         ...
 
 
 class JudgeReward:
-    """Says of every picture what a judge thinks of it, while something drives the robot."""
+    """Rewards of a judge, for each tick in which the robot drives."""
 
     def __init__(self, judge: Judge, patience: int = 0) -> None:
-        """`patience`: ticks for which it must have been bad without a break before anything is said of it."""
+        """Use a judge; a bad value counts from `patience` bad ticks in a row on."""
         self._judge = judge
         self._patience = patience
         self._bad = 0
 
-    def look(self, record: TickRecord) -> tuple[int, int] | None:
-        """Of this tick."""
+    def on_tick(self, record: TickRecord) -> tuple[int, int] | None:
+        """Return the judge's value of this tick."""
         if record.circumstances is None or not record.decision.driving:
             self._bad = 0
             return None
@@ -58,30 +58,30 @@ class JudgeReward:
 
 
 class UnknownPenalty:
-    """Knows only that to be in an unknown situation is bad: blames what led there."""
+    """Reward of -1 for the tick that led into an unknown situation."""
 
     def __init__(self) -> None:
         self._drove = False
 
-    def look(self, record: TickRecord) -> tuple[int, int] | None:
-        """Of the tick before the robot began to ask."""
+    def on_tick(self, record: TickRecord) -> tuple[int, int] | None:
+        """Return -1 for the tick before the robot began to ask."""
         drove, self._drove = self._drove, record.decision.driving
         asking = record.decision.cause is Cause.UNKNOWN and record.decision.asks_at == BASIC
         return (-1, record.tick - 1) if asking and drove else None
 
 
 class RandomPenalty:
-    """Blames whatever drives, so many times: what a teacher does to whom it does not matter what he sees."""
+    """Rewards of -1 at random ticks: the control condition of a teacher who does not look."""
 
     def __init__(self, times: int, ticks: int, gap: int, seed: int) -> None:
-        """`times` in so many ticks, spread by chance; a blame waits until an RLA drives, and for `gap` ticks."""
+        """Spread `times` rewards over `ticks`; each waits until an RLA drives and `gap` ticks have passed."""
         chance = random.Random(f"blame by chance, seed {seed}")
         self._due = deque(sorted(chance.randrange(1, max(ticks, 1) + 1) for _ in range(times)))
         self._gap = gap
         self._next_tick = 0
 
-    def look(self, record: TickRecord) -> tuple[int, int] | None:
-        """Of this tick."""
+    def on_tick(self, record: TickRecord) -> tuple[int, int] | None:
+        """Return -1 for this tick if a reward is due."""
         due = bool(self._due) and self._due[0] <= record.tick >= self._next_tick
         if not due or not record.decision.driving or record.decision.rla_id is None:
             return None
@@ -90,129 +90,136 @@ class RandomPenalty:
         return -1, record.tick
 
 
-class _Said(NamedTuple):
+class _DelayedCommand(NamedTuple):
     due_tick: int
     command: Command
 
 
 class ScriptedAppraiser:
-    """In phases 1 and 2 a ScriptedTeacher; in 3 and 4 that one only answers, and signals are given besides; 5: silent.
+    """ScriptedTeacher in phases 1 and 2; in phases 3 and 4 it answers and gives signals; in phase 5 it is silent.
 
-    Signals are rewards in phase 3, of what an RLA drove; in phase 4 they teach the critic, neutral ones among them.
+    Signals are rewards of RLAs in phase 3. In phase 4 they teach the critic, and values of 0 are given too.
     """
 
     def __init__(
         self,
         answering: ScriptedTeacher,
-        habits: FeedbackTiming,
-        signs: RewardSource | None,
+        timing: FeedbackTiming,
+        rewards: RewardSource | None,
         appraisals: Mapping[int, str],
         *,
         session: str,
         seed: int = 0,
-        shown: Sequence[str] = (),
+        demonstrated: Sequence[str] = (),
     ) -> None:
-        """`signs`: None where he has none to give. `appraisals`: name of the critic's opinion of each value.
+        """Create a teacher in the phase of `answering`.
 
-        `session`: as in ScriptedTeacher. `shown`: actions of which one, by chance, drives where the robot was set down
-        in phase 4, so that the critic sees what the robot does not do by itself.
+        Args:
+            answering: answers and corrects.
+            timing: of the signals.
+            rewards: source of the signals; None: no signals.
+            appraisals: name of the critic's appraisal of each value.
+            session: prefix of command ids, as in ScriptedTeacher.
+            seed: of the demonstrations.
+            demonstrated: actions of which a random one is demonstrated in phase 4 after the robot was placed. So the
+                critic sees situations that the robot does not reach by itself.
         """
         self._answering = answering
-        self._habits = habits
-        self._signs = signs
+        self._timing = timing
+        self._rewards = rewards
         self._appraisals = appraisals
         self._session = session
         self._chance = random.Random(f"what is shown to the critic in {session}, seed {seed}")
-        self._shown = tuple(shown)
-        self._said = self._blamed = 0
+        self._demonstrated = tuple(demonstrated)
+        self._command_count = self._punishments = 0
         self._next_tick: dict[int, int] = {}
         self._next_any = 0
-        self._waiting: deque[_Said] = deque()
+        self._delayed: deque[_DelayedCommand] = deque()
         self._resume_at: int | None = None
         self.phase = answering.phase
 
-    def enter(self, phase: Phase) -> Command:
-        """Begin a phase: what to tell the robot."""
+    def begin_phase(self, phase: Phase) -> Command:
+        """Enter a phase; return the command that the robot needs for it."""
         self.phase = phase
-        command = self._answering.enter(phase)
-        if phase is not Phase.CORRECTIONS:  # what was wrong is said by signals, or by nobody
-            self._answering.phase = Phase.SUPERVISED
+        command = self._answering.begin_phase(phase)
+        if phase is not Phase.CORRECTIONS:
+            self.stop_correcting()
         return command
 
-    def only_answer(self) -> None:
-        """Until the next phase begins nothing is corrected."""
+    def stop_correcting(self) -> None:
+        """Answer only, until the next phase begins."""
         self._answering.phase = Phase.SUPERVISED
 
-    def pursue(self, behaviour: str) -> Command:
-        """Another taught behaviour is wanted: what to tell the robot."""
-        return self._answering.pursue(behaviour)
+    def select_behaviour(self, behaviour: str) -> Command:
+        """Return the command that selects a taught behaviour."""
+        return self._answering.select_behaviour(behaviour)
 
-    def go(self) -> Command:
-        """The robot shall drive again after an alarm: what to tell it."""
-        return self._answering.go()
+    def resume(self) -> Command:
+        """Return the command that lets the robot drive again after a stop."""
+        return self._answering.resume()
 
     def is_signal(self, command_id: str) -> bool:
-        """Whether it is a signal's id: one that comes too late, when its RLA is gone, may be refused."""
+        """Return whether a command is a signal, which the robot may refuse if its RLA was deleted meanwhile."""
         return command_id.startswith(f"{self._session}-signal-")
 
     @property
-    def answers(self) -> bool:
-        """Whether he is there to be asked."""
+    def available(self) -> bool:
+        """True while the teacher answers questions."""
         return self.phase is not Phase.AUTONOMOUS
 
-    def show(self, tick: int, ticks: int, share: float = 1.0) -> list[Command]:
-        """The robot was just set down: some action drives it for so long, or, but for a share of the times, none."""
-        if not self._shown or not ticks or self._chance.random() >= share:
+    def demonstrate(self, tick: int, ticks: int, probability: float = 1.0) -> list[Command]:
+        """Return the command that runs a random action for `ticks`; empty with probability 1 - `probability`."""
+        if not self._demonstrated or not ticks or self._chance.random() >= probability:
             return []
         self._resume_at = tick + ticks + 1
-        return [RunBehaviour(self._next_id("shown"), _NAME, self._chance.choice(self._shown), ticks)]
+        return [RunBehaviour(self._next_id("shown"), _NAME, self._chance.choice(self._demonstrated), ticks)]
 
-    def watch(self, record: TickRecord) -> list[Command]:
-        """See one tick; all that he says to it."""
+    def on_tick(self, record: TickRecord) -> list[Command]:
+        """Return the teacher's commands in response to one tick; may be empty."""
         if self.phase is Phase.AUTONOMOUS:
             return []
-        said: list[Command] = []
+        commands: list[Command] = []
         if self._resume_at is not None and record.tick >= self._resume_at:
             self._resume_at = None
-            said.append(Resume(self._next_id("shown"), _NAME))
-        answer = self._answering.watch(picture_of(record))
+            commands.append(Resume(self._next_id("shown"), _NAME))
+        answer = self._answering.update(view_of_tick(record))
         if answer is not None:
-            said.append(answer)
-        if self.phase in (Phase.REINFORCEMENT, Phase.CRITIC) and self._signs is not None:
-            self._look(record, self._signs)
-        while self._waiting and self._waiting[0].due_tick <= record.tick:
-            said.append(self._waiting.popleft().command)
-        return said
+            commands.append(answer)
+        if self.phase in (Phase.REINFORCEMENT, Phase.CRITIC) and self._rewards is not None:
+            self._judge(record, self._rewards)
+        while self._delayed and self._delayed[0].due_tick <= record.tick:
+            commands.append(self._delayed.popleft().command)
+        return commands
 
-    def _look(self, record: TickRecord, signs: RewardSource) -> None:
-        seen = signs.look(record)
-        if seen is None:
+    def _judge(self, record: TickRecord, rewards: RewardSource) -> None:
+        signal = rewards.on_tick(record)
+        if signal is None:
             return
-        value, tick = seen
+        value, tick = signal
         if record.tick < max(self._next_tick.get(value, 0), self._next_any):
             return
         command = (
             self._reward(value, tick, record) if self.phase is Phase.REINFORCEMENT else self._appraise(value, tick)
         )
         if command is not None:
-            self._next_tick[value] = record.tick + self._habits.every[value]
-            self._next_any = record.tick + self._habits.gap
-            self._waiting.append(_Said(record.tick + self._habits.reaction, command))
+            self._next_tick[value] = record.tick + self._timing.every[value]
+            self._next_any = record.tick + self._timing.gap
+            self._delayed.append(_DelayedCommand(record.tick + self._timing.reaction, command))
 
     def _reward(self, value: int, tick: int, record: TickRecord) -> Command | None:
         by_rla = record.decision.rla_id is not None or tick < record.tick
         if value == 0 or not by_rla:
             return None
         if value < 0:
-            if self._habits.most_blame and self._blamed >= self._habits.most_blame:
+            if self._timing.max_punishments and self._punishments >= self._timing.max_punishments:
                 return None
-            self._blamed += 1
+            self._punishments += 1
         return Reward(self._next_id(), _NAME, value, tick)
 
     def _appraise(self, value: int, tick: int) -> Command | None:
         name = self._appraisals.get(value)
         return None if name is None else Appraise(self._next_id(), _NAME, name, tick)
 
-    def _next_id(self, what: str = "signal") -> str:
-        self._said += 1
-        return f"{self._session}-{what}-{self._said}"
+    def _next_id(self, kind: str = "signal") -> str:
+        self._command_count += 1
+        return f"{self._session}-{kind}-{self._command_count}"

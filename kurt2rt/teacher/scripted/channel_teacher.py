@@ -1,4 +1,4 @@
-"""The scripted teacher over the channel: it sees what a person's page sees, and says what a person could say."""
+"""Scripted teacher over the channel: it sees the states of a person's page and gives a person's commands."""
 
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
@@ -18,86 +18,111 @@ from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, Teach
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError, RefusedError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.scripted.supervisor import ScriptedSupervisor
-from kurt2rt.teacher.scripted.teacher import TeacherView, share_of_radius, teacher_of
+from kurt2rt.teacher.scripted.teacher import ScriptedTeacher, TeacherView, build_teacher, radius_fraction
 
 Say = Callable[[str], None]
 
 _STOPPED = "stopped"
-_AGAIN_S = 0.2
+_RETRY_S = 0.2
 
 
 async def teach_by_script(
     robot: TeacherClient, settings: RobotSettings, task: TaskSettings, say: Say, *, seed: int = 1
 ) -> None:
-    """Teach the task for its whole time, then let the robot drive alone and look on, until cancelled.
+    """Teach a task for its whole time, then let the robot drive alone until another teacher takes it.
 
-    Several behaviours are wanted in turn, and a robot that makes no way with them is set down elsewhere. One that a
-    person stopped stays where it is. Raises NoAnswerError when the robot is not there at the beginning, and
-    RefusedError when it is no simulated one, was started for another task, or refuses its teacher.
+    The behaviours of the task are selected in turn, and a robot without progress is put elsewhere. A robot that a
+    person stopped stays where it is.
+
+    Raises:
+        NoAnswerError: the robot is not there at the beginning.
+        RefusedError: it is a real robot, runs another task, or refuses the teacher.
     """
     if task.mid is not None:
-        raise RefusedError(two_levels(task))
+        raise RefusedError(mid_level_refusal(task))
     hello = await robot.hello()
     if not hello.simulated:
         raise RefusedError(f"{hello.robot} is a real robot; the scripted teacher teaches simulated ones only")
     if (hello.task, hello.behaviours) != (task.name, task.behaviours):
-        raise RefusedError(_another_task(hello, task))
-    teacher = teacher_of(task, settings, hello.actions, seed=seed, session="unused")
-    corrections_from = round(task.teaching.supervised_s / hello.period_s)
-    over_at = round(task.teaching.duration_s / hello.period_s)
-    said = 0
-    session = f"scripted, seed {seed}"
+        raise RefusedError(_task_refusal(hello, task))
+    teacher = build_teacher(task, settings, hello.actions, seed=seed, session="unused")
+    supervisor = ScriptedSupervisor(robot, task, hello.period_s, seed, say)
+    await _begin(robot, f"scripted, seed {seed}")
+    if task.teaching.reposition_every_s:
+        say(_reposition_notice(task))
+    if supervisor.plan:
+        say(supervisor.plan)
+    say(f"phase 1 for {task.teaching.supervised_s:.0f} s: answers")
+    lessons = await _teach(robot, teacher, supervisor, task, hello.period_s, say)
+    if lessons is None:
+        return
+    say(f"{lessons} lessons given")
+    await _let_drive_alone(robot, say)
+    await _supervise_alone(robot, supervisor)
+
+
+async def _begin(robot: TeacherClient, session: str) -> None:
     await _must(robot, robot.take, lambda state: state.teacher == robot.name)
     await _must(robot, lambda: robot.begin_session(session), lambda state: state.session == session)
     await _must(robot, lambda: robot.set_phase(Phase.SUPERVISED), lambda state: state.phase == Phase.SUPERVISED)
-    if task.teaching.reposition_every_s:
-        say(_nobody_sets_it_down(task))
-    leading = ScriptedSupervisor(robot, task, hello.period_s, seed, say)
-    if leading.plan:
-        say(leading.plan)
-    say(f"phase 1 for {task.teaching.supervised_s:.0f} s: answers")
+
+
+async def _teach(
+    robot: TeacherClient,
+    teacher: ScriptedTeacher,
+    supervisor: ScriptedSupervisor,
+    task: TaskSettings,
+    period_s: float,
+    say: Say,
+) -> int | None:
+    """Teach phases 1 and 2; return the number of lessons, None if another teacher took the robot."""
+    corrections_from = round(task.teaching.supervised_s / period_s)
+    over_at = round(task.teaching.duration_s / period_s)
+    lessons = 0
     first: int | None = None
     before = 0
     async for state in robot.states():
         if state.teacher != robot.name:
-            say(f"{state.teacher or 'somebody else'} took the robot; the scripted teacher stops here")
-            return
+            say(f"{state.teacher or 'another teacher'} took the robot; the scripted teacher stops here")
+            return None
         if first is None:
             first = before = state.tick
         if state.tick - first >= over_at:
             break
         if teacher.phase is Phase.SUPERVISED and state.tick - first >= corrections_from:
-            teacher.enter(Phase.CORRECTIONS)
+            teacher.begin_phase(Phase.CORRECTIONS)
             await _must(
                 robot, lambda: robot.set_phase(Phase.CORRECTIONS), lambda state: state.phase == Phase.CORRECTIONS
             )
             say(f"phase 2 for {task.teaching.corrections_s:.0f} s: corrections as well")
-        await _go_on(robot, state)
-        await leading.see(state, stopped=_stopped_by_a_person(robot, state) is not None)
-        command = teacher.watch(picture_in(state), state.tick - before)
+        await _resume_if_self_stopped(robot, state)
+        await supervisor.update(state, stopped=_person_stop(robot, state) is not None)
+        command = teacher.update(view_of_state(state), state.tick - before)
         before = state.tick
         if command is not None:
-            said += await _say(robot, command, state.tick)
-    say(f"{said} lessons given")
-    await _let_drive_alone(robot, say)
+            lessons += await _send(robot, command, state.tick)
+    return lessons
+
+
+async def _supervise_alone(robot: TeacherClient, supervisor: ScriptedSupervisor) -> None:
     async for state in robot.states():
         if state.teacher != robot.name:
             return
-        if leading.plan:
-            await _go_on(robot, state)  # where it has been set down it has to be told to
+        if supervisor.plan:
+            await _resume_if_self_stopped(robot, state)  # a robot that was put elsewhere has to be resumed
         over = state.stopped is not None and state.stopped.reason is StopReason.SESSION_OVER
-        await leading.see(state, stopped=over or _stopped_by_a_person(robot, state) is not None)
+        await supervisor.update(state, stopped=over or _person_stop(robot, state) is not None)
 
 
-def two_levels(task: TaskSettings) -> str:
-    """Why the scripted teacher does not teach such a task over the channel."""
+def mid_level_refusal(task: TaskSettings) -> str:
+    """Return the reason why the scripted teacher does not teach a task with a mid level over the channel."""
     return (
         f"task {task.name} has a mid level, and over the channel the scripted teacher does not see the streets that "
         f"say which way is right; kurt2rt lesson --task {task.name} teaches it in simulated time"
     )
 
 
-def _another_task(hello: Hello, task: TaskSettings) -> str:
+def _task_refusal(hello: Hello, task: TaskSettings) -> str:
     robots, own = (
         f"{name} (behaviours: {', '.join(behaviours)})" if behaviours != ("",) else name
         for name, behaviours in ((hello.task, hello.behaviours), (task.name, task.behaviours))
@@ -109,25 +134,25 @@ def _another_task(hello: Hello, task: TaskSettings) -> str:
     )
 
 
-def _nobody_sets_it_down(task: TaskSettings) -> str:
+def _reposition_notice(task: TaskSettings) -> str:
     return (
-        f"task {task.name} has the robot set down elsewhere every {task.teaching.reposition_every_s:g} s; over the "
-        f"channel nobody does, nor where it makes no way; kurt2rt lesson --task {task.name} does, in simulated time"
+        f"task {task.name} wants the robot put elsewhere every {task.teaching.reposition_every_s:g} s, which is not "
+        f"done over the channel; kurt2rt lesson --task {task.name} does it, in simulated time"
     )
 
 
 async def _let_drive_alone(robot: TeacherClient, say: Say) -> None:
-    # Looked at before the session ends: its end gives the robot another reason to stand.
-    stop = _stopped_by_a_person(robot, await _picture(robot, 0))
+    # Read before the session ends: its end gives the robot another reason to stand.
+    stop = _person_stop(robot, await _state_at(robot, 0))
     ended = await _must(robot, robot.end_session, lambda state: state.session is None)
-    stop = stop or _stopped_by_a_person(robot, await _picture(robot, ended.tick))
+    stop = stop or _person_stop(robot, await _state_at(robot, ended.tick))
     stopped = "" if stop is None else stop_text(stop)
 
     async def unless_stopped(give: Callable[[], Awaitable[Answer]]) -> Answer:
-        state = await _picture(robot, 0)
-        # Nothing is awaited between this look and the saying: the robot refuses it if it is stopped after this picture.
-        because = _stopped_by_a_person(robot, state)
-        return Answer(False, _STOPPED, stop_text(because), state.tick) if because is not None else await give()
+        state = await _state_at(robot, 0)
+        # Without an await in between: the robot refuses the command if it was stopped after this state.
+        stop = _person_stop(robot, state)
+        return Answer(False, _STOPPED, stop_text(stop), state.tick) if stop is not None else await give()
 
     if not stopped:
         say("now the robot drives alone (phase 5)")
@@ -144,14 +169,13 @@ async def _let_drive_alone(robot: TeacherClient, say: Say) -> None:
         say(f"{stopped}: the robot stays where it is; take it and say go to let it drive")
 
 
-async def _go_on(robot: TeacherClient, state: State) -> None:
-    """Tell a robot that stopped itself to go on."""
+async def _resume_if_self_stopped(robot: TeacherClient, state: State) -> None:
     if state.stopped is not None and state.stopped.lifts_itself:
-        with suppress(NoAnswerError):  # the next picture shows whether it has to be said again
+        with suppress(NoAnswerError):  # the next state shows whether it is still needed
             await robot.resume()
 
 
-def _stopped_by_a_person(robot: TeacherClient, state: State) -> ActiveStop | None:
+def _person_stop(robot: TeacherClient, state: State) -> ActiveStop | None:
     """Return the stop that holds; None if this teacher, the end of its session, the guard or the link is the reason."""
     stop = state.stopped
     if stop is None or stop.lifts_itself or stop.reason is StopReason.SESSION_OVER or stop.teacher == robot.name:
@@ -159,16 +183,16 @@ def _stopped_by_a_person(robot: TeacherClient, state: State) -> ActiveStop | Non
     return stop
 
 
-async def _picture(robot: TeacherClient, tick: int) -> State:
-    """The newest one, of that tick or a later one while this teacher teaches."""
+async def _state_at(robot: TeacherClient, tick: int) -> State:
+    """Wait for a state of a tick or later, or of another teacher. Raises NoAnswerError."""
     async for state in robot.states():
         if state.tick >= tick or state.teacher != robot.name:
             return state
-    raise NoAnswerError("no more pictures come")
+    raise NoAnswerError("no more states come")
 
 
-def picture_in(state: State) -> TeacherView:
-    """What the picture on the wire shows a teacher."""
+def view_of_state(state: State) -> TeacherView:
+    """Return the teacher's view of a state from the channel."""
     return TeacherView(
         state.cause in (Cause.UNKNOWN, Cause.TOUCHES),
         state.action is not None,
@@ -176,12 +200,12 @@ def picture_in(state: State) -> TeacherView:
         state.infrared_counts,
         state.behaviour,
         state.rla,
-        share_of_radius(state.rla, state.nearest, state.distance, state.radius),
+        radius_fraction(state.rla, state.nearest, state.distance, state.radius),
     )
 
 
-async def _say(robot: TeacherClient, command: Command, tick: int) -> int:
-    """Say it; how many lessons came of it. A bad link costs a lesson, not the session."""
+async def _send(robot: TeacherClient, command: Command, tick: int) -> int:
+    """Send a command once; return the number of lessons that it made, 0 if it was refused or not answered."""
     try:
         match command:
             case Teach(action=action):
@@ -191,16 +215,16 @@ async def _say(robot: TeacherClient, command: Command, tick: int) -> int:
             case DeleteRla(rla_id=rla_id):
                 answer = await robot.delete(rla_id)
             case _:
-                raise AssertionError(f"a scripted teacher does not say {command}")
+                raise AssertionError(f"no command of a scripted teacher: {command}")
     except NoAnswerError:
         return 0
     return int(answer.accepted)
 
 
 async def _must(robot: TeacherClient, give: Callable[[], Awaitable[Answer]], done: Callable[[State], bool]) -> Answer:
-    """Say it until the robot answers; a stop may come first, which is an answer, too. Raises RefusedError.
+    """Repeat a command until the robot answers; a stop that comes first is an answer. Raises RefusedError.
 
-    `done` tells in a picture that an earlier try counted, whose answer was lost.
+    `done` tells from a state whether an earlier try, whose answer was lost, was carried out.
     """
     tries = 0
     while True:
@@ -208,10 +232,10 @@ async def _must(robot: TeacherClient, give: Callable[[], Awaitable[Answer]], don
         try:
             got = await give()
         except NoAnswerError:
-            await anyio.sleep(_AGAIN_S)
+            await anyio.sleep(_RETRY_S)
             continue
         if got.accepted or got.why == _STOPPED:
             return got
-        if tries > 1 and done(await _picture(robot, got.tick)):
+        if tries > 1 and done(await _state_at(robot, got.tick)):
             return got
         raise RefusedError(f"the robot refuses the scripted teacher: {got.text}")

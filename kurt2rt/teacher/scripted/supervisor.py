@@ -1,4 +1,4 @@
-"""Leads a simulated robot through a task of several behaviours: one after the other, and out of where it is stuck."""
+"""Supervision of a simulated robot in a task of several behaviours: select each in turn, free a robot that is stuck."""
 
 import random
 from collections.abc import Callable
@@ -16,65 +16,61 @@ from kurt2rt.teacher.scripted.repositioner import RobotRepositioner
 
 
 class ScriptedSupervisor:
-    """Tells the robot which behaviour is wanted, and sets it down elsewhere; says each time what it does.
-
-    A task of one behaviour needs none of it.
-    """
+    """Selection of behaviours and repositioning of the robot, each reported in a line; idle for one behaviour."""
 
     def __init__(
         self, robot: TeacherClient, task: TaskSettings, period_s: float, seed: int, say: Callable[[str], None]
     ) -> None:
-        """`period_s`: of the robot's ticks. `seed` decides where it is set down."""
+        """Supervise a task; `period_s` is the length of a tick, `seed` decides where the robot is put."""
         self._robot = robot
         self._task = task
         self._say = say
-        self._in_turn = BehaviourCycler(task.behaviours, period_s)
-        self._setting_down = RobotRepositioner(
+        self._cycler = BehaviourCycler(task.behaviours, period_s)
+        self._repositioner = RobotRepositioner(
             task.teaching.rescue_after_s, task.exam.stuck_within_m, period_s, random.Random(seed)
         )
 
     @property
     def plan(self) -> str:
-        """What it will do, in a sentence; empty where it has nothing to do."""
+        """Plan in a sentence; empty for a task of one behaviour."""
         if len(self._task.behaviours) < 2:
             return ""
         return (
-            f"{', '.join(self._task.behaviours)}: in turn, each for {EACH_S:.0f} s, for over the channel nobody sees "
-            f"the junction ahead; where it makes no way for {self._task.teaching.rescue_after_s:g} s the robot is set "
-            f"down elsewhere; kurt2rt lesson --task {self._task.name} goes by the streets, in simulated time"
+            f"{', '.join(self._task.behaviours)}: in turn, each for {EACH_S:.0f} s, because over the channel the "
+            f"teacher cannot see the next junction; after {self._task.teaching.rescue_after_s:g} s without progress "
+            f"the robot is put elsewhere; kurt2rt lesson --task {self._task.name} sees the streets, in simulated time"
         )
 
-    async def see(self, state: State, *, stopped: bool) -> None:
-        """One picture. A robot that somebody has `stopped` is left alone."""
+    async def update(self, state: State, *, stopped: bool) -> None:
+        """Take a state and send the commands that it needs; a robot that a person `stopped` gets none."""
         if len(self._task.behaviours) < 2:
             return
-        before = self._in_turn.wanted
-        tell = self._in_turn.see(state, stopped=stopped)
-        wanted = self._in_turn.wanted
-        if wanted != before:
-            self._say(f"{wanted}, for {EACH_S:.0f} s")
-        elsewhere = self._setting_down.see(state, waits=stopped or not _is_to_drive(state))
-        if tell and wanted is not None:
-            with suppress(NoAnswerError):  # a bad link costs a second, not the session
-                await self._robot.pursue(wanted)
-        if elsewhere is not None:
-            self._say(await self._set_down(elsewhere))
+        before = self._cycler.selected
+        due = self._cycler.update(state, stopped=stopped)
+        selected = self._cycler.selected
+        if selected != before:
+            self._say(f"{selected}, for {EACH_S:.0f} s")
+        place = self._repositioner.update(state, waits=stopped or not _should_move(state))
+        if due and selected is not None:
+            with suppress(NoAnswerError):  # the cycler repeats it after a second
+                await self._robot.pursue(selected)
+        if place is not None:
+            self._say(await self._reposition(place))
 
-    async def _set_down(self, place: SimulatedPlace) -> str:
-        what = f"no way made for {self._task.teaching.rescue_after_s:g} s: the robot is to stand where it came through"
+    async def _reposition(self, place: SimulatedPlace) -> str:
+        text = f"no progress for {self._task.teaching.rescue_after_s:g} s: the robot is put where it drove before"
         try:
             answer = await self._robot.place(place.x_m, place.y_m, place.heading_rad)
         except NoAnswerError as error:
-            return f"{what}: {error}"
-        return f"{what}, x {place.x_m:.2f} m, y {place.y_m:.2f} m: {answer.text}"
+            return f"{text}: {error}"
+        return f"{text}, x {place.x_m:.2f} m, y {place.y_m:.2f} m: {answer.text}"
 
 
-def _is_to_drive(state: State) -> bool:
-    """Whether it should make way; one that asks should not, unless nobody is there who answers, nor one that is blind.
+def _should_move(state: State) -> bool:
+    """Return whether the robot is expected to make progress.
 
-    Nor is one that touches something left to itself: it makes way when it is set down elsewhere.
-
-    What a guard has stopped goes on as soon as it is told to, and may not come away.
+    A robot that asks or is blind is not, unless it is autonomous. A robot at a bumper or stopped by the guard is,
+    because it may not come free by itself.
     """
     alone = state.cause == Cause.UNKNOWN and state.phase == Phase.AUTONOMOUS
     return state.action is not None or state.cause == Cause.TOUCHES or state.stopped is not None or alone

@@ -1,4 +1,4 @@
-"""A teacher that consults a reference policy: answers questions, and corrects what it would do otherwise."""
+"""Teacher that consults a reference policy: it answers questions and corrects other actions."""
 
 import math
 import random
@@ -16,32 +16,32 @@ from kurt2rt.core.tick import TickRecord
 
 
 class TeacherView(NamedTuple):
-    """What a teacher sees of the robot."""
+    """State of the robot as far as a teacher sees it."""
 
     asking: bool
-    """Whether its basic level does."""
+    """Its basic level asks."""
     driving: bool
     action: str | None
     infrared_counts: tuple[int, ...]
     behaviour: str = ""
-    """The taught behaviour that is wanted."""
+    """Taught behaviour that the robot follows."""
     rla_id: int | None = None
-    """The RLA whose action drives."""
-    share_of_radius: float = math.inf
-    """How far off its condition is, as a share of its R; infinite where another RLA's is nearer."""
+    """RLA whose action drives."""
+    radius_fraction: float = math.inf
+    """Distance to the condition of that RLA, divided by its R; infinite if another RLA is nearer."""
 
 
-def share_of_radius(driving: int | None, nearest: int | None, distance: float, radius: float) -> float:
-    """As in Picture, of the RLA that drives and of the nearest one."""
+def radius_fraction(driving: int | None, nearest: int | None, distance: float, radius: float) -> float:
+    """Return distance / R of the RLA that drives, a ratio; infinite if it is not the nearest one."""
     return distance / radius if driving is not None and driving == nearest else math.inf
 
 
-def picture_of(record: TickRecord) -> TeacherView:
-    """What a tick looks like to a teacher."""
+def view_of_tick(record: TickRecord) -> TeacherView:
+    """Return the teacher's view of a tick."""
     decision, match = record.decision, record.decision.match
     nearest = math.inf
     if match is not None:
-        nearest = share_of_radius(decision.rla_id, match.rla.rla_id, match.distance, match.radius)
+        nearest = radius_fraction(decision.rla_id, match.rla.rla_id, match.distance, match.radius)
     return TeacherView(
         decision.asking and decision.asks_at == BASIC,
         decision.driving,
@@ -53,15 +53,15 @@ def picture_of(record: TickRecord) -> TeacherView:
     )
 
 
-def teacher_of(
+def build_teacher(
     task: TaskSettings, robot: RobotSettings, actions: Sequence[str], *, seed: int, session: str
 ) -> "ScriptedTeacher":
-    """The scripted teacher that a task describes, for a robot with this repertoire; `session` as in ScriptedTeacher."""
+    """Build the scripted teacher of a task, for a robot with these actions; `session` as in ScriptedTeacher."""
     return ScriptedTeacher(
         task.policy.build(robot.infrared),
         actions,
         task.teaching.teacher,
-        replace_within_share=task.learning.insert_beyond_share,
+        replace_radius_fraction=task.learning.insert_beyond_share,
         period_s=robot.can.cycle_s,
         seed=seed,
         session=session,
@@ -69,9 +69,9 @@ def teacher_of(
 
 
 class ScriptedTeacher:
-    """Consistent and memoryless about the task; of its own it has only patience and reaction time.
+    """Teacher without memory of the task, with a reaction time and a patience of its own.
 
-    Sees the same pictures that a person has on the screen and answers with the same commands.
+    It sees the states that a person sees on the screen, and gives the commands that a person can give.
     """
 
     def __init__(
@@ -80,102 +80,108 @@ class ScriptedTeacher:
         actions: Sequence[str],
         settings: TeacherSettings,
         *,
-        replace_within_share: float,
+        replace_radius_fraction: float,
         period_s: float,
         seed: int,
         session: str,
     ) -> None:
-        """`session` begins the ids of all its commands and must differ between lessons on the same knowledge.
+        """Create a teacher in phase 1.
 
-        `replace_within_share`: up to which share of R a correction replaces an action, and so may be followed by a
-        deletion.
+        Args:
+            policy: chooses the right action.
+            actions: the robot's actions, of which an error names another one.
+            settings: reaction time, patience and error rate.
+            replace_radius_fraction: a correction nearer than this fraction of R replaces the action of an RLA.
+            period_s: length of a tick.
+            seed: of the errors.
+            session: prefix of all command ids; it must differ between training runs on the same knowledge.
         """
         self._session = session
         self._policy = policy
         self._actions = tuple(actions)
         self._error_rate = settings.error_rate
         self._delete_after = settings.delete_after
-        self._replace_within_share = replace_within_share
+        self._replace_radius_fraction = replace_radius_fraction
         self._reaction_ticks = round(settings.reaction_s / period_s)
         self._patience_ticks = round(settings.patience_s / period_s)
         self._chance = random.Random(seed)
-        self._said = 0
+        self._command_count = 0
         self._ticks_asked = 0
-        self._ticks_otherwise = 0
-        self._wanted: str | None = None
+        self._ticks_wrong = 0
+        self._right: str | None = None
         self._behaviour = ""
         self._action_of: dict[int, str] = {}
         self._replaced: Counter[int] = Counter()
         self.phase = Phase.SUPERVISED
 
-    def enter(self, phase: Phase) -> Command:
-        """Begin a phase: what to tell the robot."""
+    def begin_phase(self, phase: Phase) -> Command:
+        """Enter a phase; return the command that the robot needs for it."""
         self.phase = phase
         return SetPhase(self._next_id(), SCRIPTED, phase)
 
-    def pursue(self, behaviour: str) -> Command:
-        """Another taught behaviour is wanted: what to tell the robot."""
+    def select_behaviour(self, behaviour: str) -> Command:
+        """Return the command that selects a taught behaviour."""
         return Pursue(self._next_id(), SCRIPTED, behaviour)
 
-    def go(self) -> Command:
-        """The robot shall drive again after an alarm: what to tell it."""
+    def resume(self) -> Command:
+        """Return the command that lets the robot drive again after a stop."""
         return Resume(self._next_id(), SCRIPTED)
 
-    def watch(self, picture: TeacherView, ticks: int = 1) -> Command | None:
-        """See a picture, so many ticks after the one before; what the teacher says to it, if anything."""
-        if picture.behaviour != self._behaviour:  # what was asked, and what was wrong, is over
-            self._behaviour = picture.behaviour
-            self._ticks_asked = self._ticks_otherwise = 0
+    def update(self, view: TeacherView, ticks: int = 1) -> Command | None:
+        """Take a view that is `ticks` later than the last one; return the teacher's command, if any."""
+        if view.behaviour != self._behaviour:  # questions and errors of the last behaviour are over
+            self._behaviour = view.behaviour
+            self._ticks_asked = self._ticks_wrong = 0
         if self._delete_after:
-            self._note_replaced(picture)
-        if picture.asking or self._ticks_asked > 0:
-            # Once asked the teacher answers, also when noise has meanwhile let the robot drive on for a moment.
-            self._ticks_otherwise = 0
+            self._count_replaced(view)
+        if view.asking or self._ticks_asked > 0:
+            # A question is answered even if noise has let the robot drive on for a moment.
+            self._ticks_wrong = 0
             self._ticks_asked += ticks
             if self._ticks_asked < self._reaction_ticks:
                 return None
             self._ticks_asked = 0
-            return Teach(self._next_id(), SCRIPTED, self._choose(picture))
-        if self.phase is Phase.SUPERVISED or not picture.driving:
+            return Teach(self._next_id(), SCRIPTED, self._choose(view))
+        if self.phase is Phase.SUPERVISED or not view.driving:
             return None
-        return self._correct(picture, ticks)
+        return self._correct(view, ticks)
 
-    def _correct(self, picture: TeacherView, ticks: int) -> Command | None:
-        wanted = self._policy.choose(picture.infrared_counts, picture.behaviour)
-        if wanted == picture.action:
-            self._ticks_otherwise = 0
+    def _correct(self, view: TeacherView, ticks: int) -> Command | None:
+        right = self._policy.choose(view.infrared_counts, view.behaviour)
+        if right == view.action:
+            self._ticks_wrong = 0
             return None
-        if wanted != self._wanted:  # patience runs for one opinion at a time
-            self._wanted = wanted
-            self._ticks_otherwise = 0
-        self._ticks_otherwise += ticks
-        if self._ticks_otherwise < self._patience_ticks:
+        if right != self._right:  # patience counts for one right action at a time
+            self._right = right
+            self._ticks_wrong = 0
+        self._ticks_wrong += ticks
+        if self._ticks_wrong < self._patience_ticks:
             return None
-        self._ticks_otherwise = 0
-        if picture.rla_id is not None and self._is_to_go(picture.rla_id, picture.share_of_radius):
-            return DeleteRla(self._next_id(), SCRIPTED, picture.rla_id)
-        return Correct(self._next_id(), SCRIPTED, self._choose(picture))
+        self._ticks_wrong = 0
+        if view.rla_id is not None and self._is_to_delete(view.rla_id, view.radius_fraction):
+            return DeleteRla(self._next_id(), SCRIPTED, view.rla_id)
+        return Correct(self._next_id(), SCRIPTED, self._choose(view))
 
-    def _is_to_go(self, rla_id: int, distance_share: float) -> bool:
-        """Whether an RLA that is wrong has been replaced often enough; farther off a correction leaves it as it is."""
+    def _is_to_delete(self, rla_id: int, fraction: float) -> bool:
+        """Return whether a wrong RLA was replaced often enough, and is near enough that a correction replaces it."""
         if not self._delete_after or self._replaced[rla_id] < self._delete_after:
             return False
-        return distance_share <= self._replace_within_share
+        return fraction <= self._replace_radius_fraction
 
-    def _note_replaced(self, picture: TeacherView) -> None:
-        """An RLA that drives otherwise than before has had its action replaced."""
-        if picture.rla_id is None or picture.action is None:
+    def _count_replaced(self, view: TeacherView) -> None:
+        """Count a replacement if an RLA drives with another action than before."""
+        if view.rla_id is None or view.action is None:
             return
-        if self._action_of.get(picture.rla_id, picture.action) != picture.action:
-            self._replaced[picture.rla_id] += 1
-        self._action_of[picture.rla_id] = picture.action
+        if self._action_of.get(view.rla_id, view.action) != view.action:
+            self._replaced[view.rla_id] += 1
+        self._action_of[view.rla_id] = view.action
 
-    def _choose(self, picture: TeacherView) -> str:
-        right = self._policy.choose(picture.infrared_counts, picture.behaviour)
+    def _choose(self, view: TeacherView) -> str:
+        right = self._policy.choose(view.infrared_counts, view.behaviour)
         if self._chance.random() >= self._error_rate:
             return right
         return self._chance.choice([action for action in self._actions if action != right])
 
     def _next_id(self) -> str:
-        self._said += 1
-        return f"{self._session}-{self._said}"
+        self._command_count += 1
+        return f"{self._session}-{self._command_count}"

@@ -7,12 +7,12 @@ from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.teacher.client.answer import Answer
 from kurt2rt.teacher.client.client import TeacherClient
-from kurt2rt.teacher.terminal.terminal_text import asks_way_in
+from kurt2rt.teacher.terminal.terminal_text import expects_mid_answer
 
 _MOST_DIGITS = 15
 
 
-def way_command(
+def mid_command(
     robot: TeacherClient, hello: Hello, words: Sequence[str], state: State | None
 ) -> Awaitable[Answer] | None:
     """The command that a line is; None where it is none to the mid level. `state`: the picture it was typed at."""
@@ -24,7 +24,7 @@ def _lesson(robot: TeacherClient, hello: Hello, words: Sequence[str], state: Sta
     judged = None if state is None else state.tick
     match words:
         case [way] if _means_way(way, hello, state):
-            if state is None or state.mid is None or asks_way_in(state.mid):
+            if state is None or state.mid is None or expects_mid_answer(state.mid):
                 return robot.answer(way, of=judged, level=MID)
             return robot.correct(way, of=judged, level=MID)
         case ["also", way]:

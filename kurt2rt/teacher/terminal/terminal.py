@@ -19,20 +19,20 @@ from kurt2rt.core.rla.outcome_text import Surface
 from kurt2rt.core.rla.rla import CRITIC, Phase
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
-from kurt2rt.teacher.terminal.mid_commands import way_command
+from kurt2rt.teacher.terminal.mid_commands import mid_command
 from kurt2rt.teacher.terminal.terminal_text import (
-    asks_in,
-    came_by_in,
-    change_in,
+    build_question,
+    expects_answer,
+    format_critic_change,
+    format_mid_command,
+    format_mid_situation,
+    format_opinion,
+    format_state,
+    format_surprise,
+    format_trust,
     help_lines,
-    is_worth_saying,
+    is_notable,
     name_lines,
-    opinion_in,
-    question_in,
-    sentence_of,
-    surprise_in,
-    trust_in,
-    way_in,
 )
 
 _STEP_S = 0.5
@@ -196,30 +196,30 @@ class TerminalTeacher:
         surprised = -1
         async for state in self._robot.states():
             if state.mid is not None and self._hello is not None and self._hello.mid is not None:
-                way = way_in(state, self._hello.mid)
+                way = format_mid_command(state, self._hello.mid)
                 # The distance may change while it goes on saying the same.
                 command = (state.mid.behaviour, state.mid.rla, state.mid.overridden, state.goal)
                 if way and command != commanded:
                     self._say(way)
                     commanded = command
             if state.surprise is not None and state.surprise.tick > surprised:
-                if not is_worth_saying(state.surprise):
+                if not is_notable(state.surprise):
                     surprised = state.surprise.tick
                 elif anyio.current_time() >= quiet_until:
-                    self._say(surprise_in(state.surprise))
+                    self._say(format_surprise(state.surprise))
                     surprised = state.surprise.tick
                     quiet_until = anyio.current_time() + _SAYS_AT_MOST_EVERY_S
             if state.phase >= Phase.CRITIC and (state.trusted, state.role) != standing:
                 standing = state.trusted, state.role
-                self._say(f"critic: {trust_in(state)}")
+                self._say(f"critic: {format_trust(state)}")
             if state.stands.asks and not state.stands.needs_go:
                 if state.stands.reason != asking:
-                    self._say(str(question_in(state, self._words)))
+                    self._say(str(build_question(state, self._words)))
                 asking = state.stands.reason
                 told = ""
                 continue
             asking = ""
-            sentence = sentence_of(state)
+            sentence = format_state(state)
             if sentence != told and anyio.current_time() >= quiet_until:
                 self._say(sentence)
                 told = sentence
@@ -229,7 +229,7 @@ class TerminalTeacher:
         robot, hello = self._robot, self._hello
         assert hello is not None, "no line is taken before the robot was met"
         judged = None if line.state is None else line.state.tick
-        given = way_command(robot, hello, line.text.split(), line.state)
+        given = mid_command(robot, hello, line.text.split(), line.state)
         if given is not None:
             await self._tell(given)
             return
@@ -272,8 +272,8 @@ class TerminalTeacher:
             case ["release"]:
                 await self._tell(robot.hand_over())
             case ["way"] if hello.mid is not None and line.state is not None and line.state.mid is not None:
-                self._say(way_in(line.state, hello.mid) or str(question_in(line.state, self._words)))
-                self._say(came_by_in(line.state.mid, hello.mid))
+                self._say(format_mid_command(line.state, hello.mid) or str(build_question(line.state, self._words)))
+                self._say(format_mid_situation(line.state.mid, hello.mid))
             case ["places"] if hello.seeks:
                 self._say(f"named: {', '.join(await robot.situations()) or 'nothing yet'}")
             case [action] if action in hello.actions:
@@ -281,9 +281,9 @@ class TerminalTeacher:
             case [appraisal] if any(appraisal == each.name for each in hello.appraisals):
                 await self._tell(robot.appraise(appraisal, of=judged))
             case ["critic"] if hello.appraisals and line.state is not None:
-                self._say(opinion_in(line.state, hello.appraisals))
+                self._say(format_opinion(line.state, hello.appraisals))
                 latest = await robot.lessons(_LESSONS_LOOKED_AT)
-                self._say(change_in(next((each for each in latest if each.teacher == CRITIC), None)))
+                self._say(format_critic_change(next((each for each in latest if each.teacher == CRITIC), None)))
             case _:
                 self._say_all(help_lines(hello))
 
@@ -295,7 +295,7 @@ class TerminalTeacher:
         # The same word answers a question and corrects a robot that knows, or thinks that it knows.
         if state is None:
             await self._tell(self._robot.answer(action))
-        elif asks_in(state):
+        elif expects_answer(state):
             await self._tell(self._robot.answer(action, of=state.tick))
         else:
             await self._tell(self._robot.correct(action, of=state.tick))

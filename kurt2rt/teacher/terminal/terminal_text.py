@@ -68,7 +68,7 @@ def name_lines(hello: Hello) -> tuple[str, ...]:
     return tuple(lines)
 
 
-def question_in(state: State, words: SensorWords = NO_WORDS) -> Question | MidQuestion:
+def build_question(state: State, words: SensorWords = NO_WORDS) -> Question | MidQuestion:
     """Return the question that a picture shows, in the robot's `words` for its sensors."""
     if state.asks_at == MID and state.mid is not None:
         mid = state.mid
@@ -88,19 +88,19 @@ def question_in(state: State, words: SensorWords = NO_WORDS) -> Question | MidQu
     )
 
 
-def asks_in(state: State) -> bool:
+def expects_answer(state: State) -> bool:
     """Whether an action that is typed at this picture is an answer: there is nothing near that it could correct."""
     if state.asks_at == MID:
         return False  # nearest is of the mid level; a correction is right however near the basic one's are
     return state.nearest is None or state.nearest_action == ASK or state.distance > state.radius
 
 
-def asks_way_in(mid: MidState) -> bool:
+def expects_mid_answer(mid: MidState) -> bool:
     """Whether a behaviour that is typed at this picture is an answer to the mid level, and no correction."""
     return mid.nearest is None or mid.nearest_behaviour == ASK or mid.distance > mid.radius
 
 
-def way_in(state: State, introduced: MidIntroduction) -> str:
+def format_mid_command(state: State, introduced: MidIntroduction) -> str:
     """What the mid level wants, and why; empty while it asks, or where there is none."""
     mid = state.mid
     if mid is None or mid.asks:
@@ -117,7 +117,7 @@ def way_in(state: State, introduced: MidIntroduction) -> str:
     return f"{mid.behaviour} because {leads}{rla_title(mid.rla, '', MID)}: {off}"
 
 
-def came_by_in(mid: MidState, introduced: MidIntroduction) -> str:
+def format_mid_situation(mid: MidState, introduced: MidIntroduction) -> str:
     """What the mid level has come by, the newest first, or where it is; and what the nearest RLA knows beside it."""
     is_at = "came by" if introduced.kind == HISTORY else "is at"
     here = ", ".join(word for word in mid.here if word) or "nothing yet"
@@ -127,19 +127,19 @@ def came_by_in(mid: MidState, introduced: MidIntroduction) -> str:
     return f"{is_at} {here}; {rla_title(mid.nearest, '', MID)} knows {there}"
 
 
-def surprise_in(surprise: SurpriseState) -> str:
+def format_surprise(surprise: SurpriseState) -> str:
     """What surprised the robot."""
     after, came = (rla_title(each, "", surprise.level) for each in (surprise.rla, surprise.follow_up))
     new = ", which had never followed it" if surprise.new else ""
     return f"surprise: {surprise.times:.1f} times as far off as usual after {after}; {came} took over{new}"
 
 
-def is_worth_saying(surprise: SurpriseState) -> bool:
+def is_notable(surprise: SurpriseState) -> bool:
     """Of the basic level, whose RLAs end many times a second, only what is far off."""
     return surprise.level == MID or surprise.times >= LOUD_FROM
 
 
-def sentence_of(state: State) -> str:
+def format_state(state: State) -> str:
     """What the robot does and why, without what changes all the time."""
     stands = state.stands
     if stands.reason is not StandReason.DRIVES:
@@ -151,14 +151,14 @@ def sentence_of(state: State) -> str:
     return ""
 
 
-def opinion_in(state: State, appraisals: Sequence[AppraisalName]) -> str:
+def format_opinion(state: State, appraisals: Sequence[AppraisalName]) -> str:
     """What the critic thinks of a picture, and whether it may be believed."""
     name = next((each.name for each in appraisals if each.value == state.opinion), None)
     thinks = "does not know this situation" if name is None else f"thinks {name}"
-    return f"critic: {thinks} · {trust_in(state)}"
+    return f"critic: {thinks} · {format_trust(state)}"
 
 
-def trust_in(state: State) -> str:
+def format_trust(state: State) -> str:
     """How well the critic agrees with its teacher."""
     if state.agreement is None:
         bad, good = state.signals_missing
@@ -166,10 +166,10 @@ def trust_in(state: State) -> str:
         return f"needs {missing or 'a few'} signals more of yours (not trusted)"
     share = math.floor(state.agreement * 100) / 100  # not rounded up to the bound that it misses
     trusted = "trusted" if state.trusted else "not trusted"
-    return f"agrees with you {share:.2f} ({'; '.join(part for part in (trusted, role_in(state)) if part)})"
+    return f"agrees with you {share:.2f} ({'; '.join(part for part in (trusted, format_role(state)) if part)})"
 
 
-def role_in(state: State) -> str:
+def format_role(state: State) -> str:
     """What a critic does that is alone with the robot; empty while it only listens."""
     match state.role:
         case CriticState.LISTENS:
@@ -183,7 +183,7 @@ def role_in(state: State) -> str:
             return other
 
 
-def change_in(lesson: LessonLine | None) -> str:
+def format_critic_change(lesson: LessonLine | None) -> str:
     """What the critic changed last."""
     if lesson is None:
         return "critic: changed nothing lately"

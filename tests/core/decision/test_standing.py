@@ -36,8 +36,8 @@ from kurt2rt.service.post_tick import ProgramStatus
 from kurt2rt.service.status_line import format_activity
 from kurt2rt.teacher.client.link_quality import LinkQuality
 from kurt2rt.teacher.page.views import state_view
-from kurt2rt.teacher.scripted.channel_teacher import picture_in
-from kurt2rt.teacher.terminal.terminal_text import asks_in, question_in, sentence_of
+from kurt2rt.teacher.scripted.channel_teacher import view_of_state
+from kurt2rt.teacher.terminal.terminal_text import build_question, expects_answer, format_state
 from tests.channel.desk import Desk
 from tests.channel.states import state
 
@@ -92,7 +92,7 @@ def test_a_latched_stall_is_told_with_its_length_and_go_on_every_surface() -> No
     assert (stands.reason, stands.needs_go, stands.says) == (StandReason.COMPUTER_TOO_SLOW, True, "")
     assert stands.stall_s == pytest.approx(0.12)
     assert page_of(desk.picture) == "Stands: the computer was too slow for 0.1 s. GO lets it drive on"
-    assert sentence_of(desk.picture) == "Stands: the computer was too slow for 0.1 s. Type go to let it drive on"
+    assert format_state(desk.picture) == "Stands: the computer was too slow for 0.1 s. Type go to let it drive on"
     short = "stands until Go: the computer was too slow for 0.1 s"
     assert format_activity(ProgramStatus(desk.record, desk.runtime, 0, None, "")) == short
     snapshot = take_snapshot(desk.runtime, desk.record, _Keeping(), Probes(), 0.0)
@@ -235,10 +235,10 @@ def test_a_robot_that_is_held_at_a_bumper_asks_on_every_surface() -> None:
     assert (picture.cause, picture.stands) == ("touches", Standing(StandReason.FRONT_BUMPER, asks=True))
     question = "I touch something in front of me; what now?"
     assert page_of(picture) == question
-    assert str(question_in(picture)) == f"{question} RLA 1 says forward"
+    assert str(build_question(picture)) == f"{question} RLA 1 says forward"
     short = f"stands: {question}"
     assert format_activity(ProgramStatus(desk.record, desk.runtime, 0, None, "")) == short
     assert take_snapshot(desk.runtime, desk.record, _Keeping(), Probes(), 0.0).doing == short
     assert picture.question == ()  # the situation is known: nothing differs
-    assert not asks_in(picture)  # an action that is typed corrects the RLA
-    assert picture_in(picture).asking  # and so a scripted teacher answers
+    assert not expects_answer(picture)  # an action that is typed corrects the RLA
+    assert view_of_state(picture).asking  # and so a scripted teacher answers

@@ -47,7 +47,7 @@ from kurt2rt.runs.recording.run_files import budget_of
 from kurt2rt.runs.recording.run_head import RUN_METADATA, RunHead
 from kurt2rt.runs.recording.segment_reader import SegmentReader
 from kurt2rt.runtime import Runtime, build_runtime
-from kurt2rt.teacher.scripted.teacher import ScriptedTeacher, picture_of, teacher_of
+from kurt2rt.teacher.scripted.teacher import ScriptedTeacher, build_teacher, view_of_tick
 from simbridge.simulation import Kurt2Simulation
 from tests.runs.replay.stored_runs import STORED
 
@@ -89,7 +89,7 @@ def walls(scene: Scene, record: TickRecord) -> None:
     if tick % 5 == 0 and not at(20) < tick < at(21):  # for a second his line is dead
         runtime.inbox.put(Watch(NAME, tick))
     if tick < at(35):
-        command = scene.teacher.watch(picture_of(record))
+        command = scene.teacher.update(view_of_tick(record))
         if command is not None:
             runtime.inbox.put(command)
     scene.notebook.trouble = "the disk is full" if at(14) <= tick < at(14.4) else None
@@ -103,7 +103,7 @@ def walls(scene: Scene, record: TickRecord) -> None:
         case 570:
             say(lambda name: Stop(name, NAME))
         case 1000:
-            runtime.inbox.put(scene.teacher.enter(Phase.CORRECTIONS))
+            runtime.inbox.put(scene.teacher.begin_phase(Phase.CORRECTIONS))
         case 1700 | 1900:
             say(lambda name: Undo(name, NAME))
         case 2400:
@@ -133,7 +133,7 @@ class Errand:
         self._guide = TourGuide(self._walk, 5, task.teaching.teacher, period_s=0.01, seed=3, session="errand")
         self._walk.put(scene.simulation.pose)
         self._guide.begin()
-        scene.runtime.inbox.put(scene.teacher.enter(Phase.CORRECTIONS))
+        scene.runtime.inbox.put(scene.teacher.begin_phase(Phase.CORRECTIONS))
         self._home = scene.simulation.pose
 
     def __call__(self, scene: Scene, record: TickRecord) -> None:
@@ -142,7 +142,7 @@ class Errand:
         said = self._guide.watch(record) if tick < at(34) else None
         if said is not None:
             inbox.put(said)
-        lesson = scene.teacher.watch(picture_of(record))
+        lesson = scene.teacher.update(view_of_tick(record))
         if lesson is not None:
             inbox.put(lesson)
         if tick == at(22):
@@ -205,7 +205,7 @@ def record_story(
     )
     if told.stopped:
         runtime.school.stop(told.stopped)
-    teacher = teacher_of(task, settings, tuple(runtime.level.repertoire), seed=3, session=name)
+    teacher = build_teacher(task, settings, tuple(runtime.level.repertoire), seed=3, session=name)
     scene = Scene(simulation, runtime, notebook, teacher)
     story: Story = other or (walls if name == "walls" else Errand(scene, task))
     recorder = open_run_recorder(

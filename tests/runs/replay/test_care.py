@@ -40,7 +40,7 @@ from kurt2rt.runs.replay.replay import Replay
 from kurt2rt.runs.replay.run import Run
 from kurt2rt.runs.replay.trial import TrialKnowledge, answers, newest_to_try, runs_to_try
 from kurt2rt.runs.replay.undo_preview import preview, preview_on_newest
-from kurt2rt.teacher.scripted.teacher import picture_of
+from kurt2rt.teacher.scripted.teacher import view_of_tick
 from tests.cli.helpers import CommandLine
 from tests.runs.replay.stories import NAME, Scene, record_story
 
@@ -56,7 +56,7 @@ def taught_at_once(scene: Scene, record: TickRecord) -> None:
     """Told to go on as soon as it runs, and answered whenever it asks."""
     if record.tick % 5 == 0:
         scene.runtime.inbox.put(Watch(NAME, record.tick))
-    answer = scene.teacher.watch(picture_of(record))
+    answer = scene.teacher.update(view_of_tick(record))
     if answer is not None:
         scene.runtime.inbox.put(answer)
     if record.tick == 10:

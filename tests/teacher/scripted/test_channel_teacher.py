@@ -1,4 +1,4 @@
-"""The scripted teacher over the channel: a real client, and a robot whose mind is the test's."""
+"""teach_by_script: a real client, and a robot whose answers are the test's."""
 
 from collections.abc import AsyncIterator
 from pathlib import Path
@@ -27,7 +27,7 @@ from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import RefusedError
-from kurt2rt.teacher.scripted.channel_teacher import picture_in, teach_by_script
+from kurt2rt.teacher.scripted.channel_teacher import teach_by_script, view_of_state
 from kurt2rt.teacher.scripted.teacher import TeacherView
 from tests.channel.states import state
 from tests.teacher.client.test_client import HELLO
@@ -38,14 +38,14 @@ _CarriedOut = TakeRequest | PhaseRequest | PursueRequest | SessionRequest | Resu
 
 
 def short(name: str = "wall_following", each_phase_s: float = 0.1) -> TaskSettings:
-    """A task whose phases 1 and 2 last so long."""
+    """Return a task whose phases 1 and 2 last `each_phase_s` each."""
     task = load_task(name)
     teaching = task.teaching.model_copy(update={"supervised_s": each_phase_s, "corrections_s": each_phase_s})
     return task.model_copy(update={"teaching": teaching})
 
 
 class Mind:
-    """Does what the scripted teacher says, as far as its pictures show it; deaf to the first answers it should give."""
+    """Robot that carries out commands and loses the answers of the first `mute` of each type."""
 
     def __init__(self, robot: StandInRobot, *, simulated: bool = True, mute: int = 0) -> None:
         self._robot = robot
@@ -54,7 +54,7 @@ class Mind:
         self._silent: dict[type[Request], set[bytes]] = {}
         self._done: set[bytes] = set()
         self.hello: dict[str, object] = {}
-        """What it says otherwise when it introduces itself."""
+        """Changes to its introduction."""
         self.stop_at_phase: Phase | None = None
         self.refuses_phase: Phase | None = None
         self._stopped_tick = -1
@@ -76,7 +76,7 @@ class Mind:
         return reply
 
     def stop(self) -> None:
-        """Anna says stop."""
+        """Stop as teacher anna."""
         self._stopped_tick = self._robot.show(stopped=ActiveStop(StopReason.SAID_STOP, "anna")).tick
 
     def _carry_out(self, request: _CarriedOut) -> Reply:
@@ -124,7 +124,7 @@ async def client(robot: StandInRobot, tmp_path: Path) -> AsyncIterator[TeacherCl
 async def lesson(
     client: TeacherClient, robot: StandInRobot, ends_with: str, task: TaskSettings | None = None
 ) -> list[str]:
-    """Let it teach until it has said its last; then somebody else takes the robot. What it said."""
+    """Teach until a line with `ends_with` comes, then let another teacher take the robot; return all lines."""
     said: list[str] = []
 
     def say(text: str) -> None:
@@ -159,9 +159,7 @@ def phases(robot: StandInRobot) -> list[Phase]:
     return [each.phase for each in dict.fromkeys(robot.all_of(PhaseRequest))]
 
 
-async def test_a_task_with_a_mid_level_is_not_taught_over_the_channel(
-    robot: StandInRobot, client: TeacherClient
-) -> None:
+async def test_teach_by_script_task_with_a_mid_level_is_refused(robot: StandInRobot, client: TeacherClient) -> None:
     with pytest.raises(RefusedError, match=r"task route has a mid level.* kurt2rt lesson --task route"):
         await teach_by_script(client, load_robot(), load_task("route"), print)
     assert robot.state.teacher != AUTO
@@ -172,16 +170,14 @@ TURNS = list(STREETS.behaviours)
 
 
 def streets(robot: StandInRobot, period_s: float, **shown: object) -> "Mind":
-    """It was started for the streets; its ticks are long, so that half a minute is soon over."""
+    """Start the robot for the streets, with long ticks so that 30 s are soon over."""
     robot.mind = mind = Mind(robot)
     mind.hello = {"task": "streets", "behaviours": TURNS, "period_s": period_s}
     robot.show(behaviour="straight_on", **shown)
     return mind
 
 
-async def test_several_behaviours_are_wanted_in_turn_also_when_the_robot_drives_alone(
-    robot: StandInRobot, client: TeacherClient
-) -> None:
+async def test_teach_by_script_selects_each_behaviour_in_turn(robot: StandInRobot, client: TeacherClient) -> None:
     streets(robot, 1.0)
     said: list[str] = []
     with anyio.fail_after(10.0):
@@ -193,13 +189,13 @@ async def test_several_behaviours_are_wanted_in_turn_also_when_the_robot_drives_
             tasks.cancel_scope.cancel()
     wanted = [each.behaviour for each in robot.all_of(PursueRequest)]
     assert list(dict.fromkeys(wanted)) == ["turn_left", "turn_right", "straight_on"]
-    assert said[0].startswith("straight_on, turn_left, turn_right: in turn, each for 30 s, for over the channel")
+    assert said[0].startswith("straight_on, turn_left, turn_right: in turn, each for 30 s, ")
     turns = [f"{each}, for 30 s" for each in (*TURNS, TURNS[0])]
     alone = "now the robot drives alone (phase 5)"
     assert [line for line in said if line in (*turns, alone)] == [*turns[:2], alone, *turns[2:]]
 
 
-async def test_a_robot_that_makes_no_way_is_set_down_elsewhere_and_that_is_said(
+async def test_teach_by_script_without_progress_repositions_the_robot(
     robot: StandInRobot, client: TeacherClient
 ) -> None:
     streets(robot, 0.5, cause="rla", action="forward", rla=1, place=SimulatedPlace(1.0, 2.0, 0.5, 0.0, 0, 0))
@@ -208,16 +204,14 @@ async def test_a_robot_that_makes_no_way_is_set_down_elsewhere_and_that_is_said(
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(teach_by_script, client, SETTINGS, STREETS, said.append)
             (first, *_) = await robot.hears(PlaceRequest)
-            while not said[-1].startswith("no way made"):
+            while not said[-1].startswith("no progress"):
                 await anyio.lowlevel.checkpoint()
             tasks.cancel_scope.cancel()
     assert (first.x_m, first.y_m, first.heading_rad) == (1.0, 2.0, 0.5)
-    assert said[-1].startswith("no way made for 15 s: the robot is to stand where it came through, x 1.00 m, y 2.00 m")
+    assert said[-1].startswith("no progress for 15 s")
 
 
-async def test_a_robot_that_a_person_stopped_is_neither_turned_nor_set_down_and_one_that_is_taken_is_left(
-    robot: StandInRobot, client: TeacherClient
-) -> None:
+async def test_teach_by_script_person_s_stop_ends_commands(robot: StandInRobot, client: TeacherClient) -> None:
     mind = streets(robot, 0.5, cause="rla", action="forward", rla=1, place=SimulatedPlace(1.0, 2.0, 0.5, 0.0, 0, 0))
     said: list[str] = []
     with anyio.fail_after(10.0):
@@ -237,9 +231,7 @@ async def test_a_robot_that_a_person_stopped_is_neither_turned_nor_set_down_and_
     assert said[-1] == "anna took the robot; the scripted teacher stops here"
 
 
-async def test_alone_too_a_robot_of_several_behaviours_is_told_to_go_on_where_its_guard_stopped_it(
-    robot: StandInRobot, client: TeacherClient
-) -> None:
+async def test_teach_by_script_phase_5_guard_stop_is_resumed(robot: StandInRobot, client: TeacherClient) -> None:
     streets(robot, 0.5, cause="rla", action="forward", rla=1, place=SimulatedPlace(1.0, 2.0, 0.5, 0.0, 0, 0))
     with anyio.fail_after(10.0):
         async with anyio.create_task_group() as tasks:
@@ -250,7 +242,7 @@ async def test_alone_too_a_robot_of_several_behaviours_is_told_to_go_on_where_it
             tasks.cancel_scope.cancel()
 
 
-async def test_a_robot_that_stays_where_it_is_after_the_lesson_is_not_set_down(
+async def test_teach_by_script_refused_phase_5_leaves_the_robot_there(
     robot: StandInRobot, client: TeacherClient
 ) -> None:
     mind = streets(robot, 0.5, place=SimulatedPlace(1.0, 2.0, 0.5, 0.0, 0, 0))
@@ -272,7 +264,7 @@ async def test_a_robot_that_stays_where_it_is_after_the_lesson_is_not_set_down(
     assert robot.state.stopped.reason is StopReason.SESSION_OVER
 
 
-async def test_a_real_robot_is_not_for_the_scripted_teacher(client: TeacherClient, robot: StandInRobot) -> None:
+async def test_teach_by_script_real_robot_is_refused(client: TeacherClient, robot: StandInRobot) -> None:
     robot.mind = Mind(robot, simulated=False)
     with pytest.raises(RefusedError, match="kurt2-indoor is a real robot; the scripted teacher teaches simulated"):
         await teach_by_script(client, SETTINGS, short(), lambda _: None)
@@ -286,7 +278,7 @@ async def test_a_real_robot_is_not_for_the_scripted_teacher(client: TeacherClien
         ({"behaviours": ["there", "back"]}, r"wall_following \(behaviours: there, back\),"),
     ],
 )
-async def test_a_robot_that_was_started_for_another_task_is_not_taught_this_one(
+async def test_teach_by_script_robot_of_another_task_is_refused(
     client: TeacherClient, robot: StandInRobot, hello: dict[str, object], robots: str
 ) -> None:
     robot.mind = mind = Mind(robot)
@@ -297,19 +289,15 @@ async def test_a_robot_that_was_started_for_another_task_is_not_taught_this_one(
     assert {type(each) for each in robot.orders()} == {HelloRequest}
 
 
-async def test_it_says_that_nobody_sets_the_robot_down_elsewhere_where_the_task_asks_for_it(
-    client: TeacherClient, robot: StandInRobot
-) -> None:
+async def test_teach_by_script_repositioning_task_gives_a_notice(client: TeacherClient, robot: StandInRobot) -> None:
     robot.mind = Mind(robot)
     task = short()
     moved = task.model_copy(update={"teaching": task.teaching.model_copy(update={"reposition_every_s": 7.0})})
     said = await lesson(client, robot, ALONE, moved)
-    assert said[0].startswith("task wall_following has the robot set down elsewhere every 7 s; over the channel nobody")
+    assert said[0].startswith("task wall_following wants the robot put elsewhere every 7 s")
 
 
-async def test_it_teaches_both_phases_and_lets_the_robot_drive_alone(
-    client: TeacherClient, robot: StandInRobot
-) -> None:
+async def test_teach_by_script_teaches_phases_1_and_2_then_5(client: TeacherClient, robot: StandInRobot) -> None:
     robot.mind = Mind(robot)
     said = await lesson(client, robot, ALONE)
     assert said[0].startswith("phase 1 ")
@@ -317,7 +305,7 @@ async def test_it_teaches_both_phases_and_lets_the_robot_drive_alone(
     assert phases(robot) == [Phase.SUPERVISED, Phase.CORRECTIONS, Phase.AUTONOMOUS]
 
 
-async def test_answers_that_are_missing_do_not_end_it(client: TeacherClient, robot: StandInRobot) -> None:
+async def test_teach_by_script_lost_answers_are_asked_again(client: TeacherClient, robot: StandInRobot) -> None:
     robot.mind = Mind(robot, mute=2)
     said = await lesson(client, robot, ALONE)
     assert said[-1] == "now the robot drives alone (phase 5)"
@@ -325,9 +313,7 @@ async def test_answers_that_are_missing_do_not_end_it(client: TeacherClient, rob
     assert len(dict.fromkeys(robot.all_of(SessionRequest))) >= 4
 
 
-async def test_a_robot_that_a_person_stopped_during_the_lesson_stays_where_it_is(
-    client: TeacherClient, robot: StandInRobot
-) -> None:
+async def test_teach_by_script_stop_during_phase_2_keeps_it_there(client: TeacherClient, robot: StandInRobot) -> None:
     robot.mind = mind = Mind(robot)
     mind.stop_at_phase = Phase.CORRECTIONS
     said = await lesson(client, robot, "stays where it is")
@@ -336,9 +322,7 @@ async def test_a_robot_that_a_person_stopped_during_the_lesson_stays_where_it_is
     assert robot.all_of(ResumeRequest) == []
 
 
-async def test_a_robot_that_a_person_stops_at_the_last_moment_stays_where_it_is(
-    client: TeacherClient, robot: StandInRobot
-) -> None:
+async def test_teach_by_script_stop_at_phase_5_keeps_it_there(client: TeacherClient, robot: StandInRobot) -> None:
     robot.mind = mind = Mind(robot)
     mind.stop_at_phase = Phase.AUTONOMOUS
     said = await lesson(client, robot, "stays where it is")
@@ -346,8 +330,8 @@ async def test_a_robot_that_a_person_stops_at_the_last_moment_stays_where_it_is(
     assert robot.state.stopped == ActiveStop(StopReason.SAID_STOP, "anna")
 
 
-def test_it_sees_in_a_picture_what_is_wanted_and_which_rla_drives() -> None:
-    seen = picture_in(state(cause="rla", action="forward", rla=3, behaviour="turn_left"))
+def test_view_of_state_has_behaviour_and_driving_rla() -> None:
+    seen = view_of_state(state(cause="rla", action="forward", rla=3, behaviour="turn_left"))
     assert seen == TeacherView(False, True, "forward", state().infrared_counts, "turn_left", 3)
-    nearest = picture_in(state(cause="rla", action="forward", rla=3, nearest=3, distance=60.0, radius=600.0))
-    assert nearest.share_of_radius == 0.1
+    nearest = view_of_state(state(cause="rla", action="forward", rla=3, nearest=3, distance=60.0, radius=600.0))
+    assert nearest.radius_fraction == 0.1

@@ -1,4 +1,4 @@
-"""The scripted teacher of the mid level: what is right at the next junction, said once the robot is about that one."""
+"""ScriptedDispatcher: answers, corrections and commands at junctions."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from kurt2rt.core.task_settings import TeacherSettings
 from kurt2rt.core.teaching.commands import Command, Correct, Pursue, Teach
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.teacher.scripted.dispatcher import ScriptedDispatcher
-from kurt2rt.teacher.scripted.teacher import picture_of
+from kurt2rt.teacher.scripted.teacher import view_of_tick
 from tests.core.helpers import sensed
 
 NAME = "scripted teacher"
@@ -47,53 +47,55 @@ ASKS = record(MidDecision("straight_on", None, None, asks=True, overridden=False
 
 
 def said(person: ScriptedDispatcher, seen: TickRecord, ahead: WayAhead, ticks: int) -> list[tuple[int, Command]]:
-    """What is said, and in which of so many ticks."""
-    heard = [(tick, person.watch(seen, ahead)) for tick in range(1, ticks + 1)]
+    """Return (tick, command) for each command given in `ticks` equal ticks."""
+    heard = [(tick, person.on_tick(seen, ahead)) for tick in range(1, ticks + 1)]
     return [(tick, command) for tick, command in heard if command is not None]
 
 
-def test_a_question_is_answered_after_the_reaction_time_with_what_is_right_ahead() -> None:
+def test_on_tick_asking_answers_after_the_reaction_time() -> None:
     for phase in (Phase.SUPERVISED, Phase.CORRECTIONS):
         answers = said(dispatcher(phase), ASKS, BEFORE_THE_FIRST, REACTION_TICKS)
         assert answers == [(REACTION_TICKS, Teach("s-mid-1", NAME, "turn_left", level=MID))]
 
 
-def test_the_teacher_of_the_basic_level_is_not_asked_what_the_mid_level_asks() -> None:
-    assert not picture_of(ASKS).asking
+def test_view_of_tick_question_of_the_mid_level_is_not_asking() -> None:
+    assert not view_of_tick(ASKS).asking
     basic = record(MidDecision("turn_left", 1, None, asks=False, overridden=False, event=None), drives=False)
-    assert picture_of(basic).asking
+    assert view_of_tick(basic).asking
 
 
-def test_another_wish_is_corrected_when_it_has_lasted() -> None:
+def test_on_tick_wrong_behaviour_is_corrected_after_the_patience() -> None:
     corrections = said(dispatcher(), wants("turn_right"), BEFORE_THE_FIRST, PATIENCE_TICKS)
     assert corrections == [(PATIENCE_TICKS, Correct("s-mid-1", NAME, "turn_left", level=MID))]
 
 
-def test_nothing_is_said_of_the_right_wish_in_phase_1_or_where_the_teacher_commanded_himself() -> None:
+def test_on_tick_right_behaviour_phase_1_or_override_gives_none() -> None:
     long = 10 * PATIENCE_TICKS
     assert said(dispatcher(), wants("turn_left"), BEFORE_THE_FIRST, long) == []
     assert said(dispatcher(Phase.SUPERVISED), wants("turn_right"), BEFORE_THE_FIRST, long) == []
     assert said(dispatcher(), wants("turn_right", overridden=True), BEFORE_THE_FIRST, long) == []
 
 
-def test_behind_a_junction_nothing_is_said_until_the_robot_has_noticed_it() -> None:
+def test_on_tick_corrects_after_the_junction_is_noticed() -> None:
     person = dispatcher()
     assert said(person, wants("turn_left"), IN_THE_FIRST, 200) == []
-    assert said(person, wants("turn_left"), BEHIND_THE_FIRST, 2 * PATIENCE_TICKS) == []  # it is about the first still
-    assert person.watch(wants("turn_right", event=PASSED), BEHIND_THE_FIRST) is None
+    assert (
+        said(person, wants("turn_left"), BEHIND_THE_FIRST, 2 * PATIENCE_TICKS) == []
+    )  # the situation is still that of the first junction
+    assert person.on_tick(wants("turn_right", event=PASSED), BEHIND_THE_FIRST) is None
     corrections = said(person, wants("turn_right"), BEHIND_THE_FIRST, PATIENCE_TICKS)
     assert [command for _, command in corrections] == [Correct("s-mid-1", NAME, "straight_on", level=MID)]
 
 
-def test_a_junction_noticed_before_it_is_left_is_noticed_too() -> None:
+def test_on_tick_junction_noticed_early_counts() -> None:
     person = dispatcher()
     assert said(person, wants("turn_left"), IN_THE_FIRST, 200) == []
-    assert person.watch(wants("straight_on", event=PASSED), IN_THE_FIRST) is None
+    assert person.on_tick(wants("straight_on", event=PASSED), IN_THE_FIRST) is None
     assert said(person, wants("straight_on"), IN_THE_FIRST, 2 * PATIENCE_TICKS) == []
     assert said(person, wants("straight_on"), BEHIND_THE_FIRST, 2 * NOTICES_WITHIN_TICKS) == []
 
 
-def test_where_the_robot_does_not_notice_a_junction_he_commands_and_teaches_nothing() -> None:
+def test_on_tick_missed_junction_is_commanded_not_taught() -> None:
     person = dispatcher()
     said(person, wants("turn_left"), IN_THE_FIRST, 10)
     commands = said(person, wants("turn_left"), BEHIND_THE_FIRST, NOTICES_WITHIN_TICKS + 10)
@@ -102,14 +104,14 @@ def test_where_the_robot_does_not_notice_a_junction_he_commands_and_teaches_noth
     assert person.missed == 1
 
 
-def test_a_robot_that_stands_is_given_time_to_notice() -> None:
+def test_on_tick_standing_robot_has_not_missed_a_junction() -> None:
     person = dispatcher()
     said(person, wants("turn_left"), IN_THE_FIRST, 10)
     stands = record(MidDecision("turn_left", 1, None, asks=False, overridden=False, event=None), drives=False)
     assert said(person, stands, BEHIND_THE_FIRST, 3 * NOTICES_WITHIN_TICKS) == []
 
 
-def test_errors_name_another_behaviour() -> None:
+def test_answers_with_errors_name_another_behaviour() -> None:
     answers = said(dispatcher(error_rate=1.0), ASKS, BEFORE_THE_FIRST, 50 * REACTION_TICKS)
     named = {command.action for _, command in answers if isinstance(command, Teach)}
     assert named == {"straight_on", "turn_right"}

@@ -1,4 +1,4 @@
-"""The scripted teacher: consistent, with a reaction time, patience, and errors where they are asked for."""
+"""ScriptedTeacher: reaction time, patience, errors and deletions."""
 
 import math
 from collections import Counter
@@ -15,7 +15,7 @@ from kurt2rt.core.rla.rla import Origin, Phase, Rla
 from kurt2rt.core.task_settings import TeacherSettings
 from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, Pursue, SetPhase, Teach
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.teacher.scripted.teacher import ScriptedTeacher, picture_of
+from kurt2rt.teacher.scripted.teacher import ScriptedTeacher, view_of_tick
 from tests.core.helpers import sensed
 
 NAME = "scripted teacher"
@@ -24,7 +24,7 @@ FAR, NEAR = 100, 500
 
 
 class NearIsB:
-    """Says b where the first count is high, else a; for the behaviour `other` c."""
+    """Policy: b if the first count is high, else a; c for the behaviour `other`."""
 
     def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:
         if behaviour == "other":
@@ -35,20 +35,20 @@ class NearIsB:
 def teacher(phase: Phase = Phase.CORRECTIONS, *, seed: int = 1, **changes: Any) -> ScriptedTeacher:
     settings = TeacherSettings(**{"reaction_s": 1.0, "patience_s": 0.5, "error_rate": 0.0, **changes})
     person = ScriptedTeacher(
-        NearIsB(), "abcd", settings, replace_within_share=0.1, period_s=0.01, seed=seed, session="s"
+        NearIsB(), "abcd", settings, replace_radius_fraction=0.1, period_s=0.01, seed=seed, session="s"
     )
     if phase is not Phase.SUPERVISED:
-        person.enter(phase)
+        person.begin_phase(phase)
     return person
 
 
 def record(
-    count: int, cause: Cause, action: str | None = None, nearest: int = 1, share_of_radius: float = 0.0
+    count: int, cause: Cause, action: str | None = None, nearest: int = 1, radius_fraction: float = 0.0
 ) -> TickRecord:
-    """A tick as the teacher sees it: RLA 1 drives, if any does, and `nearest` is so near."""
+    """Return a tick in which RLA 1 drives `action`; `nearest` is at a fraction of R."""
     rla_id = None if action is None else 1
     rla = Rla(nearest, (0.0,), action or "a", None, Origin("t", NAME, Phase.SUPERVISED, 1))
-    match = None if action is None else Match(rla, 500.0 * share_of_radius, 500.0, None, math.inf)
+    match = None if action is None else Match(rla, 500.0 * radius_fraction, 500.0, None, math.inf)
     decision = Decision(STANDSTILL, cause, action, rla_id, match)
     situation = Situation(np.zeros(1), history_frozen=action is None)
     return TickRecord(1, 0.01, sensed(count), situation, decision, GuardResult(STANDSTILL, (), latched=False), ())
@@ -62,102 +62,102 @@ def doing(action: str, count: int = FAR, cause: Cause = Cause.RLA) -> TickRecord
     return record(count, cause, action)
 
 
-def said(person: ScriptedTeacher, records: Sequence[TickRecord]) -> dict[int, Command]:
-    """What it says in which tick, counted from 1."""
-    heard = {number: person.watch(picture_of(each)) for number, each in enumerate(records, start=1)}
+def given(person: ScriptedTeacher, records: Sequence[TickRecord]) -> dict[int, Command]:
+    """Return the commands by tick, counted from 1."""
+    heard = {number: person.update(view_of_tick(each)) for number, each in enumerate(records, start=1)}
     return {number: command for number, command in heard.items() if command is not None}
 
 
-def test_it_answers_a_question_after_its_reaction_time_with_what_the_policy_says_then() -> None:
+def test_update_asking_answers_after_the_reaction_time() -> None:
     person = teacher(Phase.SUPERVISED)
     records = [asking(FAR)] * (REACTION_TICKS - 1) + [asking(NEAR)]
-    assert said(person, records) == {REACTION_TICKS: Teach("s-1", NAME, "b")}
+    assert given(person, records) == {REACTION_TICKS: Teach("s-1", NAME, "b")}
 
 
-def test_asked_again_it_takes_its_reaction_time_again() -> None:
+def test_update_second_question_takes_the_reaction_time_again() -> None:
     person = teacher(Phase.SUPERVISED)
-    answers = said(person, [asking()] * (2 * REACTION_TICKS))
+    answers = given(person, [asking()] * (2 * REACTION_TICKS))
     assert answers == {REACTION_TICKS: Teach("s-1", NAME, "a"), 2 * REACTION_TICKS: Teach("s-2", NAME, "a")}
 
 
-def test_without_reaction_time_it_answers_in_the_first_tick() -> None:
-    assert said(teacher(reaction_s=0.0), [asking()]) == {1: Teach("s-2", NAME, "a")}
+def test_update_reaction_time_0_answers_in_the_first_tick() -> None:
+    assert given(teacher(reaction_s=0.0), [asking()]) == {1: Teach("s-2", NAME, "a")}
 
 
-def test_a_question_of_today_does_not_hurry_the_answer_of_tomorrow() -> None:
+def test_update_answered_question_does_not_hurry_the_next_answer() -> None:
     person = teacher(Phase.SUPERVISED)
-    said(person, [asking()] * REACTION_TICKS)
-    said(person, [doing("a")] * 300)
-    assert list(said(person, [asking()] * REACTION_TICKS)) == [REACTION_TICKS]
+    given(person, [asking()] * REACTION_TICKS)
+    given(person, [doing("a")] * 300)
+    assert list(given(person, [asking()] * REACTION_TICKS)) == [REACTION_TICKS]
 
 
-def test_in_phase_1_it_does_not_correct() -> None:
-    assert said(teacher(Phase.SUPERVISED), [doing("b", FAR)] * 500) == {}
+def test_update_phase_1_does_not_correct() -> None:
+    assert given(teacher(Phase.SUPERVISED), [doing("b", FAR)] * 500) == {}
 
 
-def test_in_phase_2_it_corrects_after_its_patience() -> None:
-    answers = said(teacher(), [doing("b", FAR)] * PATIENCE_TICKS)
+def test_update_phase_2_corrects_after_the_patience() -> None:
+    answers = given(teacher(), [doing("b", FAR)] * PATIENCE_TICKS)
     assert answers == {PATIENCE_TICKS: Correct("s-2", NAME, "a")}
 
 
-def test_a_held_action_tries_its_patience_as_well() -> None:
-    assert list(said(teacher(), [doing("b", FAR, Cause.HELD)] * PATIENCE_TICKS)) == [PATIENCE_TICKS]
+def test_update_held_wrong_action_is_corrected() -> None:
+    assert list(given(teacher(), [doing("b", FAR, Cause.HELD)] * PATIENCE_TICKS)) == [PATIENCE_TICKS]
 
 
-def test_in_phase_2_it_still_answers_questions() -> None:
-    assert list(said(teacher(), [asking()] * REACTION_TICKS)) == [REACTION_TICKS]
+def test_update_phase_2_answers_questions() -> None:
+    assert list(given(teacher(), [asking()] * REACTION_TICKS)) == [REACTION_TICKS]
 
 
-def test_one_right_tick_gives_its_patience_back() -> None:
+def test_update_one_right_tick_resets_the_patience() -> None:
     records = [doing("b")] * (PATIENCE_TICKS - 1) + [doing("a")] + [doing("b")] * (PATIENCE_TICKS - 1)
-    assert said(teacher(), records) == {}
+    assert given(teacher(), records) == {}
 
 
-def test_a_question_gives_its_patience_back() -> None:
+def test_update_question_resets_the_patience() -> None:
     person = teacher()
-    said(person, [doing("b")] * (PATIENCE_TICKS - 1))
-    said(person, [asking()] * REACTION_TICKS)
-    assert list(said(person, [doing("b")] * PATIENCE_TICKS)) == [PATIENCE_TICKS]
+    given(person, [doing("b")] * (PATIENCE_TICKS - 1))
+    given(person, [asking()] * REACTION_TICKS)
+    assert list(given(person, [doing("b")] * PATIENCE_TICKS)) == [PATIENCE_TICKS]
 
 
-def test_patience_runs_for_one_opinion_at_a_time() -> None:
+def test_update_changing_right_action_resets_the_patience() -> None:
     flicker = [doing("c", FAR if tick % 2 else NEAR) for tick in range(10 * PATIENCE_TICKS)]
-    assert said(teacher(), flicker) == {}
+    assert given(teacher(), flicker) == {}
 
 
-def test_after_a_correction_patience_begins_anew() -> None:
-    answers = said(teacher(), [doing("b")] * (3 * PATIENCE_TICKS - 1))
+def test_update_after_a_correction_patience_starts_again() -> None:
+    answers = given(teacher(), [doing("b")] * (3 * PATIENCE_TICKS - 1))
     assert list(answers) == [PATIENCE_TICKS, 2 * PATIENCE_TICKS]
 
 
-def test_a_stopped_robot_is_not_corrected() -> None:
+def test_update_stopped_robot_is_not_corrected() -> None:
     for cause in (Cause.STOPPED, Cause.UNSAVED):
-        assert said(teacher(), [record(NEAR, cause)] * 500) == {}
+        assert given(teacher(), [record(NEAR, cause)] * 500) == {}
 
 
-def test_entering_a_phase_is_a_command() -> None:
+def test_begin_phase_returns_its_command() -> None:
     person = teacher(Phase.SUPERVISED)
-    assert person.enter(Phase.CORRECTIONS) == SetPhase("s-1", NAME, Phase.CORRECTIONS)
+    assert person.begin_phase(Phase.CORRECTIONS) == SetPhase("s-1", NAME, Phase.CORRECTIONS)
     assert person.phase is Phase.CORRECTIONS
 
 
-def test_every_command_has_an_id_of_its_own_and_the_same_one_in_every_run() -> None:
+def test_command_ids_are_unique_and_equal_in_each_run() -> None:
     def ids() -> list[str]:
         person = teacher(Phase.SUPERVISED, error_rate=0.3)
-        commands = [person.enter(Phase.CORRECTIONS)]
+        commands = [person.begin_phase(Phase.CORRECTIONS)]
         for _ in range(5):
-            commands += said(person, [asking()] * REACTION_TICKS + [doing("b")] * PATIENCE_TICKS).values()
+            commands += given(person, [asking()] * REACTION_TICKS + [doing("b")] * PATIENCE_TICKS).values()
         return [command.command_id for command in commands if isinstance(command, Teach | Correct | SetPhase)]
 
     assert ids() == ids() == [f"s-{number}" for number in range(1, 12)]
 
 
 def answers_to(person: ScriptedTeacher, questions: int) -> list[str]:
-    commands = said(person, [asking()] * questions)
+    commands = given(person, [asking()] * questions)
     return [command.action for command in commands.values() if isinstance(command, Teach)]
 
 
-def test_an_error_names_any_other_action_as_often_as_the_rate_says() -> None:
+def test_answers_with_errors_name_each_other_action_at_the_rate() -> None:
     counted = Counter(answers_to(teacher(reaction_s=0.0, error_rate=0.25), 4000))
     assert sum(counted.values()) == 4000
     assert abs(counted["a"] / 4000 - 0.75) < 0.03
@@ -165,68 +165,68 @@ def test_an_error_names_any_other_action_as_often_as_the_rate_says() -> None:
         assert abs(counted[wrong] / 4000 - 0.25 / 3) < 0.02
 
 
-def test_corrections_err_as_answers_do() -> None:
-    commands = said(teacher(patience_s=0.0, error_rate=0.25), [doing("d")] * 4000)
+def test_corrections_with_errors_err_at_the_rate() -> None:
+    commands = given(teacher(patience_s=0.0, error_rate=0.25), [doing("d")] * 4000)
     right = sum(isinstance(command, Correct) and command.action == "a" for command in commands.values())
     assert abs(right / 4000 - 0.75) < 0.03
 
 
-def test_without_errors_it_is_always_right_and_with_rate_1_never() -> None:
+def test_answers_error_rate_0_and_1_are_right_and_wrong() -> None:
     assert set(answers_to(teacher(reaction_s=0.0), 300)) == {"a"}
     assert set(answers_to(teacher(reaction_s=0.0, error_rate=1.0), 300)) == {"b", "c", "d"}
 
 
-def test_its_errors_are_those_of_its_seed() -> None:
+def test_answers_errors_follow_the_seed() -> None:
     first, again, other = (answers_to(teacher(reaction_s=0.0, error_rate=0.5, seed=seed), 100) for seed in (1, 1, 2))
     assert first == again
     assert first != other
 
 
-def test_an_rla_whose_action_was_replaced_often_enough_is_deleted_when_it_is_wrong_again() -> None:
+def test_update_rla_wrong_after_two_replacements_is_deleted() -> None:
     person = teacher(delete_after=2)
     wrong = [
         *(doing(action, FAR) for action in "bcd" for _ in range(PATIENCE_TICKS)),  # b was replaced by c, c by d
         *(doing("a", FAR) for _ in range(2 * PATIENCE_TICKS)),  # the right one
     ]
-    assert [type(command) for command in said(person, wrong).values()] == [Correct, Correct, DeleteRla]
-    assert said(teacher(delete_after=2), wrong)[3 * PATIENCE_TICKS] == DeleteRla("s-4", NAME, 1)
+    assert [type(command) for command in given(person, wrong).values()] == [Correct, Correct, DeleteRla]
+    assert given(teacher(delete_after=2), wrong)[3 * PATIENCE_TICKS] == DeleteRla("s-4", NAME, 1)
 
 
 def deletions(last: Sequence[TickRecord]) -> int:
-    """How often RLA 1, which was replaced twice, is deleted in what comes then."""
+    """Count deletions of RLA 1, which was replaced twice, in the ticks `last`."""
     replaced = [doing(action) for action in "bcd"]
-    return sum(isinstance(each, DeleteRla) for each in said(teacher(delete_after=2), [*replaced, *last]).values())
+    return sum(isinstance(each, DeleteRla) for each in given(teacher(delete_after=2), [*replaced, *last]).values())
 
 
-def test_it_deletes_only_where_a_correction_would_replace() -> None:
-    beside = [record(FAR, Cause.RLA, "d", share_of_radius=0.2)] * PATIENCE_TICKS
+def test_update_deletes_only_if_a_correction_would_replace() -> None:
+    far = [record(FAR, Cause.RLA, "d", radius_fraction=0.2)] * PATIENCE_TICKS
     held = [record(FAR, Cause.HELD, "d", nearest=2)] * PATIENCE_TICKS
-    assert deletions([record(FAR, Cause.RLA, "d", share_of_radius=0.1)] * PATIENCE_TICKS) == 1
-    assert deletions(beside) == 0
+    assert deletions([record(FAR, Cause.RLA, "d", radius_fraction=0.1)] * PATIENCE_TICKS) == 1
+    assert deletions(far) == 0
     assert deletions(held) == 0
 
 
-def test_without_such_a_setting_it_corrects_for_ever() -> None:
+def test_update_without_delete_after_keeps_correcting() -> None:
     wrong = [doing(action, FAR) for action in "bcdbcd" for _ in range(PATIENCE_TICKS)]
-    assert {type(command) for command in said(teacher(), wrong).values()} == {Correct}
+    assert {type(command) for command in given(teacher(), wrong).values()} == {Correct}
 
 
-def test_what_is_wanted_now_is_said_like_everything_else() -> None:
-    assert teacher().pursue("turn_left") == Pursue("s-2", NAME, "turn_left")
+def test_select_behaviour_returns_its_command() -> None:
+    assert teacher().select_behaviour("turn_left") == Pursue("s-2", NAME, "turn_left")
 
 
 def wanting(behaviour: str, seen: TickRecord) -> TickRecord:
     return seen._replace(behaviour=behaviour)
 
 
-def test_it_answers_for_the_behaviour_that_is_wanted() -> None:
-    answers = said(teacher(), [wanting("other", asking())] * REACTION_TICKS)
+def test_update_answers_for_the_selected_behaviour() -> None:
+    answers = given(teacher(), [wanting("other", asking())] * REACTION_TICKS)
     assert answers == {REACTION_TICKS: Teach("s-2", NAME, "c")}
 
 
-def test_when_another_behaviour_is_wanted_what_was_asked_and_what_was_wrong_is_over() -> None:
+def test_update_other_behaviour_resets_question_and_patience() -> None:
     person = teacher()
-    said(person, [asking()] * (REACTION_TICKS - 1))
-    assert said(person, [wanting("other", doing("c"))] * REACTION_TICKS) == {}
-    said(person, [doing("b")] * (PATIENCE_TICKS - 1))
-    assert list(said(person, [wanting("other", doing("b"))] * PATIENCE_TICKS)) == [PATIENCE_TICKS]
+    given(person, [asking()] * (REACTION_TICKS - 1))
+    assert given(person, [wanting("other", doing("c"))] * REACTION_TICKS) == {}
+    given(person, [doing("b")] * (PATIENCE_TICKS - 1))
+    assert list(given(person, [wanting("other", doing("b"))] * PATIENCE_TICKS)) == [PATIENCE_TICKS]
