@@ -55,24 +55,24 @@ class Runtime:
     """Over the basic level; None where the task has none."""
     navigator: Navigator | None
     """Has the mid level go to goals; None where there is no mid level."""
-    wanted: ActiveBehaviour
-    school: CommandHandler
+    active_behaviour: ActiveBehaviour
+    handler: CommandHandler
     reinforcement: Reinforcement
     self_teaching: SelfTeaching
     inbox: TeacherInbox
     statistics: StatisticsCounter
-    expecting: ExpectationTracker
-    ledger: TickTimer
+    expectations: ExpectationTracker
+    timer: TickTimer
     progress: ProgressMeter
     """Counts what its owner hands it after each tick."""
     tick: Tick
     scheduler: Scheduler[TickRecord]
 
-    def set_down(self) -> None:
+    def reposition(self) -> None:
         """Somebody has set the robot down elsewhere, between two ticks: the next one begins anew there."""
         self.inbox.put(RobotRepositioned())
 
-    def to_save(self) -> Statistics:
+    def snapshot(self) -> Statistics:
         """What was counted of the RLAs that live, and what they are worth, as it is now."""
         counted, system = self.statistics, self.level.system
         counted.drop_dead(lambda rla_id: system.get(rla_id) is not None)
@@ -80,7 +80,7 @@ class Runtime:
             self.self_teaching.with_best(self.reinforcement.to_save()),
             uses=dict(counted.uses),
             transitions=dict(counted.transitions),
-            expectations=self.expecting.to_save(),
+            expectations=self.expectations.to_save(),
         )
 
 
@@ -101,17 +101,17 @@ def build_runtime(
     settings: RobotSettings,
     task: TaskSettings,
     events: Iterable[TeachingEvent],
-    keeper: EventStore,
+    event_store: EventStore,
     clock: Clock,
     *,
     statistics: StatisticsCounter | None = None,
     level_override: Level | None = None,
     attended: bool = False,
-    wanted: ActiveBehaviour | None = None,
-    saved: Statistics | None = None,
-    asked: bool = True,
+    active_behaviour: ActiveBehaviour | None = None,
+    checkpoint: Statistics | None = None,
+    teacher_available: bool = True,
     tolerates_stalls: bool = False,
-    asks_when_held: bool = True,
+    asks_at_bumper: bool = True,
 ) -> Runtime:
     """Build the runtime for a robot and a task, with what `events` have taught.
 
@@ -135,19 +135,21 @@ def build_runtime(
     recent = DecisionHistory(definition.dimensions)
     reinforcement = Reinforcement(system, recent, task.reinforcement, period_s)
     # The rest of what was saved is kept by those who count on from it, and would be kept twice.
-    reinforcement.recall(events, saved and replace(saved, uses={}, transitions={}, expectations={}))
+    reinforcement.recall(events, checkpoint and replace(checkpoint, uses={}, transitions={}, expectations={}))
     repertoire = load_task_repertoire(task, settings)
-    wanted = wanted or ActiveBehaviour(task.behaviours)
+    active_behaviour = active_behaviour or ActiveBehaviour(task.behaviours)
     level = BasicLevel(
-        system, repertoire, round(task.learning.minimum_action_s / period_s), wanted, reinforcement.choice
+        system, repertoire, round(task.learning.minimum_action_s / period_s), active_behaviour, reinforcement.choice
     )
     statistics = statistics or StatisticsCounter()
-    counted = statistics.transitions or (saved.transitions if saved is not None else {})
+    counted = statistics.transitions or (checkpoint.transitions if checkpoint is not None else {})
     mid = None
     if mid_settings is not None:
-        mid = MidLevel(system, mid_settings.build(settings, counted), mid_settings, wanted)
+        mid = MidLevel(system, mid_settings.build(settings, counted), mid_settings, active_behaviour)
     at_the_wheels = level_override or level
-    expecting = ExpectationTracker(system, mid, statistics.transitions, None if saved is None else saved.expectations)
+    expecting = ExpectationTracker(
+        system, mid, statistics.transitions, None if checkpoint is None else checkpoint.expectations
+    )
     navigator = None if mid is None else Navigator(mid, statistics.follow_ups, expecting.of)
     lessons = None if mid is None else MidLessons(mid)
     # Instances of its own: a behaviour that the hand runs must not disturb the one that an RLA runs later.
@@ -155,19 +157,19 @@ def build_runtime(
     agreement = Agreement(critic.agreement, critic.values, period_s)
     agreement.hear_all(events)
     self_teaching = SelfTeaching(reinforcement, system, critic, agreement, period_s)
-    self_teaching.recall(events, saved)
+    self_teaching.recall(events, checkpoint)
     school = CommandHandler(
         level,
         ControlAuthority(hand, attended=attended),
         insert_beyond_share=task.learning.insert_beyond_share,
-        taken_command_ids=(event.origin.command_id for event in events),
+        handled_command_ids=(event.origin.command_id for event in events),
         reinforcement=reinforcement,
         critic=Critic(system, critic),
         agreement=agreement,
         self_teaching=self_teaching,
         mid=lessons,
-        errands=None if navigator is None or lessons is None else GoalCommands(navigator, lessons),
-        asked=asked,
+        goals=None if navigator is None or lessons is None else GoalCommands(navigator, lessons),
+        teacher_available=teacher_available,
     )
     inbox = TeacherInbox()
     ledger = TickTimer()
@@ -177,15 +179,15 @@ def build_runtime(
         at_the_wheels if mid is None else LayerStack(at_the_wheels, mid, navigator),
         school,
         inbox,
-        keeper,
+        event_store,
         statistics,
         ledger,
         now=clock.now_s,
         stale_infrared_s=settings.guard.stale_infrared_s,
-        circumstances=CircumstancesPerception(critic, settings),
-        expecting=expecting,
+        appraisal_perception=CircumstancesPerception(critic, settings),
+        expectations=expecting,
         tolerates_stalls=tolerates_stalls,
-        asks_when_held=asks_when_held,
+        asks_at_bumper=asks_at_bumper,
     )
     scheduler = Scheduler(clock, tick.run, period_s, ledger)
     return Runtime(
@@ -195,7 +197,7 @@ def build_runtime(
         level,
         mid,
         navigator,
-        wanted,
+        active_behaviour,
         school,
         reinforcement,
         self_teaching,

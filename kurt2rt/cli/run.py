@@ -213,7 +213,7 @@ def run(
         raise typer.BadParameter(mid_level_refusal(taught), param_hint="--auto")
     if behaviour is not None:
         try:
-            ActiveBehaviour(taught.behaviours).pursue(behaviour)
+            ActiveBehaviour(taught.behaviours).select(behaviour)
         except CommandRefusedError as error:
             raise typer.BadParameter(text_of(error.outcome), param_hint="--behaviour") from error
     orders = RunOptions(

@@ -75,11 +75,11 @@ class TerminalScreen:
             wrong = [*format_alarms(status, health), *more]
             behind = " | ".join(each.strip() for each in (*format_numbers(status), *format_guard(status)))
             self._live.show(format_timed_activity(status), behind, wrong)
-            held = [format_activity(status)] if status.record.grant.latched else []
+            held = [format_activity(status)] if status.record.guard_result.latched else []
             self._tell_alarm(" | ".join([*held, *wrong]), "yellow")
         elif self._as_service:
             # A log is read by the day: what changes stands there, the rest is the unit's status.
-            stands = [format_activity(status)] if status.runtime.school.stopped else []
+            stands = [format_activity(status)] if status.runtime.handler.active_stop else []
             told = " | ".join([*stands, *format_problems(status, health), *more])
             self._tell_alarm(told, None if stands else "red")
         else:

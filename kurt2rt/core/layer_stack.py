@@ -1,7 +1,7 @@
 """The stack of layers: information goes up to the mid level, its command comes down to the basic level."""
 
 from hal.robot import STANDSTILL, SensorReadings
-from kurt2rt.core.decision.decision import Cause, Decision, standing
+from kurt2rt.core.decision.decision import Cause, Decision, stopped
 from kurt2rt.core.decision.level import Level
 from kurt2rt.core.decision.plan_step import GoalStatus
 from kurt2rt.core.mid.mid_level import MidLevel
@@ -26,19 +26,19 @@ class LayerStack:
         self.navigator = navigator
         self._before = Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
 
-    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
+    def decide(self, situation: Situation, senses: SensorReadings, blocking_cause: Cause | None) -> Decision:
         """The basic level's decision about what the mid level commands; where that one asks, the robot stands."""
         commanded = self.mid.decide(senses, self._before)
         navigator = self.navigator
         if navigator is not None:
             navigator.go_on()
         if commanded.asks:
-            decision = self._decide_below(situation, senses, stand_because or Cause.UNKNOWN)
+            decision = self._decide_below(situation, senses, blocking_cause or Cause.UNKNOWN)
             self._before = decision._replace(match=commanded.match, asks_at=MID, mid=commanded)
         else:
             if navigator is not None and not self.mid.overridden:
-                stand_because = stand_because or _STANDS.get(navigator.stands_as)
-            decision = self._decide_below(situation, senses, stand_because)
+                blocking_cause = blocking_cause or _STANDS.get(navigator.stands_as)
+            decision = self._decide_below(situation, senses, blocking_cause)
             self._before = decision._replace(mid=commanded)
         if navigator is not None and navigator.step is not None:
             self._before = self._before._replace(plan=navigator.step)
@@ -48,5 +48,5 @@ class LayerStack:
         """The robot has been set down elsewhere."""
         self.mid.restart()
 
-    def _decide_below(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
-        return standing(self.basic.decide(situation, senses, stand_because), stand_because)
+    def _decide_below(self, situation: Situation, senses: SensorReadings, blocking_cause: Cause | None) -> Decision:
+        return stopped(self.basic.decide(situation, senses, blocking_cause), blocking_cause)

@@ -20,7 +20,7 @@ class ProgressMeter:
         self._asking = False
         self._asked_at = -self._ticks_per_s
 
-    def follow(self, record: TickRecord) -> None:
+    def update(self, record: TickRecord) -> None:
         """Count one tick. Ticks that were missed pass as time and count for nothing."""
         self._turn_to(record.tick // self._ticks_per_s)
         place = self._second % WINDOW_S
@@ -29,7 +29,7 @@ class ProgressMeter:
         if record.decision.rla_id is not None and standing.reason is StandReason.DRIVES:
             self._driven[place] += 1
         # As the terminal tells questions: at the border of R the robot asks for moments at a time.
-        asking = standing.asks and not standing.needs_go
+        asking = standing.asks and not standing.needs_resume
         if asking and not self._asking and record.tick - self._asked_at >= self._ticks_per_s:
             self._asks[place] += 1
             self._asked_at = record.tick

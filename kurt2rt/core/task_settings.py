@@ -137,7 +137,7 @@ class PaperResult(Settings):
     """0: the paper does not say it."""
 
     @property
-    def teaching_told(self) -> str:
+    def teaching_time_text(self) -> str:
         """The teaching time as it is shown, in whole seconds."""
         return f"{self.teaching_s:.0f}" if self.teaching_s else "not told"
 

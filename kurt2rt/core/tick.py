@@ -8,7 +8,7 @@ from behaviors.judges.judge import AppraisalFeatures
 from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings
 from kurt2rt.core.critic.appraisal_features import CircumstancesPerception
 from kurt2rt.core.critic.critic import Opinion
-from kurt2rt.core.decision.decision import Cause, Decision, MidDecision, standing
+from kurt2rt.core.decision.decision import Cause, Decision, MidDecision, stopped
 from kurt2rt.core.decision.level import Level
 from kurt2rt.core.decision.standing import DRIVES, BumperWatch, Standing, StandingWatch
 from kurt2rt.core.expectations.surprise import Surprise
@@ -32,7 +32,7 @@ class EventStore(Protocol):
     """Where teaching events go to be kept; answers at once and works outside the tick."""
 
     @property
-    def trouble(self) -> str | None:
+    def error(self) -> str | None:
         """Why lessons cannot be saved at the moment, in one line; None when they can."""
         ...
 
@@ -46,7 +46,7 @@ class InMemoryEventStore:
     """Events kept in a list, in submission order (EventStore)."""
 
     events: list[TeachingEvent] = field(default_factory=list)
-    trouble: str | None = None
+    error: str | None = None
 
     def submit(self, event: TeachingEvent) -> None:
         """Append an event."""
@@ -61,12 +61,12 @@ class TickRecord(NamedTuple):
     senses: SensorReadings
     situation: Situation
     decision: Decision
-    grant: GuardResult
+    guard_result: GuardResult
     results: tuple[CommandResult, ...]
     """What became of the teacher's commands that this tick took."""
     behaviour: str = ""
     """The taught behaviour that was wanted."""
-    circumstances: AppraisalFeatures | None = None
+    appraisal_features: AppraisalFeatures | None = None
     """What the critic looks at; None where the robot sees nothing, or has no critic."""
     opinion: Opinion | None = None
     """What the critic thinks of it; None where it was taught nothing, or there is none."""
@@ -103,18 +103,18 @@ class Tick:
         robot: Robot,
         perception: Perception,
         level: Level,
-        school: CommandHandler,
+        handler: CommandHandler,
         inbox: TeacherInbox,
-        keeper: EventStore,
+        event_store: EventStore,
         statistics: StatisticsCounter,
-        ledger: TickTimer,
+        timer: TickTimer,
         *,
         now: Callable[[], float],
         stale_infrared_s: float,
-        circumstances: CircumstancesPerception | None = None,
-        expecting: ExpectationTracker | None = None,
+        appraisal_perception: CircumstancesPerception | None = None,
+        expectations: ExpectationTracker | None = None,
         tolerates_stalls: bool = False,
-        asks_when_held: bool = True,
+        asks_at_bumper: bool = True,
     ) -> None:
         """`now` is the runtime's clock; infra-red readings older than `stale_infrared_s` are no situation.
 
@@ -125,21 +125,21 @@ class Tick:
         """
         self._robot = robot
         self._perception = perception
-        self._circumstances = circumstances
+        self._appraisal_perception = appraisal_perception
         self._level = level
-        self._school = school
+        self._handler = handler
         self._inbox = inbox
-        self._keeper = keeper
+        self._event_store = event_store
         self._statistics = statistics
         self._mid_uses = MidUsageCounter(statistics)
-        self._expecting = expecting
-        self._ledger = ledger
+        self._expectations = expectations
+        self._timer = timer
         self._now = now
         self._stale_infrared_s = stale_infrared_s
         self._driving = self._latched = False
         self._waits = False
         """Whether the robot stood at a bumper in the last tick, and waited for its teacher's answer."""
-        self._asks_when_held = asks_when_held
+        self._asks_at_bumper = asks_at_bumper
         self._bumpers = BumperWatch()
         self._standing = StandingWatch()
         self._trouble: str | None = None
@@ -150,10 +150,10 @@ class Tick:
 
     def run(self, tick: int, now_s: float) -> TickRecord:
         """One tick at `now_s` of the runtime's clock."""
-        mark = self._ledger.lap
+        mark = self._timer.lap
         self._run += 1
         if self._tolerates_stalls and self._last_tick is not None and tick > self._last_tick + 1:
-            self._school.authority.pause(tick - self._last_tick - 1)
+            self._handler.authority.extend_leases(tick - self._last_tick - 1)
         self._last_tick = tick
         senses = self._robot.sense(now_s)
         mark(Stage.SENSE)
@@ -166,25 +166,25 @@ class Tick:
 
         results: list[CommandResult] = []
         events: list[TeachingEvent] = []
-        commands = self._inbox.take()
+        commands = self._inbox.pop_all()
         for command in commands:
             if isinstance(command, Watch | Drive):
-                self._school.follow(command, tick)
+                self._handler.handle_stream(command, tick)
                 continue
             if isinstance(command, PairingRenewed):
-                self._school.authority.forget(command.teacher)
+                self._handler.authority.reset_sequence(command.teacher)
                 continue
             if isinstance(command, SpeedChanged):
-                self._school.authority.speed = command.times
+                self._handler.authority.speed = command.times
                 continue
             if isinstance(command, RobotRepositioned):
-                self._set_down()
+                self._on_repositioned()
                 continue
-            new = not self._school.has_taken(command.command_id)
+            new = not self._handler.was_handled(command.command_id)
             if new and blind and _is_about_what_is_seen_now(command):
                 results.append(CommandResult(command.command_id, Outcome(RefusalCode.BLIND)))
                 continue
-            result, event = self._school.attend(command, situation, tick)
+            result, event = self._handler.handle(command, situation, tick)
             results.append(result)
             # Neither a late copy of an old command ends a new emergency stop, nor one that was said before anybody
             # could see it: the senses of this very tick may have brought it.
@@ -192,13 +192,13 @@ class Tick:
                 self._robot.release()
                 self._latched = False
             if new and result.accepted and isinstance(command, BeAt):
-                self._begin_anew()
+                self._reset_transitions()
             if event is not None:
                 events.append(event)
         # Looked at once: another thread may change it meanwhile, and a tick has each of its inputs once.
-        trouble = self._trouble = self._keeper.trouble
+        trouble = self._trouble = self._event_store.error
         decision = self._decide(tick, situation, senses, blind=blind)
-        behaviour = self._school.wanted.behaviour
+        behaviour = self._handler.active_behaviour.behaviour
         mark(Stage.DECIDE)
 
         # What names no action gets no speed. The clock is read anew: a tick that was held up must not pass its old
@@ -209,26 +209,26 @@ class Tick:
         mark(Stage.GUARD)
 
         if grant.latched and not self._latched:
-            self._school.stopped_at_tick = tick
+            self._handler.stopped_at_tick = tick
         self._latched = grant.latched
         self._driving = decision.driving and not grant.latched
-        asks = self._asks_when_held and self._bumpers.update(decision, grant) and self._school.asked
+        asks = self._asks_at_bumper and self._bumpers.update(decision, grant) and self._handler.teacher_available
         # Where the critic alone is there, what pushes goes on to be blamed for it, until another action is tried.
-        self._waits = asks and self._school.phase is not Phase.AUTONOMOUS
+        self._waits = asks and self._handler.phase is not Phase.AUTONOMOUS
         turning = self._driving and not self._waits
         if turning:
             self._perception.remember_driven(decision.wheel_speeds)
         surprise = None
-        if self._expecting is not None:
-            surprise = self._expecting.see(tick, decision, situation, behaviour, driving=turning)
-            if surprise is not None and surprise.surprising and self._circumstances is not None:
-                self._circumstances.be_surprised()
+        if self._expectations is not None:
+            surprise = self._expectations.see(tick, decision, situation, behaviour, driving=turning)
+            if surprise is not None and surprise.surprising and self._appraisal_perception is not None:
+                self._appraisal_perception.be_surprised()
         self._statistics.count(decision.rla_id if turning else None)
         self._mid_uses.count(decision, driving=turning)
         # A robot that stands blames no RLA, also if the guard has it stand; but for a bumper, which stops it for what
         # an RLA wants.
         answered = decision if self._driving else decision._replace(action=None, answers=False)
-        self._school.recent.remember(
+        self._handler.recent.remember(
             tick,
             situation,
             answered,
@@ -238,25 +238,25 @@ class Tick:
             circumstances=circumstances,
             opinion=opinion,
         )
-        if self._school.mid is not None:
-            self._school.mid.remember(tick, decision)
-        events.extend(self._school.learn(tick, answered, opinion))
+        if self._handler.mid is not None:
+            self._handler.mid.remember(tick, decision)
+        events.extend(self._handler.learn(tick, answered, opinion))
         mark(Stage.LEARN)
 
         for event in events:
-            self._keeper.submit(event)
-            if self._expecting is not None:
-                led_elsewhere = self._expecting.hear(event)
+            self._event_store.submit(event)
+            if self._expectations is not None:
+                led_elsewhere = self._expectations.hear(event)
                 if led_elsewhere is not None:
                     self._statistics.drop_follow_ups(led_elsewhere)
         knowledge = None
         if events or tick >= self._tell_knowledge_at:
-            knowledge = self._school.living
+            knowledge = self._handler.active_rlas
             self._tell_knowledge_at = tick + _TELL_KNOWLEDGE_TICKS
         # A replay's clock stands still within a tick.
-        stop = self._school.stopped
+        stop = self._handler.active_stop
         if asks:
-            decision = standing(decision, Cause.TOUCHES)
+            decision = stopped(decision, Cause.TOUCHES)
         stands = self._standing.update(decision, grant, max(now_s, drove_at_s), stop, trouble)
         mark(Stage.PUBLISH)
         return TickRecord(
@@ -279,59 +279,59 @@ class Tick:
             stands,
         )
 
-    def _set_down(self) -> None:
+    def _on_repositioned(self) -> None:
         """What the mid level comes to next does not follow what was."""
-        if self._school.mid is not None:
-            self._school.mid.mid.restart()
-        self._begin_anew()
+        if self._handler.mid is not None:
+            self._handler.mid.mid.restart()
+        self._reset_transitions()
 
-    def _begin_anew(self) -> None:
+    def _reset_transitions(self) -> None:
         """What comes next follows from nothing."""
         self._mid_uses.restart()
-        if self._expecting is not None:
-            self._expecting.restart()
+        if self._expectations is not None:
+            self._expectations.restart()
 
     def _appraise(
         self, tick: int, senses: SensorReadings, *, blind: bool
     ) -> tuple[AppraisalFeatures | None, Opinion | None]:
         """What the critic looks at and thinks, before the teacher's commands of this tick change what it thinks."""
-        critic = self._school.critic
-        if self._circumstances is None or critic is None:
+        critic = self._handler.critic
+        if self._appraisal_perception is None or critic is None:
             return None, None
-        circumstances = self._circumstances.perceive(senses, driving=self._driving and not self._waits)
+        circumstances = self._appraisal_perception.perceive(senses, driving=self._driving and not self._waits)
         if blind:
             return None, None
         return circumstances, critic.think(tick, circumstances)
 
     def _decide(self, tick: int, situation: Situation, senses: SensorReadings, *, blind: bool) -> Decision:
-        school, authority = self._school, self._school.authority
-        school.look_after(tick, was_driving=self._driving)
+        school, authority = self._handler, self._handler.authority
+        school.before_decision(tick, was_driving=self._driving)
         stand = self._reason_to_stand(tick, blind=blind)
         authority.expire(tick)
         if authority.is_manual(tick):
-            because = self._unable(blind=blind) or Cause.TEACHER
-            aside = standing(self._level.decide(situation, senses, because), because)
+            because = self._blocking_cause(blind=blind) or Cause.TEACHER
+            aside = stopped(self._level.decide(situation, senses, because), because)
             if because is not Cause.TEACHER:
                 return aside
             name, wheel_speeds = authority.step(senses)
             return aside._replace(wheel_speeds=wheel_speeds, action=name)
-        decision = standing(self._level.decide(situation, senses, stand), stand)
+        decision = stopped(self._level.decide(situation, senses, stand), stand)
         if stand is Cause.UNATTENDED and not (decision.match is not None and decision.match.known):
             return decision._replace(cause=Cause.UNKNOWN)  # what it does not know it asks, whoever comes
         return decision
 
     def _reason_to_stand(self, tick: int, *, blind: bool) -> Cause | None:
-        school = self._school
-        if school.stopped is not None:
+        school = self._handler
+        if school.active_stop is not None:
             return Cause.STOPPED
-        unable = self._unable(blind=blind)
+        unable = self._blocking_cause(blind=blind)
         if unable is not None:
             return unable
-        if school.needs_a_teacher and not school.authority.present(tick):
+        if school.requires_teacher and not school.authority.is_present(tick):
             return Cause.UNATTENDED
         return None
 
-    def _unable(self, *, blind: bool) -> Cause | None:
+    def _blocking_cause(self, *, blind: bool) -> Cause | None:
         """Why neither an RLA nor the teacher's hand may drive."""
         if blind:
             return Cause.BLIND

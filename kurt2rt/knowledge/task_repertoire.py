@@ -43,7 +43,7 @@ class _Building:
         task = load_task(action.task)
         wanted, mid = ActiveBehaviour(task.behaviours), None
         if isinstance(action, TaughtAction):
-            wanted.pursue(action.behaviour)
+            wanted.select(action.behaviour)
         elif task.mid is not None:
             mid = load_mid(task.mid)
             if isinstance(mid.situation, PlaceSettings):

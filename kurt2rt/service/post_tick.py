@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from kurt2rt.channel.server.channel import Channel
-from kurt2rt.core.decision.decision import blamed_in
-from kurt2rt.core.decision.standing_text import what_it_asks
+from kurt2rt.core.decision.decision import withdrawn_rla_in
+from kurt2rt.core.decision.standing_text import question_text
 from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.core.rla.outcome_text import text_of
 from kurt2rt.core.rla.rla import MID
@@ -88,8 +88,8 @@ class PostTick:
 
     def __call__(self, record: TickRecord) -> None:
         """The round after one tick."""
-        runtime, writer, ticks = self._runtime, self._writer, self._runtime.ledger.ticks
-        runtime.progress.follow(record)
+        runtime, writer, ticks = self._runtime, self._writer, self._runtime.timer.ticks
+        runtime.progress.update(record)
         if self._teacher is not None:
             command = self._teacher(record)
             if command is not None:
@@ -101,7 +101,7 @@ class PostTick:
             self._channel.after_tick(record)
         if self._health is not None:
             self._health.after_tick(record)
-        speed = runtime.school.authority.speed
+        speed = runtime.handler.authority.speed
         saves = ticks % (self._checkpoint_ticks * speed) == 0
         if self._recorder is not None:
             # Before all that is noted at its time: the question that comes of it, and what became of lessons.
@@ -115,7 +115,7 @@ class PostTick:
             channel_trouble = "" if self._channel is None else self._channel.trouble
             recording_trouble = "" if self._recorder is None else self._recorder.trouble
             self.last = ProgramStatus(
-                record, runtime, writer.unwritten, writer.trouble, channel_trouble, recording_trouble
+                record, runtime, writer.unwritten, writer.error, channel_trouble, recording_trouble
             )
             self._screen.status(self.last)
         if ticks % self._ticks_per_second == 0:
@@ -147,7 +147,7 @@ class PostTick:
 
     def save_statistics(self) -> None:
         """Hand what was counted, and what the RLAs are worth, to the journal's thread."""
-        self._writer.submit_statistics(self._runtime.to_save())
+        self._writer.submit_statistics(self._runtime.snapshot())
 
     def _ask(self, record: TickRecord) -> None:
         if not record.decision.asking:
@@ -166,6 +166,6 @@ class PostTick:
             return ask_the_way(match, runtime.mid.settings.situation.words(runtime.mid.vector))
         weights, names = runtime.level.system.weights, runtime.definition.names
         question = ask(match, record.situation.vector, weights, names, record.behaviour, words=self._words)
-        blamed = blamed_in(record.decision)
+        blamed = withdrawn_rla_in(record.decision)
         worth = None if blamed is None else float(runtime.reinforcement.worth(blamed))
-        return replace(question, worth=worth, touches=what_it_asks(record.standing))
+        return replace(question, worth=worth, touches=question_text(record.standing))

@@ -111,7 +111,7 @@ async def serve(
     path = Path(service.knowledge)
     wanted = ActiveBehaviour(task.behaviours)
     if behaviour is not None:
-        wanted.pursue(behaviour)
+        wanted.select(behaviour)
     with ExitStack() as around:
         clock: Clock = around.enter_context(TimerfdClock())
         speed = None
@@ -146,12 +146,12 @@ async def serve(
                 clock,
                 statistics=opened.counter,
                 attended=openness is not None,
-                wanted=wanted,
-                saved=opened.saved,
+                active_behaviour=wanted,
+                checkpoint=opened.saved,
                 tolerates_stalls=tolerates_stalls,
             )
             if stop is not None:
-                runtime.school.stop(stop)
+                runtime.handler.stop(stop)
             for command in begin_with:
                 runtime.inbox.put(command)
             watch = HealthMonitor(
@@ -225,7 +225,7 @@ async def _channel(
         return
     safekeeping = JournalStatus(
         unsaved=lambda: writer.unwritten,
-        trouble=lambda: writer.trouble,
+        trouble=lambda: writer.error,
         stamp_of=lambda command_id: stamps.get(command_id, ""),
     )
     package = partial(package_knowledge, robot=runtime.robot, task=runtime.task)

@@ -1,7 +1,7 @@
 """The line that tells once a second how the robot's program is."""
 
 from hal.health import Health
-from kurt2rt.core.decision.standing_text import in_short
+from kurt2rt.core.decision.standing_text import short_text
 from kurt2rt.core.rla.rla import MID, rla_title
 from kurt2rt.service.post_tick import ProgramStatus
 
@@ -15,11 +15,11 @@ def status_line(status: ProgramStatus, health: Health, trouble: str = "") -> str
 def format_numbers(status: ProgramStatus) -> list[str]:
     """Return how many RLAs there are, and how punctual the loop is, each in words."""
     runtime = status.runtime
-    lateness = runtime.ledger.lateness()
+    lateness = runtime.timer.lateness()
     return [
         f"{len(runtime.level.system):3d} RLAs",
         f"late {lateness.median_us / 1000:.2f} ms, p99 {lateness.p99_us / 1000:.2f} ms",
-        f"missed {runtime.ledger.missed_ticks}",
+        f"missed {runtime.timer.missed_ticks}",
     ]
 
 
@@ -35,7 +35,7 @@ def _clock_s(status: ProgramStatus) -> float:
 def format_activity(status: ProgramStatus) -> str:
     """What drives the wheels and why, or why the robot stands."""
     record = status.record
-    decision, match, stands = record.decision, record.decision.match, in_short(record.standing)
+    decision, match, stands = record.decision, record.decision.match, short_text(record.standing)
     near = "" if match is None else f" at {match.distance:.0f} of R {match.radius:.0f}"
     if stands:
         return stands
@@ -61,7 +61,7 @@ def format_problems(status: ProgramStatus, health: Health) -> list[str]:
 
 def format_guard(status: ProgramStatus) -> list[str]:
     """Return what the guard changed in this tick, in words; empty when it let through what was decided."""
-    reasons = status.record.grant.reasons
+    reasons = status.record.guard_result.reasons
     return ["guard: " + ", ".join(reasons)] if reasons else []
 
 
@@ -73,8 +73,8 @@ def format_alarms(status: ProgramStatus, health: Health) -> list[str]:
         parts.append(f"{status.unsaved_lessons} lessons not saved yet")
     if status.trouble is not None:
         parts.append(status.trouble)
-    if runtime.school.learning.trouble:
-        parts.append(runtime.school.learning.trouble)
+    if runtime.handler.updater.error:
+        parts.append(runtime.handler.updater.error)
     if status.channel_trouble:
         parts.append(status.channel_trouble)
     if status.recording_trouble:

@@ -175,7 +175,7 @@ class Desk:
             speed=None if ground is None else self.speed,
             exam=None if ground is None else lambda: self.exam,
         )
-        safekeeping = JournalStatus(lambda: self.unwritten, lambda: self.notebook.trouble, stamp_of)
+        safekeeping = JournalStatus(lambda: self.unwritten, lambda: self.notebook.error, stamp_of)
         self.telling = StateBuilder(
             self.runtime, BOOT, safekeeping, lambda: self.bus_trouble, ground, lambda: self.health
         )
@@ -206,10 +206,10 @@ class Desk:
             self.robot.counts = counts
         for _ in range(ticks):
             self._tick += 1
-            self.runtime.ledger.begin(0.0)
+            self.runtime.timer.begin(0.0)
             self.record = self.runtime.tick.run(self._tick, self._tick * 0.01)
             self.channel.after_tick(self.record)
-            self.runtime.ledger.end()
+            self.runtime.timer.end()
         return self.record
 
     def write(self, error: str | None = None) -> None:

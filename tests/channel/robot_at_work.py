@@ -91,7 +91,7 @@ class RobotAtWork:
         for record in reversed(self.records):
             if record.tick <= tick:
                 break
-            if record.grant.wheel_speeds != STANDSTILL:
+            if record.guard_result.wheel_speeds != STANDSTILL:
                 late.append(record.tick)
         return late[::-1]
 

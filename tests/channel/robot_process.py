@@ -50,7 +50,7 @@ async def work(folder: Path, sweeper: _Sweeper) -> None:
 
     def tell(status: ProgramStatus) -> None:
         (channel,) = channels
-        counters, ledger = channel.endpoint.counters, status.runtime.ledger
+        counters, ledger = channel.endpoint.counters, status.runtime.timer
         line = {
             "resident_kb": resident_kb(),
             "ticks": ledger.ticks,

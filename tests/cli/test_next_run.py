@@ -63,13 +63,13 @@ async def test_a_run_that_begins_in_phase_5_with_a_session_stands_until_go(tmp_p
     await runs.prepare("b", None, False, TeacherNow("ann", 5, "noon"))
     runs.advance()
     desk = Desk()
-    school = desk.runtime.school
+    school = desk.runtime.handler
     school.stop(NEXT_RUN)
     for command in runs.present.first_commands:
         desk.runtime.inbox.put(command)
     record = desk.run(10, counts=300)
     assert (school.phase, school.session, school.authority.teacher) == (Phase.AUTONOMOUS, "noon", "ann")
-    assert (school.stopped, record.grant.wheel_speeds) == (NEXT_RUN, STANDSTILL)
+    assert (school.active_stop, record.guard_result.wheel_speeds) == (NEXT_RUN, STANDSTILL)
 
 
 @pytest.mark.parametrize(

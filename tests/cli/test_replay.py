@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.core.rla.outcome import Outcome, ResultCode
-from kurt2rt.core.teaching.taught import Taught
+from kurt2rt.core.teaching.lesson_result import LessonResult
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.runs.replay.reader import read_run
@@ -90,5 +90,5 @@ def test_no_run_and_no_knowledge_are_refused_in_a_line(kurt2rt: CommandLine, tmp
     assert "nothing.knowledge" in kurt2rt.refused("replay", WALLS, "--with", tmp_path / "nothing.knowledge")
 
 
-def _teaches_nothing(*_: object) -> Taught:
-    return Taught(Outcome(ResultCode.REPEATED))
+def _teaches_nothing(*_: object) -> LessonResult:
+    return LessonResult(Outcome(ResultCode.REPEATED))

@@ -43,16 +43,16 @@ def test_a_robot_that_is_well_has_nothing_to_say(status: ProgramStatus) -> None:
 
 def test_a_robot_that_was_stopped_says_what_it_waits_for() -> None:
     desk = Desk()
-    desk.runtime.school.stop(STARTED)
+    desk.runtime.handler.stop(STARTED)
     line = status_line(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), WELL)
     assert "stands until Go: the robot program was started" in line
 
 
 def test_the_rule_that_drives_is_named_with_the_behaviour_that_is_wanted() -> None:
     desk = Desk(behaviours=("straight_on", "turn_left"))
-    desk.runtime.wanted.pursue("turn_left")
+    desk.runtime.active_behaviour.select("turn_left")
     assert "stands and asks about turn_left " in status_line(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), WELL)
-    desk.runtime.school.authority.attended = False
+    desk.runtime.handler.authority.attended = False
     desk.runtime.inbox.put(Teach("t", "Ann", "forward"))
     assert "forward by RLA 1 of turn_left at 0 of R " in status_line(
         ProgramStatus(desk.run(), desk.runtime, 0, None, ""), WELL
@@ -61,7 +61,7 @@ def test_the_rule_that_drives_is_named_with_the_behaviour_that_is_wanted() -> No
 
 def test_what_the_robot_could_not_learn_is_told() -> None:
     desk = Desk()
-    desk.runtime.school.learning.trouble = "1 change was skipped"
+    desk.runtime.handler.updater.error = "1 change was skipped"
     assert status_line(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), WELL).endswith(" | 1 change was skipped")
 
 

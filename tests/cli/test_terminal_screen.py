@@ -90,7 +90,7 @@ def test_tell_in_the_journal_marks_the_level(monkeypatch: pytest.MonkeyPatch) ->
 def test_show_in_the_journal_tells_a_stop_without_level(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("JOURNAL_STREAM", "8:1")
     desk = Desk()
-    desk.runtime.school.stop(STARTED)
+    desk.runtime.handler.stop(STARTED)
     shown = Shown(as_service=True)
     shown.screen.show_status(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), PASSIVE, "")
     (line,) = shown.lines()

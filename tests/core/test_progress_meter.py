@@ -12,8 +12,8 @@ DESK = Desk()
 RECORD: TickRecord = DESK.run()
 DRIVES = RECORD._replace(decision=RECORD.decision._replace(action="forward", rla_id=1), standing=Standing())
 ASKS = RECORD._replace(standing=Standing(StandReason.ASKS, asks=True))
-STANDS = RECORD._replace(standing=Standing(StandReason.STOPPED, needs_go=True))
-HELD = DRIVES._replace(standing=Standing(StandReason.COMPUTER_TOO_SLOW, needs_go=True))
+STANDS = RECORD._replace(standing=Standing(StandReason.STOPPED, needs_resume=True))
+HELD = DRIVES._replace(standing=Standing(StandReason.COMPUTER_TOO_SLOW, needs_resume=True))
 TOUCHES = DRIVES._replace(standing=Standing(StandReason.FRONT_BUMPER, asks=True))
 
 
@@ -26,7 +26,7 @@ class Run:
 
     def lasts(self, seconds: float, record: TickRecord) -> Progress:
         for _ in range(round(seconds * 100)):
-            self.meter.follow(record._replace(tick=self.tick))
+            self.meter.update(record._replace(tick=self.tick))
             self.tick += 1
         return self.meter.progress()
 

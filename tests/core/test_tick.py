@@ -88,12 +88,16 @@ class Corridor:
         repertoire: dict[str, Behaviour] = {"forward": MotorPrimitive(FORWARD), "back": MotorPrimitive(BACK)}
         small = definition((*READINGS, *WHEELS), scale=10)
         self.system = RlaSystem(small.dimensions, RADIUS, np.repeat((1.0, PAST_WEIGHT), small.dimensions // 2))
-        self.level = BasicLevel(self.system, repertoire, minimum_action_ticks=3, wanted=ActiveBehaviour(behaviours))
+        self.level = BasicLevel(
+            self.system, repertoire, minimum_action_ticks=3, active_behaviour=ActiveBehaviour(behaviours)
+        )
         self.inbox = TeacherInbox()
         self.statistics = StatisticsCounter()
         self.ledger = TickTimer()
         authority = ControlAuthority(repertoire, attended=attended)
-        self.school = CommandHandler(self.level, authority, insert_beyond_share=0.5, taken_command_ids=(), asked=asked)
+        self.school = CommandHandler(
+            self.level, authority, insert_beyond_share=0.5, handled_command_ids=(), teacher_available=asked
+        )
         robot: Robot = self.robot
         self.tick = Tick(
             robot,
@@ -107,7 +111,7 @@ class Corridor:
             now=lambda: self.ticks * 0.01 + self.held_up_s,
             stale_infrared_s=0.05,
             tolerates_stalls=tolerates_stalls,
-            asks_when_held=asks_when_held,
+            asks_at_bumper=asks_when_held,
         )
         self.ticks = 0
 
@@ -149,7 +153,7 @@ def test_untaught_it_asks_and_stands_with_its_history_frozen(corridor: Corridor)
     for record in records:
         assert record.decision.asking
         assert record.decision.cause is Cause.UNKNOWN
-        assert record.grant.wheel_speeds == STANDSTILL
+        assert record.guard_result.wheel_speeds == STANDSTILL
         assert record.situation.history_frozen
         assert averages(record) == averages(records[0])
     assert [record.situation.vector[0] for record in records] == [100, 150, 200]
@@ -195,7 +199,7 @@ def test_an_unknown_situation_stops_the_wheels_in_the_same_tick(driving: Corrido
 
 def test_a_correction_acts_in_the_tick_that_takes_it(driving: Corridor) -> None:
     record = driving.run(100, set_phase(Phase.CORRECTIONS), correct("back"))
-    assert (record.decision.action, record.grant.wheel_speeds) == ("back", BACK)
+    assert (record.decision.action, record.guard_result.wheel_speeds) == ("back", BACK)
     assert driving.notebook.events[-1].origin.phase is Phase.CORRECTIONS
 
 
@@ -210,7 +214,7 @@ def test_what_it_pursues_changes_what_it_does_in_the_very_tick_that_takes_it() -
     corridor = Corridor(behaviours=("straight_on", "turn_left"))
     corridor.run(100, teach("forward", "1"))
     record = corridor.run(100, pursue("turn_left", "2"))
-    assert (record.behaviour, record.decision.cause, record.grant.wheel_speeds) == (
+    assert (record.behaviour, record.decision.cause, record.guard_result.wheel_speeds) == (
         "turn_left",
         Cause.UNKNOWN,
         STANDSTILL,
@@ -225,13 +229,13 @@ def test_what_it_pursues_changes_what_it_does_in_the_very_tick_that_takes_it() -
 
 def test_stop_holds_until_resume_and_history_waits(driving: Corridor) -> None:
     stopped = driving.run(100, stop())
-    assert (stopped.decision.cause, stopped.grant.wheel_speeds) == (Cause.STOPPED, STANDSTILL)
+    assert (stopped.decision.cause, stopped.guard_result.wheel_speeds) == (Cause.STOPPED, STANDSTILL)
     for _ in range(5):
         record = driving.run()
         assert record.decision.cause is Cause.STOPPED
         assert record.situation.history_frozen
         assert not record.decision.asking
-    assert driving.run(100, resume()).grant.wheel_speeds == FORWARD
+    assert driving.run(100, resume()).guard_result.wheel_speeds == FORWARD
 
 
 def test_a_lesson_for_a_stopped_robot_is_taken_and_waits_for_resume(corridor: Corridor) -> None:
@@ -243,30 +247,30 @@ def test_a_lesson_for_a_stopped_robot_is_taken_and_waits_for_resume(corridor: Co
 
 
 def test_while_lessons_cannot_be_saved_it_stands_and_says_why(driving: Corridor) -> None:
-    driving.notebook.trouble = "disk full"
+    driving.notebook.error = "disk full"
     record = driving.run()
-    assert (record.decision.cause, record.grant.wheel_speeds) == (Cause.UNSAVED, STANDSTILL)
+    assert (record.decision.cause, record.guard_result.wheel_speeds) == (Cause.UNSAVED, STANDSTILL)
     assert driving.run().situation.history_frozen
     driving.run(100, correct("back", "while unsaved"))
     assert driving.notebook.events[-1].origin.command_id == "while unsaved"  # not lost: it waits there
-    driving.notebook.trouble = None
+    driving.notebook.error = None
     assert driving.run().decision.action == "back"
 
 
 def test_a_teachers_stop_goes_before_trouble_with_saving(driving: Corridor) -> None:
-    driving.notebook.trouble = "disk full"
+    driving.notebook.error = "disk full"
     assert driving.run(100, stop()).decision.cause is Cause.STOPPED
 
 
 def test_an_emergency_stop_holds_until_resume_with_history_frozen(driving: Corridor) -> None:
     driving.robot.emergency_stop(GuardReason.OTHER)
     first = driving.run()
-    assert first.grant == GuardResult(STANDSTILL, (GuardReason.OTHER,), latched=True)
+    assert first.guard_result == GuardResult(STANDSTILL, (GuardReason.OTHER,), latched=True)
     for _ in range(5):
         record = driving.run()
-        assert record.grant.latched
+        assert record.guard_result.latched
         assert record.situation.history_frozen
-    assert driving.run(100, resume()).grant.wheel_speeds == FORWARD
+    assert driving.run(100, resume()).guard_result.wheel_speeds == FORWARD
     assert not driving.run().situation.history_frozen
 
 
@@ -276,8 +280,8 @@ def test_a_late_copy_of_an_old_resume_does_not_end_a_new_emergency_stop(driving:
     driving.robot.emergency_stop(GuardReason.OTHER)
     record = driving.run(100, resume("again"))
     assert record.results[0].outcome == Outcome(ResultCode.REPEATED)
-    assert record.grant.latched
-    assert not driving.run(100, resume("after a look")).grant.latched
+    assert record.guard_result.latched
+    assert not driving.run(100, resume("after a look")).guard_result.latched
 
 
 def test_a_resume_that_was_said_before_an_emergency_stop_does_not_end_it(driving: Corridor) -> None:
@@ -286,14 +290,14 @@ def test_a_resume_that_was_said_before_an_emergency_stop_does_not_end_it(driving
     stopped_on = driving.run(100).tick
     late = driving.run(100, Resume("on its way", "Ann", said_on))
     assert late.results[0].outcome == Outcome(RefusalCode.STOPPED_SINCE)
-    assert late.grant.latched
-    assert not driving.run(100, Resume("after a look", "Ann", stopped_on)).grant.latched
+    assert late.guard_result.latched
+    assert not driving.run(100, Resume("after a look", "Ann", stopped_on)).guard_result.latched
 
 
 def test_a_resume_does_not_end_the_emergency_stop_of_its_own_tick(driving: Corridor) -> None:
     driving.robot.emergency_stop(GuardReason.OTHER)  # as the senses of the next tick do
-    assert driving.run(100, resume("said before")).grant.latched
-    assert not driving.run(100, resume("after a look")).grant.latched
+    assert driving.run(100, resume("said before")).guard_result.latched
+    assert not driving.run(100, resume("after a look")).guard_result.latched
 
 
 def test_a_robot_that_stops_itself_in_the_tick_of_a_resume_wants_a_new_one(driving: Corridor) -> None:
@@ -301,10 +305,10 @@ def test_a_robot_that_stops_itself_in_the_tick_of_a_resume_wants_a_new_one(drivi
     seen = driving.run(100).tick
     driving.robot.relatches = True
     again = driving.run(100, Resume("1", "Ann", seen))
-    assert again.grant.latched
+    assert again.guard_result.latched
     driving.robot.relatches = False
-    assert driving.run(100, Resume("2", "Ann", seen)).grant.latched
-    assert not driving.run(100, Resume("3", "Ann", again.tick)).grant.latched
+    assert driving.run(100, Resume("2", "Ann", seen)).guard_result.latched
+    assert not driving.run(100, Resume("3", "Ann", again.tick)).guard_result.latched
 
 
 def test_uses_and_transitions_are_counted_and_standing_ends_a_chain(driving: Corridor) -> None:
@@ -376,7 +380,7 @@ def test_a_robot_that_sees_nothing_stands_asks_nothing_and_learns_nothing(drivin
     driving.robot.infrared_age_s = math.inf
     record = driving.run(100, teach("back", "in the dark"))
     assert record.decision.cause is Cause.BLIND
-    assert record.grant.wheel_speeds == STANDSTILL
+    assert record.guard_result.wheel_speeds == STANDSTILL
     (result,) = record.results
     assert not result.accepted
     assert result.outcome == Outcome(RefusalCode.BLIND)
@@ -412,6 +416,6 @@ def test_a_layer_that_fails_does_not_drive_a_robot_that_was_stopped(
         record = driving.run()
         assert record.decision.cause is Cause.STOPPED
         assert not record.decision.driving
-        assert record.decision.wheel_speeds == record.grant.wheel_speeds == STANDSTILL
+        assert record.decision.wheel_speeds == record.guard_result.wheel_speeds == STANDSTILL
     driving.run(None, resume("go on"))
-    assert driving.run().grant.wheel_speeds == FORWARD
+    assert driving.run().guard_result.wheel_speeds == FORWARD

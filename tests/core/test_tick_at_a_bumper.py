@@ -45,7 +45,7 @@ def test_a_robot_that_is_held_at_a_bumper_asks_after_half_a_second(corridor: Cor
     record = corridor.run()
     decision = record.decision
     assert (decision.cause, decision.asking, decision.driving) == (Cause.TOUCHES, True, False)
-    assert (decision.wheel_speeds, record.grant.wheel_speeds) == (STANDSTILL, STANDSTILL)
+    assert (decision.wheel_speeds, record.guard_result.wheel_speeds) == (STANDSTILL, STANDSTILL)
     assert record.standing == Standing(StandReason.FRONT_BUMPER, asks=True)
     assert decision.match is not None
     assert decision.match.rla.rla_id == 1  # who goes on toward it
@@ -69,7 +69,7 @@ def test_it_drives_on_when_what_it_touched_is_gone(corridor: Corridor) -> None:
     held(corridor)
     corridor.robot.touches_in_front = False
     record = corridor.run()
-    assert (record.decision.cause, record.grant.wheel_speeds) == (Cause.RLA, FORWARD)
+    assert (record.decision.cause, record.guard_result.wheel_speeds) == (Cause.RLA, FORWARD)
 
 
 @pytest.mark.parametrize("say", [teach, correct])
@@ -80,7 +80,7 @@ def test_an_answer_moves_the_robot_at_once_and_is_not_shadowed(
     record = corridor.run(None, say("back", "answer"))
     assert record.results[0].outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="back", was="forward")
     assert (record.decision.cause, record.decision.action) == (Cause.RLA, "back")
-    assert record.grant.wheel_speeds == BACK
+    assert record.guard_result.wheel_speeds == BACK
     assert record.standing == DRIVES
     assert len(corridor.system) == 1
 
@@ -90,7 +90,7 @@ def test_an_answer_far_from_the_condition_inserts_an_rla_that_wins(corridor: Cor
     corridor.run(130)  # within R 50, farther than half of it
     assert corridor.run().decision.cause is Cause.TOUCHES
     record = corridor.run(None, teach("back", "answer"))
-    assert (record.decision.rla_id, record.grant.wheel_speeds) == (2, BACK)
+    assert (record.decision.rla_id, record.guard_result.wheel_speeds) == (2, BACK)
     assert len(corridor.system) == 2
 
 
@@ -146,7 +146,7 @@ def test_a_robot_that_is_held_and_loses_its_teacher_waits_for_go() -> None:
         record = corridor.run()
     corridor.robot.touches_in_front = False
     record = corridor.run(None, watch(corridor))
-    assert (record.decision.cause, record.standing.needs_go) == (Cause.STOPPED, True)
+    assert (record.decision.cause, record.standing.needs_resume) == (Cause.STOPPED, True)
 
 
 def test_a_hand_that_pushes_is_told_and_asked_nothing(corridor: Corridor) -> None:
@@ -160,7 +160,7 @@ def test_a_latch_goes_before_the_question(corridor: Corridor) -> None:
     held(corridor)
     corridor.robot.latched = True
     record = corridor.run()
-    assert (record.decision.cause, record.standing.needs_go) == (Cause.RLA, True)
+    assert (record.decision.cause, record.standing.needs_resume) == (Cause.RLA, True)
 
 
 def drives_into_a_wall(scene: Scene, record: TickRecord) -> None:

@@ -55,7 +55,7 @@ def causes(corridor: Corridor, ticks: int, counts: int | None = None) -> list[Ca
 
 
 def stands(record: TickRecord) -> bool:
-    return record.grant.wheel_speeds == STANDSTILL
+    return record.guard_result.wheel_speeds == STANDSTILL
 
 
 @pytest.fixture
@@ -78,11 +78,11 @@ def attended() -> Corridor:
 def test_a_press_drives_for_its_lease_and_then_the_robot_stands_though_it_knows_the_way(driving: Corridor) -> None:
     first = driving.run(100, press(driving))
     assert (first.decision.cause, first.decision.action, first.decision.rla_id) == (Cause.TEACHER, "by hand", None)
-    assert first.grant.wheel_speeds == BY_HAND
+    assert first.guard_result.wheel_speeds == BY_HAND
     assert first.decision.match is not None  # what the robot would have done stays to be seen
     assert causes(driving, LEASE - 1) == [Cause.TEACHER] * (LEASE - 1)
     assert causes(driving, 200) == [Cause.STOPPED] * 200
-    assert driving.run(100, resume()).grant.wheel_speeds == FORWARD
+    assert driving.run(100, resume()).guard_result.wheel_speeds == FORWARD
 
 
 def test_a_press_held_back_on_its_way_drives_until_35_ticks_after_its_picture(driving: Corridor) -> None:
@@ -93,7 +93,7 @@ def test_a_press_held_back_on_its_way_drives_until_35_ticks_after_its_picture(dr
 def test_a_press_on_a_picture_35_ticks_old_does_not_move_the_robot(driving: Corridor) -> None:
     assert stands(driving.run(100, press(driving, age=REACH)))
     assert stands(driving.run(100, press(driving, 1)))  # and is over
-    assert driving.run(100, press(driving, 2)).grant.wheel_speeds == BY_HAND
+    assert driving.run(100, press(driving, 2)).guard_result.wheel_speeds == BY_HAND
 
 
 def test_the_same_press_never_comes_back_and_a_new_one_does(driving: Corridor) -> None:
@@ -120,7 +120,7 @@ def test_an_older_press_that_comes_late_neither_drives_nor_lets_the_newer_one_co
 def test_a_stop_of_anyone_ends_the_press_in_the_same_tick(driving: Corridor, by: str) -> None:
     driving.run(100, press(driving))
     record = driving.run(100, press(driving), Stop("s", by), press(driving))
-    assert (record.decision.cause, record.grant.wheel_speeds) == (Cause.STOPPED, STANDSTILL)
+    assert (record.decision.cause, record.guard_result.wheel_speeds) == (Cause.STOPPED, STANDSTILL)
     assert stands(driving.run(100, press(driving)))
     assert (driving.run(100, press(driving, hold=2)).decision.cause is Cause.TEACHER) == (by == "Ann")
     driving.run(100, resume())
@@ -150,14 +150,14 @@ def test_what_the_hand_drives_belongs_to_no_rla_also_when_the_layer_fails(
         record = driving.run(100, press(driving))
         assert (record.decision.cause, record.decision.rla_id) == (Cause.TEACHER, None)
         assert not record.decision.answers
-        assert record.grant.wheel_speeds == BY_HAND
+        assert record.guard_result.wheel_speeds == BY_HAND
     assert driving.statistics.uses == uses
 
 
 def test_a_hand_moves_a_robot_that_knows_nothing() -> None:
     corridor = Corridor()
     assert corridor.run(100).decision.asking
-    assert corridor.run(100, press(corridor)).grant.wheel_speeds == BY_HAND
+    assert corridor.run(100, press(corridor)).guard_result.wheel_speeds == BY_HAND
 
 
 def test_a_behaviour_drives_and_then_the_robot_stands(driving: Corridor) -> None:
@@ -302,7 +302,7 @@ def test_a_refused_resume_does_not_release_an_emergency_stop(driving: Corridor) 
     driving.robot.emergency_stop(GuardReason.OTHER)
     record = driving.run(100, Resume("r", "Ben"))
     assert not record.results[0].accepted
-    assert record.grant.latched
+    assert record.guard_result.latched
 
 
 def test_while_it_is_latched_the_lease_runs_out_and_the_press_is_over(driving: Corridor) -> None:
@@ -405,7 +405,7 @@ class Witness:
         """The rules, after a tick."""
         school, decision = corridor.school, record.decision
         teacher, moves = school.authority.teacher, not stands(record)
-        alone = school.needs_a_teacher and not school.authority.present(record.tick)
+        alone = school.requires_teacher and not school.authority.is_present(record.tick)
         if self.drove_by_itself and alone:
             self.lost = True
         hand = teacher if decision.action == "by hand" else None
@@ -460,7 +460,7 @@ def test_a_hand_does_not_move_a_robot_that_is_blind_or_cannot_save(
     driving: Corridor, trouble: str | None, cause: Cause
 ) -> None:
     assert not stands(driving.run(100, press(driving)))
-    driving.notebook.trouble = trouble
+    driving.notebook.error = trouble
     driving.robot.infrared_age_s = 0.0 if trouble else 1.0
     record = driving.run(100, press(driving))
     assert (record.decision.cause, record.decision.action, record.decision.wheel_speeds) == (cause, None, STANDSTILL)

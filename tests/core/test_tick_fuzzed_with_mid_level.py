@@ -74,7 +74,7 @@ class Bedlam(Town):
         chance = self.chance
         self._drive_on()
         if chance.random() < 0.002:
-            self.runtime.set_down()
+            self.runtime.reposition()
         commands: list[Command] = [Watch("Ann", max(0, self.tick - chance.choice((0, 0, 0, 60))))]
         commands += [self._anything() for _ in range(chance.choice((0, 0, 0, 1, 1, 2, 5)))]
         return self.run(*commands[chance.random() < 0.1 :]).decision
@@ -131,14 +131,14 @@ class Bedlam(Town):
 
     def may_drive(self, decision: Decision) -> bool:
         """Whether every rule lets wheels turn for a decision."""
-        school, mid = self.runtime.school, self.runtime.mid
+        school, mid = self.runtime.handler, self.runtime.mid
         assert mid is not None
         if decision.cause is Cause.TEACHER:
             return school.authority.is_manual(self.tick)
-        there = school.authority.present(self.tick) or school.phase is Phase.AUTONOMOUS
+        there = school.authority.is_present(self.tick) or school.phase is Phase.AUTONOMOUS
         stands_at_goal = decision.plan is not None and decision.plan.course in (GoalStatus.ARRIVED, GoalStatus.NO_WAY)
         asks = decision.mid is None or decision.mid.asks
-        return there and not school.stopped and not asks and (mid.overridden or not stands_at_goal)
+        return there and not school.active_stop and not asks and (mid.overridden or not stands_at_goal)
 
 
 def check(task: TaskSettings, seed: int, ticks: int) -> None:
@@ -151,7 +151,7 @@ def check(task: TaskSettings, seed: int, ticks: int) -> None:
             drove += 1
             assert town.may_drive(decision), (town.tick, decision)
     assert drove > ticks // 50
-    system, saved = town.runtime.level.system, town.runtime.to_save()
+    system, saved = town.runtime.level.system, town.runtime.snapshot()
     known = {rla.rla_id for level in (BASIC, MID) for rla in system.rlas_at(level)}
     assert known.issuperset(rla_id for edge in saved.transitions for rla_id in edge)
     assert known.issuperset(saved.expectations)

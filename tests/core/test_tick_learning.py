@@ -45,7 +45,9 @@ class Drive:
         self.robot = WideRobot()
         self.notebook = InMemoryEventStore()
         clock = LockstepClock(lambda: None)
-        self.runtime = build_runtime(self.robot, ROBOT, task, events, self.notebook, clock, saved=saved, asked=asked)
+        self.runtime = build_runtime(
+            self.robot, ROBOT, task, events, self.notebook, clock, checkpoint=saved, teacher_available=asked
+        )
         self.tick = 0
 
     def run(self, *commands: Command, ticks: int = 1, counts: int | None = None) -> TickRecord:
@@ -56,9 +58,9 @@ class Drive:
             self.runtime.inbox.put(command)
         for _ in range(ticks):
             self.tick += 1
-            self.runtime.ledger.begin(0.0)
+            self.runtime.timer.begin(0.0)
             record = self.runtime.tick.run(self.tick, self.tick * 0.01)
-            self.runtime.ledger.end()
+            self.runtime.timer.end()
         return record
 
     def blame_until_it_sinks(self) -> None:
@@ -87,7 +89,7 @@ def test_blame_withdraws_what_sank_and_the_next_tick_stands_and_asks(driving: Dr
     assert driving.robot.driven[-1].left_m_s > 0  # the tick of the blame had told the wheels already
     record = driving.run()
     assert record.decision.asking
-    assert record.grant.wheel_speeds == (0.0, 0.0)
+    assert record.guard_result.wheel_speeds == (0.0, 0.0)
     event = driving.notebook.events[-1]
     assert isinstance(event, ActionWithdrawn)
     assert (event.rla_id, event.origin.tick) == (1, driving.tick - 1)
@@ -105,18 +107,18 @@ def test_its_answer_acts_in_the_tick_that_takes_it(driving: Drive) -> None:
 def test_a_robot_that_the_guard_has_stopped_is_not_blamed(driving: Drive) -> None:
     driving.robot.latched = True
     record = driving.run()
-    assert record.grant.latched
+    assert record.guard_result.latched
     result = driving.run(Reward("r-1", "Ann", -1, record.tick)).results[0]
     assert not result.accepted
 
 
 def test_a_blind_robot_has_neither_circumstances_nor_an_opinion(driving: Drive) -> None:
-    assert driving.run().circumstances is not None
+    assert driving.run().appraisal_features is not None
     driving.run(Appraise("x-1", "Ann", "good"))
     assert driving.run(ticks=10).opinion is not None
     driving.robot.infrared_age_s = 1.0
     record = driving.run()
-    assert (record.decision.cause, record.circumstances, record.opinion) == (Cause.BLIND, None, None)
+    assert (record.decision.cause, record.appraisal_features, record.opinion) == (Cause.BLIND, None, None)
     assert not driving.run(Appraise("x-2", "Ann", "bad")).results[0].accepted
 
 
@@ -144,8 +146,8 @@ def trusting(driving: Drive) -> Drive:
             tick += 1000  # one signal in some seconds counts
             taught.append(Appraised(name, value, tick, Origin(f"{name}-{number}", "Ann", Phase.CRITIC, tick)))
     anew = Drive(taught)
-    assert anew.runtime.school.agreement is not None
-    assert anew.runtime.school.agreement.trusted
+    assert anew.runtime.handler.agreement is not None
+    assert anew.runtime.handler.agreement.trusted
     return anew
 
 
@@ -169,20 +171,20 @@ def test_in_phase_five_a_critic_that_is_not_trusted_changes_nothing(driving: Dri
     driving.run(Appraise("x-1", "Ann", "bad"), ticks=10)
     driving.run(SetPhase("phase", "Ann", Phase.AUTONOMOUS))
     taught = len(driving.notebook.events)
-    saved = driving.runtime.to_save()
+    saved = driving.runtime.snapshot()
     driving.run(ticks=1000)
     assert len(driving.notebook.events) == taught
-    assert driving.runtime.to_save().values == saved.values
+    assert driving.runtime.snapshot().values == saved.values
 
 
 def test_no_reward_and_no_opinion_moves_a_robot_that_stands(driving: Drive) -> None:
     drive = trusting(driving)
-    drive.runtime.school.stop(STARTED)
+    drive.runtime.handler.stop(STARTED)
     drive.run(SetPhase("phase", "Ann", Phase.AUTONOMOUS))
     for number in range(300):
         record = drive.run(Reward(f"r-{number}", "Ann", (-1, 1)[number % 2]), counts=(NEAR, FAR)[number // 150])
         assert record.decision.cause is Cause.STOPPED
-        assert record.grant.wheel_speeds == (0.0, 0.0)
+        assert record.guard_result.wheel_speeds == (0.0, 0.0)
     assert drive.notebook.events == []
 
 
@@ -232,7 +234,7 @@ def story(drive: Drive) -> tuple[list[TeachingEvent], Statistics]:
             drive.run(Teach(f"t-{turn}", "Ann", ("back", "forward")[turn % 2]))
         elif turn % 7 == 0:
             drive.run(Correct(f"c-{turn}", "Ann", "spin_left"))
-    return drive.notebook.events, drive.runtime.to_save()
+    return drive.notebook.events, drive.runtime.snapshot()
 
 
 def test_the_same_senses_and_commands_give_the_same_events_and_values() -> None:

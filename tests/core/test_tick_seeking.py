@@ -50,7 +50,7 @@ class Block(Town):
 
     def go(self, behaviour: str | None = None) -> TickRecord:
         """Through the next junction as the robot wants, or as it happens; to where it has noticed that."""
-        quarters = QUARTERS[self.runtime.wanted.behaviour if behaviour is None else behaviour]
+        quarters = QUARTERS[self.runtime.active_behaviour.behaviour if behaviour is None else behaviour]
         passed = self.passed
         self._go(WALL, 0.5, 0.0)
         self._go(OPEN, 0.6, quarters * math.pi / 2)
@@ -94,7 +94,7 @@ def block() -> Block:
 def test_the_way_round_the_block_comes_back_to_a_place_that_it_knows(block: Block) -> None:
     assert block.ways == {4: "turn_left", 5: "turn_left", 6: "turn_left", 7: "turn_left"}
     assert not block.run().decision.asking
-    expected = block.runtime.expecting.of(7)
+    expected = block.runtime.expectations.of(7)
     assert expected is not None
     system = block.runtime.level.system
     match = system.match(expected.mean, level=MID)
@@ -253,7 +253,7 @@ def test_a_goal_whose_name_is_undone_is_given_up_with_words(block: Block) -> Non
 
 
 def test_a_lost_robot_arrives_nowhere(block: Block) -> None:
-    block.runtime.set_down()
+    block.runtime.reposition()
     assert block.run().decision.asks_at == MID
     block.seek(PartialGoal((("east", 1.0),)))  # that is how a reckoning begins
     step = block.plan()
@@ -344,7 +344,7 @@ def test_without_places_nobody_can_say_where_it_is() -> None:
 
 
 def test_set_down_elsewhere_it_is_lost_until_it_is_told_where_it_is(block: Block) -> None:
-    block.runtime.set_down()
+    block.runtime.reposition()
     assert block.run().decision.asks_at == MID
     for nowhere in (block.say(Teach, "turn_left", None, MID), block.say(NameSituation, "nowhere")):
         assert told(nowhere) == Outcome(RefusalCode.PLACE_UNKNOWN)

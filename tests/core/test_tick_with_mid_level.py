@@ -94,9 +94,9 @@ class Town:
         self.tick += 1
         for command in commands:
             self.runtime.inbox.put(command)
-        self.runtime.ledger.begin(0.0)
+        self.runtime.timer.begin(0.0)
         record = self.runtime.tick.run(self.tick, self.tick * 0.01)
-        self.runtime.ledger.end()
+        self.runtime.timer.end()
         self.passed += record.mid is not None and record.mid.event is not None
         return record
 
@@ -214,7 +214,7 @@ def test_a_correction_is_inserted_where_the_history_is_another_one_and_replaces_
     assert record.behaviour == "straight_on"
     assert town.ways == {4: "turn_left", 5: "straight_on"}
     assert isinstance(town.notebook.events[-1], ActionReplaced)
-    assert (town.runtime.school.corrections_at(MID), town.runtime.school.corrections) == (3, 0)
+    assert (town.runtime.handler.corrections_at(MID), town.runtime.handler.corrections) == (3, 0)
 
 
 def test_a_lesson_on_the_very_history_of_an_rla_changes_that_one(town: Town) -> None:
@@ -231,7 +231,7 @@ def test_the_teacher_may_mean_a_junction_that_was_passed_long_ago(town: Town) ->
         town.junction(quarters)
     for _ in range(1500):
         town.run()
-    assert not town.runtime.school.recent.knows(meant)
+    assert not town.runtime.handler.recent.knows(meant)
     record = town.run(another_way("turn_left", of=meant))
     assert told(record) == Outcome.of(ResultCode.RLA_CORRECTED, rla=4, level=MID, action="turn_left", was="straight_on")
     assert told(town.run(another_way("turn_left", "never", of=town.tick + 100))) == Outcome.of(
@@ -346,7 +346,7 @@ def test_where_the_robot_has_no_mid_level_there_is_none_to_teach() -> None:
         StreetRobot(), ROBOT, STREETS, basic_knowledge(), InMemoryEventStore(), LockstepClock(lambda: None)
     )
     runtime.inbox.put(the_way("turn_left"))
-    runtime.ledger.begin(0.0)
+    runtime.timer.begin(0.0)
     record = runtime.tick.run(1, 0.01)
     assert told(record) == Outcome(RefusalCode.NO_MID_LEVEL)
     assert (record.mid, record.decision.asks_at) == (None, BASIC)
@@ -401,7 +401,7 @@ def test_each_junction_that_an_rla_led_through_is_a_use_and_follow_ups_are_count
     town.run(Stop("s", "Ann"))
     town.run(Resume("go", "Ann"))
     town.junction(1)
-    saved = town.runtime.to_save()
+    saved = town.runtime.snapshot()
     assert (saved.uses[4], saved.uses[5]) == (2, 1)
     assert {edge: saved.transitions[edge] for edge in saved.transitions if min(edge) > 3} == {(4, 4): 1, (4, 5): 1}
     assert all((before < 4) == (after < 4) for before, after in saved.transitions)  # each level by itself
@@ -413,18 +413,18 @@ def test_what_the_mid_level_was_told_when_it_asked_follows_what_led_there(town: 
     assert town.run().decision.asks_at == MID
     town.run(the_way("turn_right"))
     town.junction(-1)
-    assert town.runtime.to_save().transitions[4, 5] == 1
+    assert town.runtime.snapshot().transitions[4, 5] == 1
 
 
 def test_with_another_action_an_rla_leads_elsewhere_and_what_followed_is_counted_anew(town: Town) -> None:
     for _ in range(3):
         town.junction()
-    assert town.runtime.to_save().transitions[4, 4] == 2
+    assert town.runtime.snapshot().transitions[4, 4] == 2
     town.run(ReplaceAction("r", "Ann", 4, "turn_right"))
     town.junction(-1)
     town.junction(-1)
-    assert town.runtime.to_save().transitions[4, 4] == 1
-    assert town.runtime.to_save().uses[4] == 5
+    assert town.runtime.snapshot().transitions[4, 4] == 1
+    assert town.runtime.snapshot().uses[4] == 5
 
 
 def test_nothing_follows_where_the_teacher_led(town: Town) -> None:
@@ -432,14 +432,14 @@ def test_nothing_follows_where_the_teacher_led(town: Town) -> None:
     town.run(Pursue("p", "Ann", "turn_left"))
     town.junction(1)
     town.junction()
-    saved = town.runtime.to_save()
+    saved = town.runtime.snapshot()
     assert saved.uses[4] == 2
     assert (4, 4) not in saved.transitions
 
 
 def test_set_down_elsewhere_it_came_by_nothing(town: Town) -> None:
     town.junction(1)
-    town.runtime.set_down()
+    town.runtime.reposition()
     town.run()
     assert not town.history
     town.way_to_the_first_junction()
@@ -447,8 +447,8 @@ def test_set_down_elsewhere_it_came_by_nothing(town: Town) -> None:
     assert record.mid is not None
     assert record.mid.rla_id == 4
     assert town.history == ("straight",)
-    assert town.runtime.to_save().uses[4] == 2
-    assert (4, 4) not in town.runtime.to_save().transitions
+    assert town.runtime.snapshot().uses[4] == 2
+    assert (4, 4) not in town.runtime.snapshot().transitions
 
 
 def test_another_run_goes_on_with_the_ways_that_were_taught(town: Town) -> None:
@@ -497,7 +497,7 @@ def test_without_a_mid_level_its_rlas_are_kept_and_unused(town: Town) -> None:
     events = [*town.taught_before, *town.notebook.events]
     runtime = build_runtime(StreetRobot(), ROBOT, STREETS, events, InMemoryEventStore(), LockstepClock(lambda: None))
     runtime.inbox.put(Pursue("p", "Ann", "turn_left"))
-    runtime.ledger.begin(0.0)
+    runtime.timer.begin(0.0)
     record = runtime.tick.run(1, 0.01)
     assert told(record) == Outcome.of(ResultCode.BEHAVIOUR_WANTED, behaviour="turn_left")
     assert (record.decision.rla_id, record.mid) == (2, None)

@@ -28,7 +28,7 @@ def teach(path: Path) -> None:
             writer.submit(created(number))
             writer.submit_statistics(Statistics({1: number}, {(1, 2): number}))
             if not writer.flush(LONGEST_S):
-                raise KnowledgeError(f"{writer.trouble}; waited in vain")
+                raise KnowledgeError(f"{writer.error}; waited in vain")
             for acknowledgement in writer.acknowledged():
                 os.write(1, f"row {acknowledgement.sequence} {acknowledgement.command_id}\n".encode())
 

@@ -88,7 +88,7 @@ def test_a_writer_whose_locks_are_stuck_begins_anew_and_loses_nothing(tmp_path: 
         writer.submit(created(2))
         writer.submit(created(3))
         assert writer.flush(LONGEST_S)
-        assert writer.trouble is None
+        assert writer.error is None
         assert [each.sequence for each in writer.acknowledged()] == [2, 3]
     assert journal.tries == 3
     require_kept(path, told=3)

@@ -49,8 +49,8 @@ class Service:
             clock,
             statistics=opened.counter,
             level_override=driver,
-            wanted=wanted,
-            saved=opened.saved,
+            active_behaviour=wanted,
+            checkpoint=opened.saved,
         )
         screen = ProgramConsole(status=lambda _: None, question=self.questions.append, acknowledged=self.settled.append)
         self.rounds = PostTick(self.runtime, self.writer, opened.stamps, load_service(), screen, None, None)
@@ -121,4 +121,4 @@ async def test_it_asks_the_way_is_taught_a_few_junctions_and_another_day_goes_on
             events.append((record.mid.event.quarters, record.mid.behaviour))
         assert events[0] == (0, "turn_left")
         assert events[1][0] == 1
-        assert not second.runtime.to_save().uses  # the policy drove, as a teacher would
+        assert not second.runtime.snapshot().uses  # the policy drove, as a teacher would

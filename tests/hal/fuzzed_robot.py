@@ -85,7 +85,7 @@ class FuzzedRobot:
             self.kurt2.release()
 
     def _judge(self, record: TickRecord) -> None:
-        self.onlooker.judge(record.now_s, record.grant)
+        self.onlooker.judge(record.now_s, record.guard_result)
         assert all(0 <= counts <= 1023 for counts in record.senses.infrared_counts)
         orders = self.simulation.controller.commands
         assert math.isfinite(orders.left_m_s)

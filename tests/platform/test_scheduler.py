@@ -71,7 +71,7 @@ class Run:
         self.clock = clock
         self.ledger = TickTimer(capacity=100)
         school = CommandHandler(
-            level, ControlAuthority(level.repertoire, attended=False), insert_beyond_share=0.5, taken_command_ids=()
+            level, ControlAuthority(level.repertoire, attended=False), insert_beyond_share=0.5, handled_command_ids=()
         )
         perception, statistics = Perception(small, SENSORS), StatisticsCounter()
         tick = Tick(

@@ -23,7 +23,7 @@ def _hang(*_: Any, **__: Any) -> Never:
 
 
 def _hang_while_it_drives(rounds: PostTick, record: TickRecord) -> None:
-    if max(map(abs, record.grant.wheel_speeds)) > _DRIVES_M_S:
+    if max(map(abs, record.guard_result.wheel_speeds)) > _DRIVES_M_S:
         _hang()
     _ROUND(rounds, record)
 

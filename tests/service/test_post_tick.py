@@ -54,10 +54,10 @@ class Shift:
         runtime = self.desk.runtime
         for _ in range(ticks):
             self._tick += 1
-            runtime.ledger.begin(0.0)
+            runtime.timer.begin(0.0)
             record = runtime.tick.run(self._tick, self._tick * 0.01)
             self.rounds(record)
-            runtime.ledger.end()
+            runtime.timer.end()
         return record
 
     def write(self) -> None:
@@ -122,7 +122,7 @@ def knows(shift: Shift, rla_id: int) -> RlaCreated:
     """One RLA, far from where the robot is."""
     runtime = shift.desk.runtime
     event = created(rla_id, (1e6,) * runtime.level.system.dimensions)
-    runtime.school.learning.apply(event)
+    runtime.handler.updater.apply(event)
     return event
 
 
@@ -150,7 +150,7 @@ def test_what_the_rlas_are_worth_is_saved_with_the_counts_and_gone_on_from(shift
         saved = journal.statistics()
     assert saved.values == {7: -0.25}
     again = build_runtime(
-        WideRobot(), ROBOT, TASK, (taught,), InMemoryEventStore(), LockstepClock(lambda: None), saved=saved
+        WideRobot(), ROBOT, TASK, (taught,), InMemoryEventStore(), LockstepClock(lambda: None), checkpoint=saved
     )
     assert again.reinforcement.worth(7) == -0.25
 

@@ -72,7 +72,7 @@ async def test_it_ends_by_itself_after_its_time(tmp_path: Path) -> None:
         last = await here.serve(tmp_path / "knowledge", lambda _: None, duration_s=0.3)
     assert here.now.tick >= 30  # beyond, when the last ones were missed
     assert {record.decision.cause for record in here.records} == {Cause.UNKNOWN}
-    assert all(record.grant.wheel_speeds == STANDSTILL for record in here.records)
+    assert all(record.guard_result.wheel_speeds == STANDSTILL for record in here.records)
     assert len(here.questions) == 1
     assert last is not None
     assert here.statuses[-1] is last

@@ -79,7 +79,7 @@ async def test_a_disk_that_fails_stands_the_robot_until_lessons_are_safe_again(t
             largest_file(soft)
     assert story.over
     assert all(record.decision.wheel_speeds == STANDSTILL for record in unsaved)
-    assert all(record.grant.wheel_speeds == STANDSTILL for record in unsaved)
+    assert all(record.guard_result.wheel_speeds == STANDSTILL for record in unsaved)
     with Journal.read_only(knowledge) as journal:
         assert [event.origin.command_id for event in journal.events()] == acting
 
@@ -90,7 +90,7 @@ async def test_a_bus_that_is_lost_stands_the_robot_until_it_is_told_to_resume(tm
     said: list[Command] = []
 
     def it_drives(record: TickRecord) -> bool:
-        if record.grant.wheel_speeds == STANDSTILL:
+        if record.guard_result.wheel_speeds == STANDSTILL:
             return False
         here.robot_bus.shutdown()
         return True
@@ -104,7 +104,7 @@ async def test_a_bus_that_is_lost_stands_the_robot_until_it_is_told_to_resume(tm
         return True
 
     def it_drives_again(record: TickRecord) -> bool:
-        return record.grant.wheel_speeds != STANDSTILL
+        return record.guard_result.wheel_speeds != STANDSTILL
 
     story = Story(it_drives, the_bus_is_back, it_drives_again)
 
@@ -116,9 +116,9 @@ async def test_a_bus_that_is_lost_stands_the_robot_until_it_is_told_to_resume(tm
         await here.serve(tmp_path / "knowledge", watch)
         assert story.over
         assert here.robot.health.receive_failures > 0
-    assert all(record.grant.latched for record in lost)
-    assert all(record.grant.wheel_speeds == STANDSTILL for record in lost)
-    assert {record.grant.reasons for record in lost} == {("bus lost",)}
+    assert all(record.guard_result.latched for record in lost)
+    assert all(record.guard_result.wheel_speeds == STANDSTILL for record in lost)
+    assert {record.guard_result.reasons for record in lost} == {("bus lost",)}
 
 
 async def test_a_robot_that_falls_silent_stands(tmp_path: Path) -> None:
@@ -126,7 +126,7 @@ async def test_a_robot_that_falls_silent_stands(tmp_path: Path) -> None:
     silent: list[TickRecord] = []
 
     def it_drives(record: TickRecord) -> bool:
-        if record.grant.wheel_speeds == STANDSTILL:
+        if record.guard_result.wheel_speeds == STANDSTILL:
             return False
         here.far_end.shutdown()
         return True
@@ -146,8 +146,11 @@ async def test_a_robot_that_falls_silent_stands(tmp_path: Path) -> None:
         await here.serve(tmp_path / "knowledge", watch)
         assert story.over
         assert isinstance(here.simulation.error, OSError)
-    assert all(record.grant.wheel_speeds == STANDSTILL for record in silent)
-    assert {reason for record in silent for reason in record.grant.reasons} <= {"infra-red stale", "encoder stale"}
+    assert all(record.guard_result.wheel_speeds == STANDSTILL for record in silent)
+    assert {reason for record in silent for reason in record.guard_result.reasons} <= {
+        "infra-red stale",
+        "encoder stale",
+    }
 
 
 async def test_a_person_stops_it_and_lets_it_go_on(tmp_path: Path) -> None:
@@ -156,7 +159,7 @@ async def test_a_person_stops_it_and_lets_it_go_on(tmp_path: Path) -> None:
     said: list[Command] = []
 
     def it_drives(record: TickRecord) -> bool:
-        if record.grant.wheel_speeds == STANDSTILL:
+        if record.guard_result.wheel_speeds == STANDSTILL:
             return False
         said.append(Stop("stop-1", "Ann"))
         return True
@@ -170,7 +173,7 @@ async def test_a_person_stops_it_and_lets_it_go_on(tmp_path: Path) -> None:
         return True
 
     def it_drives_again(record: TickRecord) -> bool:
-        return record.grant.wheel_speeds != STANDSTILL
+        return record.guard_result.wheel_speeds != STANDSTILL
 
     story = Story(it_drives, it_stands, it_drives_again)
 
@@ -181,4 +184,4 @@ async def test_a_person_stops_it_and_lets_it_go_on(tmp_path: Path) -> None:
     with rig() as here:
         await here.serve(tmp_path / "knowledge", watch)
     assert story.over
-    assert all(record.grant.wheel_speeds == STANDSTILL for record in stopped)
+    assert all(record.guard_result.wheel_speeds == STANDSTILL for record in stopped)

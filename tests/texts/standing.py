@@ -4,29 +4,29 @@ from collections.abc import Callable, Iterator
 
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.standing import Standing, StandReason
-from kurt2rt.core.decision.standing_text import GO_IN_TERMINAL, GO_ON_PAGE, headline_of, in_short, stop_text
+from kurt2rt.core.decision.standing_text import GO_IN_TERMINAL, GO_ON_PAGE, short_text, standing_headline, stop_text
 
 
 def on_page() -> Iterator[tuple[str, str]]:
     """Yield the page's headline of each standing."""
-    return _each(lambda standing: headline_of(standing, GO_ON_PAGE))
+    return _each(lambda standing: standing_headline(standing, GO_ON_PAGE))
 
 
 def in_terminal() -> Iterator[tuple[str, str]]:
     """Yield the terminal's headline of each standing."""
-    return _each(lambda standing: headline_of(standing, GO_IN_TERMINAL))
+    return _each(lambda standing: standing_headline(standing, GO_IN_TERMINAL))
 
 
 def in_log() -> Iterator[tuple[str, str]]:
     """Yield the short form of each standing."""
-    return _each(in_short)
+    return _each(short_text)
 
 
 def _each(text: Callable[[Standing], str]) -> Iterator[tuple[str, str]]:
     for reason in StandReason:
         stop = ActiveStop(StopReason.SAID_STOP, "Ann") if reason is StandReason.STOPPED else None
         yield reason, text(Standing(reason, stall_s=1.25, stop=stop))
-        yield f"{reason}, until Go", text(Standing(reason, needs_go=True, stall_s=1.25, stop=stop))
+        yield f"{reason}, until Go", text(Standing(reason, needs_resume=True, stall_s=1.25, stop=stop))
         yield f"{reason}, asks", text(Standing(reason, asks=True, stall_s=1.25, stop=stop))
 
 

@@ -189,7 +189,7 @@ async def _refresh(teachers: Teachers, runtime: Runtime) -> None:
         await anyio.sleep(_REFRESH_S)
         for name in (await teachers.refresh()).gone:
             runtime.inbox.put(PairingRenewed(name))
-            if runtime.school.authority.teacher == name:
+            if runtime.handler.authority.teacher == name:
                 revoked = f"{name}-gone-{secrets.token_hex(4)}"
                 runtime.inbox.put(Stop(f"{revoked}-stop", name))
                 with suppress(InboxFullError):  # it stands, and whoever comes takes it
@@ -199,7 +199,7 @@ async def _refresh(teachers: Teachers, runtime: Runtime) -> None:
 def describe(runtime: Runtime, boot: bytes, *, simulated: bool) -> dict[str, Any]:
     """What robot this is, for a page that has never seen one."""
     robot, sensors = runtime.robot, runtime.robot.infrared.sensors
-    critic = None if runtime.school.critic is None else runtime.school.critic.settings
+    critic = None if runtime.handler.critic is None else runtime.handler.critic.settings
     mid = None if runtime.mid is None else runtime.mid.settings
     actions: Sequence[str] = list(runtime.level.repertoire)
     return {
@@ -210,7 +210,7 @@ def describe(runtime: Runtime, boot: bytes, *, simulated: bool) -> dict[str, Any
         "radius": runtime.level.system.radius,
         "period_s": robot.can.cycle_s,
         "actions": actions,
-        "behaviours": list(runtime.wanted.behaviours),
+        "behaviours": list(runtime.active_behaviour.behaviours),
         "appraisals": [] if critic is None else [[each.name, each.value] for each in critic.appraisals],
         "trusted_from": 1.0 if critic is None else critic.agreement.bound,
         "mid": None if mid is None else [mid.situation.kind, len(mid.features), mid.learning.radius],

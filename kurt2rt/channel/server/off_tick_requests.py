@@ -152,7 +152,7 @@ class OffTickRequests:
             case ExamRequest():
                 return self._begin_exam(device, command_id)
             case SaveRequest() | ExportRequest():
-                held = self._runtime.school.authority.held_by_another(device)
+                held = self._runtime.handler.authority.refusal_for(device)
                 if held is not None:
                     return refusal("held", held, self._tick())
                 self._outcomes.begin(command_id)
@@ -229,7 +229,7 @@ class OffTickRequests:
             return refused
         if self._changing:
             return refusal("refused", Outcome(RefusalCode.NEXT_RUN_UNDER_WAY), self._tick())
-        school = self._runtime.school
+        school = self._runtime.handler
         teacher = TeacherNow(device, int(school.phase), school.session)
         if isinstance(request, LoadRequest):
             try:
@@ -262,8 +262,8 @@ class OffTickRequests:
 
     def _not_in_charge(self, device: str) -> Reply | None:
         """A refusal for a device that is not the robot's teacher."""
-        authority = self._runtime.school.authority
-        held = authority.held_by_another(device)
+        authority = self._runtime.handler.authority
+        held = authority.refusal_for(device)
         if held is None and authority.teacher is None:
             held = Outcome(RefusalCode.NO_TEACHER)
         return None if held is None else refusal("held", held, self._tick())
@@ -300,7 +300,7 @@ class OffTickRequests:
     def _change_world(self, device: str, request: MoveWallRequest | PlaceRequest | BackToStartRequest) -> Reply:
         if self._ground is None:
             return _not_simulated()
-        held = self._runtime.school.authority.held_by_another(device)
+        held = self._runtime.handler.authority.refusal_for(device)
         if held is not None:
             return refusal("held", held, self._tick())
         try:
@@ -308,14 +308,14 @@ class OffTickRequests:
                 self._ground.move_wall(request.name, request.dx_m, request.dy_m)
                 return done(self._tick(), Outcome.of(ResultCode.WALL_MOVED, name=request.name))
             # The teacher who stopped it looks at it where it stands.
-            stopped = self._runtime.school.stopped_since(request.seen)
+            stopped = self._runtime.handler.refusal_if_stopped_since(request.seen)
             if stopped is not None:
                 return refusal("refused", stopped, self._tick())
             if isinstance(request, BackToStartRequest):
                 self._ground.put_robot_back()
             else:
                 self._ground.put_robot(request.x_m, request.y_m, request.heading_rad)
-            self._runtime.set_down()
+            self._runtime.reposition()
         except ValueError as error:
             return refusal("refused", Outcome.of(RefusalCode.WORLD_REFUSES, says=str(error)), self._tick())
         return done(self._tick(), Outcome(ResultCode.ROBOT_PLACED))

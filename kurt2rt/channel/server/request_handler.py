@@ -143,7 +143,7 @@ class RequestHandler:
         return await self._off_tick.answer(device, request)
 
     def _stream(self, sender: Sender, request: StreamRequest) -> Reply:
-        tick, school, device = self.tick, self._runtime.school, sender.device
+        tick, school, device = self.tick, self._runtime.handler, sender.device
         stale = self._stale(request.boot, request.seen, STREAM_TICKS)
         if stale is not None:
             return stale
@@ -152,10 +152,10 @@ class RequestHandler:
         command: Watch | Drive = Watch(device, request.seen)
         if isinstance(request, DriveRequest):
             command = Drive(device, request.seen, request.hold, request.left_m_s, request.right_m_s)
-        held = school.authority.held_by_another(device)
+        held = school.authority.refusal_for(device)
         if held is not None:
             return refusal("held", held, tick)
-        ended = school.why_not_by_hand(command)
+        ended = school.manual_refusal(command)
         if ended is not None:
             return refusal("stopped", ended, tick)
         return Reply(Verdict.DONE, {"t": tick}) if self._hand_in(command) else self._too_many()
@@ -173,7 +173,7 @@ class RequestHandler:
         command_id = f"{device}-{request.command_id.hex()}"
         waiting = self._outcomes.get(command_id)
         if waiting is None:
-            if self._runtime.school.has_taken(command_id):  # before this start of the program, or long ago
+            if self._runtime.handler.was_handled(command_id):  # before this start of the program, or long ago
                 return done(self.tick, Outcome(ResultCode.REPEATED))
             longest = MOVING_TICKS if isinstance(request, _MOVING) else COMMAND_TICKS
             stale = self._stale(request.boot, request.seen, longest)
@@ -193,7 +193,7 @@ class RequestHandler:
         """Hand a command to the next tick, or carry out one that is not the tick's; a reply where that ends it."""
         if isinstance(request, OffTickCommand):
             return self._off_tick.begin(device, command_id, request)
-        held = self._runtime.school.authority.held_by_another(device)
+        held = self._runtime.handler.authority.refusal_for(device)
         if held is not None and not isinstance(request, TakeRequest):
             return refusal("held", held, self.tick)
         self._outcomes.begin(command_id)
@@ -214,7 +214,7 @@ class RequestHandler:
         if boot != self._boot:
             return restarted(self.tick)
         # So long in real time, which is the teacher's, at any speed of a simulation.
-        if not 0 <= self.tick - seen <= longest * self._runtime.school.authority.speed:
+        if not 0 <= self.tick - seen <= longest * self._runtime.handler.authority.speed:
             return refusal("stale", Outcome(RefusalCode.OLD_PICTURE), self.tick)
         return None
 

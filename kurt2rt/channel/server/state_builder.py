@@ -60,7 +60,7 @@ class StateBuilder:
     def picture(self, record: TickRecord) -> State:
         """The robot after a tick."""
         runtime, decision, match = self._runtime, record.decision, record.decision.match
-        school, system = runtime.school, runtime.level.system
+        school, system = runtime.handler, runtime.level.system
         if self._pictures % _LATENESS_EVERY == 0:
             self._late_p99_ms = self._late()
         self._pictures += 1
@@ -78,8 +78,8 @@ class StateBuilder:
             infrared_counts=record.senses.infrared_counts,
             infrared_age_s=record.senses.infrared_age_s,
             bumpers=record.senses.bumpers,
-            left_m_s=record.grant.wheel_speeds.left_m_s,
-            right_m_s=record.grant.wheel_speeds.right_m_s,
+            left_m_s=record.guard_result.wheel_speeds.left_m_s,
+            right_m_s=record.guard_result.wheel_speeds.right_m_s,
             cause=decision.cause.value,
             action=decision.action,
             rla=decision.rla_id,
@@ -92,16 +92,16 @@ class StateBuilder:
             question=question,
             teacher=school.authority.teacher,
             by_hand=school.authority.is_manual(record.tick),
-            stopped=school.stopped or _latched(record),
+            stopped=school.active_stop or _latched(record),
             rlas=len(system),
             lessons=system.standing_lessons,
             unsaved=self._safekeeping.unsaved(),
             session=school.session,
             clock_s=school.teaching_ticks(record.tick) * runtime.robot.can.cycle_s,
-            guard=record.grant.reasons,
-            trouble=self._safekeeping.trouble() or self._bus_trouble() or school.learning.trouble or self._urgent(),
+            guard=record.guard_result.reasons,
+            trouble=self._safekeeping.trouble() or self._bus_trouble() or school.updater.error or self._urgent(),
             late_p99_ms=self._late_p99_ms,
-            missed_ticks=runtime.ledger.missed_ticks,
+            missed_ticks=runtime.timer.missed_ticks,
             place=None if self._ground is None else self._ground.place(),
             behaviour=record.behaviour,
             value=None if decision.rla_id is None else float(runtime.reinforcement.worth(decision.rla_id)),
@@ -109,8 +109,8 @@ class StateBuilder:
             opinion_of=None if of is None else of.rla_id,
             agreement=None if agreement is None else agreement.share,
             trusted=agreement is not None and agreement.trusted,
-            role=school.learning.critics_role.value,
-            bad_share=school.learning.bad_share,
+            role=school.updater.critic_state.value,
+            bad_share=school.updater.bad_share,
             signals_missing=self._signals_missing(),
             asks_at=decision.asks_at,
             mid=self._mid(record),
@@ -130,7 +130,7 @@ class StateBuilder:
 
     def _late(self) -> float:
         health = self._health()
-        return self._runtime.ledger.lateness().p99_us / 1000.0 if health is None else health.punctuality.p99_ms
+        return self._runtime.timer.lateness().p99_us / 1000.0 if health is None else health.punctuality.p99_ms
 
     def _urgent(self) -> str:
         """What else the teacher should know at once, such as a disk without room; it may be a second old."""
@@ -149,7 +149,7 @@ class StateBuilder:
         return None if mid is None or decided is None else mid_state(mid, decided, self._safekeeping.stamp_of)
 
     def _signals_missing(self) -> tuple[int, int]:
-        critic, agreement = self._runtime.school.critic, self._runtime.school.agreement
+        critic, agreement = self._runtime.handler.critic, self._runtime.handler.agreement
         if critic is None or agreement is None:
             return 0, 0
         least = critic.settings.agreement.least
@@ -158,4 +158,4 @@ class StateBuilder:
 
 def _latched(record: TickRecord) -> ActiveStop | None:
     """Return the guard's stop, for the teacher who has to resume; None while the guard lets the robot drive."""
-    return ActiveStop(StopReason.GUARD, ", ".join(record.grant.reasons)) if record.grant.latched else None
+    return ActiveStop(StopReason.GUARD, ", ".join(record.guard_result.reasons)) if record.guard_result.latched else None

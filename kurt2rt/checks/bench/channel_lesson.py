@@ -59,5 +59,5 @@ async def _teach_inside(robot: OpenRobot, number: int) -> int:
     robot.runtime.inbox.put(Teach(command_id, robot.device.name, action))
     await rounds.until(lambda: rounds.newest is not None and bool(rounds.newest.results))
     if not await to_thread.run_sync(partial(robot.writer.flush, _PATIENCE_S)):
-        raise LessonLostError(robot.writer.trouble or f"the disk did not answer within {_PATIENCE_S:g} s")
+        raise LessonLostError(robot.writer.error or f"the disk did not answer within {_PATIENCE_S:g} s")
     return time.perf_counter_ns() - begun_ns

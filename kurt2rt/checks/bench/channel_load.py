@@ -83,8 +83,8 @@ async def measure_load(
     stays: dict[Load, list[LoadPhase]] = {company: [] for company in Load}
     async with open_robot(subject, folder) as robot, partner("kurt2rt.checks.bench.device", *robot.address) as device:
         # It drives in the same way whoever is there.
-        robot.runtime.school.phase = Phase.AUTONOMOUS
-        robot.runtime.school.stopped = None
+        robot.runtime.handler.phase = Phase.AUTONOMOUS
+        robot.runtime.handler.active_stop = None
         period_s = robot.runtime.robot.can.cycle_s
         for number in range(shifts.rounds):
             robot.pace.shift(period_s / shifts.rounds)
@@ -110,7 +110,7 @@ async def _settle(robot: OpenRobot, company: Load) -> None:
 
 async def _stay(robot: OpenRobot, ledger: TickTimer, ticks: int) -> LoadPhase:
     counters, runtime = robot.channel.endpoint.counters, robot.runtime
-    missed, messages = runtime.ledger.missed_ticks, counters.received
+    missed, messages = runtime.timer.missed_ticks, counters.received
     processor_ns, begun_ns = time.process_time_ns(), time.monotonic_ns()
     robot.clock.ledger = ledger
     await robot.rounds.go_on_for(ticks)
@@ -119,7 +119,7 @@ async def _stay(robot: OpenRobot, ledger: TickTimer, ticks: int) -> LoadPhase:
         seconds=(time.monotonic_ns() - begun_ns) / 1e9,
         processor_us=(time.process_time_ns() - processor_ns) / 1e3,
         messages=counters.received - messages,
-        missed_ticks=runtime.ledger.missed_ticks - missed,
+        missed_ticks=runtime.timer.missed_ticks - missed,
     )
 
 

@@ -111,11 +111,11 @@ async def open_robot(subject: RobotUnderTest, folder: Path) -> AsyncIterator[Ope
             runtime = build_runtime(
                 witness, subject.settings, subject.task, subject.events, writer, clock, attended=True
             )
-            runtime.school.stop(STARTED)
+            runtime.handler.stop(STARTED)
             stamps: dict[str, str] = {}
             safekeeping = JournalStatus(
                 unsaved=lambda: writer.unwritten,
-                trouble=lambda: writer.trouble,
+                trouble=lambda: writer.error,
                 stamp_of=lambda command_id: stamps.get(command_id, ""),
             )
             package = partial(package_knowledge, robot=subject.settings, task=subject.task)

@@ -79,7 +79,7 @@ async def run_in_real_time(subject: RobotUnderTest, folder: Path, turns: Turns, 
                 on_progress((number + 1) / turns.rounds)
     finally:
         simulation.close()
-    ledger = runtime.ledger
+    ledger = runtime.timer
     return RealTimeRun(
         ticks=turns.rounds * turns.ticks,
         missed_ticks=ledger.missed_ticks,

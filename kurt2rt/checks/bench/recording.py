@@ -88,7 +88,7 @@ async def drive_recorded(
         ):
             clock = NotingClock(timer)
             runtime = build_runtime(simulation.robot, settings, subject.task, subject.events, writer, clock)
-            runtime.school.phase = Phase.AUTONOMOUS
+            runtime.handler.phase = Phase.AUTONOMOUS
             for number in range(shifts.rounds):
                 with simulation.live():
                     await timer.wait_until(timer.now_s() + period_s * number / shifts.rounds)
@@ -114,9 +114,9 @@ async def drive_recorded(
 
 
 async def _stretch(runtime: Runtime, after_tick: Callable[[TickRecord], None], ticks: int) -> RecordedStretch:
-    missed, processor_ns = runtime.ledger.missed_ticks, time.process_time_ns()
+    missed, processor_ns = runtime.timer.missed_ticks, time.process_time_ns()
     await runtime.scheduler.run(ticks, after_tick)
-    return RecordedStretch((time.process_time_ns() - processor_ns) / 1e3, runtime.ledger.missed_ticks - missed)
+    return RecordedStretch((time.process_time_ns() - processor_ns) / 1e3, runtime.timer.missed_ticks - missed)
 
 
 def _ignore(_: TickRecord) -> None:

@@ -99,9 +99,9 @@ class FailingDisk:
             exchange_file(simulated, disturbance, path)
 
     @property
-    def trouble(self) -> str | None:
+    def error(self) -> str | None:
         """As the writer says it."""
-        return self._writer.trouble
+        return self._writer.error
 
     def submit(self, event: TeachingEvent) -> None:
         """Keep a lesson."""
@@ -113,7 +113,7 @@ class FailingDisk:
         give_up_s = time.monotonic() + _PATIENCE_S
         while not self._in_step():
             if time.monotonic() > give_up_s:
-                raise DiskOutOfStepError(f"{self._writer.unwritten} lessons wait; {self._writer.trouble}")
+                raise DiskOutOfStepError(f"{self._writer.unwritten} lessons wait; {self._writer.error}")
             time.sleep(_LOOK_S)
         self.acknowledged += [each.command_id for each in self._writer.acknowledged() if each.sequence is not None]
 
@@ -139,9 +139,9 @@ class FailingDisk:
         if waits_until_s is not None:
             return now_s < waits_until_s
         if self._writer.unwritten == 0:
-            return self._writer.trouble is None
+            return self._writer.error is None
         fails = self._disturbance.kind in ("off", "intermittent", "garbage", "wrong")
-        return fails and self._disturbance.acts(now_s) and self._writer.trouble is not None
+        return fails and self._disturbance.acts(now_s) and self._writer.error is not None
 
 
 def exchange_file(simulated: SimulatedTime, disturbance: RigDisturbance, path: Path) -> None:

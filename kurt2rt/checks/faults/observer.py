@@ -43,7 +43,7 @@ class WheelObserver(RobotProxy):
     def note(self, record: TickRecord) -> None:
         """A tick is over."""
         now_s = self._rig.time.now_s()
-        if record.grant.wheel_speeds != STANDSTILL:
+        if record.guard_result.wheel_speeds != STANDSTILL:
             self.drove_at_s.append(now_s)
             if not record.decision.driving:
                 drove = complaint(ComplaintCode.DROVE_THOUGH, now_s, cause=record.decision.cause)
@@ -51,7 +51,7 @@ class WheelObserver(RobotProxy):
         else:
             # A layer that wants to drive is not why the robot stands.
             cause = () if record.decision.driving else (str(record.decision.cause),)
-            self._words.append((now_s, (*cause, *record.grant.reasons)))
+            self._words.append((now_s, (*cause, *record.guard_result.reasons)))
 
     def stands(self, begin_s: float, end_s: float) -> list[Stand]:
         """When the robot was told to stand, or heard nothing for so long that its own watchdog stopped it."""

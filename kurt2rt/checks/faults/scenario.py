@@ -92,7 +92,7 @@ class _Drill:
         counted = {
             "junk frames": health.junk,
             "unintelligible commands": witness.envelope.unintelligible,
-            "missed ticks": self._runtime.ledger.missed_ticks,
+            "missed ticks": self._runtime.timer.missed_ticks,
             "refused messages": 0 if self._link is None else self._link.refused,
             LOST_FRAMES: 0 if self._recorder is None else self._recorder.lost,
         }

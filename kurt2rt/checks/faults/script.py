@@ -55,7 +55,7 @@ class Script:
     def begin_anew(self, runtime: Runtime) -> None:
         """The program was started anew; it stands, and is told to drive."""
         self._runtime, self._link = runtime, None
-        runtime.school.stop(STARTED)
+        runtime.handler.stop(STARTED)
         self.say_resume()
 
     def say_resume(self) -> None:

@@ -20,9 +20,9 @@ class MinuteLog:
     def note(self, record: TickRecord, late_s: float, missed: int) -> None:
         """A tick is over: so late, after so many that were missed."""
         self._ticks += 1
-        self._drives += record.grant.wheel_speeds != STANDSTILL
+        self._drives += record.guard_result.wheel_speeds != STANDSTILL
         self._asks += record.decision.asking
-        self._stopped += record.grant.latched or record.decision.cause in (Cause.STOPPED, Cause.UNATTENDED)
+        self._stopped += record.guard_result.latched or record.decision.cause in (Cause.STOPPED, Cause.UNATTENDED)
         self._missed += missed
         self._worst_late_s = max(self._worst_late_s, late_s)
 

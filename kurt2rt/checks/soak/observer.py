@@ -72,7 +72,7 @@ class SoakObserver:
     def note(self, record: TickRecord, ledger: TickTimer, begun_s: float) -> None:
         """A tick is over; `begun_s`: when the program's loop began, on its own clock."""
         now_s = self._rig.time.now_s()
-        moves = record.grant.wheel_speeds != STANDSTILL
+        moves = record.guard_result.wheel_speeds != STANDSTILL
         if moves and not record.decision.driving:
             self.complaints.add(complaint(ComplaintCode.DROVE_THOUGH, now_s, cause=record.decision.cause))
         accepted = {result.command_id for result in record.results if result.accepted}
@@ -82,8 +82,8 @@ class SoakObserver:
         # A teacher's hand tells it to drive, until it lets go.
         if moves and self._must_stand and record.decision.cause is not Cause.TEACHER:
             self.complaints.add(complaint(ComplaintCode.DROVE_UNTOLD, now_s, must_stand=self._must_stand))
-        if record.grant.latched:
-            self._must_stand = ", ".join(record.grant.reasons) or "stopped for good"
+        if record.guard_result.latched:
+            self._must_stand = ", ".join(record.guard_result.reasons) or "stopped for good"
         if ledger.ticks + 1 + ledger.missed_ticks != record.tick:
             done, missed = ledger.ticks + 1, ledger.missed_ticks
             code = ComplaintCode.TICKS_UNACCOUNTED

@@ -29,11 +29,11 @@ class SoakOperator:
 
     def sees(self, record: TickRecord) -> bool:
         """See a tick; True where the robot was picked up after it."""
-        if not record.grant.latched:
+        if not record.guard_result.latched:
             self._go_in_vain = False
         elif _was_told_to_go(record):
             self._go_in_vain = True  # it stopped itself again in the very tick: where it is, no Go will help
-        if (record.grant.latched and not self._go_in_vain) or record.decision.cause not in _DRIVES:
+        if (record.guard_result.latched and not self._go_in_vain) or record.decision.cause not in _DRIVES:
             return False
         here_m = self._rig.position_m
         if math.dist(here_m, self._from_m) > _WAY_M:

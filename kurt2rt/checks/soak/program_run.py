@@ -92,10 +92,10 @@ class ProgramRun:
             statistics=opened.counter,
             level_override=self.level,
             attended=True,
-            saved=opened.saved,
+            checkpoint=opened.saved,
         )
         self.level.behind = self.runtime.level
-        self.runtime.school.stop(STARTED)
+        self.runtime.handler.stop(STARTED)
         screen = ProgramConsole(status=lambda _: None, question=lambda _: None, acknowledged=self.knowledge.settled)
         circumstances = RunContext(f"{number:016x}", service.knowledge, attended=True, stopped=STARTED)
         started = _FIRST_DAY + timedelta(seconds=rig.time.now_s())
@@ -188,7 +188,7 @@ class ProgramRun:
 
     def _after_tick(self, record: TickRecord) -> None:
         runtime = self.runtime
-        self._witness.note(record, runtime.ledger, self._begun_s)
+        self._witness.note(record, runtime.timer, self._begun_s)
         self.most_waiting = max(self.most_waiting, len(record.commands))
         self.refused += sum(not result.accepted for result in record.results)
         self.knowledge.submitted += [event.origin.command_id for event in record.events]
@@ -199,8 +199,8 @@ class ProgramRun:
         if record.tick - self._tended_at >= _TENDS_EVERY_TICKS:
             self._tended_at = record.tick
             self.recorder.tend()
-        self.knowledge.keep_in_step(all_of_it=(runtime.ledger.ticks % self._checkpoint_ticks) == 0)
-        authority = runtime.school.authority
+        self.knowledge.keep_in_step(all_of_it=(runtime.timer.ticks % self._checkpoint_ticks) == 0)
+        authority = runtime.handler.authority
         if self._link is not None:
             self._link.see(record.tick)
         taken = authority.teacher not in (None, NAME)

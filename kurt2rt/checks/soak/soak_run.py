@@ -149,7 +149,7 @@ class SoakRun:
             lost = life.close()
         except KnowledgeError as error:
             lost = complaint(ComplaintCode.NOT_SAVED, error=str(error))
-        ledger = life.runtime.ledger
+        ledger = life.runtime.timer
         self._witness.ticks += ledger.ticks
         self._witness.missed_ticks += ledger.missed_ticks
         self._refused += life.refused
@@ -163,13 +163,13 @@ class SoakRun:
 
     def _see(self, life: ProgramRun, record: TickRecord, on_progress: Callable[[float], None]) -> None:
         now_s = self._rig.time.now_s()
-        ledger = life.runtime.ledger
+        ledger = life.runtime.timer
         missed = ledger.missed_ticks - self._missed_before
         self._missed_before = ledger.missed_ticks
         self._log.note(record, self._witness.late_s, missed)
         self._odometry.hear(record.senses)
         if self._person.sees(record):
-            life.runtime.set_down()
+            life.runtime.reposition()
             self._odometry.spoil()
         if self._faults.acting is not None or life.wire in ("lossy", "failing"):
             self._odometry.spoil()
@@ -183,7 +183,7 @@ class SoakRun:
                 self._look_at_memory(len(self._log.minutes) // 60)
 
     def _look_at_the_session(self, life: ProgramRun, record: TickRecord) -> None:
-        school = life.runtime.school
+        school = life.runtime.handler
         if school.session is None:
             return
         if self._session_from is None:

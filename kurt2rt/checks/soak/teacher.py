@@ -96,7 +96,7 @@ class SoakTeacher:
         if self._begins:
             begins, self._begins = self._begins, []
             return begins
-        if record.grant.latched or record.decision.cause is Cause.STOPPED:
+        if record.guard_result.latched or record.decision.cause is Cause.STOPPED:
             return self._go(record)
         self._stopped_ticks = 0
         if self._happens(settings.stops_every_s):

@@ -39,7 +39,7 @@ class BasicLevel:
         system: RlaSystem,
         repertoire: Repertoire,
         minimum_action_ticks: int,
-        wanted: ActiveBehaviour,
+        active_behaviour: ActiveBehaviour,
         choice: EpsilonGreedy | None = None,
     ) -> None:
         """`choice`: among RLAs on the very same condition; without it the oldest answers.
@@ -47,10 +47,10 @@ class BasicLevel:
         Raises UnknownActionError, or UnknownBehaviourError for RLAs that nothing which can be wanted would ask.
         """
         for rla in system.rlas:
-            if rla.behaviour not in wanted.behaviours:
+            if rla.behaviour not in active_behaviour.behaviours:
                 raise UnknownBehaviourError(
                     f"RLA {rla.rla_id} belongs to {_named(rla.behaviour)}, and this task teaches "
-                    f"{', '.join(wanted.behaviours) or 'one without a name'}; "
+                    f"{', '.join(active_behaviour.behaviours) or 'one without a name'}; "
                     "give the task that this knowledge was taught with"
                 )
             if rla.action not in repertoire and not rla.asks:
@@ -60,13 +60,13 @@ class BasicLevel:
                 )
         self.system = system
         self.repertoire = repertoire
-        self.wanted = wanted
-        self._pursued = wanted.behaviour
+        self.active_behaviour = active_behaviour
+        self._behaviour = active_behaviour.behaviour
         self._held = HeldAction(repertoire, minimum_action_ticks)
         self._choice = choice
-        self.nobody_is_asked = False
+        self.skip_withdrawn = False
         """Whether RLAs whose action was withdrawn are passed over, so that their neighbours answer."""
-        self.kept = ""
+        self.held_action = ""
         """The action whose minimum time was not over when it was decided last; empty where any could drive."""
         self._decisions = 0
         self._driver: Rla | None = None
@@ -75,17 +75,17 @@ class BasicLevel:
 
     def restart(self) -> None:
         """Decide as if nothing had driven before; what was taught stays."""
-        self._held.stand()
+        self._held.stop()
         self._driver = None
         if self._choice is not None:
-            self._choice.forget()
+            self._choice.reset()
 
     def apply(self, event: TeachingEvent) -> None:
         """Change the knowledge; what the robot does next follows it at once, whatever action was being held."""
         drives = self._is_about_driving(event)
         self.system.apply(event)
         if drives:
-            self._held.yield_next()
+            self._held.allow_switch()
 
     def _is_about_driving(self, event: TeachingEvent) -> bool:
         """Whether an event, not yet applied, may change what drives; rewards, and what the critic is taught, do not."""
@@ -97,24 +97,24 @@ class BasicLevel:
                 return rla_meant is not None and rla_meant.level == BASIC
         return isinstance(event, LessonUndone | LessonRedone)
 
-    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
+    def decide(self, situation: Situation, senses: SensorReadings, blocking_cause: Cause | None) -> Decision:
         """Answer a situation: the winner's action, the held one, or standstill where it may not drive or knows none."""
-        if self._pursued != self.wanted.behaviour:
-            self._pursued = self.wanted.behaviour
-            self._held.yield_next()
+        if self._behaviour != self.active_behaviour.behaviour:
+            self._behaviour = self.active_behaviour.behaviour
+            self._held.allow_switch()
         self._decisions += 1
-        self.kept = self._held.keeps
-        match = self.system.match(situation.vector, self._pursued, asking=not self.nobody_is_asked)
-        if stand_because is not None:
-            return self._stand(stand_because, match)
+        self.held_action = self._held.held
+        match = self.system.match(situation.vector, self._behaviour, asking=not self.skip_withdrawn)
+        if blocking_cause is not None:
+            return self._stand(blocking_cause, match)
         if match is None or not match.known:
             return self._stand(Cause.UNKNOWN, match)
         rla = match.rla
         if self._choice is not None:
             group = self.system.competitors(rla)
             if len(group) > 1:
-                rla = self._choice.among(group, self._decisions)
-        if self._held.choose(rla.action):
+                rla = self._choice.choose(group, self._decisions)
+        if self._held.select(rla.action):
             if rla is not self._driver:
                 self._driver, self._drivers_condition = rla, None
             return self._drive(senses, Cause.RLA, rla, match, answers=True)
@@ -125,7 +125,7 @@ class BasicLevel:
 
     def would_answer(self, group: tuple[Rla, ...]) -> Rla:
         """Which of several on one condition, oldest first, answers where that is nearest, chance left out."""
-        return group[0] if self._choice is None else self._choice.likely(group, self._decisions)
+        return group[0] if self._choice is None else self._choice.preview(group, self._decisions)
 
     def _drive(self, senses: SensorReadings, cause: Cause, rla: Rla, match: Match, *, answers: bool) -> Decision:
         """What the action at the wheels does; where that one is lost, this level knows no better and asks."""
@@ -145,5 +145,5 @@ class BasicLevel:
 
     def _stand(self, cause: Cause, match: Match | None) -> Decision:
         """Stand; the next action begins anew."""
-        self._held.stand()
+        self._held.stop()
         return Decision(STANDSTILL, cause, None, None, match)

@@ -16,7 +16,7 @@ class HeldAction:
         self.name = ""
         """Of the action that drives, or drove last."""
 
-    def choose(self, action: str) -> bool:
+    def select(self, action: str) -> bool:
         """Let `action` drive; False when another one keeps the wheels, for its minimum time is not over.
 
         One that has finished, or does not know how to go on, keeps them from nobody.
@@ -24,7 +24,7 @@ class HeldAction:
         if self._active is not None:
             if action == self.name:
                 return True
-            if self.keeps:
+            if self.held:
                 return False
         self._active = self._repertoire[action]
         self._active.start()
@@ -33,7 +33,7 @@ class HeldAction:
         return True
 
     @property
-    def keeps(self) -> str:
+    def held(self) -> str:
         """The action that no other one can take the wheels from now; empty where one can."""
         active = self._active
         if active is None or self._ticks >= self._minimum_ticks or active.finished or active.lost:
@@ -51,10 +51,10 @@ class HeldAction:
         self._ticks += 1
         return self._active.step(senses)
 
-    def yield_next(self) -> None:
+    def allow_switch(self) -> None:
         """The next choice counts at once, however short this action drove."""
         self._ticks = self._minimum_ticks
 
-    def stand(self) -> None:
+    def stop(self) -> None:
         """Nothing drives; the next action begins anew."""
         self._active = None

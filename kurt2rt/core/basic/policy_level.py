@@ -14,27 +14,31 @@ class PolicyLevel:
     """Drives as the policy says, with the same minimum time per action as a taught level."""
 
     def __init__(
-        self, policy: ReferencePolicy, repertoire: Repertoire, minimum_action_ticks: int, wanted: ActiveBehaviour
+        self,
+        policy: ReferencePolicy,
+        repertoire: Repertoire,
+        minimum_action_ticks: int,
+        active_behaviour: ActiveBehaviour,
     ) -> None:
         self._policy = policy
         self._repertoire = repertoire
-        self._wanted = wanted
-        self._pursued = wanted.behaviour
+        self._active_behaviour = active_behaviour
+        self._behaviour = active_behaviour.behaviour
         self._held = HeldAction(repertoire, minimum_action_ticks)
 
-    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:  # noqa: ARG002 - the policy sees the senses
+    def decide(self, situation: Situation, senses: SensorReadings, blocking_cause: Cause | None) -> Decision:  # noqa: ARG002 - the policy sees the senses
         """The policy's action for the behaviour that is wanted. Raises UnknownActionError."""
-        if self._pursued != self._wanted.behaviour:
-            self._pursued = self._wanted.behaviour
-            self._held.yield_next()
-        if stand_because is not None:
-            self._held.stand()
-            return Decision(STANDSTILL, stand_because, None, None, None)
-        action = self._policy.choose(senses.infrared_counts, self._pursued)
+        if self._behaviour != self._active_behaviour.behaviour:
+            self._behaviour = self._active_behaviour.behaviour
+            self._held.allow_switch()
+        if blocking_cause is not None:
+            self._held.stop()
+            return Decision(STANDSTILL, blocking_cause, None, None, None)
+        action = self._policy.choose(senses.infrared_counts, self._behaviour)
         if action not in self._repertoire:
             raise UnknownActionError(
                 f"the policy says {action!r}, which the repertoire lacks; "
                 f"add it there, or let the policy say one of: {', '.join(self._repertoire)}"
             )
-        self._held.choose(action)
+        self._held.select(action)
         return Decision(self._held.step(senses), Cause.TEACHER, self._held.name, None, None)

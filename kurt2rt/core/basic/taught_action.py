@@ -7,7 +7,7 @@ from kurt2rt.core.decision.level import Level
 from kurt2rt.core.perception.perception import Perception
 
 
-class Restarting(Protocol):
+class Restartable(Protocol):
     """A part that remembers what was."""
 
     def restart(self) -> None:
@@ -21,18 +21,18 @@ class TaughtSystem:
     finished = False
     """What was taught goes on until the layer above wants something else."""
 
-    def __init__(self, perception: Perception, level: Level, remembering: tuple[Restarting, ...]) -> None:
+    def __init__(self, perception: Perception, level: Level, restartable: tuple[Restartable, ...]) -> None:
         """All are this action's alone. `remembering`: what of them begins anew when it does."""
         self._perception = perception
         self._level = level
-        self._remembering = remembering
+        self._restartable = restartable
         self._driving = False
         self.lost = False
         """Whether its level asks: what it asks about has to be answered in the layer above."""
 
     def start(self) -> None:
         """Forget how it was before; the past begins where the robot is now."""
-        for part in self._remembering:
+        for part in self._restartable:
             part.restart()
         self._driving = self.lost = False
 

@@ -12,7 +12,7 @@ class ActiveBehaviour:
         self.behaviour = behaviours[0]
         """The one that is wanted now."""
 
-    def pursue(self, name: str) -> None:
+    def select(self, name: str) -> None:
         """Follow another behaviour from now on. Raises CommandRefusedError that lists them."""
         if name not in self.behaviours:
             raise CommandRefusedError(RefusalCode.NO_BEHAVIOUR, behaviour=name, known=self.behaviours)

@@ -43,7 +43,7 @@ class ActiveStop(NamedTuple):
         return self.name if self.reason in _OF_A_TEACHER else ""
 
     @property
-    def lifts_itself(self) -> bool:
+    def is_automatic(self) -> bool:
         """Whether the robot stopped itself, so that a script may resume, unlike after a person's stop."""
         return self.reason in (StopReason.GUARD, StopReason.LINK_LOST)
 

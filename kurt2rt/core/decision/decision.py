@@ -85,7 +85,7 @@ class Decision(NamedTuple):
         return self.cause in (Cause.UNKNOWN, Cause.TOUCHES)
 
 
-def blamed_in(decision: Decision) -> int | None:
+def withdrawn_rla_in(decision: Decision) -> int | None:
     """Return the basic level's RLA whose action was withdrawn, where the robot asks for another one; None elsewhere."""
     match = decision.match
     if decision.cause is not Cause.UNKNOWN or decision.asks_at != BASIC or match is None:
@@ -93,7 +93,7 @@ def blamed_in(decision: Decision) -> int | None:
     return match.rla.rla_id if match.rla.asks and match.distance <= match.radius else None
 
 
-def standing(decision: Decision, cause: Cause | None) -> Decision:
+def stopped(decision: Decision, cause: Cause | None) -> Decision:
     """The decision of a level that was told to stand: one that fails, and would drive all the same, stands.
 
     `cause`: why it was told so; None: it was not, and may drive.

@@ -10,6 +10,6 @@ from kurt2rt.core.perception.perception import Situation
 class Level(Protocol):
     """Answers each situation with a decision."""
 
-    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
+    def decide(self, situation: Situation, senses: SensorReadings, blocking_cause: Cause | None) -> Decision:
         """Decide this tick; with a reason to stand, stand."""
         ...

@@ -58,7 +58,7 @@ class Standing(NamedTuple):
     """Whether the robot drives, and if not why."""
 
     reason: StandReason = StandReason.DRIVES
-    needs_go: bool = False
+    needs_resume: bool = False
     """Whether the robot stands until its teacher says Go, whatever else ends."""
     asks: bool = False
     """Whether an answer of its teacher lets it drive on."""
@@ -142,7 +142,7 @@ def standing_latched(reasons: tuple[str, ...], *, asks: bool = False, stall_s: f
     return Standing(reason, True, asks, stall_s if reason is StandReason.COMPUTER_TOO_SLOW else None)
 
 
-def touched(wheel_speeds: WheelSpeeds, reasons: tuple[str, ...]) -> StandReason | None:
+def touched_bumper(wheel_speeds: WheelSpeeds, reasons: tuple[str, ...]) -> StandReason | None:
     """Return which bumpers hold wheels that were to drive on; None where they turn, or none of the bumpers holds.
 
     Args:
@@ -170,7 +170,7 @@ class BumperWatch:
     def update(self, decision: Decision, grant: GuardResult) -> bool:
         """Return whether the robot is held now, and has been for ASKS_AFTER_TICKS."""
         pushes = decision.cause in (Cause.RLA, Cause.HELD) and not grant.latched
-        held = pushes and touched(grant.wheel_speeds, grant.reasons) is not None
+        held = pushes and touched_bumper(grant.wheel_speeds, grant.reasons) is not None
         if held:
             self._held_ticks = min(self._held_ticks + 1, ASKS_AFTER_TICKS)
             self._free_ticks = 0
@@ -221,11 +221,11 @@ class StandingWatch:
     def _held_back(self, decision: Decision, grant: GuardResult) -> StandReason | None:
         """Return why the guard lets none of what was decided through, once it has for some ticks."""
         if decision.cause is Cause.TOUCHES and not grant.latched:
-            return touched(grant.wheel_speeds, grant.reasons)
+            return touched_bumper(grant.wheel_speeds, grant.reasons)
         if grant.latched or not decision.driving:
             self._held, self._held_ticks = None, 0
             return None
-        bumpers = touched(grant.wheel_speeds, grant.reasons)
+        bumpers = touched_bumper(grant.wheel_speeds, grant.reasons)
         if bumpers is not None:
             return bumpers
         held = next((_HELD[each] for each in grant.reasons if each in _HELD), None)

@@ -87,7 +87,7 @@ def stop_of_text(text: str) -> ActiveStop | None:
     return None
 
 
-def why_it_stands(standing: Standing) -> str:
+def reason_text(standing: Standing) -> str:
     """Return the reason in a few words, to go on from "stands: "; empty while the robot drives."""
     stall = "" if standing.stall_s is None else f" for {standing.stall_s:.1f} s"
     return _TEXTS[standing.reason].why.format(
@@ -95,31 +95,31 @@ def why_it_stands(standing: Standing) -> str:
     )
 
 
-def what_it_asks(standing: Standing) -> str:
+def question_text(standing: Standing) -> str:
     """Return the question of a robot that is held at a bumper; empty where it asks nothing, or something else."""
-    return _QUESTIONS.get(standing.reason, "") if standing.asks and not standing.needs_go else ""
+    return _QUESTIONS.get(standing.reason, "") if standing.asks and not standing.needs_resume else ""
 
 
-def in_short(standing: Standing) -> str:
+def short_text(standing: Standing) -> str:
     """Return why the robot stands, for one line among others; empty while it drives or asks what to do."""
-    if standing.needs_go:
-        return f"stands until Go: {why_it_stands(standing)}"
+    if standing.needs_resume:
+        return f"stands until Go: {reason_text(standing)}"
     if standing.reason in (StandReason.DRIVES, StandReason.ASKS, StandReason.ASKS_THE_WAY):
         return ""
-    return f"stands: {what_it_asks(standing) or why_it_stands(standing)}"
+    return f"stands: {question_text(standing) or reason_text(standing)}"
 
 
-def headline_of(standing: Standing, go: str) -> str:
+def standing_headline(standing: Standing, go: str) -> str:
     """Return one or two sentences for the teacher: why the robot stands, and what to do; empty while it drives.
 
     Args:
         standing: of the robot.
         go: how the teacher says Go on this surface, as a sentence without its full stop.
     """
-    question = what_it_asks(standing)
+    question = question_text(standing)
     if question or standing.reason is StandReason.DRIVES:
         return question
     to_do = _TEXTS[standing.reason].to_do
-    if standing.needs_go:
+    if standing.needs_resume:
         to_do = f"{to_do}; then {go[0].lower() + go[1:] if go[:2] != 'GO' else go}" if to_do else go
-    return f"Stands: {why_it_stands(standing)}" + (f". {to_do}" if to_do else "")
+    return f"Stands: {reason_text(standing)}" + (f". {to_do}" if to_do else "")

@@ -76,7 +76,7 @@ class MidLevel:
 
         Where one of the RLAs that know this very situation says so, too, it commands: what comes of it is its doing.
         """
-        self._wanted.pursue(behaviour)
+        self._wanted.select(behaviour)
         self._overridden = True
 
     def release(self) -> None:
@@ -120,5 +120,5 @@ class MidLevel:
         rla = match.rla
         if self.chooser is not None:
             rla = self.chooser.choose(self.system.competitors(rla), self.situation.vector) or rla
-        wanted.pursue(rla.action)
+        wanted.select(rla.action)
         return MidDecision(rla.action, rla.rla_id, match, False, False, None)

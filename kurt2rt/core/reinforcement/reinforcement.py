@@ -121,7 +121,7 @@ class Reinforcement:
             self._alone = self._account(worths) if phase is Phase.AUTONOMOUS else None
             self._alone_bookings.clear()
             self._repair.count_from(worths)
-            self.choice.forget()
+            self.choice.reset()
 
     def worths_alone(self) -> Statistics:
         """What RLAs are worth in the account of phase 5; empty in any other phase."""
@@ -133,7 +133,7 @@ class Reinforcement:
         """In the account of phase 5 these RLAs are worth again what `worths_alone` told of them."""
         if self._alone is not None:
             self._alone.restore(worths, [rla_id for rla_id in rla_ids if self._lives(rla_id)])
-            self.choice.forget()
+            self.choice.reset()
 
     def credits_of(self, value: int, tick: int) -> tuple[Credit, ...]:
         """What a teacher's signal about a tick that is remembered would change."""
@@ -250,7 +250,7 @@ class Reinforcement:
 
     def _blame(self, value: int, trace: EligibilityTrace, signal: str, teacher: str) -> None:
         if value < 0:
-            self.choice.forget()
+            self.choice.reset()
             least = self._worths.blamed_share
             blamed = tuple(rla_id for rla_id, share in trace.shares.items() if share >= least)
             self._blames.append(_Blame(blamed, signal, teacher))
@@ -263,7 +263,7 @@ class Reinforcement:
                 self.rule.book(map(CreditUpdate, credits_, self._depths.pop(lesson)), -1)
                 if self._alone is not None:
                     self._alone.book(self._alone_bookings.pop(lesson, ()), -1)
-                self.choice.forget()
+                self.choice.reset()
             case ActionReplaced(rla_id):
                 for account in self._accounts:
                     account.go_back(rla_id)
@@ -288,7 +288,7 @@ class Reinforcement:
             case RlaRewarded(credits=credits_):
                 depths = self._depths[lesson] = _depths(self.rule, credits_)
                 self.rule.book(map(CreditUpdate, credits_, depths), 1)
-                self.choice.forget()
+                self.choice.reset()
             case event:
                 self._hear_of_an_rla(event, origin.tick)
 

@@ -9,23 +9,23 @@ from kurt2rt.core.teaching.mid_lessons import MidLessons
 class BehaviourSelection:
     """Takes the wishes of teachers in the order in which they saw the robot, however late they come."""
 
-    def __init__(self, wanted: ActiveBehaviour, mid: MidLessons | None) -> None:
+    def __init__(self, active_behaviour: ActiveBehaviour, mid: MidLessons | None) -> None:
         """`mid`: None: nobody but the teacher says what is wanted."""
-        self._wanted = wanted
+        self._active_behaviour = active_behaviour
         self._mid = mid
         self._seen_tick = -1
         """What the teacher had seen when he said what is wanted now."""
 
-    def take(self, command: Pursue, tick: int) -> Outcome:
+    def select(self, command: Pursue, tick: int) -> Outcome:
         """Follow the behaviour from this tick on; return what was done. Raises CommandRefusedError."""
-        wanted, mid = self._wanted, self._mid
+        wanted, mid = self._active_behaviour, self._mid
         seen_tick = tick if command.seen_tick is None else command.seen_tick
         if seen_tick < self._seen_tick:
             raise CommandRefusedError(RefusalCode.BEHAVIOUR_SINCE, behaviour=wanted.behaviour)
         if mid is not None and seen_tick < mid.passed_at_tick:
             raise CommandRefusedError(RefusalCode.JUNCTION_PASSED)
         if mid is None:
-            wanted.pursue(command.behaviour)
+            wanted.select(command.behaviour)
         else:
             mid.mid.override(command.behaviour)
         self._seen_tick = seen_tick

@@ -6,7 +6,7 @@ from kurt2rt.core.rla.rla import MID, Origin, SituationNamed, TeachingEvent
 from kurt2rt.core.teaching.commands import BeAt, NameSituation, Seek, StopSeeking
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 
-ErrandCommand = NameSituation | Seek | StopSeeking | BeAt
+GoalCommand = NameSituation | Seek | StopSeeking | BeAt
 
 LONGEST_NAME = 64
 
@@ -21,19 +21,19 @@ class GoalCommands:
         """What the teacher had seen when he said what is sought now."""
         self._planned_tick = -1
 
-    def name(self, command: NameSituation, origin: Origin) -> tuple[Outcome, TeachingEvent]:
+    def name_situation(self, command: NameSituation, origin: Origin) -> tuple[Outcome, TeachingEvent]:
         """Return what was done and the event that names a situation. Raises CommandRefusedError."""
         name = command.name
         if not 0 < len(name) <= LONGEST_NAME or not name.isprintable() or name != name.strip():
             raise CommandRefusedError(RefusalCode.BAD_NAME, name=name, longest=LONGEST_NAME)
-        situation = tuple(self._lessons.meant(command.decision_tick).vector.tolist())
+        situation = tuple(self._lessons.context_of(command.decision_tick).vector.tolist())
         return Outcome.of(ResultCode.SITUATION_NAMED, name=name), SituationNamed(name, situation, MID, origin)
 
     def carry_out(self, command: Seek | StopSeeking | BeAt, tick: int) -> Outcome:
         """Return what was done. Raises CommandRefusedError, also for a command that a later one has replaced."""
         seen_tick = tick if command.seen_tick is None else command.seen_tick
         if isinstance(command, BeAt):
-            return self._be_at(command.name, seen_tick)
+            return self._locate(command.name, seen_tick)
         if seen_tick < self._seen_tick:
             raise CommandRefusedError(RefusalCode.GOAL_SINCE)
         said = self._seek(command, tick)
@@ -50,7 +50,7 @@ class GoalCommands:
         self._planned_tick = tick
         return Outcome.of(ResultCode.GOAL_SOUGHT, says=says)
 
-    def _be_at(self, name: str, seen_tick: int) -> Outcome:
+    def _locate(self, name: str, seen_tick: int) -> Outcome:
         if seen_tick < self._lessons.passed_at_tick:
             raise CommandRefusedError(RefusalCode.JUNCTION_PASSED)
         self._navigator.be_at(name)

@@ -29,11 +29,11 @@ class TeacherInbox:
             )
         self._waiting.append(command)
 
-    def hold(self, commands: Iterable[Input]) -> None:
+    def replace_pending(self, commands: Iterable[Input]) -> None:
         """Have the next tick take exactly these, in this order, as a recorded one did."""
         self._waiting = deque(commands)
 
-    def take(self) -> tuple[Input, ...]:
+    def pop_all(self) -> tuple[Input, ...]:
         """All commands that wait, in the order they came; never blocks."""
         if not self._waiting:
             return ()

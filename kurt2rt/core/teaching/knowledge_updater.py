@@ -20,7 +20,7 @@ class KnowledgeUpdater:
         self,
         level: BasicLevel,
         *,
-        taken_command_ids: Iterable[str],
+        handled_command_ids: Iterable[str],
         reinforcement: Reinforcement | None,
         agreement: Agreement | None,
         self_teaching: SelfTeaching | None,
@@ -30,14 +30,14 @@ class KnowledgeUpdater:
         self._reinforcement = reinforcement
         self._agreement = agreement
         self._self_teaching = self_teaching
-        self.taken = set(taken_command_ids)
+        self.handled_ids = set(handled_command_ids)
         """Ids of all commands that were carried out, and of all that came of signals."""
-        self.trouble = ""
+        self.error = ""
         """What the robot wanted to learn by itself and could not, in one line; empty while there is nothing."""
         self._skipped = 0
 
     @property
-    def critics_role(self) -> CriticState:
+    def critic_state(self) -> CriticState:
         """What the critic did in the last tick; it listens where there is none."""
         return CriticState.LISTENS if self._self_teaching is None else self._self_teaching.role
 
@@ -49,7 +49,7 @@ class KnowledgeUpdater:
     def apply(self, event: TeachingEvent) -> None:
         """Change the knowledge, and tell all that follow it. Raises InvalidEventError, and then nothing has changed."""
         self._level.apply(event)
-        self.taken.add(event.origin.command_id)
+        self.handled_ids.add(event.origin.command_id)
         if self._reinforcement is not None:
             self._reinforcement.hear(event)
         if self._agreement is not None:
@@ -57,7 +57,9 @@ class KnowledgeUpdater:
         if self._self_teaching is not None:
             self._self_teaching.hear(event)
 
-    def from_tick(self, phase: Phase, tick: int, decision: Decision, opinion: Opinion | None) -> list[TeachingEvent]:
+    def learn_from_tick(
+        self, phase: Phase, tick: int, decision: Decision, opinion: Opinion | None
+    ) -> list[TeachingEvent]:
         """What is learnt from a tick: the decision, and what the critic thinks of it.
 
         The events act from the next tick on and have to reach the journal.
@@ -77,18 +79,18 @@ class KnowledgeUpdater:
             alone.signal(tick, decision, opinion)
         events: list[TeachingEvent] = []
         for lesson in reinforcement.repairs(tick, phase):
-            self._take_in(lesson, events)
+            self._apply_own(lesson, events)
         if alone is not None:
             for undone in alone.roll_back(tick, decision, opinion):
-                self._take_in(undone, events)
+                self._apply_own(undone, events)
         return events
 
-    def _take_in(self, event: TeachingEvent, events: list[TeachingEvent]) -> None:
+    def _apply_own(self, event: TeachingEvent, events: list[TeachingEvent]) -> None:
         """Apply what the robot learnt by itself. Where it does not fit, it is skipped, and told of."""
         try:
             self.apply(event)
         except InvalidEventError as error:
             self._skipped += 1
-            self.trouble = f"changes that did not fit the knowledge were skipped: {self._skipped}, the last: {error}"
+            self.error = f"changes that did not fit the knowledge were skipped: {self._skipped}, the last: {error}"
         else:
             events.append(event)

@@ -20,11 +20,11 @@ from kurt2rt.core.rla.rla import (
     RlaDeleted,
     RlaRewarded,
 )
+from kurt2rt.core.teaching.appraisal_lessons import AppraisalLessons
 from kurt2rt.core.teaching.commands import Appraise, Correct, DeleteRla, ReplaceAction, Reward, Teach, Undo
 from kurt2rt.core.teaching.lesson_context import LessonContext
+from kurt2rt.core.teaching.lesson_result import LessonResult, rla_outcome
 from kurt2rt.core.teaching.mid_lessons import MidLessons
-from kurt2rt.core.teaching.rewards import RewardCommands
-from kurt2rt.core.teaching.taught import Taught, rla_outcome
 
 LessonCommand = Teach | Correct | ReplaceAction | DeleteRla | Reward | Appraise | Undo
 """Commands that are about the knowledge."""
@@ -40,7 +40,7 @@ class LessonBuilder:
         *,
         insert_beyond_share: float,
         reinforcement: Reinforcement | None,
-        appraising: RewardCommands | None,
+        appraisal_lessons: AppraisalLessons | None,
         mid: MidLessons | None = None,
     ) -> None:
         """Without `reinforcement` rewards are only counted; without `appraising` there is no critic to teach.
@@ -52,13 +52,13 @@ class LessonBuilder:
         self._recent = recent
         self._insert_beyond_share = insert_beyond_share
         self._reinforcement = reinforcement
-        self._appraising = appraising
-        self._appraisals: tuple[str, ...] = () if appraising is None else appraising.appraisals
+        self._appraisal_lessons = appraisal_lessons
+        self._appraisals: tuple[str, ...] = () if appraisal_lessons is None else appraisal_lessons.appraisals
         self._mid = mid
         self.corrections_at: Counter[str] = Counter()
         """How often a teacher has corrected, by level."""
 
-    def event_of(self, command: LessonCommand, situation: Situation, origin: Origin) -> Taught:
+    def build(self, command: LessonCommand, situation: Situation, origin: Origin) -> LessonResult:
         """Return what a command teaches in the present `situation`. Raises CommandRefusedError."""
         match command:
             case Teach() | Correct():
@@ -66,13 +66,13 @@ class LessonBuilder:
             case ReplaceAction(rla_id=rla_id, action=action):
                 rla = self._require_rla(rla_id)
                 self._require_action_of(rla.level, action)
-                other = self._other_way(action, rla)
+                other = self._competitor_with(action, rla)
                 if other is not None:
                     refuse(rla_outcome(RefusalCode.SAYS_SO, other, action=action, delete=rla_id))
                 return self._replace(rla, action, origin)
             case DeleteRla(rla_id=rla_id):
                 deleted = rla_outcome(ResultCode.RLA_DELETED, self._require_rla(rla_id))
-                return Taught(deleted, RlaDeleted(rla_id, origin))
+                return LessonResult(deleted, RlaDeleted(rla_id, origin))
             case Reward():
                 return self._reward(command, origin)
             case Appraise():
@@ -80,20 +80,20 @@ class LessonBuilder:
             case Undo(lesson=lesson):
                 return self._undo(lesson or self._system.last_standing_lesson, origin)
 
-    def _lesson(self, command: Teach | Correct, situation: Situation, origin: Origin) -> Taught:
+    def _lesson(self, command: Teach | Correct, situation: Situation, origin: Origin) -> LessonResult:
         if command.level == MID:
             if self._mid is None:
                 raise CommandRefusedError(RefusalCode.NO_MID_LEVEL)
-            require_behaviour(command.action, self._level.wanted.behaviours)
-            meant = self._mid.meant(command.decision_tick)
+            require_behaviour(command.action, self._level.active_behaviour.behaviours)
+            meant = self._mid.context_of(command.decision_tick)
         elif command.level == BASIC:
             require_action(command.action, self._level.repertoire)
-            meant = self._meant_at_the_basic_level(command.decision_tick, situation)
+            meant = self._basic_context(command.decision_tick, situation)
         else:
             raise CommandRefusedError(RefusalCode.NO_LEVEL, level=command.level, known=(BASIC, MID))
         nearest = self._system.match(meant.vector, meant.behaviour, meant.level)
         if isinstance(command, Teach) and command.beside:
-            return self._beside(command.action, meant, nearest, origin)
+            return self._add_alternative(command.action, meant, nearest, origin)
         # On the very condition of an RLA a second one would never win: the older one does.
         replace_within_share = 0.0
         if isinstance(command, Correct):
@@ -101,24 +101,24 @@ class LessonBuilder:
             replace_within_share = meant.insert_beyond_share
         elif meant.touched or (nearest is not None and nearest.rla.asks):
             replace_within_share = meant.insert_beyond_share  # it waits for this answer
-        elif meant.level == MID and nearest is not None and _may_not_stand_beside(nearest, meant):
-            return self._beside(command.action, meant, nearest, origin)
+        elif meant.level == MID and nearest is not None and _is_at_known_place(nearest, meant):
+            return self._add_alternative(command.action, meant, nearest, origin)
         if nearest is None or nearest.distance > replace_within_share * nearest.radius:
             return self._create(command.action, meant, origin)
-        rla = self._of_competitors(nearest.rla, meant)
+        rla = self._corrected_rla(nearest.rla, meant)
         if rla.action == command.action:
-            return Taught(rla_outcome(ResultCode.RLA_AGREES, rla, action=command.action))
-        other = self._other_way(command.action, rla)
+            return LessonResult(rla_outcome(ResultCode.RLA_AGREES, rla, action=command.action))
+        other = self._competitor_with(command.action, rla)
         if other is not None:
-            return Taught(rla_outcome(ResultCode.RLA_CONFLICTS, other, action=command.action))
+            return LessonResult(rla_outcome(ResultCode.RLA_CONFLICTS, other, action=command.action))
         return self._replace(rla, command.action, origin)
 
-    def _meant_at_the_basic_level(self, decision_tick: int | None, situation: Situation) -> LessonContext:
+    def _basic_context(self, decision_tick: int | None, situation: Situation) -> LessonContext:
         share = self._insert_beyond_share
         if decision_tick is None:
             newest = self._recent.newest
             drove, touched = self._recent.rla(newest), self._recent.touched(newest)
-            return LessonContext(situation.vector, self._level.wanted.behaviour, BASIC, drove, share, touched)
+            return LessonContext(situation.vector, self._level.active_behaviour.behaviour, BASIC, drove, share, touched)
         self._require_known(decision_tick)
         if not self._recent.saw(decision_tick):
             raise CommandRefusedError(RefusalCode.WAS_BLIND)
@@ -126,7 +126,9 @@ class LessonBuilder:
         touched = self._recent.touched(decision_tick)
         return LessonContext(self._recent.situation(decision_tick), behaviour, BASIC, drove, share, touched)
 
-    def _beside(self, action: str, meant: LessonContext, nearest: Match | None, origin: Origin) -> Taught:
+    def _add_alternative(
+        self, action: str, meant: LessonContext, nearest: Match | None, origin: Origin
+    ) -> LessonResult:
         """Another RLA on the very condition of those that know the situation; where none does, a first one."""
         if meant.level != MID:
             raise CommandRefusedError(RefusalCode.NO_OTHER_WAY)
@@ -134,10 +136,10 @@ class LessonBuilder:
             return self._create(action, meant, origin)
         for rla in self._system.competitors(nearest.rla):
             if rla.action == action:
-                return Taught(rla_outcome(ResultCode.RLA_AGREES, rla, action=action))
+                return LessonResult(rla_outcome(ResultCode.RLA_AGREES, rla, action=action))
         return self._create(action, meant, origin, beside=nearest.rla)
 
-    def _of_competitors(self, nearest: Rla, meant: LessonContext) -> Rla:
+    def _corrected_rla(self, nearest: Rla, meant: LessonContext) -> Rla:
         """Where several stand on one condition: the one that drove then, else the one that would answer."""
         group = self._system.competitors(nearest)
         if len(group) == 1 or nearest.asks:
@@ -149,7 +151,7 @@ class LessonBuilder:
             return nearest
         return self._reinforcement.choice.best(group)
 
-    def _create(self, action: str, meant: LessonContext, origin: Origin, beside: Rla | None = None) -> Taught:
+    def _create(self, action: str, meant: LessonContext, origin: Origin, beside: Rla | None = None) -> LessonResult:
         rla = Rla(
             rla_id=self._system.next_id,
             condition=tuple(meant.vector.tolist()) if beside is None else beside.condition,
@@ -163,22 +165,22 @@ class LessonBuilder:
             outcome = rla_outcome(ResultCode.RLA_TAUGHT, rla, action=action)
         else:
             outcome = rla_outcome(ResultCode.RLA_ADDED, rla, action=action, next_to=beside.rla_id)
-        return Taught(outcome, RlaCreated(rla))
+        return LessonResult(outcome, RlaCreated(rla))
 
-    def _replace(self, rla: Rla, action: str, origin: Origin) -> Taught:
+    def _replace(self, rla: Rla, action: str, origin: Origin) -> LessonResult:
         event = ActionReplaced(rla.rla_id, action, rla.action, origin)
         if rla.asks:
-            return Taught(rla_outcome(ResultCode.RLA_ANSWERED, rla, action=action), event)
-        return Taught(rla_outcome(ResultCode.RLA_CORRECTED, rla, action=action, was=rla.action), event)
+            return LessonResult(rla_outcome(ResultCode.RLA_ANSWERED, rla, action=action), event)
+        return LessonResult(rla_outcome(ResultCode.RLA_CORRECTED, rla, action=action, was=rla.action), event)
 
-    def _other_way(self, action: str, rla: Rla) -> Rla | None:
+    def _competitor_with(self, action: str, rla: Rla) -> Rla | None:
         """Another RLA on the same condition that says so: at the mid level they are ways, and no two are the same."""
         if rla.level != MID or rla.asks:
             return None
         return next((each for each in self._system.competitors(rla) if each is not rla and each.action == action), None)
 
-    def _reward(self, command: Reward, origin: Origin) -> Taught:
-        meant = self._meant(command.decision_tick)
+    def _reward(self, command: Reward, origin: Origin) -> LessonResult:
+        meant = self._known_tick(command.decision_tick)
         rla_id = self._recent.rla(meant)
         if rla_id is None:
             raise CommandRefusedError(RefusalCode.NO_RLA_DROVE)
@@ -189,14 +191,14 @@ class LessonBuilder:
         opinion = self._recent.opinion(meant)
         said = None if opinion is None else opinion.said
         code = ResultCode.RLA_REWARDED if command.value > 0 else ResultCode.RLA_PUNISHED
-        return Taught(rla_outcome(code, rla), RlaRewarded(rla_id, command.value, meant, origin, credits_, said))
+        return LessonResult(rla_outcome(code, rla), RlaRewarded(rla_id, command.value, meant, origin, credits_, said))
 
-    def _appraise(self, command: Appraise, origin: Origin) -> Taught:
-        if self._appraising is None:
+    def _appraise(self, command: Appraise, origin: Origin) -> LessonResult:
+        if self._appraisal_lessons is None:
             raise CommandRefusedError(RefusalCode.NO_CRITIC)
-        return self._appraising.event_of(command, self._meant(command.decision_tick), origin)
+        return self._appraisal_lessons.build(command, self._known_tick(command.decision_tick), origin)
 
-    def _undo(self, lesson: str | None, origin: Origin) -> Taught:
+    def _undo(self, lesson: str | None, origin: Origin) -> LessonResult:
         if lesson is None:
             raise CommandRefusedError(RefusalCode.NO_LESSON)
         refuse(self._system.why_not_undo(lesson))
@@ -205,9 +207,9 @@ class LessonBuilder:
             refuse(rla_outcome(RefusalCode.ACTION_NOT_IN_TASK, back, action=back.action))
         record = self._system.lesson(lesson)
         assert record is not None
-        return Taught(Outcome.of(ResultCode.LESSON_UNDONE, says=record.text), LessonUndone(lesson, origin))
+        return LessonResult(Outcome.of(ResultCode.LESSON_UNDONE, says=record.text), LessonUndone(lesson, origin))
 
-    def _meant(self, decision_tick: int | None) -> int:
+    def _known_tick(self, decision_tick: int | None) -> int:
         # The newest, not the tick before this one, which may have been missed.
         meant = self._recent.newest if decision_tick is None else decision_tick
         self._require_known(meant)
@@ -215,18 +217,18 @@ class LessonBuilder:
 
     def _require_action_of(self, level: str, action: str) -> None:
         if level == MID:
-            require_behaviour(action, self._level.wanted.behaviours)
+            require_behaviour(action, self._level.active_behaviour.behaviours)
         else:
             require_action(action, self._level.repertoire if level == BASIC else self._appraisals)
 
     def _can_act(self, rla: Rla) -> bool:
         """Whether an RLA that comes back can be followed: knowledge may be older than the task, or another task's."""
-        behaviours = self._level.wanted.behaviours
+        behaviours = self._level.active_behaviour.behaviours
         if rla.level == BASIC:
             return rla.behaviour in behaviours and (rla.asks or rla.action in self._level.repertoire)
         if rla.level == MID:
             return self._mid is None or rla.asks or rla.action in behaviours
-        return self._appraising is None or rla.action in self._appraisals
+        return self._appraisal_lessons is None or rla.action in self._appraisals
 
     def _require_rla(self, rla_id: int) -> Rla:
         rla = self._system.get(rla_id)
@@ -239,7 +241,7 @@ class LessonBuilder:
             raise CommandRefusedError(RefusalCode.TICK_FORGOTTEN, tick=tick)
 
 
-def _may_not_stand_beside(nearest: Match, meant: LessonContext) -> bool:
+def _is_at_known_place(nearest: Match, meant: LessonContext) -> bool:
     """Whether a situation is at a place that is known, where a second one so near would be the same place twice."""
     return (
         meant.insert_beyond_share > 0.0

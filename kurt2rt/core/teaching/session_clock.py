@@ -5,7 +5,7 @@ from kurt2rt.core.rla.rla import Origin, SessionBegun, SessionEnded, TeachingEve
 from kurt2rt.core.teaching.commands import BeginSession, EndSession
 
 
-class TeachingClock:
+class SessionClock:
     """Runs while a session is on; one at a time."""
 
     def __init__(self) -> None:
@@ -18,7 +18,7 @@ class TeachingClock:
         """How long the session that is on has lasted at `tick`, or how long the last one did."""
         return self._lasted_ticks if self.session is None else tick - self._from_tick
 
-    def take(self, command: BeginSession | EndSession, tick: int, origin: Origin) -> tuple[Outcome, TeachingEvent]:
+    def apply(self, command: BeginSession | EndSession, tick: int, origin: Origin) -> tuple[Outcome, TeachingEvent]:
         """Begin or end a session; return what was done and its event. Raises CommandRefusedError."""
         if isinstance(command, BeginSession):
             if self.session is not None:

@@ -27,7 +27,7 @@ from kurt2rt.runtime import build_runtime
 class NoTeachingAllowed:
     """The keeper of a run in which nobody teaches: an event that comes all the same is a defect."""
 
-    trouble: str | None = None
+    error: str | None = None
 
     def submit(self, event: TeachingEvent) -> None:
         """Refuse it, loudly."""
@@ -139,9 +139,9 @@ async def examine(
         NoTeachingAllowed(),
         clock,
         level_override=level,
-        wanted=wanted,
-        saved=saved,
-        asked=False,
+        active_behaviour=wanted,
+        checkpoint=saved,
+        teacher_available=False,
     )
     if alone is not None:
         runtime.reinforcement.rule.restore(_worths_in_phase_5(alone, runtime.level.system.rlas, task))
@@ -183,8 +183,8 @@ async def examine(
         if drive.course.stranded:
             drive.reposition()
         say_what_is_wanted(record.behaviour)
-        if record.grant.latched:  # nobody is there to say Go
-            alarm = record.grant.reasons[0]
+        if record.guard_result.latched:  # nobody is there to say Go
+            alarm = record.guard_result.reasons[0]
             runtime.scheduler.end()
         elif drive.makes_no_way(waits=False):
             stuck += 1

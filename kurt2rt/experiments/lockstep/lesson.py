@@ -128,7 +128,7 @@ async def teach(
         dispatcher = ScriptedDispatcher(
             task.behaviours, task.teaching.teacher, period_s=period_s, seed=seed, session=session
         )
-    critics = runtime.school.agreement
+    critics = runtime.handler.agreement
     chance = random.Random(f"course of {session}")
     rescue_s = task.teaching.rescue_after_s if plan.rescue_after_s is None else plan.rescue_after_s
     drive = Drive(simulation, task, no_way_s=rescue_s, period_s=period_s, chance=chance)
@@ -176,10 +176,10 @@ async def teach(
         refused += require_carried_out(record, task, may_be_late=teacher.is_signal)
         if record.tick in begins:
             enter(begins[record.tick])
-        latched_ticks = latched_ticks + 1 if record.grant.latched else 0
+        latched_ticks = latched_ticks + 1 if record.guard_result.latched else 0
         for command in teacher.on_tick(record):
             say(command, record.tick)
-            if isinstance(command, Resume) and record.grant.latched:  # what he had shown ended in an alarm
+            if isinstance(command, Resume) and record.guard_result.latched:  # what he had shown ended in an alarm
                 lift_alarm(record.tick)
         if dispatcher is not None:
             said = dispatcher.on_tick(record, route_of(drive.course, task).ahead)
@@ -221,7 +221,7 @@ async def teach(
         if record.tick % (_AGREEMENT_EVERY_S * ticks_per_second) == 0:
             agreement.append(None if critics is None else critics.share)
 
-    if dispatcher is None and drive.course.behaviour != runtime.wanted.behaviour:
+    if dispatcher is None and drive.course.behaviour != runtime.active_behaviour.behaviour:
         runtime.inbox.put(teacher.select_behaviour(drive.course.behaviour))
     if plan.phases[0][0] is not teacher.phase:
         enter(plan.phases[0][0])
@@ -234,13 +234,13 @@ async def teach(
         rlas=system.rlas,
         knowledge_hash=system.knowledge_hash(),
         asks=len(ask_positions),
-        corrections=runtime.school.corrections,
+        corrections=runtime.handler.corrections,
         rescues=rescues,
         statistics=runtime.statistics,
         growth=tuple(growth),
         trail=tuple(trail),
         ask_positions=tuple(ask_positions),
-        ledger=runtime.ledger,
+        ledger=runtime.timer,
         alarms=alarms,
         repositions=drive.repositions,
         deletions=deletions,
@@ -256,10 +256,10 @@ async def teach(
         share_unknown=unknown / max(ticks, 1),
         agreement=tuple(agreement),
         share_trusted=trusted / max(ticks, 1),
-        saved=runtime.to_save(),
+        saved=runtime.snapshot(),
         mid_rlas=system.rlas_at(MID),
         mid_asks=mid_asks,
-        mid_corrections=runtime.school.corrections_at(MID),
+        mid_corrections=runtime.handler.corrections_at(MID),
         missed_junctions=0 if dispatcher is None else dispatcher.missed,
         alone=runtime.reinforcement.worths_alone() if teacher.phase is Phase.AUTONOMOUS else None,
     )

@@ -51,7 +51,7 @@ class LessonKeeping:
         """Keep what was counted, and wait until all is durable. Raises LessonLostError."""
         self.writer.submit_statistics(counted)
         if not self.writer.flush(timeout_s=30.0):
-            raise LessonLostError(self.writer.trouble or f"{self._file}: the disk did not answer within 30 s")
+            raise LessonLostError(self.writer.error or f"{self._file}: the disk did not answer within 30 s")
         self.look()
 
 

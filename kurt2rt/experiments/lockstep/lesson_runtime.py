@@ -36,6 +36,6 @@ def build_lesson_runtime(
         keeper,
         LockstepClock(simulation.step),
         statistics=statistics,
-        saved=saved,
-        asks_when_held=False,
+        checkpoint=saved,
+        asks_at_bumper=False,
     )

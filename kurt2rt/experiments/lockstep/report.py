@@ -27,7 +27,7 @@ def render_curriculum(result: CurriculumResult, task: TaskSettings) -> Renderabl
     taught.add_column("here", number=True)
     taught.add_column("paper", number=True)
     taught.add_row("RLAs", str(len(lesson.rlas)), str(task.paper.rlas))
-    taught.add_row("teaching, s of robot time", f"{lesson.teaching_s:.0f}", task.paper.teaching_told)
+    taught.add_row("teaching, s of robot time", f"{lesson.teaching_s:.0f}", task.paper.teaching_time_text)
     taught.add_row("asks", str(lesson.asks), "")
     taught.add_row("corrections", str(lesson.corrections), "")
     taught.add_row("rescues by hand", str(lesson.rescues), "")
@@ -207,7 +207,7 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
         ("RLAs", [len(result.lesson.rlas) for result in results], str(task.paper.rlas)),
         ("asks", [result.lesson.asks for result in results], ""),
         ("corrections", [result.lesson.corrections for result in results], ""),
-        ("teaching, s of robot time", [result.lesson.teaching_s for result in results], task.paper.teaching_told),
+        ("teaching, s of robot time", [result.lesson.teaching_s for result in results], task.paper.teaching_time_text),
     )
     for name, values, paper in counted:
         low, median, high = quartiles(values)

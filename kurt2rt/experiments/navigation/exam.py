@@ -77,8 +77,8 @@ async def run_errands(
         NoTeachingAllowed(),
         clock,
         statistics=StatisticsCounter(dict(saved.uses), dict(saved.transitions)),
-        saved=saved,
-        asked=False,
+        checkpoint=saved,
+        teacher_available=False,
     )
     assert runtime.mid is not None
     if how == "chance":
@@ -109,7 +109,7 @@ async def run_errands(
 
     def put(pose: Pose, name: str) -> None:
         simulation.put(pose)
-        runtime.set_down()
+        runtime.reposition()
         walk.put(pose)
         say(lambda command_id: StopSeeking(command_id, _EXAMINER))
         say(lambda command_id: BeAt(command_id, _EXAMINER, name))
@@ -128,8 +128,8 @@ async def run_errands(
             return ""
         elif way_m > _ASTRAY * length_m(goal.shortest):
             return "astray"
-        if record.grant.latched:
-            return record.grant.reasons[0]
+        if record.guard_result.latched:
+            return record.guard_result.reasons[0]
         if way.none_since_window(simulation.position):
             return "stuck: " + (decision.cause.value if not decision.driving else "driving")
         return "time" if ticks >= limit else None
@@ -170,7 +170,7 @@ async def run_errands(
             runtime.scheduler.end()
             return
         if ended:
-            if record.grant.latched:
+            if record.guard_result.latched:
                 simulation.robot.release()
             put(goal.street.middle, goal.name)
         begin()

@@ -112,7 +112,7 @@ async def lead_about(
         if lesson is not None:
             runtime.inbox.put(lesson)
             corrections += isinstance(lesson, Correct)
-        latched_ticks = latched_ticks + 1 if record.grant.latched else 0
+        latched_ticks = latched_ticks + 1 if record.guard_result.latched else 0
         if latched_ticks == per_second:
             runtime.inbox.put(teacher.resume())
             latched_ticks = 0
@@ -123,7 +123,7 @@ async def lead_about(
             way.restart()
         elif way.none_since_window(simulation.position):
             simulation.put(home)
-            runtime.set_down()
+            runtime.reposition()
             walk.put(home)
             guide.set_down_at_home()
             way.restart()
@@ -151,6 +151,6 @@ async def lead_about(
         corrections=corrections,
         rescues=rescues,
         trail=places_of(trail),
-        saved=runtime.to_save(),
+        saved=runtime.snapshot(),
         knowledge_hash=system.knowledge_hash(),
     )

@@ -61,7 +61,7 @@ def knowledge_sheet(summaries: Sequence[PaperSummary], title: str) -> Table:
             _span(each.rlas),
             str(each.task.paper.rlas),
             f"{each.teaching_s:g}",
-            each.task.paper.teaching_told,
+            each.task.paper.teaching_time_text,
             f"{each.asks:g}",
             f"{each.corrections:g}",
             f"{each.rescues:g}",

@@ -17,10 +17,10 @@ class Scoring:
 
     def look(self, record: TickRecord) -> None:
         """Take in one tick."""
-        if record.circumstances is None or not record.decision.driving:
+        if record.appraisal_features is None or not record.decision.driving:
             return
         said = None if record.opinion is None else record.opinion.said
-        self._ticks[self._judge.judge(record.circumstances), said] += 1
+        self._ticks[self._judge.judge(record.appraisal_features), said] += 1
 
     @property
     def judgements(self) -> Iterator[Judgement]:

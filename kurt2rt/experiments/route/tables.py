@@ -122,7 +122,7 @@ def robot_sheet(outcome: RouteOutcome, task: TaskSettings) -> Table:
     drive, paper = outcome.drive, task.paper
     rows = (
         ("mid-level RLAs", str(outcome.mid_rlas), str(paper.rlas)),
-        ("teaching, s of robot time", f"{outcome.teaching_s:.0f}", paper.teaching_told),
+        ("teaching, s of robot time", f"{outcome.teaching_s:.0f}", paper.teaching_time_text),
         ("questions of the mid level", str(outcome.mid_asks), ""),
         ("corrections of the mid level", str(outcome.mid_corrections), ""),
         ("junctions that it did not notice", str(outcome.missed_junctions), ""),

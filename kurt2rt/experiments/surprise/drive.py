@@ -79,8 +79,8 @@ async def drive(
             NoTeachingAllowed(),
             LockstepClock(simulation.step),
             statistics=counter,
-            saved=saved,
-            asked=False,
+            checkpoint=saved,
+            teacher_available=False,
         )
         on_course = Drive(simulation, task, no_way_s=task.exam.stuck_after_s, period_s=period_s, chance=chance)
         set_down_every = round(_SET_DOWN_EVERY_S / period_s)
@@ -105,7 +105,7 @@ async def drive(
                 surprising_firsts += just_set_down and surprise.surprising
             if surprise is not None or record.decision.asking:
                 just_set_down = False
-            if record.grant.latched:
+            if record.guard_result.latched:
                 simulation.rescue()
                 runtime.inbox.put(Resume(say("go"), _WHO))
             on_course.follow()
@@ -123,6 +123,6 @@ async def drive(
 
         await runtime.scheduler.run(round(duration_s / period_s), after_tick)
         counted = Surprises(different, ends, surprising, new, firsts, surprising_firsts, unknown / max(ticks, 1))
-        return counted, runtime.to_save()
+        return counted, runtime.snapshot()
     finally:
         simulation.close()

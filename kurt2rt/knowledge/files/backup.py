@@ -65,8 +65,8 @@ class BackupService:
 
     async def settle(self) -> None:
         """Wait until all that was taught is durable. Raises KnowledgeError."""
-        if self._writer.trouble is not None:
-            raise KnowledgeError(self._writer.trouble)
+        if self._writer.error is not None:
+            raise KnowledgeError(self._writer.error)
         await anyio.to_thread.run_sync(self._flush)
 
     async def read(self, name: str, offset: int, most_bytes: int) -> FilePart:

@@ -96,7 +96,7 @@ class JournalWriter:
         self._thread.start()
 
     @property
-    def trouble(self) -> str | None:
+    def error(self) -> str | None:
         """One line: what, where, what to do; None while lessons become durable."""
         if self._failure is None and self.unwritten and self._clock() - self._headway_at_s > HANGS_AFTER_S:
             return f"{self._journal.path}: the disk does not answer; {self.unwritten} lessons wait; look at its health"
@@ -155,8 +155,8 @@ class JournalWriter:
         self.flush(timeout_s)
         self._inbox.put(_Stop())
         self._thread.join(max(0.0, until_s - time.monotonic()))
-        if self.trouble is not None or self._thread.is_alive():
-            why = self.trouble or f"{self._journal.path}: the disk does not answer; look at its health"
+        if self.error is not None or self._thread.is_alive():
+            why = self.error or f"{self._journal.path}: the disk does not answer; look at its health"
             raise KnowledgeError(why, do=f"closed with {self.unwritten} lessons not written")
 
     def __enter__(self) -> Self:

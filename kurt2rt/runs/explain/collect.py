@@ -38,7 +38,7 @@ def facts_of(
     however many there are.
     `uses_before`: of RLAs how often they had been used when they got the action that they have.
     """
-    decision, school = record.decision, runtime.school
+    decision, school = record.decision, runtime.handler
     reader = _Reader(runtime, stamp_of, most, uses_before or {})
     mid = decision.mid
     return DecisionFacts(
@@ -51,10 +51,10 @@ def facts_of(
         action=decision.action,
         asks_at=decision.asks_at,
         decided=decision.wheel_speeds,
-        granted=record.grant.wheel_speeds,
-        reasons=record.grant.reasons,
-        latched=record.grant.latched,
-        stopped=school.stopped,
+        granted=record.guard_result.wheel_speeds,
+        reasons=record.guard_result.reasons,
+        latched=record.guard_result.latched,
+        stopped=school.active_stop,
         trouble=record.trouble or "",
         teacher=school.authority.teacher or "",
         infrared_counts=record.senses.infrared_counts,
@@ -63,7 +63,7 @@ def facts_of(
         mid=None if mid is None else reader.mid(mid),
         overridden=mid is not None and mid.overridden,
         plan_says="" if decision.plan is None else decision.plan.says,
-        kept=runtime.level.kept,
+        kept=runtime.level.held_action,
         history_frozen=record.situation.history_frozen,
         taught_now=bool(record.events),
         hindrances=_hindrances(runtime, record),
@@ -72,13 +72,13 @@ def facts_of(
 
 def _hindrances(runtime: Runtime, record: TickRecord) -> tuple[str, ...]:
     """In the order in which they count."""
-    school, navigator, mid = runtime.school, runtime.navigator, record.decision.mid
+    school, navigator, mid = runtime.handler, runtime.navigator, record.decision.mid
     found = []
     if not record.senses.infrared_age_s <= runtime.robot.guard.stale_infrared_s:
         found.append(Cause.BLIND)
     if record.trouble is not None:
         found.append(Cause.UNSAVED)
-    if school.needs_a_teacher and not school.authority.present(record.tick):
+    if school.requires_teacher and not school.authority.is_present(record.tick):
         found.append(Cause.UNATTENDED)
     if navigator is not None and mid is not None and not mid.overridden:
         match navigator.stands_as:
@@ -102,7 +102,7 @@ class _Reader:
     def basic(self, record: TickRecord, decision: Decision) -> LevelFacts:
         vector, system = record.situation.vector, self._system
         # Where the mid level asks, the decision holds that level's match.
-        asking = not self._runtime.level.nobody_is_asked
+        asking = not self._runtime.level.skip_withdrawn
         match = decision.match
         if decision.asks_at != BASIC:
             match = system.match(vector, record.behaviour, asking=asking)
@@ -148,7 +148,7 @@ class _Reader:
             rla = self._system.get(rla_id)
             if rla is None or (match is not None and rla_id == match.rla.rla_id):
                 continue
-            if rla.asks and level == BASIC and self._runtime.level.nobody_is_asked:
+            if rla.asks and level == BASIC and self._runtime.level.skip_withdrawn:
                 continue  # passed over
             if self._most is not None and len(others) >= self._most:
                 break

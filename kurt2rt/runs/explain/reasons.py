@@ -3,8 +3,8 @@
 import math
 
 from kurt2rt.core.decision.decision import Cause
-from kurt2rt.core.decision.standing import DRIVES, Standing, StandReason, standing_latched, touched
-from kurt2rt.core.decision.standing_text import in_short, stop_text, why_it_stands
+from kurt2rt.core.decision.standing import DRIVES, Standing, StandReason, standing_latched, touched_bumper
+from kurt2rt.core.decision.standing_text import reason_text, short_text, stop_text
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaFacts
 from kurt2rt.runs.explain.sentences import far, who
@@ -27,7 +27,7 @@ def headline(facts: DecisionFacts) -> str:
     """What the robot does, in a few words."""
     standing = standing_in(facts)
     if standing.reason is not StandReason.DRIVES:
-        return in_short(standing)
+        return short_text(standing)
     if facts.action is not None:
         if facts.cause == Cause.TEACHER:
             return f"{facts.action}: {facts.teacher or 'a teacher'} drives"
@@ -42,7 +42,7 @@ def standing_in(facts: DecisionFacts) -> Standing:
     if facts.latched:
         return standing_latched(facts.reasons)
     if facts.cause == Cause.TOUCHES or facts.action is not None:
-        bumpers = touched(facts.granted, facts.reasons)
+        bumpers = touched_bumper(facts.granted, facts.reasons)
         if bumpers is not None:
             return Standing(bumpers, asks=facts.cause == Cause.TOUCHES)
     return DRIVES
@@ -117,7 +117,7 @@ def _held(level: LevelFacts) -> list[str]:
 
 
 def _touches(facts: DecisionFacts) -> list[str]:
-    why, leader = why_it_stands(standing_in(facts)), facts.basic.leader
+    why, leader = reason_text(standing_in(facts)), facts.basic.leader
     says = "an RLA goes on toward it" if leader is None else f"{who(leader)} goes on toward it"
     return [f"{why[0].upper()}{why[1:]}, and {says}: the guard lets no wheel turn that way, so the robot asks."]
 

@@ -114,7 +114,7 @@ def tick_entry_of(record: TickRecord, *, saved: bool, knowledge: str | None) -> 
         record.tick,
         record.now_s,
         record.senses,
-        record.grant,
+        record.guard_result,
         record.commands,
         record.trouble,
         saved,

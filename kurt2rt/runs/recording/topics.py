@@ -152,12 +152,12 @@ class Topics:
         if doing != self._doing:
             self._doing = doing
             self.say(doing, LogLevel.Debug, time_ns)
-        if record.grant.reasons != self._reasons:
-            self._reasons = record.grant.reasons
+        if record.guard_result.reasons != self._reasons:
+            self._reasons = record.guard_result.reasons
             if self._reasons:
                 # Each turn begins at the slew limit: nothing that anybody needs to be warned of.
                 gently = LogLevel.Debug if all(reason.routine for reason in self._reasons) else LogLevel.Warning
-                level = LogLevel.Error if record.grant.latched else gently
+                level = LogLevel.Error if record.guard_result.latched else gently
                 self.say(f"guard: {', '.join(self._reasons)}", level, time_ns)
         if record.trouble != self._trouble:
             self._trouble = record.trouble

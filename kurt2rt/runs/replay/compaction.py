@@ -100,7 +100,7 @@ def _look(system: RlaSystem, runs: Sequence[Run], now: TrialKnowledge, report: R
         ticks = driven_ticks = 0
         for record, (answered,) in answers(run, (now,), report):
             ticks += 1
-            if record.decision.driving and any(record.grant.wheel_speeds):
+            if record.decision.driving and any(record.guard_result.wheel_speeds):
                 driven_ticks += 1
                 seen.behaviours.add(record.behaviour)
             nearest = answered.basic.nearest

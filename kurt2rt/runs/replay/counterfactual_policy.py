@@ -91,7 +91,7 @@ class CounterfactualPolicy:
         where the robot did: nobody was there to be asked.
         """
         system, choice = self._system, self._worths.choice
-        asking = not runtime.level.nobody_is_asked
+        asking = not runtime.level.skip_withdrawn
         basic = system.match(record.situation.vector, record.behaviour, asking=asking)
         mid = None
         if runtime.mid is not None:

@@ -14,7 +14,7 @@ class ReplayEnvironment:
         """The tick that is on."""
 
     @property
-    def trouble(self) -> str | None:
+    def error(self) -> str | None:
         """As it was in this tick (LessonKeeper)."""
         return self._entry.trouble
 

@@ -39,12 +39,12 @@ class Replay:
         """The next tick, with all that went into it."""
         runtime = self.runtime
         self._replayed.entry = entry
-        runtime.inbox.hold(entry.commands)
-        runtime.ledger.begin(0.0)
+        runtime.inbox.replace_pending(entry.commands)
+        runtime.timer.begin(0.0)
         record = runtime.tick.run(entry.tick, entry.now_s)
-        runtime.ledger.end()
+        runtime.timer.end()
         if entry.saved:
-            runtime.to_save()  # drops the counts of RLAs that are no more, and plans are made of counts
+            runtime.snapshot()  # drops the counts of RLAs that are no more, and plans are made of counts
         return record
 
     def __iter__(self) -> Iterator[ReplayedTick]:
@@ -57,7 +57,7 @@ class Replay:
         try:
             wanted = ActiveBehaviour(run.task.behaviours)
             if head.behaviour:
-                wanted.pursue(head.behaviour)
+                wanted.select(head.behaviour)
             with run.settings():
                 runtime = build_runtime(
                     self._replayed,
@@ -68,11 +68,11 @@ class Replay:
                     self._replayed,
                     statistics=StatisticsCounter(dict(run.saved.uses), dict(run.saved.transitions)),
                     attended=head.attended,
-                    wanted=wanted,
-                    saved=run.saved,
-                    asked=head.asked,
+                    active_behaviour=wanted,
+                    checkpoint=run.saved,
+                    teacher_available=head.asked,
                     tolerates_stalls=head.tolerates_stalls,
-                    asks_when_held=head.asks_when_held,
+                    asks_at_bumper=head.asks_when_held,
                 )
         except (SettingsError, KnowledgeError, InvalidEventError, UnknownActionError, UnknownBehaviourError) as error:
             raise RecordingError(f"cannot be replayed by this kurt2rt: {error}", where=run.name) from error
@@ -80,7 +80,7 @@ class Replay:
             raise RecordingError(f"cannot be replayed: {error}", where=run.name) from error
         stop = stop_of_text(head.stopped)
         if stop is not None:
-            runtime.school.stop(stop)
+            runtime.handler.stop(stop)
         return runtime
 
 

@@ -137,7 +137,7 @@ class HealthMonitor:
         self._disks.__exit__(kind, error, trace)
 
     def _punctuality(self, snapshot: Snapshot) -> TickLateness:
-        ledger = self._runtime.ledger
+        ledger = self._runtime.timer
         lately, late = ledger.lateness_of_last(self._every_ticks), ledger.lateness()
         return TickLateness(
             newest_ms=lately.worst_us / 1000,

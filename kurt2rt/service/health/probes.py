@@ -17,7 +17,7 @@ class JournalStats(Protocol):
         ...
 
     @property
-    def trouble(self) -> str | None:
+    def error(self) -> str | None:
         """Why lessons cannot be saved, and what to do; None when they can."""
         ...
 

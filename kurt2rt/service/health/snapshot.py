@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from hal.health import Health
-from kurt2rt.core.decision.standing_text import in_short
+from kurt2rt.core.decision.standing_text import short_text
 from kurt2rt.core.rla.rla import rla_title
 from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
 from kurt2rt.core.tick import TickRecord
@@ -42,9 +42,9 @@ def take_snapshot(
     runtime: Runtime, record: TickRecord, keeping: JournalStats, instruments: Probes, now_s: float
 ) -> Snapshot:
     """Read everything; some ten microseconds, and nothing waits."""
-    senses, system, ledger = record.senses, runtime.level.system, runtime.ledger
+    senses, system, ledger = record.senses, runtime.level.system, runtime.timer
     errors = {part: error() for part, error in instruments.errors.items()}
-    errors["teaching"] = runtime.school.learning.trouble
+    errors["teaching"] = runtime.handler.updater.error
     return Snapshot(
         tick=record.tick,
         now_s=now_s,
@@ -53,7 +53,7 @@ def take_snapshot(
         bumper_age_s=senses.bumper_age_s,
         bus=None if instruments.bus is None else instruments.bus(),
         unwritten=keeping.unwritten,
-        journal_error=keeping.trouble,
+        journal_error=keeping.error,
         last_write_s=keeping.last_write_s,
         drops={queue: count() for queue, count in instruments.drops.items()},
         errors={part: line for part, line in errors.items() if line},
@@ -67,7 +67,7 @@ def take_snapshot(
 
 
 def _doing(record: TickRecord) -> str:
-    decision, stands = record.decision, in_short(record.standing)
+    decision, stands = record.decision, short_text(record.standing)
     if stands:
         return stands
     if decision.rla_id is not None:

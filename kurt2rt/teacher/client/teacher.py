@@ -159,7 +159,7 @@ class Teacher:
 
     def wait_for_question(self, timeout_s: float = 60.0) -> State:
         """Return the next state in which an answer lets the robot drive on. Raises as `wait_until` does."""
-        return self.wait_until(lambda state: state.stands.asks and not state.stands.needs_go, timeout_s)
+        return self.wait_until(lambda state: state.stands.asks and not state.stands.needs_resume, timeout_s)
 
     def hello(self) -> Hello:
         """Return what the robot is: its task, actions, sensors and size."""

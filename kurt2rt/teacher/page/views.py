@@ -14,7 +14,7 @@ from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.simulation import SIMULATION, SimulationView
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.protocol.world import World
-from kurt2rt.core.decision.standing_text import GO_ON_PAGE, headline_of
+from kurt2rt.core.decision.standing_text import GO_ON_PAGE, standing_headline
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.outcome_text import Surface
 from kurt2rt.core.teaching.question import FeatureDifference
@@ -45,9 +45,9 @@ def state_view(
         "cause": state.cause,
         "stands": {
             "reason": stands.reason,
-            "needs_go": stands.needs_go,
+            "needs_go": stands.needs_resume,
             "asks": stands.asks,
-            "text": headline_of(stands, GO_ON_PAGE),
+            "text": standing_headline(stands, GO_ON_PAGE),
         },
         "action": state.action,
         "rla": state.rla,

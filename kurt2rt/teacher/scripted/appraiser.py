@@ -49,10 +49,10 @@ class JudgeReward:
 
     def on_tick(self, record: TickRecord) -> tuple[int, int] | None:
         """Return the judge's value of this tick."""
-        if record.circumstances is None or not record.decision.driving:
+        if record.appraisal_features is None or not record.decision.driving:
             self._bad = 0
             return None
-        value = self._judge.judge(record.circumstances)
+        value = self._judge.judge(record.appraisal_features)
         self._bad = self._bad + 1 if value < 0 else 0
         return None if 0 < self._bad < self._patience else (value, record.tick)
 

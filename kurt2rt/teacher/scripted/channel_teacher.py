@@ -170,7 +170,7 @@ async def _let_drive_alone(robot: TeacherClient, say: Say) -> None:
 
 
 async def _resume_if_self_stopped(robot: TeacherClient, state: State) -> None:
-    if state.stopped is not None and state.stopped.lifts_itself:
+    if state.stopped is not None and state.stopped.is_automatic:
         with suppress(NoAnswerError):  # the next state shows whether it is still needed
             await robot.resume()
 
@@ -178,7 +178,7 @@ async def _resume_if_self_stopped(robot: TeacherClient, state: State) -> None:
 def _person_stop(robot: TeacherClient, state: State) -> ActiveStop | None:
     """Return the stop that holds; None if this teacher, the end of its session, the guard or the link is the reason."""
     stop = state.stopped
-    if stop is None or stop.lifts_itself or stop.reason is StopReason.SESSION_OVER or stop.teacher == robot.name:
+    if stop is None or stop.is_automatic or stop.reason is StopReason.SESSION_OVER or stop.teacher == robot.name:
         return None
     return stop
 

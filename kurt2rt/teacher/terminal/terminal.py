@@ -212,7 +212,7 @@ class TerminalTeacher:
             if state.phase >= Phase.CRITIC and (state.trusted, state.role) != standing:
                 standing = state.trusted, state.role
                 self._say(f"critic: {format_trust(state)}")
-            if state.stands.asks and not state.stands.needs_go:
+            if state.stands.asks and not state.stands.needs_resume:
                 if state.stands.reason != asking:
                     self._say(str(build_question(state, self._words)))
                 asking = state.stands.reason

@@ -8,7 +8,7 @@ from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
 from kurt2rt.core.critic.state import CriticState
 from kurt2rt.core.decision.standing import StandReason
-from kurt2rt.core.decision.standing_text import GO_IN_TERMINAL, headline_of, what_it_asks
+from kurt2rt.core.decision.standing_text import GO_IN_TERMINAL, question_text, standing_headline
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.rla import ASK, MID, rla_title
 from kurt2rt.core.teaching.question import FeatureDifference, MidQuestion, Question
@@ -84,7 +84,7 @@ def build_question(state: State, words: SensorWords = NO_WORDS) -> Question | Mi
         state.behaviour,
         words,
         state.nearest_value,
-        what_it_asks(state.stands),
+        question_text(state.stands),
     )
 
 
@@ -143,7 +143,7 @@ def format_state(state: State) -> str:
     """What the robot does and why, without what changes all the time."""
     stands = state.stands
     if stands.reason is not StandReason.DRIVES:
-        return headline_of(stands, GO_IN_TERMINAL) + (f"; {state.trouble}" if state.trouble else "")
+        return standing_headline(stands, GO_IN_TERMINAL) + (f"; {state.trouble}" if state.trouble else "")
     if state.action is not None:
         if state.rla is None:
             return f"{state.action}, by {state.teacher}"

@@ -37,13 +37,13 @@ async def judged(task_name: str, seconds: float, action: str | None = None) -> d
     level = PolicyLevel(policy, load_repertoire(task.repertoire, ROBOT), 10, wanted)
     clock = LockstepClock(simulation.step)
     runtime = build_runtime(
-        simulation.robot, ROBOT, task, (), NoTeachingAllowed(), clock, level_override=level, wanted=wanted
+        simulation.robot, ROBOT, task, (), NoTeachingAllowed(), clock, level_override=level, active_behaviour=wanted
     )
     heard: Counter[int] = Counter()
 
     def after_tick(record: TickRecord) -> None:
-        if record.circumstances is not None and record.decision.driving and record.tick > 50:
-            heard[judge.judge(record.circumstances)] += 1
+        if record.appraisal_features is not None and record.decision.driving and record.tick > 50:
+            heard[judge.judge(record.appraisal_features)] += 1
 
     await runtime.scheduler.run(round(seconds * 100), after_tick)
     simulation.close()

@@ -68,7 +68,7 @@ async def test_a_stranger_discovers_what_there_is_and_is_refused_everywhere_else
         for path in ("/state", *PATHS, "/nowhere"):
             method = ("-m", "get") if path == "/state" else ("-m", "post", "-e", "%80")
             assert await said(coap_client, *method, address(at_work, path)) == ("", "4.01\n")
-        assert at_work.runtime.school.authority.teacher is None
+        assert at_work.runtime.handler.authority.teacher is None
         assert at_work.channel.observers == 0
     assert journal_of(tmp_path) == []
 
@@ -117,7 +117,7 @@ async def test_the_oscore_client_of_aiocoap_looks_observes_and_commands(tmp_path
                 )
             ).response
             assert (taken.code, decode_answer(taken.payload)["code"]) == (aiocoap.CHANGED, ResultCode.TAKEN)
-            assert at_work.runtime.school.authority.teacher == "local"
+            assert at_work.runtime.handler.authority.teacher == "local"
             looking.observation.cancel()
 
 
@@ -159,7 +159,7 @@ async def test_libcoap_with_oscore_looks_observes_and_commands(
         body = tmp_path / "take"
         body.write_bytes(encode_request(TakeRequest(state.boot, secrets.token_bytes(8), at_work.tick)))
         await said(oscore_client, *switch, "-m", "post", "-t", "60", "-f", str(body), address(at_work, "/take"))
-        assert at_work.runtime.school.authority.teacher == "local"
+        assert at_work.runtime.handler.authority.teacher == "local"
 
 
 async def _noted(at_work: RobotAtWork, looked: list[int]) -> None:

@@ -71,16 +71,16 @@ class Effects:
 
 
 def effects(at_work: RobotAtWork) -> Effects:
-    school, system = at_work.runtime.school, at_work.runtime.level.system
+    school, system = at_work.runtime.handler, at_work.runtime.level.system
     return Effects(
         school.authority.teacher,
         school.phase,
-        school.stopped,
+        school.active_stop,
         school.session,
         len(system),
         system.standing_lessons,
         school.corrections,
-        len(at_work.runtime.inbox.take()),
+        len(at_work.runtime.inbox.pop_all()),
     )
 
 

@@ -285,7 +285,7 @@ class Story:
         self._note_standing(sent)
         assert self._at_work.moved_since(tick + REACH_TICKS) == []
         (note,) = [note for note in self._teacher.notes[held:] if isinstance(note.request, AnswerRequest)]
-        assert not self._at_work.runtime.school.has_taken(_identity(note.request))
+        assert not self._at_work.runtime.handler.was_handled(_identity(note.request))
 
     async def _keep_pressing(self, lasts_s: float) -> None:
         until_s = self._now() + lasts_s
@@ -343,7 +343,7 @@ def _tell(link: BadLink, folder: Path, length: Length) -> Told:
             await Story(at_work, lossy, teacher, told).tell(length)
             assert at_work.channel.failures == 0
             assert at_work.channel.endpoint.counters.failed == 0, at_work.channel.endpoint.newest_failure
-            assert at_work.runtime.ledger.missed_ticks == 0
+            assert at_work.runtime.timer.missed_ticks == 0
 
     random.seed(link.seed)  # aiocoap draws message ids and pauses
     run_jumping(story)

@@ -211,7 +211,7 @@ async def test_a_robot_that_does_not_know_where_it_is_still_shows_itself() -> No
     desk = Desk(behaviours=TURNS, mid="places", ground=Yard())
     for way in TURNS[:2]:
         await teach(desk, way, beside=True)
-    desk.runtime.set_down()
+    desk.runtime.reposition()
     desk.run()
     told = picture(desk)
     assert told.mid is not None

@@ -65,7 +65,7 @@ def test_the_teacher_who_is_revoked_leaves_a_robot_that_stands_and_can_be_taken(
                 assert taken.body["code"] == ResultCode.TAKEN
                 revoke(tmp_path / "teachers", tmp_path / "devices", "phone")
                 await asyncio.sleep(_TAKEN_UP_S)
-            assert at_work.runtime.school.authority.teacher is None
+            assert at_work.runtime.handler.authority.teacher is None
             async with Device(at_work.pairing.device.folder, at_work.port) as other:
                 picture = await (await other.look()).picture()
                 assert picture["by"] == "stopped"

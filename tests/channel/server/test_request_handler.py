@@ -238,7 +238,7 @@ async def test_a_full_inbox_refuses_what_comes_and_forgets_nothing_of_what_waits
     assert (why(refused), outcome_of(refused)) == ("refused", Outcome(RefusalCode.TOO_MANY))
     refused = await reply_of(await desk.send(desk.answer()))
     assert (why(refused), outcome_of(refused)) == ("refused", Outcome(RefusalCode.TOO_MANY))
-    assert len(desk.runtime.inbox.take()) == waiting
+    assert len(desk.runtime.inbox.pop_all()) == waiting
     assert why(await desk.stream(desk.watch())) == ""
 
 
@@ -329,7 +329,7 @@ async def test_a_copy_that_comes_when_its_picture_is_old_gets_the_reply_as_well(
 
 async def test_a_command_of_an_earlier_start_that_counted_is_told_so_and_not_that_it_was_refused(desk: Desk) -> None:
     request = desk.command(AnswerRequest, "forward", None, boot=LAST_START)
-    desk.runtime.school.learning.taken.add(f"ann-{request.command_id.hex()}")
+    desk.runtime.handler.updater.handled_ids.add(f"ann-{request.command_id.hex()}")
     reply = await desk.ask(request)
     assert (reply.verdict, outcome_of(reply)) == (Verdict.DONE, Outcome(ResultCode.REPEATED))
 
@@ -448,7 +448,7 @@ async def test_a_stop_among_much_else_is_handed_to_the_next_tick(desk: Desk) -> 
     for _ in range(100):
         await desk.stream(desk.watch())
     task = await desk.send(desk.stop())
-    waiting = desk.runtime.inbox.take()
+    waiting = desk.runtime.inbox.pop_all()
     assert {type(command) for command in waiting} == {Watch, Stop}
     for command in waiting:
         desk.runtime.inbox.put(command)
@@ -590,9 +590,9 @@ async def test_at_another_speed_the_teachers_leases_are_as_many_times_longer_in_
     assert why(await desk.stream(desk.watch(age=4 * STREAM_TICKS + 1))) == "stale"
     await desk.stream(desk.watch())
     desk.run(4 * 24)
-    assert desk.runtime.school.authority.present(desk.tick)
+    assert desk.runtime.handler.authority.is_present(desk.tick)
     desk.run(1)
-    assert not desk.runtime.school.authority.present(desk.tick)
+    assert not desk.runtime.handler.authority.is_present(desk.tick)
     told = SIMULATION.read((await desk.ask(SimulationRequest())).body["simulation"])
     assert (told.speed, told.reached) == (4, 1.0)
 
@@ -794,7 +794,7 @@ async def test_the_robot_tells_what_it_can_follow_and_follows_what_it_is_told() 
     assert outcome_of(reply) == Outcome.of(
         RefusalCode.NO_BEHAVIOUR, behaviour="fly", known=("straight_on", "turn_left")
     )
-    assert desk.runtime.wanted.behaviour == "turn_left"
+    assert desk.runtime.active_behaviour.behaviour == "turn_left"
 
 
 async def test_what_was_asked_for_before_a_stop_or_before_another_behaviour_and_comes_late_is_refused() -> None:
@@ -809,7 +809,7 @@ async def test_what_was_asked_for_before_a_stop_or_before_another_behaviour_and_
     desk.run(5)
     await desk.ask(StopRequest(b"stopstop"))
     assert outcome_of(await desk.ask(before)) == Outcome(RefusalCode.STOPPED_SINCE)
-    assert desk.runtime.wanted.behaviour == "turn_left"
+    assert desk.runtime.active_behaviour.behaviour == "turn_left"
 
 
 async def test_a_lesson_on_an_old_picture_is_listed_under_what_was_wanted_then() -> None:

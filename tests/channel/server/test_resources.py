@@ -276,7 +276,7 @@ async def test_what_is_not_understood_is_told_in_a_sentence(school: School, payl
         told = decode_answer(answer.payload)
         assert told["why"] == "malformed"
         assert told["text"]
-    assert school.desk.runtime.inbox.take() == ()
+    assert school.desk.runtime.inbox.pop_all() == ()
 
 
 async def test_a_refusal_has_the_code_of_a_conflict_and_a_world_that_is_not_there_that_of_nothing(

@@ -181,12 +181,12 @@ async def test_phase_session_and_clock(desk: Desk) -> None:
 def test_trouble_with_the_disk_goes_before_trouble_with_the_bus(desk: Desk) -> None:
     desk.bus_trouble = "the bus is off"
     assert picture(desk).trouble == "the bus is off"
-    desk.notebook.trouble = "the disk is full"
+    desk.notebook.error = "the disk is full"
     assert picture(desk).trouble == "the disk is full"
 
 
 def test_what_the_robot_could_not_learn_is_told(desk: Desk) -> None:
-    desk.runtime.school.learning.trouble = "1 change was skipped"
+    desk.runtime.handler.updater.error = "1 change was skipped"
     assert picture(desk).trouble == "1 change was skipped"
 
 
@@ -206,7 +206,7 @@ def test_where_a_simulated_robot_is() -> None:
 
 def test_lateness_is_looked_at_once_a_second_and_missed_ticks_always(desk: Desk) -> None:
     first = picture(desk)
-    ledger = desk.runtime.ledger
+    ledger = desk.runtime.timer
     for _ in range(200):
         ledger.begin(0.004)
         ledger.end()

@@ -101,7 +101,7 @@ def test_a_tick_that_is_not_accounted_for_is_seen(tmp_path: Path, place: LongRun
     life = started(tmp_path, place, witness, away=AWAY)
     run(life, place, 0.5)
     assert witness.complaints.count == 0
-    life.runtime.ledger.missed_ticks += 1
+    life.runtime.timer.missed_ticks += 1
     run(life, place, 0.6)
     life.close()
     (first, *_) = witness.complaints.told

@@ -156,7 +156,7 @@ def test_rlas_of_another_taught_behaviour_never_answer_however_near_they_are() -
     assert (decision.action, decision.rla_id) == ("a", 1)
     assert decision.match is not None
     assert decision.match.runner_up is None
-    small.wanted.pursue("turn_left")
+    small.wanted.select("turn_left")
     decision = small.at(0.0)
     assert (decision.action, decision.rla_id) == ("b", 2)
 
@@ -164,7 +164,7 @@ def test_rlas_of_another_taught_behaviour_never_answer_however_near_they_are() -
 def test_of_a_behaviour_that_was_never_taught_it_knows_nothing() -> None:
     small = SmallLevel(STRAIGHT_AT_0, behaviours=TURNS)
     assert small.at(0.0).driving
-    small.wanted.pursue("turn_left")
+    small.wanted.select("turn_left")
     decision = small.at(0.0)
     assert (decision.asking, decision.match) == (True, None)
 
@@ -172,17 +172,17 @@ def test_of_a_behaviour_that_was_never_taught_it_knows_nothing() -> None:
 def test_a_held_action_yields_at_once_when_another_behaviour_is_wanted() -> None:
     small = SmallLevel(STRAIGHT_AT_0, LEFT_AT_1, behaviours=TURNS)
     small.at(0.0)
-    small.wanted.pursue("turn_left")
+    small.wanted.select("turn_left")
     decision = small.at(0.0)
     assert (decision.cause, decision.action, decision.rla_id) == (Cause.RLA, "b", 2)
-    small.wanted.pursue("straight_on")  # and back again, in the very next tick
+    small.wanted.select("straight_on")  # and back again, in the very next tick
     assert small.at(0.0).action == "a"
 
 
 def test_to_want_the_same_again_does_not_cut_an_action_short() -> None:
     small = SmallLevel(STRAIGHT_AT_0, created(2, (8.0,), "b", behaviour="straight_on"), behaviours=TURNS)
     small.at(0.0)
-    small.wanted.pursue("straight_on")
+    small.wanted.select("straight_on")
     assert small.at(8.0).cause is Cause.HELD
 
 
@@ -218,7 +218,7 @@ def test_a_withdrawn_rla_asks_where_it_is_nearest_and_its_neighbours_answer_else
 
 def test_where_nobody_is_asked_the_neighbours_of_a_withdrawn_rla_answer_inside_their_radius() -> None:
     small = SmallLevel(created(1, (0.0,), "a"), created(2, (6.0,), "b"), withdrawn(1, "a"))
-    small.level.nobody_is_asked = True
+    small.level.skip_withdrawn = True
     assert small.at(1.0).action == "b"
     assert small.at(-5.0).asking  # farther than the radius of the neighbour
 
@@ -275,6 +275,6 @@ def test_a_competitor_that_is_held_while_another_one_is_chosen_is_inside_its_rad
     level = BasicLevel(system, {name: Counted() for name in "abc"}, 5, ActiveBehaviour(), choice)
     level.decide(situation(0.0), sensed(), None)
     worths[1] = -1.0
-    choice.forget()
+    choice.reset()
     held = level.decide(situation(0.0), sensed(), None)
     assert (held.cause, held.rla_id, held.answers) == (Cause.HELD, 1, True)

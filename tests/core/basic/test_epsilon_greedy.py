@@ -30,48 +30,48 @@ def choice(worths: Worths, epsilon: float = 0.0, seed: int = 0, *, explores: boo
 
 def test_the_one_of_most_worth_answers_and_of_equals_the_newest_which_was_tried_because_the_others_had_sunk() -> None:
     group = competitors("a", "b", "c")
-    assert choice(Worths({2: 0.4, 3: 0.1})).among(group, 1).rla_id == 2
-    assert choice(Worths()).among(group, 1).rla_id == 3
+    assert choice(Worths({2: 0.4, 3: 0.1})).choose(group, 1).rla_id == 2
+    assert choice(Worths()).choose(group, 1).rla_id == 3
 
 
 def test_a_choice_stands_until_the_group_has_not_been_nearest_for_a_while() -> None:
     worths = Worths({1: 0.5})
     group = competitors("a", "b")
     chosen = choice(worths)
-    assert chosen.among(group, 1).rla_id == 1
+    assert chosen.choose(group, 1).rla_id == 1
     worths[2] = 0.9
     for tick in range(2, 1002):
-        assert chosen.among(group, tick).rla_id == 1
-    assert chosen.among(group, 1001 + HOLD).rla_id == 1
-    assert chosen.among(group, 1001 + HOLD + HOLD + 1).rla_id == 2
+        assert chosen.choose(group, tick).rla_id == 1
+    assert chosen.choose(group, 1001 + HOLD).rla_id == 1
+    assert chosen.choose(group, 1001 + HOLD + HOLD + 1).rla_id == 2
 
 
 def test_blame_makes_all_groups_choose_anew() -> None:
     worths = Worths({1: 0.5})
     group = competitors("a", "b")
     chosen = choice(worths)
-    chosen.among(group, 1)
+    chosen.choose(group, 1)
     worths[1] = -0.5
-    chosen.forget()
-    assert chosen.among(group, 2).rla_id == 2
+    chosen.reset()
+    assert chosen.choose(group, 2).rla_id == 2
 
 
 def test_one_that_was_deleted_is_not_held() -> None:
     worths = Worths({2: 0.5})
     chosen = choice(worths)
-    assert chosen.among(competitors("a", "b", "c"), 1).rla_id == 2
+    assert chosen.choose(competitors("a", "b", "c"), 1).rla_id == 2
     left = (competitors("a", "b", "c")[0], competitors("a", "b", "c")[2])
-    assert chosen.among(left, 2).rla_id == 3
+    assert chosen.choose(left, 2).rla_id == 3
 
 
 def test_one_whose_action_was_withdrawn_does_not_compete() -> None:
-    assert choice(Worths({2: 0.9})).among(competitors("a", ASK, "c"), 1).rla_id == 3
+    assert choice(Worths({2: 0.9})).choose(competitors("a", ASK, "c"), 1).rla_id == 3
 
 
 def picks(seed: int, epsilon: float, *, explores: bool = True) -> list[int]:
     chosen = choice(Worths({1: 0.5}), epsilon, seed, explores=explores)
     group = competitors("a", "b", "c")
-    return [chosen.among(group, tick * 2 * HOLD).rla_id for tick in range(2000)]
+    return [chosen.choose(group, tick * 2 * HOLD).rla_id for tick in range(2000)]
 
 
 def test_now_and_then_chance_chooses_and_the_same_seed_the_same() -> None:

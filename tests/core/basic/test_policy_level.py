@@ -42,7 +42,7 @@ def test_it_follows_the_behaviour_that_is_wanted_and_the_held_action_yields_at_o
     wanted = ActiveBehaviour(("one", "other"))
     level = PolicyLevel(NearIsB(), {"a": Counted(), "b": Counted()}, MINIMUM_TICKS, wanted)
     assert driven(level, FAR).action == "a"
-    wanted.pursue("other")
+    wanted.select("other")
     assert [driven(level, FAR).action for _ in range(2 * MINIMUM_TICKS)] == ["b"] * 2 * MINIMUM_TICKS
-    wanted.pursue("one")
+    wanted.select("one")
     assert driven(level, FAR).action == "a"

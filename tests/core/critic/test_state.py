@@ -19,7 +19,7 @@ def alone(*taught_the_critic: bool) -> Track:
 
 
 def standing(track: Track) -> tuple[CriticState, float | None]:
-    return track.school.learning.critics_role, track.school.learning.bad_share
+    return track.school.updater.critic_state, track.school.updater.bad_share
 
 
 def test_it_measures_then_waits_until_it_is_needed_and_acts() -> None:

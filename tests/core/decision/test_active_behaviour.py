@@ -10,7 +10,7 @@ TURNS = ("straight_on", "turn_left", "turn_right")
 def test_the_first_is_wanted_until_another_one_is() -> None:
     wanted = ActiveBehaviour(TURNS)
     assert wanted.behaviour == "straight_on"
-    wanted.pursue("turn_right")
+    wanted.select("turn_right")
     assert wanted.behaviour == "turn_right"
 
 
@@ -24,5 +24,5 @@ def test_a_task_that_teaches_one_thing_gives_it_no_name() -> None:
 def test_what_is_not_taught_cannot_be_wanted(behaviours: tuple[str, ...], known: str) -> None:
     wanted = ActiveBehaviour(behaviours)
     with pytest.raises(ValueError, match=f"^there is no taught behaviour 'fly'; this task has: {known}$"):
-        wanted.pursue("fly")
+        wanted.select("fly")
     assert wanted.behaviour == behaviours[0]

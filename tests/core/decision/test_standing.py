@@ -23,11 +23,11 @@ from kurt2rt.core.decision.standing import (
 from kurt2rt.core.decision.standing_text import (
     GO_IN_TERMINAL,
     GO_ON_PAGE,
-    headline_of,
-    in_short,
+    reason_text,
+    short_text,
+    standing_headline,
     stop_of_text,
     stop_text,
-    why_it_stands,
 )
 from kurt2rt.core.teaching.commands import Stop, Teach, Watch
 from kurt2rt.service.health.probes import Probes
@@ -54,7 +54,7 @@ class LatchingDesk(Desk):
 
     def __init__(self) -> None:
         super().__init__()
-        self.runtime.school.authority.attended = False
+        self.runtime.handler.authority.attended = False
         self.runtime.inbox.put(Teach("t", "Ann", "forward"))
         self.run(3)
         assert self.record.standing == DRIVES
@@ -89,7 +89,7 @@ def test_a_latched_stall_is_told_with_its_length_and_go_on_every_surface() -> No
     desk.run(5)  # what was measured stays
     assert desk.record.decision.driving  # its layer goes on wanting to
     stands = desk.record.standing
-    assert (stands.reason, stands.needs_go, stands.says) == (StandReason.COMPUTER_TOO_SLOW, True, "")
+    assert (stands.reason, stands.needs_resume, stands.says) == (StandReason.COMPUTER_TOO_SLOW, True, "")
     assert stands.stall_s == pytest.approx(0.12)
     assert page_of(desk.picture) == "Stands: the computer was too slow for 0.1 s. GO lets it drive on"
     assert format_state(desk.picture) == "Stands: the computer was too slow for 0.1 s. Type go to let it drive on"
@@ -101,7 +101,7 @@ def test_a_latched_stall_is_told_with_its_length_and_go_on_every_surface() -> No
 
 class _Keeping:
     unwritten = 0
-    trouble: str | None = None
+    error: str | None = None
     last_write_s: float | None = None
 
 
@@ -112,7 +112,7 @@ def test_each_latch_of_the_guard_has_a_text_with_go(word: GuardReason) -> None:
     desk.run()
     told = desk.record.standing
     assert told.reason is not StandReason.HALTED
-    assert told.needs_go
+    assert told.needs_resume
     assert page_of(desk.picture).startswith("Stands: ")
     assert page_of(desk.picture).endswith(GO_ON_PAGE)
     assert word not in (told.says, "")
@@ -135,15 +135,15 @@ def test_a_teachers_stop_waits_for_go() -> None:
     desk.runtime.inbox.put(Stop("s", "Ann"))
     desk.run()
     assert page_of(desk.picture) == "Stands: Ann said stop. GO lets it drive on"
-    assert desk.picture.stands.needs_go
+    assert desk.picture.stands.needs_resume
 
 
 def test_a_robot_without_its_teacher_waits_for_no_go() -> None:
     desk = LatchingDesk()
-    desk.runtime.school.authority.attended = True
-    desk.runtime.school.stopped = None
+    desk.runtime.handler.authority.attended = True
+    desk.runtime.handler.active_stop = None
     desk.run()
-    desk.runtime.school.stopped = None  # that it lost its teacher on the way is another story
+    desk.runtime.handler.active_stop = None  # that it lost its teacher on the way is another story
     desk.run()
     assert desk.record.standing == Standing(StandReason.UNATTENDED)
     assert page_of(desk.picture) == "Stands: no teacher looks at it. Take the robot"
@@ -156,19 +156,19 @@ def test_a_robot_without_its_teacher_waits_for_no_go() -> None:
 def test_every_reason_has_a_text_of_one_or_two_short_sentences(reason: StandReason) -> None:
     for needs_go in (False, True):
         standing = Standing(reason, needs_go, stop=ActiveStop(StopReason.SAID_STOP, "Ann"))
-        text = headline_of(standing, GO_ON_PAGE)
+        text = standing_headline(standing, GO_ON_PAGE)
         assert "{" not in text
         assert len(text) < 100
         if reason is not StandReason.DRIVES:
-            assert why_it_stands(standing) in text
+            assert reason_text(standing) in text
             assert (GO_ON_PAGE in text) is needs_go
-            assert in_short(standing) or (not needs_go and reason in (StandReason.ASKS, StandReason.ASKS_THE_WAY))
+            assert short_text(standing) or (not needs_go and reason in (StandReason.ASKS, StandReason.ASKS_THE_WAY))
 
 
 def test_go_within_a_sentence_is_not_a_capital_of_the_terminal() -> None:
     lost = Standing(StandReason.BUS_LOST, True)
-    assert headline_of(lost, GO_IN_TERMINAL).endswith("its power and CAN cable; then type go to let it drive on")
-    assert headline_of(lost, GO_ON_PAGE).endswith("its power and CAN cable; then GO lets it drive on")
+    assert standing_headline(lost, GO_IN_TERMINAL).endswith("its power and CAN cable; then type go to let it drive on")
+    assert standing_headline(lost, GO_ON_PAGE).endswith("its power and CAN cable; then GO lets it drive on")
 
 
 def test_one_late_tick_is_no_standing_and_many_are() -> None:

@@ -55,13 +55,13 @@ def test_corners_ts_and_crossings_each_tell_what_was_done_there_and_where_it_cou
     drive.simulation.simulated_robot.place(Pose(0.4, 1.3, math.pi / 2))
     detector = JunctionDetector(load_mid("turns").junctions, ROBOT)
     way = iter(["straight_on", "turn_right", "straight_on", "turn_left", "turn_right", "turn_right", "straight_on"])
-    drive.wanted.pursue(next(way))
+    drive.wanted.select(next(way))
     passed: list[JunctionEvent] = []
     for senses in drive.ticks(39.0):
         event = detector.perceive(senses)
         if event is not None:
             passed.append(event)
-            drive.wanted.pursue(next(way))
+            drive.wanted.select(next(way))
     assert [(each.name, each.left_open, each.right_open) for each in passed] == [
         ("straight", False, True),  # along a T, past its stem
         ("right", False, True),  # out of it through its stem
@@ -111,7 +111,7 @@ def random_drive(seed: int, duration_s: float, robot: RobotSettings) -> tuple[li
         if event is not None:
             told.append((event.quarters, event.left_open, event.right_open))
         course.follow(drive.simulation.pose)
-        drive.wanted.pursue(course.behaviour)
+        drive.wanted.select(course.behaviour)
         really = truth.passed(drive)
         if really is not None:
             passed.append(really)

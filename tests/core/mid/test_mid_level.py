@@ -100,7 +100,7 @@ def test_a_teacher_may_lead_on_where_the_mid_level_would_ask() -> None:
 def test_nobody_else_changes_what_is_wanted_for_longer_than_a_tick() -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
     small.commanded()
-    small.wanted.pursue("turn_right")
+    small.wanted.select("turn_right")
     assert small.commanded().behaviour == small.wanted.behaviour == "turn_left"
 
 

@@ -49,7 +49,7 @@ class Drive:
     def lead(self, *behaviours: str) -> None:
         """Through one junction after the other."""
         for behaviour in behaviours:
-            self._wanted.pursue(behaviour)
+            self._wanted.select(behaviour)
             while not self.step():
                 assert self._tick < 20_000, "no junction was noticed"
 

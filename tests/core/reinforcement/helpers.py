@@ -93,7 +93,7 @@ class Track:
             self.level,
             ControlAuthority(actions, attended=False),
             insert_beyond_share=SHARE,
-            taken_command_ids=(event.origin.command_id for event in events),
+            handled_command_ids=(event.origin.command_id for event in events),
             reinforcement=self.reinforcement,
             critic=self.critic,
             agreement=self.agreement,
@@ -125,7 +125,7 @@ class Track:
     def say(self, command: Command, place: float = 0.0) -> CommandResult:
         """A command arrives before the next tick, which takes it."""
         assert not isinstance(command, Watch | Drive)
-        result, event = self.school.attend(command, situation(place), self.tick + 1)
+        result, event = self.school.handle(command, situation(place), self.tick + 1)
         if event is not None:
             self.events.append(event)
         return result

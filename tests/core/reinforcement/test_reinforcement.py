@@ -240,7 +240,7 @@ def test_one_that_sinks_beside_a_better_one_is_deleted() -> None:
     robot = track(phase=Phase.AUTONOMOUS)
     sink(robot, LEFT)
     robot.go(LEFT, 10)
-    robot.reinforcement.choice.forget()
+    robot.reinforcement.choice.reset()
     robot.reinforcement.rule.restore(Statistics(values={1: 0.0, 3: -0.1}))
     sink(robot, LEFT, times=1)  # the first one answers again, and is blamed again
     robot.go(LEFT)

@@ -55,7 +55,7 @@ def lose_trust(robot: Track) -> None:
     for number in range(5):
         told = Origin(f"doubt-{number}", "Ann", Phase.AUTONOMOUS, robot.tick)
         event = RlaRewarded(2, 1, robot.tick, told, (), said=-1)
-        robot.school.learning.apply(event)
+        robot.school.updater.apply(event)
         robot.events.append(event)
     assert not robot.agreement.trusted
 

@@ -41,7 +41,7 @@ def drive() -> Drive:
 
 def going_on_from(drive: Drive) -> Drive:
     """Another run of that robot's program."""
-    return Drive(drive.notebook.events, saved=drive.runtime.to_save())
+    return Drive(drive.notebook.events, saved=drive.runtime.snapshot())
 
 
 def comes_and_goes(drive: Drive, times: int = 1, far: int = FAR) -> None:
@@ -53,7 +53,7 @@ def comes_and_goes(drive: Drive, times: int = 1, far: int = FAR) -> None:
 
 def test_what_follows_an_rla_is_learned_in_phase_1_and_without_a_teacher(drive: Drive) -> None:
     comes_and_goes(drive, times=3)
-    expected = drive.runtime.expecting.of(1)
+    expected = drive.runtime.expectations.of(1)
     assert expected is not None
     assert expected.count == 3
     assert 30 <= expected.ticks < 31
@@ -84,46 +84,46 @@ def test_a_critic_may_look_at_surprise(drive: Drive) -> None:
     before = again.run(counts=FAR + 60)
     assert before.surprise is not None
     assert before.surprise.surprising
-    seen = [again.run().circumstances for _ in range(7)]
+    seen = [again.run().appraisal_features for _ in range(7)]
     assert [each.surprised for each in seen if each is not None] == [1.0] * 5 + [0.0] * 2
 
 
 def test_a_robot_that_is_stopped_expects_nothing_of_it(drive: Drive) -> None:
     drive.run(counts=NEAR, ticks=30)
     drive.run(Stop("s", "Ann"), counts=FAR, ticks=5)
-    assert drive.runtime.expecting.of(1) is None
+    assert drive.runtime.expectations.of(1) is None
 
 
 def test_expectations_are_saved_and_gone_on_from(drive: Drive) -> None:
     comes_and_goes(drive, times=8)
-    saved = drive.runtime.to_save()
+    saved = drive.runtime.snapshot()
     assert {rla_id: each.count for rla_id, each in saved.expectations.items()} == {1: 8, 2: 7}
     again = going_on_from(drive)
     again.run(counts=NEAR, ticks=30)
     record = again.run(counts=FAR + 60)
     assert record.surprise is not None
     assert record.surprise.surprising
-    assert again.runtime.to_save().expectations[1].count == 9
+    assert again.runtime.snapshot().expectations[1].count == 9
 
 
 def test_a_correction_a_deletion_and_an_undo_take_expectations_with_them(drive: Drive) -> None:
     comes_and_goes(drive, times=3)
     drive.run(Correct("c", "Ann", "curve_left"), counts=NEAR)
-    assert set(drive.runtime.to_save().expectations) == {2}
+    assert set(drive.runtime.snapshot().expectations) == {2}
     comes_and_goes(drive, times=2)
     drive.run(Undo("u", "Ann", "c"))
-    assert set(drive.runtime.to_save().expectations) == {2}
+    assert set(drive.runtime.snapshot().expectations) == {2}
     drive.run(DeleteRla("d", "Ann", 2))
-    assert drive.runtime.to_save().expectations == {}
+    assert drive.runtime.snapshot().expectations == {}
     drive.run(Undo("v", "Ann", "d"))
-    assert drive.runtime.to_save().expectations == {}
+    assert drive.runtime.snapshot().expectations == {}
 
 
 def test_what_is_expected_at_a_level_that_does_not_drive_here_is_kept() -> None:
     place = created(3, (1.0,) * LENGTH, level=MID)
     foreign = Expectation("lesson-3", 4, 800.0, pack(np.ones(LENGTH)), pack(np.zeros(LENGTH)))
     drive = Drive([created(1, (0.0,) * 72), place], saved=Statistics(expectations={3: foreign, 9: foreign}))
-    assert drive.runtime.to_save().expectations == {3: foreign}
+    assert drive.runtime.snapshot().expectations == {3: foreign}
 
 
 @pytest.fixture
@@ -136,7 +136,7 @@ def town() -> Town:
 
 
 def symbols(town: Town, rla_id: int) -> list[float]:
-    expected = town.runtime.expecting.of(rla_id)
+    expected = town.runtime.expectations.of(rla_id)
     assert expected is not None
     mean: list[float] = expected.mean.tolist()
     return mean
@@ -148,7 +148,7 @@ def test_at_the_mid_level_the_history_behind_the_junction_is_expected(town: Town
     after = symbols(town, 4)
     assert after[1:] == before[:-1].tolist()
     assert after[0] != before[0]
-    expected = town.runtime.to_save().expectations[4]
+    expected = town.runtime.snapshot().expectations[4]
     assert expected.count == 1
     assert 30 < expected.ticks < 60
 
@@ -157,23 +157,23 @@ def test_what_is_taught_at_an_unknown_place_is_what_followed(town: Town) -> None
     for quarters in (1, 1, -1, 1, 1, -1, 1):
         town.junction(quarters)
     assert town.run().decision.asks_at == MID
-    assert town.runtime.to_save().expectations[4].count == 6
+    assert town.runtime.snapshot().expectations[4].count == 6
     town.run(the_way("turn_right"))
-    assert town.runtime.to_save().expectations[4].count == 7
+    assert town.runtime.snapshot().expectations[4].count == 7
 
 
 def test_where_the_teacher_led_nothing_is_expected_of_it(town: Town) -> None:
     town.run(Pursue("p", "Ann", "turn_left"))
     town.junction(1)
-    assert town.runtime.expecting.of(4) is None
+    assert town.runtime.expectations.of(4) is None
 
 
 def test_set_down_elsewhere_what_comes_next_follows_from_nothing(town: Town) -> None:
     town.junction(1)
-    assert town.runtime.to_save().expectations[4].count == 1
-    town.runtime.set_down()
+    assert town.runtime.snapshot().expectations[4].count == 1
+    town.runtime.reposition()
     town.way_to_the_first_junction()
-    assert town.runtime.to_save().expectations[4].count == 1
+    assert town.runtime.snapshot().expectations[4].count == 1
 
 
 def test_who_is_told_where_it_stands_did_not_get_there_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -184,12 +184,12 @@ def test_who_is_told_where_it_stands_did_not_get_there_by_itself(monkeypatch: py
     town.run(the_way("straight_on", "first"))
     town.junction()
     town.run(the_way("straight_on", "second"))  # RLA 5
-    assert town.runtime.to_save().expectations[4].count == 1
+    assert town.runtime.snapshot().expectations[4].count == 1
     town.street()
     (told,) = town.run(BeAt("b", "Ann", "door")).results
     assert told.accepted, told.outcome
     town.street()
-    saved = town.runtime.to_save()
+    saved = town.runtime.snapshot()
     assert 5 not in saved.expectations
     assert saved.uses[4] == 1
 
@@ -198,7 +198,7 @@ def test_a_correction_on_the_way_leaves_the_corrected_one_without_an_end(town: T
     town.junction()
     town.run(another_way("turn_left", "c-1"))  # RLA 5
     town.junction(1)
-    counts = {rla_id: each.count for rla_id, each in town.runtime.to_save().expectations.items() if rla_id > 3}
+    counts = {rla_id: each.count for rla_id, each in town.runtime.snapshot().expectations.items() if rla_id > 3}
     assert counts == {4: 1, 5: 1}
 
 

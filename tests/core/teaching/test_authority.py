@@ -68,7 +68,7 @@ def test_a_message_held_back_drives_no_longer_than_35_ticks_after_its_picture(ag
 
 def test_messages_that_keep_coming_keep_the_hand_on_the_wheels(hands: Hands) -> None:
     for tick in range(NOW, NOW + 290, LEASE - 1):
-        assert not hands.authority.is_over(press())
+        assert not hands.authority.is_press_over(press())
         hands.drive(tick)
         assert hands.driven_ticks(tick, tick + LEASE - 1) == list(range(tick, tick + LEASE - 1))
 
@@ -84,20 +84,20 @@ def test_a_picture_that_does_not_change_any_more_ends_the_drive_however_many_mes
 def test_a_press_that_ended_never_comes_back_and_the_next_one_does(hands: Hands) -> None:
     hands.drive(NOW, hold=7)
     hands.authority.expire(NOW + LEASE)
-    assert [hands.authority.is_over(press(hold)) for hold in (6, 7, 8)] == [True, True, False]
+    assert [hands.authority.is_press_over(press(hold)) for hold in (6, 7, 8)] == [True, True, False]
 
 
 def test_is_manual_after_the_lease_changes_nothing(hands: Hands) -> None:
     hands.drive(NOW, hold=7)
     assert not hands.authority.is_manual(NOW + LEASE)
-    assert not hands.authority.is_over(press(7))
+    assert not hands.authority.is_press_over(press(7))
     assert hands.authority.is_manual(NOW + LEASE - 1)
 
 
 def test_is_manual_of_a_run_without_teacher_changes_nothing(hands: Hands) -> None:
     hands.authority.run("a", NOW, 1000)
     assert not hands.authority.is_manual(NOW)
-    hands.authority.watch("Ann", NOW, NOW)
+    hands.authority.renew_presence("Ann", NOW, NOW)
     assert hands.authority.is_manual(NOW)
 
 
@@ -105,7 +105,7 @@ def test_expire_within_the_lease_keeps_the_press(hands: Hands) -> None:
     hands.drive(NOW, hold=7)
     hands.authority.expire(NOW + LEASE - 1)
     assert hands.authority.is_manual(NOW + LEASE - 1)
-    assert not hands.authority.is_over(press(7))
+    assert not hands.authority.is_press_over(press(7))
 
 
 def test_a_press_is_over_only_when_the_loop_has_seen_it_end(hands: Hands) -> None:
@@ -116,62 +116,62 @@ def test_a_press_is_over_only_when_the_loop_has_seen_it_end(hands: Hands) -> Non
 
 def test_a_press_of_one_teacher_says_nothing_about_those_of_another(hands: Hands) -> None:
     hands.drive(NOW, hold=7)
-    hands.authority.end_hand()
-    assert hands.authority.is_over(press(7))
-    assert not hands.authority.is_over(press(1, teacher="Ben"))
+    hands.authority.end_manual()
+    assert hands.authority.is_press_over(press(7))
+    assert not hands.authority.is_press_over(press(1, teacher="Ben"))
 
 
 def test_who_watches_is_there_for_thirty_ticks_and_not_beyond_35_after_his_picture(hands: Hands) -> None:
-    present = hands.authority.present
+    present = hands.authority.is_present
     assert not present(NOW)
-    hands.authority.watch("Ann", NOW, NOW)
+    hands.authority.renew_presence("Ann", NOW, NOW)
     assert [present(NOW + LEASE - 1), present(NOW + LEASE)] == [True, False]
-    hands.authority.watch("Ann", NOW + 50, NOW + 30)
+    hands.authority.renew_presence("Ann", NOW + 50, NOW + 30)
     assert [present(NOW + 30 + REACH - 1), present(NOW + 30 + REACH)] == [True, False]
 
 
 def test_a_late_message_takes_nothing_from_a_newer_one(hands: Hands) -> None:
-    hands.authority.watch("Ann", NOW, NOW)
-    hands.authority.watch("Ann", NOW + 1, NOW - 30)
-    assert hands.authority.present(NOW + LEASE - 1)
+    hands.authority.renew_presence("Ann", NOW, NOW)
+    hands.authority.renew_presence("Ann", NOW + 1, NOW - 30)
+    assert hands.authority.is_present(NOW + LEASE - 1)
 
 
 def test_who_drives_is_there(hands: Hands) -> None:
     hands.drive(NOW)
-    assert [hands.authority.present(NOW + LEASE - 1), hands.authority.present(NOW + LEASE)] == [True, False]
+    assert [hands.authority.is_present(NOW + LEASE - 1), hands.authority.is_present(NOW + LEASE)] == [True, False]
 
 
 def test_only_the_teacher_is_anybody(hands: Hands) -> None:
-    hands.authority.watch("Ben", NOW, NOW)
-    assert not hands.authority.present(NOW)
+    hands.authority.renew_presence("Ben", NOW, NOW)
+    assert not hands.authority.is_present(NOW)
 
 
 def test_nobody_has_to_be_there_where_the_robot_needs_nobody() -> None:
-    assert Hands(attended=False).authority.present(NOW)
+    assert Hands(attended=False).authority.is_present(NOW)
 
 
 def test_who_speaks_first_teaches_and_the_next_one_has_to_ask() -> None:
     authority = ControlAuthority({}, attended=True)
-    assert authority.held_by_another("Ann") is None
+    assert authority.refusal_for("Ann") is None
     authority.claim("Ann")
     authority.claim("Ben")
     assert authority.teacher == "Ann"
-    assert authority.held_by_another("Ann") is None
-    assert authority.held_by_another("Ben") == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="Ann")
+    assert authority.refusal_for("Ann") is None
+    assert authority.refusal_for("Ben") == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="Ann")
 
 
 def test_another_one_takes_the_robot_and_has_to_be_there_himself(hands: Hands) -> None:
-    hands.authority.watch("Ann", NOW, NOW)
-    assert hands.authority.take("Ben", NOW) is None
+    hands.authority.renew_presence("Ann", NOW, NOW)
+    assert hands.authority.take_over("Ben", NOW) is None
     assert hands.authority.teacher == "Ben"
-    assert not hands.authority.present(NOW)
+    assert not hands.authority.is_present(NOW)
 
 
 def test_who_takes_what_he_has_loses_nothing(hands: Hands) -> None:
     hands.drive(NOW)
-    assert hands.authority.take("Ann", NOW) is None
+    assert hands.authority.take_over("Ann", NOW) is None
     assert hands.authority.is_manual(NOW)
-    assert hands.authority.present(NOW)
+    assert hands.authority.is_present(NOW)
 
 
 @pytest.mark.parametrize("behaviour", [False, True])
@@ -182,9 +182,9 @@ def test_nobody_takes_the_robot_from_a_hand_on_the_wheels(behaviour: bool) -> No
     else:
         hands.drive(NOW)
     refusal = Outcome.of(RefusalCode.DRIVES_BY_HAND, teacher="Ann")
-    assert hands.authority.take("Ben", NOW + LEASE - 1) == refusal
+    assert hands.authority.take_over("Ben", NOW + LEASE - 1) == refusal
     assert hands.authority.teacher == "Ann"
-    assert hands.authority.take("Ben", NOW + LEASE) is None
+    assert hands.authority.take_over("Ben", NOW + LEASE) is None
 
 
 @pytest.mark.parametrize("to", ["Ben", None])
@@ -193,8 +193,8 @@ def test_handing_over_ends_hand_and_presence(hands: Hands, to: str | None) -> No
     hands.authority.hand_over(to)
     assert hands.authority.teacher == to
     assert not hands.authority.is_manual(NOW)
-    assert not hands.authority.present(NOW)
-    assert hands.authority.is_over(press(3))
+    assert not hands.authority.is_present(NOW)
+    assert hands.authority.is_press_over(press(3))
 
 
 def test_a_behaviour_drives_for_its_ticks_and_begins_anew_each_time() -> None:
@@ -208,10 +208,10 @@ def test_a_behaviour_drives_for_its_ticks_and_begins_anew_each_time() -> None:
 
 
 def test_a_behaviour_ends_for_good_when_its_teacher_is_gone(hands: Hands) -> None:
-    hands.authority.watch("Ann", NOW, NOW)
+    hands.authority.renew_presence("Ann", NOW, NOW)
     hands.authority.run("a", NOW, 1000)
     assert hands.driven_ticks(NOW, NOW + 60) == list(range(NOW, NOW + LEASE))
-    hands.authority.watch("Ann", NOW + 60, NOW + 60)
+    hands.authority.renew_presence("Ann", NOW + 60, NOW + 60)
     assert not hands.authority.is_manual(NOW + 60)
 
 
@@ -228,7 +228,7 @@ def test_a_device_with_new_keys_counts_its_presses_anew() -> None:
     authority = ControlAuthority({}, attended=False)
     authority.claim("Ann")
     authority.drive(Drive("Ann", 0, 7, 0.1, 0.1), 0)
-    authority.end_hand()
-    assert authority.is_over(Drive("Ann", 0, 1, 0.1, 0.1))
-    authority.forget("Ann")
-    assert not authority.is_over(Drive("Ann", 0, 1, 0.1, 0.1))
+    authority.end_manual()
+    assert authority.is_press_over(Drive("Ann", 0, 1, 0.1, 0.1))
+    authority.reset_sequence("Ann")
+    assert not authority.is_press_over(Drive("Ann", 0, 1, 0.1, 0.1))

@@ -64,7 +64,7 @@ class Lesson:
             self.small.level,
             ControlAuthority(self.small.actions, attended=False),
             insert_beyond_share=SHARE,
-            taken_command_ids=taken,
+            handled_command_ids=taken,
         )
         self.events: list[TeachingEvent] = list(events)
         self.tick = 100
@@ -72,7 +72,7 @@ class Lesson:
     def say(self, command: Command, place: float = 0.0) -> CommandResult:
         self.tick += 1
         assert not isinstance(command, Watch | Drive)
-        result, event = self.school.attend(command, situation(place), self.tick)
+        result, event = self.school.handle(command, situation(place), self.tick)
         assert result.command_id == command.command_id
         if event is not None:
             self.events.append(event)
@@ -90,7 +90,7 @@ class Lesson:
     def drive(self, teacher: str = "Ann", hold: int = 1) -> Outcome | None:
         """Have a press arrive in the next tick; return why it does not drive the robot."""
         self.tick += 1
-        refusal = self.school.follow(Drive(teacher, self.tick, hold, 0.1, 0.1), self.tick)
+        refusal = self.school.handle_stream(Drive(teacher, self.tick, hold, 0.1, 0.1), self.tick)
         assert (refusal is None) == self.school.authority.is_manual(self.tick)
         return refusal
 
@@ -175,9 +175,9 @@ def test_one_rla_is_corrected_or_deleted_by_its_id_wherever_the_robot_is() -> No
 def test_stop_and_resume() -> None:
     lesson = Lesson()
     assert lesson.say(stop()).outcome == Outcome(ResultCode.STOPPED)
-    assert lesson.school.stopped
+    assert lesson.school.active_stop
     assert lesson.say(resume()).outcome == Outcome(ResultCode.RESUMED)
-    assert not lesson.school.stopped
+    assert not lesson.school.active_stop
 
 
 def test_a_phase_goes_into_the_origin_of_what_is_taught_from_then_on() -> None:
@@ -228,14 +228,14 @@ def test_a_stop_always_stops_and_a_late_copy_of_resume_does_not_act_again() -> N
     lesson = Lesson()
     for command, stopped in ((stop("1"), True), (resume("2"), False), (stop("1"), True)):
         lesson.say(command)
-        assert bool(lesson.school.stopped) == stopped
+        assert bool(lesson.school.active_stop) == stopped
     lesson.say(resume("2"))
-    assert lesson.school.stopped
+    assert lesson.school.active_stop
 
 
 def test_a_command_of_an_earlier_run_counts_once_as_well() -> None:
     lesson = Lesson(created(1, (0.0,), "a"), taken=("lesson-1",))
-    assert lesson.school.has_taken("lesson-1")
+    assert lesson.school.was_handled("lesson-1")
     assert lesson.say(teach("b", "lesson-1"), place=100.0).outcome == Outcome(ResultCode.REPEATED)
     assert lesson.actions == {1: "a"}
 
@@ -313,7 +313,7 @@ def test_a_decision_that_is_not_remembered_is_refused(kind: str, which: str) -> 
     assert (result.accepted, result.lesson) == (False, False)
     assert result.outcome == Outcome.of(RefusalCode.TICK_FORGOTTEN, tick=meant)
     assert (lesson.actions, lesson.school.corrections) == ({1: "a"}, 0)
-    assert not lesson.school.has_taken("x")
+    assert not lesson.school.was_handled("x")
 
 
 def test_the_oldest_decision_that_is_remembered_may_still_be_meant() -> None:
@@ -408,7 +408,7 @@ def test_an_undo_that_cannot_be_is_refused_with_the_reason_and_changes_nothing()
     assert (refused.code, refused.outcome.fields["later"]) == (RefusalCode.TAUGHT_AFTER, "2")
     assert not lesson.say(Undo("u-2", "Ann", "never was")).accepted
     assert lesson.actions == {1: "b"}
-    assert not lesson.school.has_taken("u-1")
+    assert not lesson.school.was_handled("u-1")
 
 
 def test_a_session_begins_and_ends_once_and_its_clock_runs_between() -> None:
@@ -427,7 +427,7 @@ def test_a_session_begins_and_ends_once_and_its_clock_runs_between() -> None:
     lesson.tick = began + 99
     result = lesson.say(EndSession("e-1", "Ann"))
     assert (result.outcome, result.lesson) == (Outcome.of(ResultCode.SESSION_ENDED, session="morning"), True)
-    assert school.stopped == ActiveStop(StopReason.SESSION_OVER, "morning")
+    assert school.active_stop == ActiveStop(StopReason.SESSION_OVER, "morning")
     assert school.teaching_ticks(began + 5000) == 100
     assert lesson.say(EndSession("e-2", "Ann")).outcome == Outcome(RefusalCode.NO_SESSION)
     assert lesson.events == [
@@ -444,7 +444,7 @@ def test_the_first_who_speaks_teaches_and_another_one_is_refused_by_name() -> No
     refused = lesson.say(Teach("2", "Ben", "b"), place=50.0)
     assert refused.outcome == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="Ann")
     assert lesson.drive("Ben") == refused.outcome
-    assert lesson.school.follow(Watch("Ben", lesson.tick), lesson.tick) == refused.outcome
+    assert lesson.school.handle_stream(Watch("Ben", lesson.tick), lesson.tick) == refused.outcome
     assert lesson.say(Take("3", "Ben")).outcome == Outcome.of(ResultCode.TAKEN, teacher="Ben")
     assert lesson.say(Teach("2", "Ben", "b"), place=50.0).accepted
     assert not lesson.say(teach("c", "4"), place=90.0).accepted
@@ -452,7 +452,7 @@ def test_the_first_who_speaks_teaches_and_another_one_is_refused_by_name() -> No
 
 def test_to_be_there_is_not_to_speak() -> None:
     lesson = Lesson()
-    assert lesson.school.follow(Watch("Ben", 100), 100) is None
+    assert lesson.school.handle_stream(Watch("Ben", 100), 100) is None
     assert lesson.school.authority.teacher is None
 
 
@@ -468,10 +468,13 @@ def test_handing_over_to_a_name_and_to_nobody() -> None:
 def test_everybody_may_stop_and_nobody_becomes_the_teacher_by_it() -> None:
     lesson = Lesson()
     assert lesson.say(Stop("1", "Ben")).accepted
-    assert lesson.school.authority.held_by_another("Dora") is None
+    assert lesson.school.authority.refusal_for("Dora") is None
     lesson.say(teach("a", "2"))
     lesson.say(Stop("3", "Cleo"))
-    assert (lesson.school.stopped, lesson.school.authority.teacher) == (ActiveStop(StopReason.SAID_STOP, "Cleo"), "Ann")
+    assert (lesson.school.active_stop, lesson.school.authority.teacher) == (
+        ActiveStop(StopReason.SAID_STOP, "Cleo"),
+        "Ann",
+    )
 
 
 def test_a_stop_ends_the_press_and_his_own_next_one_drives_again() -> None:
@@ -513,14 +516,14 @@ def test_a_behaviour_runs_for_its_ticks_and_the_robot_stands_afterwards() -> Non
     )
     hand = lesson.school.authority.is_manual
     assert [hand(lesson.tick + later) for later in (0, 9, 10)] == [True, True, False]
-    assert lesson.school.stopped == ActiveStop(StopReason.BEHAVIOUR_OVER, "b")
+    assert lesson.school.active_stop == ActiveStop(StopReason.BEHAVIOUR_OVER, "b")
 
 
 def test_a_behaviour_that_the_repertoire_lacks_changes_nothing() -> None:
     lesson = Lesson()
     result = lesson.say(RunBehaviour("1", "Ann", "fly", 10))
     assert result.outcome == Outcome.of(RefusalCode.NO_ACTION, action="fly", known=("a", "b", "c"))
-    assert not lesson.school.stopped
+    assert not lesson.school.active_stop
 
 
 def test_resume_ends_what_the_hand_was_doing() -> None:
@@ -543,7 +546,7 @@ def test_who_takes_over_from_one_who_stopped_it_may_drive_by_hand_at_once_but_no
     lesson.drive(hold=1)
     lesson.say(stop("1"))
     lesson.say(Take("2", "Ben"))
-    assert lesson.school.stopped
+    assert lesson.school.active_stop
     assert lesson.drive("Ben", hold=1) is None
     lesson.say(Stop("3", "Cleo"))
     lesson.say(Take("4", "Ann"))
@@ -559,10 +562,10 @@ def test_a_release_that_comes_late_ends_its_own_press_only() -> None:
     assert lesson.school.authority.is_manual(lesson.tick)
     assert lesson.say(Stop("2", "Ann", hold=2)).accepted
     assert not lesson.school.authority.is_manual(lesson.tick)
-    assert lesson.school.stopped == ActiveStop(StopReason.LET_GO, "Ann")
+    assert lesson.school.active_stop == ActiveStop(StopReason.LET_GO, "Ann")
     lesson.say(resume())
     assert lesson.say(Stop("2", "Ann", hold=2)).outcome == Outcome(ResultCode.REPEATED)
-    assert not lesson.school.stopped
+    assert not lesson.school.active_stop
 
 
 @pytest.mark.parametrize(
@@ -581,7 +584,7 @@ def test_what_was_said_before_a_stop_and_comes_after_it_does_not_move_the_robot(
     lesson.say(stop("1"))
     refused = lesson.say(late(lesson.tick - 1))
     assert refused.outcome == Outcome(RefusalCode.STOPPED_SINCE)
-    assert lesson.school.stopped
+    assert lesson.school.active_stop
     assert lesson.say(late(lesson.tick)).accepted
 
 
@@ -590,7 +593,7 @@ def test_the_end_of_a_session_does_not_hide_that_somebody_said_stop() -> None:
     lesson.say(BeginSession("1", "Ann", "monday"))
     lesson.say(Stop("2", "Ben"))
     lesson.say(EndSession("3", "Ann"))
-    assert lesson.school.stopped == ActiveStop(StopReason.SAID_STOP, "Ben")
+    assert lesson.school.active_stop == ActiveStop(StopReason.SAID_STOP, "Ben")
 
 
 # Several taught behaviours.
@@ -648,7 +651,7 @@ def test_only_the_teacher_says_what_the_robot_follows_and_a_stop_stays() -> None
     assert lesson.small.wanted.behaviour == "straight_on"
     lesson.say(Take("take it", "Ann"))
     assert lesson.say(pursue("turn_left")).accepted
-    assert lesson.school.stopped == ActiveStop(StopReason.SAID_STOP, "Bob")
+    assert lesson.school.active_stop == ActiveStop(StopReason.SAID_STOP, "Bob")
 
 
 def test_of_two_behaviours_the_one_that_was_asked_for_on_the_newer_picture_is_wanted() -> None:
@@ -737,10 +740,10 @@ def test_a_change_of_the_robots_own_that_does_not_fit_is_skipped_and_told_and_th
     for _ in range(3):
         robot.go(0.0, 200)
         robot.signal(-1)
-    assert robot.school.learning.trouble == ""
+    assert robot.school.updater.error == ""
     assert robot.go(0.0).driving
     assert robot.learnt == []
-    assert robot.school.learning.trouble == (
+    assert robot.school.updater.error == (
         "changes that did not fit the knowledge were skipped: 1, the last: "
         "command 'signal-3/withdraw-1' has taught a lesson already"
     )
@@ -761,7 +764,7 @@ def test_a_late_copy_of_a_stop_brakes_but_is_no_newer_than_the_stop_it_is_a_copy
     seen = lesson.tick
     lesson.say(stop("1"))
     assert lesson.say(Resume("2", "Ann", seen)).accepted
-    assert not lesson.school.stopped
+    assert not lesson.school.active_stop
 
 
 def test_a_copy_of_a_stop_that_ends_a_drive_has_to_be_seen_as_a_stop_has() -> None:
@@ -770,7 +773,7 @@ def test_a_copy_of_a_stop_that_ends_a_drive_has_to_be_seen_as_a_stop_has() -> No
     lesson.say(resume("2"))
     seen = lesson.tick
     lesson.say(stop("1"))
-    assert lesson.school.stopped
+    assert lesson.school.active_stop
     assert not lesson.say(Resume("3", "Ann", seen)).accepted
 
 

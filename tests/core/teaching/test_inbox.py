@@ -12,8 +12,8 @@ def test_commands_are_taken_once_and_in_the_order_they_came() -> None:
     commands = (teach("a"), stop(), resume())
     for command in commands:
         inbox.put(command)
-    assert inbox.take() == commands
-    assert inbox.take() == ()
+    assert inbox.pop_all() == commands
+    assert inbox.pop_all() == ()
 
 
 def test_a_full_inbox_refuses_the_newest_and_keeps_the_others() -> None:
@@ -22,9 +22,9 @@ def test_a_full_inbox_refuses_the_newest_and_keeps_the_others() -> None:
     inbox.put(stop())
     with pytest.raises(InboxFullError, match="2 commands wait already"):
         inbox.put(resume())
-    assert inbox.take() == (teach("a"), stop())
+    assert inbox.pop_all() == (teach("a"), stop())
     inbox.put(resume())
-    assert inbox.take() == (resume(),)
+    assert inbox.pop_all() == (resume(),)
 
 
 def test_a_stop_finds_room_in_a_full_inbox() -> None:
@@ -33,7 +33,7 @@ def test_a_stop_finds_room_in_a_full_inbox() -> None:
     inbox.put(stop())
     with pytest.raises(InboxFullError):
         inbox.put(teach("b"))
-    assert inbox.take() == (teach("a"), stop())
+    assert inbox.pop_all() == (teach("a"), stop())
 
 
 def test_what_has_happened_goes_before_what_waits_and_always_finds_room() -> None:
@@ -41,13 +41,13 @@ def test_what_has_happened_goes_before_what_waits_and_always_finds_room() -> Non
     inbox.put(teach("a"))
     inbox.put(RobotRepositioned())
     inbox.put(PairingRenewed("Ann"))
-    assert inbox.take() == (PairingRenewed("Ann"), RobotRepositioned(), teach("a"))
+    assert inbox.pop_all() == (PairingRenewed("Ann"), RobotRepositioned(), teach("a"))
 
 
 def test_a_replay_says_exactly_what_the_next_tick_takes() -> None:
     inbox = TeacherInbox(capacity=1)
     inbox.put(stop())
     taken = (teach("a"), RobotRepositioned(), resume())
-    inbox.hold(taken)
-    assert inbox.take() == taken
-    assert inbox.take() == ()
+    inbox.replace_pending(taken)
+    assert inbox.pop_all() == taken
+    assert inbox.pop_all() == ()

@@ -126,7 +126,7 @@ def test_where_it_asks_the_wheels_are_told_to_stand(taught: Taught) -> None:
     asking = [record for record in records if record.decision.asking]
     assert 0 < len(asking) < len(records)
     assert all(record.decision.wheel_speeds == STANDSTILL for record in asking)
-    assert all(record.grant.wheel_speeds == STANDSTILL for record in asking)
+    assert all(record.guard_result.wheel_speeds == STANDSTILL for record in asking)
     assert all(record.decision.action is None for record in asking)
 
 

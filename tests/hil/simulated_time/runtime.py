@@ -59,7 +59,7 @@ async def drive(bus: str, seconds: float, hangs_at: int) -> None:
 
     def after_tick(record: TickRecord) -> None:
         nonlocal before
-        reasons = tuple(reason for reason in record.grant.reasons if not reason.routine)
+        reasons = tuple(reason for reason in record.guard_result.reasons if not reason.routine)
         if reasons != before:
             before = reasons
             turns.append({"tick": record.tick, "reasons": reasons, "infrared_age_s": record.senses.infrared_age_s})
@@ -68,7 +68,7 @@ async def drive(bus: str, seconds: float, hangs_at: int) -> None:
         runtime = build_runtime(robot, settings, task, (), NoTeachingAllowed(), clock, level_override=level)
         await runtime.scheduler.run(round(seconds / period_s), after_tick)
     robot.close()
-    ledger = runtime.ledger
+    ledger = runtime.timer
     print(json.dumps({"ticks": ledger.ticks, "missed": ledger.missed_ticks, "turns": turns}))
 
 

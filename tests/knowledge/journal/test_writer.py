@@ -33,9 +33,9 @@ def settled(writer: JournalWriter) -> list[Acknowledgement]:
 
 def wait_for_trouble(writer: JournalWriter) -> str:
     """The line that the tick reads, and the robot stands; the suite's own time limit ends a wait in vain."""
-    while writer.trouble is None:
+    while writer.error is None:
         writer.flush(timeout_s=0.001)
-    return writer.trouble
+    return writer.error
 
 
 def stored(path: Path) -> list[RlaCreated]:
@@ -52,7 +52,7 @@ def test_lessons_are_acknowledged_in_order_when_they_are_durable(path: Path) -> 
         acknowledged = settled(writer)
         assert stored(path) == lessons
         assert writer.unwritten == 0
-        assert writer.trouble is None
+        assert writer.error is None
 
     assert acknowledged == [Acknowledgement(f"create-{number}", number, None, STAMP) for number in range(1, 31)]
 
@@ -73,19 +73,19 @@ def test_a_write_that_hangs_is_trouble_until_it_comes_back(path: Path) -> None:
     now_s = 100.0
     with JournalWriter(journal, now=lambda: STAMP, retry=SOON, clock=lambda: now_s) as writer:
         now_s += 10.0  # with nothing to keep a disk may rest
-        assert writer.trouble is None
+        assert writer.error is None
         writer.submit(created(1))
         now_s += 2.0
         writer.submit(created(2))
         now_s += 1.0
-        assert writer.trouble is None
+        assert writer.error is None
         now_s += 0.1
-        assert writer.trouble == f"{path}: the disk does not answer; 2 lessons wait; look at its health"
+        assert writer.error == f"{path}: the disk does not answer; 2 lessons wait; look at its health"
         journal.let_go.set()
         assert [each.command_id for each in settled(writer)] == ["create-1", "create-2"]
-        assert writer.trouble is None
+        assert writer.error is None
         writer.submit(created(3))
-        assert writer.trouble is None
+        assert writer.error is None
 
 
 def test_every_lesson_is_stamped_with_the_wall_clock_it_is_given(path: Path) -> None:
@@ -151,10 +151,10 @@ def test_a_full_disk_makes_lessons_wait_in_order_until_there_is_room(path: Path)
             writer.submit(created(number))
             writer.flush(timeout_s=0.005)  # not all in one batch: some still fit
             acknowledged += writer.acknowledged()
-            if writer.trouble is not None:
+            if writer.error is not None:
                 break
-        assert writer.trouble is not None
-        assert writer.trouble.startswith(f"{path}: the disk is full; make room on it")
+        assert writer.error is not None
+        assert writer.error.startswith(f"{path}: the disk is full; make room on it")
         waiting = writer.unwritten
         assert len(stored(path)) == number - waiting
         for later in range(number + 1, number + 51):
@@ -166,7 +166,7 @@ def test_a_full_disk_makes_lessons_wait_in_order_until_there_is_room(path: Path)
 
         connection.execute("PRAGMA max_page_count = 100000")
         acknowledged += settled(writer)
-        assert writer.trouble is None
+        assert writer.error is None
 
     assert [each.sequence for each in acknowledged] == list(range(4, later + 1))
     assert stored(path) == [created(each) for each in range(1, later + 1)]
@@ -193,7 +193,7 @@ def test_a_failing_disk_makes_lessons_wait_in_order_until_it_works(path: Path) -
                 writer.submit(created(number))
             trouble = wait_for_trouble(writer)
         acknowledged = settled(writer)
-        assert writer.trouble is None
+        assert writer.error is None
 
     assert trouble.startswith(f"{path}: the disk fails; look at its health and room")
     assert [each.sequence for each in acknowledged] == list(range(2, 20))

@@ -161,7 +161,7 @@ def test_a_robot_that_goes_on_counts_a_redone_praise_again(rule: str) -> None:
     praise = robot.signal(1).origin.command_id
     before = robot.worth(1)
     for change in (LessonUndone(praise, origin("u")), LessonRedone(praise, origin("r"))):
-        robot.school.learning.apply(change)
+        robot.school.updater.apply(change)
     assert robot.worth(1) == pytest.approx(before)
 
 

@@ -48,11 +48,11 @@ def looked_at(name: str, every_ticks: int, every_kept: int) -> Iterator[tuple[Be
         may_be_kept = decided and entry.number - chosen_at <= KEPT_TICKS_AT_MOST and entry.number % every_kept == 0
         before = Before(Before(replay, seen).again(), seen) if regular or may_be_kept else None
         record = replay.step(entry)
-        if record.circumstances is not None:
-            seen.append(record.circumstances)
+        if record.appraisal_features is not None:
+            seen.append(record.appraisal_features)
         if before is None:
             continue
-        if regular or replay.runtime.level.kept:
+        if regular or replay.runtime.level.held_action:
             yield before, entry, facts_of(replay.runtime, record, lambda _: "")
 
 

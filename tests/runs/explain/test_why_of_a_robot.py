@@ -134,7 +134,7 @@ def test_where_a_stop_decided_no_reading_would_have_changed_it(lesson: Lesson) -
 
 
 def test_lessons_that_cannot_be_saved_are_among_the_facts(lesson: Lesson) -> None:
-    give(lesson).notebook.trouble = "the disk is full"
+    give(lesson).notebook.error = "the disk is full"
     lesson.go_on(1)
     assert (lesson.facts.cause, lesson.facts.trouble) == (Cause.UNSAVED, "the disk is full")
 

@@ -92,7 +92,7 @@ def walls(scene: Scene, record: TickRecord) -> None:
         command = scene.teacher.update(view_of_tick(record))
         if command is not None:
             runtime.inbox.put(command)
-    scene.notebook.trouble = "the disk is full" if at(14) <= tick < at(14.4) else None
+    scene.notebook.error = "the disk is full" if at(14) <= tick < at(14.4) else None
     if at(22) <= tick < at(23):
         runtime.inbox.put(Drive(NAME, tick, 1, 0.1, 0.2))
     match tick:
@@ -147,7 +147,7 @@ class Errand:
             inbox.put(lesson)
         if tick == at(22):
             scene.simulation.put(self._home)
-            scene.runtime.set_down()
+            scene.runtime.reposition()
             self._walk.put(self._home)
             self._guide.set_down_at_home()
         if tick == at(34):
@@ -201,10 +201,10 @@ def record_story(
     )
     wanted = ActiveBehaviour(task.behaviours)
     runtime = build_runtime(
-        simulation.robot, settings, task, (), notebook, clock, attended=told.attended, wanted=wanted
+        simulation.robot, settings, task, (), notebook, clock, attended=told.attended, active_behaviour=wanted
     )
     if told.stopped:
-        runtime.school.stop(told.stopped)
+        runtime.handler.stop(told.stopped)
     teacher = build_teacher(task, settings, tuple(runtime.level.repertoire), seed=3, session=name)
     scene = Scene(simulation, runtime, notebook, teacher)
     story: Story = other or (walls if name == "walls" else Errand(scene, task))
@@ -232,7 +232,7 @@ def _go(scene: Scene, story: Story, recorder: RunRecorder, ticks: int) -> None:
         story(scene, record)
         saved = record.tick % _SAVED_EVERY == 0
         if saved:
-            runtime.to_save()
+            runtime.snapshot()
             recorder.write_waiting()
             recorder.tend()
         recorder.note(record, saved=saved)

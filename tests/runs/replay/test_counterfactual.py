@@ -170,7 +170,7 @@ def test_where_nobody_could_be_asked_withdrawn_rlas_are_passed_over(
     assert asked.rla is not None
     withdrawn = CounterfactualPolicy(run, [*events, ActionWithdrawn(asked.rla.rla_id, "", ORIGIN)])
     assert withdrawn.look(record, replay.runtime).basic.rla is None
-    replay.runtime.level.nobody_is_asked = True
+    replay.runtime.level.skip_withdrawn = True
     passed_over = withdrawn.look(record, replay.runtime).basic
     assert passed_over.nearest is not None
     assert passed_over.nearest.rla_id != asked.rla.rla_id

@@ -118,11 +118,11 @@ def test_the_runtime_is_as_it_was_at_a_time() -> None:
     run = stored("walls")
     runtime, tick = replay_until(run, 31.5)
     assert tick.entry.now_s <= 31.5 < tick.entry.now_s + 0.011
-    assert runtime.school.phase is Phase.REINFORCEMENT
+    assert runtime.handler.phase is Phase.REINFORCEMENT
     assert compare(*tick) == []
     early, first = replay_until(run, -1.0)
     assert first.entry.number == 1
-    assert early.school.stopped == STARTED
+    assert early.handler.active_stop == STARTED
 
 
 @pytest.fixture(scope="module")

@@ -19,7 +19,7 @@ class Keeping:
     """Where lessons would be kept."""
 
     unwritten = 2
-    trouble: str | None = None
+    error: str | None = None
     last_write_s: float | None = 0.005
 
 
@@ -97,8 +97,8 @@ def test_it_says_what_the_program_is_and_does(robot: Robot) -> None:
 
 def test_lateness_of_now_is_the_worst_of_the_last_second(robot: Robot) -> None:
     for late_s in (0.004, 0.0):
-        robot.desk.runtime.ledger.begin(late_s)
-        robot.desk.runtime.ledger.end()
+        robot.desk.runtime.timer.begin(late_s)
+        robot.desk.runtime.timer.end()
     assert robot.report().punctuality.newest_ms == pytest.approx(4.0)
     robot.tick(100)
     late = robot.report().punctuality

@@ -44,7 +44,7 @@ def record(tick: int, verdict: int, cause: Cause = Cause.RLA) -> TickRecord:
     decision = Decision(STANDSTILL, cause, "a" if driving else None, rla_id, None)
     situation = Situation(np.zeros(1), history_frozen=not driving)
     grant = GuardResult(STANDSTILL, (), latched=False)
-    return TickRecord(tick, 0.01 * tick, sensed(100), situation, decision, grant, (), circumstances=circumstances)
+    return TickRecord(tick, 0.01 * tick, sensed(100), situation, decision, grant, (), appraisal_features=circumstances)
 
 
 def appraiser(phase: Phase, rewards: RewardSource | None = None, timing: FeedbackTiming = TIMING) -> ScriptedAppraiser:

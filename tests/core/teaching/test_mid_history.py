@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from kurt2rt.core.teaching.recent_mid import MidHistory, MidSnapshot
+from kurt2rt.core.teaching.mid_history import MidHistory, MidSnapshot
 
 
 def remembered(*spells: tuple[int, int, int | None], capacity: int = 64) -> MidHistory:
@@ -20,15 +20,15 @@ def told(moment: MidSnapshot | None) -> tuple[float, int | None] | None:
 
 
 def test_nothing_is_remembered_before_the_first_tick_or_after_the_newest() -> None:
-    assert MidHistory().at(0) is None
+    assert MidHistory().get(0) is None
     assert MidHistory().newest is None
     recent = remembered((5, 9, 1))
-    assert [told(recent.at(tick)) for tick in (4, 5, 9, 10)] == [None, (5.0, 1), (5.0, 1), None]
+    assert [told(recent.get(tick)) for tick in (4, 5, 9, 10)] == [None, (5.0, 1), (5.0, 1), None]
 
 
 def test_a_situation_lasts_from_junction_to_junction_however_many_ticks() -> None:
     recent = remembered((1, 90_000, 4), (90_001, 90_001, 5), (90_002, 200_000, None), capacity=3)
-    assert [told(recent.at(tick)) for tick in (1, 90_000, 90_001, 90_002, 150_000)] == [
+    assert [told(recent.get(tick)) for tick in (1, 90_000, 90_001, 90_002, 150_000)] == [
         (1.0, 4),
         (1.0, 4),
         (90_001.0, 5),
@@ -43,10 +43,10 @@ def test_another_rla_at_the_same_place_is_another_moment() -> None:
     vector = np.zeros(1)
     for tick, rla_id in enumerate((None, None, 7, 7, 8)):
         recent.remember(tick, vector, rla_id)
-    assert [told(recent.at(tick)) for tick in range(5)] == [(0.0, each) for each in (None, None, 7, 7, 8)]
+    assert [told(recent.get(tick)) for tick in range(5)] == [(0.0, each) for each in (None, None, 7, 7, 8)]
 
 
 def test_memory_does_not_grow_and_the_oldest_is_forgotten() -> None:
     recent = remembered(*((tick, tick, tick) for tick in range(100)), capacity=10)
-    assert recent.at(89) is None
-    assert told(recent.at(90)) == (90.0, 90)
+    assert recent.get(89) is None
+    assert told(recent.get(90)) == (90.0, 90)

@@ -6,10 +6,10 @@ from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode, 
 from kurt2rt.core.rla.rla import CRITIC, ActionReplaced, Appraised, Origin, Rla, RlaCreated
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.teaching.commands import Appraise
-from kurt2rt.core.teaching.taught import Taught, rla_outcome
+from kurt2rt.core.teaching.lesson_result import LessonResult, rla_outcome
 
 
-class RewardCommands:
+class AppraisalLessons:
     """Turns what a teacher says of a situation into the event that teaches it to the critic."""
 
     def __init__(self, critic: Critic, system: RlaSystem, recent: DecisionHistory) -> None:
@@ -22,7 +22,7 @@ class RewardCommands:
         """Names that a situation can be given."""
         return self._critic.appraisals
 
-    def event_of(self, command: Appraise, meant: int, origin: Origin) -> Taught:
+    def build(self, command: Appraise, meant: int, origin: Origin) -> LessonResult:
         """Return what is done and its event; `meant`: a tick that is remembered. Raises CommandRefusedError.
 
         Another opinion than the critic's is learnt, the same one only counts for how far they agree. What the critic
@@ -39,12 +39,14 @@ class RewardCommands:
             if then is not None and then.known and then.appraisal == command.appraisal:
                 value = self._critic.settings.values[command.appraisal]
                 agreed = Outcome.of(ResultCode.CRITIC_AGREED, appraisal=command.appraisal)
-                return Taught(agreed, Appraised(command.appraisal, value, meant, origin))
-            return Taught(Outcome.of(ResultCode.CRITIC_AGREES, appraisal=command.appraisal))
+                return LessonResult(agreed, Appraised(command.appraisal, value, meant, origin))
+            return LessonResult(Outcome.of(ResultCode.CRITIC_AGREES, appraisal=command.appraisal))
         if now is not None and now.rla is not None and now.distance <= self._critic.insert_beyond:
             rla = now.rla
             event = ActionReplaced(rla.rla_id, command.appraisal, rla.action, origin)
-            return Taught(rla_outcome(ResultCode.RLA_CORRECTED, rla, action=command.appraisal, was=rla.action), event)
+            return LessonResult(
+                rla_outcome(ResultCode.RLA_CORRECTED, rla, action=command.appraisal, was=rla.action), event
+            )
         rla = Rla(
             rla_id=self._system.next_id,
             condition=tuple(vector.tolist()),
@@ -53,4 +55,4 @@ class RewardCommands:
             origin=origin,
             level=CRITIC,
         )
-        return Taught(rla_outcome(ResultCode.RLA_TAUGHT, rla, action=rla.action), RlaCreated(rla))
+        return LessonResult(rla_outcome(ResultCode.RLA_TAUGHT, rla, action=rla.action), RlaCreated(rla))

@@ -6,7 +6,7 @@ from kurt2rt.core.rla.outcome import Field, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import BASIC, Rla, TeachingEvent
 
 
-class Taught(NamedTuple):
+class LessonResult(NamedTuple):
     """What a lesson comes to."""
 
     outcome: Outcome

@@ -164,7 +164,7 @@ def test_an_appraisal_does_not_end_the_action_that_is_held() -> None:
 def test_a_robot_without_a_critic_says_so() -> None:
     small = SmallLevel()
     school = CommandHandler(
-        small.level, ControlAuthority(small.actions, attended=False), insert_beyond_share=0.5, taken_command_ids=()
+        small.level, ControlAuthority(small.actions, attended=False), insert_beyond_share=0.5, handled_command_ids=()
     )
-    result, event = school.attend(Appraise("x-1", "Ann", "bad"), situation(0.0), 1)
+    result, event = school.handle(Appraise("x-1", "Ann", "bad"), situation(0.0), 1)
     assert (result.outcome, event) == (Outcome(RefusalCode.NO_CRITIC), None)

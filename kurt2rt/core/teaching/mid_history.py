@@ -22,7 +22,7 @@ class MidHistory:
 
     def __init__(self, capacity: int = 64) -> None:
         self._first_ticks: deque[int] = deque(maxlen=capacity)
-        self._moments: deque[MidSnapshot] = deque(maxlen=capacity)
+        self._snapshots: deque[MidSnapshot] = deque(maxlen=capacity)
         self._newest = -1
 
     def remember(self, tick: int, vector: NDArray[np.float64], rla_id: int | None) -> None:
@@ -31,19 +31,19 @@ class MidHistory:
         The vector is kept as it is and must never be changed in place: the same object is the same situation.
         """
         self._newest = tick
-        if self._moments:
-            last = self._moments[-1]
+        if self._snapshots:
+            last = self._snapshots[-1]
             if last.vector is vector and last.rla_id == rla_id:
                 return
         self._first_ticks.append(tick)
-        self._moments.append(MidSnapshot(vector, rla_id))
+        self._snapshots.append(MidSnapshot(vector, rla_id))
 
     @property
     def newest(self) -> MidSnapshot | None:
         """The newest one; None before the first."""
-        return self._moments[-1] if self._moments else None
+        return self._snapshots[-1] if self._snapshots else None
 
-    def at(self, tick: int) -> MidSnapshot | None:
+    def get(self, tick: int) -> MidSnapshot | None:
         """That of a tick; None where it is forgotten, or still to come."""
         place = bisect_right(self._first_ticks, tick) - 1 if tick <= self._newest else -1
-        return self._moments[place] if place >= 0 else None
+        return self._snapshots[place] if place >= 0 else None
