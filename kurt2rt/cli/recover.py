@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from kurt2rt.runs.recording.recover import NothingRecoverableError, copy_whole
+from kurt2rt.runs.recording.recover import NothingRecoverableError, recover_segment
 from kurt2rt.runs.recording.run_folder import find_run, segments_in
 from kurt2rt.service.settings import load_service
 
@@ -35,11 +35,11 @@ def recover(
     segments = [found] if found.is_file() else segments_in(found)
     for segment in segments:
         try:
-            torn = copy_whole(segment, folder / segment.name)
+            truncated = recover_segment(segment, folder / segment.name)
         except NothingRecoverableError as error:
             if len(segments) == 1:
                 raise
             typer.echo(f"{error}; not copied")
             continue
-        typer.echo(torn or f"{segment} is whole")
+        typer.echo(truncated or f"{segment} is whole")
         typer.echo(f"copied to {folder / segment.name}")

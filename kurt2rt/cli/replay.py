@@ -16,7 +16,7 @@ from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.platform.text_table import TextTable, print_whole
 from kurt2rt.runs.recording.run_folder import find_run
 from kurt2rt.runs.replay.counterfactual import Counterfactual, DifferingStretch, counterfactual
-from kurt2rt.runs.replay.counterfactual_policy import PolicyAnswer, shadow_of
+from kurt2rt.runs.replay.counterfactual_policy import PolicyAnswer, load_policy
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import ReplayedTick
 from kurt2rt.runs.replay.run import Run
@@ -96,7 +96,7 @@ def _verdict_in_words(run: Run, verdict: ReplayVerdict) -> Iterator[str]:
             f"next one, tick {first.tick},"
         )
         for each in verdict.differences[:_DIFFERENCES]:
-            yield f"  {each.in_words}"
+            yield f"  {each.text}"
         if len(verdict.differences) > _DIFFERENCES:
             yield f"  and {len(verdict.differences) - _DIFFERENCES} more"
     if verdict.trouble:
@@ -127,9 +127,9 @@ def _verdict_as_json(run: Run, verdict: ReplayVerdict) -> dict[str, Any]:
 
 
 def _compare(run: Run, knowledge: Path, limit: int, *, as_json: bool) -> None:
-    shadow = shadow_of(run, knowledge)
+    policy = load_policy(run, knowledge)
     with _bar(run) as on_tick:
-        found = counterfactual(run, shadow, on_tick=on_tick)
+        found = counterfactual(run, policy, on_tick=on_tick)
     if as_json:
         typer.echo(json.dumps(_counterfactual_as_json(run, knowledge, found), indent=2))
         return
@@ -231,11 +231,11 @@ def _title(run: Run) -> str:
 
 @contextmanager
 def _bar(run: Run) -> Iterator[OnTick]:
-    whole_s = run.lasts_s
+    whole_s = run.duration_s
     with job_bars() as report:
 
         def on_tick(tick: ReplayedTick) -> None:
             if tick.entry.number % _TELL_EVERY_TICKS == 0:
-                report("replay", run.second_of(tick.entry), max(whole_s, run.second_of(tick.entry)))
+                report("replay", run.elapsed_s(tick.entry), max(whole_s, run.elapsed_s(tick.entry)))
 
         yield on_tick

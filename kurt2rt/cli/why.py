@@ -21,7 +21,7 @@ from kurt2rt.runs.explain.counterfactual import SensorCounterfactual
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.runs.explain.from_run import ExplainedMoment, explain_run
 from kurt2rt.runs.explain.terminal import render_timeline, render_why
-from kurt2rt.runs.explain.timeline import timeline_of
+from kurt2rt.runs.explain.timeline import build_timeline
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.run_folder import find_run
 from kurt2rt.runs.replay.reader import read_run
@@ -112,7 +112,7 @@ def why(
     if name is not None or robot is not None or port is not None:
         raise typer.BadParameter("are for a robot that runs; give --live", param_hint="--as, --robot, --port")
     found = find_run(run, runs or Path(service.recordings))
-    recorded = read_run(found, in_part=at is None)
+    recorded = read_run(found, partial=at is None)
     console = console_of()
     if at is None:
         _show_timeline(console, recorded, from_s, math.inf if to_s is None else to_s, limit, picture, as_json=as_json)
@@ -135,8 +135,8 @@ def _show_timeline(
     known = (lesson.event for lesson in run.lessons)
     with Progress(TextColumn("reading"), _DONE, console=Console(stderr=True), transient=True) as progress:
         bar = progress.add_task("", total=None)
-        entries = _counted(run.entries_in_part(), lambda read_s: progress.update(bar, completed=read_s))
-        timeline = timeline_of(entries, run.robot, from_s=from_s, to_s=to_s, known=known)
+        entries = _counted(run.partial_entries(), lambda read_s: progress.update(bar, completed=read_s))
+        timeline = build_timeline(entries, run.robot, from_s=from_s, to_s=to_s, known=known)
     if as_json:
         numbers = {"from_s": timeline.from_s, "to_s": timeline.to_s, "ticks": timeline.ticks, "missed": timeline.missed}
         told = {**numbers, "stretches": timeline.stretches, "notes": timeline.notes, "trouble": run.trouble}
@@ -170,10 +170,17 @@ def _show_decision(console: Console, run: Run, at_s: float, picture: Path | None
     where = f"{_of(run)}, {explained.at_s:.2f} s (tick {explained.facts.tick})"
     if as_json:
         difference = None if explained.difference is None else str(explained.difference)
-        told = {"facts": explained.facts, "tips": explained.tips, "difference": difference, "trouble": run.trouble}
+        told = {
+            "facts": explained.facts,
+            "tips": explained.counterfactuals,
+            "difference": difference,
+            "trouble": run.trouble,
+        }
         print_json({"run": run.name, "at_s": explained.at_s, **told, "picture": picture})
     else:
-        print_whole(console, render_why(explained.facts, explained.tips, where, words_for(run.robot.infrared)))
+        print_whole(
+            console, render_why(explained.facts, explained.counterfactuals, where, words_for(run.robot.infrared))
+        )
     if explained.difference is not None and not as_json:
         console.print(
             f"This program decides otherwise than the one that was recorded: {explained.difference}. "
@@ -184,7 +191,7 @@ def _show_decision(console: Console, run: Run, at_s: float, picture: Path | None
             style="yellow",
         )
     if picture is not None:
-        _draw(explained.facts, explained.tips, run.robot, where, picture, as_json=as_json)
+        _draw(explained.facts, explained.counterfactuals, run.robot, where, picture, as_json=as_json)
 
 
 def _show_live(

@@ -10,7 +10,7 @@ from kurt2rt.channel.security.pairing import Device
 from kurt2rt.cli.no_robot import no_robot
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, tips
+from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, sensor_counterfactuals
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.answer import NoAnswerError
 from kurt2rt.teacher.client.client import ANSWER_WITHIN_S, TeacherClient
@@ -22,7 +22,7 @@ class LiveQuestion(NamedTuple):
     """What a robot said of its newest decision."""
 
     facts: DecisionFacts
-    tips: tuple[SensorCounterfactual, ...]
+    counterfactuals: tuple[SensorCounterfactual, ...]
     """Of the RLAs that it told of, the nearest ones; none where its task is not known here."""
 
 
@@ -54,4 +54,5 @@ def _tips_of(facts: DecisionFacts, robot: RobotSettings) -> tuple[SensorCounterf
     if definition.names != facts.basic.names or len(facts.infrared_counts) != len(robot.infrared.sensors):
         return ()
     told_of_all = facts.basic.count <= 1 + len(facts.basic.others)
-    return tuple(tip for tip in tips(facts, definition, robot.infrared) if told_of_all or tip.rla is not None)
+    found = sensor_counterfactuals(facts, definition, robot.infrared)
+    return found if told_of_all else tuple(each for each in found if each.rla is not None)

@@ -105,7 +105,7 @@ class PostTick:
         saves = ticks % (self._checkpoint_ticks * speed) == 0
         if self._recorder is not None:
             # Before all that is noted at its time: the question that comes of it, and what became of lessons.
-            self._recorder.note(record, saved=saves)
+            self._recorder.on_tick(record, saved=saves)
         self._ask(record)
         for acknowledgement in writer.acknowledged():
             self.on_acknowledged(acknowledgement)
@@ -139,7 +139,7 @@ class PostTick:
         if self._channel is not None:
             self._channel.settled(acknowledgement)
         if self._recorder is not None:
-            self._recorder.acknowledged(acknowledgement)
+            self._recorder.on_acknowledged(acknowledgement)
         self._screen.acknowledged(acknowledgement)
         text = self._unsettled.pop(acknowledgement.command_id, "")
         if text and acknowledgement.error is None:
@@ -157,7 +157,7 @@ class PostTick:
             self._asked_at = record.tick
             question = self._question_of(record)
             if self._recorder is not None:
-                self._recorder.asked(question)
+                self._recorder.on_question(question)
             self._screen.question(question)
 
     def _question_of(self, record: TickRecord) -> Question | MidQuestion:

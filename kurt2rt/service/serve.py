@@ -168,7 +168,7 @@ async def serve(
                 watch.include(
                     drops={"the recording": lambda: recorder.dropped}, errors={"recording": lambda: recorder.trouble}
                 )
-                watch.add_listener(lambda report: recorder.healthy(plain_of(report)))
+                watch.add_listener(lambda report: recorder.on_health(plain_of(report)))
             parts = {"knowledge journal": lambda: writer.is_alive, **upkeep.liveness}
             heartbeat = WatchdogNotifier(upkeep.notifier, settings.can.cycle_s, parts, upkeep.log)
             async with (
@@ -202,7 +202,7 @@ async def serve(
             ending.stage = ShutdownStage.LESSONS
         for acknowledgement in writer.acknowledged():
             if recorder is not None:
-                recorder.acknowledged(acknowledgement)
+                recorder.on_acknowledged(acknowledgement)
             screen.acknowledged(acknowledgement)
         ending.stage = ShutdownStage.RECORDING
     return rounds.last

@@ -10,22 +10,22 @@ from tests.runs.replay.stored_runs import STORED
 
 def test_a_torn_run_is_copied_and_the_copy_has_its_index(kurt2rt: CommandLine, tmp_path: Path) -> None:
     content = (STORED / "walls.mcap").read_bytes()
-    torn = tmp_path / "walls.mcap"
-    torn.write_bytes(content[:-100])
-    said = kurt2rt("recover", tmp_path / "copies", torn)
+    truncated = tmp_path / "walls.mcap"
+    truncated.write_bytes(content[:-100])
+    said = kurt2rt("recover", tmp_path / "copies", truncated)
     assert said.exit_code == 0, said.err
     copy = tmp_path / "copies" / "walls.mcap"
-    assert f"{torn}: ends without its index" in said.out
+    assert f"{truncated}: ends without its index" in said.out
     assert f"copied to {copy}" in said.out
     with copy.open("rb") as file:
         summary = make_reader(file).get_summary()
     assert summary is not None
     assert summary.statistics is not None
     assert summary.statistics.message_count == 4400
-    again = kurt2rt("recover", tmp_path / "copies", torn)
+    again = kurt2rt("recover", tmp_path / "copies", truncated)
     assert again.exit_code == 2
     assert "give another folder" in again.err
-    assert torn.read_bytes() == content[:-100]
+    assert truncated.read_bytes() == content[:-100]
 
 
 def test_a_file_that_the_power_cut_left_empty_stands_in_no_others_way(kurt2rt: CommandLine, tmp_path: Path) -> None:

@@ -96,4 +96,4 @@ def test_a_killed_program_leaves_a_run_that_can_be_read(folder: Path) -> None:
     (segment,) = segments_in(run)
     reader = SegmentReader(segment)
     assert list(reader.messages({TICK}))
-    assert "ends without its index" in reader.torn
+    assert "ends without its index" in reader.truncated

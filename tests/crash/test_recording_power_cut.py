@@ -20,7 +20,7 @@ SMALL = Budget(10_000_000, segment_bytes=20_000, reserve_bytes=0)
 def recorded(folder: Path, disk: TracedDisk, seconds: int) -> list[int]:
     """Some seconds of a run, in files that are soon full; its ticks."""
     desk = RecordedDesk(folder, disk=disk, budget=SMALL)
-    desk.recorder.tend()
+    desk.recorder.poll()
     for second in range(seconds):
         desk.second(counts=200 + second)
         disk.operations.append(Told(desk.recorder.written))

@@ -36,7 +36,7 @@ def _let_hang(thing: str) -> None:
     hangs: dict[str, tuple[object, str, object]] = {
         "start": (program, "open_for_teaching", _hang),
         "disk": (Journal, "checkpoint", _hang),
-        "recorder": (RunFiles, "tend", _hang),
+        "recorder": (RunFiles, "poll", _hang),
         "keys": (Teachers, "close", _hang),
         "network": (Endpoint, "close", _hang_in_the_loop),
         "loop": (PostTick, "save_statistics", _hang),

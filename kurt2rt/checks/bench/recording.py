@@ -74,7 +74,7 @@ async def drive_recorded(
 
     def note(record: TickRecord) -> None:
         begun_ns = time.perf_counter_ns()
-        recorder.note(record)
+        recorder.on_tick(record)
         noted_ns.append(time.perf_counter_ns() - begun_ns)
 
     simulation = subject.open_simulation("bench recording")

@@ -101,7 +101,7 @@ class ProgramRun:
         started = _FIRST_DAY + timedelta(seconds=rig.time.now_s())
         # Without its thread: it writes when it is told to, as far as simulated time has gone.
         self.recorder = recording.recorder(settings, task, opened, circumstances, started=started)
-        self.recorder.tend()
+        self.recorder.poll()
         self._rounds = PostTick(
             self.runtime,
             self.knowledge.writer,
@@ -198,7 +198,7 @@ class ProgramRun:
             self.recorder.write_waiting()
         if record.tick - self._tended_at >= _TENDS_EVERY_TICKS:
             self._tended_at = record.tick
-            self.recorder.tend()
+            self.recorder.poll()
         self.knowledge.keep_in_step(all_of_it=(runtime.timer.ticks % self._checkpoint_ticks) == 0)
         authority = runtime.handler.authority
         if self._link is not None:

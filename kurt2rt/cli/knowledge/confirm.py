@@ -11,7 +11,7 @@ from kurt2rt.cli.knowledge.shared import replaying, say
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.knowledge.versions.editing import require_no_robot
 from kurt2rt.knowledge.versions.undo import UndoPlan
-from kurt2rt.runs.replay.trial import said
+from kurt2rt.runs.replay.trial import format_answer
 from kurt2rt.runs.replay.undo_preview import TrialResult, preview, preview_on_newest
 from kurt2rt.service.settings import load_service
 
@@ -102,4 +102,5 @@ def _changes(tried: TrialResult) -> Iterator[str]:
     yield f"{tried.run}: of {decisions}: {kinds}; the longest:"
     longest = sorted(found.stretches, key=lambda each: -each.ticks)[:_STRETCHES]
     for each in sorted(longest, key=lambda each: each.from_s):
-        yield f"  {each.from_s:7.2f} to {each.to_s:7.2f} s  {said(each.would_be)}, instead of {said(each.was)}"
+        change = f"{format_answer(each.would_be)}, instead of {format_answer(each.was)}"
+        yield f"  {each.from_s:7.2f} to {each.to_s:7.2f} s  {change}"

@@ -21,7 +21,7 @@ class FeatureShare:
 
 
 @dataclass(frozen=True, slots=True)
-class FeaturePull:
+class FeatureContrast:
     """What one feature says of two RLAs."""
 
     name: str
@@ -32,21 +32,21 @@ class FeaturePull:
     """For the first one where it is positive: its part of all that speaks for one or the other, -1 to 1."""
 
 
-def shares(level: LevelFacts, story: RlaFacts) -> tuple[FeatureShare, ...]:
+def distance_attribution(level: LevelFacts, rla: RlaFacts) -> tuple[FeatureShare, ...]:
     """All features that differ and count, most first; empty where the robot does not know where it is."""
-    squares = _squares(level, story)
+    squares = _squares(level, rla)
     whole = float(squares.sum())
     if not whole > 0 or not np.isfinite(whole):
         return ()
     order = np.argsort(-squares, kind="stable").tolist()
     return tuple(
-        FeatureShare(level.names[place], level.vector[place], story.condition[place], float(squares[place]) / whole)
+        FeatureShare(level.names[place], level.vector[place], rla.condition[place], float(squares[place]) / whole)
         for place in order
         if squares[place] > 0
     )
 
 
-def pulls(level: LevelFacts, first: RlaFacts, second: RlaFacts) -> tuple[FeaturePull, ...]:
+def contrast_attribution(level: LevelFacts, first: RlaFacts, second: RlaFacts) -> tuple[FeatureContrast, ...]:
     """All features that speak for one of the two, loudest first."""
     difference = _squares(level, second) - _squares(level, first)
     whole = float(np.abs(difference).sum())
@@ -54,7 +54,7 @@ def pulls(level: LevelFacts, first: RlaFacts, second: RlaFacts) -> tuple[Feature
         return ()
     order = np.argsort(-np.abs(difference), kind="stable").tolist()
     return tuple(
-        FeaturePull(
+        FeatureContrast(
             level.names[place],
             level.vector[place],
             first.condition[place],
@@ -66,7 +66,7 @@ def pulls(level: LevelFacts, first: RlaFacts, second: RlaFacts) -> tuple[Feature
     )
 
 
-def to_the_border(level: LevelFacts, first: RlaFacts, second: RlaFacts) -> float | None:
+def border_distance(level: LevelFacts, first: RlaFacts, second: RlaFacts) -> float | None:
     """How far the situation lies from where both are equally near, weighted as a distance; None of symbols."""
     if not level.euclidean:
         return None
@@ -77,8 +77,8 @@ def to_the_border(level: LevelFacts, first: RlaFacts, second: RlaFacts) -> float
     return float(_squares(level, second).sum() - _squares(level, first).sum()) / (2 * apart)
 
 
-def _squares(level: LevelFacts, story: RlaFacts) -> NDArray[np.float64]:
-    here, there = np.array(level.vector), np.array(story.condition)
+def _squares(level: LevelFacts, rla: RlaFacts) -> NDArray[np.float64]:
+    here, there = np.array(level.vector), np.array(rla.condition)
     if not level.euclidean:
         return np.array(here != there, dtype=np.float64)
     off: NDArray[np.float64] = (here - there) * np.array(level.weights)

@@ -6,41 +6,49 @@ from collections.abc import Mapping
 from matplotlib.axes import Axes
 
 from kurt2rt.core.perception.sensor_words import SensorWords
-from kurt2rt.runs.explain.attribution import pulls, shares
+from kurt2rt.runs.explain.attribution import contrast_attribution, distance_attribution
 from kurt2rt.runs.explain.colours import ASKS, INK, PALE_INK, STANDS
 from kurt2rt.runs.explain.facts import LevelFacts, RlaFacts
 from kurt2rt.runs.explain.sensor_view import DIFFERS
-from kurt2rt.runs.explain.sentences import far
+from kurt2rt.runs.explain.sentences import format_distance
 
 _KNOWN, _LIMIT, _LIMIT_INK = "#e3f1e6", "#3f9b5c", "#2b7a45"
 _SMALLER = "#f0b27f"
 
 
-def draw_nearness(axes: Axes, level: LevelFacts, story: RlaFacts | None, colours: Mapping[str, str]) -> None:
+def draw_nearness(axes: Axes, level: LevelFacts, rla: RlaFacts | None, colours: Mapping[str, str]) -> None:
     """All RLAs on one line: the nearer the farther left."""
     _bare(axes)
-    if level.nearest is None or story is None or not math.isfinite(level.nearest.distance):
+    if level.nearest is None or rla is None or not math.isfinite(level.nearest.distance):
         axes.set_axis_off()
         return
     radius = level.nearest.radius
-    stories = [level.nearest, *level.others]
-    end = 1.12 * max(radius, story.distance)
+    rlas = [level.nearest, *level.others]
+    end = 1.12 * max(radius, rla.distance)
     axes.set_xlim(-0.01 * end, end)
     axes.set_ylim(-1.0, 1.0)
     axes.axvspan(0, radius, ymin=0.28, ymax=0.72, facecolor=_KNOWN, zorder=0)
     axes.plot([radius, radius], [-0.75, 0.75], color=_LIMIT, linewidth=1.6, linestyle=(0, (4, 2)))
-    axes.text(radius + 0.006 * end, 0.5, f"R {far(radius)}", color=_LIMIT_INK, fontsize=9.5, ha="left", va="bottom")
-    for each in reversed(stories):
+    axes.text(
+        radius + 0.006 * end,
+        0.5,
+        f"R {format_distance(radius)}",
+        color=_LIMIT_INK,
+        fontsize=9.5,
+        ha="left",
+        va="bottom",
+    )
+    for each in reversed(rlas):
         if each.distance <= end:
             axes.plot(each.distance, 0, "o", markersize=7, color=_dot(each, colours), markeredgecolor="white", zorder=3)
-    axes.plot(story.distance, 0, "o", markersize=15, color=_dot(story, colours), markeredgecolor=INK, zorder=5)
-    name, marks = f"{story.title}: {far(story.distance)}", [(story, 0.42)]
-    axes.text(story.distance, 0.42, name, fontsize=10, fontweight="bold", ha=_side(story, end), va="bottom", color=INK)
+    axes.plot(rla.distance, 0, "o", markersize=15, color=_dot(rla, colours), markeredgecolor=INK, zorder=5)
+    name, marks = f"{rla.title}: {format_distance(rla.distance)}", [(rla, 0.42)]
+    axes.text(rla.distance, 0.42, name, fontsize=10, fontweight="bold", ha=_side(rla, end), va="bottom", color=INK)
     named = [(level.runner_up, "runner-up"), (level.otherwise, "nearest that says something else")]
-    if level.nearest.rla_id != story.rla_id:
+    if level.nearest.rla_id != rla.rla_id:
         named = [(level.nearest, "nearest")]
     for other, word in named:
-        if other is None or other is story or any(other is one for one, _ in marks) or other.distance > end:
+        if other is None or other is rla or any(other is one for one, _ in marks) or other.distance > end:
             continue
         low = -0.42 - 0.5 * (len(marks) - 1)
         marks.append((other, low))
@@ -51,7 +59,7 @@ def draw_nearness(axes: Axes, level: LevelFacts, story: RlaFacts | None, colours
         axes.text(
             other.distance + 0.008 * end,
             low,
-            f"{word}: {other.title}, {other.action}, {far(other.distance)}",
+            f"{word}: {other.title}, {other.action}, {format_distance(other.distance)}",
             fontsize=9,
             ha="left" if other.distance < 0.6 * end else "right",
             va="top",
@@ -60,14 +68,14 @@ def draw_nearness(axes: Axes, level: LevelFacts, story: RlaFacts | None, colours
     axes.text(0.0, 1.0, "how near each RLA is", fontsize=9.5, color=PALE_INK, ha="left", va="bottom")
 
 
-def draw_differences(axes: Axes, level: LevelFacts, story: RlaFacts | None, rows: int, words: SensorWords) -> None:
+def draw_differences(axes: Axes, level: LevelFacts, rla: RlaFacts | None, rows: int, words: SensorWords) -> None:
     """The features that made the distance what it is: their shares, and both values."""
     _bare(axes)
-    found = () if story is None else shares(level, story)[:rows]
-    if story is None or not found:
+    found = () if rla is None else distance_attribution(level, rla)[:rows]
+    if rla is None or not found:
         axes.set_axis_off()
         return
-    axes.set_title(f"What makes the distance to {story.title}", fontsize=11.5, loc="left", color=INK, pad=12)
+    axes.set_title(f"What makes the distance to {rla.title}", fontsize=11.5, loc="left", color=INK, pad=12)
     highest = max(share.share for share in found)
     for row, share in enumerate(found):
         axes.barh(row, share.share, height=0.56, color=DIFFERS if row == 0 else _SMALLER, zorder=2)
@@ -92,14 +100,14 @@ def draw_differences(axes: Axes, level: LevelFacts, story: RlaFacts | None, rows
     axes.set_ylim(rows - 0.4, -0.6)
 
 
-def draw_tug_of_war(
-    axes: Axes, level: LevelFacts, story: RlaFacts | None, colours: Mapping[str, str], rows: int, words: SensorWords
+def draw_contrast(
+    axes: Axes, level: LevelFacts, rla: RlaFacts | None, colours: Mapping[str, str], rows: int, words: SensorWords
 ) -> None:
     """Which features speak for the one, which for the other."""
     _bare(axes)
-    other = None if story is None else level.rival_of(story)
-    found = () if story is None or other is None else pulls(level, story, other)[:rows]
-    if story is None or other is None or not found:
+    other = None if rla is None else level.contrast_of(rla)
+    found = () if rla is None or other is None else contrast_attribution(level, rla, other)[:rows]
+    if rla is None or other is None or not found:
         axes.set_axis_off()
         return
     axes.set_title(
@@ -112,23 +120,23 @@ def draw_tug_of_war(
     widest = max(abs(pull.pull) for pull in found)
     for row, pull in enumerate(found):
         mine = pull.pull > 0
-        axes.barh(row, pull.pull, height=0.56, color=_dot(story if mine else other, colours), zorder=2)
+        axes.barh(row, pull.pull, height=0.56, color=_dot(rla if mine else other, colours), zorder=2)
         here, first, second = (words.reading(pull.name, each) for each in (pull.here, pull.in_first, pull.in_second))
         _name_row(axes, -2.15 * widest, row, words.place(pull.name), f"{here} now, {first} or {second}", ha="left")
     axes.plot([0, 0], [-0.45, len(found) - 0.55], color=INK, linewidth=0.9, zorder=3)
     below = len(found) - 0.45
-    axes.text(0.05 * widest, below, f"for {story.rla_id}", ha="left", va="top", fontsize=9, color=INK)
+    axes.text(0.05 * widest, below, f"for {rla.rla_id}", ha="left", va="top", fontsize=9, color=INK)
     axes.text(-0.05 * widest, below, f"for {other.rla_id}", ha="right", va="top", fontsize=9, color=INK)
     axes.set_xlim(-2.2 * widest, 1.1 * widest)
     axes.set_ylim(rows - 0.4, -0.6)
 
 
-def _side(story: RlaFacts, end: float) -> str:
-    return "left" if story.distance < 0.15 * end else "right" if story.distance > 0.7 * end else "center"
+def _side(rla: RlaFacts, end: float) -> str:
+    return "left" if rla.distance < 0.15 * end else "right" if rla.distance > 0.7 * end else "center"
 
 
-def _dot(story: RlaFacts, colours: Mapping[str, str]) -> str:
-    return ASKS if story.asks else colours.get(story.action, STANDS)
+def _dot(rla: RlaFacts, colours: Mapping[str, str]) -> str:
+    return ASKS if rla.asks else colours.get(rla.action, STANDS)
 
 
 def _name_row(axes: Axes, x: float, row: int, name: str, values: str, *, ha: str) -> None:

@@ -24,7 +24,7 @@ StampOf = Callable[[str], str]
 """When the lesson of a command was written, UTC, ISO 8601; empty where that is not known."""
 
 
-def facts_of(
+def collect_facts(
     runtime: Runtime,
     record: TickRecord,
     stamp_of: StampOf,
@@ -66,11 +66,11 @@ def facts_of(
         kept=runtime.level.held_action,
         history_frozen=record.situation.history_frozen,
         taught_now=bool(record.events),
-        hindrances=_hindrances(runtime, record),
+        hindrances=_blocking_causes(runtime, record),
     )
 
 
-def _hindrances(runtime: Runtime, record: TickRecord) -> tuple[str, ...]:
+def _blocking_causes(runtime: Runtime, record: TickRecord) -> tuple[str, ...]:
     """In the order in which they count."""
     school, navigator, mid = runtime.handler, runtime.navigator, record.decision.mid
     found = []
@@ -138,11 +138,13 @@ class _Reader:
     ) -> LevelFacts:
         ranking = self._ranking(level, behaviour, vector, driver_id)
         distances: Mapping[int, float] = dict(ranking)
-        nearest = None if match is None else self._story(match.rla, match.radius, match.distance)
+        nearest = None if match is None else self._rla_facts(match.rla, match.radius, match.distance)
         driver_rla = None if driver_id is None else self._system.get(driver_id)
         driver = None
         if driver_rla is not None:
-            driver = self._story(driver_rla, self._radius_of(driver_rla), distances.get(driver_rla.rla_id, math.inf))
+            driver = self._rla_facts(
+                driver_rla, self._radius_of(driver_rla), distances.get(driver_rla.rla_id, math.inf)
+            )
         others: list[RlaFacts] = []
         for rla_id, distance in ranking:
             rla = self._system.get(rla_id)
@@ -152,7 +154,7 @@ class _Reader:
                 continue  # passed over
             if self._most is not None and len(others) >= self._most:
                 break
-            others.append(self._story(rla, self._radius_of(rla), distance))
+            others.append(self._rla_facts(rla, self._radius_of(rla), distance))
         return LevelFacts(
             level=level,
             behaviour=behaviour,
@@ -185,11 +187,11 @@ class _Reader:
         mid = self._runtime.mid
         return self._system.radius if rla.level == BASIC or mid is None else mid.settings.learning.radius
 
-    def _story(self, rla: Rla, radius: float, distance: float) -> RlaFacts:
+    def _rla_facts(self, rla: Rla, radius: float, distance: float) -> RlaFacts:
         counted, appraisal = self._runtime.statistics, self._system.appraisal(rla.rla_id)
         rewarded = appraisal.rewards or appraisal.punishments
         lessons = self._system.lessons_about(rla.rla_id)
-        acts = tuple(self._act(each) for each in lessons)
+        acts = tuple(self._lesson_fact(each) for each in lessons)
         uses = counted.uses.get(rla.rla_id, 0)
         before = self._uses_before.get(rla.rla_id)
         if before is None and all(isinstance(each.event, RlaRewarded) for each in lessons[1:]):
@@ -218,7 +220,7 @@ class _Reader:
         # Of ways from one place the oldest leads, unless a plan chooses: that one is told as the driver.
         return rla == (self._runtime.level.would_answer(group) if rla.level == BASIC else group[0])
 
-    def _act(self, record: LessonRecord) -> LessonFact:
+    def _lesson_fact(self, record: LessonRecord) -> LessonFact:
         origin = record.event.origin
         return LessonFact(
             text=record.text,

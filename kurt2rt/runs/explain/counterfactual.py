@@ -38,7 +38,7 @@ class SensorCounterfactual:
     """What drives then: what that one says, or the action before it until its minimum time is over; None: it asks."""
 
 
-def tips(
+def sensor_counterfactuals(
     facts: DecisionFacts, definition: SituationDefinition, law: InfraredSettings
 ) -> tuple[SensorCounterfactual, ...]:
     """For each sensor that can do it alone the smallest change, the smallest of all first.
@@ -49,10 +49,10 @@ def tips(
     and where something was taught in that tick: with another reading something else had been.
     """
     level, counts = facts.basic, facts.infrared_counts
-    stories = () if level.nearest is None else (level.nearest, *level.others)
-    if not stories or not level.euclidean or not _situation_decided(facts):
+    rlas = () if level.nearest is None else (level.nearest, *level.others)
+    if not rlas or not level.euclidean or not _situation_decides(facts):
         return ()
-    rivals = _Rivals(level, stories, level.driver if facts.cause == Cause.RLA else None)
+    competitors = _Competitors(level, rlas, level.driver if facts.cause == Cause.RLA else None)
     found = []
     extract = FeatureExtractor(definition, law.names)
     width = len(definition.features)
@@ -69,8 +69,10 @@ def tips(
             vectors[row, :width] = extract((*counts[:place], reading, *counts[place + 1 :]), STANDSTILL)
         vectors[:, wheels] = here[wheels]
         vectors[:, width:] += of_average * (vectors[:, :width] - here[:width])
-        answers = rivals.answer(vectors)
-        first = next((row for row, answer in enumerate(answers) if _does(answer, facts.kept) != facts.action), None)
+        answers = competitors.answer(vectors)
+        first = next(
+            (row for row, answer in enumerate(answers) if _resulting_action(answer, facts.kept) != facts.action), None
+        )
         if first is not None:
             needed, answer = readings[first], answers[first]
             found.append(
@@ -84,13 +86,13 @@ def tips(
                     words.reading(sensor.name, counts[place]),
                     words.reading(sensor.name, needed),
                     answer,
-                    _does(answer, facts.kept),
+                    _resulting_action(answer, facts.kept),
                 )
             )
     return tuple(sorted(found, key=lambda tip: _off(tip.needed_counts, tip.counts)))
 
 
-def _situation_decided(facts: DecisionFacts) -> bool:
+def _situation_decides(facts: DecisionFacts) -> bool:
     """Whether what the robot saw, and nothing else, had it drive or ask."""
     if (
         facts.taught_now
@@ -106,19 +108,19 @@ def _situation_decided(facts: DecisionFacts) -> bool:
     return not lost and not facts.hindrances
 
 
-class _Rivals:
+class _Competitors:
     """All RLAs that may answer, and who does at many situations at once."""
 
-    def __init__(self, level: LevelFacts, stories: tuple[RlaFacts, ...], driver: RlaFacts | None) -> None:
+    def __init__(self, level: LevelFacts, rlas: tuple[RlaFacts, ...], driver: RlaFacts | None) -> None:
         """`driver`: the one that answers now."""
         groups: dict[tuple[float, ...], list[RlaFacts]] = {}
-        for story in sorted(stories, key=lambda story: story.rla_id):
-            groups.setdefault(story.condition, []).append(story)
+        for rla in sorted(rlas, key=lambda rla: rla.rla_id):
+            groups.setdefault(rla.condition, []).append(rla)
         self._oldest = [group[0] for group in groups.values()]
         self._leaders = [_leader(group, driver) for group in groups.values()]
         self._weights = np.array(level.weights)
-        self._conditions = np.array([story.condition for story in self._oldest]) * self._weights
-        self._radii = np.array([story.radius for story in self._oldest])
+        self._conditions = np.array([rla.condition for rla in self._oldest]) * self._weights
+        self._radii = np.array([rla.radius for rla in self._oldest])
 
     def answer(self, vectors: NDArray[np.float64]) -> list[RlaFacts | None]:
         """Of each row (n, d) who answers; None where nobody does: none is near enough, or its action was withdrawn."""
@@ -141,10 +143,10 @@ def _leader(group: list[RlaFacts], driver: RlaFacts | None) -> RlaFacts:
     """Of those on one condition the one that drives, or would."""
     if driver is not None and driver.condition == group[0].condition:
         return driver
-    return next((story for story in group if story.leads), group[0])
+    return next((rla for rla in group if rla.leads), group[0])
 
 
-def _does(answer: RlaFacts | None, kept: str) -> str | None:
+def _resulting_action(answer: RlaFacts | None, kept: str) -> str | None:
     """What drives where that one answers; None: the robot asks."""
     return None if answer is None else kept or answer.action
 

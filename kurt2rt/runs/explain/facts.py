@@ -110,9 +110,9 @@ class LevelFacts:
         same = (other for other in self.others if other.leads and other.condition == nearest.condition)
         return next(same, nearest)
 
-    def rival_of(self, story: RlaFacts) -> RlaFacts | None:
+    def contrast_of(self, rla: RlaFacts) -> RlaFacts | None:
         """Whom to compare it with: the nearest; of the nearest itself the next that says something else."""
-        if self.nearest is not None and self.nearest.condition != story.condition:
+        if self.nearest is not None and self.nearest.condition != rla.condition:
             return self.nearest
         return self.otherwise or self.runner_up
 

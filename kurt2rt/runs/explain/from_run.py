@@ -15,8 +15,8 @@ from kurt2rt.core.rla.rla import (
     TeachingEvent,
 )
 from kurt2rt.core.rla.rla_system import RlaSystem
-from kurt2rt.runs.explain.collect import facts_of
-from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, tips
+from kurt2rt.runs.explain.collect import collect_facts
+from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, sensor_counterfactuals
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.replay.comparison import TickDifference, compare
@@ -29,7 +29,7 @@ class ExplainedMoment:
     """A decision of a run, looked into."""
 
     facts: DecisionFacts
-    tips: tuple[SensorCounterfactual, ...]
+    counterfactuals: tuple[SensorCounterfactual, ...]
     """What would have changed it, one reading alone."""
     at_s: float
     """From the first tick of the run."""
@@ -58,7 +58,7 @@ def explain_run(run: Run, at_s: float, report: Callable[[float], None] = lambda 
         last_s = entry.now_s - began_s
         for event in entry.events:
             reckoned[event.origin.command_id] = _stamp(run.head.started_at, last_s)
-            _note_uses(event, counted.uses, uses_before, replay.runtime.level.system)
+            _count_uses_before(event, counted.uses, uses_before, replay.runtime.level.system)
         newest = replay.step(entry)
         if difference is None:
             difference = next(iter(compare(entry, newest)), None)
@@ -70,13 +70,13 @@ def explain_run(run: Run, at_s: float, report: Callable[[float], None] = lambda 
         )
     runtime = replay.runtime
     # As the journal has it; a recording that does not say so says to the second when the tick was.
-    stamps.update({**reckoned, **run.stamps_of(reckoned.keys())})
-    facts = facts_of(runtime, newest, lambda command_id: stamps.get(command_id, ""), uses_before=uses_before)
-    found = tips(facts, runtime.definition, runtime.robot.infrared)
+    stamps.update({**reckoned, **run.stamps(reckoned.keys())})
+    facts = collect_facts(runtime, newest, lambda command_id: stamps.get(command_id, ""), uses_before=uses_before)
+    found = sensor_counterfactuals(facts, runtime.definition, runtime.robot.infrared)
     return ExplainedMoment(facts, found, last_s, difference)
 
 
-def _note_uses(event: TeachingEvent, uses: dict[int, int], before: dict[int, int], system: RlaSystem) -> None:
+def _count_uses_before(event: TeachingEvent, uses: dict[int, int], before: dict[int, int], system: RlaSystem) -> None:
     """How often an RLA had been used when it got the action that it has."""
     match event:
         case RlaCreated() | ActionReplaced() | ActionWithdrawn() | RlaDeleted():

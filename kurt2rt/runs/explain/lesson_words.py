@@ -15,7 +15,7 @@ from kurt2rt.core.rla.rla import (
 )
 
 
-class LessonWords:
+class LessonDescriber:
     """Remembers what was taught, to say what a later event is about."""
 
     def __init__(self) -> None:
@@ -23,7 +23,7 @@ class LessonWords:
         self._home_of: dict[int, tuple[str, str]] = {}
         """Behaviour and level of each RLA."""
 
-    def tell(self, event: TeachingEvent) -> str:
+    def describe(self, event: TeachingEvent) -> str:
         """In a few words, with who taught it."""
         by = event.origin.teacher
         match event:

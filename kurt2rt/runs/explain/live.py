@@ -1,7 +1,7 @@
 """Facts of the newest decision of a running robot, collected on request."""
 
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.runs.explain.collect import StampOf, facts_of
+from kurt2rt.runs.explain.collect import StampOf, collect_facts
 from kurt2rt.runs.explain.facts import MOST_OTHERS, DecisionFacts
 from kurt2rt.runtime import Runtime
 
@@ -23,5 +23,5 @@ class LiveExplainer:
     def facts(self) -> DecisionFacts | None:
         """Return the facts of the newest decision; None before the first tick. Call it between ticks."""
         if self._facts is None and self._newest is not None:
-            self._facts = facts_of(self._runtime, self._newest, self._stamp_of, most=MOST_OTHERS)
+            self._facts = collect_facts(self._runtime, self._newest, self._stamp_of, most=MOST_OTHERS)
         return self._facts

@@ -7,7 +7,7 @@ from matplotlib.patches import Circle, FancyBboxPatch
 
 from kurt2rt.runs.explain.colours import ASKS, INK, PALE_INK, STANDS
 from kurt2rt.runs.explain.facts import LevelFacts, RlaFacts
-from kurt2rt.runs.explain.sentences import far
+from kurt2rt.runs.explain.sentences import format_distance
 
 _KNOWN, _LIMIT = "#e3f1e6", "#3f9b5c"
 _SAME, _OTHER = "#dfe5ea", "#f0b27f"
@@ -30,40 +30,36 @@ def draw_mid(axes: Axes, mid: LevelFacts, colours: Mapping[str, str]) -> None:
 
 def _draw_places(axes: Axes, mid: LevelFacts, colours: Mapping[str, str]) -> None:
     """Each place with the heading in which it is come to, in the colour of what is done there."""
-    stories = [story for story in (mid.nearest, *mid.others) if story is not None]
+    rlas = [rla for rla in (mid.nearest, *mid.others) if rla is not None]
     x_m, y_m, east, north = mid.vector[:4]
     lost = mid.lost
     title = "The places it knows" if lost else "Where it is, and the places it knows"
     axes.set_title(title, fontsize=11.5, loc="left", color=INK, pad=8)
     axes.set_aspect("equal", adjustable="datalim")
-    if not lost and stories:
+    if not lost and rlas:
         axes.add_patch(
-            Circle((x_m, y_m), stories[0].radius, facecolor=_KNOWN, edgecolor=_LIMIT, linestyle=(0, (4, 2)), zorder=1)
+            Circle((x_m, y_m), rlas[0].radius, facecolor=_KNOWN, edgecolor=_LIMIT, linestyle=(0, (4, 2)), zorder=1)
         )
-    for story in stories:
-        x, y, dx, dy = story.condition[:4]
-        colour = ASKS if story.asks else colours.get(story.action, STANDS)
-        chosen = mid.driver is not None and story.rla_id == mid.driver.rla_id
+    for rla in rlas:
+        x, y, dx, dy = rla.condition[:4]
+        colour = ASKS if rla.asks else colours.get(rla.action, STANDS)
+        chosen = mid.driver is not None and rla.rla_id == mid.driver.rla_id
         _arrow(axes, (x, y), (dx, dy), colour, wide=3.6 if chosen else 2.2)
         axes.plot(x, y, "o", markersize=8 if chosen else 5, color=colour, markeredgecolor=INK if chosen else "white")
-        axes.annotate(
-            str(story.rla_id), (x, y), xytext=(4, 5), textcoords="offset points", fontsize=7.5, color=PALE_INK
-        )
+        axes.annotate(str(rla.rla_id), (x, y), xytext=(4, 5), textcoords="offset points", fontsize=7.5, color=PALE_INK)
     if not lost:
         _arrow(axes, (x_m, y_m), (east, north), INK, wide=2.6)
         axes.plot(x_m, y_m, "*", markersize=15, color=INK, markeredgecolor="white", zorder=9)
-    shown = [(x, y) for x, y, *_ in [story.condition for story in stories]] + ([] if lost else [(x_m, y_m)])
+    shown = [(x, y) for x, y, *_ in [rla.condition for rla in rlas]] + ([] if lost else [(x_m, y_m)])
     if shown:
         low_x, high_x = min(x for x, _ in shown), max(x for x, _ in shown)
         low_y, high_y = min(y for _, y in shown), max(y for _, y in shown)
         axes.update_datalim([(low_x - _ROOM_M, low_y - _ROOM_M), (high_x + _ROOM_M, high_y + _ROOM_M)])
         axes.autoscale_view()
     if mid.nearest is not None and not lost:
-        axes.set_xlabel(
-            f"star: here; nearest {mid.nearest.title} at {far(mid.nearest.distance)} m, R {far(mid.nearest.radius)} m",
-            fontsize=9,
-            color=PALE_INK,
-        )
+        distance, radius = format_distance(mid.nearest.distance), format_distance(mid.nearest.radius)
+        text = f"star: here; nearest {mid.nearest.title} at {distance} m, R {radius} m"
+        axes.set_xlabel(text, fontsize=9, color=PALE_INK)
     if lost:
         axes.set_xlabel("it is lost: nobody has said where it was set down", fontsize=9, color=ASKS)
 
@@ -88,7 +84,7 @@ def _draw_symbols(axes: Axes, mid: LevelFacts) -> None:
         axes.text(
             count,
             -0.75,
-            f"{differ} places differ, R {far(nearest.radius)}",
+            f"{differ} places differ, R {format_distance(nearest.radius)}",
             fontsize=8.5,
             color=PALE_INK,
             va="top",

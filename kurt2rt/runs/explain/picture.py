@@ -13,16 +13,22 @@ from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.perception.definition import AVERAGED
 from kurt2rt.core.perception.sensor_words import SensorWords, words_for
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.runs.explain.attribution import shares
-from kurt2rt.runs.explain.bars import draw_differences, draw_nearness, draw_tug_of_war
+from kurt2rt.runs.explain.attribution import distance_attribution
+from kurt2rt.runs.explain.bars import draw_contrast, draw_differences, draw_nearness
 from kurt2rt.runs.explain.colours import ASKS, INK, PALE_INK, STANDS, TEACHER, colours_of, ink_on
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual
 from kurt2rt.runs.explain.facts import DecisionFacts, RlaFacts
 from kurt2rt.runs.explain.mid_picture import draw_mid
-from kurt2rt.runs.explain.reasons import because, headline
-from kurt2rt.runs.explain.save_figure import save
-from kurt2rt.runs.explain.sensor_view import LEGEND, SensorMark, draw_surroundings
-from kurt2rt.runs.explain.sentences import guarded, mid_lines, taught, used, would_change
+from kurt2rt.runs.explain.reasons import format_reasons, headline
+from kurt2rt.runs.explain.save_figure import save_figure
+from kurt2rt.runs.explain.sensor_view import LEGEND, SensorMark, draw_sensor_view
+from kurt2rt.runs.explain.sentences import (
+    format_counterfactuals,
+    format_guard,
+    format_mid_level,
+    format_teaching,
+    format_usage,
+)
 
 _FEATURES, _FEATURES_BELOW_MID = 7, 4
 _POINTED_AT = 4
@@ -37,9 +43,9 @@ def draw_why(
 ) -> None:
     """Write a picture as the file's name ends; `found`: what would have changed it. Raises OSError."""
     level = facts.basic
-    story = level.driver or level.nearest
-    known = (*([] if story is None else [story]), *level.others)
-    said = [story.action for story in known] + ([facts.action] if facts.action else [])
+    rla = level.driver or level.nearest
+    known = (*([] if rla is None else [rla]), *level.others)
+    said = [rla.action for rla in known] + ([facts.action] if facts.action else [])
     if facts.mid is not None:
         said += [each.action for each in (facts.mid.nearest, *facts.mid.others) if each is not None]
     colours = colours_of(said)
@@ -57,18 +63,18 @@ def draw_why(
         wspace=0.05,
         hspace=0.32,  # room for four lines about who taught it
     )
-    _situations(figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1]), facts, found, robot, story, colours)
-    draw_nearness(figure.add_subplot(grid[1, 0:2]), level, story, colours)
-    _right_column(figure, grid[:, 2], facts, story, colours, words_for(robot.infrared))
+    _situations(figure.add_subplot(grid[0, 0]), figure.add_subplot(grid[0, 1]), facts, found, robot, rla, colours)
+    draw_nearness(figure.add_subplot(grid[1, 0:2]), level, rla, colours)
+    _right_column(figure, grid[:, 2], facts, rla, colours, words_for(robot.infrared))
     figure.text(0.02, 0.014, LEGEND, fontsize=8.5, color=PALE_INK)
-    save(figure, path)
+    save_figure(figure, path)
 
 
 def _right_column(
     figure: Figure,
     spec: SubplotSpec,
     facts: DecisionFacts,
-    story: RlaFacts | None,
+    rla: RlaFacts | None,
     colours: Mapping[str, str],
     words: SensorWords,
 ) -> None:
@@ -87,8 +93,8 @@ def _right_column(
     else:
         right = spec.subgridspec(3, 1, hspace=0.42, height_ratios=(1.5, 1.0, 1.0))
         draw_mid(figure.add_subplot(right[0]), mid, colours)
-    draw_differences(figure.add_subplot(right[-2]), level, story, rows, words)
-    draw_tug_of_war(figure.add_subplot(right[-1]), level, story, colours, rows, words)
+    draw_differences(figure.add_subplot(right[-2]), level, rla, rows, words)
+    draw_contrast(figure.add_subplot(right[-1]), level, rla, colours, rows, words)
 
 
 def _heading(
@@ -111,12 +117,12 @@ def _heading(
         va="center",
         bbox={"boxstyle": "round,pad=0.28", "facecolor": colour, "edgecolor": "none"},
     )
-    changes = would_change(found, most=1)
+    changes = format_counterfactuals(found, most=1)
     lines = [
-        *because(facts),
+        *format_reasons(facts),
         *([f"It would have been otherwise with {changes[0]}."] if changes else []),
-        *mid_lines(facts)[:1],
-        *([guarded(facts)] if guarded(facts) else []),
+        *format_mid_level(facts)[:1],
+        *([format_guard(facts)] if format_guard(facts) else []),
     ]
     text = "\n".join(fill(line, 178) for line in lines)
     figure.text(0.02, 0.886, text, fontsize=10.5, color=INK, va="top", linespacing=1.4)
@@ -135,18 +141,18 @@ def _situations(
     facts: DecisionFacts,
     found: tuple[SensorCounterfactual, ...],
     robot: RobotSettings,
-    story: RlaFacts | None,
+    rla: RlaFacts | None,
     colours: Mapping[str, str],
 ) -> None:
     level, sensors = facts.basic, robot.infrared.names
     pointed_at: set[str] = set()
-    if story is not None:
-        differing = [share.name for share in shares(level, story) if share.share >= _WORTH_POINTING]
+    if rla is not None:
+        differing = [share.name for share in distance_attribution(level, rla) if share.share >= _WORTH_POINTING]
         pointed_at = set([name for name in differing if name in sensors][:_POINTED_AT])
     decided, granted = facts.decided, facts.granted
     motion = granted if facts.latched else decided
     counts, averages = _halves(level.names, level.vector, sensors)
-    draw_surroundings(
+    draw_sensor_view(
         here,
         robot,
         counts,
@@ -157,15 +163,15 @@ def _situations(
         colour=_colour_of(facts, colours),
     )
     here.set_title(f"Now: tick {facts.tick}", fontsize=13, fontweight="bold", color=INK)
-    if story is None:
+    if rla is None:
         there.set_axis_off()
         there.text(0.5, 0.5, "nothing was taught yet", ha="center", va="center", color=PALE_INK, fontsize=13)
         return
-    counts, averages = _halves(level.names, story.condition, sensors)
-    draw_surroundings(there, robot, counts, averages, differing=pointed_at)
-    says = "asks again" if story.asks else story.action
-    there.set_title(f"As taught: {story.title}, {says}", fontsize=13, fontweight="bold", color=INK)
-    below = f"{fill(taught(story), _CAPTION)}\n{fill(used(story), _CAPTION)}"
+    counts, averages = _halves(level.names, rla.condition, sensors)
+    draw_sensor_view(there, robot, counts, averages, differing=pointed_at)
+    says = "asks again" if rla.asks else rla.action
+    there.set_title(f"As taught: {rla.title}, {says}", fontsize=13, fontweight="bold", color=INK)
+    below = f"{fill(format_teaching(rla), _CAPTION)}\n{fill(format_usage(rla), _CAPTION)}"
     there.text(0.5, -0.015, below, transform=there.transAxes, ha="center", va="top", fontsize=8.5, color=INK)
     moving = f"wheels: {granted.left_m_s:+.2f} / {granted.right_m_s:+.2f} m/s"
     if facts.reasons and not facts.latched:

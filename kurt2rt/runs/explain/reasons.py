@@ -7,7 +7,7 @@ from kurt2rt.core.decision.standing import DRIVES, Standing, StandReason, standi
 from kurt2rt.core.decision.standing_text import reason_text, short_text, stop_text
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaFacts
-from kurt2rt.runs.explain.sentences import far, who
+from kurt2rt.runs.explain.sentences import format_distance, format_nearness, format_rla
 
 _STANDS = {
     Cause.BLIND: "it sees nothing",
@@ -25,7 +25,7 @@ _NOTHING_BESIDE = (Cause.BLIND, Cause.AT_GOAL, Cause.NO_WAY)
 
 def headline(facts: DecisionFacts) -> str:
     """What the robot does, in a few words."""
-    standing = standing_in(facts)
+    standing = standing_of(facts)
     if standing.reason is not StandReason.DRIVES:
         return short_text(standing)
     if facts.action is not None:
@@ -37,7 +37,7 @@ def headline(facts: DecisionFacts) -> str:
     return f"stands: {_STANDS.get(Cause(facts.cause), facts.cause)}"
 
 
-def standing_in(facts: DecisionFacts) -> Standing:
+def standing_of(facts: DecisionFacts) -> Standing:
     """Return what the guard has the robot stand for, or what it touches; that it drives in any other case."""
     if facts.latched:
         return standing_latched(facts.reasons)
@@ -48,7 +48,7 @@ def standing_in(facts: DecisionFacts) -> Standing:
     return DRIVES
 
 
-def because(facts: DecisionFacts) -> list[str]:
+def format_reasons(facts: DecisionFacts) -> list[str]:
     """Why it does so, the main reason first."""
     lines = []
     if facts.latched:
@@ -61,14 +61,14 @@ def because(facts: DecisionFacts) -> list[str]:
         lines += _held(facts.basic)
     elif facts.cause == Cause.TEACHER:
         lines.append(f"{facts.teacher or 'A teacher'} drives: {facts.action}. No RLA was asked.")
-        lines += _would(facts)
+        lines += _autonomous_action(facts)
     elif facts.cause == Cause.TOUCHES:
         lines += _touches(facts)
     elif facts.cause == Cause.UNKNOWN:
         lines += _asks_the_way(facts.mid) if facts.asks_at == MID and facts.mid is not None else _asks(facts.basic)
     else:
         lines.append(_stands(facts))
-        lines += _would(facts)
+        lines += _autonomous_action(facts)
     return lines
 
 
@@ -95,13 +95,13 @@ def _rla_drives(level: LevelFacts) -> list[str]:
         return ["What drove is not among the RLAs any more."]
     lines = [
         f"This is like {nearest.title}, which says {nearest.action}: "
-        f"distance {far(nearest.distance)} of R {far(nearest.radius)}{_percent(nearest)}."
+        f"distance {format_nearness(nearest)}{_format_percent(nearest)}."
     ]
     if driver is not None and driver.rla_id != nearest.rla_id:
         lines[0] = (
-            f"This is like {nearest.title}: distance {far(nearest.distance)} of R {far(nearest.radius)}"
-            f"{_percent(nearest)}. Of those on the very same condition {driver.title} was chosen, which says "
-            f"{driver.action}{_worth(driver)}."
+            f"This is like {nearest.title}: distance {format_nearness(nearest)}"
+            f"{_format_percent(nearest)}. Of those on the very same condition {driver.title} was chosen, which says "
+            f"{driver.action}{_format_value(driver)}."
         )
     return lines
 
@@ -112,13 +112,13 @@ def _held(level: LevelFacts) -> list[str]:
         return ["An action keeps its minimum time."]
     return [
         f"{driver.title} ({driver.action}) was chosen a moment ago, and its action keeps its minimum time.",
-        f"Nearest by now is {who(nearest)}, at {far(nearest.distance)} of R {far(nearest.radius)}{_percent(nearest)}.",
+        f"Nearest by now is {format_rla(nearest)}, at {format_nearness(nearest)}{_format_percent(nearest)}.",
     ]
 
 
 def _touches(facts: DecisionFacts) -> list[str]:
-    why, leader = reason_text(standing_in(facts)), facts.basic.leader
-    says = "an RLA goes on toward it" if leader is None else f"{who(leader)} goes on toward it"
+    why, leader = reason_text(standing_of(facts)), facts.basic.leader
+    says = "an RLA goes on toward it" if leader is None else f"{format_rla(leader)} goes on toward it"
     return [f"{why[0].upper()}{why[1:]}, and {says}: the guard lets no wheel turn that way, so the robot asks."]
 
 
@@ -129,15 +129,15 @@ def _asks(level: LevelFacts) -> list[str]:
     if nearest.distance <= nearest.radius:
         if nearest.asks:
             return [
-                f"This is like {nearest.title}, at {far(nearest.distance)} of R {far(nearest.radius)}, "
+                f"This is like {nearest.title}, at {format_nearness(nearest)}, "
                 "whose action was withdrawn: there the robot asks."
             ]
         return [f"{nearest.title} says {nearest.action}, which does not know how to go on here: the robot asks."]
     return [
-        f"No RLA{of} is near enough: the nearest is {who(nearest)}, at {far(nearest.distance)}, "
-        f"{nearest.distance / nearest.radius:.2f} times R ({far(nearest.radius)})."
+        f"No RLA{of} is near enough: the nearest is {format_rla(nearest)}, at {format_distance(nearest.distance)}, "
+        f"{nearest.distance / nearest.radius:.2f} times R ({format_distance(nearest.radius)})."
         if nearest.radius > 0 and math.isfinite(nearest.distance)
-        else f"No RLA{of} is near enough: the nearest is {who(nearest)}, {far(nearest.distance)}."
+        else f"No RLA{of} is near enough: the nearest is {format_rla(nearest)}, {format_distance(nearest.distance)}."
     ]
 
 
@@ -147,10 +147,10 @@ def _asks_the_way(level: LevelFacts) -> list[str]:
         return ["The robot is lost: nobody has said where it was set down, so it asks."]
     if nearest is None:
         return ["The mid level was taught nothing yet, so the robot asks which behaviour to follow."]
-    return [f"The mid level does not know the way from here: {_nearest(nearest)}."]
+    return [f"The mid level does not know the way from here: {_format_nearest(nearest)}."]
 
 
-def _would(facts: DecisionFacts) -> list[str]:
+def _autonomous_action(facts: DecisionFacts) -> list[str]:
     """What it would do if a stop, its teacher's hand, or whatever had it stand just then, did not."""
     if facts.cause in _NOTHING_BESIDE:
         return []
@@ -170,8 +170,8 @@ def _would(facts: DecisionFacts) -> list[str]:
     if nearest is None or leader is None:
         return ["By itself it would ask: nothing was taught yet."]
     if known:
-        return [f"By itself it would do as {who(leader)} says, at {far(leader.distance)} of R {far(leader.radius)}."]
-    return [f"By itself it would ask: {_nearest(nearest)}."]
+        return [f"By itself it would do as {format_rla(leader)} says, at {format_nearness(leader)}."]
+    return [f"By itself it would ask: {_format_nearest(nearest)}."]
 
 
 def _why_the_way(mid: LevelFacts) -> str:
@@ -179,18 +179,18 @@ def _why_the_way(mid: LevelFacts) -> str:
         return "it is lost, for nobody has said where it was set down"
     if mid.nearest is None:
         return "the mid level was taught nothing yet"
-    return _nearest(mid.nearest)
+    return _format_nearest(mid.nearest)
 
 
-def _nearest(story: RlaFacts) -> str:
-    return f"nearest is {who(story)}, at {far(story.distance)} of R {far(story.radius)}"
+def _format_nearest(rla: RlaFacts) -> str:
+    return f"nearest is {format_rla(rla)}, at {format_nearness(rla)}"
 
 
-def _percent(story: RlaFacts) -> str:
-    if not story.radius > 0 or math.isinf(story.distance):
+def _format_percent(rla: RlaFacts) -> str:
+    if not rla.radius > 0 or math.isinf(rla.distance):
         return ""
-    return f" ({100 * story.distance / story.radius:.0f} %)"
+    return f" ({100 * rla.distance / rla.radius:.0f} %)"
 
 
-def _worth(story: RlaFacts) -> str:
-    return "" if story.value is None else f" and is worth {story.value:.2f}"
+def _format_value(rla: RlaFacts) -> str:
+    return "" if rla.value is None else f" and is worth {rla.value:.2f}"

@@ -16,7 +16,7 @@ FORMATS = tuple(_NO_DATE)
 """What a file's name may end with."""
 
 
-def save(figure: Figure, path: Path) -> None:
+def save_figure(figure: Figure, path: Path) -> None:
     """As the file's name ends, with its folder; the bytes depend on nothing but what is drawn. Raises OSError."""
     path.parent.mkdir(parents=True, exist_ok=True)
     # Text stays text: it can be searched, and the file is a third as large.

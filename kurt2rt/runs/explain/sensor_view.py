@@ -44,7 +44,7 @@ class SensorMark:
     colour: str
 
 
-def draw_surroundings(
+def draw_sensor_view(
     axes: Axes,
     robot: RobotSettings,
     counts: Mapping[str, float],
@@ -71,7 +71,7 @@ def draw_surroundings(
         if sensor.name not in counts:
             continue
         distance_m = law.distance_m(counts[sensor.name])
-        sees, differs = _sees(law, counts[sensor.name]), sensor.name in differing
+        sees, differs = _is_detected(law, counts[sensor.name]), sensor.name in differing
         _beam(axes, sensor, distance_m, DIFFERS if differs else _BEAM if sees else _NOTHING, 0.55 if differs else 0.8)
         if sees:
             _wall(axes, sensor, distance_m)
@@ -80,7 +80,7 @@ def draw_surroundings(
             _label(axes, sensor, distance_m, f"{distance_m * 100:.0f} cm" if sees else "nothing", sees=sees)
         if sensor.name in averages:
             average_m = law.distance_m(averages[sensor.name])
-            if _sees(law, averages[sensor.name]):
+            if _is_detected(law, averages[sensor.name]):
                 axes.plot(*_along(sensor, average_m), "D", markersize=4.5, color=_AVERAGE, fillstyle="none", zorder=7)
     for side in ends.values():
         for one, other in pairwise(sorted(side)):
@@ -94,23 +94,23 @@ def draw_surroundings(
         _arrow(axes, robot, motion, colour)
 
 
-def _sees(law: InfraredSettings, counts: float) -> bool:
+def _is_detected(law: InfraredSettings, counts: float) -> bool:
     """Whether there is anything: the last centimetres of a sensor's reach are lost in its noise."""
     return counts > law.floor_counts + 4 * law.noise_least_counts
 
 
-def above(x_m: float, y_m: float) -> Point:
+def to_picture(x_m: float, y_m: float) -> Point:
     """From the robot's frame, x forward and y left, to the picture's."""
     return -y_m, x_m
 
 
 def _along(sensor: SensorSettings, distance_m: float, aside_rad: float = 0.0) -> Point:
     heading_rad = math.radians(sensor.heading_deg) + aside_rad
-    return above(sensor.x_m + distance_m * math.cos(heading_rad), sensor.y_m + distance_m * math.sin(heading_rad))
+    return to_picture(sensor.x_m + distance_m * math.cos(heading_rad), sensor.y_m + distance_m * math.sin(heading_rad))
 
 
 def _beam(axes: Axes, sensor: SensorSettings, distance_m: float, colour: str, alpha: float) -> None:
-    fan = [above(sensor.x_m, sensor.y_m)]
+    fan = [to_picture(sensor.x_m, sensor.y_m)]
     fan += [_along(sensor, distance_m, part * _HALF_BEAM_RAD) for part in (-1.0, -0.5, 0.0, 0.5, 1.0)]
     axes.add_patch(Polygon(fan, closed=True, facecolor=colour, edgecolor="none", alpha=alpha, zorder=2))
 
@@ -194,12 +194,12 @@ def _body(axes: Axes, robot: RobotSettings) -> None:
 
 def _arrow(axes: Axes, robot: RobotSettings, motion: WheelSpeeds, colour: str) -> None:
     """The way of the robot's centre for the next moment; nothing where it stands."""
-    way = path_ahead(motion, robot.geometry.effective_track_m, _ARROW_S)
+    way = predicted_path(motion, robot.geometry.effective_track_m, _ARROW_S)
     if way is None:
         if motion.right_m_s == motion.left_m_s:
             return
         way = _spin(turns_left=motion.right_m_s > motion.left_m_s)
-    points = [above(x_m, y_m) for x_m, y_m in way]
+    points = [to_picture(x_m, y_m) for x_m, y_m in way]
     edge: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=7.5, foreground=INK)]
     line = axes.plot(*zip(*points[:-1], strict=True), color=colour, linewidth=5, solid_capstyle="butt", zorder=8)
     line[0].set_path_effects(edge)
@@ -225,7 +225,7 @@ def _spin(*, turns_left: bool) -> list[Point]:
     return [(0.11 * math.cos(angle), 0.11 * math.sin(angle)) for angle in angles]
 
 
-def path_ahead(motion: WheelSpeeds, track_m: float, lasts_s: float) -> Sequence[Point] | None:
+def predicted_path(motion: WheelSpeeds, track_m: float, lasts_s: float) -> Sequence[Point] | None:
     """Where the centre comes to with these set points, in the robot's frame; None where it turns on the spot."""
     speed_m_s = (motion.left_m_s + motion.right_m_s) / 2
     turn_rad_s = (motion.right_m_s - motion.left_m_s) / track_m

@@ -4,12 +4,12 @@ import math
 
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.rla.rla import ASK
-from kurt2rt.runs.explain.attribution import to_the_border
+from kurt2rt.runs.explain.attribution import border_distance
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual
 from kurt2rt.runs.explain.facts import DecisionFacts, LessonFact, LevelFacts, RlaFacts
 
 
-def beside(level: LevelFacts) -> list[str]:
+def format_runner_up(level: LevelFacts) -> list[str]:
     """Who else was near, and how much was between them."""
     nearest, runner_up, otherwise = level.nearest, level.runner_up, level.otherwise
     if nearest is None:
@@ -17,17 +17,18 @@ def beside(level: LevelFacts) -> list[str]:
     if runner_up is None:
         return [f"No other RLA competes: {nearest.title} is the only one."]
     lines = [
-        f"The runner-up of {level.count} is {who(runner_up)} at {far(runner_up.distance)}{_margin(level, runner_up)}."
+        f"The runner-up of {level.count} is {format_rla(runner_up)} "
+        f"at {format_distance(runner_up.distance)}{_margin(level, runner_up)}."
     ]
     if otherwise is not None and otherwise is not runner_up:
         lines.append(
-            f"It says the same; the nearest that says something else is {who(otherwise)} "
-            f"at {far(otherwise.distance)}{_margin(level, otherwise)}."
+            f"It says the same; the nearest that says something else is {format_rla(otherwise)} "
+            f"at {format_distance(otherwise.distance)}{_margin(level, otherwise)}."
         )
     return lines
 
 
-def would_change(found: tuple[SensorCounterfactual, ...], most: int = 3) -> list[str]:
+def format_counterfactuals(found: tuple[SensorCounterfactual, ...], most: int = 3) -> list[str]:
     """What would have had to be otherwise for the robot to do something else, the smallest change first."""
     return [
         f"{tip.label}{_readings(tip)} ({tip.sensor}: {tip.needed_counts} counts, not {tip.counts}): {_then(tip)}"
@@ -35,7 +36,7 @@ def would_change(found: tuple[SensorCounterfactual, ...], most: int = 3) -> list
     ]
 
 
-def still_kept(facts: DecisionFacts) -> str:
+def format_held(facts: DecisionFacts) -> str:
     """Why no other action could have been taken just then; empty where one could."""
     if not facts.kept or facts.cause != Cause.RLA or facts.latched:
         return ""
@@ -45,7 +46,7 @@ def still_kept(facts: DecisionFacts) -> str:
     )
 
 
-def guarded(facts: DecisionFacts) -> str:
+def format_guard(facts: DecisionFacts) -> str:
     """What the guard made of the decision; empty where it let it through."""
     if not facts.reasons or facts.latched or facts.cause == Cause.TOUCHES:  # said already
         return ""
@@ -55,56 +56,56 @@ def guarded(facts: DecisionFacts) -> str:
     )
 
 
-def taught(story: RlaFacts) -> str:
+def format_teaching(rla: RlaFacts) -> str:
     """Who taught the action that it has, when, and instead of what."""
-    acts = teaching_acts(story)
+    acts = standing_lessons(rla)
     if not acts:
-        return f"Nothing is known of who taught {story.title}."
+        return f"Nothing is known of who taught {rla.title}."
     newest = acts[-1]
-    return f"{newest.text}; {when(newest)}, by {newest.teacher} in phase {newest.phase}."
+    return f"{newest.text}; {format_stamp(newest)}, by {newest.teacher} in phase {newest.phase}."
 
 
-def teaching_acts(story: RlaFacts) -> tuple[LessonFact, ...]:
+def standing_lessons(rla: RlaFacts) -> tuple[LessonFact, ...]:
     """The lessons that stand and made its action, oldest first; praise and blame left out."""
-    return tuple(act for act in story.acts if act.changes)
+    return tuple(act for act in rla.acts if act.changes)
 
 
-def used(story: RlaFacts) -> str:
+def format_usage(rla: RlaFacts) -> str:
     """How often, and what teachers thought of it."""
-    count = story.uses if story.uses_since is None else story.uses_since
-    text = f"Used {times(count)}" if count else "Never used"
-    if story.uses_since is None:
+    count = rla.uses if rla.uses_since is None else rla.uses_since
+    text = f"Used {format_count(count)}" if count else "Never used"
+    if rla.uses_since is None:
         text += " since it was first taught"
-    elif story.uses_since == story.uses:
+    elif rla.uses_since == rla.uses:
         text += " since"
     else:
-        text += f" since, {times(story.uses)} with the actions it had before"
-    if story.rewards or story.punishments:
-        text += f"; praised {times(story.rewards)}, blamed {times(story.punishments)}"
-        if story.value is not None:
-            text += f", worth {story.value:.2f}"
+        text += f" since, {format_count(rla.uses)} with the actions it had before"
+    if rla.rewards or rla.punishments:
+        text += f"; praised {format_count(rla.rewards)}, blamed {format_count(rla.punishments)}"
+        if rla.value is not None:
+            text += f", worth {rla.value:.2f}"
     return f"{text}."
 
 
-def when(act: LessonFact) -> str:
+def format_stamp(act: LessonFact) -> str:
     """To the second, and the tick of its run."""
     stamp = act.stamp[:19].replace("T", " ")
     return f"{stamp} UTC (tick {act.tick})" if stamp else f"tick {act.tick} of its run"
 
 
-def far(distance: float) -> str:
+def format_nearness(rla: RlaFacts) -> str:
+    """Return the distance of an RLA and its radius, such as "12.3 of R 20"."""
+    return f"{format_distance(rla.distance)} of R {format_distance(rla.radius)}"
+
+
+def format_distance(distance: float) -> str:
     """A distance for people to read."""
     if math.isinf(distance):
         return "far off"
     return f"{distance:.0f}" if distance >= 10 else f"{distance:.3g}"
 
 
-def number(value: float) -> str:
-    """Counts whole, metres and shares with their decimals."""
-    return f"{value:.0f}" if abs(value) >= 10 else f"{value:.2f}".rstrip("0").rstrip(".")
-
-
-def mid_lines(facts: DecisionFacts) -> list[str]:
+def format_mid_level(facts: DecisionFacts) -> list[str]:
     """What the level above commands, and why; empty where there is none."""
     mid = facts.mid
     if mid is None:
@@ -113,11 +114,10 @@ def mid_lines(facts: DecisionFacts) -> list[str]:
     if facts.overridden:
         lines = [f"Mid level: a teacher commands {facts.basic.behaviour} until the next junction has been passed."]
     elif mid.driver is not None:
-        story = mid.driver
+        rla = mid.driver
         lines = [
-            f"Mid level: {story.title} commands {story.action}, at {far(story.distance)} of R {far(story.radius)}."
-            f"{came_by}",
-            taught(story),
+            f"Mid level: {rla.title} commands {rla.action}, at {format_nearness(rla)}.{came_by}",
+            format_teaching(rla),
         ]
     else:
         lost = ", for it is lost: nobody has said where it was set down" if mid.lost else ""
@@ -125,22 +125,22 @@ def mid_lines(facts: DecisionFacts) -> list[str]:
     return [*lines, *([f"Goal: {facts.plan_says}"] if facts.plan_says else [])]
 
 
-def times(count: int) -> str:
+def format_count(count: int) -> str:
     """How often."""
     return ("never", "once", "twice")[count] if count < 3 else f"{count} times"
 
 
-def who(story: RlaFacts) -> str:
+def format_rla(rla: RlaFacts) -> str:
     """An RLA with what it says."""
-    return f"{story.title} ({'asks again' if story.action == ASK else story.action})"
+    return f"{rla.title} ({'asks again' if rla.action == ASK else rla.action})"
 
 
 def _margin(level: LevelFacts, other: RlaFacts) -> str:
     nearest = level.nearest
     if nearest is None:
         return ""
-    border = to_the_border(level, nearest, other)
-    return "" if border is None else f"; the border to it is {far(border)} away"
+    border = border_distance(level, nearest, other)
+    return "" if border is None else f"; the border to it is {format_distance(border)} away"
 
 
 def _readings(tip: SensorCounterfactual) -> str:
@@ -152,8 +152,8 @@ def _then(tip: SensorCounterfactual) -> str:
     if tip.rla is None:
         return "the robot would ask"
     if tip.action != tip.rla.action:
-        return f"{who(tip.rla)}, once {tip.action} had driven for its minimum time"
-    return who(tip.rla)
+        return f"{format_rla(tip.rla)}, once {tip.action} had driven for its minimum time"
+    return format_rla(tip.rla)
 
 
 def _speeds(speeds: tuple[float, float]) -> str:

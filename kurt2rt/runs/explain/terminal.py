@@ -9,12 +9,21 @@ from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.knowledge.show.table_cells import plain
 from kurt2rt.platform.text_table import TextTable
-from kurt2rt.runs.explain.attribution import pulls, shares
+from kurt2rt.runs.explain.attribution import contrast_attribution, distance_attribution
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual
 from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaFacts
-from kurt2rt.runs.explain.reasons import because, headline
-from kurt2rt.runs.explain.sentences import beside, guarded, mid_lines, still_kept, taught, used, when, would_change
-from kurt2rt.runs.explain.timeline import Kind, Stretch, Timeline, summary
+from kurt2rt.runs.explain.reasons import format_reasons, headline
+from kurt2rt.runs.explain.sentences import (
+    format_counterfactuals,
+    format_guard,
+    format_held,
+    format_mid_level,
+    format_runner_up,
+    format_stamp,
+    format_teaching,
+    format_usage,
+)
+from kurt2rt.runs.explain.timeline import Kind, Stretch, Timeline, format_summary
 
 _FEATURES = 6
 _STYLES = {Kind.DRIVES: "green", Kind.LED: "magenta", Kind.ASKS: "red", Kind.STANDS: "yellow"}
@@ -29,20 +38,20 @@ def render_why(
     `found`: what would have changed it; `where`: of which run, and when; `words`: for the robot's sensors.
     """
     parts: list[RenderableType] = [Text.assemble((where, "dim")), Text(headline(facts), style="bold")]
-    parts += [plain(line) for line in because(facts)]
-    if guarded(facts):
-        parts.append(plain(guarded(facts)))
+    parts += [plain(line) for line in format_reasons(facts)]
+    if format_guard(facts):
+        parts.append(plain(format_guard(facts)))
     if facts.asks_at == MID and facts.mid is not None and facts.mid.nearest is not None:
         parts += _of_level(facts.mid, None, words)
     else:
         parts += _of_level(facts.basic, facts.basic.driver, words)
-    changes = would_change(found)
+    changes = format_counterfactuals(found)
     if changes:
         parts.append(Text("\nWhat would have changed it, one reading alone:", style="bold"))
         parts += [plain(f"  {line}") for line in changes]
-    if still_kept(facts):
-        parts.append(plain(still_kept(facts)))
-    above = mid_lines(facts)
+    if format_held(facts):
+        parts.append(plain(format_held(facts)))
+    above = format_mid_level(facts)
     if above:
         parts.append(Text(""))
         parts += [plain(line) for line in above]
@@ -51,26 +60,26 @@ def render_why(
 
 def _of_level(level: LevelFacts, driver: RlaFacts | None, words: SensorWords) -> list[RenderableType]:
     """The RLA it went by, those beside it, and the features."""
-    story = driver or level.nearest
-    if story is None:
+    rla = driver or level.nearest
+    if rla is None:
         return []
-    parts: list[RenderableType] = [plain(line) for line in beside(level)]
-    parts.append(_differences(level, story, words))
-    parts += [Text("Taught", style="bold"), plain(taught(story)), plain(used(story))]
-    if len(story.acts) > 1:
-        parts.append(_history(story))
+    parts: list[RenderableType] = [plain(line) for line in format_runner_up(level)]
+    parts.append(_differences(level, rla, words))
+    parts += [Text("Taught", style="bold"), plain(format_teaching(rla)), plain(format_usage(rla))]
+    if len(rla.acts) > 1:
+        parts.append(_history(rla))
     return parts
 
 
-def _differences(level: LevelFacts, story: RlaFacts, words: SensorWords) -> RenderableType:
-    found = shares(level, story)
-    other = level.rival_of(story)
-    pull = {} if other is None else {each.name: each.pull for each in pulls(level, story, other)}
+def _differences(level: LevelFacts, rla: RlaFacts, words: SensorWords) -> RenderableType:
+    found = distance_attribution(level, rla)
+    other = level.contrast_of(rla)
+    pull = {} if other is None else {each.name: each.pull for each in contrast_attribution(level, rla, other)}
     theirs = {} if other is None else dict(zip(level.names, other.condition, strict=True))
     table = TextTable()
     table.add_column("feature")
     table.add_column("here", number=True)
-    table.add_column(f"RLA {story.rla_id}", number=True)
+    table.add_column(f"RLA {rla.rla_id}", number=True)
     table.add_column("of the distance")
     if other is not None:
         table.add_column(f"RLA {other.rla_id}", number=True)
@@ -84,7 +93,7 @@ def _differences(level: LevelFacts, story: RlaFacts, words: SensorWords) -> Rend
         if other is not None:
             of_feature = pull.get(share.name, 0.0)
             ahead = f"{100 * abs(of_feature):.0f} %"
-            side = story if of_feature > 0 else other
+            side = rla if of_feature > 0 else other
             cells += [
                 words.reading(share.name, theirs[share.name]),
                 "" if abs(of_feature) < 0.005 else f"{ahead} for RLA {side.rla_id}",
@@ -92,17 +101,17 @@ def _differences(level: LevelFacts, story: RlaFacts, words: SensorWords) -> Rend
         table.add_row(*cells)
     hidden = len(found) - table.row_count
     if not found:
-        return Text("It is the very situation that was taught." if story.distance == 0 else "")
+        return Text("It is the very situation that was taught." if rla.distance == 0 else "")
     return Group(table, Text(f"and {hidden} more features that differ", style="dim")) if hidden > 0 else table
 
 
-def _history(story: RlaFacts) -> TextTable:
+def _history(rla: RlaFacts) -> TextTable:
     table = TextTable()
     for heading in ("when", "by", "phase", "what"):
         table.add_column(heading)
-    for act in story.acts:
+    for act in rla.acts:
         text = f"{act.text} (taken back)" if act.undone else act.text
-        table.add_row(plain(when(act)), plain(act.teacher), str(act.phase), plain(text))
+        table.add_row(plain(format_stamp(act)), plain(act.teacher), str(act.phase), plain(text))
     return table
 
 
@@ -111,7 +120,7 @@ def render_timeline(timeline: Timeline, where: str, most: int) -> RenderableType
     whole_s = max(timeline.to_s - timeline.from_s, 1e-9)
     parts: list[RenderableType] = [
         Text(where, style="dim"),
-        Text(summary(timeline), style="bold"),
+        Text(format_summary(timeline), style="bold"),
         _shares(timeline, whole_s),
     ]
     rows = list(timeline.stretches)
@@ -163,7 +172,10 @@ def _shares(timeline: Timeline, whole_s: float) -> TextTable:
         share = lasts[kind, what] / whole_s
         bar = f"{100 * share:3.0f} % {'█' * round(_BAR * share)}"
         table.add_row(
-            Text(_said(kind, what), style=_STYLES[kind]), f"{lasts[kind, what]:.1f}", str(times[kind, what]), bar
+            Text(_format_stretch(kind, what), style=_STYLES[kind]),
+            f"{lasts[kind, what]:.1f}",
+            str(times[kind, what]),
+            bar,
         )
     return table
 
@@ -173,7 +185,7 @@ def _row(stretch: Stretch) -> list[str | Text]:
     drove = sorted(stretch.rlas.items(), key=lambda each: -each[1])[:4]
     rlas = ", ".join(f"{rla_id} ({100 * count / ticks:.0f} %)" for rla_id, count in drove)
     more = len(stretch.rlas) - len(drove)
-    what = _said(stretch.kind, stretch.what)
+    what = _format_stretch(stretch.kind, stretch.what)
     return [
         f"{stretch.from_s:.2f}",
         f"{stretch.to_s:.2f}",
@@ -185,5 +197,5 @@ def _row(stretch: Stretch) -> list[str | Text]:
     ]
 
 
-def _said(kind: Kind, what: str) -> str:
+def _format_stretch(kind: Kind, what: str) -> str:
     return f"led: {what}" if kind is Kind.LED else f"stands: {what}" if kind is Kind.STANDS else what

@@ -10,8 +10,8 @@ from hal.odometry import PlanePose, WheelOdometry
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.rla.rla import BASIC, Lesson, TeachingEvent
-from kurt2rt.runs.explain.lesson_words import LessonWords
-from kurt2rt.runs.explain.sentences import times
+from kurt2rt.runs.explain.lesson_words import LessonDescriber
+from kurt2rt.runs.explain.sentences import format_count
 from kurt2rt.runs.recording.entries import DecisionEntry, TickEntry
 
 MOST_SAMPLES = 5000
@@ -109,7 +109,7 @@ class Timeline:
         return self.stretches[-1].to_s if self.stretches else 0.0
 
 
-def timeline_of(
+def build_timeline(
     entries: Iterable[TickEntry],
     robot: RobotSettings,
     *,
@@ -125,9 +125,9 @@ def timeline_of(
     """
     reader = _Reader(robot, from_s, to_s, every)
     for event in known:
-        reader.lessons.tell(event)
+        reader.lessons.describe(event)
     for entry in entries:
-        if not reader.take(entry):
+        if not reader.update(entry):
             break
     return reader.timeline
 
@@ -147,7 +147,7 @@ class _Reader:
         self._ticks = self._missed = self._unrecorded = 0
         self._before: TickEntry | None = None
         self._latched = False
-        self.lessons = LessonWords()
+        self.lessons = LessonDescriber()
 
     @property
     def timeline(self) -> Timeline:
@@ -160,13 +160,13 @@ class _Reader:
             self._unrecorded,
         )
 
-    def take(self, entry: TickEntry) -> bool:
+    def update(self, entry: TickEntry) -> bool:
         """Take in one tick; False behind the end."""
         if self._began_s is None:
             self._began_s = entry.now_s
         at_s = entry.now_s - self._began_s
-        self._reckon(entry)
-        told = [(_kind(event), self.lessons.tell(event)) for event in entry.events]
+        self._update_pose(entry)
+        told = [(_kind(event), self.lessons.describe(event)) for event in entry.events]
         if at_s > self._to_s:
             return False
         if at_s < self._from_s:
@@ -177,7 +177,7 @@ class _Reader:
             self._unrecorded += unrecorded
             self._missed += max(0, entry.tick - self._before.tick - 1 - unrecorded)
         self._before = entry
-        kind, what = _doing(entry)
+        kind, what = _classified(entry)
         last = self._stretches[-1] if self._stretches else None
         if last is None or unrecorded or (last.kind, last.what, last.behaviour) != (kind, what, entry.behaviour):
             if last is not None and not unrecorded:
@@ -195,7 +195,7 @@ class _Reader:
         self._ticks += 1
         return True
 
-    def _reckon(self, entry: TickEntry) -> None:
+    def _update_pose(self, entry: TickEntry) -> None:
         motion = self._odometry.motion(entry.senses.encoder_left_ticks, entry.senses.encoder_right_ticks)
         self._pose = self._pose.moved(motion.forward_m, motion.turn_rad)
 
@@ -208,7 +208,7 @@ class _Reader:
         share = _share(decision)
         if not math.isnan(share):
             stretch.worst = max(stretch.worst, share)
-        for reason in _out_of_the_ordinary(entry):
+        for reason in _notable_reasons(entry):
             stretch.guarded[reason] = stretch.guarded.get(reason, 0) + 1
 
     def _note(self, entry: TickEntry, told: Iterable[tuple[str, str]], at_s: float) -> None:
@@ -225,19 +225,19 @@ class _Reader:
             action=entry.decision.action,
             left_m_s=entry.grant.wheel_speeds.left_m_s,
             right_m_s=entry.grant.wheel_speeds.right_m_s,
-            held_back=bool(_out_of_the_ordinary(entry)),
+            held_back=bool(_notable_reasons(entry)),
             x_m=self._pose.x_m,
             y_m=self._pose.y_m,
         )
 
 
-def spells(timeline: Timeline, kind: Kind) -> tuple[tuple[float, float], ...]:
+def kind_intervals(timeline: Timeline, kind: Kind) -> tuple[tuple[float, float], ...]:
     """From when to when it did nothing but this, whatever the action or the question was."""
     groups = [tuple(group) for each, group in groupby(timeline.stretches, lambda stretch: stretch.kind) if each is kind]
     return tuple((group[0].from_s, group[-1].to_s) for group in groups)
 
 
-def summary(timeline: Timeline) -> str:
+def format_summary(timeline: Timeline) -> str:
     """How much of the time the robot drove, asked and stood, in a line."""
     whole_s = timeline.to_s - timeline.from_s
     if not whole_s > 0:
@@ -247,7 +247,9 @@ def summary(timeline: Timeline) -> str:
     for kind, word in words.items():
         lasts_s = sum(stretch.lasts_s for stretch in timeline.stretches if stretch.kind is kind)
         if lasts_s > 0:
-            often = f" ({times(len(spells(timeline, kind)))})" if kind in (Kind.ASKS, Kind.STANDS) else ""
+            often = (
+                f" ({format_count(len(kind_intervals(timeline, kind)))})" if kind in (Kind.ASKS, Kind.STANDS) else ""
+            )
             parts.append(f"{word} {100 * lasts_s / whole_s:.0f} %{often}")
     lessons = sum(note.kind == "lesson" for note in timeline.notes)
     alarms = sum(note.kind == "alarm" for note in timeline.notes)
@@ -266,7 +268,7 @@ def _counted(count: int, what: str) -> str:
     return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 
-def _doing(entry: TickEntry) -> tuple[Kind, str]:
+def _classified(entry: TickEntry) -> tuple[Kind, str]:
     decision = entry.decision
     if entry.grant.latched:
         return Kind.STANDS, f"guard: {', '.join(entry.grant.reasons)}"
@@ -279,7 +281,7 @@ def _doing(entry: TickEntry) -> tuple[Kind, str]:
     return Kind.STANDS, decision.cause.value
 
 
-def _out_of_the_ordinary(entry: TickEntry) -> tuple[str, ...]:
+def _notable_reasons(entry: TickEntry) -> tuple[str, ...]:
     """Why the guard changed what was decided, but for the slew at each change of action."""
     return tuple(reason for reason in entry.grant.reasons if not reason.routine)
 

@@ -13,8 +13,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from kurt2rt.runs.explain.colours import ASKS, INK, PALE_INK, STANDS, TEACHER, colours_of
-from kurt2rt.runs.explain.save_figure import save
-from kurt2rt.runs.explain.timeline import Kind, Note, Sample, Stretch, Timeline, spells, summary
+from kurt2rt.runs.explain.save_figure import save_figure
+from kurt2rt.runs.explain.timeline import Kind, Note, Sample, Stretch, Timeline, format_summary, kind_intervals
 
 _KNOWN, _LIMIT = "#e3f1e6", "#3f9b5c"
 _CURVE = "#3b4754"
@@ -23,7 +23,7 @@ _HIGHEST_SHARE = 1.6
 _MOST_NUMBERED = 24
 _MOST_STRETCHES = 400
 """Of more nobody sees single ones."""
-_WHILES = 200
+_INTERVALS = 200
 """In which a long run is told."""
 
 
@@ -32,7 +32,7 @@ def draw_timeline(timeline: Timeline, title: str, path: Path) -> None:
     colours = colours_of(stretch.what for stretch in timeline.stretches if stretch.kind is Kind.DRIVES)
     figure = Figure(figsize=(16.0, 8.6), facecolor="white")
     figure.text(0.02, 0.962, title, fontsize=15, fontweight="bold", color=INK, va="center")
-    figure.text(0.02, 0.925, summary(timeline), fontsize=10.5, color=PALE_INK, va="center")
+    figure.text(0.02, 0.925, format_summary(timeline), fontsize=10.5, color=PALE_INK, va="center")
     grid = figure.add_gridspec(
         4,
         2,
@@ -45,9 +45,9 @@ def draw_timeline(timeline: Timeline, title: str, path: Path) -> None:
         wspace=0.11,
         hspace=0.16,
     )
-    _way(figure.add_subplot(grid[:, 0]), timeline, colours)
+    _path(figure.add_subplot(grid[:, 0]), timeline, colours)
     lanes = [figure.add_subplot(grid[row, 1]) for row in range(4)]
-    _ribbon(lanes[0], timeline, colours)
+    _stretch_lane(lanes[0], timeline, colours)
     _familiarity(lanes[1], timeline)
     _drivers(lanes[2], timeline, colours)
     _speeds(lanes[3], timeline)
@@ -60,7 +60,7 @@ def draw_timeline(timeline: Timeline, title: str, path: Path) -> None:
             lane.set_xticks([])
     lanes[-1].set_xlabel("s into the run", fontsize=9.5, color=PALE_INK)
     _legend(figure, timeline, colours)
-    save(figure, path)
+    save_figure(figure, path)
 
 
 def colour_of(stretch: Stretch, colours: Mapping[str, str]) -> str:
@@ -75,7 +75,7 @@ def colour_of(stretch: Stretch, colours: Mapping[str, str]) -> str:
     return STANDS
 
 
-def _way(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
+def _path(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
     """Where it went, by its encoders, in the colours of what it did."""
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_axis_off()
@@ -101,7 +101,7 @@ def _way(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
     axes.plot(last.x_m, last.y_m, "s", markersize=8, color=INK, zorder=5)
     axes.annotate("begin", (first.x_m, first.y_m), xytext=(9, -13), textcoords="offset points", fontsize=9, color=INK)
     axes.annotate("end", (last.x_m, last.y_m), xytext=(9, -10), textcoords="offset points", fontsize=9, color=INK)
-    asked = spells(timeline, Kind.ASKS)
+    asked = kind_intervals(timeline, Kind.ASKS)
     for number, (from_s, _) in enumerate(asked, start=1):
         place = _at(samples, from_s)
         axes.plot(place.x_m, place.y_m, "o", markersize=6, color=ASKS, markeredgecolor="white", zorder=6)
@@ -134,13 +134,13 @@ def _at(samples: Sequence[Sample], at_s: float) -> Sample:
     return min(samples[max(behind - 1, 0) : behind + 1], key=lambda sample: abs(sample.at_s - at_s))
 
 
-def _ribbon(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
+def _stretch_lane(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
     """What it did when, with what was taught above."""
     if len(timeline.stretches) > _MOST_STRETCHES:
         _shares_over_time(axes, timeline, colours)
     else:
         _one_by_one(axes, timeline, colours)
-    asked = spells(timeline, Kind.ASKS)
+    asked = kind_intervals(timeline, Kind.ASKS)
     if len(asked) <= _MOST_NUMBERED:
         for number, (from_s, to_s) in enumerate(asked, start=1):
             axes.text((from_s + to_s) / 2, -0.08, str(number), ha="center", va="top", fontsize=8, color=ASKS)
@@ -162,15 +162,15 @@ def _one_by_one(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> N
 def _shares_over_time(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
     """Of a long run: how much of each while it did what."""
     low_s, high_s = timeline.from_s, timeline.to_s
-    width_s = (high_s - low_s) / _WHILES
+    width_s = (high_s - low_s) / _INTERVALS
     lasts: dict[str, list[float]] = {}
     for stretch in timeline.stretches:
-        of_colour = lasts.setdefault(colour_of(stretch, colours), [0.0] * _WHILES)
+        of_colour = lasts.setdefault(colour_of(stretch, colours), [0.0] * _INTERVALS)
         first, last = ((each - low_s) / width_s for each in (stretch.from_s, stretch.to_s))
-        for place in range(int(first), min(_WHILES, int(last) + 1)):
+        for place in range(int(first), min(_INTERVALS, int(last) + 1)):
             of_colour[place] += max(0.0, min(place + 1, last) - max(place, first))
-    edges = [low_s + place * width_s for place in range(_WHILES + 1)]
-    below = [0.0] * (_WHILES + 1)
+    edges = [low_s + place * width_s for place in range(_INTERVALS + 1)]
+    below = [0.0] * (_INTERVALS + 1)
     order = [*colours.values(), TEACHER, ASKS, STANDS]
     for colour in sorted(lasts, key=order.index):
         above = [low + share for low, share in zip(below, [*lasts[colour], lasts[colour][-1]], strict=True)]

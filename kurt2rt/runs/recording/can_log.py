@@ -48,7 +48,7 @@ class CanLog:
     @property
     def lost(self) -> int:
         """Frames that are not in the file: the writer was too slow, or failed."""
-        return self._thread.without_room + self._not_written
+        return self._thread.overruns + self._not_written
 
     @property
     def trouble(self) -> str:
@@ -59,15 +59,15 @@ class CanLog:
 
     def on_rx(self, frame: can.Message, age_s: float) -> None:
         """A frame that came in."""
-        self._thread.put(_Noted(self._began_at_s + time.monotonic() - age_s, True, frame))
+        self._thread.submit(_Noted(self._began_at_s + time.monotonic() - age_s, True, frame))
 
     def on_tx(self, frame: can.Message) -> None:
         """A frame that went out."""
-        self._thread.put(_Noted(self._began_at_s + time.monotonic(), False, frame))
+        self._thread.submit(_Noted(self._began_at_s + time.monotonic(), False, frame))
 
     def write_waiting(self) -> None:
         """Write all that waits; what the thread does again and again, and a run in simulated time by itself."""
-        noted = list(self._thread.take())
+        noted = list(self._thread.pop_all())
         if not noted:
             return
         try:
@@ -85,7 +85,7 @@ class CanLog:
 
     def close(self, patience_s: float = _PATIENCE_S) -> None:
         """Write the rest and close the file; gives a writer that hangs up after a while. `trouble` tells what came."""
-        if not self._thread.end(patience_s):
+        if not self._thread.stop(patience_s):
             self._failure = "the disk does not answer; the end is missing"
 
     def __enter__(self) -> Self:
@@ -100,7 +100,7 @@ class CanLog:
     def _run(self) -> None:
         ended = False
         while not ended:
-            ended = self._thread.pause()
+            ended = self._thread.wait_period()
             self.write_waiting()
         try:
             self._writer.close()

@@ -118,7 +118,7 @@ class LockedFolder:
         os.close(self._descriptor)
 
 
-def is_held(folder: Path) -> bool:
+def is_locked(folder: Path) -> bool:
     """Whether some program records to this folder. Raises OSError."""
     descriptor = _open_folder(folder)
     try:

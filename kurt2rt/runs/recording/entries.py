@@ -107,7 +107,7 @@ class TickEntry(NamedTuple):
     """Hash of what is known after this tick (RlaSystem.knowledge_hash); None in the ticks that do not say."""
 
 
-def tick_entry_of(record: TickRecord, *, saved: bool, knowledge: str | None) -> TickEntry:
+def tick_entry(record: TickRecord, *, saved: bool, knowledge: str | None) -> TickEntry:
     """The entry of a tick. `knowledge`: the hash of `record.knowledge` where that is there."""
     return TickEntry(
         record.number,
@@ -118,7 +118,7 @@ def tick_entry_of(record: TickRecord, *, saved: bool, knowledge: str | None) -> 
         record.commands,
         record.trouble,
         saved,
-        decision_entry_of(record.decision),
+        decision_entry(record.decision),
         record.behaviour,
         None if record.opinion is None else _opinion_entry_of(record.opinion),
         record.surprise,
@@ -134,14 +134,14 @@ def _result_entry_of(result: CommandResult) -> ResultEntry:
     return ResultEntry(result.command_id, result.accepted, text, result.lesson, result.code.value)
 
 
-def decision_entry_of(decision: Decision) -> DecisionEntry:
+def decision_entry(decision: Decision) -> DecisionEntry:
     """A decision with ids in place of RLAs."""
     return DecisionEntry(
         decision.wheel_speeds,
         decision.cause,
         decision.action,
         decision.rla_id,
-        match_entry_of(decision.match),
+        match_entry(decision.match),
         decision.answers,
         decision.asks_at,
         None if decision.mid is None else _mid_entry_of(decision.mid),
@@ -149,7 +149,7 @@ def decision_entry_of(decision: Decision) -> DecisionEntry:
     )
 
 
-def match_entry_of(match: Match | None) -> MatchEntry | None:
+def match_entry(match: Match | None) -> MatchEntry | None:
     """A match with ids in place of RLAs."""
     if match is None:
         return None
@@ -164,4 +164,4 @@ def _opinion_entry_of(opinion: Opinion) -> OpinionEntry:
 
 
 def _mid_entry_of(mid: MidDecision) -> MidEntry:
-    return MidEntry(mid.behaviour, mid.rla_id, match_entry_of(mid.match), mid.asks, mid.overridden, mid.event)
+    return MidEntry(mid.behaviour, mid.rla_id, match_entry(mid.match), mid.asks, mid.overridden, mid.event)

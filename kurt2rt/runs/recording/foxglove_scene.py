@@ -75,7 +75,7 @@ def transforms(moves: Sequence[tuple[str, str, PlanePose]], time_ns: int) -> Fra
     return FrameTransforms(transforms=moved)
 
 
-class RobotPictures:
+class RobotScene:
     """Scans and scenes of one robot."""
 
     def __init__(self, settings: RobotSettings) -> None:
@@ -98,7 +98,7 @@ class RobotPictures:
         """The robot's outline with an arrow ahead, the rays of its sensors, and what drives it as text."""
         points: list[Point3] = []
         colors: list[Color] = []
-        for ray in self._rays.of(counts):
+        for ray in self._rays.rays(counts):
             points.append(Point3(x=ray.from_x_m, y=ray.from_y_m, z=_RAY_HEIGHT_M))
             points.append(Point3(x=ray.to_x_m, y=ray.to_y_m, z=_RAY_HEIGHT_M))
             colors += [_RAY if ray.seen else _FAR_RAY] * 2
@@ -122,7 +122,7 @@ class RobotPictures:
             font_size=14.0,
             scale_invariant=True,
             color=color,
-            text=words_of(decision, behaviour),
+            text=describe_decision(decision, behaviour),
         )
         rays = LinePrimitive(
             type=LinePrimitiveLineType.LineList,
@@ -194,7 +194,7 @@ def _faces_under(corners: Sequence[tuple[float, float]]) -> list[Point3]:
     return points
 
 
-def words_of(decision: Decision, behaviour: str) -> str:
+def describe_decision(decision: Decision, behaviour: str) -> str:
     """What drives the wheels, in a few words."""
     if decision.action is not None and decision.rla_id is not None:
         return f"{decision.action} by {rla_title(decision.rla_id, behaviour)}"

@@ -15,7 +15,7 @@ own queue has no bound."""
 
 _ERROR_FLAG = 0x2000_0000
 """CAN_ERR_FLAG of linux/can.h."""
-_MOST_OF_A_NAME = 1000
+_MAX_SAME_NAME = 1000
 
 
 class FrameWriter(Protocol):
@@ -39,7 +39,7 @@ class LogFile:
             raise RecordingError(
                 "no known kind of CAN log", where=path, do=f"give a name that ends in {', '.join(ENDINGS)}"
             )
-        self.path = _made_anew(path)
+        self.path = _create_numbered(path)
         """The file that is written."""
         try:
             self._writer = can.Logger(self.path)
@@ -53,7 +53,7 @@ class LogFile:
     def write(self, frames: Sequence[can.Message]) -> None:
         """Frames in candump's, Vector's, ... words; see FrameWriter. Raises OSError."""
         for frame in yield_gil(frames):
-            self._writer.on_message_received(_as_candump_says_it(frame) if self._is_candump else frame)
+            self._writer.on_message_received(_with_error_flag(frame) if self._is_candump else frame)
         flush = getattr(getattr(self._writer, "file", None), "flush", None)
         if flush is not None:
             flush()
@@ -63,9 +63,9 @@ class LogFile:
         self._writer.stop()
 
 
-def _made_anew(path: Path) -> Path:
+def _create_numbered(path: Path) -> Path:
     # A supervisor starts the same command line again after a crash, and the log of the crash is the one to keep.
-    for number in range(1, _MOST_OF_A_NAME):
+    for number in range(1, _MAX_SAME_NAME):
         numbered = path if number == 1 else path.with_stem(f"{path.stem}-{number}")
         try:
             numbered.touch(exist_ok=False)
@@ -75,7 +75,7 @@ def _made_anew(path: Path) -> Path:
     raise RecordingError("so many logs of this name are there already", where=path, do="move them away")
 
 
-def _as_candump_says_it(frame: can.Message) -> can.Message:
+def _with_error_flag(frame: can.Message) -> can.Message:
     """An error frame keeps its class, which python-can's own line drops: 20000040# is a bus-off."""
     if not frame.is_error_frame:
         return frame

@@ -39,7 +39,7 @@ class LiveView:
         """What one gives to Foxglove."""
         return f"ws://{self._host}:{self.port}"
 
-    def tend(self) -> None:
+    def poll(self) -> None:
         """Open it, where it is not: the port may have become free."""
         if self._server is not None:
             return

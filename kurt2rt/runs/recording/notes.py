@@ -56,10 +56,10 @@ class NoteLog:
                 topics.tick(record, saved=saved, truth=truth, time_ns=time_ns)
                 self._world = world or self._world
                 if self._world is not None:
-                    topics.ground(self._world, record.tick, time_ns)
+                    topics.log_world(self._world, record.tick, time_ns)
             case QuestionNote(question):
-                topics.asked(str(question), self._time_ns)
+                topics.on_question(str(question), self._time_ns)
             case HealthNote(report):
-                topics.healthy(report, self._time_ns)
+                topics.on_health(report, self._time_ns)
             case Acknowledgement():
-                topics.acknowledged(note, self._time_ns)
+                topics.on_acknowledged(note, self._time_ns)

@@ -78,7 +78,7 @@ class RunRecorder:
     @property
     def dropped(self) -> int:
         """Notes that are not in the files: the disk was too slow, or failed."""
-        return self._thread.without_room + self._left_behind + self._not_written
+        return self._thread.overruns + self._left_behind + self._not_written
 
     @property
     def trouble(self) -> str:
@@ -92,7 +92,7 @@ class RunRecorder:
             wrong.append(f"{self.dropped} of its ticks and notes lost")
         return f"recording: {', '.join(wrong)}" if wrong else ""
 
-    def note(self, record: TickRecord, *, saved: bool = False) -> None:
+    def on_tick(self, record: TickRecord, *, saved: bool = False) -> None:
         """A tick has been. `saved`: statistics were saved after it."""
         if self._began_at_ns is None:
             # The wall clock may be set meanwhile; the stamps go on evenly.
@@ -106,15 +106,15 @@ class RunRecorder:
         time_ns = self._began_at_ns + round(record.now_s * _NS_PER_S)
         self._note(TickNote(record, time_ns, saved, truth, world))
 
-    def acknowledged(self, acknowledgement: Acknowledgement) -> None:
+    def on_acknowledged(self, acknowledgement: Acknowledgement) -> None:
         """A lesson is durable, or never will be."""
         self._note(acknowledgement)
 
-    def asked(self, question: object) -> None:
+    def on_question(self, question: object) -> None:
         """The robot begins to ask; `str` of it is the question."""
         self._note(QuestionNote(question))
 
-    def healthy(self, report: Mapping[str, Any]) -> None:
+    def on_health(self, report: Mapping[str, Any]) -> None:
         """Take a health report in plain values; it must not change any more."""
         self._note(HealthNote(report))
 
@@ -124,17 +124,17 @@ class RunRecorder:
             self._files.take(budget)
 
     def start(self) -> None:
-        """Begin to write; once only. Without, whoever records calls `write_waiting` and `tend`."""
+        """Begin to write; once only. Without, whoever records calls `write_waiting` and `poll`."""
         self._thread.start()
 
     def write_waiting(self) -> None:
         """Show all that waits, and log it to a file; while there is none, it goes on waiting."""
-        for note in yield_gil(self._thread.take()):
+        for note in yield_gil(self._thread.pop_all()):
             if self._shown is not None and self._live is not None and self._live.is_open:
                 self._log(self._shown, note)
             if self._files is not None:
                 self._held.append(note)
-        if self._kept is None or self._files is None or not self._files.takes:
+        if self._kept is None or self._files is None or not self._files.is_open:
             return
         for note in yield_gil(self._held.popleft() for _ in range(len(self._held))):
             if not self._log(self._kept, note):
@@ -142,16 +142,16 @@ class RunRecorder:
             elif isinstance(note, TickNote):
                 self._unsaved += 1
 
-    def tend(self) -> None:
+    def poll(self) -> None:
         """Once a second: have the disk keep what was logged, and go on in another file where that is due."""
-        self._tend_live()
-        self._tend_files()
+        self._poll_live()
+        self._poll_files()
 
     def close(self, patience_s: float = 2.0) -> None:
         """Write the rest and end the files; gives a disk that hangs up after a while. `trouble` tells what came."""
         if not self._thread.started:
             self._end()
-        elif not self._thread.end(patience_s):
+        elif not self._thread.stop(patience_s):
             self._failure = "the disk does not answer; the end is missing"
             self._left_behind += len(self._thread) + len(self._held) + self._unsaved
 
@@ -165,7 +165,7 @@ class RunRecorder:
         self.close()
 
     def _note(self, note: Note) -> None:
-        self._thread.put(note, held=len(self._held))
+        self._thread.submit(note, held=len(self._held))
 
     def _log(self, log: NoteLog, note: Note) -> bool:
         """Whether it could be logged."""
@@ -177,28 +177,28 @@ class RunRecorder:
             return False
         return True
 
-    def _tend_live(self) -> None:
+    def _poll_live(self) -> None:
         if self._live is not None:
-            self._live.tend()
+            self._live.poll()
 
-    def _tend_files(self) -> None:
+    def _poll_files(self) -> None:
         files = self._files
         if files is None or self._kept is None:
             return
-        took, given_up, folders = files.takes, files.given_up, files.folders
-        kept = files.tend()
+        took, given_up, folders = files.is_open, files.given_up, files.folders
+        kept = files.poll()
         if files.given_up > given_up:
             self._not_written += self._unsaved
             self._unsaved = 0
         elif kept:
-            self._is_saved()
+            self._mark_saved()
         if files.folders > max(folders, 1):  # somebody has deleted all that was written
             self._not_written += self.written
             self.written = 0
-        if files.takes and (not took or files.given_up > given_up):
-            self._kept.topics.begin_anew()
+        if files.is_open and (not took or files.given_up > given_up):
+            self._kept.topics.repeat_periodic()
 
-    def _is_saved(self) -> None:
+    def _mark_saved(self) -> None:
         self.written += self._unsaved
         self._unsaved = 0
 
@@ -208,13 +208,13 @@ class RunRecorder:
         try:
             while not ended:
                 if rounds % _ROUNDS_PER_SECOND == 0:
-                    self._safely(self._tend_live)
+                    self._safely(self._poll_live)
                 # Not before the first tick: a start that fails leaves no run.
                 if self._ticks:
                     if rounds_of_files % _ROUNDS_PER_SECOND == 0:
-                        self._safely(self._tend_files)
+                        self._safely(self._poll_files)
                     rounds_of_files += 1
-                ended = self._thread.pause()
+                ended = self._thread.wait_period()
                 self._safely(self.write_waiting)
                 rounds += 1
         finally:
@@ -230,10 +230,10 @@ class RunRecorder:
         self.write_waiting()
         try:
             if self._files is not None and (self._ticks or self._files.run is not None):
-                self._tend_files()
+                self._poll_files()
                 self.write_waiting()
                 if self._files.close():
-                    self._is_saved()
+                    self._mark_saved()
         finally:
             if self._ticks:
                 self._not_written += len(self._thread) + len(self._held) + self._unsaved

@@ -9,7 +9,7 @@ from mcap.writer import Writer
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.segment_reader import SegmentReader
 
-TORN_METADATA = "kurt2rt.torn"
+TRUNCATED_METADATA = "kurt2rt.torn"
 """Metadata of a copy that does not hold all that was meant to be in the file: why, in a sentence."""
 
 
@@ -17,7 +17,7 @@ class NothingRecoverableError(RecordingError):
     """A file is none of a run, or nothing of it was written: one that was begun when the power went."""
 
 
-def copy_whole(source: Path, target: Path) -> str:
+def recover_segment(source: Path, target: Path) -> str:
     """Copy all that is whole of a run's file to a new one with an index; returns why that is not all, or nothing.
 
     Every message keeps its bytes and times. Raises RecordingError where `source` cannot be read or `target` is there,
@@ -34,7 +34,7 @@ def copy_whole(source: Path, target: Path) -> str:
     except BaseException:
         target.unlink()
         raise
-    return reader.torn
+    return reader.truncated
 
 
 def _copy(reader: SegmentReader, file: BinaryIO) -> None:
@@ -63,6 +63,6 @@ def _copy(reader: SegmentReader, file: BinaryIO) -> None:
                 writer.add_metadata(record.name, record.metadata)
     if not started:
         raise NothingRecoverableError("is no file of a run, or nothing of it was written", where=reader.path)
-    if reader.torn:
-        writer.add_metadata(TORN_METADATA, {"why": reader.torn})
+    if reader.truncated:
+        writer.add_metadata(TRUNCATED_METADATA, {"why": reader.truncated})
     writer.finish()  # type: ignore[no-untyped-call]

@@ -10,11 +10,11 @@ from foxglove import Context
 
 from kurt2rt.knowledge.exchange.attachments import ROBOT, TASK
 from kurt2rt.runs.recording.disk import Disk, LockedFolder, RealDisk
-from kurt2rt.runs.recording.run_folder import later_name, make_room, segment_name, used_bytes
+from kurt2rt.runs.recording.run_folder import make_room, next_run_name, segment_name, used_bytes
 from kurt2rt.runs.recording.segment import Segment
 
 _MEGA = 1_000_000
-_MOST_OF_A_NAME = 1000
+_MAX_SAME_NAME = 1000
 _IN_EACH = (ROBOT, TASK)
 """Attachments of every segment, so that one can be understood whose elders had to make room."""
 
@@ -39,7 +39,7 @@ def budget_of(megabytes: int) -> Budget:
 class RunFiles:
     """Everything that is logged in a context goes to these files. All of it may wait for the disk; nothing raises.
 
-    Where the disk fails it is tried again at each `tend`: see Segment for what that costs.
+    Where the disk fails it is tried again at each `poll`: see Segment for what that costs.
     """
 
     def __init__(
@@ -68,7 +68,7 @@ class RunFiles:
         self._attachments = {name: zlib.compress(data) for name, data in attachments.items()}
         self._now_ns = now_ns
         self._disk = disk or RealDisk()
-        self._held: LockedFolder | None = None
+        self._lock: LockedFolder | None = None
         self._segment: Segment | None = None
         self._number = 0
         self._attached = False
@@ -82,15 +82,15 @@ class RunFiles:
         """Segments whose last messages were lost, because the disk failed for too long, or somebody deleted them."""
 
     @property
-    def takes(self) -> bool:
+    def is_open(self) -> bool:
         """Whether messages that are logged now come to a file."""
         return self._segment is not None
 
     def take(self, budget: Budget) -> None:
-        """Keep to this budget from the next `tend` on; from any thread."""
+        """Keep to this budget from the next `poll` on; from any thread."""
         self._budget = budget
 
-    def tend(self) -> bool:
+    def poll(self) -> bool:
         """Once a second: have the disk keep what came, begin files and end them; whether all is kept now."""
         try:
             if self._segment is not None and not self._segment.path.exists():
@@ -103,10 +103,10 @@ class RunFiles:
             if self._segment.size_bytes >= self._budget.segment_bytes:
                 self._end()
                 return self._begin()
-            return self._look_at_room()
+            return self._check_room()
         except OSError as error:
             self.trouble = f"nothing is recorded ({error}); look at the disk of {self._recordings}"
-            if self._segment is not None and self._segment.is_beyond_hope:
+            if self._segment is not None and self._segment.is_over_limit:
                 self._give_up()
             return False
 
@@ -118,7 +118,7 @@ class RunFiles:
             self.trouble = f"the end of the recording is missing ({error}); look at the disk of {self._recordings}"
             return False
         finally:
-            self._let_go()
+            self._unlock()
             if self.run is not None:
                 with contextlib.suppress(OSError):  # it holds files, or else it is no run
                     self.run.rmdir()
@@ -127,7 +127,7 @@ class RunFiles:
 
     def _begin(self) -> bool:
         if self.run is not None and not self.run.is_dir():  # somebody has deleted it
-            self._let_go()
+            self._unlock()
             self.run, self._attached = None, False
         if not self._has_room():
             return False
@@ -167,7 +167,7 @@ class RunFiles:
             with contextlib.suppress(OSError):  # `trouble` has told already that this disk fails
                 segment.give_up()
 
-    def _look_at_room(self) -> bool:
+    def _check_room(self) -> bool:
         self.trouble = ""
         if self._disk.free_bytes(self._recordings) >= self._budget.reserve_bytes or self._has_room():
             return True
@@ -192,21 +192,21 @@ class RunFiles:
         )
         return False
 
-    def _let_go(self) -> None:
-        held, self._held = self._held, None
-        if held is not None:
-            held.close()
+    def _unlock(self) -> None:
+        lock, self._lock = self._lock, None
+        if lock is not None:
+            lock.close()
 
     def _make_folder(self) -> Path:
-        name = later_name(self._name, self._recordings)
-        for number in range(1, _MOST_OF_A_NAME):
+        name = next_run_name(self._name, self._recordings)
+        for number in range(1, _MAX_SAME_NAME):
             path = self._recordings / (name if number == 1 else f"{name}-{number}")
             try:
                 self._disk.make_folder(path)
             except FileExistsError:  # started twice in a second
                 continue
             try:
-                self._held = LockedFolder(path)
+                self._lock = LockedFolder(path)
             except OSError:
                 with contextlib.suppress(OSError):  # an empty folder is no run
                     path.rmdir()

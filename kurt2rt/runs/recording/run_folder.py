@@ -5,7 +5,7 @@ import re
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from kurt2rt.runs.recording.disk import is_held
+from kurt2rt.runs.recording.disk import is_locked
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.segment_reader import TICK_TOPIC, SegmentReader
 
@@ -21,7 +21,7 @@ def run_name(started: datetime, task: str) -> str:
     return f"{started.astimezone(UTC):{_STAMP}}-{task}"
 
 
-def later_name(name: str, recordings: Path) -> str:
+def next_run_name(name: str, recordings: Path) -> str:
     """The same name of a run's folder, or one a second after the newest run's, where the wall clock was set back.
 
     Runs stay in the order of recording: the newest is the one to replay, and the last to go. Raises OSError.
@@ -51,10 +51,10 @@ def runs_in(folder: Path) -> list[Path]:
 
 def segments_in(run: Path) -> list[Path]:
     """Files of a run, the oldest first. Raises OSError."""
-    return sorted((each for each in run.iterdir() if _SEGMENT_NAME.fullmatch(each.name)), key=number_of)
+    return sorted((each for each in run.iterdir() if _SEGMENT_NAME.fullmatch(each.name)), key=segment_number)
 
 
-def number_of(segment: Path) -> int:
+def segment_number(segment: Path) -> int:
     """The n of a run's n-th file."""
     return int(segment.stem)
 
@@ -65,7 +65,7 @@ def find_run(given: Path | None, recordings: Path) -> Path:
     None: the newest run of `recordings` in which there was a tick. Raises RecordingError in a sentence.
     """
     if given is None:
-        newest = next((each for each in reversed(runs_in(recordings)) if _holds_ticks(each)), None)
+        newest = next((each for each in reversed(runs_in(recordings)) if _has_ticks(each)), None)
         if newest is None:
             raise RecordingError(
                 "no recorded run is there", where=recordings, do="kurt2rt run makes one, or give its folder"
@@ -79,7 +79,7 @@ def find_run(given: Path | None, recordings: Path) -> Path:
     )
 
 
-def _holds_ticks(run: Path) -> bool:
+def _has_ticks(run: Path) -> bool:
     return any(True for segment in segments_in(run) for _ in SegmentReader(segment).messages({TICK_TOPIC}))
 
 
@@ -96,7 +96,7 @@ def make_room(recordings: Path, current: Path | None, budget_bytes: int) -> int:
     Raises OSError.
     """
     used = used_bytes(recordings)
-    others = [run for run in _own_runs_in(recordings) if run != current and not is_held(run)]
+    others = [run for run in _own_runs_in(recordings) if run != current and not is_locked(run)]
     may_go = [segment for run in others for segment in segments_in(run)]
     if current is not None and current.is_dir():
         may_go += segments_in(current)[:-1]

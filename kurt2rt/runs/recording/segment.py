@@ -14,7 +14,7 @@ KEPT_BYTES = 4_000_000
 _MEDIA_TYPES = {".json": "application/json", ".jsonl": "application/jsonl", ".yaml": "application/yaml"}
 
 
-class Collected:
+class MemoryFile:
     """What the SDK writes to: bytes in memory, appended only. Never fails, so a failing disk cannot confuse the SDK."""
 
     def __init__(self) -> None:
@@ -37,7 +37,7 @@ class Collected:
     def flush(self) -> None:
         """Nothing: the segment writes when it wants to."""
 
-    def take(self) -> bytearray:
+    def pop_all(self) -> bytearray:
         """What came since the last call."""
         taken, self._bytes = self._bytes, bytearray()
         return taken
@@ -54,12 +54,12 @@ class Segment:
         """Make the file. Raises OSError; FileExistsError where it is there already."""
         self.path = path
         self._file: WritableFile = disk.create(path)
-        self._collected = Collected()
+        self._buffer = MemoryFile()
         self._unsaved = bytearray()
         self._saved_bytes = 0
         try:
             self._writer = open_mcap(
-                self._collected,
+                self._buffer,
                 context=context,
                 writer_options=MCAPWriteOptions(
                     compression=MCAPCompression.Zstd,
@@ -80,7 +80,7 @@ class Segment:
         return self._saved_bytes + len(self._unsaved)
 
     @property
-    def is_beyond_hope(self) -> bool:
+    def is_over_limit(self) -> bool:
         """Whether more waits for a failing disk than is kept."""
         return len(self._unsaved) > KEPT_BYTES
 
@@ -109,11 +109,11 @@ class Segment:
     def give_up(self) -> None:
         """Close without another word to the disk; what it has kept stays readable. Raises OSError."""
         self._writer.close()
-        self._collected.take()
+        self._buffer.pop_all()
         self._file.close()
 
     def _write_out(self) -> None:
-        self._unsaved += self._collected.take()
+        self._unsaved += self._buffer.pop_all()
         if not self._unsaved:
             return
         self._file.write_at(self._saved_bytes, self._unsaved)

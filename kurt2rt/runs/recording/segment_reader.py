@@ -17,7 +17,7 @@ TICK_TOPIC = "/tick"
 """Topic of the ticks, of which a run is made."""
 
 # What mcap raises over bytes that are none of its own, beside its own errors; a wrong checksum is a ValueError.
-_TORN = (McapError, struct.error, ValueError, zstandard.ZstdError, OverflowError, MemoryError)
+_TRUNCATION_ERRORS = (McapError, struct.error, ValueError, zstandard.ZstdError, OverflowError, MemoryError)
 
 
 LARGEST_CHUNK_BYTES = 16_000_000
@@ -51,7 +51,7 @@ class SegmentReader:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.torn = ""
+        self.truncated = ""
         """Where and how the file ends too early, in a sentence; empty while nobody has come to a torn place."""
 
     def head(self) -> SegmentHead:
@@ -70,7 +70,7 @@ class SegmentReader:
     def messages(self, topics: Collection[str] | None = None) -> Iterator[LoggedMessage]:
         """Messages of these topics, of all where None, in the order of writing. Raises RecordingError.
 
-        Of a chunk all messages are read, or none. Afterwards `torn` tells whether the file ended as it should.
+        Of a chunk all messages are read, or none. Afterwards `truncated` tells whether the file ended as it should.
         """
         schemas: dict[int, str] = {0: ""}
         channels: dict[int, Channel] = {}
@@ -86,8 +86,8 @@ class SegmentReader:
                         yield LoggedMessage(channel.topic, record.log_time, record.data, schemas[channel.schema_id])
 
     def records(self) -> Iterator[McapRecord]:
-        """All that is whole, from the header on, chunks taken apart; raises and sets `torn` as `messages` does."""
-        self.torn = ""
+        """All that is whole, from the header on, chunks taken apart; raises and sets `truncated` as `messages` does."""
+        self.truncated = ""
         try:
             size = self.path.stat().st_size
             file = self.path.open("rb")
@@ -101,8 +101,8 @@ class SegmentReader:
                     several = next(records)
                 except StopIteration:  # after the footer
                     return
-                except _TORN:
-                    self.torn = (
+                except _TRUNCATION_ERRORS:
+                    self.truncated = (
                         f"{self.path}: ends without its index; what came after its first {whole_until} bytes was not "
                         "written, or is still to come"
                     )

@@ -32,7 +32,7 @@ class SensorRays:
             for heading_rad in [math.radians(sensor.heading_deg)]
         ]
 
-    def of(self, counts: Sequence[int]) -> list[Ray]:
+    def rays(self, counts: Sequence[int]) -> list[Ray]:
         """The ray of each sensor, in the order of `counts`."""
         infrared = self._infrared
         rays = []
@@ -47,7 +47,7 @@ class SensorRays:
         Each sensor's hit stands in the ray next to it: at most half a step aside.
         """
         ranges = [math.inf] * SCAN_RAYS
-        for ray in self.of(counts):
+        for ray in self.rays(counts):
             if ray.seen:
                 place = round(math.degrees(math.atan2(ray.to_y_m, ray.to_x_m)) / SCAN_STEP_DEG) % SCAN_RAYS
                 ranges[place] = min(ranges[place], math.hypot(ray.to_x_m, ray.to_y_m))

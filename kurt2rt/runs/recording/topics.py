@@ -27,16 +27,16 @@ from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.event_codec import encode_event
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.platform.yield_gil import yield_gil
-from kurt2rt.runs.recording.entries import tick_entry_of
+from kurt2rt.runs.recording.entries import tick_entry
 from kurt2rt.runs.recording.foxglove_scene import (
     ROBOT,
     START,
     WORLD,
-    RobotPictures,
+    RobotScene,
+    describe_decision,
     pose_in,
     timestamp,
     transforms,
-    words_of,
     world_scene,
 )
 from kurt2rt.runs.recording.schemas import HEALTH_SCHEMA, LESSON_SCHEMA, TICK_SCHEMA, situation_schema
@@ -56,7 +56,7 @@ class Topics:
     def __init__(self, context: Context, settings: RobotSettings, features: tuple[str, ...]) -> None:
         """`features`: names of the situation's values."""
         self._features = features
-        self._pictures = RobotPictures(settings)
+        self._pictures = RobotScene(settings)
         self._odometry = WheelOdometry(settings.geometry)
         self._reckoned = PlanePose()
         period_s = settings.can.cycle_s
@@ -91,22 +91,22 @@ class Topics:
             knowledge = None
             if record.knowledge is not None:
                 knowledge = knowledge_hash_of(yield_gil(sorted(record.knowledge, key=lambda rla: rla.rla_id)))
-            self._tick.log(encode_tick(tick_entry_of(record, saved=saved, knowledge=knowledge)), log_time=time_ns)
+            self._tick.log(encode_tick(tick_entry(record, saved=saved, knowledge=knowledge)), log_time=time_ns)
         for event in record.events:
-            self._taught(event, time_ns)
-        self._tell(record, time_ns)
+            self._log_event(event, time_ns)
+        self._log_changes(record, time_ns)
         if truth is not None:
-            self._truly(truth, time_ns)
+            self._log_truth(truth, time_ns)
         if record.tick >= self._next_scan:
             self._next_scan = record.tick + self._scan_ticks
-            self._where(record, time_ns)
+            self._log_pose(record, time_ns)
         begins_to_ask = record.decision.asking and not self._asking
         self._asking = record.decision.asking
         if record.tick >= self._next_scene or begins_to_ask:
             self._next_scene = record.tick + self._scene_ticks
-            self._look(record, time_ns)
+            self._log_scene(record, time_ns)
 
-    def acknowledged(self, acknowledgement: Acknowledgement, time_ns: int) -> None:
+    def on_acknowledged(self, acknowledgement: Acknowledgement, time_ns: int) -> None:
         """A lesson is durable, or never will be."""
         content = {
             "acknowledged": acknowledgement.command_id,
@@ -116,54 +116,54 @@ class Topics:
         }
         self._lesson.log(_json({key: value for key, value in content.items() if value is not None}), log_time=time_ns)
         if acknowledgement.error is not None:
-            self.say(f"not saved: {acknowledgement.command_id}: {acknowledgement.error}", LogLevel.Error, time_ns)
+            self.log_text(f"not saved: {acknowledgement.command_id}: {acknowledgement.error}", LogLevel.Error, time_ns)
 
-    def asked(self, question: str, time_ns: int) -> None:
+    def on_question(self, question: str, time_ns: int) -> None:
         """The robot begins to ask."""
-        self.say(question, LogLevel.Warning, time_ns)
+        self.log_text(question, LogLevel.Warning, time_ns)
 
-    def healthy(self, report: Mapping[str, Any], time_ns: int) -> None:
+    def on_health(self, report: Mapping[str, Any], time_ns: int) -> None:
         """Log a health report in plain values."""
         self._health.log(_json(report), log_time=time_ns)
 
-    def ground(self, world: WorldPlan, tick: int, time_ns: int) -> None:
+    def log_world(self, world: WorldPlan, tick: int, time_ns: int) -> None:
         """The simulated world."""
         if tick >= self._next_ground:
             self._next_ground = tick + self._ground_ticks
             self._ground.log(world_scene(world, time_ns), log_time=time_ns)
 
-    def begin_anew(self) -> None:
+    def repeat_periodic(self) -> None:
         """Whoever takes it from now on knows nothing yet: what is told seldom is told again."""
         self._next_scan = self._next_scene = self._next_ground = 0
 
-    def say(self, text: str, level: LogLevel, time_ns: int) -> None:
+    def log_text(self, text: str, level: LogLevel, time_ns: int) -> None:
         """A line for the log."""
         self._log.log(Log(timestamp=timestamp(time_ns), level=level, message=text, name="kurt2rt"), log_time=time_ns)
 
-    def _taught(self, event: TeachingEvent, time_ns: int) -> None:
+    def _log_event(self, event: TeachingEvent, time_ns: int) -> None:
         self._lesson.log(b'{"event":%s}' % encode_event(event).encode(), log_time=time_ns)
 
-    def _tell(self, record: TickRecord, time_ns: int) -> None:
+    def _log_changes(self, record: TickRecord, time_ns: int) -> None:
         """What a reader of the log wants to know of a tick, where it is new."""
         for result in record.results:
             level = LogLevel.Info if result.accepted else LogLevel.Warning
-            self.say(f"{result.command_id}: {text_of(result.outcome)}", level, time_ns)
-        doing = words_of(record.decision, record.behaviour)
+            self.log_text(f"{result.command_id}: {text_of(result.outcome)}", level, time_ns)
+        doing = describe_decision(record.decision, record.behaviour)
         if doing != self._doing:
             self._doing = doing
-            self.say(doing, LogLevel.Debug, time_ns)
+            self.log_text(doing, LogLevel.Debug, time_ns)
         if record.guard_result.reasons != self._reasons:
             self._reasons = record.guard_result.reasons
             if self._reasons:
                 # Each turn begins at the slew limit: nothing that anybody needs to be warned of.
                 gently = LogLevel.Debug if all(reason.routine for reason in self._reasons) else LogLevel.Warning
                 level = LogLevel.Error if record.guard_result.latched else gently
-                self.say(f"guard: {', '.join(self._reasons)}", level, time_ns)
+                self.log_text(f"guard: {', '.join(self._reasons)}", level, time_ns)
         if record.trouble != self._trouble:
             self._trouble = record.trouble
-            self.say(self._trouble or "lessons are saved again", LogLevel.Error, time_ns)
+            self.log_text(self._trouble or "lessons are saved again", LogLevel.Error, time_ns)
 
-    def _where(self, record: TickRecord, time_ns: int) -> None:
+    def _log_pose(self, record: TickRecord, time_ns: int) -> None:
         if self._scan.has_sinks():
             self._scan.log(self._pictures.scan(record.senses.infrared_counts, time_ns), log_time=time_ns)
         pose = self._reckoned
@@ -176,13 +176,13 @@ class Topics:
         # One message holds the whole tree: after a seek a viewer has but the last one of each topic.
         self._tf.log(transforms(moves, time_ns), log_time=time_ns)
 
-    def _truly(self, truth: SimulatedPlace, time_ns: int) -> None:
+    def _log_truth(self, truth: SimulatedPlace, time_ns: int) -> None:
         here = PlanePose(truth.x_m, truth.y_m, truth.heading_rad)
         if self._begins is None:
             self._begins = here
         self._truth.log(pose_in(WORLD, here, time_ns), log_time=time_ns)
 
-    def _look(self, record: TickRecord, time_ns: int) -> None:
+    def _log_scene(self, record: TickRecord, time_ns: int) -> None:
         if self._situation.has_sinks():
             values: list[float] = record.situation.vector.tolist()
             self._situation.log(_json(dict(zip(self._features, values, strict=True))), log_time=time_ns)

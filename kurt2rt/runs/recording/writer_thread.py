@@ -17,8 +17,8 @@ class WriterThread(Generic[NotedT]):
     """
 
     def __init__(self, name: str, capacity: int, write: Callable[[], None]) -> None:
-        """`capacity`: so many notes may wait. `write`: all of the thread; it calls `pause` until that says to end."""
-        self.without_room = 0
+        """`capacity`: most notes that wait. `write`: the thread's body, which calls `wait_period` until True."""
+        self.overruns = 0
         """Notes that were lost because too many waited."""
         self._capacity = capacity
         # A SimpleQueue's put never waits for the thread at its other end, and a signal handler may interrupt it.
@@ -36,14 +36,14 @@ class WriterThread(Generic[NotedT]):
         """Notes that wait."""
         return self._waiting.qsize()
 
-    def put(self, noted: NotedT, held: int = 0) -> None:
+    def submit(self, noted: NotedT, held: int = 0) -> None:
         """Have it wait. `held`: so many that were taken already count as waiting still."""
         if self._waiting.qsize() + held < self._capacity:
             self._waiting.put(noted)
         else:
-            self.without_room += 1
+            self.overruns += 1
 
-    def take(self) -> Iterator[NotedT]:
+    def pop_all(self) -> Iterator[NotedT]:
         """All that waits now, the oldest first."""
         return (self._waiting.get_nowait() for _ in range(self._waiting.qsize()))
 
@@ -52,11 +52,11 @@ class WriterThread(Generic[NotedT]):
         self._started = True
         self._thread.start()
 
-    def pause(self) -> bool:
+    def wait_period(self) -> bool:
         """In the thread: wait for the next round; whether that is the last one."""
         return self._ending.wait(_PERIOD_S)
 
-    def end(self, patience_s: float) -> bool:
+    def stop(self, patience_s: float) -> bool:
         """Ask it to end; whether it did within its time."""
         self._ending.set()
         self._thread.join(patience_s)

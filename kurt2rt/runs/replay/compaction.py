@@ -13,7 +13,7 @@ from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.versions.editing import new_origin, open_for_editing, statistics_after, write
 from kurt2rt.runs.replay.run import Run
-from kurt2rt.runs.replay.trial import Report, TrialKnowledge, answers, runs_to_try, told
+from kurt2rt.runs.replay.trial import Report, TrialKnowledge, compatible_runs, format_answers, replay_answers
 
 TEACHER = "compact"
 """Whose lessons the deletions are: all of them can be undone together."""
@@ -39,7 +39,7 @@ class Compaction:
 
 
 @dataclass(slots=True)
-class _Seen:
+class _Coverage:
     """What was seen in the runs."""
 
     needed: set[int] = field(default_factory=set)
@@ -61,68 +61,69 @@ def compact(path: Path, recordings: Path, *, stamp: str, dry_run: bool, report: 
     """
     if dry_run:
         with Journal.read_only(path) as journal:
-            compaction, _ = _planned(journal, recordings, report)
+            compaction, _ = _plan(journal, recordings, report)
         return compaction
     with open_for_editing(path) as journal:
-        compaction, deletions = _planned(journal, recordings, report)
+        compaction, deletions = _plan(journal, recordings, report)
         if deletions:
             write(journal, [JournalEntry(event, stamp) for event in deletions])
     return compaction
 
 
-def _planned(journal: Journal, recordings: Path, report: Report) -> tuple[Compaction, list[RlaDeleted]]:
+def _plan(journal: Journal, recordings: Path, report: Report) -> tuple[Compaction, list[RlaDeleted]]:
     entries, statistics = journal.read_all()
     system = fold_entries(journal, entries, radius=math.inf)
-    tried = runs_to_try(recordings, journal.binding)
+    tried = compatible_runs(recordings, journal.binding)
     now = TrialKnowledge(tuple(entry.event for entry in entries), statistics)
-    seen = _look(system, tried.runs, now, report)
-    if not seen.driven_ticks:
+    coverage = _replay_runs(system, tried.runs, now, report)
+    if not coverage.driven_ticks:
         raise KnowledgeError(
             f"in none of its {len(tried.runs)} runs of such knowledge anything drove (0 s)",
             where=recordings,
             do="they prove nothing, and nothing was deleted: record a run in which the robot drives",
         )
     rlas = system.rlas_at(BASIC)
-    unneeded = tuple(rla for rla in rlas if rla.behaviour in seen.behaviours and rla.rla_id not in seen.needed)
+    unneeded = tuple(rla for rla in rlas if rla.behaviour in coverage.behaviours and rla.rla_id not in coverage.needed)
     deletions = [RlaDeleted(rla.rla_id, new_origin("compact", TEACHER)) for rla in unneeded]
     if deletions:
         after = statistics_after(now.events, deletions, now.statistics, len(journal.binding.feature_names))
-        _prove(tried.runs, now, TrialKnowledge((*now.events, *deletions), after), report)
-    notes = (*tried.notes, *(f"{run}: nothing drove in it, so it proves nothing" for run in seen.standing))
-    others = tuple(sorted({rla.behaviour for rla in rlas} - seen.behaviours))
+        _require_unchanged(tried.runs, now, TrialKnowledge((*now.events, *deletions), after), report)
+    notes = (*tried.notes, *(f"{run}: nothing drove in it, so it proves nothing" for run in coverage.standing))
+    others = tuple(sorted({rla.behaviour for rla in rlas} - coverage.behaviours))
     kept = len(rlas) - len(unneeded)
-    return Compaction(unneeded, kept, seen.runs, seen.ticks, seen.driven_ticks, notes, others), deletions
+    return Compaction(unneeded, kept, coverage.runs, coverage.ticks, coverage.driven_ticks, notes, others), deletions
 
 
-def _look(system: RlaSystem, runs: Sequence[Run], now: TrialKnowledge, report: Report) -> _Seen:
-    seen = _Seen()
+def _replay_runs(system: RlaSystem, runs: Sequence[Run], now: TrialKnowledge, report: Report) -> _Coverage:
+    coverage = _Coverage()
     for run in runs:
         ticks = driven_ticks = 0
-        for record, (answered,) in answers(run, (now,), report):
+        for record, (answered,) in replay_answers(run, (now,), report):
             ticks += 1
             if record.decision.driving and any(record.guard_result.wheel_speeds):
                 driven_ticks += 1
-                seen.behaviours.add(record.behaviour)
+                coverage.behaviours.add(record.behaviour)
             nearest = answered.basic.nearest
-            if nearest is not None and nearest.rla_id not in seen.needed:
+            if nearest is not None and nearest.rla_id not in coverage.needed:
                 # Those that stand on its condition are chosen among by worth and chance: all of them stay.
-                seen.needed.update(rla.rla_id for rla in system.competitors(nearest))
+                coverage.needed.update(rla.rla_id for rla in system.competitors(nearest))
         if driven_ticks:
-            seen.runs += 1
-            seen.ticks += ticks
-            seen.driven_ticks += driven_ticks
+            coverage.runs += 1
+            coverage.ticks += ticks
+            coverage.driven_ticks += driven_ticks
         else:
-            seen.standing.append(run.name)
-    return seen
+            coverage.standing.append(run.name)
+    return coverage
 
 
-def _prove(runs: Sequence[Run], before: TrialKnowledge, after: TrialKnowledge, report: Report) -> None:
+def _require_unchanged(runs: Sequence[Run], before: TrialKnowledge, after: TrialKnowledge, report: Report) -> None:
     """Raises KnowledgeError where anything is said otherwise: which RLA, at what distance, or that it asks."""
     for run in runs:
-        for record, (old, new) in answers(run, (before, after), report):
+        for record, (old, new) in replay_answers(run, (before, after), report):
             if old != new:
+                change = f"{format_answers(new)}, and not {format_answers(old)}"
                 raise KnowledgeError(
-                    f"at {record.now_s:.2f} s the robot would do something else: {told(new)}, and not {told(old)}",
+                    f"at {record.now_s:.2f} s the robot would do something else: {change}",
                     where=run.name,
                     do="nothing was deleted",
                 )

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from kurt2rt.core.rla.fingerprint import knowledge_hash_of
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.runs.recording.entries import TickEntry, tick_entry_of
+from kurt2rt.runs.recording.entries import TickEntry, tick_entry
 
 
 class TickDifference(NamedTuple):
@@ -18,12 +18,12 @@ class TickDifference(NamedTuple):
     replayed: object
 
     @property
-    def in_words(self) -> str:
+    def text(self) -> str:
         """What was, and what is."""
-        return f"{self.field} was {_said(self.recorded)}, and is {_said(self.replayed)} now"
+        return f"{self.field} was {_short_repr(self.recorded)}, and is {_short_repr(self.replayed)} now"
 
     def __str__(self) -> str:
-        return f"tick {self.tick}: {self.in_words}"
+        return f"tick {self.tick}: {self.text}"
 
 
 def compare(entry: TickEntry, record: TickRecord) -> list[TickDifference]:
@@ -31,7 +31,7 @@ def compare(entry: TickEntry, record: TickRecord) -> list[TickDifference]:
     knowledge = None
     if entry.knowledge is not None and record.knowledge is not None:
         knowledge = knowledge_hash_of(sorted(record.knowledge, key=lambda rla: rla.rla_id))
-    again = tick_entry_of(record, saved=entry.saved, knowledge=knowledge)
+    again = tick_entry(record, saved=entry.saved, knowledge=knowledge)
     coded = all(each.code is not None for each in entry.results)
     entry, again = _without_words(entry, coded=coded), _without_words(again, coded=coded)
     if repr(again) == repr(entry):  # `==` takes 0.0 for -0.0 and True for 1, and NaN for another one
@@ -54,6 +54,6 @@ def _differences(place: str, recorded: object, replayed: object) -> Iterator[tup
         yield place, recorded, replayed
 
 
-def _said(value: object) -> str:
+def _short_repr(value: object) -> str:
     text = repr(value)
     return text if len(text) <= 120 else f"{text[:117]}..."

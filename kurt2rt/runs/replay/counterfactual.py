@@ -1,21 +1,26 @@
 """Which decisions of a run would have differed under other knowledge."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.runs.replay.counterfactual_policy import CounterfactualPolicy, PolicyAnswer, PolicyAnswers, answers_then
-from kurt2rt.runs.replay.replay import Replay, ReplayedTick, no_tick
+from kurt2rt.runs.replay.counterfactual_policy import (
+    CounterfactualPolicy,
+    PolicyAnswer,
+    PolicyAnswers,
+    recorded_answers,
+)
+from kurt2rt.runs.replay.replay import Replay, ReplayedTick, empty_run_error
 from kurt2rt.runs.replay.run import Run
 from kurt2rt.runtime import Runtime
 
 _DECIDES = frozenset({Cause.RLA, Cause.HELD, Cause.UNKNOWN})
 """Where knowledge has a say; elsewhere the robot stands for another reason, or its teacher drives."""
 
-Look = Callable[[TickRecord, Runtime], PolicyAnswers]
+AnswerSource = Callable[[TickRecord, Runtime], PolicyAnswers]
 """What some knowledge says of a replayed tick."""
 
 
@@ -74,21 +79,21 @@ def counterfactual(
     that began earlier, since the first one, are replayed and not compared. Raises RecordingError.
     """
     replay = Replay(run)
-    before: Look = answers_then if was is None else was.look
-    count = _Count()
+    before: AnswerSource = recorded_answers if was is None else was.answers
+    count = _DifferenceCounter()
     for tick in replay:
-        at_s, record, runtime = run.second_of(tick.entry), tick.record, replay.runtime
+        at_s, record, runtime = run.elapsed_s(tick.entry), tick.record, replay.runtime
         if at_s >= from_s:
-            count.take_in(at_s, record, before(record, runtime), would_be.look(record, runtime))
+            count.update(at_s, record, before(record, runtime), would_be.answers(record, runtime))
         if on_tick is not None:
             on_tick(tick)
     found = count.result(run.trouble)
     if not found.ticks:
-        raise no_tick(run)
+        raise empty_run_error(run)
     return found
 
 
-class _Count:
+class _DifferenceCounter:
     """Counts, and folds ticks into stretches."""
 
     def __init__(self) -> None:
@@ -96,15 +101,15 @@ class _Count:
         self._open: dict[str, DifferingStretch] = {}
         self._stretches: list[DifferingStretch] = []
 
-    def take_in(self, at_s: float, record: TickRecord, was: PolicyAnswers, would_be: PolicyAnswers) -> None:
+    def update(self, at_s: float, record: TickRecord, was: PolicyAnswers, would_be: PolicyAnswers) -> None:
         """One tick, `at_s` since the first one."""
         self._ticks += 1
         decides = record.decision.cause in _DECIDES
         self._decided += decides
         basic = decides and record.decision.asks_at == BASIC
-        self._follow(BASIC, at_s, was.basic, would_be.basic, decides=basic)
+        self._update_level(BASIC, at_s, was.basic, would_be.basic, decides=basic)
         if was.mid is not None and would_be.mid is not None:
-            self._follow(MID, at_s, was.mid, would_be.mid, decides=decides)
+            self._update_level(MID, at_s, was.mid, would_be.mid, decides=decides)
 
     def result(self, trouble: str) -> Counterfactual:
         """All that was counted."""
@@ -120,12 +125,15 @@ class _Count:
             trouble,
         )
 
-    def _follow(self, level: str, at_s: float, was: PolicyAnswer, would_be: PolicyAnswer, *, decides: bool) -> None:
+    def _update_level(
+        self, level: str, at_s: float, was: PolicyAnswer, would_be: PolicyAnswer, *, decides: bool
+    ) -> None:
         differs = decides and was.action != would_be.action
         if differs:
-            self._note(level, was, would_be)
+            self._count(level, was, would_be)
         stretch = self._open.get(level)
-        if differs and stretch is not None and _alike(stretch, was, would_be):
+        answers = _identity(was), _identity(would_be)
+        if differs and stretch is not None and answers == (_identity(stretch.was), _identity(stretch.would_be)):
             self._open[level] = stretch._replace(to_s=at_s, ticks=stretch.ticks + 1)
             return
         if stretch is not None:
@@ -133,7 +141,7 @@ class _Count:
         if differs:
             self._open[level] = DifferingStretch(level, at_s, at_s, 1, was, would_be)
 
-    def _note(self, level: str, was: PolicyAnswer, would_be: PolicyAnswer) -> None:
+    def _count(self, level: str, was: PolicyAnswer, would_be: PolicyAnswer) -> None:
         if level == MID:
             self._mid += 1
         elif was.action is None:
@@ -144,10 +152,5 @@ class _Count:
             self._other_action += 1
 
 
-def _alike(stretch: DifferingStretch, was: PolicyAnswer, would_be: PolicyAnswer) -> bool:
-    return tuple(_who(stretch.was)) == tuple(_who(was)) and tuple(_who(stretch.would_be)) == tuple(_who(would_be))
-
-
-def _who(answer: PolicyAnswer) -> Iterator[object]:
-    yield answer.action
-    yield None if answer.rla is None else answer.rla.rla_id
+def _identity(answer: PolicyAnswer) -> tuple[str | None, int | None]:
+    return answer.action, None if answer.rla is None else answer.rla.rla_id

@@ -82,9 +82,9 @@ class CounterfactualPolicy:
     def answer(self, situation: NDArray[np.float64], behaviour: str, level: str = BASIC) -> PolicyAnswer:
         """What it says to a situation vector (d,) of a level, where that behaviour is wanted."""
         match = self._system.match(situation, behaviour, level)
-        return _answer(match, self._system, self._worths.choice) if level == BASIC else _way(match)
+        return _answer(match, self._system, self._worths.choice) if level == BASIC else _mid_answer(match)
 
-    def look(self, record: TickRecord, runtime: Runtime) -> PolicyAnswers:
+    def answers(self, record: TickRecord, runtime: Runtime) -> PolicyAnswers:
         """What it says to the situations of a tick that was just replayed in `runtime`.
 
         The basic level answers for the behaviour that was wanted then, and passes over RLAs whose action was withdrawn
@@ -95,25 +95,25 @@ class CounterfactualPolicy:
         basic = system.match(record.situation.vector, record.behaviour, asking=asking)
         mid = None
         if runtime.mid is not None:
-            mid = _way(system.match(runtime.mid.vector, level=MID))
+            mid = _mid_answer(system.match(runtime.mid.vector, level=MID))
         return PolicyAnswers(_answer(basic, system, choice), mid)
 
 
-def shadow_of(run: Run, knowledge: Path) -> CounterfactualPolicy:
+def load_policy(run: Run, knowledge: Path) -> CounterfactualPolicy:
     """The knowledge in a file, which may be that of a robot that runs. Raises RecordingError, KnowledgeError."""
     with run.settings():
         events, statistics = read_knowledge(knowledge, run.robot, run.task)
     return CounterfactualPolicy(run, events, statistics)
 
 
-def answers_then(record: TickRecord, runtime: Runtime) -> PolicyAnswers:
+def recorded_answers(record: TickRecord, runtime: Runtime) -> PolicyAnswers:
     """What the run's own knowledge said in a tick that was just replayed in `runtime`.
 
     It is what was decided: by now the robot may have been taught otherwise, by itself in that very tick. Where the mid
     level asked, the basic level was not heard, and is not here.
     """
     decision = record.decision
-    mid = None if decision.mid is None else _way(decision.mid.match)
+    mid = None if decision.mid is None else _mid_answer(decision.mid.match)
     match = decision.match if decision.asks_at == BASIC else None
     answer = _answer(match, runtime.level.system, runtime.reinforcement.choice)
     if match is not None and decision.cause is Cause.RLA and decision.action is not None:
@@ -127,14 +127,14 @@ def answers_then(record: TickRecord, runtime: Runtime) -> PolicyAnswers:
 def _answer(match: Match | None, system: RlaSystem, choice: EpsilonGreedy) -> PolicyAnswer:
     """Of the basic level: of competitors the one of most worth drives."""
     if match is None or not match.known:
-        return _way(match)
+        return _mid_answer(match)
     group = system.competitors(match.rla)
     # One that was deleted since, or told something else, has nobody to be compared with.
     rla = choice.best(group) if len(group) > 1 and match.rla in group else match.rla
     return PolicyAnswer(rla, match.rla, match.distance, match.radius)
 
 
-def _way(match: Match | None) -> PolicyAnswer:
+def _mid_answer(match: Match | None) -> PolicyAnswer:
     """Of ways from one place a plan chooses, or the oldest leads."""
     if match is None:
         return PolicyAnswer(None, None, math.inf, 0.0)

@@ -16,19 +16,19 @@ from kurt2rt.runs.replay.run import Run
 _LESSON_TOPIC = "/lesson"
 
 
-def read_run(path: Path, *, in_part: bool = False) -> Run:
+def read_run(path: Path, *, partial: bool = False) -> Run:
     """The run in a folder, or of which `path` is a segment. Raises RecordingError in a sentence.
 
-    `in_part`: to look at what there is; a run whose beginning is gone will do, which cannot be replayed.
+    `partial`: to look at what there is; a run whose beginning is gone will do, which cannot be replayed.
     """
     try:
-        segments = segments_in(path) if path.is_dir() else _beside(path)
+        segments = segments_in(path) if path.is_dir() else _segments_of_run(path)
     except OSError as error:
         raise RecordingError(f"cannot be read ({error})", where=path, do="give the folder of a recorded run") from error
     if not segments:
         raise RecordingError("holds no recorded run", where=path, do="give a folder with files such as 0001.mcap")
     files = _Files([SegmentReader(each) for each in segments])
-    head = files.head(in_part=in_part)
+    head = files.head(partial=partial)
     if RUN_METADATA not in head.metadata:
         raise RecordingError("says of no run of kurt2rt, or is torn at its very beginning", where=segments[0])
     return Run(
@@ -36,10 +36,10 @@ def read_run(path: Path, *, in_part: bool = False) -> Run:
         decode_head(head.metadata[RUN_METADATA]),
         head.attachments,
         files.ticks,
-        files.torn,
+        files.truncated,
         files.ends_s,
         files.without_gap,
-        in_part=in_part,
+        partial=partial,
         stamps=files.stamps,
     )
 
@@ -50,11 +50,11 @@ class _Files:
     def __init__(self, readers: Sequence[SegmentReader]) -> None:
         self.readers = readers
 
-    def head(self, *, in_part: bool) -> SegmentHead:
-        """That of the first segment; `in_part`: of the first one that has kept it."""
+    def head(self, *, partial: bool) -> SegmentHead:
+        """That of the first segment; `partial`: of the first one that has kept it."""
         heads = (reader.head() for reader in self.readers)
         first = next(heads)
-        if in_part and RUN_METADATA not in first.metadata:
+        if partial and RUN_METADATA not in first.metadata:
             return next((head for head in heads if RUN_METADATA in head.metadata), first)
         return first
 
@@ -64,7 +64,7 @@ class _Files:
                 yield decode_tick(message.data)
 
     def stamps(self) -> Iterator[tuple[str, str]]:
-        """Command ids of lessons that became durable, and when. Leaves alone what `torn` says of the ticks."""
+        """Command ids of lessons that became durable, and when. Leaves alone what `truncated` says of the ticks."""
         for reader in self.readers:
             for message in SegmentReader(reader.path).messages({_LESSON_TOPIC}):
                 try:
@@ -90,12 +90,12 @@ class _Files:
         newest = deque(enumerate(messages, start=1), maxlen=1)
         return any(decode_tick(message.data).number == count for count, message in newest)
 
-    def torn(self) -> str:
+    def truncated(self) -> str:
         """What the last that was torn says; a tick that went missing between two is told as a gap."""
-        return next((reader.torn for reader in reversed(self.readers) if reader.torn), "")
+        return next((reader.truncated for reader in reversed(self.readers) if reader.truncated), "")
 
 
-def _beside(segment: Path) -> list[Path]:
+def _segments_of_run(segment: Path) -> list[Path]:
     """All segments of the run that this one belongs to; a file of another name stands alone."""
     siblings = segments_in(segment.parent)
     return siblings if segment in siblings else [segment]

@@ -98,11 +98,11 @@ def replay_until(run: Run, now_s: float) -> tuple[Runtime, ReplayedTick]:
             break
         last = ReplayedTick(entry, replay.step(entry))
     if last is None:
-        raise no_tick(run)
+        raise empty_run_error(run)
     return replay.runtime, last
 
 
-def no_tick(run: Run) -> RecordingError:
+def empty_run_error(run: Run) -> RecordingError:
     """What there is to say of a run without ticks, once they were looked for."""
     return RecordingError(
         "holds no tick", where=run.name, do=f"{run.trouble or 'the program ended before the first one'}"

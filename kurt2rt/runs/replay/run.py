@@ -38,17 +38,17 @@ class Run:
         head: RunHead,
         attachments: Mapping[str, bytes],
         read: Callable[[], Iterator[TickEntry]],
-        torn: Callable[[], str] = str,
+        truncated: Callable[[], str] = str,
         ends_s: Callable[[], float] = float,
         without_gap: Callable[[], bool] = bool,
         *,
-        in_part: bool = False,
+        partial: bool = False,
         stamps: Callable[[], Iterator[tuple[str, str]]] = lambda: iter(()),
     ) -> None:
-        """`read`: reads the ticks anew from the first one. `torn`: where that came to an early end, in a sentence.
+        """`read`: reads the ticks anew from the first one. `truncated`: where that came to an early end, in a sentence.
 
         `ends_s`: time of the last tick, for those who tell how far they are. `without_gap`: whether no tick is missing
-        before it, found out quicker than by reading them. `in_part`: to look at what there is; one whose beginning is
+        before it, found out quicker than by reading them. `partial`: to look at what there is; one whose beginning is
         gone will do, which cannot be replayed. `stamps`: reads the command ids of the lessons that became durable, and
         when.
 
@@ -58,10 +58,10 @@ class Run:
         self.head = head
         self._attachments = attachments
         self._read = read
-        self._torn = torn
+        self._torn = truncated
         self._ends_s = ends_s
         self._without_gap = without_gap
-        self._in_part = in_part
+        self._partial = partial
         self._stamps = stamps
         self._gap = ""
         self.began_s: float | None = None
@@ -74,24 +74,24 @@ class Run:
         return self._gap or self._torn()
 
     @property
-    def lasts_s(self) -> float:
+    def duration_s(self) -> float:
         """From the first tick to the last, by the runtime's clock; 0 where nobody knows. Reads the last segment."""
         first = next(self.entries(), None)
         return 0.0 if first is None else max(self._ends_s() - first.now_s, 0.0)
 
     @property
-    def lasts_without_gap_s(self) -> float:
+    def duration_without_gap_s(self) -> float:
         """The same up to the last tick before the first that is missing: what can be replayed. Goes through all of
         that, and reads it where one is.
         """
         if self._without_gap():
-            return self.lasts_s
+            return self.duration_s
         newest = 0.0
         for entry in self.entries():
-            newest = self.second_of(entry)
+            newest = self.elapsed_s(entry)
         return newest
 
-    def second_of(self, entry: TickEntry) -> float:
+    def elapsed_s(self, entry: TickEntry) -> float:
         """How long after the first tick one began that was read."""
         return 0.0 if self.began_s is None else entry.now_s - self.began_s
 
@@ -116,7 +116,7 @@ class Run:
         data = self._attachments.get(KNOWLEDGE)
         return () if data is None else tuple(_decoded(decode_lessons, data))
 
-    def stamps_of(self, command_ids: Collection[str]) -> dict[str, str]:
+    def stamps(self, command_ids: Collection[str]) -> dict[str, str]:
         """When these lessons of the run became durable, as the journal has it, UTC; those that never did are left out.
 
         Reads until all are found. Raises RecordingError.
@@ -175,13 +175,13 @@ class Run:
             if entry.number != number:
                 missing = entry.number - number
                 self._gap = (
-                    f"{missing} ticks before {self.second_of(entry):.2f} s (tick {entry.tick}) are not in the "
+                    f"{missing} ticks before {self.elapsed_s(entry):.2f} s (tick {entry.tick}) are not in the "
                     "recording, so what came after them cannot be replayed"
                 )
                 return
             yield entry
 
-    def entries_in_part(self) -> Iterator[TickEntry]:
+    def partial_entries(self) -> Iterator[TickEntry]:
         """All ticks that are there, also behind a gap; `trouble` tells of those that are not. Raises RecordingError."""
         self._gap = ""
         newest = missing = gaps = 0
@@ -209,7 +209,7 @@ class Run:
 
     def _check(self) -> None:
         self._require(ROBOT, TASK)
-        if not self._in_part:
+        if not self._partial:
             self.require_beginning()
         trouble = unsafe_reason({name: len(data) for name, data in self._attachments.items()})
         if trouble:

@@ -49,7 +49,7 @@ class RecentRuns:
         return (*self.left_out, *gaps)
 
 
-def runs_to_try(folder: Path, binding: KnowledgeBinding) -> RecentRuns:
+def compatible_runs(folder: Path, binding: KnowledgeBinding) -> RecentRuns:
     """The runs in a folder of recordings, or the one that `folder` is, that this knowledge could have been used in.
 
     Raises KnowledgeError where there is none.
@@ -63,19 +63,19 @@ def runs_to_try(folder: Path, binding: KnowledgeBinding) -> RecentRuns:
     for path in paths:
         try:
             run = read_run(path)
-            why_not = _why_not(run, binding)
+            reason = _incompatibility(run, binding)
         except RecordingError as error:
-            why_not = str(error)
-        if why_not is None:
+            reason = str(error)
+        if reason is None:
             runs.append(run)
         else:
-            left_out.append(why_not)
+            left_out.append(reason)
     if not runs:
         raise KnowledgeError(f"none of its runs can be tried: {left_out[0]}", where=folder)
     return RecentRuns(tuple(runs), tuple(left_out))
 
 
-def newest_to_try(recordings: Path, binding: KnowledgeBinding, knowledge: Path) -> RecentRuns:
+def newest_compatible_run(recordings: Path, binding: KnowledgeBinding, knowledge: Path) -> RecentRuns:
     """The newest of the last recorded runs that taught into the file `knowledge`, else the newest that this knowledge
     could have been used in; none where there is none. Its notes say which newer ones cannot be read.
 
@@ -85,7 +85,7 @@ def newest_to_try(recordings: Path, binding: KnowledgeBinding, knowledge: Path) 
     for path in _recorded_in(recordings)[: -_NEWEST - 1 : -1]:
         try:
             run = read_run(path)
-            if _why_not(run, binding) is not None or next(run.entries(), None) is None:
+            if _incompatibility(run, binding) is not None or next(run.entries(), None) is None:
                 continue
         except RecordingError as error:
             if newest is None:
@@ -97,35 +97,35 @@ def newest_to_try(recordings: Path, binding: KnowledgeBinding, knowledge: Path) 
     return RecentRuns(() if newest is None else (newest,), tuple(left_out))
 
 
-def answers(
+def replay_answers(
     run: Run, knowledge: Sequence[TrialKnowledge], report: Report
 ) -> Iterator[tuple[TickRecord, list[PolicyAnswers]]]:
     """What each of these says to the situations of each tick of a run, as they were, and that tick."""
     replay = Replay(run)
-    shadows = [CounterfactualPolicy(run, each.events, each.statistics) for each in knowledge]
-    tell = telling(run, report)
+    policies = [CounterfactualPolicy(run, each.events, each.statistics) for each in knowledge]
+    tell = progress_reporter(run, report)
     for tick in replay:
         tell(tick)
-        yield tick.record, [shadow.look(tick.record, replay.runtime) for shadow in shadows]
+        yield tick.record, [policy.answers(tick.record, replay.runtime) for policy in policies]
 
 
-def telling(run: Run, report: Report) -> Callable[[ReplayedTick], None]:
+def progress_reporter(run: Run, report: Report) -> Callable[[ReplayedTick], None]:
     """To be called with each replayed tick of a run; it reports now and then."""
-    whole_s = run.lasts_s
+    whole_s = run.duration_s
 
     def tell(tick: ReplayedTick) -> None:
         if tick.entry.number % _REPORT_EVERY_TICKS == 1:
-            report(run.name, run.second_of(tick.entry), whole_s)
+            report(run.name, run.elapsed_s(tick.entry), whole_s)
 
     return tell
 
 
-def told(both: PolicyAnswers) -> str:
+def format_answers(both: PolicyAnswers) -> str:
     """What they say in a few words: the mid level first, where there is one."""
-    return ", ".join(said(each) for each in (both.mid, both.basic) if each is not None)
+    return ", ".join(format_answer(each) for each in (both.mid, both.basic) if each is not None)
 
 
-def said(answer: PolicyAnswer) -> str:
+def format_answer(answer: PolicyAnswer) -> str:
     """What one level answers."""
     return "asks" if answer.rla is None else f"{answer.rla.action} by {answer.rla.title}"
 
@@ -143,13 +143,13 @@ def _taught_into(run: Run, path: Path, knowledge: Path) -> bool:
     """
     if not run.head.knowledge:
         return False
-    told, file = Path(run.head.knowledge), knowledge.resolve()
-    if told.is_absolute():
-        return told.resolve() == file
-    return any((folder / told).resolve() == file for folder in path.resolve().parents)
+    format_answers, file = Path(run.head.knowledge), knowledge.resolve()
+    if format_answers.is_absolute():
+        return format_answers.resolve() == file
+    return any((folder / format_answers).resolve() == file for folder in path.resolve().parents)
 
 
-def _why_not(run: Run, binding: KnowledgeBinding) -> str | None:
+def _incompatibility(run: Run, binding: KnowledgeBinding) -> str | None:
     """Why this knowledge could not have been used in a run. Raises RecordingError for one of another kurt2rt."""
     try:
         with run.settings():

@@ -10,7 +10,14 @@ from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.replay.counterfactual import Counterfactual, counterfactual
 from kurt2rt.runs.replay.counterfactual_policy import CounterfactualPolicy
 from kurt2rt.runs.replay.run import Run
-from kurt2rt.runs.replay.trial import RecentRuns, Report, TrialKnowledge, newest_to_try, runs_to_try, telling
+from kurt2rt.runs.replay.trial import (
+    RecentRuns,
+    Report,
+    TrialKnowledge,
+    compatible_runs,
+    newest_compatible_run,
+    progress_reporter,
+)
 
 LAST_S: Final = 600.0
 """So much of the newest run is compared where nobody named one: what came before is replayed, in half the time."""
@@ -44,7 +51,7 @@ def preview(planned: UndoPlan, runs: Path, report: Report) -> UndoPreview:
 
     Raises KnowledgeError where none of them can be tried.
     """
-    return _try_on(planned, runs_to_try(runs, planned.binding), report, last_s=float("inf"))
+    return _try_on(planned, compatible_runs(runs, planned.binding), report, last_s=float("inf"))
 
 
 def preview_on_newest(
@@ -54,11 +61,11 @@ def preview_on_newest(
 
     The end of a run with a gap is the last before that: its notes say what comes after it was not tried.
     """
-    newest = newest_to_try(recordings, planned.binding, planned.path)
-    too_long = [run for run in newest.runs if run.lasts_s > longest_s]
+    newest = newest_compatible_run(recordings, planned.binding, planned.path)
+    too_long = [run for run in newest.runs if run.duration_s > longest_s]
     if too_long:
         (run,) = too_long
-        note = f"{run.name}: lasts {run.lasts_s / 60:.0f} min, which takes long; name it with --runs to try it"
+        note = f"{run.name}: lasts {run.duration_s / 60:.0f} min, which takes long; name it with --runs to try it"
         return UndoPreview((), (*newest.left_out, note))
     return _try_on(planned, newest, report, last_s=last_s)
 
@@ -73,14 +80,14 @@ def _try_on(planned: UndoPlan, runs: RecentRuns, report: Report, last_s: float) 
     tried, troubles = list[TrialResult](), list[str]()
     for run in runs.runs:
         try:
-            tried.append(_tried(run, before, after, report, last_s))
+            tried.append(_try_run(run, before, after, report, last_s))
         except RecordingError as error:
             troubles.append(str(error))
     return UndoPreview(tuple(tried), (*runs.notes, *troubles))
 
 
-def _tried(run: Run, before: TrialKnowledge, after: TrialKnowledge, report: Report, last_s: float) -> TrialResult:
+def _try_run(run: Run, before: TrialKnowledge, after: TrialKnowledge, report: Report, last_s: float) -> TrialResult:
     # What comes after a gap cannot be replayed: the end of such a run is where that begins.
-    from_s = max(run.lasts_without_gap_s - last_s, 0.0) if run.lasts_s > last_s else 0.0
+    from_s = max(run.duration_without_gap_s - last_s, 0.0) if run.duration_s > last_s else 0.0
     old, new = (CounterfactualPolicy(run, each.events, each.statistics) for each in (before, after))
-    return TrialResult(run.name, from_s, counterfactual(run, new, old, telling(run, report), from_s))
+    return TrialResult(run.name, from_s, counterfactual(run, new, old, progress_reporter(run, report), from_s))

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from kurt2rt.runs.replay.comparison import TickDifference, compare
-from kurt2rt.runs.replay.replay import Replay, ReplayedTick, no_tick
+from kurt2rt.runs.replay.replay import Replay, ReplayedTick, empty_run_error
 from kurt2rt.runs.replay.run import Run
 
 
@@ -43,11 +43,11 @@ def verify(run: Run, on_tick: Callable[[ReplayedTick], None] | None = None) -> R
         differences = compare(*tick)
         if differences:
             break
-        lasted_s = run.second_of(tick.entry)
+        lasted_s = run.elapsed_s(tick.entry)
         ticks += 1
         knowledge += tick.entry.knowledge is not None
         if on_tick is not None:
             on_tick(tick)
     if not ticks and not differences:
-        raise no_tick(run)
+        raise empty_run_error(run)
     return ReplayVerdict(ticks, lasted_s, knowledge, tuple(differences), run.trouble, run.whole)

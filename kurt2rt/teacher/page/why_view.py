@@ -5,10 +5,16 @@ from typing import Any
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.runs.explain.attribution import shares
+from kurt2rt.runs.explain.attribution import distance_attribution
 from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaFacts
-from kurt2rt.runs.explain.reasons import because, headline
-from kurt2rt.runs.explain.sentences import beside, guarded, mid_lines, taught, used
+from kurt2rt.runs.explain.reasons import format_reasons, headline
+from kurt2rt.runs.explain.sentences import (
+    format_guard,
+    format_mid_level,
+    format_runner_up,
+    format_teaching,
+    format_usage,
+)
 
 _FEATURES = 6
 
@@ -19,14 +25,14 @@ def why_view(number: int, facts: DecisionFacts | None, words: SensorWords = NO_W
     if facts is None:
         return {**view, "lines": [], "features": []}
     level, story = _leading(facts)
-    lines = [*because(facts), guarded(facts)]
+    lines = [*format_reasons(facts), format_guard(facts)]
     if story is not None:
-        lines += [*beside(level), taught(story), used(story)]
+        lines += [*format_runner_up(level), format_teaching(story), format_usage(story)]
     return {
         **view,
         "text": headline(facts),
         "tick": facts.tick,
-        "lines": [line for line in (*lines, *mid_lines(facts)) if line],
+        "lines": [line for line in (*lines, *format_mid_level(facts)) if line],
         "rla": "" if story is None else story.title,
         "features": [] if story is None else _features(level, story, words),
     }
@@ -48,5 +54,5 @@ def _features(level: LevelFacts, story: RlaFacts, words: SensorWords) -> list[di
             "there": words.reading(each.name, each.there),
             "share": round(each.share, 3),
         }
-        for each in shares(level, story)[:_FEATURES]
+        for each in distance_attribution(level, story)[:_FEATURES]
     ]

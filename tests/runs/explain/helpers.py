@@ -11,10 +11,10 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.tick import InMemoryEventStore, TickRecord
 from kurt2rt.platform.clock import LockstepClock
-from kurt2rt.runs.explain.collect import facts_of
-from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, tips
+from kurt2rt.runs.explain.collect import collect_facts
+from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, sensor_counterfactuals
 from kurt2rt.runs.explain.facts import DecisionFacts, LessonFact, LevelFacts, RlaFacts
-from kurt2rt.runs.recording.entries import TickEntry, tick_entry_of
+from kurt2rt.runs.recording.entries import TickEntry, tick_entry
 from kurt2rt.runtime import build_runtime
 from simbridge.simulation import Kurt2SimulationFactory
 
@@ -51,15 +51,17 @@ class Lesson:
 
     @property
     def facts(self) -> DecisionFacts:
-        return facts_of(self.runtime, self.records[-1], lambda command_id: f"2026-11-22T03:10:05+00:00 {command_id}")
+        return collect_facts(
+            self.runtime, self.records[-1], lambda command_id: f"2026-11-22T03:10:05+00:00 {command_id}"
+        )
 
     @property
-    def tips(self) -> tuple[SensorCounterfactual, ...]:
-        return tips(self.facts, self.runtime.definition, ROBOT.infrared)
+    def counterfactuals(self) -> tuple[SensorCounterfactual, ...]:
+        return sensor_counterfactuals(self.facts, self.runtime.definition, ROBOT.infrared)
 
     @property
     def entries(self) -> list[TickEntry]:
-        return [tick_entry_of(record, saved=False, knowledge=None) for record in self.records]
+        return [tick_entry(record, saved=False, knowledge=None) for record in self.records]
 
 
 def story(rla_id: int, condition: tuple[float, ...], action: str, distance: float, radius: float = 10.0) -> RlaFacts:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurt2rt.runs.explain.attribution import pulls, shares, to_the_border
+from kurt2rt.runs.explain.attribution import border_distance, contrast_attribution, distance_attribution
 from tests.runs.explain.helpers import level, story
 
 HERE = (10.0, 20.0, 30.0)
@@ -16,44 +16,44 @@ OTHER = story(2, (10.0, 30.0, 30.0), "back", 10.0)
 
 
 def test_the_shares_of_a_squared_distance_make_all_of_it_the_largest_first() -> None:
-    found = shares(level(HERE, MINE, OTHER), MINE)
+    found = distance_attribution(level(HERE, MINE, OTHER), MINE)
     assert [(each.name, each.here, each.there) for each in found] == [("f1", 20.0, 16.0), ("f0", 10.0, 13.0)]
     assert [each.share for each in found] == pytest.approx([16 / 25, 9 / 25])
 
 
 def test_a_feature_of_no_weight_has_no_share() -> None:
-    found = shares(level(HERE, MINE, weights=(1.0, 0.0, 1.0)), MINE)
+    found = distance_attribution(level(HERE, MINE, weights=(1.0, 0.0, 1.0)), MINE)
     assert [(each.name, each.share) for each in found] == [("f0", 1.0)]
 
 
 def test_of_the_very_situation_that_was_taught_there_is_nothing_to_share_out() -> None:
-    assert shares(level(HERE, story(1, HERE, "forward", 0.0)), story(1, HERE, "forward", 0.0)) == ()
+    assert distance_attribution(level(HERE, story(1, HERE, "forward", 0.0)), story(1, HERE, "forward", 0.0)) == ()
 
 
 def test_symbols_that_differ_have_equal_shares() -> None:
     symbols = replace(level((1.0, 2.0, 1.0, 0.0)), euclidean=False)
-    found = shares(symbols, story(1, (2.0, 2.0, 2.0, 0.0), "turn_left", 2.0))
+    found = distance_attribution(symbols, story(1, (2.0, 2.0, 2.0, 0.0), "turn_left", 2.0))
     assert [(each.name, each.share) for each in found] == [("f0", 0.5), ("f2", 0.5)]
 
 
 def test_a_robot_that_does_not_know_where_it_is_differs_in_nothing_that_could_be_told() -> None:
     lost = level((math.nan, 1.0), story(1, (0.0, 1.0), "turn_left", math.inf))
-    assert shares(lost, story(1, (0.0, 1.0), "turn_left", math.inf)) == ()
+    assert distance_attribution(lost, story(1, (0.0, 1.0), "turn_left", math.inf)) == ()
 
 
 def test_what_speaks_for_the_other_is_negative() -> None:
-    found = pulls(level(HERE, MINE, OTHER), MINE, OTHER)
+    found = contrast_attribution(level(HERE, MINE, OTHER), MINE, OTHER)
     assert [each.name for each in found] == ["f1", "f0"]
     assert [each.pull for each in found] == pytest.approx([(100 - 16) / 93, -9 / 93])
 
 
 def test_of_two_equal_ones_nothing_speaks_for_either() -> None:
-    assert pulls(level(HERE, MINE, MINE), MINE, MINE) == ()
-    assert to_the_border(level(HERE, MINE, MINE), MINE, MINE) is None
+    assert contrast_attribution(level(HERE, MINE, MINE), MINE, MINE) == ()
+    assert border_distance(level(HERE, MINE, MINE), MINE, MINE) is None
 
 
 def test_symbols_have_no_border() -> None:
-    assert to_the_border(replace(level(HERE, MINE, OTHER), euclidean=False), MINE, OTHER) is None
+    assert border_distance(replace(level(HERE, MINE, OTHER), euclidean=False), MINE, OTHER) is None
 
 
 _NUMBERS = st.floats(-500, 500)
@@ -67,7 +67,7 @@ def test_at_the_border_both_are_equally_near(
     if apart < 1.0:
         return
     first, second = story(1, one, "forward", math.dist(here, one)), story(2, other, "back", math.dist(here, other))
-    border = to_the_border(level(here, first, second), first, second)
+    border = border_distance(level(here, first, second), first, second)
     assert border is not None
     there = tuple(x + border * (y - z) / apart for x, y, z in zip(here, other, one, strict=True))
     assert math.dist(there, one) == pytest.approx(math.dist(there, other), abs=1e-6)

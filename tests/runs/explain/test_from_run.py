@@ -25,14 +25,14 @@ def taught_run(folder: Path, *, acknowledged: bool) -> Path:
     names = lesson.runtime.definition.names
     head = replace(HEAD, attended=False)
     recorder = open_run_recorder(folder, head, ATTACHMENTS, budget_of(100), ROBOT, names, name=NAME)
-    recorder.tend()
+    recorder.poll()
     lesson.go_on(20)
     lesson.go_on(80, command)
     for record in lesson.records:
-        recorder.note(record)
+        recorder.on_tick(record)
     recorder.write_waiting()
     if acknowledged:
-        recorder.acknowledged(Acknowledgement(command.command_id, 1, None, WRITTEN))
+        recorder.on_acknowledged(Acknowledgement(command.command_id, 1, None, WRITTEN))
     recorder.write_waiting()
     recorder.close()
     lesson.close()
@@ -54,9 +54,9 @@ def test_a_lesson_of_the_run_has_the_date_of_its_row_in_the_journal(
 
 def test_what_is_said_of_a_torn_run_is_still_said(tmp_path: Path) -> None:
     (segment,) = segments_in(taught_run(tmp_path, acknowledged=True))
-    torn = tmp_path / "torn.mcap"
-    torn.write_bytes(segment.read_bytes()[:-40])
-    run = read_run(torn)
+    truncated = tmp_path / "torn.mcap"
+    truncated.write_bytes(segment.read_bytes()[:-40])
+    run = read_run(truncated)
     explain_run(run, 60.0)
     assert "torn.mcap" in run.trouble
 

@@ -21,7 +21,7 @@ class Now:
     """What is known of a robot's newest decision."""
 
     facts: DecisionFacts
-    tips: tuple[SensorCounterfactual, ...]
+    counterfactuals: tuple[SensorCounterfactual, ...]
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +29,7 @@ def now() -> Now:
     lesson = Lesson()
     lesson.go_on(5)
     lesson.go_on(5, teach("forward"))
-    now = Now(lesson.facts, lesson.tips)
+    now = Now(lesson.facts, lesson.counterfactuals)
     lesson.close()
     return now
 
@@ -42,7 +42,7 @@ def drawn(now: Now, mid: LevelFacts, path: Path, *, asks: bool = False) -> str:
     facts = with_mid(now.facts, mid)
     if asks:
         facts = replace(facts, cause="unknown", action=None, asks_at=MID)
-    draw_why(facts, now.tips, ROBOT, "a title", path)
+    draw_why(facts, now.counterfactuals, ROBOT, "a title", path)
     return path.read_text(encoding="utf-8")
 
 
@@ -90,7 +90,7 @@ def test_histories_stand_below_each_other(now: Now, tmp_path: Path) -> None:
 
 def test_the_nearest_is_compared_with_what_says_something_else_all_others_with_the_nearest() -> None:
     nearest, same, other = story(1, (1.0,), "back", 1), story(2, (2.0,), "back", 2), story(3, (3.0,), "stand", 3)
-    assert level((0.0,), nearest, same, other).rival_of(nearest) is other
-    assert level((0.0,), nearest, same).rival_of(nearest) is same
-    assert level((0.0,), nearest).rival_of(nearest) is None
-    assert level((0.0,), nearest, same, other).rival_of(other) is nearest
+    assert level((0.0,), nearest, same, other).contrast_of(nearest) is other
+    assert level((0.0,), nearest, same).contrast_of(nearest) is same
+    assert level((0.0,), nearest).contrast_of(nearest) is None
+    assert level((0.0,), nearest, same, other).contrast_of(other) is nearest

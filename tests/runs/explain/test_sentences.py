@@ -10,8 +10,16 @@ from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.runs.explain.facts import DecisionFacts, LessonFact
-from kurt2rt.runs.explain.reasons import because, headline
-from kurt2rt.runs.explain.sentences import beside, guarded, mid_lines, still_kept, taught, used, when
+from kurt2rt.runs.explain.reasons import format_reasons, headline
+from kurt2rt.runs.explain.sentences import (
+    format_guard,
+    format_held,
+    format_mid_level,
+    format_runner_up,
+    format_stamp,
+    format_teaching,
+    format_usage,
+)
 from tests.runs.explain.helpers import facts, level, story, with_mid
 
 NEAR = story(17, (1.0, 2.0), "forward", 4.0)
@@ -29,54 +37,54 @@ def standing(cause: Cause, **more: object) -> DecisionFacts:
 def test_what_drives_is_told_by_the_rla_that_it_is_like() -> None:
     driven = facts(KNOWN)
     assert headline(driven) == "forward"
-    assert because(driven) == ["This is like RLA 17, which says forward: distance 4 of R 10 (40 %)."]
-    assert guarded(driven) == ""
+    assert format_reasons(driven) == ["This is like RLA 17, which says forward: distance 4 of R 10 (40 %)."]
+    assert format_guard(driven) == ""
 
 
 def test_the_runner_up_may_say_the_same_so_the_nearest_that_does_not_is_told_too() -> None:
-    first, second = beside(KNOWN)
+    first, second = format_runner_up(KNOWN)
     assert first.startswith("The runner-up of 3 is RLA 5 (forward) at 6; the border to it is ")
     assert second.startswith("It says the same; the nearest that says something else is RLA 9 (back) at 8;")
 
 
 def test_the_only_rla_has_nobody_beside_it() -> None:
-    assert beside(level((1.0, 6.0), NEAR)) == ["No other RLA competes: RLA 17 is the only one."]
+    assert format_runner_up(level((1.0, 6.0), NEAR)) == ["No other RLA competes: RLA 17 is the only one."]
 
 
 def test_an_action_that_is_held_is_told_with_the_rla_that_is_nearest_by_now() -> None:
     held = facts(replace(KNOWN, driver=ELSE), Cause.HELD.value, "back")
-    first, second = because(held)
+    first, second = format_reasons(held)
     assert first == "RLA 9 (back) was chosen a moment ago, and its action keeps its minimum time."
     assert second == "Nearest by now is RLA 17 (forward), at 4 of R 10 (40 %)."
 
 
 def test_of_several_on_one_condition_the_chosen_one_is_told_with_its_worth() -> None:
     chosen = replace(story(30, NEAR.condition, "back", 4.0), value=0.5)
-    (line,) = because(facts(replace(KNOWN, driver=chosen)))
+    (line,) = format_reasons(facts(replace(KNOWN, driver=chosen)))
     assert line.endswith("Of those on the very same condition RLA 30 was chosen, which says back and is worth 0.50.")
 
 
 def test_a_robot_that_knows_nothing_asks() -> None:
     asks = facts(level((1.0, 6.0)), Cause.UNKNOWN.value, None)
     assert headline(asks) == "stands and asks"
-    assert because(asks) == ["Nothing was taught yet, so the robot asks."]
+    assert format_reasons(asks) == ["Nothing was taught yet, so the robot asks."]
 
 
 def test_a_robot_outside_r_asks_and_says_by_how_much() -> None:
     far = level((1.0, 6.0), replace(NEAR, distance=15.0))
-    assert because(facts(far, Cause.UNKNOWN.value, None)) == [
+    assert format_reasons(facts(far, Cause.UNKNOWN.value, None)) == [
         "No RLA is near enough: the nearest is RLA 17 (forward), at 15, 1.50 times R (10)."
     ]
 
 
 def test_where_an_action_was_withdrawn_the_robot_asks() -> None:
     withdrawn = level((1.0, 6.0), replace(NEAR, action="ask", asks=True))
-    (line,) = because(facts(withdrawn, Cause.UNKNOWN.value, None))
+    (line,) = format_reasons(facts(withdrawn, Cause.UNKNOWN.value, None))
     assert line == "This is like RLA 17, at 4 of R 10, whose action was withdrawn: there the robot asks."
 
 
 def test_an_action_that_is_lost_asks_inside_r() -> None:
-    (line,) = because(facts(KNOWN, Cause.UNKNOWN.value, None))
+    (line,) = format_reasons(facts(KNOWN, Cause.UNKNOWN.value, None))
     assert line == "RLA 17 says forward, which does not know how to go on here: the robot asks."
 
 
@@ -95,7 +103,7 @@ def test_an_action_that_is_lost_asks_inside_r() -> None:
 def test_a_robot_that_stands_says_why_and_what_it_would_do(cause: Cause, more: dict[str, object], said: str) -> None:
     stood = standing(cause, **more)
     assert headline(stood).startswith("stands: ")
-    first, second = because(stood)
+    first, second = format_reasons(stood)
     assert first.startswith(said)
     assert second == "By itself it would do as RLA 17 (forward) says, at 4 of R 10."
 
@@ -112,7 +120,7 @@ def test_a_robot_that_stands_says_why_and_what_it_would_do(cause: Cause, more: d
 def test_where_it_stands_of_itself_or_sees_nothing_there_is_nothing_that_it_would_do(
     cause: Cause, more: dict[str, object], said: str
 ) -> None:
-    (line,) = because(standing(cause, hindrances=(cause.value,), **more))
+    (line,) = format_reasons(standing(cause, hindrances=(cause.value,), **more))
     assert line.startswith(said)
 
 
@@ -129,7 +137,7 @@ def test_where_it_stands_of_itself_or_sees_nothing_there_is_nothing_that_it_woul
 )
 def test_a_stopped_robot_may_have_stood_all_the_same(hindrances: tuple[Cause, ...], would: str) -> None:
     stood = standing(Cause.STOPPED, hindrances=tuple(each.value for each in hindrances))
-    assert because(stood)[1] == f"By itself it would {would}"
+    assert format_reasons(stood)[1] == f"By itself it would {would}"
 
 
 def test_a_robot_that_is_led_where_it_knows_no_way_would_ask_the_way_and_not_drive() -> None:
@@ -143,66 +151,66 @@ def test_a_robot_that_is_led_where_it_knows_no_way_would_ask_the_way_and_not_dri
         ),
     ):
         led = replace(with_mid(facts(KNOWN, Cause.TEACHER.value, "by hand"), replace(mid, driver=None)), asks_at=MID)
-        assert because(led)[1] == f"By itself it would ask the way: {why}."
+        assert format_reasons(led)[1] == f"By itself it would ask the way: {why}."
 
 
 def test_of_several_on_one_condition_the_one_that_leads_is_what_it_would_do() -> None:
     crowd = level((1.0, 6.0), replace(NEAR, leads=False), replace(NEAR, rla_id=30, title="RLA 30", action="back"))
     stood = replace(standing(Cause.STOPPED), basic=replace(crowd, driver=None))
-    assert because(stood)[1] == "By itself it would do as RLA 30 (back) says, at 4 of R 10."
+    assert format_reasons(stood)[1] == "By itself it would do as RLA 30 (back) says, at 4 of R 10."
 
 
 def test_where_it_is_led_and_would_not_know_the_situation_it_would_ask() -> None:
     for known, said in ((level((1.0, 6.0)), "nothing was taught yet"), (level((1.0, 6.0), FAR), "nearest is RLA 17")):
         led = replace(facts(known, Cause.TEACHER.value, "by hand"), hindrances=(Cause.UNATTENDED.value,))
-        assert because(led)[1].startswith(f"By itself it would ask: {said}")
+        assert format_reasons(led)[1].startswith(f"By itself it would ask: {said}")
 
 
 def test_while_an_action_keeps_its_minimum_time_that_is_said() -> None:
-    assert still_kept(facts(KNOWN)) == ""
-    assert still_kept(replace(facts(KNOWN), kept="forward")).startswith("forward had not driven for its minimum time")
+    assert format_held(facts(KNOWN)) == ""
+    assert format_held(replace(facts(KNOWN), kept="forward")).startswith("forward had not driven for its minimum time")
 
 
 def test_a_teacher_who_drives_is_named() -> None:
     led = replace(facts(KNOWN, Cause.TEACHER.value, "by hand"), teacher="Ann")
     assert headline(led) == "by hand: Ann drives"
-    assert because(led)[0] == "Ann drives: by hand. No RLA was asked."
+    assert format_reasons(led)[0] == "Ann drives: by hand. No RLA was asked."
 
 
 def test_the_guard_tells_what_it_let_through() -> None:
     held_back = replace(facts(KNOWN), granted=WheelSpeeds(0.1, 0.1), reasons=("slew limit",))
-    assert guarded(held_back) == "The guard let +0.10/+0.10 m/s through instead of +0.30/+0.30 m/s: slew limit."
+    assert format_guard(held_back) == "The guard let +0.10/+0.10 m/s through instead of +0.30/+0.30 m/s: slew limit."
 
 
 def test_an_alarm_goes_before_whatever_was_decided() -> None:
     alarm = replace(facts(KNOWN), granted=WheelSpeeds(0, 0), reasons=("bus lost",), latched=True)
     assert headline(alarm) == "stands until Go: its bus is lost"
-    assert because(alarm)[0].startswith("The guard stopped the robot for bus lost")
-    assert guarded(alarm) == ""
+    assert format_reasons(alarm)[0].startswith("The guard stopped the robot for bus lost")
+    assert format_guard(alarm) == ""
 
 
 def test_who_taught_it_is_told_by_the_newest_lesson_that_stands() -> None:
     corrected = LessonFact("RLA 17 corrected: back instead of forward", "Bob", 2, 2000, "2026-11-22T04:00:00+00:00")
     undone = replace(corrected, text="RLA 17 corrected: spin", changes=False, undone=True)
     told = replace(NEAR, acts=(*NEAR.acts, corrected, undone))
-    assert taught(told) == (
+    assert format_teaching(told) == (
         "RLA 17 corrected: back instead of forward; 2026-11-22 04:00:00 UTC (tick 2000), by Bob in phase 2."
     )
-    assert when(replace(corrected, stamp="")) == "tick 2000 of its run"
+    assert format_stamp(replace(corrected, stamp="")) == "tick 2000 of its run"
 
 
 def test_uses_are_told_since_it_has_its_action_where_that_is_known() -> None:
-    assert used(NEAR) == "Used 7 times since."
-    assert used(replace(NEAR, uses_since=1)) == "Used once since, 7 times with the actions it had before."
-    assert used(replace(NEAR, uses_since=None)) == "Used 7 times since it was first taught."
+    assert format_usage(NEAR) == "Used 7 times since."
+    assert format_usage(replace(NEAR, uses_since=1)) == "Used once since, 7 times with the actions it had before."
+    assert format_usage(replace(NEAR, uses_since=None)) == "Used 7 times since it was first taught."
     praised = replace(NEAR, rewards=2, punishments=1, value=0.25)
-    assert used(praised) == "Used 7 times since; praised twice, blamed once, worth 0.25."
+    assert format_usage(praised) == "Used 7 times since; praised twice, blamed once, worth 0.25."
 
 
 def test_the_level_above_tells_what_it_commands_and_who_taught_it() -> None:
     place = replace(story(12, (0.0,), "turn_left", 1.0), title="mid-level RLA 12")
     above = replace(level((0.0,), place), level=MID, words=("left", "straight", ""))
-    lines = mid_lines(replace(with_mid(facts(KNOWN), above), plan_says="on the way to door"))
+    lines = format_mid_level(replace(with_mid(facts(KNOWN), above), plan_says="on the way to door"))
     assert lines[0] == "Mid level: mid-level RLA 12 commands turn_left, at 1 of R 10. Here: left, straight."
     assert lines[1].startswith("RLA 12 taught: turn_left;")
     assert lines[2] == "Goal: on the way to door"
@@ -213,7 +221,7 @@ def test_a_mid_level_that_asks_has_the_robot_stand() -> None:
     above = replace(level((5.0,), place), driver=None, level=MID)
     asks = replace(with_mid(facts(KNOWN, Cause.UNKNOWN.value, None), above), asks_at=MID)
     assert headline(asks) == "stands and asks the way"
-    assert because(asks) == [
+    assert format_reasons(asks) == [
         "The mid level does not know the way from here: nearest is mid-level RLA 12 (turn_left), at 20 of R 10."
     ]
 
@@ -223,9 +231,9 @@ def test_a_robot_that_touches_something_tells_which_rla_goes_on_toward_it() -> N
         facts(KNOWN, "touches", None), granted=WheelSpeeds(0, 0), reasons=("front bumper",), decided=WheelSpeeds(0, 0)
     )
     assert headline(touches) == "stands: I touch something in front of me; what now?"
-    (line,) = because(touches)
+    (line,) = format_reasons(touches)
     assert line.startswith("It touches something in front, and RLA ")
     assert line.endswith(" goes on toward it: the guard lets no wheel turn that way, so the robot asks.")
-    assert guarded(touches) == ""
+    assert format_guard(touches) == ""
     pushes = replace(facts(KNOWN), granted=WheelSpeeds(0, 0), reasons=("rear bumper",))
     assert headline(pushes) == "stands: it touches something behind"

@@ -11,7 +11,7 @@ from rich.console import Console
 
 from kurt2rt.core.rla.rla import Origin, Phase, SessionBegun
 from kurt2rt.runs.explain.terminal import render_timeline
-from kurt2rt.runs.explain.timeline import MOST_SAMPLES, Kind, summary, timeline_of
+from kurt2rt.runs.explain.timeline import MOST_SAMPLES, Kind, build_timeline, format_summary
 from kurt2rt.runs.explain.timeline_picture import draw_timeline
 from tests.runs.explain.helpers import ROBOT, Lesson
 from tests.teacher.helpers import correct, resume, set_phase, stop, teach
@@ -31,7 +31,7 @@ def lesson() -> Iterator[Lesson]:
 
 
 def test_stretches_follow_each_other_without_a_gap(lesson: Lesson) -> None:
-    timeline = timeline_of(lesson.entries, ROBOT)
+    timeline = build_timeline(lesson.entries, ROBOT)
     told = [(stretch.kind, stretch.what, round(stretch.lasts_s, 2)) for stretch in timeline.stretches]
     assert told == [
         (Kind.ASKS, "asks", 0.2),
@@ -47,7 +47,7 @@ def test_stretches_follow_each_other_without_a_gap(lesson: Lesson) -> None:
 
 
 def test_lessons_are_noted_where_they_acted(lesson: Lesson) -> None:
-    notes = timeline_of(lesson.entries, ROBOT).notes
+    notes = build_timeline(lesson.entries, ROBOT).notes
     assert [(round(note.at_s, 2), note.text) for note in notes] == [
         (0.2, "RLA 1 taught: forward (Ann)"),
         (1.2, "RLA 1 corrected: bear_right instead of forward (Ann)"),
@@ -55,18 +55,18 @@ def test_lessons_are_noted_where_they_acted(lesson: Lesson) -> None:
 
 
 def test_a_part_of_a_run_is_told_by_the_runs_own_seconds(lesson: Lesson) -> None:
-    part = timeline_of(lesson.entries, ROBOT, from_s=1.0, to_s=1.5)
+    part = build_timeline(lesson.entries, ROBOT, from_s=1.0, to_s=1.5)
     assert [stretch.what for stretch in part.stretches] == ["forward", "bear_right"]
     assert part.from_s == pytest.approx(1.0)
     assert part.to_s == pytest.approx(1.51)
     # The way is reckoned from the beginning of the run all the same.
-    whole = timeline_of(lesson.entries, ROBOT, every=1)
+    whole = build_timeline(lesson.entries, ROBOT, every=1)
     beginning = next(sample for sample in whole.samples if sample.at_s >= 1.0 - 1e-9)
     assert (part.samples[0].x_m, part.samples[0].y_m) == (beginning.x_m, beginning.y_m)
 
 
 def test_the_way_is_that_of_the_wheels(lesson: Lesson) -> None:
-    samples = timeline_of(lesson.entries, ROBOT, every=1).samples
+    samples = build_timeline(lesson.entries, ROBOT, every=1).samples
     driven_m = sum(math.dist((a.x_m, a.y_m), (b.x_m, b.y_m)) for a, b in pairwise(samples))
     assert 0.25 < driven_m < 0.6
 
@@ -74,26 +74,26 @@ def test_the_way_is_that_of_the_wheels(lesson: Lesson) -> None:
 def test_ticks_that_were_missed_are_counted(lesson: Lesson) -> None:
     entries = lesson.entries
     late = [entry._replace(number=entry.number - 3) for entry in entries[103:]]
-    assert timeline_of([*entries[:100], *late], ROBOT).missed == 3
+    assert build_timeline([*entries[:100], *late], ROBOT).missed == 3
 
 
 def test_ticks_that_the_recording_lacks_are_not_called_missed(lesson: Lesson) -> None:
     entries = lesson.entries
-    timeline = timeline_of([*entries[:100], *entries[103:]], ROBOT)
+    timeline = build_timeline([*entries[:100], *entries[103:]], ROBOT)
     assert (timeline.missed, timeline.unrecorded) == (0, 3)
-    assert "3 ticks not recorded" in summary(timeline)
+    assert "3 ticks not recorded" in format_summary(timeline)
 
 
 def test_a_run_without_ticks_says_so() -> None:
-    timeline = timeline_of([], ROBOT)
+    timeline = build_timeline([], ROBOT)
     assert timeline.stretches == ()
-    assert summary(timeline) == "Nothing was recorded in that time."
+    assert format_summary(timeline) == "Nothing was recorded in that time."
 
 
 def said(lesson: Lesson, most: int) -> str:
     console = Console(width=120, file=StringIO())
     with console.capture() as capture:
-        console.print(render_timeline(timeline_of(lesson.entries, ROBOT), "a run", most))
+        console.print(render_timeline(build_timeline(lesson.entries, ROBOT), "a run", most))
     return capture.get()
 
 
@@ -113,7 +113,7 @@ def test_of_a_long_run_only_what_is_out_of_the_ordinary_is_listed(lesson: Lesson
 
 def test_the_picture_is_drawn_also_of_nothing(lesson: Lesson, tmp_path: Path) -> None:
     for name, entries in (("run", lesson.entries), ("nothing", [])):
-        draw_timeline(timeline_of(entries, ROBOT), "a run", tmp_path / f"{name}.svg")
+        draw_timeline(build_timeline(entries, ROBOT), "a run", tmp_path / f"{name}.svg")
         assert b"a run" in (tmp_path / f"{name}.svg").read_bytes()
 
 
@@ -124,7 +124,7 @@ def test_of_a_run_of_many_stretches_shares_are_drawn_and_fewer_samples_kept(less
         for again in range(84)
         for entry in entries
     )
-    timeline = timeline_of(long, ROBOT, every=1)
+    timeline = build_timeline(long, ROBOT, every=1)
     assert len(timeline.stretches) == 420
     assert MOST_SAMPLES <= len(timeline.samples) < 2 * MOST_SAMPLES
     apart = {round(b.at_s - a.at_s, 3) for a, b in pairwise(timeline.samples)}
@@ -137,6 +137,6 @@ def test_sessions_and_opinions_are_told_and_are_no_lessons(lesson: Lesson) -> No
     entries = lesson.entries
     begun = SessionBegun("afternoon", Origin("s", "Ann", Phase.SUPERVISED, 1))
     entries[0] = entries[0]._replace(events=(begun,))
-    timeline = timeline_of(entries, ROBOT)
+    timeline = build_timeline(entries, ROBOT)
     assert (timeline.notes[0].kind, timeline.notes[0].text) == ("saying", "session afternoon begun by Ann")
-    assert "2 lessons" in summary(timeline)
+    assert "2 lessons" in format_summary(timeline)

@@ -8,8 +8,8 @@ import pytest
 
 from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.core.decision.decision import Cause
-from kurt2rt.runs.explain.collect import facts_of
-from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, tips
+from kurt2rt.runs.explain.collect import collect_facts
+from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, sensor_counterfactuals
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.replay.replay import Replay
@@ -53,7 +53,7 @@ def looked_at(name: str, every_ticks: int, every_kept: int) -> Iterator[tuple[Be
         if before is None:
             continue
         if regular or replay.runtime.level.held_action:
-            yield before, entry, facts_of(replay.runtime, record, lambda _: "")
+            yield before, entry, collect_facts(replay.runtime, record, lambda _: "")
 
 
 def decided_with(before: Before, entry: TickEntry, tip: SensorCounterfactual, counts: int) -> str | None:
@@ -73,7 +73,7 @@ def decided_with(before: Before, entry: TickEntry, tip: SensorCounterfactual, co
 def test_the_robot_does_as_each_tip_says_and_not_a_count_earlier(name: str, whole: bool) -> None:
     heard = {"rla": 0, "kept": 0}
     for before, entry, facts in looked_at(name, EVERY_TICKS, EVERY_KEPT):
-        found = tips(facts, before.replay.runtime.definition, before.replay.run.robot.infrared)
+        found = sensor_counterfactuals(facts, before.replay.runtime.definition, before.replay.run.robot.infrared)
         # The smallest change, and the largest.
         for tip in {found[0], found[-1]} if found else ():
             at = entry.tick, tip.sensor, tip.needed_counts
@@ -92,7 +92,7 @@ def test_in_a_tick_with_a_lesson_nothing_is_said() -> None:
     """It was blamed in this one: what drove was withdrawn, and is no longer what would answer."""
     replay = Replay(stored("walls"))
     entry, record = next(tick for tick in replay if tick.entry.tick == 3201)
-    facts = facts_of(replay.runtime, record, lambda _: "")
+    facts = collect_facts(replay.runtime, record, lambda _: "")
     assert [type(event).__name__ for event in entry.events] == ["RlaRewarded", "ActionWithdrawn"]
     assert facts.taught_now
-    assert tips(facts, replay.runtime.definition, replay.run.robot.infrared) == ()
+    assert sensor_counterfactuals(facts, replay.runtime.definition, replay.run.robot.infrared) == ()

@@ -11,11 +11,11 @@ from matplotlib.figure import Figure
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.perception.features import FeatureExtractor
 from kurt2rt.core.rla.rla import Phase
-from kurt2rt.runs.explain.collect import facts_of
-from kurt2rt.runs.explain.counterfactual import tips
+from kurt2rt.runs.explain.collect import collect_facts
+from kurt2rt.runs.explain.counterfactual import sensor_counterfactuals
 from kurt2rt.runs.explain.picture import draw_why
 from kurt2rt.runs.explain.reasons import headline
-from kurt2rt.runs.explain.sentences import taught
+from kurt2rt.runs.explain.sentences import format_teaching
 from tests.runs.explain.helpers import ROBOT, Lesson
 from tests.teacher.helpers import correct, set_phase, stop, teach
 
@@ -52,7 +52,7 @@ def test_before_the_first_lesson_there_is_nothing_to_compare_with(lesson: Lesson
     lesson.go_on(20)
     facts = lesson.facts
     assert (facts.cause, facts.basic.nearest, facts.basic.count) == (Cause.UNKNOWN, None, 0)
-    assert lesson.tips == ()
+    assert lesson.counterfactuals == ()
     draw_why(facts, (), ROBOT, "nothing yet", tmp_path / "why.png")
     assert (tmp_path / "why.png").read_bytes().startswith(PNG)
 
@@ -77,7 +77,7 @@ def test_who_taught_it_when_and_how_often_it_was_used(taught_lesson: Lesson) -> 
     story = taught_lesson.facts.basic.driver
     assert story is not None
     assert story.action == "bear_right"
-    assert taught(story) == "RLA 2 taught: bear_right; 2026-11-22 03:10:05 UTC (tick 122), by Ann in phase 2."
+    assert format_teaching(story) == "RLA 2 taught: bear_right; 2026-11-22 03:10:05 UTC (tick 122), by Ann in phase 2."
     assert (story.uses, story.uses_since) == (1, 1)
 
 
@@ -106,7 +106,7 @@ def test_the_reading_that_would_have_changed_it_does_change_it_and_a_smaller_cha
         match = runtime.level.system.match(vector)
         return match.rla.action if match is not None and match.known else None
 
-    found = taught_lesson.tips
+    found = taught_lesson.counterfactuals
     assert found
     for tip in found:
         step = 1 if tip.needed_counts > tip.counts else -1
@@ -123,14 +123,14 @@ def test_of_those_on_one_condition_only_the_chosen_one_may_answer(taught_lesson:
     assert driver is not None
     twin = replace(driver, rla_id=3, action="spin_left")
     crowd = replace(facts, basic=replace(facts.basic, others=(twin, *facts.basic.others)))
-    found = tips(crowd, taught_lesson.runtime.definition, ROBOT.infrared)
-    assert found == taught_lesson.tips
+    found = sensor_counterfactuals(crowd, taught_lesson.runtime.definition, ROBOT.infrared)
+    assert found == taught_lesson.counterfactuals
 
 
 def test_where_a_stop_decided_no_reading_would_have_changed_it(lesson: Lesson) -> None:
     give(lesson).go_on(2, stop())
     assert lesson.facts.stopped
-    assert lesson.tips == ()
+    assert lesson.counterfactuals == ()
 
 
 def test_lessons_that_cannot_be_saved_are_among_the_facts(lesson: Lesson) -> None:
@@ -140,7 +140,7 @@ def test_lessons_that_cannot_be_saved_are_among_the_facts(lesson: Lesson) -> Non
 
 
 def test_only_the_nearest_are_told_where_few_are_asked_for(taught_lesson: Lesson) -> None:
-    few = facts_of(taught_lesson.runtime, taught_lesson.records[-1], lambda _: "", most=0)
+    few = collect_facts(taught_lesson.runtime, taught_lesson.records[-1], lambda _: "", most=0)
     assert few.basic.others == ()
     assert few.basic.count == 2
 
@@ -149,9 +149,9 @@ def test_only_the_nearest_are_told_where_few_are_asked_for(taught_lesson: Lesson
 def test_the_picture_shows_the_decision_and_is_the_same_each_time(
     taught_lesson: Lesson, tmp_path: Path, ending: str
 ) -> None:
-    facts, tips = taught_lesson.facts, taught_lesson.tips
+    facts, sensor_counterfactuals = taught_lesson.facts, taught_lesson.counterfactuals
     for name in ("one", "two"):
-        draw_why(facts, tips, ROBOT, "a title", tmp_path / f"{name}.{ending}")
+        draw_why(facts, sensor_counterfactuals, ROBOT, "a title", tmp_path / f"{name}.{ending}")
     drawn = (tmp_path / f"one.{ending}").read_bytes()
     assert drawn == (tmp_path / f"two.{ending}").read_bytes()
     if ending == "svg":
@@ -169,9 +169,9 @@ def test_what_is_said_of_who_taught_it_does_not_run_into_what_is_near(
     act = replace(driver.acts[-1], text="RLA 1416 of turn_right corrected: quarter_turn_right instead of spin_left")
     much = replace(driver, acts=(act,), uses=1204, uses_since=0, rewards=12, punishments=31, value=0.51)
     drawn: list[Figure] = []
-    monkeypatch.setattr("kurt2rt.runs.explain.picture.save", lambda figure, _path: drawn.append(figure))
+    monkeypatch.setattr("kurt2rt.runs.explain.picture.save_figure", lambda figure, _path: drawn.append(figure))
     crowd = replace(facts, basic=replace(facts.basic, driver=much, nearest=much))
-    draw_why(crowd, taught_lesson.tips, ROBOT, "a title", Path("never.png"))
+    draw_why(crowd, taught_lesson.counterfactuals, ROBOT, "a title", Path("never.png"))
     (figure,) = drawn
     figure.draw_without_rendering()
     caption = next(text for axes in figure.axes for text in axes.texts if "RLA 1416" in text.get_text())

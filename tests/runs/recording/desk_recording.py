@@ -70,19 +70,19 @@ class RecordedDesk:
         for _ in range(ticks):
             record = self.desk.run(1, counts)
             self.records.append(record)
-            self.recorder.note(record)
+            self.recorder.on_tick(record)
 
     def second(self, counts: int | None = None) -> None:
         """A second of ticks, and what the recorder's thread would do in it."""
         self.run(100, counts)
         self.recorder.write_waiting()
-        self.recorder.tend()
+        self.recorder.poll()
 
 
 def late_run(recordings: Path) -> Path:
     """A run whose first files had to make room for later ones, as those of a robot that is never switched off."""
     desk = RecordedDesk(recordings, budget=Budget(75_000, segment_bytes=20_000))
-    desk.recorder.tend()
+    desk.recorder.poll()
     for second in range(15):
         desk.second(counts=200 + second)
     desk.recorder.close()
@@ -92,6 +92,6 @@ def late_run(recordings: Path) -> Path:
 def empty_run(recordings: Path) -> Path:
     """A run that ended before its first tick."""
     desk = RecordedDesk(recordings)
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.recorder.close()
     return recordings / NAME

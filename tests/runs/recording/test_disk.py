@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.runs.recording.disk import LockedFolder, RealDisk, is_held
+from kurt2rt.runs.recording.disk import LockedFolder, RealDisk, is_locked
 
 
 def open_files() -> int:
@@ -23,26 +23,26 @@ def fails_with(number: int) -> Callable[..., None]:
 
 
 def test_a_folder_is_held_until_it_is_let_go(tmp_path: Path) -> None:
-    assert not is_held(tmp_path)
+    assert not is_locked(tmp_path)
     held = LockedFolder(tmp_path)
-    assert is_held(tmp_path)
+    assert is_locked(tmp_path)
     with pytest.raises(BlockingIOError):
         LockedFolder(tmp_path)
     held.close()
-    assert not is_held(tmp_path)
+    assert not is_locked(tmp_path)
 
 
 @pytest.mark.parametrize("number", [errno.ENOLCK, errno.EOPNOTSUPP])
 def test_a_disk_without_locks_does_without(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, number: int) -> None:
     monkeypatch.setattr(fcntl, "flock", fails_with(number))
     LockedFolder(tmp_path).close()
-    assert not is_held(tmp_path)
+    assert not is_locked(tmp_path)
 
 
 def test_what_fails_leaves_nothing_open_and_nothing_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     disk, before = RealDisk(), open_files()
     monkeypatch.setattr(fcntl, "flock", fails_with(errno.EIO))
-    for look in (LockedFolder, is_held):
+    for look in (LockedFolder, is_locked):
         with pytest.raises(OSError, match="Input/output"):
             look(tmp_path)
     monkeypatch.setattr(os, "fsync", fails_with(errno.EIO))

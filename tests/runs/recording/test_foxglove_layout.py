@@ -24,7 +24,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[LoggedMessage]:
     """A simulated robot that learned two lessons."""
     folder: Path = tmp_path_factory.mktemp("runs")
     desk = RecordedDesk(folder, ground=Elsewhere())
-    desk.recorder.tend()
+    desk.recorder.poll()
     inbox = desk.desk.runtime.inbox
     desk.second(counts=200)
     inbox.put(Resume("r-1", "Ann"))
@@ -34,7 +34,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[LoggedMessage]:
     desk.run(10, counts=200)
     inbox.put(Teach("t-2", "Ann", "spin_left"))
     desk.second(counts=400)
-    desk.recorder.asked("I know nothing yet, teach me")
+    desk.recorder.on_question("I know nothing yet, teach me")
     desk.recorder.close()
     (segment,) = segments_in(folder / NAME)
     return list(SegmentReader(segment).messages())

@@ -21,7 +21,7 @@ MESSAGE_DATA = 1
 def opened_desk(recordings: Path | None = None) -> tuple[RecordedDesk, LiveView]:
     views: list[LiveView] = []
     desk = RecordedDesk(recordings, live=(LOOPBACK, 0), opened=views.append)
-    desk.recorder.tend()
+    desk.recorder.poll()
     (view,) = views
     return desk, view
 
@@ -85,7 +85,7 @@ def test_a_port_that_is_taken_is_told_and_tried_again(tmp_path: Path) -> None:
         taken.listen()
         port = taken.getsockname()[1]
         desk = RecordedDesk(tmp_path, live=(LOOPBACK, port))
-        desk.recorder.tend()
+        desk.recorder.poll()
         desk.second()
         assert f"the live view cannot listen on 127.0.0.1, port {port}" in desk.recorder.trouble
     desk.second()
@@ -97,7 +97,7 @@ def test_a_port_that_is_taken_is_told_and_tried_again(tmp_path: Path) -> None:
 def test_who_looks_on_costs_a_late_disk_no_tick(tmp_path: Path) -> None:
     disk = AbsentDisk()
     desk = RecordedDesk(tmp_path, disk=disk, live=(LOOPBACK, 0))
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.second()
     disk.there = True
     desk.second()

@@ -20,7 +20,7 @@ from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.exchange.attachments import KNOWLEDGE, ROBOT, TASK
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.runs.recording.disk import RealDisk, WritableFile
-from kurt2rt.runs.recording.entries import TickEntry, tick_entry_of
+from kurt2rt.runs.recording.entries import TickEntry, tick_entry
 from kurt2rt.runs.recording.foxglove_scene import ROBOT as ROBOT_FRAME
 from kurt2rt.runs.recording.foxglove_scene import START, WORLD, timestamp, transforms
 from kurt2rt.runs.recording.run_files import Budget
@@ -45,12 +45,12 @@ def entries_of(run: Path) -> list[TickEntry]:
 def entry_of(record: TickRecord) -> TickEntry:
     known = record.knowledge
     hashed = None if known is None else knowledge_hash_of(sorted(known, key=lambda rla: rla.rla_id))
-    return tick_entry_of(record, saved=False, knowledge=hashed)
+    return tick_entry(record, saved=False, knowledge=hashed)
 
 
 def test_every_tick_is_there_again_to_the_last_bit(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path)
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.second(counts=200)
     desk.desk.runtime.inbox.put(Teach("t-1", "Ann", "forward"))
     desk.second(counts=203)
@@ -64,7 +64,7 @@ def test_every_tick_is_there_again_to_the_last_bit(tmp_path: Path) -> None:
 
 def test_the_run_says_what_it_was_and_holds_what_a_replay_needs(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path)
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.recorder.close()
     (segment,) = segments_in(tmp_path / NAME)
     head = SegmentReader(segment).head()
@@ -75,10 +75,10 @@ def test_the_run_says_what_it_was_and_holds_what_a_replay_needs(tmp_path: Path) 
 
 def test_foxglove_has_scans_poses_scenes_and_a_log_by_its_own_schemas(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path)
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.second(counts=200)
-    desk.recorder.asked("I know nothing yet, teach me")
-    desk.recorder.acknowledged(Acknowledgement("t-1", 1, None, "2026-11-22T03:10:05.000+00:00"))
+    desk.recorder.on_question("I know nothing yet, teach me")
+    desk.recorder.on_acknowledged(Acknowledgement("t-1", 1, None, "2026-11-22T03:10:05.000+00:00"))
     desk.recorder.close()
     said = messages_of(tmp_path / NAME)
     times = {topic: sum(each.topic == topic for each in said) for topic in (SCAN, POSE, TF, SCENE, SITUATION)}
@@ -96,7 +96,7 @@ def test_foxglove_has_scans_poses_scenes_and_a_log_by_its_own_schemas(tmp_path: 
 
 def test_a_run_goes_on_in_the_next_file_when_one_is_full_and_each_opens_alone(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path, budget=Budget(10_000_000, segment_bytes=20_000))
-    desk.recorder.tend()
+    desk.recorder.poll()
     for second in range(8):
         desk.second(counts=200 + second)
     desk.recorder.close()
@@ -116,11 +116,11 @@ def test_a_run_goes_on_in_the_next_file_when_one_is_full_and_each_opens_alone(tm
 
 def test_older_runs_make_room_then_the_oldest_files_of_this_one(tmp_path: Path) -> None:
     older = RecordedDesk(tmp_path, name="20251231T235959Z-wall_following")
-    older.recorder.tend()
+    older.recorder.poll()
     older.second()
     older.recorder.close()
     desk = RecordedDesk(tmp_path, budget=Budget(75_000, segment_bytes=20_000))
-    desk.recorder.tend()
+    desk.recorder.poll()
     for second in range(15):
         desk.second(counts=200 + second)
     desk.recorder.close()
@@ -134,7 +134,7 @@ def test_older_runs_make_room_then_the_oldest_files_of_this_one(tmp_path: Path) 
 
 def test_another_budget_is_kept_to_from_then_on(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path)
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.second()
     desk.recorder.take(Budget(75_000, segment_bytes=20_000))
     for second in range(15):
@@ -146,10 +146,10 @@ def test_another_budget_is_kept_to_from_then_on(tmp_path: Path) -> None:
 
 def test_a_run_that_another_program_records_is_left_alone(tmp_path: Path) -> None:
     other = RecordedDesk(tmp_path, name="20251231T235959Z-wall_following")
-    other.recorder.tend()
+    other.recorder.poll()
     other.second()
     desk = RecordedDesk(tmp_path, budget=Budget(20_000, segment_bytes=10_000))
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.second()
     other.second()
     desk.recorder.close()
@@ -186,7 +186,7 @@ class AbsentDisk(RealDisk):
 def test_a_disk_that_comes_later_gets_what_waited_for_it(tmp_path: Path) -> None:
     disk = AbsentDisk()
     desk = RecordedDesk(tmp_path, disk=disk)
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.second()
     assert "no such device" in desk.recorder.trouble
     disk.there = True
@@ -200,12 +200,12 @@ def test_a_disk_that_comes_later_gets_what_waited_for_it(tmp_path: Path) -> None
 def test_what_finds_no_room_is_counted_and_the_run_shows_the_gap(tmp_path: Path) -> None:
     disk = AbsentDisk()
     desk = RecordedDesk(tmp_path, disk=disk, capacity=150)
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.second()
     desk.second()
     assert desk.recorder.dropped == 50
     disk.there = True
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.recorder.write_waiting()
     desk.second()
     desk.recorder.close()
@@ -227,11 +227,11 @@ class FullDisk(RealDisk):
 def test_the_last_room_on_the_disk_is_left_for_lessons(tmp_path: Path) -> None:
     disk = FullDisk(1_000_000_000)
     desk = RecordedDesk(tmp_path, disk=disk)
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.second()
     assert desk.recorder.trouble == ""
     disk.free = 100_000_000
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.second()
     assert "100 MB are free" in desk.recorder.trouble
     disk.free = 1_000_000_000
@@ -280,14 +280,14 @@ def test_the_thread_writes_all_that_was_noted(tmp_path: Path) -> None:
 def test_two_runs_of_one_second_have_a_folder_each(tmp_path: Path) -> None:
     for _ in range(2):
         desk = RecordedDesk(tmp_path)
-        desk.recorder.tend()
+        desk.recorder.poll()
         desk.recorder.close()
     assert [run.name for run in runs_in(tmp_path)] == [NAME, f"{NAME}-2"]
 
 
 def test_a_run_that_is_deleted_while_it_is_recorded_begins_anew(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path / "runs")
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.second()
     shutil.rmtree(tmp_path / "runs")
     desk.second()
@@ -302,10 +302,10 @@ def test_a_run_that_is_deleted_while_it_is_recorded_begins_anew(tmp_path: Path) 
 def test_a_run_that_is_deleted_while_it_rests_begins_anew_too(tmp_path: Path) -> None:
     disk = FullDisk(1_000_000_000)
     desk = RecordedDesk(tmp_path, disk=disk)
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.second()
     disk.free = 100_000_000
-    desk.recorder.tend()
+    desk.recorder.poll()
     shutil.rmtree(tmp_path / NAME)
     disk.free = 1_000_000_000
     desk.second()
@@ -320,13 +320,13 @@ def test_a_run_that_is_deleted_while_it_rests_begins_anew_too(tmp_path: Path) ->
 def test_a_run_that_rests_is_left_alone_too(tmp_path: Path) -> None:
     disk = FullDisk(1_000_000_000)
     other = RecordedDesk(tmp_path, disk=disk, name="20251231T235959Z-wall_following")
-    other.recorder.tend()
+    other.recorder.poll()
     other.second()
     disk.free = 100_000_000
     other.second()
     assert "100 MB are free" in other.recorder.trouble
     desk = RecordedDesk(tmp_path, disk=disk)
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.recorder.close()
     disk.free = 1_000_000_000
     other.second()
@@ -339,7 +339,7 @@ def test_where_there_is_no_room_no_folder_is_left(tmp_path: Path) -> None:
     empty = tmp_path / "runs" / "20251231T235959Z-wall_following"
     empty.mkdir(parents=True)
     desk = RecordedDesk(tmp_path / "runs", disk=FullDisk(100))
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.second()
     desk.recorder.close()
     assert "0 MB are free" in desk.recorder.trouble
@@ -357,7 +357,7 @@ class WithoutNames(RealDisk):
 
 def test_a_run_of_which_no_file_could_be_made_leaves_no_folder(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path, disk=WithoutNames())
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.second()
     desk.recorder.close()
     assert "input/output error" in desk.recorder.trouble
@@ -368,7 +368,7 @@ def test_a_run_of_which_no_file_could_be_made_leaves_no_folder(tmp_path: Path) -
 def test_a_start_that_fails_leaves_no_run(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path / "runs")
     with desk.recorder:
-        desk.recorder.asked("is anybody there?")
+        desk.recorder.on_question("is anybody there?")
     assert desk.recorder.trouble == ""
     assert desk.recorder.run is None
     assert not (tmp_path / "runs").exists()
@@ -377,7 +377,7 @@ def test_a_start_that_fails_leaves_no_run(tmp_path: Path) -> None:
 def test_the_end_that_the_disk_does_not_take_is_counted(tmp_path: Path) -> None:
     failures = iter([None, None, *[OSError(errno.ENOSPC, "no space left on device")] * 9])
     desk = RecordedDesk(tmp_path, disk=FailingDisk(failures))
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.second()
     desk.recorder.close()
     assert (desk.recorder.written, desk.recorder.dropped) == (0, 100)
@@ -396,7 +396,7 @@ def test_a_note_that_cannot_be_written_is_counted_and_all_others_are_kept(tmp_pa
     desk = RecordedDesk(tmp_path)
     with desk.recorder:
         desk.run(50)
-        desk.recorder.asked(Unsayable())
+        desk.recorder.on_question(Unsayable())
         desk.run(50)
     assert len(entries_of(tmp_path / NAME)) == 100
     assert (desk.recorder.written, desk.recorder.dropped) == (100, 1)
@@ -406,8 +406,8 @@ def test_a_note_that_cannot_be_written_is_counted_and_all_others_are_kept(tmp_pa
 def test_what_is_noted_before_the_first_tick_has_the_time_of_the_start(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path, began_at_ns=None)
     started_ns = time.time_ns()
-    desk.recorder.asked("I know nothing yet, teach me")
-    desk.recorder.tend()
+    desk.recorder.on_question("I know nothing yet, teach me")
+    desk.recorder.poll()
     desk.second()
     desk.recorder.close()
     times = [each.time_ns for each in messages_of(tmp_path / NAME)]
@@ -417,9 +417,9 @@ def test_what_is_noted_before_the_first_tick_has_the_time_of_the_start(tmp_path:
 
 def test_the_health_report_is_kept_beside_the_ticks(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path)
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.run(1)
-    desk.recorder.healthy(plain_of(WELL))
+    desk.recorder.on_health(plain_of(WELL))
     desk.recorder.close()
     (told,) = messages_of(tmp_path / NAME, HEALTH)
     assert report_of(json.loads(told.data)) == WELL
@@ -449,7 +449,7 @@ class Elsewhere:
 
 def test_of_a_simulated_robot_its_true_place_and_its_world_are_kept(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path, ground=Elsewhere())
-    desk.recorder.tend()
+    desk.recorder.poll()
     for _ in range(6):
         desk.second()
     desk.recorder.close()
@@ -461,7 +461,7 @@ def test_the_log_warns_of_what_the_guard_changed_but_not_of_the_slew_limit_where
     tmp_path: Path,
 ) -> None:
     desk = RecordedDesk(tmp_path)
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.second()
     for reasons in ((GuardReason.SLEW_LIMIT,), (GuardReason.FRONT_BUMPER, GuardReason.SLEW_LIMIT)):
         desk.desk.robot.refuses = reasons
@@ -482,7 +482,7 @@ def test_the_log_warns_of_what_the_guard_changed_but_not_of_the_slew_limit_where
 
 def test_each_transform_message_holds_the_whole_tree_of_frames_as_a_viewer_seeks_to_one(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path, ground=Elsewhere())
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.second()
     desk.recorder.close()
     standing, began = PlanePose(0.0, 0.0, 0.0), PlanePose(1.0, 2.0, 0.0)

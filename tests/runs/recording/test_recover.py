@@ -6,7 +6,7 @@ import pytest
 from mcap.reader import make_reader
 
 from kurt2rt.runs.recording.recording_error import RecordingError
-from kurt2rt.runs.recording.recover import TORN_METADATA, copy_whole
+from kurt2rt.runs.recording.recover import TRUNCATED_METADATA, recover_segment
 from kurt2rt.runs.recording.run_folder import segments_in
 from kurt2rt.runs.recording.segment_reader import SegmentReader
 from tests.runs.recording.desk_recording import NAME, RecordedDesk
@@ -15,7 +15,7 @@ from tests.runs.recording.desk_recording import NAME, RecordedDesk
 @pytest.fixture
 def whole(tmp_path: Path) -> Path:
     desk = RecordedDesk(tmp_path)
-    desk.recorder.tend()
+    desk.recorder.poll()
     for second in range(4):
         desk.second(counts=200 + second)
     desk.recorder.close()
@@ -27,13 +27,13 @@ def test_a_file_that_was_cut_anywhere_is_copied_up_to_there_and_the_copy_has_its
     whole: Path, tmp_path: Path
 ) -> None:
     content = whole.read_bytes()
-    torn, copy = tmp_path / "torn.mcap", tmp_path / "copy.mcap"
+    truncated, copy = tmp_path / "torn.mcap", tmp_path / "copy.mcap"
     for share in (0.5, 0.7, 0.9, 1.0):
-        torn.write_bytes(content[: round(len(content) * share) - 1])
-        because = copy_whole(torn, copy)
+        truncated.write_bytes(content[: round(len(content) * share) - 1])
+        because = recover_segment(truncated, copy)
         assert "ends without its index" in because
-        assert list(SegmentReader(copy).messages()) == list(SegmentReader(torn).messages())
-        head = SegmentReader(torn).head()
+        assert list(SegmentReader(copy).messages()) == list(SegmentReader(truncated).messages())
+        head = SegmentReader(truncated).head()
         assert SegmentReader(copy).head().attachments == head.attachments
         with copy.open("rb") as file:
             reader = make_reader(file, validate_crcs=True)
@@ -41,21 +41,21 @@ def test_a_file_that_was_cut_anywhere_is_copied_up_to_there_and_the_copy_has_its
             assert summary is not None
             assert summary.chunk_indexes
             noted = {each.name: each.metadata for each in reader.iter_metadata()}
-        assert noted == {**head.metadata, TORN_METADATA: {"why": because}}
+        assert noted == {**head.metadata, TRUNCATED_METADATA: {"why": because}}
         copy.unlink()
 
 
 def test_a_whole_file_is_copied_whole(whole: Path, tmp_path: Path) -> None:
     copy = tmp_path / "copy.mcap"
-    assert copy_whole(whole, copy) == ""
+    assert recover_segment(whole, copy) == ""
     assert list(SegmentReader(copy).messages()) == list(SegmentReader(whole).messages())
 
 
 def test_of_a_file_in_which_nothing_is_whole_no_copy_is_left(tmp_path: Path) -> None:
-    torn, copy = tmp_path / "torn.mcap", tmp_path / "copy.mcap"
-    torn.write_bytes(b"\x89MCAP")
+    truncated, copy = tmp_path / "torn.mcap", tmp_path / "copy.mcap"
+    truncated.write_bytes(b"\x89MCAP")
     with pytest.raises(RecordingError, match="nothing of it was written"):
-        copy_whole(torn, copy)
+        recover_segment(truncated, copy)
     assert not copy.exists()
 
 
@@ -63,5 +63,5 @@ def test_a_copy_that_is_there_stays(whole: Path, tmp_path: Path) -> None:
     copy = tmp_path / "copy.mcap"
     copy.write_text("mine")
     with pytest.raises(RecordingError, match="give another folder"):
-        copy_whole(whole, copy)
+        recover_segment(whole, copy)
     assert copy.read_text() == "mine"

@@ -8,8 +8,8 @@ import pytest
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_folder import (
     find_run,
-    later_name,
     make_room,
+    next_run_name,
     run_name,
     runs_in,
     segment_name,
@@ -21,7 +21,7 @@ from tests.runs.recording.desk_recording import RecordedDesk
 def recorded(recordings: Path, name: str) -> Path:
     """A run of one tick."""
     desk = RecordedDesk(recordings, name=name)
-    desk.recorder.tend()
+    desk.recorder.poll()
     desk.run(1)
     desk.recorder.close()
     return recordings / name
@@ -37,16 +37,16 @@ def filled(folder: Path, size: int = 1000) -> Path:
 def test_a_run_is_named_by_its_start_and_task(tmp_path: Path) -> None:
     name = run_name(datetime(2026, 11, 22, 3, 10, 5, tzinfo=UTC), "wall_following")
     assert name == "20261122T031005Z-wall_following"
-    assert later_name(name, tmp_path / "none yet") == name
+    assert next_run_name(name, tmp_path / "none yet") == name
     recorded(tmp_path, "20261122T031004Z-wall_following")
-    assert later_name(name, tmp_path) == name
+    assert next_run_name(name, tmp_path) == name
     recorded(tmp_path, name)
-    assert later_name(name, tmp_path) == name  # a number is put behind it
+    assert next_run_name(name, tmp_path) == name  # a number is put behind it
 
 
 def test_a_run_that_was_started_by_a_clock_set_back_is_the_newest_all_the_same(tmp_path: Path) -> None:
     recorded(tmp_path, "20261122T235959Z-wall_following-2")
-    name = later_name("20261122T221005Z-streets", tmp_path)
+    name = next_run_name("20261122T221005Z-streets", tmp_path)
     assert name == "20261123T000000Z-streets"
     assert find_run(None, tmp_path) != (newest := recorded(tmp_path, name))
     assert find_run(None, tmp_path) == newest
@@ -55,7 +55,7 @@ def test_a_run_that_was_started_by_a_clock_set_back_is_the_newest_all_the_same(t
 @pytest.mark.parametrize("odd", ["20269999T000000Z-mine", "99991231T235959Z-mine"])
 def test_a_folder_that_is_no_time_is_passed_over(tmp_path: Path, odd: str) -> None:
     recorded(tmp_path, odd)
-    assert later_name("20261122T221005Z-streets", tmp_path) == "20261122T221005Z-streets"
+    assert next_run_name("20261122T221005Z-streets", tmp_path) == "20261122T221005Z-streets"
 
 
 def test_a_run_without_a_tick_is_not_the_newest(tmp_path: Path) -> None:

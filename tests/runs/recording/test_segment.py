@@ -77,7 +77,7 @@ def test_what_was_saved_survives_a_cut_at_any_place(tmp_path: Path, every_bytes:
         numbers = [int(message.data) for message in reader.messages()]
         assert numbers == list(range(1, len(numbers) + 1))
         assert len(numbers) >= max((number for size, number in saved if size <= length), default=0)
-        assert str(cut) in reader.torn
+        assert str(cut) in reader.truncated
 
 
 def test_a_file_with_holes_is_read_up_to_the_first(tmp_path: Path) -> None:
@@ -138,7 +138,7 @@ def test_a_disk_that_fails_for_long_is_given_up(tmp_path: Path) -> None:
     full = iter(lambda: OSError(errno.ENOSPC, "no space left on device"), None)
     segment = Segment(tmp_path / "0001.mcap", context, FailingDisk(full))
     chance = random.Random(1)
-    while not segment.is_beyond_hope:
+    while not segment.is_over_limit:
         channel.log(chance.randbytes(KEPT_BYTES // 10), log_time=1)
         with pytest.raises(OSError, match="no space"):
             segment.save()

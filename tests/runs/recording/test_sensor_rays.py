@@ -24,7 +24,7 @@ def test_a_wall_ahead_stands_at_its_distance_from_the_centre() -> None:
     scan = rays.scan_m(counts)
     assert scan[0] == pytest.approx(0.217 + 0.3, abs=0.005)
     assert sum(math.isfinite(each) for each in scan) == 1
-    ray = rays.of(counts)[INFRARED.names.index("s11")]
+    ray = rays.rays(counts)[INFRARED.names.index("s11")]
     assert (ray.from_x_m, ray.from_y_m, ray.to_y_m) == (0.217, 0.0, 0.0)
     assert ray.seen
 
@@ -39,4 +39,4 @@ def test_a_wall_to_the_left_is_a_quarter_turn_on() -> None:
 def test_where_nothing_is_seen_the_scan_is_empty_and_rays_end_far_away() -> None:
     rays = SensorRays(INFRARED)
     assert all(math.isinf(each) for each in rays.scan_m(NOTHING))
-    assert not any(ray.seen for ray in rays.of(NOTHING))
+    assert not any(ray.seen for ray in rays.rays(NOTHING))

@@ -7,14 +7,14 @@ from kurt2rt.runs.recording.writer_thread import WriterThread
 
 def test_what_finds_no_room_is_lost_and_counted() -> None:
     thread = WriterThread[int]("writer", 3, lambda: None)
-    thread.put(1, held=2)
-    thread.put(2, held=2)  # with those that were taken and wait still, that is one too many
+    thread.submit(1, held=2)
+    thread.submit(2, held=2)  # with those that were taken and wait still, that is one too many
     for number in (3, 4, 5):
-        thread.put(number)
-    assert (len(thread), thread.without_room) == (3, 2)
-    assert list(thread.take()) == [1, 3, 4]
-    thread.put(6)
-    assert (list(thread.take()), thread.without_room) == ([6], 2)
+        thread.submit(number)
+    assert (len(thread), thread.overruns) == (3, 2)
+    assert list(thread.pop_all()) == [1, 3, 4]
+    thread.submit(6)
+    assert (list(thread.pop_all()), thread.overruns) == ([6], 2)
 
 
 def test_at_the_end_the_writer_looks_once_more() -> None:
@@ -23,15 +23,15 @@ def test_at_the_end_the_writer_looks_once_more() -> None:
     def write() -> None:
         ended = False
         while not ended:
-            ended = thread.pause()
-            written.extend(thread.take())
+            ended = thread.wait_period()
+            written.extend(thread.pop_all())
 
     thread = WriterThread[int]("writer", 10, write)
     assert not thread.started
     thread.start()
     assert thread.started
-    thread.put(1)
-    assert thread.end(60.0)
+    thread.submit(1)
+    assert thread.stop(60.0)
     assert written == [1]
 
 
@@ -39,9 +39,9 @@ def test_a_writer_that_hangs_is_left_behind() -> None:
     disk_answers = threading.Event()
     thread = WriterThread[int]("writer", 10, lambda: hang(disk_answers))
     thread.start()
-    assert not thread.end(0.0)
+    assert not thread.stop(0.0)
     disk_answers.set()
-    assert thread.end(60.0)
+    assert thread.stop(60.0)
 
 
 def hang(until: threading.Event) -> None:

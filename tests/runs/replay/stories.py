@@ -226,7 +226,7 @@ def record_story(
 
 def _go(scene: Scene, story: Story, recorder: RunRecorder, ticks: int) -> None:
     runtime = scene.runtime
-    recorder.tend()
+    recorder.poll()
 
     def after_tick(record: TickRecord) -> None:
         story(scene, record)
@@ -234,8 +234,8 @@ def _go(scene: Scene, story: Story, recorder: RunRecorder, ticks: int) -> None:
         if saved:
             runtime.snapshot()
             recorder.write_waiting()
-            recorder.tend()
-        recorder.note(record, saved=saved)
+            recorder.poll()
+        recorder.on_tick(record, saved=saved)
 
     try:
         asyncio.run(runtime.scheduler.run(ticks, after_tick))

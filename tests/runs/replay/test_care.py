@@ -38,7 +38,7 @@ from kurt2rt.runs.replay.compaction import TEACHER, Compaction, compact
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
 from kurt2rt.runs.replay.run import Run
-from kurt2rt.runs.replay.trial import TrialKnowledge, answers, newest_to_try, runs_to_try
+from kurt2rt.runs.replay.trial import TrialKnowledge, compatible_runs, newest_compatible_run, replay_answers
 from kurt2rt.runs.replay.undo_preview import preview, preview_on_newest
 from kurt2rt.teacher.scripted.teacher import view_of_tick
 from tests.cli.helpers import CommandLine
@@ -137,8 +137,8 @@ def test_each_rla_that_is_left_is_needed(knowledge: Path, recordings: Path) -> N
     compacted(knowledge, recordings)
     with Journal.read_only(knowledge) as journal:
         known = TrialKnowledge(tuple(journal.events()), Statistics())
-        (run,) = runs_to_try(recordings, journal.binding).runs
-    nearest = {answered.basic.nearest for _, (answered,) in answers(run, (known,), quietly)}
+        (run,) = compatible_runs(recordings, journal.binding).runs
+    nearest = {answered.basic.nearest for _, (answered,) in replay_answers(run, (known,), quietly)}
     assert {rla.rla_id for rla in nearest if rla is not None} == {rla.rla_id for rla in folded(knowledge).rlas}
 
 
@@ -170,7 +170,7 @@ def test_a_robot_that_runs_and_a_folder_without_runs_change_nothing(
             compacted(knowledge, folder)
     other = replace(binding, feature_hash="another")
     with pytest.raises(KnowledgeError, match=r"none of its runs can be tried: .* other features"):
-        runs_to_try(recordings, other)
+        compatible_runs(recordings, other)
     with Journal.read_only(knowledge) as journal:
         assert not any(isinstance(event, RlaDeleted) for event in journal.events())
 
@@ -211,17 +211,17 @@ def runs(recordings: Path, tmp_path: Path) -> Path:
 def test_the_newest_run_is_tried_that_can_be(knowledge: Path, runs: Path) -> None:
     with Journal.read_only(knowledge) as journal:
         binding = journal.binding
-    assert newest_to_try(runs / "nowhere", binding, knowledge).runs == ()
-    assert newest_to_try(runs, replace(binding, feature_hash="another"), knowledge).runs == ()
+    assert newest_compatible_run(runs / "nowhere", binding, knowledge).runs == ()
+    assert newest_compatible_run(runs, replace(binding, feature_hash="another"), knowledge).runs == ()
     stood = record_story("walls", runs, seconds=1, other=nobody).rename(runs / "20260321T094640Z-wall_following")
-    torn = runs / "20260322T114640Z-torn"
-    torn.mkdir()
-    (torn / "0001.mcap").write_bytes(b"nonsense")
+    truncated = runs / "20260322T114640Z-torn"
+    truncated.mkdir()
+    (truncated / "0001.mcap").write_bytes(b"nonsense")
 
-    found = newest_to_try(runs, binding, knowledge)
+    found = newest_compatible_run(runs, binding, knowledge)
     assert [run.name for run in found.runs] == [str(stood)]
     (note,) = found.notes
-    assert torn.name in note
+    assert truncated.name in note
     shown = preview_on_newest(plan_undo(knowledge, teacher="Ann"), runs, quietly)
     assert [tried.run for tried in shown.runs] == [str(stood)]
     assert shown.notes == (note,)
@@ -315,7 +315,7 @@ def test_while_the_newest_run_of_a_file_is_looked_for_no_other_is_kept_in_memory
 
     monkeypatch.setattr(trial, "read_run", read_and_count)
     with Journal.read_only(knowledge) as journal:
-        (newest,) = newest_to_try(runs, journal.binding, knowledge).runs
+        (newest,) = newest_compatible_run(runs, journal.binding, knowledge).runs
     assert newest.name.endswith("20260324T094640Z-wall_following")
     assert len(read) == 5
     assert max(alive) <= 2  # the newest, and the one before, which has only just been looked at
@@ -348,7 +348,7 @@ def test_a_run_of_an_earlier_kurt2rt_belongs_to_the_file_below_whose_folder_it_l
 
     def newest(file: Path) -> str:
         with Journal.read_only(file) as journal:
-            (run,) = newest_to_try(runs, journal.binding, file).runs
+            (run,) = newest_compatible_run(runs, journal.binding, file).runs
         return run.name
 
     for working_folder in (tmp_path, elsewhere):
@@ -369,7 +369,7 @@ def test_a_run_that_cannot_be_read_is_left_out_and_told(knowledge: Path, recordi
     (folder / "20260320T114640Z-torn").mkdir()
     (folder / "20260320T114640Z-torn" / "0001.mcap").write_bytes(b"nonsense")
     with Journal.read_only(knowledge) as journal:
-        found = runs_to_try(folder, journal.binding)
+        found = compatible_runs(folder, journal.binding)
     assert len(found.runs) == 1
     (note,) = found.notes
     assert "20260320T114640Z-torn" in note

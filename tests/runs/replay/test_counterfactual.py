@@ -22,7 +22,7 @@ from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.replay.counterfactual import Counterfactual, counterfactual
-from kurt2rt.runs.replay.counterfactual_policy import CounterfactualPolicy, answers_then, shadow_of
+from kurt2rt.runs.replay.counterfactual_policy import CounterfactualPolicy, load_policy, recorded_answers
 from kurt2rt.runs.replay.replay import Replay, ReplayedTick
 from kurt2rt.runs.replay.run import Run
 from tests.runs.replay.stored_runs import NAMES, stored
@@ -129,7 +129,7 @@ def test_what_was_is_what_drove_also_where_the_robot_was_taught_otherwise_in_tha
     heard: Counter[str] = Counter()
     taught_now = 0
     for entry, record in replay:
-        answer = answers_then(record, replay.runtime).basic
+        answer = recorded_answers(record, replay.runtime).basic
         decision = record.decision
         if decision.cause is Cause.RLA:
             assert answer.rla is not None
@@ -153,7 +153,7 @@ def test_what_was_withdrawn_in_that_tick_had_driven() -> None:
     rla_id = record.decision.rla_id
     assert rla_id is not None
     replay.runtime.level.apply(ActionWithdrawn(rla_id, "", ORIGIN))
-    assert answers_then(record, replay.runtime).basic.action == record.decision.action
+    assert recorded_answers(record, replay.runtime).basic.action == record.decision.action
 
 
 def test_where_nobody_could_be_asked_withdrawn_rlas_are_passed_over(
@@ -166,12 +166,12 @@ def test_where_nobody_could_be_asked_withdrawn_rlas_are_passed_over(
     for _entry, record in replay:
         if record.decision.cause is Cause.RLA and record.tick > 1200:
             break
-    asked = known.look(record, replay.runtime).basic
+    asked = known.answers(record, replay.runtime).basic
     assert asked.rla is not None
     withdrawn = CounterfactualPolicy(run, [*events, ActionWithdrawn(asked.rla.rla_id, "", ORIGIN)])
-    assert withdrawn.look(record, replay.runtime).basic.rla is None
+    assert withdrawn.answers(record, replay.runtime).basic.rla is None
     replay.runtime.level.skip_withdrawn = True
-    passed_over = withdrawn.look(record, replay.runtime).basic
+    passed_over = withdrawn.answers(record, replay.runtime).basic
     assert passed_over.nearest is not None
     assert passed_over.nearest.rla_id != asked.rla.rla_id
 
@@ -193,7 +193,7 @@ def test_knowledge_comes_from_a_file_and_the_file_stays_as_it_is(
     with open_knowledge(path, run.robot, run.task) as journal:
         journal.append([JournalEntry(event, "2026-11-22T03:00:00Z") for event in lessons["walls"]])
     before = path.read_bytes()
-    assert counterfactual(run, shadow_of(run, path), CounterfactualPolicy(run, lessons["walls"])).same
+    assert counterfactual(run, load_policy(run, path), CounterfactualPolicy(run, lessons["walls"])).same
     assert path.read_bytes() == before
 
 

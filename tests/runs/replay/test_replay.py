@@ -109,7 +109,7 @@ def test_a_zero_of_another_sign_is_a_difference_and_so_is_a_truth_for_a_number()
     entry, record = next(iter(Replay(stored("walls"))))
     still = entry.decision._replace(wheel_speeds=WheelSpeeds(-0.0, 0.0))
     (found,) = compare(entry._replace(decision=still), record)
-    assert found.in_words == "decision.wheel_speeds.left_m_s was -0.0, and is 0.0 now"
+    assert found.text == "decision.wheel_speeds.left_m_s was -0.0, and is 0.0 now"
     (found,) = compare(entry._replace(senses=entry.senses._replace(bumpers=False)), record)
     assert found.field == "senses.bumpers"
 
@@ -140,9 +140,9 @@ def test_a_run_that_was_just_recorded_is_replayed_from_its_folder(fresh: Path) -
 
 def test_a_torn_run_is_replayed_up_to_its_last_whole_chunk(fresh: Path, tmp_path: Path) -> None:
     (segment,) = segments_in(fresh)
-    torn = tmp_path / "torn.mcap"
-    torn.write_bytes(segment.read_bytes()[: segment.stat().st_size * 2 // 3])
-    run = read_run(torn)
+    truncated = tmp_path / "torn.mcap"
+    truncated.write_bytes(segment.read_bytes()[: segment.stat().st_size * 2 // 3])
+    run = read_run(truncated)
     ticks, found = differences(run)
     assert 100 < ticks < 600
     assert found == []

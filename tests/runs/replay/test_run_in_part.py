@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.runs.explain.timeline import summary, timeline_of
+from kurt2rt.runs.explain.timeline import build_timeline, format_summary
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_folder import segments_in
@@ -26,19 +26,19 @@ def late(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_one_without_its_beginning_cannot_be_replayed_and_says_since_when_it_is_there(late: Path) -> None:
-    first = next(read_run(late, in_part=True).entries_in_part()).number
+    first = next(read_run(late, partial=True).partial_entries()).number
     with pytest.raises(
         RecordingError, match=rf"is there from its tick {first} on; .* raise recordings_mb for the next"
     ):
         read_run(late)
     with pytest.raises(RecordingError, match=rf"is there from its tick {first} on"):
-        Replay(read_run(late, in_part=True))
+        Replay(read_run(late, partial=True))
 
 
 def test_what_is_left_of_it_is_read_with_the_settings_that_were_in_force(late: Path) -> None:
-    run = read_run(late, in_part=True)
+    run = read_run(late, partial=True)
     assert (run.robot, run.task, run.lessons) == (ROBOT, TASK, ())
-    numbers = [entry.number for entry in run.entries_in_part()]
+    numbers = [entry.number for entry in run.partial_entries()]
     assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
     assert run.trouble.startswith(f"the first {numbers[0] - 1} ticks of the run (")
 
@@ -52,10 +52,10 @@ def with_gaps(run: Run, *lost: range) -> Run:
 
 def test_a_timeline_goes_on_behind_a_gap_and_does_not_call_it_missed_ticks() -> None:
     run = with_gaps(read_run(STORED / "walls.mcap"), range(201, 204), range(1000, 1101))
-    timeline = timeline_of(run.entries_in_part(), run.robot)
+    timeline = build_timeline(run.partial_entries(), run.robot)
     assert (timeline.ticks, timeline.missed, timeline.unrecorded) == (4400 - 104, 0, 104)
     assert run.trouble == "104 ticks in 2 places are not in the recording"
-    assert "104 ticks not recorded" in summary(timeline)
+    assert "104 ticks not recorded" in format_summary(timeline)
     before = max(stretch.to_s for stretch in timeline.stretches if stretch.from_s < 9.9)
     assert before == pytest.approx(9.99)
     assert len(list(run.entries())) == 200
