@@ -1,10 +1,10 @@
-"""The line for a command that found no robot to talk to."""
+"""Error of a command that found no robot."""
 
-from kurt2rt.teacher.client.answer import NoAnswerError
+from kurt2rt.teacher.client.answer import NoAnswer, NoAnswerError
 
 
 def no_robot(host: str, port: int, name: str) -> NoAnswerError:
-    """Return the error: `host` and `port` are where the robot should be, `name` is the device that asked."""
+    """Return the error for a robot expected at `host` and `port`; `name` is the device that asked."""
     return NoAnswerError(
-        f"no robot answers at {host}:{port} as {name}", do="start one in another terminal: kurt2rt run"
+        f"at {host}:{port} as {name}", NoAnswer.NO_ROBOT, do="start one in another terminal: kurt2rt run"
     )

@@ -11,6 +11,7 @@ from hal.simulation import SimulatedWorld
 from kurt2rt.channel.protocol.exam_status import NO_EXAM
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.requests import (
+    FASTEST,
     AnswerRequest,
     CommandRequest,
     DriveRequest,
@@ -19,7 +20,6 @@ from kurt2rt.channel.protocol.requests import (
     StreamRequest,
     WatchRequest,
 )
-from kurt2rt.channel.protocol.requests.limits import FASTEST
 from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
 from kurt2rt.channel.server.channel import Channel, describe
 from kurt2rt.channel.server.endpoint import Endpoint

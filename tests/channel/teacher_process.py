@@ -41,7 +41,7 @@ async def teach(folder: Path, port: int) -> None:
         await robot.take()
         await robot.answer("forward")
         print("teaching", flush=True)
-        began_s, pictures = time.monotonic(), robot._pictures.count
+        began_s, pictures = time.monotonic(), robot._stream.count
         async with anyio.create_task_group() as tasks:
             number = 0
             while not over.is_set():
@@ -49,7 +49,7 @@ async def teach(folder: Path, port: int) -> None:
                 tasks.start_soon(say, robot, number)
                 with anyio.move_on_after(_EVERY_S):
                     await over.wait()
-        pictures_per_s = (robot._pictures.count - pictures) / (time.monotonic() - began_s)
+        pictures_per_s = (robot._stream.count - pictures) / (time.monotonic() - began_s)
     quantiles = statistics.quantiles(took_ms, n=100, method="inclusive")
     line = {"told": told, "p50_ms": quantiles[49], "p99_ms": quantiles[98], "longest_ms": max(took_ms)}
     print(json.dumps({**line, "pictures_per_s": pictures_per_s}), flush=True)

@@ -17,7 +17,6 @@ from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.requests import (
     AnswerRequest,
     AppraiseRequest,
-    BeAtRequest,
     CorrectRequest,
     HealthRequest,
     HelloRequest,
@@ -31,12 +30,13 @@ from kurt2rt.channel.protocol.requests import (
     SeekLikeRequest,
     SeekRequest,
     SeekRlaRequest,
+    SetLocationRequest,
     SituationsRequest,
     StopRequest,
     TakeRequest,
 )
 from kurt2rt.channel.security.pairing import Pairing, pair
-from kurt2rt.channel.server.reply import Reply, Verdict, done
+from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
 from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.core.perception.sensor_words import law_of
 from kurt2rt.core.rla.outcome import Outcome, ResultCode
@@ -96,13 +96,13 @@ class Mind:
         if isinstance(request, self.slow):
             await self.may_answer.wait()
         if isinstance(request, HelloRequest):
-            return Reply(Verdict.DONE, HELLO)
+            return Reply(ReplyStatus.DONE, HELLO)
         if isinstance(request, LessonsRequest):
-            return Reply(Verdict.DONE, {"lessons": []})
+            return Reply(ReplyStatus.DONE, {"lessons": []})
         if isinstance(request, HealthRequest):
-            return Reply(Verdict.DONE, {"health": plain_of(ILL)})
+            return Reply(ReplyStatus.DONE, {"health": plain_of(ILL)})
         if isinstance(request, SituationsRequest):
-            return Reply(Verdict.DONE, {"situations": ["the door", "the window"]})
+            return Reply(ReplyStatus.DONE, {"situations": ["the door", "the window"]})
         return done(7, Outcome.of(ResultCode.GOAL_SOUGHT, says=f"{request.path} is done"))
 
 
@@ -169,7 +169,7 @@ async def test_enter_alone_stops_at_once_and_ends_what_waits_for_its_answer(
         desk.type("")
         await desk.reads("refused: go was stopped meanwhile")
         await desk.reads("/stop is done")
-        assert robot.all_of(StopRequest)[0].hold is None
+        assert robot.all_of(StopRequest)[0].press_id is None
 
 
 async def test_what_was_typed_before_a_stop_does_not_move_the_robot_after_it(
@@ -335,7 +335,7 @@ async def test_terminal_says_the_task_and_asks_by_place_and_centimetres(pairing:
             return await mind(request)
         sensors = [["s9", "front left", 0.2, 0.1, 0.0]]
         told = {"what": "Teach it to follow the wall", "law": list(law_of(load_robot().infrared)), "sensors": sensors}
-        return Reply(Verdict.DONE, HELLO | told)
+        return Reply(ReplyStatus.DONE, HELLO | told)
 
     robot.mind = tells_more
     async with desk_at(pairing, robot.port) as desk:
@@ -414,7 +414,7 @@ async def test_the_mid_level_is_taught_by_the_names_of_behaviours(pairing: Pairi
         desk.type("turn_left")
         await desk.reads("/answer is done")
         (answer,) = robot.all_of(AnswerRequest)
-        assert (answer.action, answer.level, answer.beside) == ("turn_left", "mid", False)
+        assert (answer.action, answer.level, answer.alternative) == ("turn_left", "mid", False)
         robot.show(cause="rla", action="forward", rla=3, asks_at="basic", mid=COMMANDS)
         await desk.reads("turn_left because mid-level RLA 12: 2 of 12 differ, R 6")
         desk.type("straight_on")
@@ -422,7 +422,7 @@ async def test_the_mid_level_is_taught_by_the_names_of_behaviours(pairing: Pairi
         assert [(each.action, each.level) for each in robot.all_of(CorrectRequest)] == [("straight_on", "mid")]
         desk.type("also straight_on")
         await robot.hears(AnswerRequest, 2)
-        assert robot.all_of(AnswerRequest)[-1].beside
+        assert robot.all_of(AnswerRequest)[-1].alternative
         desk.type("pursue straight_on")
         await desk.reads("/pursue is done")
         robot.show(mid=replace(COMMANDS, behaviour="straight_on", rla=None, overridden=True))
@@ -450,7 +450,7 @@ async def test_places_are_named_and_sought_by_typing(pairing: Pairing, robot: St
         assert [each.rla_id for each in robot.all_of(SeekRlaRequest)] == [12]
         (like,) = robot.all_of(SeekLikeRequest)
         assert (like.features, like.tolerance) == ((("x_m", 1.8), ("y_m", -3.0)), 0.25)
-        assert [each.name for each in robot.all_of(BeAtRequest)] == ["the door"]
+        assert [each.name for each in robot.all_of(SetLocationRequest)] == ["the door"]
         desk.type("seek")
         await robot.hears(SeekRequest, 2)
         assert robot.all_of(SeekRequest)[-1].name is None

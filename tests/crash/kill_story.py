@@ -173,7 +173,7 @@ class Life:
         self._next_lesson = anyio.Event()
         self.asks = True
         try:
-            answer = await self._we._asking.ask(request)
+            answer = await self._we._open.sender.send(request)
         finally:
             self.asks = False
         row = answer.extra.get("row")
@@ -241,7 +241,7 @@ class KillStory:
     ) -> tuple[dict[int, tuple[str, str]], list[can.Message]]:
         async with TeacherClient(self._folder / "var/devices/local", port=port) as we:
             life = Life(we, self._chance)
-            state = await we._pictures.first()
+            state = await we._stream.first()
             assert state is not None
             assert state.stopped == STARTED
             assert not any(map(drives, self._heard())), "it drove before anybody had told it to"

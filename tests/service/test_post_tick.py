@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.channel.protocol.requests import CorrectRequest
-from kurt2rt.channel.server.reply import Verdict
+from kurt2rt.channel.server.reply import ReplyStatus
 from kurt2rt.core.rla.outcome import ResultCode
 from kurt2rt.core.rla.rla import RlaCreated, RlaDeleted
 from kurt2rt.core.rla.statistics import Statistics
@@ -205,7 +205,7 @@ async def test_a_lesson_over_the_channel_is_answered_in_the_round_after_it_becam
     assert not task.done()
     shift.run()
     reply = await reply_of(task)
-    assert (reply.verdict, reply.body["row"], reply.body["code"]) == (Verdict.DONE, 1, ResultCode.RLA_TAUGHT)
+    assert (reply.verdict, reply.body["row"], reply.body["code"]) == (ReplyStatus.DONE, 1, ResultCode.RLA_TAUGHT)
     assert desk.tick == shift.seen[-1].tick
 
     task = await desk.send(desk.command(CorrectRequest, "back", None))

@@ -14,7 +14,7 @@ _CORNERS = ManyOf(Row((_METRES, _METRES)), most=1000)
 
 
 @dataclass(frozen=True, slots=True)
-class World:
+class WorldView:
     """Walls and obstacles; all in metres, with the names of the wire."""
 
     version: int
@@ -26,12 +26,12 @@ class World:
     round: tuple[SimulatedPost, ...]
 
 
-def world_of(body: Mapping[str, Any]) -> World:
+def world_of(body: Mapping[str, Any]) -> WorldView:
     """The world in a decoded body. Raises WireError."""
     try:
         walls = ManyOf(Row((_NAME, _CORNERS)), most=1000)("walls", body["walls"])
         posts = ManyOf(Row((_NAME, _METRES, _METRES, _METRES)), most=1000)("round", body["round"])
-        return World(
+        return WorldView(
             version=Int(0, LARGEST_NUMBER)("version", body["version"]),
             name=_NAME("name", body["name"]),
             size=Row((_METRES, _METRES))("size", body["size"]),

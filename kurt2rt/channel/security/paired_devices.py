@@ -18,7 +18,7 @@ _Identity = tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
+class PairingChange:
     """What `Teachers.refresh` found, by name; a renewed pairing is in both."""
 
     came: tuple[str, ...]
@@ -80,7 +80,7 @@ class Teachers:
             raise KeyError(oscore.COSE_KID_CONTEXT)
         return context
 
-    async def refresh(self) -> Change:
+    async def refresh(self) -> PairingChange:
         """Look who was paired, renewed or revoked since; once a second is meant, one call at a time.
 
         All that waits for the disk is done in a thread. A context that is gone sends nothing more. Never raises for the
@@ -90,7 +90,7 @@ class Teachers:
         self._take(look)
         if look.gone:
             await anyio.to_thread.run_sync(_abandon, look.gone)
-        return Change(look.came, tuple(look.gone))
+        return PairingChange(look.came, tuple(look.gone))
 
     def close(self) -> None:
         """Store all states and release the locks; waits for the disk. Raises the first CredentialsError, after all."""

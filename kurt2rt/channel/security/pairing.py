@@ -78,7 +78,7 @@ class Pairing:
 
 
 @dataclass(frozen=True, slots=True)
-class Paired:
+class PairingInfo:
     """A pairing as the robot's side knows it."""
 
     name: str
@@ -125,13 +125,13 @@ def revoke(teachers: Path, devices: Path, name: str) -> None:
         _remove(teachers, devices, name)
 
 
-def paired(teachers: Path) -> tuple[Paired, ...]:
+def paired(teachers: Path) -> tuple[PairingInfo, ...]:
     """Every pairing of the robot by name, those of this machine included. Raises CredentialsError."""
     found = []
     for name in pairing_names(teachers):
         made, used = _changed_at(teachers / name / SECRET), _changed_at(teachers / name / USED)
         if made is not None:
-            found.append(Paired(name, made, used))
+            found.append(PairingInfo(name, made, used))
     return tuple(found)
 
 

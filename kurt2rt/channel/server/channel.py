@@ -19,7 +19,7 @@ from kurt2rt.channel.server.off_tick_requests import Copies
 from kurt2rt.channel.server.reply import done, refusal, unsaved
 from kurt2rt.channel.server.request_handler import RequestHandler
 from kurt2rt.channel.server.resources import RobotSite
-from kurt2rt.channel.server.simulation import Measure, RunControl
+from kurt2rt.channel.server.simulation import ProgressMeter, RunControl
 from kurt2rt.channel.server.state_builder import JournalStatus, StateBuilder
 from kurt2rt.core.perception.sensor_words import law_of
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode
@@ -56,7 +56,7 @@ class ChannelDependencies:
     """None where the simulator is not in this program."""
     speed: Speed | None = None
     """None where robot time is real time."""
-    measure: Measure | None = None
+    measure: ProgressMeter | None = None
     """None where nothing is measured."""
 
 

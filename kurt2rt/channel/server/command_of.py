@@ -3,15 +3,14 @@
 from kurt2rt.channel.protocol.requests import (
     AnswerRequest,
     AppraiseRequest,
-    BeAtRequest,
     BehaviourRequest,
     CommandRequest,
     CorrectRequest,
     DeleteRequest,
+    HandOverRequest,
     NameRequest,
     PhaseRequest,
     PursueRequest,
-    ReleaseRequest,
     ReplaceRequest,
     ResumeRequest,
     RewardRequest,
@@ -19,6 +18,7 @@ from kurt2rt.channel.protocol.requests import (
     SeekRequest,
     SeekRlaRequest,
     SessionRequest,
+    SetLocationRequest,
     TakeRequest,
     UndoRequest,
 )
@@ -52,8 +52,8 @@ def command_of(device: str, command_id: str, request: CommandRequest) -> Command
     match request:
         case BehaviourRequest(action=action, ticks=ticks):
             return RunBehaviour(command_id, device, action, ticks, request.seen)
-        case AnswerRequest(action=action, decision_tick=tick, level=level, beside=beside):
-            return Teach(command_id, device, action, tick, level, beside)
+        case AnswerRequest(action=action, decision_tick=tick, level=level, alternative=alternative):
+            return Teach(command_id, device, action, tick, level, alternative)
         case CorrectRequest(action=action, decision_tick=tick, level=level):
             return Correct(command_id, device, action, tick, level)
         case RewardRequest(value=value, decision_tick=tick):
@@ -80,7 +80,7 @@ def command_of(device: str, command_id: str, request: CommandRequest) -> Command
             return Seek(command_id, device, RlaGoal(rla_id), request.seen)
         case SeekLikeRequest(features=features, tolerance=tolerance):
             return Seek(command_id, device, PartialGoal(features, tolerance), request.seen)
-        case BeAtRequest(name=name):
+        case SetLocationRequest(name=name):
             return BeAt(command_id, device, name, request.seen)
         case SessionRequest(name=None):
             return EndSession(command_id, device)
@@ -90,6 +90,6 @@ def command_of(device: str, command_id: str, request: CommandRequest) -> Command
             return Resume(command_id, device, request.seen)
         case TakeRequest():
             return Take(command_id, device)
-        case ReleaseRequest(to=to):
+        case HandOverRequest(to=to):
             return HandOver(command_id, device, to)
     raise AssertionError(f"{request.path} is no command for the tick")

@@ -13,7 +13,7 @@ from kurt2rt.channel.protocol.requests import (
     PART_BYTES,
     BackToStartRequest,
     ExamRequest,
-    ExamStandingRequest,
+    ExamStatusRequest,
     ExportRequest,
     FileRequest,
     LoadRequest,
@@ -29,8 +29,8 @@ from kurt2rt.channel.protocol.requests import (
 )
 from kurt2rt.channel.protocol.simulation import SIMULATION
 from kurt2rt.channel.server.pending_commands import PendingCommands
-from kurt2rt.channel.server.reply import Reply, Verdict, done, plain_outcome, refusal, restarted, unsaved
-from kurt2rt.channel.server.simulation import Measure, RunControl, TeacherNow
+from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, plain_outcome, refusal, restarted, unsaved
+from kurt2rt.channel.server.simulation import ProgressMeter, RunControl, TeacherNow
 from kurt2rt.channel.server.upload import Upload
 from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.teaching.system_events import SpeedChanged
@@ -98,7 +98,7 @@ class OffTickRequests:
         exam: Callable[[], ExamStatus] | None,
         simulation: RunControl | None,
         speed: Speed | None,
-        measure: Measure | None,
+        measure: ProgressMeter | None,
     ) -> None:
         """`tick`: that of the newest picture. The other arguments are those of `Reception`."""
         self._runtime = runtime
@@ -127,15 +127,15 @@ class OffTickRequests:
                 return self._world()
             case SimulationRequest():
                 return await self._simulation_view()
-            case ExamStandingRequest():
+            case ExamStatusRequest():
                 if self._exam is None:
                     return _not_simulated()
-                return Reply(Verdict.DONE, {"exam": EXAM.plain_of(self._exam())})
+                return Reply(ReplyStatus.DONE, {"exam": EXAM.plain_of(self._exam())})
             case UploadRequest():
                 return self._add_part(device, request)
             case FileRequest(name=name, offset=offset):
                 return await self._part(name, offset)
-        return Reply(Verdict.NOT_HERE)
+        return Reply(ReplyStatus.NOT_HERE)
 
     def begin(self, device: str, command_id: str, request: OffTickCommand) -> Reply | None:
         """Carry out a command; return a refusal, or None where its outcome has begun."""
@@ -171,7 +171,7 @@ class OffTickRequests:
             view = replace(view, speed=self._speed.wanted, reached=self._speed.reached)
         if self._measure is not None:
             view = replace(view, progress=self._measure.progress, unit=self._measure.unit)
-        return Reply(Verdict.DONE, {"simulation": SIMULATION.plain_of(view)})
+        return Reply(ReplyStatus.DONE, {"simulation": SIMULATION.plain_of(view)})
 
     def _begin_exam(self, device: str, command_id: str) -> Reply | None:
         if self._exam is None:
@@ -284,7 +284,7 @@ class OffTickRequests:
             part = await self._copies.read(name, offset, PART_BYTES)
         except KnowledgeError as error:
             return refusal("refused", Outcome.of(RefusalCode.NO_FILE, says=str(error)), self._tick())
-        return Reply(Verdict.DONE, {"size": part.size_bytes, "part": part.content})
+        return Reply(ReplyStatus.DONE, {"size": part.size_bytes, "part": part.content})
 
     async def _copy(self, command_id: str, copying: Awaitable[SavedCopy]) -> None:
         try:
@@ -332,8 +332,8 @@ class OffTickRequests:
             "walls": [[wall.name, [list(corner) for corner in wall.corners]] for wall in view.walls],
             "round": [list(post) for post in view.posts],
         }
-        return Reply(Verdict.DONE, body)
+        return Reply(ReplyStatus.DONE, body)
 
 
 def _not_simulated() -> Reply:
-    return Reply(Verdict.NOT_HERE, {"why": "refused", **plain_outcome(Outcome(RefusalCode.NOT_SIMULATED))})
+    return Reply(ReplyStatus.NOT_HERE, {"why": "refused", **plain_outcome(Outcome(RefusalCode.NOT_SIMULATED))})

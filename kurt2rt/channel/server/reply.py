@@ -9,7 +9,7 @@ from kurt2rt.core.rla.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.outcome_text import text_of
 
 
-class Verdict(Enum):
+class ReplyStatus(Enum):
     """How a request ended; each is one CoAP code."""
 
     DONE = "done"
@@ -25,13 +25,13 @@ class Verdict(Enum):
 class Reply:
     """The answer to a request."""
 
-    verdict: Verdict
+    verdict: ReplyStatus
     body: Mapping[str, Any] = field(default_factory=dict)
 
 
 def refusal(why: str, outcome: Outcome, tick: int) -> Reply:
     """Return the reply to a request that is understood and not done; `why` is a kind of the wire contract."""
-    return Reply(Verdict.CONFLICT, {"t": tick, "why": why, **plain_outcome(outcome)})
+    return Reply(ReplyStatus.CONFLICT, {"t": tick, "why": why, **plain_outcome(outcome)})
 
 
 def restarted(tick: int) -> Reply:
@@ -41,18 +41,18 @@ def restarted(tick: int) -> Reply:
 
 def malformed(text: str) -> Reply:
     """Not understood."""
-    return Reply(Verdict.MALFORMED, {"why": "malformed", "text": text})
+    return Reply(ReplyStatus.MALFORMED, {"why": "malformed", "text": text})
 
 
 def unsaved(outcome: Outcome, tick: int) -> Reply:
     """Return the reply to a lesson or a copy that is not durable, or not known to be."""
-    return Reply(Verdict.UNSAVED, {"t": tick, "why": "unsaved", **plain_outcome(outcome)})
+    return Reply(ReplyStatus.UNSAVED, {"t": tick, "why": "unsaved", **plain_outcome(outcome)})
 
 
 def done(tick: int, outcome: Outcome | None = None, **more: Any) -> Reply:
     """Return the reply to a request that was carried out, and is durable if it has to be."""
     told = {"text": ""} if outcome is None else plain_outcome(outcome)
-    return Reply(Verdict.DONE, {"t": tick, "ok": True, **told, **more})
+    return Reply(ReplyStatus.DONE, {"t": tick, "ok": True, **told, **more})
 
 
 def plain_outcome(outcome: Outcome) -> dict[str, Any]:

@@ -33,8 +33,8 @@ from kurt2rt.channel.server.command_of import command_of
 from kurt2rt.channel.server.device_rate_limit import PerDeviceRateLimit
 from kurt2rt.channel.server.off_tick_requests import Copies, OffTickCommand, OffTickRequests
 from kurt2rt.channel.server.pending_commands import PendingCommands
-from kurt2rt.channel.server.reply import Reply, Verdict, done, refusal, restarted, unsaved
-from kurt2rt.channel.server.simulation import Measure, RunControl
+from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal, restarted, unsaved
+from kurt2rt.channel.server.simulation import ProgressMeter, RunControl
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import Command, Drive, Stop, Watch
@@ -83,7 +83,7 @@ class RequestHandler:
         exam: Callable[[], ExamStatus] | None = None,
         simulation: RunControl | None = None,
         speed: Speed | None = None,
-        measure: Measure | None = None,
+        measure: ProgressMeter | None = None,
     ) -> None:
         """`boot`: random bytes of this start. `stamp_of`: when the lesson of a command became durable, or nothing.
 
@@ -122,24 +122,24 @@ class RequestHandler:
         match request:
             case StreamRequest():
                 return self._stream(sender, request)
-            case StopRequest(command_id=identity, hold=hold):
-                return await self._stop(sender, f"{device}-{identity.hex()}", hold)
+            case StopRequest(command_id=identity, press_id=press_id):
+                return await self._stop(sender, f"{device}-{identity.hex()}", press_id)
             case CommandRequest():
                 return await self._command(device, request)
             case HelloRequest():
-                return Reply(Verdict.DONE, {**self._hello, "tick": self.tick})
+                return Reply(ReplyStatus.DONE, {**self._hello, "tick": self.tick})
             case LessonsRequest(count=count):
-                return Reply(Verdict.DONE, {"lessons": self._lessons(count)})
+                return Reply(ReplyStatus.DONE, {"lessons": self._lessons(count)})
             case SituationsRequest():
-                return Reply(Verdict.DONE, {"situations": self._situations()})
+                return Reply(ReplyStatus.DONE, {"situations": self._situations()})
             case HealthRequest():
                 health = self._health()
-                return Reply(Verdict.DONE, {"health": None if health is None else plain_of(health)})
+                return Reply(ReplyStatus.DONE, {"health": None if health is None else plain_of(health)})
             case WhyRequest():
                 if not self._whys.take(sender.device, self.tick):
                     return refusal("refused", Outcome(RefusalCode.TOO_OFTEN), self.tick)
                 facts = self._why()
-                return Reply(Verdict.DONE, {"why": None if facts is None else plain_of_facts(facts)})
+                return Reply(ReplyStatus.DONE, {"why": None if facts is None else plain_of_facts(facts)})
         return await self._off_tick.answer(device, request)
 
     def _stream(self, sender: Sender, request: StreamRequest) -> Reply:
@@ -151,20 +151,20 @@ class RequestHandler:
             return refusal("old", Outcome(RefusalCode.OVERTAKEN), tick)
         command: Watch | Drive = Watch(device, request.seen)
         if isinstance(request, DriveRequest):
-            command = Drive(device, request.seen, request.hold, request.left_m_s, request.right_m_s)
+            command = Drive(device, request.seen, request.press_id, request.left_m_s, request.right_m_s)
         held = school.authority.refusal_for(device)
         if held is not None:
             return refusal("held", held, tick)
         ended = school.manual_refusal(command)
         if ended is not None:
             return refusal("stopped", ended, tick)
-        return Reply(Verdict.DONE, {"t": tick}) if self._hand_in(command) else self._too_many()
+        return Reply(ReplyStatus.DONE, {"t": tick}) if self._hand_in(command) else self._too_many()
 
-    async def _stop(self, sender: Sender, command_id: str, hold: int | None) -> Reply:
+    async def _stop(self, sender: Sender, command_id: str, press_id: int | None) -> Reply:
         # What of a press was sent before the stop and comes after it is over, too.
         self._is_newest(sender)
         # Each copy stops again, whatever came of the one before: the robot may have been told to drive meanwhile.
-        if not self._hand_in(Stop(command_id, sender.device, hold)):
+        if not self._hand_in(Stop(command_id, sender.device, press_id)):
             return self._too_many()
         # Shielded: the end of one copy's request must not end what the next copy waits for.
         return await asyncio.shield(self._outcomes.get(command_id) or self._outcomes.begin(command_id))

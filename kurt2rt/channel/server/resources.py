@@ -9,16 +9,16 @@ from aiocoap.error import RenderableError
 from aiocoap.numbers.constants import TransportTuning
 
 from kurt2rt.channel.protocol.codec import CONTENT_FORMAT, PATHS, WireError, decode_request, encode_answer
-from kurt2rt.channel.server.reply import Reply, Verdict, malformed
+from kurt2rt.channel.server.reply import Reply, ReplyStatus, malformed
 from kurt2rt.channel.server.request_handler import RequestHandler, Sender
 from kurt2rt.channel.server.sealed_request import SealedRequest
 
 _CODES = {
-    Verdict.DONE: aiocoap.CHANGED,
-    Verdict.MALFORMED: aiocoap.BAD_REQUEST,
-    Verdict.NOT_HERE: aiocoap.NOT_FOUND,
-    Verdict.CONFLICT: aiocoap.CONFLICT,
-    Verdict.UNSAVED: aiocoap.SERVICE_UNAVAILABLE,
+    ReplyStatus.DONE: aiocoap.CHANGED,
+    ReplyStatus.MALFORMED: aiocoap.BAD_REQUEST,
+    ReplyStatus.NOT_HERE: aiocoap.NOT_FOUND,
+    ReplyStatus.CONFLICT: aiocoap.CONFLICT,
+    ReplyStatus.UNSAVED: aiocoap.SERVICE_UNAVAILABLE,
 }
 _STATE = "/state"
 _DISCOVERY = ("GET", "/.well-known/core")

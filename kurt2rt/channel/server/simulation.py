@@ -13,7 +13,7 @@ class TeacherNow(NamedTuple):
     session: str | None
 
 
-class Measure(Protocol):
+class ProgressMeter(Protocol):
     """Measurement of a simulated robot's progress with its task."""
 
     @property

@@ -6,7 +6,7 @@ from typing import Any
 
 from kurt2rt.channel.protocol.codec import WireError, decode_request, encode_request
 from kurt2rt.channel.protocol.requests import BOOT_BYTES, HIGHEST_SPEED_M_S, DriveRequest
-from kurt2rt.channel.server.reply import Reply, Verdict
+from kurt2rt.channel.server.reply import Reply, ReplyStatus
 from kurt2rt.channel.server.request_handler import RequestHandler, Sender
 from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
 from kurt2rt.knowledge.files.atomic_write import SavedCopy
@@ -94,7 +94,7 @@ class HandLink:
             self.refused += 1
             return
         reply = _at_once(self._reception.answer(Sender(TEACHER, b"", number), request))
-        if reply.verdict is not Verdict.DONE:
+        if reply.verdict is not ReplyStatus.DONE:
             self.refused += 1
 
 

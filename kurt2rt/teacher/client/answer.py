@@ -1,43 +1,115 @@
-"""Answers of the robot to commands that a teacher gave over the network."""
+"""Answers of the robot to a teacher's requests, and the error for the lack of one."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from enum import StrEnum
+from typing import Any, Final
 
 from hal.errors import UserError
-from kurt2rt.core.rla.outcome import Outcome, outcome_in
+from kurt2rt.core.rla.outcome import Code, Outcome, RefusalCode, outcome_in
 from kurt2rt.core.rla.outcome_text import Surface, fields_of, text_of
 
 
+class NoAnswer(StrEnum):
+    """Kind of a missing answer."""
+
+    NO_STATE = "no state"
+    """No state came, so nothing was sent."""
+    SILENT = "silent"
+    """No further state came."""
+    NO_REPLY = "no reply"
+    """It is unknown whether the request counted."""
+    STOP_UNANSWERED = "stop unanswered"
+    NOT_UNDERSTOOD = "not understood"
+    NO_ROBOT = "no robot"
+    OTHER = "other"
+    """The text is the caller's."""
+
+
+_NO_ANSWER_TEXTS: Final = {
+    NoAnswer.NO_STATE: "there is no picture of the robot, so nothing was sent to it",
+    NoAnswer.SILENT: "no state of the robot for {after_s:g} s",
+    NoAnswer.NO_REPLY: "no answer for {after_s:g} s: it is not known whether it counted; look at the lessons",
+    NoAnswer.STOP_UNANSWERED: "the stop is not answered: no answer for {after_s:g} s; it is sent on until it is",
+    NoAnswer.NOT_UNDERSTOOD: "the robot's answer to {path} is not understood: {says}",
+    NoAnswer.NO_ROBOT: "no robot answers {says}",
+    NoAnswer.OTHER: "{says}",
+}
+
+
 class NoAnswerError(UserError):
-    """No answer came in time. It is not known whether the command counted: look at the lessons."""
+    """No answer came in time; a command may have counted: look at the lessons."""
+
+    def __init__(
+        self,
+        says: str = "",
+        code: NoAnswer = NoAnswer.OTHER,
+        *,
+        trouble: str = "",
+        where: object = "",
+        do: str = "",
+        **parts: str | float,
+    ) -> None:
+        """Word the code.
+
+        Args:
+            says: Detail for the text of the code.
+            code: Kind of the missing answer.
+            trouble: Sentence on the network; empty if nothing is known.
+            where: As in UserError.
+            do: As in UserError.
+            parts: Values that the text of the code names.
+        """
+        text = _NO_ANSWER_TEXTS[code].format(says=says, **parts)
+        super().__init__(f"{text}. {trouble}" if trouble else text, where=where, do=do)
+        self.code = code
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """The robot's answer. A refusal is one, too."""
+    """Robot's answer to a command or a request, or its refusal."""
 
     accepted: bool
-    """Whether it was carried out; a lesson is durable then."""
+    """Whether the command was carried out; a lesson is durable then."""
     why: str
-    """Kind of a refusal, a word of the wire contract such as "stale" or "held"; empty where it was accepted."""
+    """Kind of a refusal, a word of the wire contract such as "stale" or "held"; empty if accepted."""
     text: str
-    """What was done, or why not and what to do: the robot's own sentence; a surface shows `text_on`."""
+    """Result, or the reason and the remedy: the robot's own sentence; a surface shows `text_on`."""
     tick: int
-    """Of the robot when it answered; -1 where it did not say."""
+    """Tick of the robot when it answered; -1 if it did not tell."""
     extra: Mapping[str, Any] = field(default_factory=dict)
-    """What else the robot answered, such as `name` and `sha256` of a copy."""
+    """Further values of the answer, such as `name` and `sha256` of a copy."""
     outcome: Outcome | None = None
-    """Code and fields; None from a robot that tells none, or one that is not known here."""
+    """Code and fields; None if the robot told no code that is known here."""
+
+    @property
+    def code(self) -> Code | None:
+        """Code of the outcome; None if the robot told no code that is known here."""
+        return None if self.outcome is None else self.outcome.code
 
     def text_on(self, surface: Surface) -> str:
         """Return the sentence for a surface; the robot's own if it told no code that is known here."""
         return self.text if self.outcome is None else text_of(self.outcome, surface)
 
 
-def local_refusal(why: str, outcome: Outcome) -> Answer:
+_WHY: Final = {
+    RefusalCode.MALFORMED: "malformed",
+    RefusalCode.NOT_UNDERSTOOD: "malformed",
+    RefusalCode.NO_PICTURE: "stale",
+    RefusalCode.PICTURE_LOST: "stale",
+    RefusalCode.RESTARTED_MEANWHILE: "boot",
+    RefusalCode.STOPPED_MEANWHILE: "stopped",
+    RefusalCode.PRESS_OVER: "stopped",
+}
+"""Wire word of each refusal that this device makes itself."""
+_BY_WHY: Final = {"old": Outcome(RefusalCode.OVERTAKEN), "boot": Outcome(RefusalCode.RESTARTED)}
+"""Outcome of a refusal from a robot that tells no code, by its wire word."""
+
+
+def local_refusal(code: RefusalCode, **fields: Any) -> Answer:
     """Return the refusal of a command that was not sent to the robot, or was withdrawn."""
-    return Answer(False, why, text_of(outcome), -1, outcome=outcome)
+    outcome = Outcome.of(code, **fields)
+    return Answer(False, _WHY[code], text_of(outcome), -1, outcome=outcome)
 
 
 class RefusedError(UserError):
@@ -62,7 +134,7 @@ def _outcome_in(body: Mapping[str, Any]) -> Outcome | None:
 
 
 def answer_of(code: str, body: Mapping[str, Any]) -> Answer:
-    """The answer in a decoded body; `code` is CoAP's, such as "4.09 Conflict"."""
+    """Return the answer in a decoded body; `code` is CoAP's, such as "4.09 Conflict"."""
     accepted = code.startswith("2.") and body.get("ok", True) is not False
     tick, text, why = body.get("t"), body.get("text"), body.get("why")
     return Answer(
@@ -71,5 +143,5 @@ def answer_of(code: str, body: Mapping[str, Any]) -> Answer:
         text=text if isinstance(text, str) else "",
         tick=tick if isinstance(tick, int) else -1,
         extra={key: value for key, value in body.items() if key not in _OWN_KEYS},
-        outcome=_outcome_in(body),
+        outcome=_outcome_in(body) or (None if accepted else _BY_WHY.get(str(why))),
     )

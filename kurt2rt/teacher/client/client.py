@@ -1,4 +1,4 @@
-"""A teacher's device in Python: see the robot, teach it, drive it, over the network.
+"""Teacher's device in Python: see the robot, teach it and drive it over the network.
 
 async with TeacherClient(Path("var/devices/phone")) as robot:
     await robot.take()
@@ -10,48 +10,48 @@ async with TeacherClient(Path("var/devices/phone")) as robot:
 import hashlib
 import secrets
 import time
-from collections.abc import Callable
-from contextlib import AsyncExitStack
+from collections.abc import AsyncIterator, Callable, Mapping
+from contextlib import AsyncExitStack, asynccontextmanager
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 import anyio
 
-from kurt2rt.channel.protocol.requests import (
-    UPLOAD_ID_BYTES,
-    UPLOAD_PART_BYTES,
-    BackToStartRequest,
-    LoadRequest,
-    MoveWallRequest,
-    NextRunRequest,
-    PlaceRequest,
-    SimulationRequest,
-    SpeedRequest,
-    UploadRequest,
-)
+from kurt2rt.channel.protocol import requests
+from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus
+from kurt2rt.channel.protocol.facts_codec import facts_of_plain
+from kurt2rt.channel.protocol.health import HealthReport
+from kurt2rt.channel.protocol.health_codec import report_of
+from kurt2rt.channel.protocol.hello import Hello, hello_of
+from kurt2rt.channel.protocol.lesson_list import LessonLine, lesson_lines_of, situations_of
+from kurt2rt.channel.protocol.requests import UPLOAD_ID_BYTES, UPLOAD_PART_BYTES, Request
 from kurt2rt.channel.protocol.simulation import SIMULATION, SimulationView
+from kurt2rt.channel.protocol.state import State
+from kurt2rt.channel.protocol.world import WorldView, world_of
+from kurt2rt.core.rla.rla import BASIC, Phase
+from kurt2rt.platform.file_part import FilePart
+from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.answer import Answer, RefusedError
-from kurt2rt.teacher.client.connection import open_connection
-from kurt2rt.teacher.client.goals import GoalsMixin
-from kurt2rt.teacher.client.lessons import LessonsMixin
-from kurt2rt.teacher.client.motion import MotionMixin
-from kurt2rt.teacher.client.request_sender import facts_of
-from kurt2rt.teacher.client.session import SessionMixin
-from kurt2rt.teacher.client.transport import Response
+from kurt2rt.teacher.client.connection import Connection, open_connection
+from kurt2rt.teacher.client.link_quality import LinkQuality
+from kurt2rt.teacher.client.manual_drive import ManualDrive, ManualDriveHandle
+from kurt2rt.teacher.client.state_stream import StateStream
 
 ANSWER_WITHIN_S = 3.5
 _PART_EACH_S = 0.008
+_SEEN_IN_CHARGE_WITHIN_S = 1.0
 
 
-class TeacherClient(LessonsMixin, GoalsMixin, SessionMixin, MotionMixin):
-    """An async context manager: inside it pictures come, and while this device is in charge the robot is told that its
-    teacher is there.
+class TeacherClient:
+    """Async context manager that connects a teacher's device to one robot.
 
-    Commands are sent again every 0.1 s, count once, and come back with the robot's `Answer`; a refusal is one, too.
-    They raise NoAnswerError when nobody answered for 3.5 s: then it is not known whether they counted. A stop overtakes
-    whatever else is under way. Speeds are in metres per second, ways in metres, angles in radians. One program at a
-    time can use a pairing.
+    Inside it states come in. While this device is in charge, the robot is told that its teacher is there.
+
+    Commands are sent again every 0.1 s, count once, and return the robot's `Answer`; a refusal is an Answer too. They
+    raise NoAnswerError after 3.5 s without an answer; it is then unknown whether they counted. `stop` overtakes every
+    other command. Lessons take the tick of the state that is meant as `of`; None: the present decision. Only one
+    program at a time can use a pairing.
     """
 
     def __init__(
@@ -63,23 +63,31 @@ class TeacherClient(LessonsMixin, GoalsMixin, SessionMixin, MotionMixin):
         patience_s: float = ANSWER_WITHIN_S,
         now: Callable[[], float] = time.monotonic,
     ) -> None:
-        """`folder` is the device's side of a pairing; `host` and `port` of the robot are those noted there, if None.
+        """Name the robot; nothing is sent before the context is entered.
 
-        `patience_s` is how long an answer is waited for; `now` a monotonic clock in seconds.
+        Args:
+            folder: Device's side of a pairing.
+            host: Address of the robot. None: as noted in the pairing.
+            port: UDP port of the robot. None: as noted in the pairing.
+            patience_s: Seconds to wait for the answer to a request.
+            now: Monotonic clock in seconds.
         """
-        super().__init__(now)
         self.name = folder.name
+        """Name of this device, and so of the teacher."""
         self._folder = folder
         self._host = host
         self._port = port
         self._patience_s = patience_s
         self._now = now
+        self._stream = StateStream(now)
+        self._period_s: float | None = None
+        self._connection: Connection | None = None
         self._stack = AsyncExitStack()
 
     async def __aenter__(self) -> Self:
-        """Open the pairing and begin to observe. The robot need not be there yet. Raises CredentialsError."""
+        """Open the pairing and subscribe to the states. The robot need not be there yet. Raises CredentialsError."""
         connection = await self._stack.enter_async_context(
-            open_connection(self._folder, self._host, self._port, self._pictures, self._patience_s, self._now)
+            open_connection(self._folder, self._host, self._port, self._stream, self._patience_s, self._now)
         )
         self._connection, self.name = connection, connection.name
         return self
@@ -88,47 +96,327 @@ class TeacherClient(LessonsMixin, GoalsMixin, SessionMixin, MotionMixin):
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         """End a press with a stop, then close."""
-        # The error of the block is not shown to the task group, which would wrap it.
+        # The error of the block is not passed on to the task group, which would wrap it in an ExceptionGroup.
         await self._stack.__aexit__(None, None, None)
 
-    # The simulated world
+    # State
 
-    async def move_wall(self, name: str, dx: float, dy: float) -> Answer:
+    @property
+    def state(self) -> State | None:
+        """Newest state of the robot; None before the first."""
+        return self._stream.newest
+
+    @property
+    def state_age_s(self) -> float:
+        """Seconds since the newest state came; infinite before the first."""
+        return self._stream.age_s
+
+    @property
+    def restarts(self) -> int:
+        """Number of restarts of the robot program that were seen since this client was made."""
+        return self._stream.restarts
+
+    @property
+    def link(self) -> LinkQuality:
+        """Round trip, answered fraction and states per second."""
+        return self._drive.meter.link(self._stream.per_s)
+
+    @property
+    def trouble(self) -> str:
+        """Reason why the robot is not reached, as far as the network tells; empty while it is."""
+        return self._open.sender.trouble
+
+    def states(self) -> AsyncIterator[State]:
+        """Yield the newest state and each later one until the client closes; a slow reader misses some."""
+        return self._stream.states()
+
+    async def hello(self) -> Hello:
+        """Return the robot's description: its task, actions, sensors and size."""
+        hello = await self._open.sender.query(requests.HelloRequest(), hello_of)
+        self._stream.on_answer(hello.boot, hello.tick)
+        return hello
+
+    async def health(self) -> HealthReport | None:
+        """Return the health of the robot's program; None in its first second."""
+        return await self._open.sender.query(
+            requests.HealthRequest(), lambda body: None if body.get("health") is None else report_of(body["health"])
+        )
+
+    async def why(self) -> DecisionFacts | None:
+        """Return the facts behind the robot's newest decision; None before its first tick."""
+        return await self._open.sender.query(
+            requests.WhyRequest(), lambda body: None if body.get("why") is None else facts_of_plain(body["why"])
+        )
+
+    async def world(self) -> WorldView | None:
+        """Return the simulated world; None for a real robot."""
+        return await self._open.sender.query_simulated(requests.WorldRequest(), world_of)
+
+    # Lessons
+
+    async def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:
+        """Return the newest lessons, newest first; `count` is at most 20."""
+        return await self._open.sender.query(requests.LessonsRequest(count), lesson_lines_of)
+
+    async def answer(
+        self, action: str, *, of: int | None = None, level: str = BASIC, alternative: bool = False
+    ) -> Answer:
+        """Answer the robot's question with an action: a new RLA (phase 1).
+
+        Args:
+            action: Action of the repertoire; at level MID a taught behaviour.
+            of: Tick of the state that is meant. None: the present decision.
+            level: BASIC or MID.
+            alternative: Add the behaviour to those that the mid level knows for this situation.
+        """
+        return await self._command(
+            requests.AnswerRequest, action=action, decision_tick=of, level=level, alternative=alternative
+        )
+
+    async def correct(self, action: str, *, of: int | None = None, level: str = BASIC) -> Answer:
+        """Replace the decided action by another one (phase 2), at level MID the behaviour."""
+        return await self._command(requests.CorrectRequest, action=action, decision_tick=of, level=level)
+
+    async def reward(self, value: int, *, of: int | None = None) -> Answer:
+        """Reward what the robot did (phase 3); `value` is -1 or +1."""
+        return await self._command(requests.RewardRequest, value=value, decision_tick=of)
+
+    async def appraise(self, appraisal: str, *, of: int | None = None) -> Answer:
+        """Teach the critic the value of a situation (phase 4): a name of `Hello.appraisals`."""
+        return await self._command(requests.AppraiseRequest, appraisal=appraisal, decision_tick=of)
+
+    async def replace(self, rla: int, action: str) -> Answer:
+        """Give one RLA another action."""
+        return await self._command(requests.ReplaceRequest, rla_id=rla, action=action)
+
+    async def delete(self, rla: int) -> Answer:
+        """Delete one RLA."""
+        return await self._command(requests.DeleteRequest, rla_id=rla)
+
+    async def name_situation(self, name: str, *, of: int | None = None) -> Answer:
+        """Give the mid level's situation a name, so that it can be a goal."""
+        return await self._command(requests.NameRequest, name=name, decision_tick=of)
+
+    async def undo(self, lesson: str | None = None) -> Answer:
+        """Undo a lesson by its command id; None: the last one that stands."""
+        return await self._command(requests.UndoRequest, lesson=lesson)
+
+    # Motion
+
+    async def stop(self) -> Answer:
+        """Stop the robot; always allowed.
+
+        It ends a press. Commands that move the robot and wait for their answer are sent no more; they return a refusal
+        with the `why` "stopped". Raises NoAnswerError like each command, but goes on being sent: see `stop_pending`.
+        """
+        self._drive.end()
+        return await self._open.stops.stop()
+
+    @property
+    def stop_pending(self) -> bool:
+        """Whether an unanswered stop is still being sent: until its answer, `resume`, `run` or a press."""
+        return self._open.stops.pending
+
+    async def resume(self) -> Answer:
+        """Let the robot drive again after a stop (the page's GO)."""
+        self._open.stops.supersede()
+        return await self._move("go", requests.ResumeRequest)
+
+    async def run(self, action: str, seconds: float) -> Answer:
+        """Run one action of the repertoire for a time; the robot stands afterwards."""
+        self._open.stops.supersede()
+
+        async def begin() -> Answer:
+            if self._period_s is None:
+                self._period_s = (await self.hello()).period_s
+            ticks = round(seconds / self._period_s)
+            return await self._command(requests.BehaviourRequest, moves=True, action=action, ticks=ticks)
+
+        return await self._open.stops.move(action, begin)
+
+    @property
+    def watching(self) -> bool:
+        """Whether the teacher looks at the robot; only then is it told that the teacher is there."""
+        return self._drive.watching
+
+    @watching.setter
+    def watching(self, watching: bool) -> None:
+        self._drive.watching = watching
+
+    @property
+    def pressing(self) -> bool:
+        """Whether a press is on."""
+        return self._drive.press_id is not None
+
+    @property
+    def refusal(self) -> Answer | None:
+        """Refusal that ended the last press, or kept it from beginning; None if there is none."""
+        return self._drive.refusal
+
+    def press(self, left_m_s: float, right_m_s: float) -> bool:
+        """Begin a press or change its speeds; return whether a press is on.
+
+        The press ends if the robot refuses it, or if no state came for 0.5 s; the next call then begins another one.
+        Raises WireError for speeds out of range.
+        """
+        return self._drive.press(left_m_s, right_m_s)
+
+    async def let_go(self) -> Answer | None:
+        """End the press with a stop that ends no later press; return None if no press is on.
+
+        The press is over before this waits for the answer. Without an answer the robot stops by its own deadman time.
+        """
+        return await self._open.end_press(self._drive.press_id)
+
+    @asynccontextmanager
+    async def driving(self) -> AsyncIterator[ManualDriveHandle]:
+        """Drive by hand inside the block; the press begins with the first speeds and ends with a stop."""
+        handle = ManualDriveHandle(self._drive)
+        try:
+            yield handle
+        except BaseException:
+            with anyio.CancelScope(shield=True):
+                await self._open.try_end_press(handle.press_id)
+            raise
+        await self._open.end_press(handle.press_id)
+
+    # Goals
+
+    async def pursue(self, behaviour: str) -> Answer:
+        """Select which of the task's behaviours the robot follows and is taught."""
+        return await self._move(behaviour, requests.PursueRequest, behaviour=behaviour)
+
+    async def situations(self) -> tuple[str, ...]:
+        """Return the names of the situations that have one."""
+        return await self._open.sender.query(requests.SituationsRequest(), situations_of)
+
+    async def seek(self, name: str) -> Answer:
+        """Go to a named situation; the robot plans the way, and reports if there is none."""
+        return await self._move(name, requests.SeekRequest, name=name)
+
+    async def seek_rla(self, rla: int) -> Answer:
+        """Go to the situation that an RLA of the mid level knows."""
+        return await self._move(f"RLA {rla}", requests.SeekRlaRequest, rla_id=rla)
+
+    async def seek_like(self, features: Mapping[str, float], tolerance: float) -> Answer:
+        """Go to any situation with these feature values of the mid level.
+
+        Args:
+            features: Values by the name of the feature, in its unit.
+            tolerance: Largest difference of each, in the feature's unit.
+        """
+        return await self._move(
+            "a goal", requests.SeekLikeRequest, features=tuple(features.items()), tolerance=tolerance
+        )
+
+    async def stop_seeking(self) -> Answer:
+        """Drop the goal; the mid level commands as before."""
+        return await self._move("no goal", requests.SeekRequest, name=None)
+
+    async def set_location(self, name: str) -> Answer:
+        """Tell the robot that it was put down at a named situation."""
+        return await self._command(requests.SetLocationRequest, name=name)
+
+    # Session
+
+    async def begin_session(self, name: str) -> Answer:
+        """Begin a session: the teaching clock runs."""
+        return await self._command(requests.SessionRequest, name=name)
+
+    async def end_session(self) -> Answer:
+        """End the session: the teaching clock stops."""
+        return await self._command(requests.SessionRequest, name=None)
+
+    async def take(self) -> Answer:
+        """Become the robot's teacher. On return the robot knows that its teacher is there."""
+        answer = await self._move("take", requests.TakeRequest)
+        if answer.accepted:
+            with anyio.move_on_after(_SEEN_IN_CHARGE_WITHIN_S):
+                async for state in self.states():
+                    if state.teacher == self.name:
+                        self._drive.beat()
+                        break
+        return answer
+
+    async def hand_over(self, to: str | None = None) -> Answer:
+        """Stop being the teacher; `to` names the next one, None: the first one that takes the robot."""
+        return await self._command(requests.HandOverRequest, to=to)
+
+    async def set_phase(self, phase: Phase) -> Answer:
+        """Choose the training phase. Phase 5 drives without a teacher, so a stop ends that command."""
+        if phase is Phase.AUTONOMOUS:
+            return await self._move("phase 5", requests.PhaseRequest, phase=phase)
+        return await self._command(requests.PhaseRequest, phase=phase)
+
+    async def save(self, label: str = "") -> Answer:
+        """Copy the knowledge on the robot; `extra` of the answer holds the copy's `name` and `sha256`."""
+        return await self._command(requests.SaveRequest, label=label)
+
+    async def export(self, form: str = requests.TABLE) -> Answer:
+        """Write the RLAs as a table on the robot, or with PACKAGE one file to give away; answered like `save`."""
+        return await self._command(requests.ExportRequest, form=form)
+
+    async def examine(self) -> Answer:
+        """Begin an exam of a copy of the present knowledge, of a simulated robot only; see `exam`."""
+        return await self._command(requests.ExamRequest)
+
+    async def exam(self) -> ExamStatus | None:
+        """Return the status of the newest exam; None for a robot that is not simulated in its own program."""
+        return await self._open.sender.query_simulated(
+            requests.ExamStatusRequest(), lambda body: EXAM.read(body.get("exam"))
+        )
+
+    async def file_parts(self, name: str) -> AsyncIterator[FilePart]:
+        """Yield the parts of a file that `save` or `export` made on the robot, in order, at least one.
+
+        Raises RefusedError if the robot does not have the file, NoAnswerError.
+        """
+        offset = 0
+        while True:
+            part = await self._open.sender.file_part(requests.FileRequest(name, offset))
+            yield part
+            offset += len(part.content)
+            if offset >= part.size_bytes or not part.content:
+                return
+
+    # Simulation
+
+    async def move_wall(self, name: str, dx_m: float, dy_m: float) -> Answer:
         """Shift a wall or an obstacle."""
-        return await self._asking.command(MoveWallRequest, name=name, dx_m=dx, dy_m=dy)
+        return await self._command(requests.MoveWallRequest, name=name, dx_m=dx_m, dy_m=dy_m)
 
-    async def place(self, x: float, y: float, heading: float) -> Answer:
+    async def place(self, x_m: float, y_m: float, heading_rad: float) -> Answer:
         """Put the robot down elsewhere."""
-        return await self._asking.command(PlaceRequest, x_m=x, y_m=y, heading_rad=heading)
+        return await self._command(requests.PlaceRequest, x_m=x_m, y_m=y_m, heading_rad=heading_rad)
 
     async def put_back(self) -> Answer:
-        """Put the robot down where its run began."""
-        return await self._asking.command(BackToStartRequest)
+        """Put the robot down at the start of its run."""
+        return await self._command(requests.BackToStartRequest)
 
     async def simulation(self) -> SimulationView | None:
-        """Return what is simulated; None for a robot that is not simulated in its own program."""
-
-        def read(response: Response) -> SimulationView | None:
-            return None if response.code.startswith("4.04") else SIMULATION.read(facts_of(response).get("simulation"))
-
-        return await self._asking.told(SimulationRequest(), read)
+        """Return the simulated world and task; None for a robot that is not simulated in its own program."""
+        return await self._open.sender.query_simulated(
+            requests.SimulationRequest(), lambda body: SIMULATION.read(body.get("simulation"))
+        )
 
     async def next_run(self, world: str | None = None, task: str | None = None, *, fresh: bool = False) -> Answer:
-        """End the present run and begin the next one, where the robot stands until `resume`.
+        """End the present run and begin the next one, in which the robot stands until `resume`.
 
-        `world`, `task`: None: the present ones. `fresh`: with a knowledge file that holds nothing; the present one is
-        kept under another name.
+        Args:
+            world: World by name. None: the present one.
+            task: Task by name. None: the present one.
+            fresh: Begin with an empty knowledge file; the present file is kept under another name.
         """
-        return await self._asking.command(NextRunRequest, world=world, task=task, fresh=fresh)
+        return await self._command(requests.NextRunRequest, world=world, task=task, fresh=fresh)
 
     async def set_speed(self, times: int) -> Answer:
-        """Let the time of a simulated robot pass `times` as fast as real time, 1 to 10, or as near as it comes."""
-        return await self._asking.command(SpeedRequest, times=times)
+        """Set the speed of a simulated robot's time, 1 to 10 times real time; a slow machine reaches less."""
+        return await self._command(requests.SpeedRequest, times=times)
 
     async def load(self, content: bytes) -> Answer:
-        """Begin the next run with this knowledge, an archive of `export` or a knowledge file; as `next_run`.
+        """Upload knowledge at up to 100 kB/s and begin the next run with it.
 
-        It is uploaded first, at up to 100 kB a second.
+        `content` is an archive of `export` or a knowledge file.
         """
         upload = secrets.token_bytes(UPLOAD_ID_BYTES)
         try:
@@ -138,17 +426,37 @@ class TeacherClient(LessonsMixin, GoalsMixin, SessionMixin, MotionMixin):
         return await self.load_upload(upload, hashlib.sha256(content).digest())
 
     async def upload(self, upload: bytes, content: bytes) -> None:
-        """Bring a file to the robot's memory under the random id `upload`. Raises RefusedError, NoAnswerError."""
-        state = await self._asking.picture()
+        """Upload a file into the robot's memory under the random id `upload`. Raises RefusedError, NoAnswerError."""
+        sender = self._open.sender
+        state = await sender.state()
         for offset in range(0, len(content), UPLOAD_PART_BYTES):
             part = content[offset : offset + UPLOAD_PART_BYTES]
             began_s = self._now()
-            answer = await self._asking.ask(UploadRequest(state.boot, upload, offset, part))
+            answer = await sender.send(requests.UploadRequest(state.boot, upload, offset, part))
             if not answer.accepted:
                 raise RefusedError(answer.text or answer.why, answer)
-            # More requests a second than this the robot throws away.
+            # The robot drops more than 200 requests a second of one key.
             await anyio.sleep(max(0.0, _PART_EACH_S - (self._now() - began_s)))
 
     async def load_upload(self, upload: bytes, sha256: bytes) -> Answer:
-        """Begin the next run with a file that was uploaded."""
-        return await self._asking.command(LoadRequest, upload=upload, sha256=sha256)
+        """Begin the next run with an uploaded file."""
+        return await self._command(requests.LoadRequest, upload=upload, sha256=sha256)
+
+    # Connection
+
+    @property
+    def _open(self) -> Connection:
+        if self._connection is None:
+            raise RuntimeError("the client is not open; use it as: async with TeacherClient(folder) as robot: ...")
+        return self._connection
+
+    @property
+    def _drive(self) -> ManualDrive:
+        return self._open.drive
+
+    async def _command(self, kind: Callable[..., Request], *, moves: bool = False, **fields: Any) -> Answer:
+        return await self._open.sender.command(kind, moves=moves, **fields)
+
+    async def _move(self, label: str, kind: Callable[..., Request], /, **fields: Any) -> Answer:
+        """Send a command that may set the robot in motion; a stop before its answer ends it."""
+        return await self._open.stops.move(label, lambda: self._command(kind, moves=True, **fields))

@@ -1,8 +1,9 @@
-"""What an open `TeacherClient` consists of, and how it is opened and closed."""
+"""Open connection of a teacher's device to its robot."""
 
 import secrets
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 
 import anyio
@@ -15,37 +16,38 @@ from kurt2rt.teacher.client.manual_drive import BEAT_S, ManualDrive
 from kurt2rt.teacher.client.request_sender import RequestSender
 from kurt2rt.teacher.client.state_stream import StateStream
 from kurt2rt.teacher.client.stop_sender import StopSender
-from kurt2rt.teacher.client.subscribe import observe
+from kurt2rt.teacher.client.subscribe import subscribe
 from kurt2rt.teacher.client.transport import OscoreRequests, open_requests
 
 _STOP_WITHIN_S = 0.5
 
 
+@dataclass(frozen=True, slots=True)
 class Connection:
-    """A device that is heard by its robot: requests out, pictures in, and the teacher's hand."""
+    """Parts of an open client: requests out, states in, and the deadman stream."""
 
-    def __init__(
-        self, name: str, requests: OscoreRequests, asking: RequestSender, stopping: StopSender, hand: ManualDrive
-    ) -> None:
-        self.name = name
-        """Of the device, and so of the teacher."""
-        self.requests = requests
-        self.asking = asking
-        self.stopping = stopping
-        self.hand = hand
+    name: str
+    """Name of the device, and so of the teacher."""
+    requests: OscoreRequests
+    sender: RequestSender
+    stops: StopSender
+    drive: ManualDrive
 
-    async def release(self, hold: int | None) -> Answer | None:
-        """End a press with a stop that ends no later one; None when that press is not on. Raises NoAnswerError."""
-        if hold is None or hold != self.hand.hold:
+    async def end_press(self, press_id: int | None) -> Answer | None:
+        """End a press with a stop that ends no later press; return None if that press is not on.
+
+        Raises NoAnswerError.
+        """
+        if press_id is None or press_id != self.drive.press_id:
             return None
-        self.hand.end()
-        return await self.asking.ask(StopRequest(secrets.token_bytes(COMMAND_ID_BYTES), hold))
+        self.drive.end()
+        return await self.sender.send(StopRequest(secrets.token_bytes(COMMAND_ID_BYTES), press_id))
 
-    async def release_anyhow(self, hold: int | None) -> None:
-        """The same at the end of everything."""
-        # The robot lets go by itself when it hears nothing, so a stop that nobody answers is no error here.
+    async def try_end_press(self, press_id: int | None) -> None:
+        """End a press before closing: wait at most 0.5 s for the robot's answer."""
+        # Without messages the robot stops by itself, so a missing answer is no error here.
         with anyio.move_on_after(_STOP_WITHIN_S), suppress(NoAnswerError):
-            await self.release(hold)
+            await self.end_press(press_id)
 
 
 @asynccontextmanager
@@ -53,42 +55,42 @@ async def open_connection(
     folder: Path,
     host: str | None,
     port: int | None,
-    pictures: StateStream,
+    stream: StateStream,
     patience_s: float,
     now: Callable[[], float],
 ) -> AsyncIterator[Connection]:
-    """Open a pairing and observe its robot, which need not be there yet; a press that is on ends with a stop.
+    """Open a pairing and subscribe to its robot, which need not be there yet; at the end stop a press that is on.
 
     Raises CredentialsError.
     """
     device = await anyio.to_thread.run_sync(_read_device, folder)
     requests = await open_requests(folder, host or device.host, port or device.port)
-    asking = RequestSender(requests, pictures, patience_s)
+    sender = RequestSender(requests, stream, patience_s)
     try:
         async with anyio.create_task_group() as tasks:
-            stopping = StopSender(asking, tasks)
-            hand = ManualDrive(device.name, pictures, requests, now=now, on_begin=stopping.wish_anew)
-            connection = Connection(device.name, requests, asking, stopping, hand)
-            tasks.start_soon(observe, requests, pictures, now)
-            tasks.start_soon(_beat, hand)
+            stops = StopSender(sender, tasks)
+            drive = ManualDrive(device.name, stream, requests, now=now, on_begin=stops.supersede)
+            connection = Connection(device.name, requests, sender, stops, drive)
+            tasks.start_soon(subscribe, requests, stream, now)
+            tasks.start_soon(_beat, drive)
             try:
                 yield connection
             finally:
                 with anyio.CancelScope(shield=True):
-                    await connection.release_anyhow(hand.hold)
+                    await connection.try_end_press(drive.press_id)
                 tasks.cancel_scope.cancel()
-                hand.forget()
+                drive.close()
     finally:
-        pictures.close()
+        stream.close()
         with anyio.CancelScope(shield=True):
             await requests.close()
 
 
-async def _beat(hand: ManualDrive) -> None:
+async def _beat(drive: ManualDrive) -> None:
     due_s = anyio.current_time()
     while True:
-        hand.beat()
-        # No burst after a pause: what was missed is missed.
+        drive.beat()
+        # No burst after a pause: missed beats are not sent later.
         due_s = max(due_s + BEAT_S, anyio.current_time())
         await anyio.sleep_until(due_s)
 

@@ -1,4 +1,4 @@
-"""How well the robot is heard."""
+"""Quality of the link to the robot: round trips and answered messages."""
 
 import statistics
 from collections import deque
@@ -10,36 +10,36 @@ _ANSWERS = 100
 
 @dataclass(frozen=True, slots=True)
 class LinkQuality:
-    """Of the last seconds. Presence and driving are measured, so only who is in charge has round trips."""
+    """Measurement over the last seconds. Only a device in charge sends a stream, so only it has round trips."""
 
     rtt_ms: float | None
     """Round trip, median of the last 50 that were answered; None before the first."""
     answered: float | None
-    """Share of the last 100 messages that were answered within a second; None before the first."""
-    pictures_per_s: float
-    """Pictures that came in the last second."""
+    """Fraction of the last 100 messages that were answered within a second; None before the first."""
+    states_per_s: float
+    """States that came in the last second."""
 
 
 class LinkMeter:
-    """Counts round trips and answers."""
+    """Counter of round trips and answers."""
 
     def __init__(self) -> None:
         self._round_trips_s: deque[float] = deque(maxlen=_ROUND_TRIPS)
         self._answered: deque[bool] = deque(maxlen=_ANSWERS)
 
-    def answer(self, after_s: float) -> None:
-        """One more message was answered."""
+    def on_answer(self, after_s: float) -> None:
+        """Count a message that was answered after `after_s` seconds."""
         self._round_trips_s.append(after_s)
         self._answered.append(True)
 
-    def silence(self) -> None:
-        """One more message was not answered in time."""
+    def on_timeout(self) -> None:
+        """Count a message that was not answered in time."""
         self._answered.append(False)
 
-    def link(self, pictures_per_s: float) -> LinkQuality:
-        """What was measured so far."""
+    def link(self, states_per_s: float) -> LinkQuality:
+        """Return the measurement so far."""
         return LinkQuality(
             rtt_ms=statistics.median(self._round_trips_s) * 1000.0 if self._round_trips_s else None,
             answered=sum(self._answered) / len(self._answered) if self._answered else None,
-            pictures_per_s=pictures_per_s,
+            states_per_s=states_per_s,
         )

@@ -1,4 +1,4 @@
-"""The teacher's presence and the hand at the wheels: a stream of small messages of which the newest counts."""
+"""Deadman stream of a teacher's device: presence messages, and drive commands while a press is on."""
 
 from collections import deque
 from collections.abc import Callable
@@ -8,29 +8,29 @@ from functools import partial
 from kurt2rt.channel.protocol.codec import WireError, decode_answer, encode_request
 from kurt2rt.channel.protocol.requests import DriveRequest, StreamRequest, WatchRequest
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode
+from kurt2rt.core.rla.outcome import RefusalCode
 from kurt2rt.teacher.client.answer import Answer, answer_of, local_refusal
 from kurt2rt.teacher.client.link_quality import LinkMeter
 from kurt2rt.teacher.client.state_stream import StateStream
 from kurt2rt.teacher.client.transport import Exchange, OscoreRequests, Response
 
 BEAT_S = 0.02
-"""Between two messages. The robot lets go of the wheels 0.24 s after the last one that it took: at 30 % loss each way
-and 50 messages a second a run of lost ones that long comes once in hours, at 20 a second several times a minute."""
+"""Period of the stream. The robot stops 0.24 s after the last message that it accepted. At 30 % loss each way, a run of
+lost messages that long comes once in hours at 50 messages a second, and several times a minute at 20."""
 BLIND_AFTER_S = 0.5
-"""Nothing is sent on a picture that came longer ago than this."""
-_FORGOTTEN_AFTER_S = 1.0
-"""An answer that comes later is none."""
+"""Age of the newest state from which on nothing is sent."""
+_TIMEOUT_S = 1.0
+"""Time after which an answer no longer counts."""
 
 
 @dataclass(slots=True)
 class _Press:
-    hold: int
+    press_id: int
     boot: bytes
     left_m_s: float
     right_m_s: float
-    taken: int = -1
-    """Number of the newest message that the robot took."""
+    accepted: int = -1
+    """Number of the newest message that the robot accepted."""
 
 
 @dataclass(slots=True)
@@ -44,12 +44,12 @@ class _Sent:
 
 
 class ManualDrive:
-    """Says that the teacher is there while he is in charge and watches, and drives while a press is on."""
+    """Sender of the teacher's presence while in charge and watching, and of drive commands while a press is on."""
 
     def __init__(
         self,
         name: str,
-        pictures: StateStream,
+        stream: StateStream,
         requests: OscoreRequests,
         *,
         now: Callable[[], float],
@@ -59,10 +59,10 @@ class ManualDrive:
         self.watching = True
         """Whether the teacher looks at the robot."""
         self.refusal: Answer | None = None
-        """Why the last press was not begun, or ended by itself; None while all is well."""
+        """Refusal that ended the last press, or kept it from beginning; None if there is none."""
         self.meter = LinkMeter()
         self._name = name
-        self._pictures = pictures
+        self._stream = stream
         self._requests = requests
         self._now = now
         self._on_begin = on_begin
@@ -70,23 +70,18 @@ class ManualDrive:
         self._under_way: deque[_Sent] = deque()
 
     @property
-    def pressing(self) -> bool:
-        """Whether a press is on."""
-        return self._press is not None
-
-    @property
-    def hold(self) -> int | None:
-        """Number of the press that is on."""
-        return None if self._press is None else self._press.hold
+    def press_id(self) -> int | None:
+        """Number of the press that is on; None if none is."""
+        return None if self._press is None else self._press.press_id
 
     def press(self, left_m_s: float, right_m_s: float) -> bool:
-        """Begin a press, or change the speeds of the one that is on; whether one is on now.
+        """Begin a press, or change the speeds of the present one; return whether a press is on.
 
-        Raises WireError for speeds that no robot takes.
+        Raises WireError for speeds out of range.
         """
-        state = self._fresh_picture()
+        state = self._fresh_state()
         if state is None:
-            self.end(local_refusal("stale", Outcome(RefusalCode.NO_PICTURE)))
+            self.end(local_refusal(RefusalCode.NO_PICTURE))
             return False
         press = self._press
         begins = press is None
@@ -99,42 +94,36 @@ class ManualDrive:
             self.refusal = None
             self._press = press
             self.beat()
-        return self.pressing
+        return self._press is not None
 
-    def end(self, because: Answer | None = None) -> None:
-        """End the press; nothing more of it is sent. `because`: why a press ends by itself."""
+    def end(self, refusal: Answer | None = None) -> None:
+        """End the press and send nothing more of it; `refusal` is the reason if the teacher did not end it."""
         self._press = None
-        self.refusal = because
+        self.refusal = refusal
 
     def beat(self) -> None:
-        """Send what is due; call it every BEAT_S."""
-        self._forget_old_ones()
-        state = self._fresh_picture()
+        """Send the message that is due; call it every BEAT_S."""
+        self._drop_timed_out()
+        state = self._fresh_state()
         press = self._press
         if press is None:
             if state is not None and self.watching and state.teacher == self._name:
-                self._send_watch(state)
+                self._send(WatchRequest(boot=state.boot, seen=self._stream.newest_tick), None)
         elif state is None:
-            self.end(local_refusal("stale", Outcome(RefusalCode.PICTURE_LOST)))
+            self.end(local_refusal(RefusalCode.PICTURE_LOST))
         elif state.boot != press.boot:
-            self.end(local_refusal("boot", Outcome(RefusalCode.RESTARTED_MEANWHILE)))
+            self.end(local_refusal(RefusalCode.RESTARTED_MEANWHILE))
         else:
-            self._send_drive(press)
+            self._send(_drive(press, self._stream.newest_tick, press.left_m_s, press.right_m_s), press)
 
-    def forget(self) -> None:
-        """End the press, and wait for no answer any more."""
+    def close(self) -> None:
+        """End the press and drop the answers that are still to come."""
         self.end(self.refusal)
         while self._under_way:
             self._end_exchange(self._under_way.popleft())
 
-    def _fresh_picture(self) -> State | None:
-        return self._pictures.newest if self._pictures.age_s <= BLIND_AFTER_S else None
-
-    def _send_watch(self, state: State) -> None:
-        self._send(WatchRequest(boot=state.boot, seen=self._pictures.heard_tick), None)
-
-    def _send_drive(self, press: _Press) -> None:
-        self._send(_drive(press, self._pictures.heard_tick, press.left_m_s, press.right_m_s), press)
+    def _fresh_state(self) -> State | None:
+        return self._stream.newest if self._stream.age_s <= BLIND_AFTER_S else None
 
     def _send(self, request: StreamRequest, press: _Press | None) -> None:
         sent = _Sent(self._requests.next_number, self._now(), request.boot, press)
@@ -143,29 +132,29 @@ class ManualDrive:
 
     def _on_response(self, sent: _Sent, response: Response) -> None:
         sent.answered = True
-        self.meter.answer(self._now() - sent.at_s)
+        self.meter.on_answer(self._now() - sent.at_s)
         try:
             answer = answer_of(response.code, decode_answer(response.payload) if response.payload else {})
         except WireError as error:
-            self.end(local_refusal("malformed", Outcome.of(RefusalCode.NOT_UNDERSTOOD, says=str(error))))
+            self.end(local_refusal(RefusalCode.NOT_UNDERSTOOD, says=str(error)))
             return
         if answer.accepted:
-            self._pictures.hear(sent.boot, answer.tick)
+            self._stream.on_answer(sent.boot, answer.tick)
         press = sent.press
         if press is None or press is not self._press:
             return
         if answer.accepted:
-            press.taken = max(press.taken, sent.number)
-        # One that was late on its way is refused, too; the press goes on while newer ones are taken.
-        elif sent.number > press.taken and answer.why != "old":
+            press.accepted = max(press.accepted, sent.number)
+        # A message that the network held back is refused too; the press goes on while newer messages are accepted.
+        elif sent.number > press.accepted and answer.code is not RefusalCode.OVERTAKEN:
             self.end(answer)
 
-    def _forget_old_ones(self) -> None:
-        before_s = self._now() - _FORGOTTEN_AFTER_S
+    def _drop_timed_out(self) -> None:
+        before_s = self._now() - _TIMEOUT_S
         while self._under_way and (self._under_way[0].answered or self._under_way[0].at_s < before_s):
             sent = self._under_way.popleft()
             if not sent.answered:
-                self.meter.silence()
+                self.meter.on_timeout()
             self._end_exchange(sent)
 
     def _end_exchange(self, sent: _Sent) -> None:
@@ -173,5 +162,35 @@ class ManualDrive:
             sent.exchange.end()
 
 
+class ManualDriveHandle:
+    """One press, from `TeacherClient.driving`. Its speeds go out 50 times a second; an ended press stays ended."""
+
+    def __init__(self, drive: ManualDrive) -> None:
+        self._drive = drive
+        self._press_id: int | None = None
+
+    @property
+    def press_id(self) -> int | None:
+        """Number of the press; None before it begins."""
+        return self._press_id
+
+    @property
+    def ended(self) -> Answer | None:
+        """Refusal that ended the press, PRESS_OVER if another call ended it; None while it is on or not begun."""
+        if self._press_id is None or self._drive.press_id == self._press_id:
+            return None
+        return self._drive.refusal or local_refusal(RefusalCode.PRESS_OVER)
+
+    def set(self, left_m_s: float, right_m_s: float) -> bool:
+        """Set the speeds; return whether the press is on. Raises WireError for speeds out of range."""
+        # An ended press does not begin again by itself: after a pause the teacher may no longer mean it.
+        if self._press_id is not None and self._drive.press_id != self._press_id:
+            return False
+        pressing = self._drive.press(left_m_s, right_m_s)
+        if self._press_id is None:
+            self._press_id = self._drive.press_id
+        return pressing
+
+
 def _drive(press: _Press, seen: int, left_m_s: float, right_m_s: float) -> DriveRequest:
-    return DriveRequest(boot=press.boot, seen=seen, hold=press.hold, left_m_s=left_m_s, right_m_s=right_m_s)
+    return DriveRequest(boot=press.boot, seen=seen, press_id=press.press_id, left_m_s=left_m_s, right_m_s=right_m_s)

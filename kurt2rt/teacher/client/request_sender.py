@@ -1,4 +1,4 @@
-"""How a teacher's device says something and gets its answer: the same message again until the robot answers."""
+"""Requests of a teacher's device, each sent again until the robot answers it."""
 
 import secrets
 from collections import deque
@@ -9,92 +9,99 @@ import anyio
 import anyio.lowlevel
 
 from kurt2rt.channel.protocol.codec import WireError, decode_answer, encode_request
-from kurt2rt.channel.protocol.requests import COMMAND_ID_BYTES, CommandRequest, Request, StopRequest
+from kurt2rt.channel.protocol.requests import (
+    COMMAND_ID_BYTES,
+    LARGEST_NUMBER,
+    PART_BYTES,
+    CommandRequest,
+    Request,
+    StopRequest,
+)
+from kurt2rt.channel.protocol.schema import Int
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode
-from kurt2rt.teacher.client.answer import Answer, NoAnswerError, answer_of, local_refusal
+from kurt2rt.core.rla.outcome import RefusalCode
+from kurt2rt.platform.file_part import FilePart
+from kurt2rt.teacher.client.answer import Answer, NoAnswer, NoAnswerError, RefusedError, answer_of, local_refusal
 from kurt2rt.teacher.client.state_stream import StateStream
 from kurt2rt.teacher.client.transport import Exchange, OscoreRequests, Response
 
 RESEND_S = 0.1
 _MOST_COPIES = 35
-"""Of one command that still wait for an answer: those of 3.5 s."""
+"""Most copies of one command that wait for an answer: those of 3.5 s."""
 
-_Told = TypeVar("_Told")
-
-
-def facts_of(response: Response) -> dict[str, Any]:
-    """Body of a successful response. Raises WireError for any other."""
-    body = _body(response)
-    if not response.successful:
-        raise WireError(f"{response.code} {body.get('text', '')}")
-    return body
-
-
-def answer_to(response: Response) -> Answer:
-    """The robot's answer in a response, a refusal too. Raises WireError."""
-    return answer_of(response.code, _body(response))
+_Read = TypeVar("_Read")
 
 
 class RequestSender:
-    """Requests to one robot. All of them raise NoAnswerError when nobody answers within the patience."""
+    """Sender of requests to one robot. Each method raises NoAnswerError if no answer comes in time."""
 
-    def __init__(self, requests: OscoreRequests, pictures: StateStream, patience_s: float) -> None:
+    def __init__(self, requests: OscoreRequests, stream: StateStream, patience_s: float) -> None:
+        """`patience_s` is the time to wait for an answer, in seconds."""
         self._requests = requests
-        self._pictures = pictures
+        self._stream = stream
         self.patience_s = patience_s
-        """How long an answer is waited for."""
 
     @property
     def trouble(self) -> str:
-        """Why the robot is not heard, as far as the network tells; empty while it is."""
+        """Reason why the robot is not reached, as far as the network tells; empty while it is."""
         return self._requests.trouble
 
     async def command(self, kind: Callable[..., Request], *, moves: bool = False, **fields: Any) -> Answer:
-        """Give a command on the newest picture; `moves` says that it may set the robot in motion."""
+        """Send a command for the newest state; `moves` tells that it may set the robot in motion."""
         command_id = secrets.token_bytes(COMMAND_ID_BYTES)
-        state = await self.picture()
-        seen = self._pictures.looked_tick if moves else self._pictures.heard_tick
-        return await self.ask(kind(boot=state.boot, command_id=command_id, seen=seen, **fields))
+        state = await self.state()
+        seen = self._stream.displayed_tick if moves else self._stream.newest_tick
+        return await self.send(kind(boot=state.boot, command_id=command_id, seen=seen, **fields))
 
-    async def picture(self) -> State:
-        """Return the newest picture of the robot, or wait for the first one. Raises NoAnswerError."""
+    async def state(self) -> State:
+        """Return the newest state of the robot, or wait for the first one. Raises NoAnswerError."""
         with anyio.move_on_after(self.patience_s):
-            await self._pictures.first()
-        state = self._pictures.newest
+            await self._stream.first()
+        state = self._stream.newest
         if state is None:
-            raise NoAnswerError(
-                f"there is no picture of the robot, so nothing was sent to it. {self._requests.trouble}".strip()
-            )
+            raise NoAnswerError(code=NoAnswer.NO_STATE, trouble=self._requests.trouble)
         return state
 
-    async def ask(self, request: Request, patience_s: float | None = None) -> Answer:
-        """Send a request until it is answered; `patience_s` other than the usual, infinite if need be."""
+    async def send(self, request: Request, patience_s: float | None = None) -> Answer:
+        """Send a request until it is answered, for `patience_s` seconds (None: the usual time; inf: without end)."""
         try:
             payload = encode_request(request)
         except WireError as error:
-            return local_refusal("malformed", Outcome.of(RefusalCode.MALFORMED, says=str(error)))
-        # A stop names no start of the robot: the one that was seen when it was said, or a later one, took it.
-        newest = self._pictures.newest
+            return local_refusal(RefusalCode.MALFORMED, says=str(error))
+        # A stop names no start of the robot: the start that was seen when it was sent, or a later one, carried it out.
+        newest = self._stream.newest
         boot = request.boot if isinstance(request, CommandRequest) else b"" if newest is None else newest.boot
-        response = await self._answered(request.path, payload, patience_s)
+        response = await self._exchange(request.path, payload, patience_s)
         try:
-            answer = answer_to(response)
+            answer = _answer_in(response)
         except WireError as error:
             raise _not_understood(request, error) from error
-        if answer.why != "boot":
-            self._pictures.hear(boot, answer.tick, stopped=answer.accepted and isinstance(request, StopRequest))
+        if answer.code is not RefusalCode.RESTARTED:
+            self._stream.on_answer(boot, answer.tick, stopped=answer.accepted and isinstance(request, StopRequest))
         return answer
 
-    async def told(self, request: Request, read: Callable[[Response], _Told]) -> _Told:
-        """Ask for something to read; `read` makes it of the response, or raises WireError."""
-        response = await self._answered(request.path, encode_request(request))
+    async def query(self, request: Request, read: Callable[[dict[str, Any]], _Read]) -> _Read:
+        """Send a query and return what `read` makes of the answer's body; `read` may raise WireError."""
+        return await self._query(request, lambda response: read(_body_of(response)))
+
+    async def query_simulated(self, request: Request, read: Callable[[dict[str, Any]], _Read]) -> _Read | None:
+        """Send a query that only a simulated robot answers; return None for any other robot."""
+        return await self._query(
+            request, lambda response: None if response.code.startswith("4.04") else read(_body_of(response))
+        )
+
+    async def file_part(self, request: Request) -> FilePart:
+        """Return one part of a file of the robot. Raises RefusedError if the robot refuses it."""
+        return await self._query(request, _file_part_in)
+
+    async def _query(self, request: Request, read: Callable[[Response], _Read]) -> _Read:
+        response = await self._exchange(request.path, encode_request(request))
         try:
             return read(response)
         except WireError as error:
             raise _not_understood(request, error) from error
 
-    async def _answered(self, path: str, payload: bytes, patience_s: float | None = None) -> Response:
+    async def _exchange(self, path: str, payload: bytes, patience_s: float | None = None) -> Response:
         requests = self._requests
         patience_s = self.patience_s if patience_s is None else patience_s
         answered = anyio.Event()
@@ -108,7 +115,7 @@ class RequestSender:
         try:
             with anyio.move_on_after(patience_s):
                 while not responses:
-                    await anyio.lowlevel.checkpoint_if_cancelled()  # nothing is sent behind a stop
+                    await anyio.lowlevel.checkpoint_if_cancelled()  # a command ended by a stop sends no further copy
                     if len(copies) == _MOST_COPIES:
                         copies.popleft().end()
                     copies.append(requests.post(path, payload, on_response))
@@ -118,16 +125,36 @@ class RequestSender:
             for copy in copies:
                 copy.end()
         if not responses:
-            raise NoAnswerError(
-                f"no answer for {patience_s:g} s: it is not known whether it counted; look at the lessons. "
-                f"{requests.trouble}".strip()
-            )
+            raise NoAnswerError(code=NoAnswer.NO_REPLY, trouble=requests.trouble, after_s=patience_s)
         return responses[0]
 
 
 def _not_understood(request: Request, error: WireError) -> NoAnswerError:
-    return NoAnswerError(f"the robot's answer to {request.path} is not understood: {error}")
+    return NoAnswerError(str(error), NoAnswer.NOT_UNDERSTOOD, path=request.path)
 
 
-def _body(response: Response) -> dict[str, Any]:
+def _decode(response: Response) -> dict[str, Any]:
     return decode_answer(response.payload) if response.payload else {}
+
+
+def _answer_in(response: Response) -> Answer:
+    return answer_of(response.code, _decode(response))
+
+
+def _body_of(response: Response) -> dict[str, Any]:
+    """Return the body of a successful response. Raises WireError for any other."""
+    body = _decode(response)
+    if not response.successful:
+        raise WireError(f"{response.code} {body.get('text', '')}")
+    return body
+
+
+def _file_part_in(response: Response) -> FilePart:
+    if not response.successful:
+        answer = _answer_in(response)
+        raise RefusedError(answer.text or response.code, answer)
+    body = _body_of(response)
+    content = body.get("part")
+    if not isinstance(content, bytes) or len(content) > PART_BYTES:
+        raise WireError(f"part has to be up to {PART_BYTES} bytes")
+    return FilePart(Int(0, LARGEST_NUMBER)("size", body.get("size")), content)

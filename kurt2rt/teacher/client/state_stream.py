@@ -1,4 +1,4 @@
-"""The pictures of the robot as they come to a teacher's device, and the ticks that its answers tell."""
+"""States of the robot as they come to a teacher's device, and the ticks in its answers."""
 
 import math
 from collections import deque
@@ -12,88 +12,94 @@ _RATE_OVER_S = 1.0
 
 
 class StateStream:
-    """Keeps the newest one and wakes whoever waits for it; nothing queues."""
+    """Newest state of the robot, with an event for the tasks that wait for it; nothing queues."""
 
     def __init__(self, now: Callable[[], float]) -> None:
         """`now` is a monotonic clock in seconds."""
         self.newest: State | None = None
         self.count = 0
-        """How many came."""
+        """Number of states that came."""
         self.restarts = 0
-        """How often the robot program was found started anew."""
+        """Number of restarts of the robot program that were seen."""
         self._now = now
         self._came_s: deque[float] = deque(maxlen=100)
-        self._heard_tick = -1
+        self._answered_tick = -1
         self._stopped_tick = -1
         self._closed = False
-        self._news = anyio.Event()
+        self._changed = anyio.Event()
 
     @property
     def age_s(self) -> float:
-        """How long ago the newest one came; infinite before the first."""
+        """Seconds since the newest state came; infinite before the first."""
         return self._now() - self._came_s[-1] if self._came_s else math.inf
 
     @property
     def per_s(self) -> float:
-        """How many came in the last second."""
+        """Number of states in the last second."""
         since_s = self._now() - _RATE_OVER_S
         return sum(came_s > since_s for came_s in self._came_s) / _RATE_OVER_S
 
     @property
-    def heard_tick(self) -> int:
-        """Newest tick of the robot's present start that was heard of; answers come more often than pictures."""
-        return max(self._heard_tick, self.looked_tick)
+    def newest_tick(self) -> int:
+        """Newest tick of the robot's present start, of a state or an answer; answers come more often."""
+        return max(self._answered_tick, self.displayed_tick)
 
     @property
-    def looked_tick(self) -> int:
-        """Newest tick that the teacher knows the robot of: of a picture, or of the stop that he said himself.
+    def displayed_tick(self) -> int:
+        """Newest tick whose state the teacher knows: of a state, or of this device's own stop.
 
-        Other answers do not count here: they do not tell that somebody else has stopped the robot meanwhile.
+        Other answers do not count: they do not show that another teacher stopped the robot meanwhile.
         """
         return max(self._stopped_tick, -1 if self.newest is None else self.newest.tick)
 
-    def hear(self, boot: bytes, tick: int, *, stopped: bool = False) -> None:
-        """The robot, in the start that `boot` names, told its tick in an answer; `stopped`: to a stop."""
+    def on_answer(self, boot: bytes, tick: int, *, stopped: bool = False) -> None:
+        """Note the tick of an answer.
+
+        Args:
+            boot: Start of the robot program that answered.
+            tick: Its tick.
+            stopped: Whether it carried out a stop.
+        """
         if self.newest is None or boot != self.newest.boot:
             return
-        self._heard_tick = max(self._heard_tick, tick)
+        self._answered_tick = max(self._answered_tick, tick)
         if stopped:
             self._stopped_tick = max(self._stopped_tick, tick)
 
-    def show(self, picture: State) -> None:
-        """One more came; an older one than the newest of the same start of the robot is left out."""
+    def publish(self, state: State) -> None:
+        """Replace the newest state and wake its readers; drop a state older than the newest of the same start."""
         if self.newest is not None:
-            if picture.boot != self.newest.boot:
+            if state.boot != self.newest.boot:
                 self.restarts += 1
-                self._heard_tick = self._stopped_tick = -1
-            elif picture.tick < self.newest.tick:
+                self._answered_tick = self._stopped_tick = -1
+            elif state.tick < self.newest.tick:
                 return
-        self.newest = picture
+        self.newest = state
         self.count += 1
         self._came_s.append(self._now())
         self._wake()
 
     def close(self) -> None:
-        """No more come: whoever waits is told."""
+        """End the stream and wake its readers."""
         self._closed = True
         self._wake()
 
     async def first(self) -> State | None:
-        """The newest one, or the first where none came yet; None when no more come."""
+        """Return the newest state, or wait for the first; None if the stream closes before."""
         while self.newest is None and not self._closed:
-            await self._news.wait()
+            await self._changed.wait()
         return self.newest
 
     async def states(self) -> AsyncIterator[State]:
-        """The newest one and each that comes later, until no more come; who is slow misses those between."""
+        """Yield the newest state and each later one until the stream closes; a slow reader misses some."""
         seen = 0
         while not self._closed:
             if self.newest is None or self.count == seen:
-                await self._news.wait()
+                await self._changed.wait()
                 continue
             seen = self.count
             yield self.newest
 
     def _wake(self) -> None:
-        self._news.set()
-        self._news = anyio.Event()
+        self._changed.set()
+        self._changed = anyio.Event()

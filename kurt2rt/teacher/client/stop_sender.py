@@ -1,4 +1,4 @@
-"""A stop overtakes what was to move the robot, and is sent until it is answered or the teacher wishes otherwise."""
+"""Stops of one device: they overtake commands that move the robot, and are sent until answered or superseded."""
 
 import math
 import secrets
@@ -9,73 +9,72 @@ import anyio
 import anyio.abc
 
 from kurt2rt.channel.protocol.requests import COMMAND_ID_BYTES, StopRequest
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode
-from kurt2rt.teacher.client.answer import Answer, NoAnswerError, local_refusal
+from kurt2rt.core.rla.outcome import RefusalCode
+from kurt2rt.teacher.client.answer import Answer, NoAnswer, NoAnswerError, local_refusal
 from kurt2rt.teacher.client.request_sender import RequestSender
 
 
 class StopSender:
-    """The stops of one device, and the commands that they end."""
+    """Stops of one device, and the moving commands that they end."""
 
-    def __init__(self, asking: RequestSender, tasks: anyio.abc.TaskGroup) -> None:
-        """A stop that is not answered in time is sent on in `tasks`."""
-        self._asking = asking
+    def __init__(self, sender: RequestSender, tasks: anyio.abc.TaskGroup) -> None:
+        """Go on sending an unanswered stop in `tasks`."""
+        self._sender = sender
         self._tasks = tasks
         self._moving: set[anyio.CancelScope] = set()
-        self._sent_on: anyio.CancelScope | None = None
-        self._wishes = 0
+        self._resending: anyio.CancelScope | None = None
+        self._superseded = 0
 
     @property
     def pending(self) -> bool:
         """Whether a stop that was not answered in time is still being sent."""
-        return self._sent_on is not None
+        return self._resending is not None
 
     async def stop(self) -> Answer:
-        """End whatever is to move the robot, and say stop. Raises NoAnswerError, but goes on being sent then."""
+        """Cancel the moving commands and send a stop. Raises NoAnswerError; the stop goes on being sent then."""
         for command in tuple(self._moving):
             command.cancel()
         request = StopRequest(secrets.token_bytes(COMMAND_ID_BYTES))
-        wishes = self._wishes
+        superseded = self._superseded
         try:
-            answer = await self._asking.ask(request)
+            answer = await self._sender.send(request)
         except NoAnswerError as error:
-            if wishes != self._wishes:
+            if superseded != self._superseded:
                 raise
-            self._send_on(request)
+            self._begin_resending(request)
             raise NoAnswerError(
-                f"the stop is not answered: no answer for {self._asking.patience_s:g} s; it is sent on until it is. "
-                f"{self._asking.trouble}".strip()
+                code=NoAnswer.STOP_UNANSWERED, trouble=self._sender.trouble, after_s=self._sender.patience_s
             ) from error
-        self._end_sending()
+        self._end_resending()
         return answer
 
-    async def move(self, what: str, give: Callable[[], Awaitable[Answer]]) -> Answer:
-        """Say what may set the robot in motion; a stop that is said before the answer ends it."""
+    async def move(self, name: str, send: Callable[[], Awaitable[Answer]]) -> Answer:
+        """Return the answer to a command that may set the robot in motion, or its refusal if a stop came first."""
         with anyio.CancelScope() as scope:
             self._moving.add(scope)
             try:
-                return await give()
+                return await send()
             finally:
                 self._moving.discard(scope)
-        return local_refusal("stopped", Outcome.of(RefusalCode.STOPPED_MEANWHILE, command=what))
+        return local_refusal(RefusalCode.STOPPED_MEANWHILE, command=name)
 
-    def wish_anew(self) -> None:
-        """The teacher wishes something later than the stop: it is sent no more."""
-        self._wishes += 1
-        self._end_sending()
+    def supersede(self) -> None:
+        """End the resending of a stop, because the teacher gave a later command."""
+        self._superseded += 1
+        self._end_resending()
 
-    def _send_on(self, request: StopRequest) -> None:
-        if self._sent_on is None:
-            self._sent_on = anyio.CancelScope()
-            self._tasks.start_soon(self._stop_until_answered, request, self._sent_on)
+    def _begin_resending(self, request: StopRequest) -> None:
+        if self._resending is None:
+            self._resending = anyio.CancelScope()
+            self._tasks.start_soon(self._send_until_answered, request, self._resending)
 
-    async def _stop_until_answered(self, request: StopRequest, scope: anyio.CancelScope) -> None:
-        with scope, suppress(NoAnswerError):  # one that is not understood is an answer, too
-            await self._asking.ask(request, math.inf)
-        if self._sent_on is scope:
-            self._sent_on = None
+    async def _send_until_answered(self, request: StopRequest, scope: anyio.CancelScope) -> None:
+        with scope, suppress(NoAnswerError):  # an answer that is not understood ends it too
+            await self._sender.send(request, math.inf)
+        if self._resending is scope:
+            self._resending = None
 
-    def _end_sending(self) -> None:
-        sent_on, self._sent_on = self._sent_on, None
-        if sent_on is not None:
-            sent_on.cancel()
+    def _end_resending(self) -> None:
+        resending, self._resending = self._resending, None
+        if resending is not None:
+            resending.cancel()

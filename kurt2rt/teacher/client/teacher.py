@@ -9,20 +9,16 @@ with Teacher("var/devices/local") as teacher:
 import time
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import ExitStack
+from functools import wraps
 from pathlib import Path
 from types import TracebackType
-from typing import Self, TypeVar
+from typing import Concatenate, ParamSpec, Self, TypeVar
 
 import anyio
 from anyio.from_thread import BlockingPortal, start_blocking_portal
 
-from kurt2rt.channel.protocol.hello import Hello
-from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.channel.protocol.world import World
-from kurt2rt.core.rla.rla import BASIC, Phase
-from kurt2rt.runs.explain.facts import DecisionFacts
-from kurt2rt.teacher.client.answer import Answer, NoAnswerError
+from kurt2rt.teacher.client.answer import NoAnswer, NoAnswerError
 from kurt2rt.teacher.client.client import ANSWER_WITHIN_S, TeacherClient
 from kurt2rt.teacher.client.link_quality import LinkQuality
 
@@ -31,9 +27,22 @@ LOCAL_DEVICE = Path("var/devices/local")
 ATTENTION_S = 1.0
 """Default of `attention_s`, in seconds."""
 
-_LOOK_S = 0.05
+_POLL_S = 0.05
 
+_Args = ParamSpec("_Args")
 _Result = TypeVar("_Result")
+
+
+def _blocking(
+    method: Callable[Concatenate[TeacherClient, _Args], Awaitable[_Result]],
+) -> Callable[Concatenate["Teacher", _Args], _Result]:
+    """Return a method of `Teacher` that calls a method of its client in the loop's thread."""
+
+    @wraps(method)
+    def call(teacher: "Teacher", /, *args: _Args.args, **kwargs: _Args.kwargs) -> _Result:
+        return teacher._call(lambda: method(teacher._client, *args, **kwargs))
+
+    return call
 
 
 class Teacher:
@@ -46,7 +55,8 @@ class Teacher:
     The robot is told that its teacher is there during each call and for `attention_s` after it. Then it stands, and
     drives on only after `resume`: if the script hangs or computes for longer, and between two notebook cells.
 
-    Use one Teacher from one thread at a time. Speeds are in metres per second.
+    Use one Teacher from one thread at a time. Speeds are in metres per second. Lessons take the tick of
+    the state that is meant as `of`; None: the present decision.
     """
 
     def __init__(
@@ -80,7 +90,7 @@ class Teacher:
         self._stack = ExitStack()
         self._calls = 0
         self._attentive_until_s = 0.0
-        self._shown: State | None = None
+        self._newest_read: State | None = None
 
     # Opening and closing
 
@@ -97,9 +107,9 @@ class Teacher:
             self._portal = stack.enter_context(start_blocking_portal(name="teacher"))
             client = TeacherClient(self._folder, self._host, self._port, patience_s=self._patience_s)
             self._robot = stack.enter_context(self._portal.wrap_async_context_manager(client))
-            stack.callback(self._forget)
-            looking = self._portal.start_task_soon(self._end_attention)
-            stack.callback(looking.cancel)
+            stack.callback(self._drop_client)
+            attention = self._portal.start_task_soon(self._end_attention)
+            stack.callback(attention.cancel)
             self._call(self._find_robot)
             self._stack = stack.pop_all()
         return self
@@ -118,7 +128,7 @@ class Teacher:
         """End the connection, as `close` does."""
         self.close()
 
-    # Looking
+    # State
 
     @property
     def state(self) -> State:
@@ -127,7 +137,7 @@ class Teacher:
 
     @property
     def link(self) -> LinkQuality:
-        """Round trip, answered share and states a second."""
+        """Round trip, answered fraction and states per second."""
         return self._client.link
 
     def states(self) -> Iterator[State]:
@@ -137,8 +147,8 @@ class Teacher:
             NoAnswerError: No state came for `patience_s`.
         """
         while True:
-            self._shown = self._call(self._next)
-            yield self._shown
+            self._newest_read = self._call(self._next)
+            yield self._newest_read
 
     def wait_until(self, met: Callable[[State], bool], timeout_s: float = 60.0) -> State:
         """Return the first state for which `met` returns True.
@@ -161,87 +171,35 @@ class Teacher:
         """Return the next state in which an answer lets the robot drive on. Raises as `wait_until` does."""
         return self.wait_until(lambda state: state.stands.asks and not state.stands.needs_resume, timeout_s)
 
-    def hello(self) -> Hello:
-        """Return what the robot is: its task, actions, sensors and size."""
-        return self._call(self._client.hello)
+    hello = _blocking(TeacherClient.hello)
+    world = _blocking(TeacherClient.world)
+    why = _blocking(TeacherClient.why)
 
-    def world(self) -> World | None:
-        """Return the simulated world; None if the robot is a real one."""
-        return self._call(self._client.world)
+    # Session
 
-    def why(self) -> DecisionFacts | None:
-        """Return what the robot's newest decision rested on; None before its first tick."""
-        return self._call(self._client.why)
+    take = _blocking(TeacherClient.take)
+    hand_over = _blocking(TeacherClient.hand_over)
+    set_phase = _blocking(TeacherClient.set_phase)
+    begin_session = _blocking(TeacherClient.begin_session)
+    end_session = _blocking(TeacherClient.end_session)
+    save = _blocking(TeacherClient.save)
 
-    # Being the teacher
+    # Lessons
 
-    def take(self) -> Answer:
-        """Become the robot's teacher."""
-        return self._call(self._client.take)
+    lessons = _blocking(TeacherClient.lessons)
+    answer = _blocking(TeacherClient.answer)
+    correct = _blocking(TeacherClient.correct)
+    reward = _blocking(TeacherClient.reward)
+    appraise = _blocking(TeacherClient.appraise)
+    undo = _blocking(TeacherClient.undo)
 
-    def hand_over(self, to: str | None = None) -> Answer:
-        """Stop being the teacher; `to` names the next one, None: the first one that takes the robot."""
-        return self._call(lambda: self._client.hand_over(to))
+    # Motion
 
-    def set_phase(self, phase: Phase) -> Answer:
-        """Choose the training phase."""
-        return self._call(lambda: self._client.set_phase(phase))
-
-    def begin_session(self, name: str) -> Answer:
-        """Start the teaching clock."""
-        return self._call(lambda: self._client.begin_session(name))
-
-    def end_session(self) -> Answer:
-        """Stop the teaching clock."""
-        return self._call(self._client.end_session)
-
-    def save(self, label: str = "") -> Answer:
-        """Copy the knowledge on the robot; `extra` of the answer holds the copy's name and SHA-256."""
-        return self._call(lambda: self._client.save(label))
-
-    # Lessons; `of` is the tick of the state that is meant, None: the present decision
-
-    def answer(self, action: str, *, of: int | None = None, level: str = BASIC) -> Answer:
-        """Answer the robot's question with an action (phase 1), at level MID with a behaviour."""
-        return self._call(lambda: self._client.answer(action, of=of, level=level))
-
-    def correct(self, action: str, *, of: int | None = None, level: str = BASIC) -> Answer:
-        """Tell the robot that another action is right (phase 2), at level MID another behaviour."""
-        return self._call(lambda: self._client.correct(action, of=of, level=level))
-
-    def reward(self, value: int, *, of: int | None = None) -> Answer:
-        """Reward what the robot did (phase 3); `value` is -1 or +1."""
-        return self._call(lambda: self._client.reward(value, of=of))
-
-    def appraise(self, appraisal: str, *, of: int | None = None) -> Answer:
-        """Teach the critic the worth of a situation (phase 4): a name of `Hello.appraisals`."""
-        return self._call(lambda: self._client.appraise(appraisal, of=of))
-
-    def undo(self, lesson: str | None = None) -> Answer:
-        """Take back a lesson by its command id; None: the last one that stands."""
-        return self._call(lambda: self._client.undo(lesson))
-
-    def lessons(self, count: int = 10) -> tuple[LessonLine, ...]:
-        """Return the newest lessons, newest first; `count` is at most 20."""
-        return self._call(lambda: self._client.lessons(count))
-
-    # Moving
-
-    def resume(self) -> Answer:
-        """Let the robot drive on after a stop (the page's Go)."""
-        return self._call(self._client.resume)
-
-    def stop(self) -> Answer:
-        """Stop the robot; always allowed."""
-        return self._call(self._client.stop)
-
-    def pursue(self, behaviour: str) -> Answer:
-        """Choose which of the task's behaviours the robot follows and is taught."""
-        return self._call(lambda: self._client.pursue(behaviour))
-
-    def run(self, action: str, seconds: float) -> Answer:
-        """Start one action of the repertoire for a time; returns at once, and the robot stands afterwards."""
-        return self._call(lambda: self._client.run(action, seconds=seconds))
+    resume = _blocking(TeacherClient.resume)
+    stop = _blocking(TeacherClient.stop)
+    pursue = _blocking(TeacherClient.pursue)
+    run = _blocking(TeacherClient.run)
+    place = _blocking(TeacherClient.place)
 
     def drive(self, left_m_s: float, right_m_s: float, seconds: float) -> str:
         """Drive by hand for a time, then stop.
@@ -256,12 +214,6 @@ class Teacher:
         """
         return self._call(lambda: self._drive(left_m_s, right_m_s, seconds))
 
-    # The simulated world
-
-    def place(self, x_m: float, y_m: float, heading_rad: float) -> Answer:
-        """Put the simulated robot down elsewhere."""
-        return self._call(lambda: self._client.place(x_m, y_m, heading_rad))
-
     # In the caller's thread
 
     @property
@@ -272,8 +224,8 @@ class Teacher:
             )
         return self._robot
 
-    def _forget(self) -> None:
-        self._robot = self._shown = None
+    def _drop_client(self) -> None:
+        self._robot = self._newest_read = None
 
     def _call(self, make: Callable[[], Awaitable[_Result]]) -> _Result:
         client, portal = self._client, self._portal
@@ -299,7 +251,7 @@ class Teacher:
 
     async def _end_attention(self) -> None:
         while True:
-            await anyio.sleep(_LOOK_S)
+            await anyio.sleep(_POLL_S)
             if not self._calls and time.monotonic() >= self._attentive_until_s:
                 self._client.watching = False
 
@@ -309,7 +261,7 @@ class Teacher:
             return
         why = f" ({self._client.trouble})" if self._client.trouble else ""
         raise NoAnswerError(
-            f"no robot answers for {self._connect_s:g} s{why}", where=self._folder, do="start one: kurt2rt run"
+            f"for {self._connect_s:g} s{why}", NoAnswer.NO_ROBOT, where=self._folder, do="start one: kurt2rt run"
         )
 
     async def _newest(self) -> State:
@@ -319,17 +271,16 @@ class Teacher:
     async def _next(self) -> State:
         with anyio.move_on_after(self._patience_s):
             async for state in self._client.states():
-                if state is not self._shown:
+                if state is not self._newest_read:
                     return state
-        raise NoAnswerError(f"no state of the robot for {self._patience_s:g} s. {self._client.trouble}".strip())
+        raise NoAnswerError(code=NoAnswer.SILENT, trouble=self._client.trouble, after_s=self._patience_s)
 
     async def _drive(self, left_m_s: float, right_m_s: float, seconds: float) -> str:
-        async with self._client.driving() as wheel:
-            if not wheel.set(left_m_s, right_m_s):
-                return wheel.ended or self._client.refused
+        async with self._client.driving() as handle:
+            if not handle.set(left_m_s, right_m_s):
+                refusal = handle.ended or self._client.refusal
+                return "" if refusal is None else refusal.text or refusal.why
             ends_s = time.monotonic() + seconds
-            while True:
-                left_s = ends_s - time.monotonic()
-                if wheel.ended or left_s <= 0.0:
-                    return wheel.ended
-                await anyio.sleep(min(left_s, _LOOK_S))
+            while handle.ended is None and (left_s := ends_s - time.monotonic()) > 0.0:  # noqa: ASYNC110 - a clock
+                await anyio.sleep(min(left_s, _POLL_S))
+            return "" if handle.ended is None else handle.ended.text or handle.ended.why

@@ -1,4 +1,4 @@
-"""Protected requests to one robot: everything of aiocoap that a teacher's device needs is in here.
+"""OSCORE-protected requests to one robot: the only user of aiocoap on the teacher's side.
 
 Plain requests with `protect` and `unprotect` around them: aiocoap's own OSCORE client leaks two tasks for each answer
 that is lost, and its number limits end observations.
@@ -28,15 +28,15 @@ _LARGEST_DATAGRAM = 65_536
 
 
 class _Loose(TransportTuning):  # type: ignore[misc]  # Any
-    """Sent once: whoever needs an answer sends it again."""
+    """Tuning of messages that are sent once: the caller sends them again until they are answered."""
 
     reliability = False
 
 
 class _Registering(TransportTuning):  # type: ignore[misc]  # Any
-    """Sent three times in 0.4 s and given up after 0.9 s, so before the next registration begins after 1 s.
+    """Tuning of registrations: sent three times in 0.4 s, given up after 0.9 s, before the next one begins after 1 s.
 
-    aiocoap sends one confirmable message at a time and throws those away that wait for one that is given up.
+    aiocoap sends one confirmable message at a time and drops those that wait for one that is given up.
     """
 
     reliability = True
@@ -47,17 +47,17 @@ class _Registering(TransportTuning):  # type: ignore[misc]  # Any
 
 @dataclass(frozen=True, slots=True)
 class Response:
-    """What the robot answered; certainly the robot."""
+    """Authenticated answer of the robot."""
 
     code: str
-    """Such as "2.04 Changed"."""
+    """Code such as "2.04 Changed"."""
     payload: bytes
     number: int
-    """Grows with each picture of one observation; -1 where the answer has none of its own."""
+    """Observe number, which grows with each state of one observation; -1 if the answer has none."""
 
     @property
     def successful(self) -> bool:
-        """Whether the request was carried out."""
+        """Whether the request was carried out (class 2)."""
         return self.code.startswith("2.")
 
 
@@ -65,15 +65,15 @@ OnResponse = Callable[[Response], None]
 
 
 class Exchange:
-    """A request that is under way, or an observation that lasts."""
+    """Request under way, or a lasting observation."""
 
     def __init__(self) -> None:
         self.ended = False
-        """Nothing more comes of it: answered, failed, or ended."""
+        """Whether it was answered, failed, or was ended."""
         self._stop: Callable[[], object] | None = None
 
     def end(self) -> None:
-        """Forget it: what still comes in answer is not for anybody. Ending twice does nothing."""
+        """End it and drop later answers. Ending twice does nothing."""
         self.ended = True
         stop, self._stop = self._stop, None
         if stop is not None:
@@ -84,14 +84,14 @@ class Exchange:
 
 
 class OscoreRequests:
-    """An open socket and the device's side of a pairing. Sending never waits and never raises."""
+    """Open socket with the device's side of a pairing. Sending never waits and never raises."""
 
     def __init__(self, coap: Any, keys: OscoreContext, host: str, port: int, paired_ms: int) -> None:
         """Use `open_requests`."""
         self.trouble = ""
-        """Why the robot is not reached, as far as the network tells; empty after each answer of the robot."""
+        """Reason why the robot is not reached, as far as the network tells; empty after each answer of the robot."""
         self.damaged = 0
-        """Answers that the robot did not make, or that were changed on their way."""
+        """Number of answers that were forged, or changed on their way."""
         self._coap = coap
         self._keys = keys
         self._host = host
@@ -101,20 +101,20 @@ class OscoreRequests:
 
     @property
     def next_number(self) -> int:
-        """Grows with each message, also from one run of this program to the next, and when the pairing is renewed.
+        """Number that grows with each message, across restarts of this program and renewals of the pairing.
 
-        That is the pairing's own count, which no clock sets back, from the millisecond of the pairing on.
+        It is the pairing's sequence number plus the time of the pairing in ms; no clock sets it back.
         """
         number: int = self._keys.sender_sequence_number
         return self._paired_ms + number
 
     @property
     def open_exchanges(self) -> int:
-        """Requests and observations that still wait for something."""
+        """Number of requests and observations that still wait for a message."""
         return len(self._coap.request_interfaces[0].outgoing_requests)
 
     async def find_robot(self) -> None:
-        """Look its address up, anew each time: it may have got another one. A failure is told by `trouble`."""
+        """Resolve the robot's address again, because it may have changed; a failure goes to `trouble`."""
         try:
             probe = aiocoap.Message(code=aiocoap.GET, uri=f"coap://{hostportjoin(self._host, self._port)}")
             await self._coap.find_remote_and_interface(probe)
@@ -130,7 +130,7 @@ class OscoreRequests:
         return self._begin(path, request, on_response)
 
     def observe(self, path: str, on_response: OnResponse) -> Exchange:
-        """Ask for a resource now and whenever it changes, until the exchange ends, or the robot ends it."""
+        """Observe a resource (RFC 7641) until the exchange ends, or the robot ends it."""
         request = aiocoap.Message(code=aiocoap.GET, transport_tuning=_Registering())
         request.opt.observe = 0
         return self._begin(path, request, on_response)
@@ -173,7 +173,7 @@ class OscoreRequests:
                 return not event.is_last
             self.trouble = ""
             if prove and message.code == aiocoap.UNAUTHORIZED and message.opt.echo is not None:
-                # The robot was started anew and wants to be sure that this is no replay (RFC 8613, B.1.2).
+                # The robot was restarted and asks for a proof that this is no replay (RFC 8613, B.1.2).
                 self._send(request.copy(echo=message.opt.echo), exchange, on_response, prove=False)
                 return False
             if event.is_last:
@@ -202,11 +202,11 @@ class OscoreRequests:
 async def open_requests(folder: Path, host: str, port: int) -> OscoreRequests:
     """Open a socket for a device's pairing in `folder`, locked until `close`; the robot need not be there.
 
-    Raises ChannelError, and CredentialsError where it is the pairing.
+    Raises ChannelError, and CredentialsError if the pairing is the cause.
     """
     keys, paired_ms = await anyio.to_thread.run_sync(_open_keys, folder)
     try:
-        # Not even warnings: on a bad link its own ones come by the hundred, and `trouble` tells.
+        # No warnings either: on a bad link aiocoap logs hundreds; `trouble` holds the reason.
         logging.getLogger(_LOGGER).setLevel(logging.CRITICAL)
         coap = await aiocoap.Context.create_client_context(loggername=_LOGGER, transports=["udp6"])
         coap.request_interfaces[0].token_interface.message_interface.transport.max_size = _LARGEST_DATAGRAM

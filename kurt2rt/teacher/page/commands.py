@@ -31,7 +31,7 @@ async def carry_out(order: PageOrder, robot: RobotLink, of: int | None) -> Answe
     given = order.arguments
     match order.name:
         case "answer":
-            return await robot.answer(given["action"], of=of, level=given["level"], beside=given["beside"])
+            return await robot.answer(given["action"], of=of, level=given["level"], alternative=given["beside"])
         case "correct":
             return await robot.correct(given["action"], of=of, level=given["level"])
         case "reward":
@@ -51,7 +51,7 @@ async def carry_out(order: PageOrder, robot: RobotLink, of: int | None) -> Answe
         case "stop_seeking":
             return await robot.stop_seeking()
         case "be_at":
-            return await robot.be_at(given["name"])
+            return await robot.set_location(given["name"])
         case "begin_session":
             return await robot.begin_session(given["name"])
         case "end_session":

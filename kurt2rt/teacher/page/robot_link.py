@@ -10,7 +10,7 @@ from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.requests import TABLE
 from kurt2rt.channel.protocol.simulation import SimulationView
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.channel.protocol.world import World
+from kurt2rt.channel.protocol.world import WorldView
 from kurt2rt.core.rla.rla import BASIC, Phase
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.runs.explain.facts import DecisionFacts
@@ -86,12 +86,14 @@ class RobotLink(Protocol):
         """The newest lessons, newest first."""
         ...
 
-    async def world(self) -> World | None:
+    async def world(self) -> WorldView | None:
         """The simulated world; None where the robot is a real one."""
         ...
 
-    async def answer(self, action: str, *, of: int | None = None, level: str = BASIC, beside: bool = False) -> Answer:
-        """Answer the situation of a picture; `beside`: possible, too, beside what is known there."""
+    async def answer(
+        self, action: str, *, of: int | None = None, level: str = BASIC, alternative: bool = False
+    ) -> Answer:
+        """Answer the situation of a picture; `alternative`: next to what is known there."""
         ...
 
     async def correct(self, action: str, *, of: int | None = None, level: str = BASIC) -> Answer:
@@ -134,7 +136,7 @@ class RobotLink(Protocol):
         """No goal any more."""
         ...
 
-    async def be_at(self, name: str) -> Answer:
+    async def set_location(self, name: str) -> Answer:
         """The robot was set down at a situation that has a name."""
         ...
 
@@ -178,11 +180,11 @@ class RobotLink(Protocol):
         """The parts of a file that `save` or `export` made. Raises RefusedError where the robot has none such."""
         ...
 
-    async def move_wall(self, name: str, dx: float, dy: float) -> Answer:
+    async def move_wall(self, name: str, dx_m: float, dy_m: float) -> Answer:
         """Shift a wall of the simulated world, in metres."""
         ...
 
-    async def place(self, x: float, y: float, heading: float) -> Answer:
+    async def place(self, x_m: float, y_m: float, heading_rad: float) -> Answer:
         """Put the simulated robot down elsewhere, in metres and radians."""
         ...
 

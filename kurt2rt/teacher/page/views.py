@@ -13,7 +13,7 @@ from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.simulation import SIMULATION, SimulationView
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.channel.protocol.world import World
+from kurt2rt.channel.protocol.world import WorldView
 from kurt2rt.core.decision.standing_text import GO_ON_PAGE, standing_headline
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.outcome_text import Surface
@@ -91,7 +91,7 @@ def state_view(
         "link": {
             "age_ms": round(age_s * 1000),
             "rtt_ms": None if link.rtt_ms is None else _finite(link.rtt_ms),
-            "pictures_per_s": _finite(link.pictures_per_s),
+            "pictures_per_s": _finite(link.states_per_s),
         },
         "refused": refused,
     }
@@ -126,7 +126,7 @@ def hello_view(hello: Hello) -> dict[str, Any]:
     return {"kind": "hello", **plain(hello)}
 
 
-def world_view(world: World) -> dict[str, Any]:
+def world_view(world: WorldView) -> dict[str, Any]:
     """The simulated world."""
     return {"kind": "world", **plain(world)}
 

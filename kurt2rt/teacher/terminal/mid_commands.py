@@ -28,7 +28,7 @@ def _lesson(robot: TeacherClient, hello: Hello, words: Sequence[str], state: Sta
                 return robot.answer(way, of=judged, level=MID)
             return robot.correct(way, of=judged, level=MID)
         case ["also", way]:
-            return robot.answer(way, of=judged, level=MID, beside=True)
+            return robot.answer(way, of=judged, level=MID, alternative=True)
     return None
 
 
@@ -37,7 +37,7 @@ def _goal(robot: TeacherClient, words: Sequence[str], state: State | None) -> Aw
         case ["name", *name] if name:
             return robot.name_situation(" ".join(name), of=None if state is None else state.tick)
         case ["here", *name] if name:
-            return robot.be_at(" ".join(name))
+            return robot.set_location(" ".join(name))
         case ["seek"]:
             return robot.stop_seeking()
         case ["seek", "rla", rla_id] if rla_id.isdecimal() and len(rla_id) <= _MOST_DIGITS:

@@ -244,8 +244,8 @@ def test_what_is_not_one_flat_list_of_plain_values_is_refused() -> None:
     assert "not the CBOR" in refusal("/stop", b"")
     assert "not the CBOR" in refusal("/stop", good[:-1])
     assert "1 bytes too many" in refusal("/stop", good + b"\x00")
-    assert "a list of 2: [command_id, hold]" in refusal("/stop", cbor2.dumps([ID]))
-    assert "a list of 2: [command_id, hold]" in refusal("/stop", cbor2.dumps({"id": ID}))
+    assert "a list of 2: [command_id, press_id]" in refusal("/stop", cbor2.dumps([ID]))
+    assert "a list of 2: [command_id, press_id]" in refusal("/stop", cbor2.dumps({"id": ID}))
     assert "nesting" in refusal("/stop", cbor2.dumps([[ID]]))
     assert "indefinite" in refusal("/stop", b"\x9f" + good[1:] + b"\xff")
     assert "tag 2: tagged values are not taken" in refusal("/lessons", b"\x81\xc2\x41\x01")
@@ -282,7 +282,7 @@ def test_what_is_not_one_flat_list_of_plain_values_is_refused() -> None:
         ("/phase", [BOOT, ID, 0, 6], "phase has to be one of 1, 2, 3, 4, 5"),
         ("/answer", [BOOT, ID, 0, "turn_left", None, "high", False], "level has to be one of basic, mid"),
         ("/answer", [BOOT, ID, 0, "turn_left", None, None, False], "level has to be one of basic, mid"),
-        ("/answer", [BOOT, ID, 0, "turn_left", None, "mid", 1], "beside has to be true or false"),
+        ("/answer", [BOOT, ID, 0, "turn_left", None, "mid", 1], "alternative has to be true or false"),
         ("/correct", [BOOT, ID, 0, "turn_left", None, b"mid"], "level has to be one of basic, mid"),
         (
             "/correct",
@@ -292,7 +292,7 @@ def test_what_is_not_one_flat_list_of_plain_values_is_refused() -> None:
         (
             "/answer",
             [BOOT, ID, 0, "turn_left"],
-            "/answer takes a list of 7: [boot, command_id, seen, action, decision_tick, level, beside]",
+            "/answer takes a list of 7: [boot, command_id, seen, action, decision_tick, level, alternative]",
         ),
         ("/answer", [BOOT, ID, 0, "", None], "action has to be text of 1 to 64 printable characters"),
         ("/answer", [BOOT, ID, 0, "a\nb", None], "action has to be text of 1 to 64 printable characters"),

@@ -71,14 +71,14 @@ class NotingTeacher(TeacherClient):
         self._at_work = at_work
 
     def note_what_is_sent(self) -> None:
-        requests, asking = self._open.requests, self._asking
-        post, ask = requests.post, asking.ask
+        requests, sender = self._open.requests, self._open.sender
+        post, send = requests.post, sender.send
 
-        async def noted_ask(request: Request, patience_s: float | None = None) -> Answer:
+        async def noted_send(request: Request, patience_s: float | None = None) -> Answer:
             note = Note(request)
             self.notes.append(note)
             began_s = self._loop.time()
-            note.answer = await ask(request, patience_s)
+            note.answer = await send(request, patience_s)
             note.took_s = self._loop.time() - began_s
             return note.answer
 
@@ -88,15 +88,15 @@ class NotingTeacher(TeacherClient):
             return post(path, payload, on_response)
 
         requests.post = noted  # type: ignore[method-assign]
-        asking.ask = noted_ask  # type: ignore[method-assign]
+        sender.send = noted_send  # type: ignore[method-assign]
 
     def freeze(self) -> Callable[[], None]:
         """Its program hangs; returns what wakes it."""
-        hand = self._hand
-        hand.beat = lambda: None  # type: ignore[method-assign]
+        drive = self._drive
+        drive.beat = lambda: None  # type: ignore[method-assign]
 
         def wake() -> None:
-            del hand.beat
+            del drive.beat
 
         return wake
 
@@ -212,8 +212,8 @@ class Story:
 
     async def _mend(self) -> None:
         self._link.mend()
-        mended_s, before = self._now(), self._teacher._pictures.count
-        await self._at_work.until(lambda: self._teacher._pictures.count > before)
+        mended_s, before = self._now(), self._teacher._stream.count
+        await self._at_work.until(lambda: self._teacher._stream.count > before)
         self._told.back_s.append(self._now() - mended_s)
 
     async def _drive_by_hand(self, lasts_s: float) -> None:

@@ -7,7 +7,6 @@ import pytest
 from kurt2rt.channel.protocol.codec import decode_state, encode_state
 from kurt2rt.channel.protocol.requests import (
     AnswerRequest,
-    BeAtRequest,
     CorrectRequest,
     HelloRequest,
     LessonsRequest,
@@ -17,11 +16,12 @@ from kurt2rt.channel.protocol.requests import (
     SeekLikeRequest,
     SeekRequest,
     SeekRlaRequest,
+    SetLocationRequest,
     SituationsRequest,
     UndoRequest,
 )
 from kurt2rt.channel.protocol.state import State, SurpriseState
-from kurt2rt.channel.server.reply import Verdict
+from kurt2rt.channel.server.reply import ReplyStatus
 from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
@@ -143,10 +143,10 @@ async def test_lessons_of_a_level_that_is_not_there_or_of_a_way_that_is_not_taug
         plain.command(NameRequest, "door", None),
         plain.command(SeekRequest, "door"),
         plain.command(SeekRequest, None),
-        plain.command(BeAtRequest, "door"),
+        plain.command(SetLocationRequest, "door"),
     ):
         refused = await plain.ask(request)
-        assert (why(refused), refused.verdict) == ("refused", Verdict.CONFLICT)
+        assert (why(refused), refused.verdict) == ("refused", ReplyStatus.CONFLICT)
         assert outcome_of(refused) == Outcome(RefusalCode.NO_MID_LEVEL)
     assert picture(plain).mid is None
 
@@ -158,7 +158,7 @@ async def test_situations_get_names_that_are_listed_sought_and_taken_back(desk: 
     assert outcome_of(reply) == Outcome.of(ResultCode.SITUATION_NAMED, name="door")
     assert (await desk.ask(SituationsRequest())).body == {"situations": ["door"]}
     await desk.ask(desk.answer("forward"))
-    assert (await desk.ask(desk.command(SeekRequest, "door"))).verdict is Verdict.DONE
+    assert (await desk.ask(desk.command(SeekRequest, "door"))).verdict is ReplyStatus.DONE
     await desk.stream(desk.watch())
     desk.run()
     told = picture(desk)
@@ -171,13 +171,13 @@ async def test_situations_get_names_that_are_listed_sought_and_taken_back(desk: 
     assert outcome_of(await desk.ask(desk.command(SeekRequest, None))) == Outcome(ResultCode.GOAL_DROPPED)
     desk.run()
     assert (picture(desk).goal, picture(desk).plan_says) == ("", "")
-    assert (await desk.ask(desk.command(SeekRlaRequest, 1))).verdict is Verdict.DONE
+    assert (await desk.ask(desk.command(SeekRlaRequest, 1))).verdict is ReplyStatus.DONE
     assert "1" in picture(desk).goal
     for request in (
         desk.command(SeekRequest, "window"),
         desk.command(SeekRlaRequest, 77),
         desk.command(SeekLikeRequest, (("height", 1.0),), 0.1),
-        desk.command(BeAtRequest, "window"),
+        desk.command(SetLocationRequest, "window"),
     ):
         assert why(await desk.ask(request)) == "refused"
     for _ in range(2):  # how to turn left, and the name

@@ -8,7 +8,7 @@ from aiocoap import oscore
 
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.oscore_context import OscoreContext
-from kurt2rt.channel.security.paired_devices import Change, Teachers
+from kurt2rt.channel.security.paired_devices import PairingChange, Teachers
 from kurt2rt.channel.security.pairing import local_pairing, pair, paired, renew, revoke
 from tests.channel.clock import Clock
 from tests.channel.sides import answer_challenge, ask, ask_until_fresh, header_of
@@ -85,10 +85,10 @@ async def test_a_device_that_is_paired_while_the_robot_runs_is_taken_up(house: H
     teachers = house.start()
     assert teachers.names == ()
     house.pair("phone")
-    assert await teachers.refresh() == Change(came=("phone",), gone=())
+    assert await teachers.refresh() == PairingChange(came=("phone",), gone=())
     device = house.device("phone")
     assert ask_until_fresh(device, teachers.find(header_of(device)), "forward") == "forward"
-    assert await teachers.refresh() == Change(came=(), gone=())
+    assert await teachers.refresh() == PairingChange(came=(), gone=())
 
 
 async def test_a_device_that_is_revoked_while_the_robot_runs_is_refused(house: House) -> None:
@@ -98,7 +98,7 @@ async def test_a_device_that_is_revoked_while_the_robot_runs_is_refused(house: H
     header = header_of(house.device("phone"))
     context = teachers.find(header)
     revoke(house.teachers, house.devices, "phone")
-    assert await teachers.refresh() == Change(came=(), gone=("phone",))
+    assert await teachers.refresh() == PairingChange(came=(), gone=("phone",))
     assert teachers.names == ("tablet",)
     with pytest.raises(KeyError):
         teachers.find(header)
@@ -111,7 +111,7 @@ async def test_a_renewed_device_is_known_by_its_new_keys_alone(house: House) -> 
     teachers = house.start()
     old = header_of(house.device("phone"))
     renew(house.teachers, house.devices, "phone")
-    assert await teachers.refresh() == Change(came=("phone",), gone=("phone",))
+    assert await teachers.refresh() == PairingChange(came=("phone",), gone=("phone",))
     with pytest.raises(KeyError):
         teachers.find(old)
     device = house.device("phone")
@@ -123,7 +123,7 @@ async def test_renewed_and_revoked_between_two_looks_it_is_gone(house: House) ->
     teachers = house.start()
     renew(house.teachers, house.devices, "phone")
     revoke(house.teachers, house.devices, "phone")
-    assert await teachers.refresh() == Change(came=(), gone=("phone",))
+    assert await teachers.refresh() == PairingChange(came=(), gone=("phone",))
 
 
 async def test_a_damaged_pairing_keeps_nobody_else_out_and_is_told(house: House) -> None:
@@ -165,7 +165,7 @@ async def test_a_disk_that_cannot_be_read_costs_nobody_his_teacher(
 
     with monkeypatch.context() as patch:
         patch.setattr(Path, "stat", broken)
-        assert await teachers.refresh() == Change(came=(), gone=())
+        assert await teachers.refresh() == PairingChange(came=(), gone=())
         assert teachers.names == ("phone",)
         assert "Input/output error" in teachers.trouble[0]
     await teachers.refresh()

@@ -15,15 +15,15 @@ from kurt2rt.channel.protocol.requests import (
     AnswerRequest,
     AppraiseRequest,
     BackToStartRequest,
-    BeAtRequest,
     BehaviourRequest,
     CommandRequest,
     CorrectRequest,
     DeleteRequest,
     ExamRequest,
-    ExamStandingRequest,
+    ExamStatusRequest,
     ExportRequest,
     FileRequest,
+    HandOverRequest,
     HealthRequest,
     HelloRequest,
     LessonsRequest,
@@ -34,7 +34,6 @@ from kurt2rt.channel.protocol.requests import (
     PhaseRequest,
     PlaceRequest,
     PursueRequest,
-    ReleaseRequest,
     ReplaceRequest,
     ResumeRequest,
     RewardRequest,
@@ -43,6 +42,7 @@ from kurt2rt.channel.protocol.requests import (
     SeekRequest,
     SeekRlaRequest,
     SessionRequest,
+    SetLocationRequest,
     SimulationRequest,
     SituationsRequest,
     SpeedRequest,
@@ -55,7 +55,7 @@ from kurt2rt.channel.protocol.requests import (
     WorldRequest,
 )
 from kurt2rt.channel.protocol.simulation import SIMULATION
-from kurt2rt.channel.server.reply import Reply, Verdict, done
+from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
 from kurt2rt.channel.server.request_handler import COMMAND_TICKS, MOVING_TICKS, STREAM_TICKS
 from kurt2rt.channel.server.simulation import TeacherNow
 from kurt2rt.core.critic.settings import load_critic
@@ -86,10 +86,10 @@ LASTING: dict[type[CommandRequest], tuple[object, ...]] = {
     DeleteRequest: (1,),
     UndoRequest: (None,),
     NameRequest: ("door", None),
-    BeAtRequest: ("door",),
+    SetLocationRequest: ("door",),
     PhaseRequest: (Phase.CORRECTIONS,),
     SessionRequest: ("morning",),
-    ReleaseRequest: (None,),
+    HandOverRequest: (None,),
     SaveRequest: ("label",),
     ExportRequest: (),
     MoveWallRequest: ("box", 0.1, 0.0),
@@ -102,7 +102,7 @@ LASTING: dict[type[CommandRequest], tuple[object, ...]] = {
 }
 COMMANDS = {**MOVING, **LASTING}
 READING = {
-    ExamStandingRequest,
+    ExamStatusRequest,
     FileRequest,
     HealthRequest,
     HelloRequest,
@@ -130,7 +130,7 @@ def test_every_path_has_a_rule_here() -> None:
 
 async def test_a_press_reaches_the_wheels_in_the_next_tick_and_is_answered_at_once(desk: Desk) -> None:
     reply = await desk.stream(desk.press())
-    assert reply == Reply(Verdict.DONE, {"t": desk.tick})
+    assert reply == Reply(ReplyStatus.DONE, {"t": desk.tick})
     assert desk.run().decision.cause is Cause.TEACHER
 
 
@@ -226,7 +226,7 @@ async def test_who_is_not_the_teacher_is_told_who_is(desk: Desk) -> None:
     desk.run()
     for request in (desk.press(), desk.watch()):
         refused = await desk.stream(request, "ben")
-        assert (why(refused), refused.verdict) == ("held", Verdict.CONFLICT)
+        assert (why(refused), refused.verdict) == ("held", ReplyStatus.CONFLICT)
         assert outcome_of(refused) == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="ann")
 
 
@@ -314,7 +314,7 @@ async def test_sent_again_while_it_is_under_way_it_gets_the_one_reply_and_counts
     assert not any(task.done() for task in (first, again, late))
     desk.write()
     replies = [await reply_of(task) for task in (first, again, late)]
-    assert replies[0].verdict is Verdict.DONE
+    assert replies[0].verdict is ReplyStatus.DONE
     assert replies[1:] == [replies[0]] * 2
     assert await reply_of(await desk.send(request)) == replies[0]
     assert len(desk.notebook.events) == 1
@@ -331,12 +331,12 @@ async def test_a_command_of_an_earlier_start_that_counted_is_told_so_and_not_tha
     request = desk.command(AnswerRequest, "forward", None, boot=LAST_START)
     desk.runtime.handler.updater.handled_ids.add(f"ann-{request.command_id.hex()}")
     reply = await desk.ask(request)
-    assert (reply.verdict, outcome_of(reply)) == (Verdict.DONE, Outcome(ResultCode.REPEATED))
+    assert (reply.verdict, outcome_of(reply)) == (ReplyStatus.DONE, Outcome(ResultCode.REPEATED))
 
 
 async def test_the_same_id_of_two_devices_is_two_commands(desk: Desk) -> None:
     request = desk.command(PhaseRequest, Phase.CORRECTIONS)
-    assert (await desk.ask(request, "ann")).verdict is Verdict.DONE
+    assert (await desk.ask(request, "ann")).verdict is ReplyStatus.DONE
     assert why(await desk.ask(request, "ben")) == "held"
 
 
@@ -354,14 +354,14 @@ async def test_a_lesson_that_can_never_be_written_is_told_as_unsaved(desk: Desk)
     desk.run()
     desk.write(error="the disk is full")
     reply = await reply_of(task)
-    assert (reply.verdict, why(reply), reply.body["text"]) == (Verdict.UNSAVED, "unsaved", "the disk is full")
+    assert (reply.verdict, why(reply), reply.body["text"]) == (ReplyStatus.UNSAVED, "unsaved", "the disk is full")
 
 
 async def test_a_lesson_that_is_not_durable_in_time_is_told_as_unsaved_and_counts_when_it_is() -> None:
     desk = Desk(longest_wait_s=0.0)
     request = desk.answer()
     reply = await desk.ask(request, write=False)
-    assert (reply.verdict, why(reply)) == (Verdict.UNSAVED, "unsaved")
+    assert (reply.verdict, why(reply)) == (ReplyStatus.UNSAVED, "unsaved")
     assert outcome_of(reply) == Outcome(RefusalCode.NOT_SAVED_YET)
     desk.run()
     desk.write()
@@ -378,7 +378,7 @@ async def test_one_who_hangs_up_does_not_cost_the_next_copy_its_reply(desk: Desk
         await turns()
         desk.run()
         desk.write()
-        assert (await reply_of(again)).verdict is Verdict.DONE
+        assert (await reply_of(again)).verdict is ReplyStatus.DONE
 
 
 async def test_a_take_is_refused_while_the_other_one_drives_and_not_after(desk: Desk) -> None:
@@ -408,8 +408,8 @@ async def test_a_reward_and_a_correction_mean_the_decision_of_the_picture(desk: 
     [
         (lambda desk: desk.command(SessionRequest, "morning"), Outcome.of(ResultCode.SESSION_BEGUN, session="morning")),
         (lambda desk: desk.command(SessionRequest, None), Outcome(RefusalCode.NO_SESSION)),
-        (lambda desk: desk.command(ReleaseRequest, "ben"), Outcome.of(ResultCode.HANDED_OVER, teacher="ben")),
-        (lambda desk: desk.command(ReleaseRequest, None), Outcome(ResultCode.RELEASED)),
+        (lambda desk: desk.command(HandOverRequest, "ben"), Outcome.of(ResultCode.HANDED_OVER, teacher="ben")),
+        (lambda desk: desk.command(HandOverRequest, None), Outcome(ResultCode.RELEASED)),
         (lambda desk: desk.command(UndoRequest, None), Outcome(RefusalCode.NO_LESSON)),
         (
             lambda desk: desk.command(BehaviourRequest, "back", 7),
@@ -453,7 +453,7 @@ async def test_a_stop_among_much_else_is_handed_to_the_next_tick(desk: Desk) -> 
     for command in waiting:
         desk.runtime.inbox.put(command)
     desk.run()
-    assert (await reply_of(task)).verdict is Verdict.DONE
+    assert (await reply_of(task)).verdict is ReplyStatus.DONE
 
 
 # Copies of the knowledge.
@@ -483,12 +483,12 @@ async def test_a_copy_is_made_once_and_answered_with_its_name_and_fingerprint(de
 
 async def test_an_export_likewise(desk: Desk) -> None:
     reply = await desk.ask(desk.command(ExportRequest))
-    assert (reply.verdict, reply.body["name"]) == (Verdict.DONE, "lessons.csv")
+    assert (reply.verdict, reply.body["name"]) == (ReplyStatus.DONE, "lessons.csv")
 
 
 async def test_an_export_as_package_makes_the_archive(desk: Desk) -> None:
     reply = await desk.ask(desk.command(ExportRequest, PACKAGE))
-    assert (reply.verdict, reply.body["name"]) == (Verdict.DONE, "lessons.zip")
+    assert (reply.verdict, reply.body["name"]) == (ReplyStatus.DONE, "lessons.zip")
 
 
 async def test_a_file_is_read_in_parts_and_an_unknown_one_is_refused(desk: Desk) -> None:
@@ -506,7 +506,7 @@ async def test_a_copy_that_the_disk_does_not_take_is_told_with_the_reason(
 ) -> None:
     desk.shelf.problem = "saved: nothing can be saved there; give a folder that has room"
     reply = await desk.ask(desk.command(kind, *COMMANDS[kind]))
-    assert (reply.verdict, reply.body["text"]) == (Verdict.UNSAVED, desk.shelf.problem)
+    assert (reply.verdict, reply.body["text"]) == (ReplyStatus.UNSAVED, desk.shelf.problem)
 
 
 async def test_a_copy_that_takes_long_goes_on_and_is_told_to_whoever_asks_again() -> None:
@@ -530,18 +530,18 @@ async def test_an_exam_is_begun_by_the_teacher_alone_and_once() -> None:
     assert why(await desk.ask(desk.command(ExamRequest))) == "held"
     request = desk.command(ExamRequest)
     first = await desk.ask(request, "bob")
-    assert (first.verdict, await desk.ask(request, "bob")) == (Verdict.DONE, first)
+    assert (first.verdict, await desk.ask(request, "bob")) == (ReplyStatus.DONE, first)
     assert desk.shelf.examined == 1
     desk.exam = ExamStatus(True, 0.25, "exam without teacher, world a")
     assert why(await desk.ask(desk.command(ExamRequest), "bob")) == "refused"
-    told = (await desk.ask(ExamStandingRequest())).body["exam"]
+    told = (await desk.ask(ExamStatusRequest())).body["exam"]
     assert EXAM.read(decode_answer(encode_answer(told))) == desk.exam
 
 
 async def test_a_real_robot_is_not_examined(desk: Desk) -> None:
     await desk.ask(desk.command(TakeRequest))
-    for request in (desk.command(ExamRequest), ExamStandingRequest()):
-        assert (await desk.ask(request)).verdict is Verdict.NOT_HERE
+    for request in (desk.command(ExamRequest), ExamStatusRequest()):
+        assert (await desk.ask(request)).verdict is ReplyStatus.NOT_HERE
     assert desk.shelf.examined == 0
 
 
@@ -560,7 +560,7 @@ async def test_the_next_run_is_its_teachers_to_begin_and_ends_this_one(monkeypat
     assert not ended
     request = desk.command(NextRunRequest, "b", "eight", True)
     reply = await desk.ask(request)
-    assert (reply.verdict, await desk.ask(request)) == (Verdict.DONE, reply)
+    assert (reply.verdict, await desk.ask(request)) == (ReplyStatus.DONE, reply)
     assert desk.simulation.prepared == [("b", "eight", True, TeacherNow("ann", 1, "noon"))]
     assert ended == [True]
     assert why(await desk.ask(desk.command(NextRunRequest, "c", None, False))) == "refused"
@@ -583,7 +583,7 @@ async def test_at_another_speed_the_teachers_leases_are_as_many_times_longer_in_
     assert why(await desk.ask(desk.command(SpeedRequest, 4))) == "held"
     await desk.ask(desk.command(TakeRequest))
     assert why(await desk.stream(desk.watch(age=STREAM_TICKS + 1))) == "stale"
-    assert (await desk.ask(desk.command(SpeedRequest, 4))).verdict is Verdict.DONE
+    assert (await desk.ask(desk.command(SpeedRequest, 4))).verdict is ReplyStatus.DONE
     desk.run()
     assert desk.speed.wanted == 4
     assert why(await desk.stream(desk.watch(age=4 * STREAM_TICKS))) == ""
@@ -601,7 +601,7 @@ async def test_back_to_the_start_is_refused_after_a_stop_as_any_place_is() -> No
     yard = Yard()
     desk = Desk(ground=yard)
     await desk.ask(desk.command(TakeRequest))
-    assert (await desk.ask(desk.command(BackToStartRequest))).verdict is Verdict.DONE
+    assert (await desk.ask(desk.command(BackToStartRequest))).verdict is ReplyStatus.DONE
     request = desk.command(BackToStartRequest)
     await desk.ask(desk.stop())
     assert why(await desk.ask(request)) == "refused"
@@ -620,7 +620,7 @@ async def test_a_file_is_uploaded_by_the_teacher_in_parts_and_loaded_once(monkey
     assert why(await desk.ask(UploadRequest(LAST_START, upload, 0, b"PK"))) == "boot"
     fingerprint = hashlib.sha256(content).digest()
     assert why(await desk.ask(desk.command(LoadRequest, upload, bytes(32)))) == "refused"
-    assert (await desk.ask(desk.command(LoadRequest, upload, fingerprint))).verdict is Verdict.DONE
+    assert (await desk.ask(desk.command(LoadRequest, upload, fingerprint))).verdict is ReplyStatus.DONE
     assert desk.simulation.prepared == [(content, TeacherNow("ann", 1, None))]
 
 
@@ -635,7 +635,7 @@ async def test_a_real_robot_has_no_next_run(desk: Desk) -> None:
         SimulationRequest(),
     )
     for request in requests:
-        assert (await desk.ask(request)).verdict is Verdict.NOT_HERE
+        assert (await desk.ask(request)).verdict is ReplyStatus.NOT_HERE
 
 
 # Looking.
@@ -664,13 +664,13 @@ async def test_who_asks_why_all_the_time_is_told_ten_times_a_second(desk: Desk) 
     """An answer takes a millisecond of the loop, so nobody may have as many as he likes."""
     desk.run(1)
     at_once = [(await desk.ask(WhyRequest(), "bob")).verdict for _ in range(20)]
-    assert at_once.count(Verdict.DONE) == 5
-    assert set(at_once[5:]) == {Verdict.CONFLICT}
-    assert (await desk.ask(WhyRequest(), "ann")).verdict is Verdict.DONE
+    assert at_once.count(ReplyStatus.DONE) == 5
+    assert set(at_once[5:]) == {ReplyStatus.CONFLICT}
+    assert (await desk.ask(WhyRequest(), "ann")).verdict is ReplyStatus.DONE
     answered = 0
     for _ in range(100):
         desk.run(1)
-        answered += (await desk.ask(WhyRequest(), "bob")).verdict is Verdict.DONE
+        answered += (await desk.ask(WhyRequest(), "bob")).verdict is ReplyStatus.DONE
     assert answered == 10
 
 
@@ -709,7 +709,7 @@ async def test_the_newest_lessons_come_first_with_who_when_and_whether_they_stan
 async def test_a_real_robot_has_no_world_to_tell_of(desk: Desk) -> None:
     for request in (WorldRequest(), *(desk.command(kind, *COMMANDS[kind]) for kind in (MoveWallRequest, PlaceRequest))):
         reply = await desk.ask(request)
-        assert (reply.verdict, outcome_of(reply)) == (Verdict.NOT_HERE, Outcome(RefusalCode.NOT_SIMULATED))
+        assert (reply.verdict, outcome_of(reply)) == (ReplyStatus.NOT_HERE, Outcome(RefusalCode.NOT_SIMULATED))
 
 
 async def test_a_simulated_world_is_told_and_changed() -> None:
@@ -726,7 +726,7 @@ async def test_a_simulated_world_is_told_and_changed() -> None:
     }
     move = desk.command(MoveWallRequest, "box", 0.5, -0.25)
     reply = await desk.ask(move)
-    assert (reply.verdict, outcome_of(reply)) == (Verdict.DONE, Outcome.of(ResultCode.WALL_MOVED, name="box"))
+    assert (reply.verdict, outcome_of(reply)) == (ReplyStatus.DONE, Outcome.of(ResultCode.WALL_MOVED, name="box"))
     assert await desk.ask(move) == reply  # sent again: it moves once
     assert outcome_of(await desk.ask(desk.command(PlaceRequest, 1.0, 2.0, 0.5))) == Outcome(ResultCode.ROBOT_PLACED)
     assert yard.changes == [("box", 0.5, -0.25), (1.0, 2.0, 0.5)]
@@ -760,7 +760,10 @@ async def test_an_appraisal_is_about_the_picture_and_counts_once(desk: Desk) -> 
     assert opinion_at(desk, 700) is None
     assert opinion_at(desk, 100) == -1
     again = await desk.ask(desk.command(AppraiseRequest, "bad", desk.tick))
-    assert (again.verdict, outcome_of(again)) == (Verdict.DONE, Outcome.of(ResultCode.CRITIC_AGREED, appraisal="bad"))
+    assert (again.verdict, outcome_of(again)) == (
+        ReplyStatus.DONE,
+        Outcome.of(ResultCode.CRITIC_AGREED, appraisal="bad"),
+    )
     lessons = (await desk.ask(LessonsRequest(5))).body["lessons"]
     assert [text for _, text, *_ in lessons] == ["appraisal RLA 1 taught: bad"]  # that it agreed is no lesson
 
@@ -786,7 +789,7 @@ async def test_the_robot_tells_what_it_can_follow_and_follows_what_it_is_told() 
     assert (await desk.ask(HelloRequest())).body["behaviours"] == ["straight_on", "turn_left"]
     reply = await desk.ask(desk.command(PursueRequest, "turn_left"))
     assert (reply.verdict, outcome_of(reply)) == (
-        Verdict.DONE,
+        ReplyStatus.DONE,
         Outcome.of(ResultCode.BEHAVIOUR_WANTED, behaviour="turn_left"),
     )
     reply = await desk.ask(desk.command(PursueRequest, "fly"))

@@ -22,13 +22,13 @@ from kurt2rt.channel.protocol.requests import (
     VERSION,
     AnswerRequest,
     AppraiseRequest,
-    BeAtRequest,
     BehaviourRequest,
     CommandRequest,
     CorrectRequest,
     DeleteRequest,
     DriveRequest,
     ExportRequest,
+    HandOverRequest,
     HelloRequest,
     LessonsRequest,
     MoveWallRequest,
@@ -36,7 +36,6 @@ from kurt2rt.channel.protocol.requests import (
     PhaseRequest,
     PlaceRequest,
     PursueRequest,
-    ReleaseRequest,
     ReplaceRequest,
     Request,
     ResumeRequest,
@@ -46,6 +45,7 @@ from kurt2rt.channel.protocol.requests import (
     SeekRequest,
     SeekRlaRequest,
     SessionRequest,
+    SetLocationRequest,
     SituationsRequest,
     StopRequest,
     TakeRequest,
@@ -55,7 +55,7 @@ from kurt2rt.channel.protocol.requests import (
 )
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.pairing import Pairing, pair, renew
-from kurt2rt.channel.server.reply import Reply, Verdict, done, refusal, unsaved
+from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal, unsaved
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.outcome_text import text_of
 from kurt2rt.core.rla.rla import MID, Phase
@@ -151,7 +151,7 @@ async def test_it_takes_its_name_from_the_pairing_and_sees_the_robot(
     assert client.name == "phone"
     await seen(client, lambda: client.state == robot.state)
     assert client.state_age_s < 10.0
-    assert client.link.pictures_per_s > 0.0
+    assert client.link.states_per_s > 0.0
     assert client.trouble == ""
     assert client.restarts == 0
 
@@ -216,7 +216,7 @@ async def test_doubled_and_overtaken_pictures_never_go_back_in_time(pairing: Pai
 
 async def test_it_asks_what_robot_this_is(client: TeacherClient, robot: StandInRobot) -> None:
     async def introduces_itself(_: Request) -> Reply:
-        return Reply(Verdict.DONE, HELLO)
+        return Reply(ReplyStatus.DONE, HELLO)
 
     robot.mind = introduces_itself
     hello = await client.hello()
@@ -237,7 +237,7 @@ async def test_a_robot_of_another_version_is_not_understood_and_it_is_said_what_
     async def speaks_otherwise(_: Request) -> Reply:
         # An older robot lacks what was added since: that must not be what is complained of.
         lacking = {key: value for key, value in HELLO.items() if key not in ("appraisals", "trusted_from")}
-        return Reply(Verdict.DONE, {**lacking, "v": version})
+        return Reply(ReplyStatus.DONE, {**lacking, "v": version})
 
     robot.mind = speaks_otherwise
     said = f"speaks version {version} of the wire contract, .* bring {older} kurt2rt up to date"
@@ -248,10 +248,10 @@ async def test_a_robot_of_another_version_is_not_understood_and_it_is_said_what_
 async def test_lessons_and_world_come_as_values(client: TeacherClient, robot: StandInRobot) -> None:
     async def tells(request: Request) -> Reply:
         if isinstance(request, LessonsRequest):
-            return Reply(Verdict.DONE, {"lessons": [["phone-01", "RLA 7: forward", "phone", 1, 42, "", False]]})
+            return Reply(ReplyStatus.DONE, {"lessons": [["phone-01", "RLA 7: forward", "phone", 1, 42, "", False]]})
         corners = [[0.0, 0.0], [1.0, 0.0]]
         world = {"version": 3, "name": "A", "size": [3, 4], "outline": corners, "walls": [["north", corners]]}
-        return Reply(Verdict.DONE, {**world, "round": [["pillar", 1.0, 2.0, 0.1]]})
+        return Reply(ReplyStatus.DONE, {**world, "round": [["pillar", 1.0, 2.0, 0.1]]})
 
     robot.mind = tells
     assert await client.lessons(5) == (LessonLine("phone-01", "RLA 7: forward", "phone", 1, 42, "", False),)
@@ -263,7 +263,7 @@ async def test_lessons_and_world_come_as_values(client: TeacherClient, robot: St
 
 async def test_the_situations_that_have_a_name_are_read(client: TeacherClient, robot: StandInRobot) -> None:
     async def tells(_: Request) -> Reply:
-        return Reply(Verdict.DONE, {"situations": ["door", "window"]})
+        return Reply(ReplyStatus.DONE, {"situations": ["door", "window"]})
 
     robot.mind = tells
     assert await client.situations() == ("door", "window")
@@ -275,7 +275,7 @@ async def test_the_situations_that_have_a_name_are_read(client: TeacherClient, r
 
 async def test_a_real_robot_has_no_world_to_tell_of(client: TeacherClient, robot: StandInRobot) -> None:
     async def is_real(_: Request) -> Reply:
-        return Reply(Verdict.NOT_HERE, {"why": "refused", "text": "this robot is not simulated"})
+        return Reply(ReplyStatus.NOT_HERE, {"why": "refused", "text": "this robot is not simulated"})
 
     robot.mind = is_real
     assert await client.world() is None
@@ -286,7 +286,7 @@ async def test_a_real_robot_has_no_world_to_tell_of(client: TeacherClient, robot
 
 async def test_each_command_says_on_which_picture_it_was_given(client: TeacherClient, robot: StandInRobot) -> None:
     async def introduces_itself(request: Request) -> Reply:
-        return Reply(Verdict.DONE, HELLO) if isinstance(request, HelloRequest) else await agrees(request)
+        return Reply(ReplyStatus.DONE, HELLO) if isinstance(request, HelloRequest) else await agrees(request)
 
     robot.mind = introduces_itself
     robot.showing = False
@@ -303,14 +303,14 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
     await client.undo("phone-01")
     await client.set_phase(Phase.CORRECTIONS)
     await client.pursue("turn_left")
-    await client.answer("turn_left", level=MID, beside=True)
+    await client.answer("turn_left", level=MID, alternative=True)
     await client.correct("turn_left", of=80, level=MID)
     await client.name_situation("door", of=81)
     await client.seek("door")
     await client.seek_rla(12)
     await client.seek_like({"x_m": 1.5}, 0.25)
     await client.stop_seeking()
-    await client.be_at("door")
+    await client.set_location("door")
     await client.begin_session("morning")
     await client.end_session()
     await client.resume()
@@ -335,19 +335,19 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
         (UndoRequest, {"lesson": "phone-01"}),
         (PhaseRequest, {"phase": Phase.CORRECTIONS}),
         (PursueRequest, {"behaviour": "turn_left"}),
-        (AnswerRequest, {"action": "turn_left", "decision_tick": None, "level": MID, "beside": True}),
+        (AnswerRequest, {"action": "turn_left", "decision_tick": None, "level": MID, "alternative": True}),
         (CorrectRequest, {"action": "turn_left", "decision_tick": 80, "level": MID}),
         (NameRequest, {"name": "door", "decision_tick": 81}),
         (SeekRequest, {"name": "door"}),
         (SeekRlaRequest, {"rla_id": 12}),
         (SeekLikeRequest, {"features": (("x_m", 1.5),), "tolerance": 0.25}),
         (SeekRequest, {"name": None}),
-        (BeAtRequest, {"name": "door"}),
+        (SetLocationRequest, {"name": "door"}),
         (SessionRequest, {"name": "morning"}),
         (SessionRequest, {"name": None}),
         (ResumeRequest, {}),
         (TakeRequest, {}),
-        (ReleaseRequest, {"to": "laptop"}),
+        (HandOverRequest, {"to": "laptop"}),
         (SaveRequest, {"label": "after lunch"}),
         (ExportRequest, {"form": "table"}),
         (ExportRequest, {"form": "package"}),
@@ -378,7 +378,7 @@ async def test_an_answer_tells_what_was_done(client: TeacherClient, robot: Stand
             Answer(False, "held", text_of(HELD), 5, outcome=HELD),
         ),
         (unsaved(NOT_SAVED, 5), Answer(False, "unsaved", "the disk is full", 5, outcome=NOT_SAVED)),
-        (Reply(Verdict.NOT_HERE), Answer(False, "4.04 Not Found", "", -1)),
+        (Reply(ReplyStatus.NOT_HERE), Answer(False, "4.04 Not Found", "", -1)),
     ],
 )
 async def test_a_refusal_is_an_answer(client: TeacherClient, robot: StandInRobot, reply: Reply, answer: Answer) -> None:
@@ -564,7 +564,7 @@ async def test_a_stop_ends_what_would_move_the_robot_and_is_not_answered_yet(
 
     async def hears_only_stops(request: Request) -> Reply:
         if isinstance(request, HelloRequest):
-            return Reply(Verdict.DONE, HELLO)
+            return Reply(ReplyStatus.DONE, HELLO)
         return await (never_answers if isinstance(request, kind) else agrees)(request)
 
     robot.mind = hears_only_stops
@@ -578,7 +578,7 @@ async def test_a_stop_ends_what_would_move_the_robot_and_is_not_answered_yet(
         await robot.hears(kind, 2)
         stop = await client.stop()
     assert stop.accepted
-    assert answers == [local_refusal("stopped", Outcome.of(RefusalCode.STOPPED_MEANWHILE, command=what))]
+    assert answers == [local_refusal(RefusalCode.STOPPED_MEANWHILE, command=what)]
     # Longer than a command waits before it is sent again: four more commands go and come.
     sent = len(robot.all_of(kind))
     robot.mind = agrees
@@ -699,7 +699,7 @@ async def test_of_a_stop_that_is_never_answered_only_some_copies_are_remembered(
 async def test_a_later_wish_ends_a_stop_that_nobody_answered(pairing: Pairing, robot: StandInRobot, wish: str) -> None:
     async def does_not_hear_stops(request: Request) -> Reply:
         if isinstance(request, HelloRequest):
-            return Reply(Verdict.DONE, HELLO)
+            return Reply(ReplyStatus.DONE, HELLO)
         return await (never_answers if isinstance(request, StopRequest) else agrees)(request)
 
     robot.mind = does_not_hear_stops
@@ -753,10 +753,10 @@ async def test_a_press_drives_until_it_is_let_go_and_then_stops(client: TeacherC
     heard = robot.all_of(DriveRequest)
     assert (heard[0].left_m_s, heard[0].right_m_s) == (0.2, 0.2)
     assert (heard[-1].left_m_s, heard[-1].right_m_s) == (0.1, -0.1)
-    assert len({each.hold for each in heard}) == 1
+    assert len({each.press_id for each in heard}) == 1
     released = robot.heard[-1]
     assert isinstance(released, StopRequest)
-    assert released.hold == heard[0].hold
+    assert released.press_id == heard[0].press_id
     assert await client.let_go() is None
 
 
@@ -768,7 +768,7 @@ async def test_who_lets_go_has_let_go_before_he_is_answered_and_may_press_anew(
 
     robot.mind = does_not_answer_stops
     client.press(0.2, 0.2)
-    first = client._hand.hold
+    first = client._drive.press_id
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(client.let_go)
         await robot.hears(StopRequest)
@@ -777,14 +777,14 @@ async def test_who_lets_go_has_let_go_before_he_is_answered_and_may_press_anew(
         await robot.hears(StopRequest, 3)
         assert client.pressing
         tasks.cancel_scope.cancel()
-    second = client._hand.hold
+    second = client._drive.press_id
     assert first is not None
     assert second is not None
     assert second > first
-    assert {each.hold for each in robot.all_of(StopRequest)} == {first}
+    assert {each.press_id for each in robot.all_of(StopRequest)} == {first}
     robot.mind = agrees
     await client.stop()
-    assert robot.all_of(StopRequest)[-1].hold is None
+    assert robot.all_of(StopRequest)[-1].press_id is None
 
 
 async def test_a_block_that_ends_after_its_press_was_stopped_leaves_the_next_press_alone(
@@ -795,7 +795,7 @@ async def test_a_block_that_ends_after_its_press_was_stopped_leaves_the_next_pre
         await client.stop()
         assert client.press(0.1, 0.1)
     assert client.pressing
-    assert [each.hold for each in robot.all_of(StopRequest)] == [None]
+    assert [each.press_id for each in robot.all_of(StopRequest)] == [None]
     await client.let_go()
 
 
@@ -818,7 +818,7 @@ async def test_the_next_press_has_a_larger_number_also_after_a_restart_of_the_de
                 await robot.hears(DriveRequest, before + 1)
                 await client.let_go()
             heard += robot.all_of(DriveRequest)
-    holds = list(dict.fromkeys(each.hold for each in heard))
+    holds = list(dict.fromkeys(each.press_id for each in heard))
     assert len(holds) == 6
     assert holds == sorted(holds)
 
@@ -830,9 +830,10 @@ async def test_a_driving_block_ends_with_a_stop(client: TeacherClient, robot: St
         assert wheel.set(0.1, 0.2)
     released = robot.heard[-1]
     assert isinstance(released, StopRequest)
-    assert released.hold == wheel.hold == robot.all_of(DriveRequest)[-1].hold
+    assert released.press_id == wheel.press_id == robot.all_of(DriveRequest)[-1].press_id
     assert not wheel.set(0.2, 0.2)
-    assert wheel.ended == "let go"
+    assert wheel.ended is not None
+    assert wheel.ended.code is RefusalCode.PRESS_OVER
 
 
 async def test_a_driving_block_that_fails_ends_with_a_stop_too(client: TeacherClient, robot: StandInRobot) -> None:
@@ -870,7 +871,7 @@ async def test_a_client_that_ends_while_a_press_is_on_stops_the_robot(pairing: P
         await drive()
     released = robot.heard[-1]
     assert isinstance(released, StopRequest)
-    assert released.hold == robot.all_of(DriveRequest)[-1].hold
+    assert released.press_id == robot.all_of(DriveRequest)[-1].press_id
 
 
 @pytest.mark.parametrize("why", ["stopped", "held", "stale"])
@@ -886,7 +887,7 @@ async def test_a_refused_press_ends_and_says_why(client: TeacherClient, robot: S
         await eventually(lambda: not client.pressing)
         assert client.refusal is not None
         assert (client.refusal.why, client.refusal.outcome) == (why, HELD)
-        assert wheel.ended == text_of(HELD)
+        assert wheel.ended == client.refusal
         assert not wheel.set(0.2, 0.2)
     assert robot.all_of(StopRequest) == []
 
@@ -975,8 +976,8 @@ async def test_after_a_pause_of_the_link_it_observes_anew_and_the_robot_shows_to
         await link.until(lambda: link.up.lost > lost)
         link.mend()
         clock.ahead_s += 1.5
-        count = client._pictures.count
-        await eventually(lambda: client._pictures.count > count + 5)
+        count = client._stream.count
+        await eventually(lambda: client._stream.count > count + 5)
         await eventually(lambda: robot.site.observers == 1)
 
 

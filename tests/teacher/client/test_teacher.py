@@ -133,7 +133,7 @@ async def test_each_command_reaches_the_robot(pairing: Pairing) -> None:
         names = [type(each).__name__ for each in _without_doubles(robot.orders())]
         assert names[-9:] == [
             *("SessionRequest", "SessionRequest", "RewardRequest", "AppraiseRequest", "PursueRequest"),
-            *("PlaceRequest", "SaveRequest", "ReleaseRequest", "StopRequest"),
+            *("PlaceRequest", "SaveRequest", "HandOverRequest", "StopRequest"),
         ]
         assert robot.all_of(AppraiseRequest)[0].appraisal == "bad"
         assert robot.all_of(StopRequest)

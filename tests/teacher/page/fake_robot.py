@@ -17,7 +17,7 @@ from kurt2rt.channel.protocol.lesson_list import LessonLine
 from kurt2rt.channel.protocol.requests import TABLE, VERSION
 from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.channel.protocol.world import World
+from kurt2rt.channel.protocol.world import WorldView
 from kurt2rt.core.rla.rla import BASIC, Phase
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.runs.explain.facts import DecisionFacts
@@ -78,7 +78,7 @@ A_HELLO = Hello(
     simulated=True,
     phases=("supervised", "corrections", "reinforcement", "critic", "autonomous"),
 )
-A_WORLD = World(0, "A", (3.0, 4.0), ((0.0, 0.0), (3.0, 0.0), (3.0, 4.0), (0.0, 4.0)), (), ())
+A_WORLD = WorldView(0, "A", (3.0, 4.0), ((0.0, 0.0), (3.0, 0.0), (3.0, 4.0), (0.0, 4.0)), (), ())
 A_SIMULATION = SimulationView(
     "a",
     "wall_following",
@@ -176,12 +176,14 @@ class FakeRobot:
         await self._answer("why")
         return self.decided
 
-    async def world(self) -> World | None:
+    async def world(self) -> WorldView | None:
         await self._answer("world")
         return A_WORLD
 
-    async def answer(self, action: str, *, of: int | None = None, level: str = BASIC, beside: bool = False) -> Answer:
-        return await self._answer("answer", action, of, *(() if level == BASIC else (level, beside)))
+    async def answer(
+        self, action: str, *, of: int | None = None, level: str = BASIC, alternative: bool = False
+    ) -> Answer:
+        return await self._answer("answer", action, of, *(() if level == BASIC else (level, alternative)))
 
     async def correct(self, action: str, *, of: int | None = None, level: str = BASIC) -> Answer:
         return await self._answer("correct", action, of, *(() if level == BASIC else (level,)))
@@ -214,7 +216,7 @@ class FakeRobot:
     async def stop_seeking(self) -> Answer:
         return await self._answer("stop_seeking")
 
-    async def be_at(self, name: str) -> Answer:
+    async def set_location(self, name: str) -> Answer:
         return await self._answer("be_at", name)
 
     async def begin_session(self, name: str) -> Answer:
@@ -258,11 +260,11 @@ class FakeRobot:
         for offset in range(0, len(self.files[name]), 1000):
             yield FilePart(len(self.files[name]), self.files[name][offset : offset + 1000])
 
-    async def move_wall(self, name: str, dx: float, dy: float) -> Answer:
-        return await self._answer("move_wall", name, dx, dy)
+    async def move_wall(self, name: str, dx_m: float, dy_m: float) -> Answer:
+        return await self._answer("move_wall", name, dx_m, dy_m)
 
-    async def place(self, x: float, y: float, heading: float) -> Answer:
-        return await self._answer("place", x, y, heading)
+    async def place(self, x_m: float, y_m: float, heading_rad: float) -> Answer:
+        return await self._answer("place", x_m, y_m, heading_rad)
 
     async def put_back(self) -> Answer:
         return await self._answer("put_back")

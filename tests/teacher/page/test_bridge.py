@@ -22,7 +22,7 @@ from tests.teacher.page.fake_robot import A_PLACE, FakeRobot
 
 NAMES = ("resume", "take", "set_phase", "place", "correct", "hand_over", "pursue")
 STALE = text_of(Outcome(RefusalCode.OLD_PICTURE), Surface.PAGE)
-STOPPED = Outcome.of(RefusalCode.STOPPED_BY, teachers=("anna",))
+STOPPED = Outcome.of(RefusalCode.STOPPED_MEANWHILE, command="go")
 
 
 async def settled() -> None:
@@ -264,7 +264,7 @@ async def test_a_press_that_the_robot_ended_does_not_begin_again_by_itself() -> 
         page = Page(hall)
         await page.see(teacher="phone")
         page.press(hold=1)
-        hall.robot.pressing, hall.robot.refusal = False, local_refusal("stopped", STOPPED)
+        hall.robot.pressing, hall.robot.refusal = False, local_refusal(RefusalCode.STOPPED_MEANWHILE, command="go")
         page.press(hold=1)
         assert page.last("let_go")["text"] == text_of(STOPPED, Surface.PAGE)
         page.press(hold=1)

@@ -19,7 +19,7 @@ from kurt2rt.channel.protocol.requests import (
     TakeRequest,
 )
 from kurt2rt.channel.security.pairing import local_pairing
-from kurt2rt.channel.server.reply import Reply, Verdict, done, refusal
+from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.programs import AUTO
@@ -61,7 +61,7 @@ class Mind:
 
     async def __call__(self, request: Request) -> Reply:
         if isinstance(request, HelloRequest):
-            return Reply(Verdict.DONE, {**HELLO, "behaviours": [""], "simulated": self._simulated, **self.hello})
+            return Reply(ReplyStatus.DONE, {**HELLO, "behaviours": [""], "simulated": self._simulated, **self.hello})
         if not isinstance(request, _CarriedOut):
             return done(self._robot.state.tick)
         reply = done(self._robot.state.tick)

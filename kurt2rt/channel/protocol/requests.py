@@ -1,0 +1,431 @@
+"""Requests of a teacher's device: one class for each path of the robot, with a check for each field."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from typing import Annotated, Any, ClassVar, TypeVar, dataclass_transform, get_args, get_type_hints
+
+from kurt2rt.channel.protocol.schema import (
+    Bytes,
+    BytesUpTo,
+    Check,
+    Flag,
+    Float,
+    Int,
+    ManyOf,
+    OneOf,
+    OneWord,
+    OrNone,
+    Row,
+    Text,
+)
+from kurt2rt.core.rla.rla import BASIC, MID, Phase
+
+VERSION = 4
+"""Version of the wire contract, that is of /hello and /state. A device refuses any other and tells the remedy."""
+BOOT_BYTES = 4
+COMMAND_ID_BYTES = 8
+UPLOAD_ID_BYTES = 8
+SHA256_BYTES = 32
+HIGHEST_SPEED_M_S = 2.0
+LONGEST_WAY_M = 100.0
+LONGEST_TEXT = 64
+LONGEST_FILE_NAME = 128
+LONGEST_BEHAVIOUR_TICKS = 60_000
+"""Ten minutes at 100 Hz."""
+LARGEST_NUMBER = 2**53
+"""Largest tick, sequence number or RLA: the largest integer that every language holds exactly."""
+MOST_LESSONS = 20
+MOST_GOAL_FEATURES = 16
+MOST_SITUATIONS = 250
+"""Most names in an answer: 250 of the longest fit."""
+PART_BYTES = 8192
+"""Most bytes of a file in one answer, which the network carries in a few datagrams."""
+UPLOAD_PART_BYTES = 896
+"""Most bytes of a file in one request, whose body is at most 1024 bytes."""
+MOST_UPLOAD_BYTES = 8_000_000
+"""Largest file to upload: twice the size of 24 hours of teaching."""
+FASTEST = 10
+"""Most robot seconds in one second."""
+TABLE, PACKAGE = "table", "package"
+"""Forms of an export: CSV, and the archive of `kurt2rt knowledge export`."""
+
+Boot = Annotated[bytes, Bytes(BOOT_BYTES)]
+CommandId = Annotated[bytes, Bytes(COMMAND_ID_BYTES)]
+UploadId = Annotated[bytes, Bytes(UPLOAD_ID_BYTES)]
+Number = Annotated[int, Int(0, LARGEST_NUMBER)]
+NumberOrNone = Annotated[int | None, OrNone(Int(0, LARGEST_NUMBER))]
+Speed = Annotated[float, Float(HIGHEST_SPEED_M_S, "m/s")]
+Way = Annotated[float, Float(LONGEST_WAY_M, "m")]
+Angle = Annotated[float, Float(100.0, "rad")]
+Name = Annotated[str, Text(LONGEST_TEXT, least=1)]
+NameOrNone = Annotated[str | None, OrNone(Text(LONGEST_TEXT, least=1))]
+Level = Annotated[str, OneWord((BASIC, MID))]
+Features = Annotated[
+    tuple[tuple[str, float], ...],
+    ManyOf(Row((Text(LONGEST_TEXT, least=1), Float(1e6))), most=MOST_GOAL_FEATURES),
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """Message to one path; its fields are the places of the body, in order."""
+
+    path: ClassVar[str]
+    may_lack: ClassVar[int] = 0
+    """Number of last fields that an older device leaves out; their defaults count then."""
+    depth: ClassVar[int] = 1
+    """Deepest nesting of lists in the body."""
+
+
+@dataclass(frozen=True, slots=True)
+class StreamRequest(Request):
+    """Message of a stream in which only the newest counts; OSCORE's sequence numbers give the order."""
+
+    boot: Boot
+    """Start of the robot program that it is meant for."""
+    seen: Number
+    """Tick of the newest state or answer that the device had."""
+
+
+@dataclass(frozen=True, slots=True)
+class CommandRequest(Request):
+    """Command that is sent again until it is answered and counts once."""
+
+    boot: Boot
+    command_id: CommandId
+    """Random id, equal in all copies of the command."""
+    seen: Number
+    """Tick of the newest state that the teacher had."""
+
+
+REQUESTS: list[type[Request]] = []
+"""All requests, in the order in which the robot lists its paths."""
+
+_RequestT = TypeVar("_RequestT", bound=Request)
+
+
+@dataclass_transform(frozen_default=True)
+def _at(path: str, *, may_lack: int = 0, depth: int = 1) -> Callable[[type[_RequestT]], type[_RequestT]]:
+    """Return a decorator that makes a class the request of a path."""
+
+    def register(kind: type[_RequestT]) -> type[_RequestT]:
+        request = dataclass(frozen=True, slots=True)(kind)
+        request.path, request.may_lack, request.depth = path, may_lack, depth
+        REQUESTS.append(request)
+        return request
+
+    return register
+
+
+def checks_of(kind: type[Request]) -> tuple[tuple[str, Check], ...]:
+    """Return the name and the check of each field of a request, in the order of its body."""
+    hints: dict[str, Any] = get_type_hints(kind, include_extras=True)
+    return tuple((each.name, get_args(hints[each.name])[1]) for each in fields(kind))
+
+
+@_at("/hello")
+class HelloRequest(Request):
+    """Query of the robot's description."""
+
+
+@_at("/watch")
+class WatchRequest(StreamRequest):
+    """Sign that the teacher is there and sees the robot."""
+
+
+@_at("/drive")
+class DriveRequest(StreamRequest):
+    """Speeds of the wheels while the teacher drives by hand."""
+
+    press_id: Number
+    """Number of the press; it grows with each press."""
+    left_m_s: Speed
+    right_m_s: Speed
+
+
+@_at("/stop")
+class StopRequest(Request):
+    """Stop. It needs neither a boot id nor a fresh state."""
+
+    command_id: CommandId
+    press_id: NumberOrNone = None
+    """Press that ends, so that a late copy does not end the next one; None: everything."""
+
+
+@_at("/behaviour")
+class BehaviourRequest(CommandRequest):
+    """Run an action of the repertoire for a time."""
+
+    action: Name
+    ticks: Annotated[int, Int(1, LONGEST_BEHAVIOUR_TICKS)]
+
+
+@_at("/answer", may_lack=2)
+class AnswerRequest(CommandRequest):
+    """Answer a situation (phase 1)."""
+
+    action: Name
+    """Right action; at the mid level a taught behaviour."""
+    decision_tick: NumberOrNone
+    """Tick of the situation that is meant, here and in the other lessons; None: the present one."""
+    level: Level = BASIC
+    """Level of the situation."""
+    alternative: Annotated[bool, Flag()] = False
+    """Add the behaviour to those that the mid level knows for this situation."""
+
+
+@_at("/correct", may_lack=1)
+class CorrectRequest(CommandRequest):
+    """Replace a decided action by another one (phase 2)."""
+
+    action: Name
+    decision_tick: NumberOrNone
+    level: Level = BASIC
+    """Level of the wrong decision."""
+
+
+@_at("/reward")
+class RewardRequest(CommandRequest):
+    """Reward a decision (phase 3)."""
+
+    value: Annotated[int, OneOf((1, -1))]
+    decision_tick: NumberOrNone
+
+
+@_at("/appraise")
+class AppraiseRequest(CommandRequest):
+    """Teach the critic the value of a situation (phase 4)."""
+
+    appraisal: Name
+    """Name in the critic's repertoire."""
+    decision_tick: NumberOrNone
+
+
+@_at("/replace")
+class ReplaceRequest(CommandRequest):
+    """Give one RLA another action."""
+
+    rla_id: Number
+    action: Name
+
+
+@_at("/delete")
+class DeleteRequest(CommandRequest):
+    """Delete one RLA."""
+
+    rla_id: Number
+
+
+@_at("/undo")
+class UndoRequest(CommandRequest):
+    """Undo a lesson."""
+
+    lesson: NameOrNone
+    """Command id in the journal; None: the last lesson that stands."""
+
+
+@_at("/phase")
+class PhaseRequest(CommandRequest):
+    """Choose the training phase."""
+
+    phase: Annotated[Phase, OneOf(tuple(each.value for each in Phase), Phase)]
+
+
+@_at("/pursue")
+class PursueRequest(CommandRequest):
+    """Follow another taught behaviour; under a mid level, until that behaviour has finished."""
+
+    behaviour: Name
+
+
+@_at("/name")
+class NameRequest(CommandRequest):
+    """Give the mid level's situation a name, so that it can be a goal."""
+
+    name: Name
+    decision_tick: NumberOrNone
+
+
+@_at("/seek")
+class SeekRequest(CommandRequest):
+    """Go to a named situation; None: drop the goal."""
+
+    name: NameOrNone
+
+
+@_at("/seek/rla")
+class SeekRlaRequest(CommandRequest):
+    """Go to the situation that an RLA of the mid level knows."""
+
+    rla_id: Number
+
+
+@_at("/seek/like", depth=3)
+class SeekLikeRequest(CommandRequest):
+    """Go to any situation with these values of some mid-level features."""
+
+    features: Features
+    """Names and values."""
+    tolerance: Annotated[float, Float(1e6)]
+    """Largest difference of each value, in the feature's unit."""
+
+
+@_at("/here")
+class SetLocationRequest(CommandRequest):
+    """Tell the robot that it was put down at a named situation."""
+
+    name: Name
+
+
+@_at("/situations")
+class SituationsRequest(Request):
+    """Query of the named situations."""
+
+
+@_at("/session")
+class SessionRequest(CommandRequest):
+    """Begin a session under a name; None: end it."""
+
+    name: NameOrNone
+
+
+@_at("/resume")
+class ResumeRequest(CommandRequest):
+    """Drive again after a stop."""
+
+
+@_at("/take")
+class TakeRequest(CommandRequest):
+    """Become the robot's teacher."""
+
+
+@_at("/release")
+class HandOverRequest(CommandRequest):
+    """Stop being the robot's teacher."""
+
+    to: NameOrNone
+    """Next teacher; None: the first one that takes the robot."""
+
+
+@_at("/save")
+class SaveRequest(CommandRequest):
+    """Copy the knowledge on the robot."""
+
+    label: Annotated[str, Text(LONGEST_TEXT)]
+
+
+@_at("/export", may_lack=1)
+class ExportRequest(CommandRequest):
+    """Write the RLAs as a table on the robot, or all knowledge as one file to give away."""
+
+    form: Annotated[str, OneWord((TABLE, PACKAGE))] = TABLE
+
+
+@_at("/file")
+class FileRequest(Request):
+    """Query of one part of a file that `/save` or `/export` of this start made."""
+
+    name: Annotated[str, Text(LONGEST_FILE_NAME, least=1)]
+    offset: Number
+    """Position of the part's first byte in the file."""
+
+
+@_at("/exam")
+class ExamRequest(CommandRequest):
+    """Examine a copy of the present knowledge in simulation, while the robot goes on."""
+
+
+@_at("/exam/standing")
+class ExamStatusRequest(Request):
+    """Query of the exam's status."""
+
+
+@_at("/lessons")
+class LessonsRequest(Request):
+    """Query of the newest lessons."""
+
+    count: Annotated[int, Int(0, MOST_LESSONS)]
+
+
+@_at("/health")
+class HealthRequest(Request):
+    """Query of the health of the robot's program, bus, disk and machine."""
+
+
+@_at("/why")
+class WhyRequest(Request):
+    """Query of the facts behind the newest decision."""
+
+
+@_at("/world")
+class WorldRequest(Request):
+    """Query of the simulated world."""
+
+
+@_at("/world/move")
+class MoveWallRequest(CommandRequest):
+    """Shift a wall of the simulated world."""
+
+    name: Name
+    dx_m: Way
+    dy_m: Way
+
+
+@_at("/world/place")
+class PlaceRequest(CommandRequest):
+    """Put the simulated robot down elsewhere."""
+
+    x_m: Way
+    y_m: Way
+    heading_rad: Angle
+
+
+@_at("/world/start")
+class BackToStartRequest(CommandRequest):
+    """Put the simulated robot down at the start of its run."""
+
+
+@_at("/simulation")
+class SimulationRequest(Request):
+    """Query of the simulated world and task, and of those to choose from."""
+
+
+@_at("/simulation/run")
+class NextRunRequest(CommandRequest):
+    """End this run and begin the next one, in which the robot stands until GO."""
+
+    world: NameOrNone
+    """None: the present world."""
+    task: NameOrNone
+    """None: the present task."""
+    fresh: Annotated[bool, Flag()]
+    """Begin with an empty knowledge file; the present one is archived."""
+
+
+@_at("/simulation/speed")
+class SpeedRequest(CommandRequest):
+    """Set the speed of robot time."""
+
+    times: Annotated[int, Int(1, FASTEST)]
+    """Robot seconds in one second."""
+
+
+@_at("/upload")
+class UploadRequest(Request):
+    """One part of a file, in order; a repeated part changes nothing."""
+
+    boot: Boot
+    upload: UploadId
+    """Random id, equal in all parts of one file."""
+    offset: Number
+    """Position of the part's first byte in the file; 0 begins the file."""
+    part: Annotated[bytes, BytesUpTo(UPLOAD_PART_BYTES)]
+
+
+@_at("/load")
+class LoadRequest(CommandRequest):
+    """Begin the next run with the uploaded knowledge, in simulation."""
+
+    upload: UploadId
+    sha256: Annotated[bytes, Bytes(SHA256_BYTES)]
+    """SHA-256 of the whole file."""
