@@ -10,7 +10,7 @@ from kurt2rt.cli.json_output import print_json
 from kurt2rt.cli.progress import one_bar
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.navigation.lesson import errands_of
+from kurt2rt.experiments.navigation.guided_tour import navigation_settings
 from kurt2rt.experiments.navigation.plan import conduct, plan, read_outcomes, robot_time_s
 from kurt2rt.experiments.navigation.tables import sheets
 from kurt2rt.experiments.route.plan import basic_task_of
@@ -54,7 +54,7 @@ def errands(
             pictures.append(out / f"{task.name}-{outcome.seed}.png")
             draw_errands(stage, task.exam.worlds[0], outcome, pictures[-1])
     if as_json:
-        print_json({"tables": tables_of(sheets(outcomes, errands_of(task))), "pictures": pictures})
+        print_json({"tables": tables_of(sheets(outcomes, navigation_settings(task))), "pictures": pictures})
         return
     pictures_told = f"pictures  {pictures[0]}{' ...' if len(pictures) > 1 else ''}"
-    print_whole(console_of(), *map(as_rich, sheets(outcomes, errands_of(task))), pictures_told)
+    print_whole(console_of(), *map(as_rich, sheets(outcomes, navigation_settings(task))), pictures_told)

@@ -9,7 +9,7 @@ from hal.robot_settings import load_robot
 from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
-from kurt2rt.experiments.lockstep.exam import ExamResult, examine
+from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from simbridge.simulation import Kurt2SimulationFactory
@@ -74,7 +74,7 @@ def teachers_drive(task: TaskSettings) -> ExamResult:
     simulation = STAGE.open(world, 1, "exam")
 
     async def drive() -> ExamResult:
-        return await examine(simulation, ROBOT, task, world, [], seed=1, on_progress=lambda _: None, by_teacher=True)
+        return await examine(simulation, ROBOT, task, [], ExamSetup(world, 1, teacher_policy=True), lambda _: None)
 
     try:
         return anyio.run(drive)

@@ -19,7 +19,7 @@ def exam_result(world: str = "a", seed: int = 1, laps: float = 8.0, collisions: 
         duration_s=123.0 if fields.get("stuck") else 300.0,
         progress=laps,
         unit="laps",
-        way_m=10.0 * laps,
+        distance_travelled_m=10.0 * laps,
         collisions=collisions,
         stuck=fields.get("stuck", False),
         share_unknown=0.034,

@@ -18,7 +18,7 @@ from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.inbox import TeacherInbox
 from kurt2rt.core.tick import Tick, TickRecord
-from kurt2rt.experiments.lockstep.exam import NoTeachingAllowed
+from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.platform.ledger import TickTimer
 from kurt2rt.platform.scheduler import Scheduler
 from tests.core.perception.helpers import READINGS, SENSORS, definition

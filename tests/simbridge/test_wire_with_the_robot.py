@@ -11,7 +11,7 @@ from hal.bus_state import ControllerState
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.core.task_settings import load_task
-from kurt2rt.experiments.lockstep.exam import examine
+from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
 from simbridge.simulation import Kurt2Simulation
 from tests.simbridge.rig import ROBOT
 from tests.simbridge.wires import changed
@@ -60,9 +60,7 @@ async def policy_drives(wire: str, seed: int, seconds: float = 1.5, world: str =
     task = load_task("wall_following")
     task = task.model_copy(update={"exam": task.exam.model_copy(update={"duration_s": seconds})})
     with closing(Kurt2Simulation(ROBOT, world, seed, "exam", wire)) as simulation:
-        result = await examine(
-            simulation, ROBOT, task, world, [], seed=seed, on_progress=lambda _: None, by_teacher=True
-        )
+        result = await examine(simulation, ROBOT, task, [], ExamSetup(world, seed, teacher_policy=True), lambda _: None)
         assert simulation.robot.health.latched is None
         assert (result.collisions, result.stuck) == (0, False)
         return simulation.simulated_robot.state_hash()

@@ -8,6 +8,7 @@ from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
 from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, RobotUnderTest, kept_knowledge, lasting
 from kurt2rt.checks.bench.tick_budget import share_result
 from kurt2rt.experiments.lockstep.lesson import teach
+from kurt2rt.experiments.lockstep.runtimes import TrainingStore
 from kurt2rt.platform.ledger import percentiles_of
 
 TIMES_REAL_TIME = 60.0
@@ -41,9 +42,8 @@ async def measure_closed_loop(
     simulation = subject.open_simulation("bench closed_loop")
     try:
         with on_one_core() as core, kept_knowledge(subject, folder / "closed_loop.knowledge") as writer:
-            lesson = await teach(
-                simulation, subject.settings, task, writer, subject.events, seed=SEED, on_progress=after_second
-            )
+            training = TrainingStore(writer, subject.events)
+            lesson = await teach(simulation, subject.settings, task, training, seed=SEED, on_progress=after_second)
     finally:
         simulation.close()
     tick = percentiles_of(tick_ns)

@@ -11,6 +11,7 @@ from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick import InMemoryEventStore
 from kurt2rt.experiments.lockstep.lesson import teach
+from kurt2rt.experiments.lockstep.runtimes import TrainingStore
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.knowledge.journal.writer import JournalWriter, utc_now
@@ -42,8 +43,7 @@ async def learn(subject: RobotUnderTest, duration_s: float, on_progress: OnProgr
             simulation,
             subject.settings,
             task,
-            notebook,
-            (),
+            TrainingStore(notebook),
             seed=SEED,
             on_progress=lambda done_s: on_progress(done_s / duration_s),
         )

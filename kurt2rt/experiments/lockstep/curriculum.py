@@ -9,7 +9,7 @@ from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.lockstep.exam import ExamResult, examine
+from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.lesson import TrainingResult, teach
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
@@ -67,12 +67,9 @@ async def run_lesson(
                 simulation,
                 settings,
                 task,
-                keeping.writer,
-                keeping.opened.events,
+                keeping.training,
                 seed=seed,
                 on_progress=keeping.telling(report, f"teaching in world {world}", whole_s),
-                statistics=keeping.opened.counter,
-                saved=keeping.opened.saved,
                 plan=plan,
             )
         keeping.end(lesson.saved)
@@ -92,23 +89,21 @@ async def run_exams(
 ) -> tuple[WorldResult, ...]:
     """Examine in each world, and let the teacher's policy drive there for comparison, from the same start."""
 
-    async def drive(world: str, *, by_teacher: bool) -> ExamResult:
-        who = "the teacher's own drive" if by_teacher else "exam without teacher"
+    async def drive(world: str, *, teacher_policy: bool) -> ExamResult:
+        drive_name = "the teacher's own drive" if teacher_policy else "exam without teacher"
         with closing(stage.open(world, seed, "exam")) as simulation:
             return await examine(
                 simulation,
                 settings,
                 task,
-                world,
                 events,
-                seed=seed,
-                on_progress=lambda done_s: report(f"{who}, world {world}", done_s, task.exam.duration_s),
-                by_teacher=by_teacher,
+                ExamSetup(world, seed, teacher_policy),
+                lambda done_s: report(f"{drive_name}, world {world}", done_s, task.exam.duration_s),
             )
 
     results = []
     for world in worlds:
-        learned = await drive(world, by_teacher=False)
-        teacher = await drive(world, by_teacher=True)
+        learned = await drive(world, teacher_policy=False)
+        teacher = await drive(world, teacher_policy=True)
         results.append(WorldResult(learned, teacher, learned.verdict(teacher.progress, task.exam.success)))
     return tuple(results)

@@ -1,10 +1,11 @@
-"""An exam: the robot drives in a world without its teacher, in lockstep."""
+"""Exam: the robot drives in a world without its teacher, in lockstep."""
 
 import random
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
-from behaviors.metrics.task_metric import JUNCTIONS, RIGHT, Findings, TaskMetric
+from behaviors.metrics.task_metric import JUNCTIONS, RIGHT, TaskMetric
+from behaviors.metrics.task_metric import Findings as Metrics
 from hal.robot_settings import RobotSettings
 from hal.simulation import Position, Simulation
 from kurt2rt.core.basic.policy_level import PolicyLevel
@@ -16,52 +17,42 @@ from kurt2rt.core.task_settings import SuccessSettings, TaskSettings
 from kurt2rt.core.teaching.commands import Pursue
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
-from kurt2rt.experiments.lockstep.drive import Drive
+from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
-from kurt2rt.experiments.lockstep.lesson import TRAIL_STRIDE
+from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
 
 
-class NoTeachingAllowed:
-    """The keeper of a run in which nobody teaches: an event that comes all the same is a defect."""
-
-    error: str | None = None
-
-    def submit(self, event: TeachingEvent) -> None:
-        """Refuse it, loudly."""
-        raise RuntimeError(f"a lesson was given in an exam: {event}")
-
-
 @dataclass(frozen=True, slots=True)
 class ExamResult:
-    """How one drive went."""
+    """Counters and measures of one drive."""
 
     world: str
     seed: int
     duration_s: float
-    """Of the drive, to its end or to where the robot was stuck."""
+    """Time until the end, or until the robot was stuck or stopped."""
     progress: float
+    """Progress by the task's metric, in `unit`."""
     unit: str
-    """What progress is counted in."""
-    way_m: float
+    distance_travelled_m: float
     collisions: int
     stuck: bool
     share_unknown: float
-    """Share of ticks in which the robot did not know the situation."""
+    """Ratio of ticks in unknown situations, 0 to 1."""
     action_changes_per_s: float
     trail: tuple[Position, ...]
     unknown_positions: tuple[Position, ...]
     alarm: str = ""
-    """Why the guard stopped the robot for good, which ends the exam; empty when it did not."""
-    findings: Findings = field(default_factory=dict)
-    """What the course measured besides."""
+    """Reason of the guard's latched stop, which ends the exam; empty without one."""
+    findings: Metrics = field(default_factory=dict)
+    """Further measures of the metric."""
     collision_positions: tuple[Position, ...] = ()
     rescues: int = 0
-    """How often it was stuck and set down elsewhere, where that does not end the exam."""
+    """Number of rescues, if being stuck does not end the exam."""
     least_progress: float = 0.0
-    """A drive that comes no farther gets nowhere: no other drive is measured by it."""
+    """Progress up to which a drive gets nowhere and no other drive is measured by it."""
 
     def verdict(self, teachers_progress: float, success: SuccessSettings) -> ExamVerdict:
         """Return the verdict on this drive, measured by the progress of the teacher's own policy from the same start.
@@ -77,7 +68,7 @@ class ExamResult:
 
     @property
     def failed(self) -> bool:
-        """Whether it collided, got stuck or was stopped by the guard for good."""
+        """Whether it collided, got stuck or was stopped by a latch of the guard."""
         return self.collisions > 0 or self.stuck or bool(self.alarm)
 
     @property
@@ -87,143 +78,161 @@ class ExamResult:
 
     @property
     def right_share(self) -> float:
-        """Share of the junctions that were left as asked; 0 where there were none."""
+        """Ratio of the junctions that were left as required, 0 to 1; 0 without junctions."""
         junctions = self.findings.get(JUNCTIONS, 0.0)
         return self.findings.get(RIGHT, 0.0) / junctions if junctions else 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class ExamSetup:
+    """World, seed and variant of one exam."""
+
+    world: str
+    seed: int
+    teacher_policy: bool = False
+    """Whether the teacher's own policy drives instead of the RLAs."""
+    saved: Statistics | None = None
+    """Values and counters of the RLAs; None: initial ones."""
+    autonomous_values: Statistics | None = None
+    """Values of phase 5, by which competitors on the same condition are chosen; None: those of `saved`."""
+    stuck_ends: bool = True
+    """False: a stuck robot is rescued and drives on, so that collisions are counted over the whole time."""
+    on_tick: Callable[[TickRecord, TaskMetric], None] = lambda _record, _metric: None
+    """Called in every tick with the record and the updated metric."""
 
 
 async def examine(
     simulation: Simulation,
     settings: RobotSettings,
     task: TaskSettings,
-    world: str,
     events: Sequence[TeachingEvent],
-    *,
-    seed: int,
+    setup: ExamSetup,
     on_progress: Callable[[float], None],
-    by_teacher: bool = False,
-    saved: Statistics | None = None,
-    alone: Statistics | None = None,
-    stuck_ends: bool = True,
-    on_record: Callable[[TickRecord], None] = lambda _: None,
-    on_course: Callable[[TickRecord, TaskMetric], None] = lambda _record, _course: None,
 ) -> ExamResult:
-    """Drive for the exam's duration with what `events` have taught, or by the teacher's own policy.
+    """Drive for the exam's duration with the knowledge in `events`, or by the teacher's own policy.
 
-    `saved`: what rewards had made of that. `alone`: what phase 5 held RLAs to be worth, where the exam follows it: of
-    several on the very same condition the best by this one answers, as it would there.
-    `stuck_ends`: else a robot that is stuck is set down at the nearest start pose and goes on, so that collisions are
-    those of the whole time; it has got stuck all the same. `on_record` sees every tick,
-    `on_course` also how the course stands after it.
-    What is wanted is the examiner's to say, or the mid level's where there is one.
-    Raises LessonLostError when the robot refuses what the course asks of it, and UnknownActionError for a policy that
-    names an action which the repertoire lacks.
+    The mid level chooses the behaviours; without one the task's metric does.
+
+    Args:
+        on_progress: called once a second with the simulated seconds.
+
+    Raises:
+        LessonLostError: the robot refused a behaviour.
+        UnknownActionError: the policy names an action that the repertoire lacks.
     """
-    period_s = settings.can.cycle_s
-    wanted = ActiveBehaviour(task.behaviours)
-    level: Level | None = None
-    if by_teacher:
-        task = task.model_copy(update={"mid": None})  # its place is the teacher's, too
-        level = PolicyLevel(
-            task.policy.build(settings.infrared),
-            load_task_repertoire(task, settings),
-            round(task.learning.minimum_action_s / period_s),
-            wanted,
+    exam = ExamRun(simulation, settings, task, events, setup, on_progress)
+    await exam.drive()
+    return exam.result()
+
+
+class ExamRun(Episode):
+    """Episode without a teacher, in the world of an exam."""
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        settings: RobotSettings,
+        task: TaskSettings,
+        events: Sequence[TeachingEvent],
+        setup: ExamSetup,
+        on_progress: Callable[[float], None],
+    ) -> None:
+        behaviour = ActiveBehaviour(task.behaviours)
+        level: Level | None = None
+        if setup.teacher_policy:
+            task = task.model_copy(update={"mid": None})  # the policy chooses behaviours, too
+            level = PolicyLevel(
+                task.policy.build(settings.infrared),
+                load_task_repertoire(task, settings),
+                round(task.learning.minimum_action_s / settings.can.cycle_s),
+                behaviour,
+            )
+        runtime = build_runtime(
+            simulation.robot,
+            settings,
+            task,
+            events,
+            NoTeachingAllowed(),
+            LockstepClock(simulation.step),
+            level_override=level,
+            active_behaviour=behaviour,
+            checkpoint=setup.saved,
+            teacher_available=False,
         )
-    clock = LockstepClock(simulation.step)
-    runtime = build_runtime(
-        simulation.robot,
-        settings,
-        task,
-        events,
-        NoTeachingAllowed(),
-        clock,
-        level_override=level,
-        active_behaviour=wanted,
-        checkpoint=saved,
-        teacher_available=False,
-    )
-    if alone is not None:
-        runtime.reinforcement.rule.restore(_worths_in_phase_5(alone, runtime.level.system.rlas, task))
-    # Learner and teacher are given the same chance; what is asked of them parts when their ways do.
-    chance = random.Random(f"course of the exam in world {world}, seed {seed}")
-    drive = Drive(simulation, task, no_way_s=task.exam.stuck_after_s, period_s=period_s, chance=chance)
-    if task.exam.start == "in_sight":
-        drive.reposition(in_sight=True)
-    trail: list[Position] = []
-    unknown_positions: list[Position] = []
-    collision_positions: list[Position] = []
-    unknown = changes = ticks = stuck = 0
-    asking = False
-    action: str | None = None
-    alarm = ""
-    said = 0
+        if setup.autonomous_values is not None:
+            values = _values_in_phase_5(setup.autonomous_values, runtime.level.system.rlas, task)
+            runtime.reinforcement.rule.restore(values)
+        # Learner and teacher get the same random choices; their drives diverge at the first different action.
+        chance = random.Random(f"course of the exam in world {setup.world}, seed {setup.seed}")
+        super().__init__(simulation, runtime, chance, stuck_after_s=task.exam.stuck_after_s, on_progress=on_progress)
+        if task.exam.start == "in_sight":
+            self.reposition(in_sight=True)
+        self._setup = setup
+        self._collision_positions: list[Position] = []
+        self._action: str | None = None
+        self._action_changes = self._stuck_times = 0
+        self._alarm = ""
 
-    def say_what_is_wanted(now: str) -> None:
-        nonlocal said
-        if task.mid is None and drive.course.behaviour != now:
-            said += 1
-            runtime.inbox.put(Pursue(f"exam-{said}", "examiner", drive.course.behaviour))
+    async def drive(self) -> None:
+        """Drive until the end of the exam, a latched stop, or until the robot is stuck."""
+        duration_s = self.task.exam.duration_s
+        self._command_behaviour(self.runtime.active_behaviour.behaviour)
+        await self.run(round(duration_s / self.period_s))
+        self._on_progress(duration_s)
+        if self._alarm or (self._stuck_times and self._setup.stuck_ends):
+            self.metric.end_early()
 
-    def after_tick(record: TickRecord) -> None:
-        nonlocal unknown, changes, ticks, stuck, asking, action, alarm
-        require_carried_out(record, task)
-        on_record(record)
-        decision = record.decision
-        ticks = record.tick
-        unknown += decision.asking
-        if decision.asking and not asking:
-            unknown_positions.append(simulation.position)
-        asking = decision.asking
-        collision_positions.extend([simulation.position] * (simulation.collisions - len(collision_positions)))
-        changes += decision.action != action
-        action = decision.action
-        drive.follow()
-        on_course(record, drive.course)
-        if drive.course.stranded:
-            drive.reposition()
-        say_what_is_wanted(record.behaviour)
-        if record.guard_result.latched:  # nobody is there to say Go
-            alarm = record.guard_result.reasons[0]
-            runtime.scheduler.end()
-        elif drive.makes_no_way(waits=False):
-            stuck += 1
-            if stuck_ends:
-                runtime.scheduler.end()
+    def on_tick(self, record: TickRecord) -> None:
+        """Measure the drive; end it or rescue the robot if it is stuck."""
+        require_carried_out(record, self.task)
+        new_collisions = self.simulation.collisions - len(self._collision_positions)
+        self._collision_positions.extend([self.simulation.position] * new_collisions)
+        self._action_changes += record.decision.action != self._action
+        self._action = record.decision.action
+        self.measure()
+        self._setup.on_tick(record, self.metric)
+        if self.metric.stranded:
+            self.reposition()
+        self._command_behaviour(record.behaviour)
+        if record.guard_result.latched:  # an exam has no teacher who could resume
+            self._alarm = record.guard_result.reasons[0]
+            self.runtime.scheduler.end()
+        elif self.is_stuck():
+            self._stuck_times += 1
+            if self._setup.stuck_ends:
+                self.runtime.scheduler.end()
             else:
-                drive.rescue()
-        if record.tick % TRAIL_STRIDE == 0:
-            trail.append(simulation.position)
-        if record.tick % 100 == 0:
-            on_progress(record.now_s)
+                self.rescue()
 
-    say_what_is_wanted(wanted.behaviour)
-    await runtime.scheduler.run(round(task.exam.duration_s / period_s), after_tick)
-    on_progress(task.exam.duration_s)
-    if alarm or (stuck and stuck_ends):
-        drive.course.end_early()
-    return ExamResult(
-        world=world,
-        seed=seed,
-        duration_s=ticks * period_s,
-        progress=drive.course.progress,
-        unit=drive.course.unit,
-        way_m=drive.way_m,
-        collisions=simulation.collisions,
-        stuck=stuck > 0,
-        rescues=0 if stuck_ends else stuck,
-        share_unknown=unknown / ticks,
-        action_changes_per_s=changes / (ticks * period_s),
-        trail=tuple(trail),
-        unknown_positions=tuple(unknown_positions),
-        alarm=alarm,
-        findings=drive.course.findings,
-        collision_positions=tuple(collision_positions),
-        least_progress=task.course.least_progress(simulation, task.exam.duration_s),
-    )
+    def result(self) -> ExamResult:
+        """Return the counters and measures."""
+        simulation, metric, duration_s = self.simulation, self.metric, self.ticks * self.period_s
+        return ExamResult(
+            world=self._setup.world,
+            seed=self._setup.seed,
+            duration_s=duration_s,
+            progress=metric.progress,
+            unit=metric.unit,
+            distance_travelled_m=self.distance_travelled_m,
+            collisions=simulation.collisions,
+            stuck=self._stuck_times > 0,
+            rescues=0 if self._setup.stuck_ends else self._stuck_times,
+            share_unknown=self.unknown_ticks / self.ticks,
+            action_changes_per_s=self._action_changes / duration_s,
+            trail=tuple(self.trail),
+            unknown_positions=tuple(self.ask_positions),
+            alarm=self._alarm,
+            findings=metric.findings,
+            collision_positions=tuple(self._collision_positions),
+            least_progress=self.task.course.least_progress(simulation, self.task.exam.duration_s),
+        )
+
+    def _command_behaviour(self, current: str) -> None:
+        if self.task.mid is None and self.metric.behaviour != current:
+            self.send(Pursue(self.next_id("exam"), "examiner", self.metric.behaviour))
 
 
-def _worths_in_phase_5(alone: Statistics, rlas: Sequence[Rla], task: TaskSettings) -> Statistics:
-    """Of every RLA: those that phase 5 has said nothing of are worth there what they began with."""
-    began_with = task.reinforcement.alone.first_value
-    return replace(alone, values={rla.rla_id: alone.values.get(rla.rla_id, began_with) for rla in rlas})
+def _values_in_phase_5(autonomous: Statistics, rlas: Sequence[Rla], task: TaskSettings) -> Statistics:
+    """Return a value for every RLA; RLAs without a value of phase 5 get its initial value."""
+    initial = task.reinforcement.alone.first_value
+    return replace(autonomous, values={rla.rla_id: autonomous.values.get(rla.rla_id, initial) for rla in rlas})

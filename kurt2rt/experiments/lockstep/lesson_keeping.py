@@ -8,6 +8,7 @@ from hal.errors import UserError
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.runtimes import TrainingStore
 from kurt2rt.knowledge.journal.loading import OpenedKnowledge, open_for_teaching
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter, utc_now
 
@@ -28,6 +29,12 @@ class LessonKeeping:
         """Where lessons go to be kept (kurt2rt.core.tick.EventStore)."""
         self._file = file
         self._on_saved = on_saved
+
+    @property
+    def training(self) -> TrainingStore:
+        """Return the writer with the knowledge of the file, to teach on from there."""
+        opened = self.opened
+        return TrainingStore(self.writer, opened.events, opened.counter, opened.saved)
 
     def look(self) -> None:
         """Hear what became of lessons so far. Raises LessonLostError."""

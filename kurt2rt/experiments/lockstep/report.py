@@ -42,6 +42,8 @@ def render_curriculum(result: CurriculumResult, task: TaskSettings) -> Renderabl
 
 _TRAILS = ("trail", "unknown_positions", "collision_positions")
 """Fields of an exam that are for pictures."""
+_JSON_NAMES = {"distance_travelled_m": "way_m"}
+"""Keys that differ from the names of the fields."""
 
 
 def curriculum_as_data(result: CurriculumResult, task: TaskSettings) -> dict[str, Any]:
@@ -70,7 +72,8 @@ def exams_as_data(exams: Sequence[WorldResult], task: TaskSettings) -> dict[str,
 
 
 def _exam_as_data(exam: ExamResult) -> dict[str, Any]:
-    return {field.name: getattr(exam, field.name) for field in fields(exam) if field.name not in _TRAILS}
+    names = {field.name: _JSON_NAMES.get(field.name, field.name) for field in fields(exam) if field.name not in _TRAILS}
+    return {key: getattr(exam, name) for name, key in names.items()}
 
 
 def render_exams(exams: Sequence[WorldResult], task: TaskSettings) -> RenderableType:

@@ -43,8 +43,8 @@ class TeacherWorkload:
         """One after the other; the last one may be shorter."""
         return tuple(self._minutes)
 
-    def note(self, tick: int, command: Command) -> None:
-        """He says something; what is no teaching does not count."""
+    def count(self, tick: int, command: Command) -> None:
+        """Count a command; commands that do not teach are left out."""
         place = self._place(tick)
         now = self._minutes[place]
         match command:
@@ -58,8 +58,8 @@ class TeacherWorkload:
                 now = now._replace(appraisals=now.appraisals + 1)
         self._minutes[place] = now
 
-    def note_hands(self, tick: int, what: Hands) -> None:
-        """He does something."""
+    def count_manual(self, tick: int, what: Hands) -> None:
+        """Count a manual act."""
         place = self._place(tick)
         now = self._minutes[place]
         self._minutes[place] = now._replace(**{what: getattr(now, what) + 1})

@@ -1,4 +1,4 @@
-"""Sends a robot to goals, one after the other, without a teacher."""
+"""Navigation exam: a robot drives to goals, one after the other, without a teacher."""
 
 import math
 import random
@@ -7,34 +7,29 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from behaviors.metrics.errands import Errands
 from behaviors.metrics.town import length_m
-from hal.robot_settings import RobotSettings
 from hal.simulation import Pose, Simulation
 from kurt2rt.core.decision.goal import NamedGoal
 from kurt2rt.core.decision.plan_step import GoalStatus
-from kurt2rt.core.rla.rla import Rla, TeachingEvent
-from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.core.rla.usage_counter import StatisticsCounter
-from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.core.teaching.commands import BeAt, Command, Seek, StopSeeking
+from kurt2rt.core.rla.rla import Rla
+from kurt2rt.core.teaching.commands import BeAt, Seek, StopSeeking
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
-from kurt2rt.experiments.lockstep.exam import NoTeachingAllowed
-from kurt2rt.experiments.lockstep.stuck_detector import StuckDetector
+from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.navigation.goals import GoalChosen
-from kurt2rt.experiments.navigation.guided_tour import HOME
-from kurt2rt.experiments.navigation.lesson import TRAIL_STRIDE, places_of, walk_in
+from kurt2rt.experiments.navigation.guided_tour import TRAIL_STRIDE, rounded_places
 from kurt2rt.experiments.navigation.outcome import ErrandDone, ErrandsRun, How
-from kurt2rt.platform.clock import LockstepClock
-from kurt2rt.runtime import build_runtime
+from kurt2rt.experiments.navigation.tour_guide import HOME
+from kurt2rt.runtime import Runtime
 
 _EXAMINER = "examiner"
 _ASTRAY = 2.0
-"""Who has no plan has gone astray after so many times the shortest way."""
+"""Distance at which a drive without a plan has failed, as a multiple of the shortest."""
 
 
-class ByChance:
-    """Any of the ways that are possible at a place (kurt2rt.core.mid.mid_level.TieBreaker)."""
+class RandomChooser:
+    """Random choice among the ways that are possible at a place (kurt2rt.core.mid.mid_level.TieBreaker)."""
 
     def __init__(self, chance: random.Random) -> None:
         self._chance = chance
@@ -42,141 +37,132 @@ class ByChance:
         self._way: Rla | None = None
 
     def choose(self, group: tuple[Rla, ...], vector: NDArray[np.float64]) -> Rla | None:
-        """One of them, the same until the next place."""
+        """Return one RLA of the group; the same until the next place."""
         if vector is not self._at or self._way not in group:
             self._at, self._way = vector, self._chance.choice(group)
         return self._way
 
 
-async def run_errands(
-    simulation: Simulation,
-    settings: RobotSettings,
-    task: TaskSettings,
-    events: Sequence[TeachingEvent],
-    saved: Statistics,
-    goals: Sequence[GoalChosen],
-    home: Pose,
-    *,
-    how: How,
-    seed: int,
-    on_progress: Callable[[float], None],
-) -> ErrandsRun:
-    """One goal after the other, each from where the one before is.
+class GoalsRun(Episode):
+    """Episode in which the robot drives to goals, each from the end of the drive before.
 
-    A robot that does not come to a goal is set down there, and is told where it is. Without a plan a goal counts as
-    reached where the robot comes through it.
+    A robot that misses a goal is placed there and localised. Without a plan, a goal is reached by driving through it.
     """
-    period_s = settings.can.cycle_s
-    walk = walk_in(simulation.plan, task)
-    clock = LockstepClock(simulation.step)
-    runtime = build_runtime(
-        simulation.robot,
-        settings,
-        task,
-        events,
-        NoTeachingAllowed(),
-        clock,
-        statistics=StatisticsCounter(dict(saved.uses), dict(saved.transitions)),
-        checkpoint=saved,
-        teacher_available=False,
-    )
-    assert runtime.mid is not None
-    if how == "chance":
-        runtime.mid.chooser = ByChance(random.Random(f"ways of robot {seed}"))
-    limit = round(task.exam.duration_s / period_s)
-    done: list[ErrandDone] = []
-    trail: list[tuple[float, float]] = []
-    way = StuckDetector(task.exam.stuck_after_s, period_s, least_m=task.exam.stuck_within_m)
-    said = 0
-    number = ticks = 0
-    way_m = 0.0
-    start = before = home
-    touched = simulation.collisions
-    surprises = 0
 
-    def say(make: Callable[[str], Command]) -> None:
-        nonlocal said
-        said += 1
-        runtime.inbox.put(make(f"errands-{said}"))
+    trail_stride = TRAIL_STRIDE
 
-    def begin() -> None:
-        nonlocal start, before, way_m, ticks, touched, surprises
-        start = before = simulation.pose
-        way_m, ticks, touched, surprises = 0.0, 0, simulation.collisions, 0
-        way.restart()
-        if how == "planning":
-            say(lambda command_id: Seek(command_id, _EXAMINER, NamedGoal(goals[number].name)))
+    def __init__(
+        self,
+        simulation: Simulation,
+        runtime: Runtime,
+        goals: Sequence[GoalChosen],
+        *,
+        how: How,
+        seed: int,
+        on_goal: Callable[[float], None],
+    ) -> None:
+        """`runtime`: one with a mid level. `on_goal`: called with the number of goals that are done."""
+        task = runtime.task
+        super().__init__(
+            simulation,
+            runtime,
+            random.Random(f"errands of robot {seed}"),
+            stuck_after_s=task.exam.stuck_after_s,
+            on_progress=on_goal,
+        )
+        assert runtime.mid is not None
+        assert isinstance(self.metric, Errands)
+        if how == "chance":
+            runtime.mid.chooser = RandomChooser(random.Random(f"ways of robot {seed}"))
+        self._tracker = self.metric
+        self._goals = goals
+        self._how = how
+        self._limit_ticks = round(task.exam.duration_s / self.period_s)
+        self._done: list[ErrandDone] = []
+        self._start = self._pose
+        self._begun_tick = self._begun_collisions = self._surprises = 0
+        self._failure: str | None = None
 
-    def put(pose: Pose, name: str) -> None:
-        simulation.put(pose)
-        runtime.reposition()
-        walk.put(pose)
-        say(lambda command_id: StopSeeking(command_id, _EXAMINER))
-        say(lambda command_id: BeAt(command_id, _EXAMINER, name))
+    async def drive(self, home: Pose) -> ErrandsRun:
+        """Drive to all goals, from `home`."""
+        self._place_at(home, HOME)
+        if self._goals:
+            self._begin_goal()
+            await self.run(self._limit_ticks * len(self._goals) + 1)
+        return ErrandsRun(how=self._how, errands=tuple(self._done), trail=rounded_places(self.trail))
 
-    def judge(record: TickRecord) -> str | None:
-        """How the errand ended; empty: at its goal; None while it goes on."""
-        goal, decision = goals[number], record.decision
-        there = walk.street == goal.street
+    def on_tick(self, record: TickRecord) -> None:
+        """Measure the drive and judge whether it is over."""
+        require_carried_out(record, self.task)
+        self.measure()
+        if record.decision.plan is not None:
+            self._surprises = record.decision.plan.surprises
+        self._failure = self._judge(record)
+
+    def on_second(self, record: TickRecord) -> None:
+        """Report nothing: progress is counted in goals."""
+
+    def after_tick(self, record: TickRecord) -> None:
+        """Begin the next goal if the one before is reached or missed."""
+        super().after_tick(record)
+        if self._failure is None:
+            return
+        self._done.append(self._result(self._failure))
+        self._on_progress(float(len(self._done)))
+        if len(self._done) == len(self._goals):
+            self.runtime.scheduler.end()
+            return
+        if self._failure:
+            goal = self._goals[len(self._done) - 1]
+            if record.guard_result.latched:
+                self.simulation.robot.release()
+            self._place_at(goal.street.middle, goal.name)
+        self._begin_goal()
+
+    def _judge(self, record: TickRecord) -> str | None:
+        """Return why the goal was missed; empty: it is reached; None: the robot is on its way."""
+        goal, decision = self._goals[len(self._done)], record.decision
+        ticks = self.ticks - self._begun_tick
+        there = self._tracker.street == goal.street
         plan = decision.plan
-        if how == "planning":
+        if self._how == "planning":
             if plan is not None and ticks > 1 and plan.course is GoalStatus.ARRIVED:
                 return "" if there else "it took another place for it"
             if plan is not None and ticks > 1 and plan.course in (GoalStatus.NO_WAY, GoalStatus.LOST):
                 return plan.course.value
         elif there:
             return ""
-        elif way_m > _ASTRAY * length_m(goal.shortest):
+        elif self.distance_travelled_m > _ASTRAY * length_m(goal.shortest):
             return "astray"
         if record.guard_result.latched:
             return record.guard_result.reasons[0]
-        if way.none_since_window(simulation.position):
+        if self.is_stuck():
             return "stuck: " + (decision.cause.value if not decision.driving else "driving")
-        return "time" if ticks >= limit else None
+        return "time" if ticks >= self._limit_ticks else None
 
-    def after_tick(record: TickRecord) -> None:
-        nonlocal number, ticks, way_m, before, surprises
-        require_carried_out(record, task)
-        pose = simulation.pose
-        walk.follow(pose)
-        ticks += 1
-        way_m += math.hypot(pose.x_m - before.x_m, pose.y_m - before.y_m)
-        before = pose
-        if record.decision.plan is not None:
-            surprises = record.decision.plan.surprises
-        ended = judge(record)
-        if record.tick % TRAIL_STRIDE == 0:
-            trail.append(simulation.position)
-        if ended is None:
-            return
-        goal = goals[number]
-        shortest_m = length_m(goal.shortest, start, None if ended else pose)
-        done.append(
-            ErrandDone(
-                goal=goal.name,
-                why_not=ended,
-                seconds=ticks * period_s,
-                way_m=way_m,
-                shortest_m=shortest_m,
-                junctions=len(goal.shortest) - 1,
-                demonstrated=None if math.isinf(goal.demonstrated) else goal.demonstrated,
-                surprises=surprises,
-                collisions=simulation.collisions - touched,
-            )
+    def _result(self, failure: str) -> ErrandDone:
+        goal = self._goals[len(self._done)]
+        return ErrandDone(
+            goal=goal.name,
+            why_not=failure,
+            seconds=(self.ticks - self._begun_tick) * self.period_s,
+            way_m=self.distance_travelled_m,
+            shortest_m=length_m(goal.shortest, self._start, None if failure else self.simulation.pose),
+            junctions=len(goal.shortest) - 1,
+            demonstrated=None if math.isinf(goal.demonstrated) else goal.demonstrated,
+            surprises=self._surprises,
+            collisions=self.simulation.collisions - self._begun_collisions,
         )
-        on_progress(number + 1.0)
-        number += 1
-        if number == len(goals):
-            runtime.scheduler.end()
-            return
-        if ended:
-            if record.guard_result.latched:
-                simulation.robot.release()
-            put(goal.street.middle, goal.name)
-        begin()
 
-    put(home, HOME)
-    if goals:
-        begin()
-        await runtime.scheduler.run(limit * len(goals) + 1, after_tick)
-    return ErrandsRun(how=how, errands=tuple(done), trail=places_of(trail))
+    def _begin_goal(self) -> None:
+        self.restart_counting()
+        self._start = self._pose
+        self._begun_tick, self._begun_collisions, self._surprises = self.ticks, self.simulation.collisions, 0
+        if self._how == "planning":
+            goal = NamedGoal(self._goals[len(self._done)].name)
+            self.send(Seek(self.next_id("errands"), _EXAMINER, goal))
+
+    def _place_at(self, pose: Pose, name: str) -> None:
+        self.place(pose)
+        self.send(StopSeeking(self.next_id("errands"), _EXAMINER))
+        self.send(BeAt(self.next_id("errands"), _EXAMINER, name))

@@ -6,8 +6,8 @@ from matplotlib.figure import Figure
 
 from hal.simulation import SimulationFactory
 from kurt2rt.experiments.lockstep.trails import draw_trail
-from kurt2rt.experiments.navigation.guided_tour import HOME
 from kurt2rt.experiments.navigation.outcome import ErrandsOutcome
+from kurt2rt.experiments.navigation.tour_guide import HOME
 from kurt2rt.experiments.study.figure_style import START, save
 
 _LED = "#b0b0b0"

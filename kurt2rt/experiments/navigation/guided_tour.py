@@ -1,145 +1,176 @@
-"""A scripted teacher who leads the robot about: says at each place what is possible there, and names places."""
+"""Guided tour: a robot that knows the streets is led through a town, in lockstep."""
 
 import random
-from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 
-from behaviors.metrics.errands import Errands
+from behaviors.metrics.errands import Errands, ErrandsSettings
 from behaviors.metrics.town import Street
-from kurt2rt.core.rla.rla import MID
-from kurt2rt.core.task_settings import TeacherSettings
-from kurt2rt.core.teaching.commands import BeAt, Command, NameSituation, Pursue, Teach
+from hal.robot_settings import RobotSettings
+from hal.settings import SettingsError
+from hal.simulation import Pose, Simulation, WorldPlan
+from kurt2rt.core.rla.rla import MID, Phase
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.teaching.commands import Correct
 from kurt2rt.core.tick import TickRecord
+from kurt2rt.experiments.lockstep.command_checks import require_carried_out
+from kurt2rt.experiments.lockstep.episode import Episode
+from kurt2rt.experiments.lockstep.runtimes import TrainingStore, build_training_runtime
+from kurt2rt.experiments.navigation.outcome import Place
+from kurt2rt.experiments.navigation.tour_guide import TourGuide
+from kurt2rt.runtime import Runtime
+from kurt2rt.teacher.scripted.teacher import build_teacher, view_of_tick
 
-HOME = "home"
-_NAME = "scripted teacher"
-_NOTICES_WITHIN_S = 3.0
-"""From a junction that it has left to where the robot says so; later it has missed the junction."""
+TRAIL_STRIDE = 20
+"""Ticks between two points of a trail."""
 
 
-class TourGuide:
-    """Leads along a random route, and rather where he has not led it yet; sees the robot, and what its mid level says.
+@dataclass(frozen=True, slots=True)
+class TourResult:
+    """Counters and knowledge of one tour."""
 
-    Each way that he leads it for the first time he teaches, beside what was taught there; where the robot would do
-    something else, he says what is wanted.
+    teaching_s: float
+    home: Pose
+    named: dict[str, Street]
+    """Named places, each with the street that it is in."""
+    streets: tuple[Street | None, ...]
+    """Streets in the order of the tour; None where the robot was repositioned."""
+    ways: int
+    """Transitions from a street to the next that were taught."""
+    mid_rlas: int
+    basic_rlas: int
+    mid_asks: int
+    missed_junctions: int
+    corrections: int
+    """Corrections of the basic level."""
+    rescues: int
+    trail: tuple[Place, ...]
+    saved: Statistics
+    knowledge_hash: str
+
+
+def navigation_settings(task: TaskSettings) -> ErrandsSettings:
+    """Return the navigation settings of a task. Raises hal.settings.SettingsError for a task without goals."""
+    if isinstance(task.course, ErrandsSettings) and task.mid is not None:
+        return task.course
+    raise SettingsError(
+        "to run errands it needs the course errands, and a mid level of places", where=f"task {task.name}"
+    )
+
+
+def rounded_places(positions: Iterable[tuple[float, float]]) -> tuple[Place, ...]:
+    """Return positions in m, rounded to the millimetre."""
+    return tuple((round(x_m, 3), round(y_m, 3)) for x_m, y_m in positions)
+
+
+def street_tracker(plan: WorldPlan, task: TaskSettings) -> Errands:
+    """Return the metric that tracks a robot from street to street. Raises hal.settings.SettingsError."""
+    return navigation_settings(task).walk_in(plan, task.behaviours)
+
+
+async def guided_tour(
+    simulation: Simulation,
+    settings: RobotSettings,
+    task: TaskSettings,
+    training: TrainingStore,
+    *,
+    seed: int,
+    on_progress: Callable[[float], None],
+) -> TourResult:
+    """Lead the robot for the task's whole teaching time; its start pose is its home.
+
+    The basic level is answered and corrected meanwhile, as in its own training run.
+
+    Raises:
+        LessonLostError: the robot refused a command.
+        hal.settings.SettingsError: the task has no goals, or the world no streets.
     """
+    navigation_settings(task)
+    runtime = build_training_runtime(simulation, settings, task, training)
+    session = f"errands-{seed}-after-{len(training.events)}"
+    tour = TourRun(simulation, runtime, seed=seed, session=session, on_progress=on_progress)
+    await tour.drive()
+    return tour.result()
+
+
+class TourRun(Episode):
+    """Episode in which a scripted guide teaches the mid level, and a scripted teacher the basic one."""
+
+    trail_stride = TRAIL_STRIDE
 
     def __init__(
-        self, walk: Errands, names: int, settings: TeacherSettings, *, period_s: float, seed: int, session: str
+        self,
+        simulation: Simulation,
+        runtime: Runtime,
+        *,
+        seed: int,
+        session: str,
+        on_progress: Callable[[float], None],
     ) -> None:
-        """`walk`: where the robot is. `names`: so many places get one. `session`: as in ScriptedTeacher."""
-        self._walk = walk
-        self._names = names
-        self._session = session
-        self._chance = random.Random(f"route of {session}, seed {seed}")
-        self._reaction_ticks = round(settings.reaction_s / period_s)
-        self._patience_ticks = round(settings.patience_s / period_s)
-        self._notices_within_ticks = round(_NOTICES_WITHIN_S / period_s)
-        self._led: set[tuple[Street, str]] = set()
-        self._to_say: deque[Command] = deque()
-        self._wanted: str | None = None
-        """What is to be done at the next junction; None until the robot is at a place where that can be said."""
-        self._waited = 0
-        self._noticed = False
-        self._here: Street | None = None
-        self._unnoticed_ticks = 0
-        self._said = 0
-        self.named: dict[str, Street] = {}
-        """Where each name was given."""
-        self.missed = 0
-        """Junctions that the robot did not notice."""
+        task, settings = runtime.task, runtime.robot
+        teaching = task.teaching
+        self._teacher = build_teacher(task, settings, tuple(runtime.level.repertoire), seed=seed, session=session)
+        super().__init__(
+            simulation,
+            runtime,
+            random.Random(session),
+            stuck_after_s=teaching.rescue_after_s,
+            on_progress=on_progress,
+        )
+        assert isinstance(self.metric, Errands)
+        self._tracker = self.metric
+        names = navigation_settings(task).names
+        self._guide = TourGuide(
+            self.metric, names, teaching.teacher, period_s=self.period_s, seed=seed, session=session
+        )
+        self._home = simulation.pose
+        self._unanswered_ticks = round(teaching.rescue_after_s / self.period_s)
+        self._planned_ticks = round(teaching.duration_s / self.period_s)
+        self._rescues = self._corrections = self._asking_ticks = 0
 
-    @property
-    def ways(self) -> int:
-        """Ways from a street to the next that he taught."""
-        return len(self._led)
+    async def drive(self) -> None:
+        """Lead the robot for the whole teaching time."""
+        self._guide.begin()
+        self.send(self._teacher.begin_phase(Phase.CORRECTIONS))
+        await self.run(self._planned_ticks)
 
-    def begin(self) -> None:
-        """The robot was set down at home for the first time: that is its first name."""
-        street = self._walk.street
-        assert street is not None
-        self.named[HOME] = street
-        self._to_say.append(NameSituation(self._next_id(), _NAME, HOME))
-        self._set_out()
+    def on_tick(self, record: TickRecord) -> None:
+        """Let guide and teacher react, and put a stuck robot back to its home."""
+        require_carried_out(record, self.task)
+        self.measure()
+        command = self._guide.watch(record)
+        if command is not None:
+            self.send(command)
+        lesson = self._teacher.update(view_of_tick(record))
+        if lesson is not None:
+            self.send(lesson)
+            self._corrections += isinstance(lesson, Correct)
+        if self.latched_ticks == self.ticks_per_second:
+            self.send(self._teacher.resume())
+            self.latched_ticks = 0
+        self._asking_ticks = self._asking_ticks + 1 if self.asking else 0
+        if self.is_stuck(waiting=self.asking and self._asking_ticks < self._unanswered_ticks):
+            self.place(self._home)
+            self._guide.set_down_at_home()
+            self._rescues += 1
 
-    def set_down_at_home(self) -> None:
-        """The robot was set down at home once more."""
-        self._to_say.clear()
-        self._to_say.append(BeAt(self._next_id(), _NAME, HOME))
-        self._set_out()
-
-    def watch(self, record: TickRecord) -> Command | None:
-        """See one tick; what he says to it, if anything."""
-        mid, street = record.decision.mid, self._walk.street
-        assert mid is not None
-        if self._to_say:
-            return self._to_say.popleft()
-        if street is None and self._here is not None:
-            self._here, self._noticed = None, False
-        if mid.event is not None:
-            self._noticed = True
-        if street is None:
-            return None
-        if street != self._here:
-            self._here, self._wanted, self._waited, self._unnoticed_ticks = street, None, 0, 0
-        if not self._noticed:
-            return self._command(street, driving=record.decision.driving)
-        self._noticed_here(street)
-        if self._wanted is None:
-            return None
-        self._waited += 1
-        if mid.asks:
-            if self._waited < self._reaction_ticks:
-                return None
-            self._waited = 0
-            self._led.add((street, self._wanted))
-            return Teach(self._next_id(), _NAME, self._wanted, level=MID)
-        if self._waited < self._patience_ticks:
-            return None
-        wanted = self._wanted
-        if (street, wanted) not in self._led:
-            self._led.add((street, wanted))
-            return Teach(self._next_id(), _NAME, wanted, level=MID, beside=True)
-        if mid.behaviour == wanted:
-            return None
-        return Pursue(self._next_id(), _NAME, wanted)
-
-    def _noticed_here(self, street: Street) -> None:
-        if self._wanted is not None:
-            return
-        self._wanted = self._choose(street)
-        if len(self.named) <= self._names and street not in self.named.values():
-            name = f"place {len(self.named)}"
-            self.named[name] = street
-            self._to_say.append(NameSituation(self._next_id(), _NAME, name))
-
-    def _choose(self, street: Street) -> str:
-        town = self._walk.town
-        possible = town.on_from(street)
-        fresh = [each for each in possible if (street, each) not in self._led]
-        if fresh:
-            return self._chance.choice(fresh)
-        unfinished = [each for each in town.streets if any((each, on) not in self._led for on in town.on_from(each))]
-        way = town.nearest(street, self._shuffled(unfinished))
-        if way is None or len(way) < 2:
-            return self._chance.choice(list(possible))
-        return next(behaviour for behaviour, on in possible.items() if on == way[1])
-
-    def _shuffled(self, streets: Sequence[Street]) -> list[Street]:
-        return self._chance.sample(streets, len(streets))
-
-    def _command(self, street: Street, *, driving: bool) -> Command | None:
-        """The robot is in another street, and does not know it yet: where that lasts too long, he says what to do."""
-        self._unnoticed_ticks += driving
-        if self._unnoticed_ticks != self._notices_within_ticks:
-            return None
-        self.missed += 1
-        return Pursue(self._next_id(), _NAME, self._choose(street))
-
-    def _set_out(self) -> None:
-        self._here, self._wanted, self._waited = self._walk.street, None, 0
-        self._noticed = True
-
-    def _next_id(self) -> str:
-        self._said += 1
-        return f"{self._session}-guide-{self._said}"
+    def result(self) -> TourResult:
+        """Return the counters and the knowledge."""
+        system = self.runtime.level.system
+        return TourResult(
+            teaching_s=self._planned_ticks * self.period_s,
+            home=self._home,
+            named=dict(self._guide.named),
+            streets=tuple(self._tracker.streets),
+            ways=self._guide.ways,
+            mid_rlas=len(system.rlas_at(MID)),
+            basic_rlas=len(system),
+            mid_asks=self.mid_asks,
+            missed_junctions=self._guide.missed,
+            corrections=self._corrections,
+            rescues=self._rescues,
+            trail=rounded_places(self.trail),
+            saved=self.runtime.snapshot(),
+            knowledge_hash=system.knowledge_hash(),
+        )

@@ -8,7 +8,7 @@ import anyio
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.navigation.lesson import errands_of
+from kurt2rt.experiments.navigation.guided_tour import navigation_settings
 from kurt2rt.experiments.navigation.outcome import ErrandsOutcome, How
 from kurt2rt.experiments.navigation.robot_day import teach_and_send
 from kurt2rt.experiments.route.lesson import copy_knowledge
@@ -51,7 +51,7 @@ class ErrandsJob(StoredPaths):
     @property
     def robot_time_s(self) -> float:
         """At most: goals are reached sooner."""
-        goals = errands_of(self.task).goals
+        goals = navigation_settings(self.task).goals
         return self.task.teaching.duration_s + len(self.hows) * goals * self.task.exam.duration_s
 
     def run(self, tell: Tell) -> None:

@@ -8,8 +8,8 @@ from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
+from kurt2rt.experiments.navigation.guided_tour import navigation_settings
 from kurt2rt.experiments.navigation.job import ErrandsJob
-from kurt2rt.experiments.navigation.lesson import errands_of
 from kurt2rt.experiments.navigation.outcome import ErrandsOutcome
 from kurt2rt.experiments.navigation.robot_day import CONTROLS, PLANNING
 from kurt2rt.experiments.route.job import BasicJob
@@ -57,7 +57,7 @@ def plan(
     without a plan. Raises hal.settings.SettingsError, StudyError, KnowledgeError.
     """
     worlds = (task.teaching.world, *task.exam.worlds[:1])
-    errands_of(task)
+    navigation_settings(task)
     stage.require_worlds(*worlds, basic.teaching.world)
     require_course(stage, task, worlds)
     hows = (*PLANNING, *(CONTROLS if controls else ()))

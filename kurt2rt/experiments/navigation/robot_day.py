@@ -12,9 +12,10 @@ from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
-from kurt2rt.experiments.navigation.exam import run_errands
+from kurt2rt.experiments.lockstep.runtimes import build_unattended_runtime
+from kurt2rt.experiments.navigation.exam import GoalsRun
 from kurt2rt.experiments.navigation.goals import choose_goals
-from kurt2rt.experiments.navigation.lesson import errands_of, lead_about, walk_in
+from kurt2rt.experiments.navigation.guided_tour import guided_tour, navigation_settings, street_tracker
 from kurt2rt.experiments.navigation.outcome import ErrandsOutcome, How, Place
 from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.knowledge.journal.loading import read_lessons
@@ -43,42 +44,31 @@ async def teach_and_send(
     whole_s = task.teaching.duration_s
     with lessons_kept(knowledge, settings, task) as keeping:
         with closing(stage.open(world, seed, "errands")) as simulation:
-            led = await lead_about(
+            led = await guided_tour(
                 simulation,
                 settings,
                 task,
-                keeping.writer,
-                keeping.opened.events,
+                keeping.training,
                 seed=seed,
                 on_progress=keeping.telling(report, f"led about world {world}", whole_s),
-                statistics=keeping.opened.counter,
-                saved=keeping.opened.saved,
             )
         keeping.end(led.saved)
         report(f"led about world {world}", whole_s, whole_s)
     events = read_lessons(knowledge, settings, task)
-    course, town = errands_of(task), walk_in(stage.plan_of(exam_world), task).town
+    course, town = navigation_settings(task), street_tracker(stage.plan_of(exam_world), task).town
     start = town.street_at(led.home)
     assert start is not None  # the lesson began there
     goals = choose_goals(town, led.named, led.streets, start, course, random.Random(f"errands of robot {seed}"))
     runs = []
     for how in hows:
         with closing(stage.open(exam_world, seed, "errands without teacher")) as simulation:
-            run = await run_errands(
-                simulation,
-                settings,
-                task,
-                events,
-                led.saved,
-                goals,
-                led.home,
-                how=how,
-                seed=seed,
-                on_progress=lambda done, how=how: report(  # type: ignore[misc]
-                    f"errands by {how}", done * task.exam.duration_s, len(goals) * task.exam.duration_s
-                ),
-            )
-        runs.append(run)
+            runtime = build_unattended_runtime(simulation, settings, task, events, led.saved)
+
+            def on_goal(done: float, how: How = how) -> None:
+                report(f"errands by {how}", done * task.exam.duration_s, len(goals) * task.exam.duration_s)
+
+            run = GoalsRun(simulation, runtime, goals, how=how, seed=seed, on_goal=on_goal)
+            runs.append(await run.drive(led.home))
     return ErrandsOutcome(
         made_of=made_of,
         seed=seed,

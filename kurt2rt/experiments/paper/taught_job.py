@@ -104,7 +104,7 @@ def _drive(each: WorldResult) -> DriveOutcome:
         teachers_alarm=each.teacher.alarm,
         succeeded=each.succeeded,
         duration_s=exam.duration_s,
-        way_m=exam.way_m,
+        way_m=exam.distance_travelled_m,
         collisions=exam.collisions,
         stuck=exam.stuck,
         alarm=exam.alarm,

@@ -11,7 +11,7 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.lockstep.curriculum import Report
-from kurt2rt.experiments.lockstep.exam import ExamResult, examine
+from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.phases.outcome import ExamOutcome, Judgement
 from kurt2rt.experiments.phases.scoring import Scoring
@@ -29,7 +29,7 @@ class Examiner:
 
     async def teachers(self, worlds: Sequence[str]) -> tuple[ExamOutcome, ...]:
         """Drives of the teacher's own policy."""
-        drives = [await self._drive(world, (), None, None, by_teacher=True) for world in worlds]
+        drives = [await self._drive(world, (), None, None, teacher_policy=True) for world in worlds]
         return tuple(_outcome(each, succeeded=not each.failed) for each in drives)
 
     async def robots(
@@ -38,16 +38,16 @@ class Examiner:
         saved: Statistics | None,
         worlds: Sequence[str],
         teachers: Sequence[ExamOutcome],
-        alone: Statistics | None = None,
+        autonomous_values: Statistics | None = None,
     ) -> tuple[ExamOutcome, ...]:
         """Exams with what `events` have taught, measured by the teacher's own drives in the same worlds.
 
-        `saved`, `alone`: what rewards had made of it, and phase 5.
+        `saved`, `autonomous_values`: what rewards had made of it, and phase 5.
         """
         progress = {each.world: each.progress for each in teachers}
         outcomes = []
         for world in worlds:
-            drive = await self._drive(world, events, saved, alone, by_teacher=False)
+            drive = await self._drive(world, events, saved, autonomous_values, teacher_policy=False)
             verdict = drive.verdict(progress[world], self.task.exam.success)
             outcomes.append(_outcome(drive, succeeded=verdict is ExamVerdict.PASSED))
         return tuple(outcomes)
@@ -59,7 +59,7 @@ class Examiner:
         """
         assert self.task.judge is not None
         scoring = Scoring(self.task.judge.build())
-        await self._drive(self.task.teaching.world, events, saved, None, by_teacher=False, on_record=scoring.look)
+        await self._drive(self.task.teaching.world, events, saved, None, teacher_policy=False, on_record=scoring.look)
         return tuple(scoring.judgements)
 
     async def _drive(
@@ -67,27 +67,30 @@ class Examiner:
         world: str,
         events: Sequence[TeachingEvent],
         saved: Statistics | None,
-        alone: Statistics | None,
+        autonomous_values: Statistics | None,
         *,
-        by_teacher: bool,
+        teacher_policy: bool,
         on_record: Callable[[TickRecord], None] = lambda _: None,
     ) -> ExamResult:
-        who = "the teacher's own drive" if by_teacher else "exam without teacher"
+        who = "the teacher's own drive" if teacher_policy else "exam without teacher"
+        setup = ExamSetup(
+            world,
+            self.seed,
+            teacher_policy,
+            saved,
+            autonomous_values,
+            # A robot without knowledge only stands: its exam need not last.
+            stuck_ends=not events and not teacher_policy,
+            on_tick=lambda record, _metric: on_record(record),
+        )
         with closing(self.stage.open(world, self.seed, "exam")) as simulation:
             return await examine(
                 simulation,
                 self.robot,
                 self.task,
-                world,
                 events,
-                seed=self.seed,
-                on_progress=lambda done_s: self.report(f"{who}, world {world}", done_s, self.task.exam.duration_s),
-                by_teacher=by_teacher,
-                saved=saved,
-                alone=alone,
-                on_record=on_record,
-                # A robot that knows nothing only stands, and that is soon seen.
-                stuck_ends=not events and not by_teacher,
+                setup,
+                lambda done_s: self.report(f"{who}, world {world}", done_s, self.task.exam.duration_s),
             )
 
 
@@ -97,7 +100,7 @@ def _outcome(exam: ExamResult, *, succeeded: bool) -> ExamOutcome:
         unit=exam.unit,
         progress=exam.progress,
         duration_s=exam.duration_s,
-        way_m=exam.way_m,
+        way_m=exam.distance_travelled_m,
         collisions=exam.collisions,
         rescues=max(exam.rescues, int(exam.stuck)),
         alarm=exam.alarm,

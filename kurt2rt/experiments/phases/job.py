@@ -171,7 +171,7 @@ class StepJob:
             self._copy_knowledge(knowledge)
             self._prepare(knowledge)
             before = len(read_lessons(knowledge, robot.settings, robot.task))
-            teaching, alone, plan = None, None, self.plan()
+            teaching, autonomous_values, plan = None, None, self.plan()
             if plan is not None:
                 lesson, events = await run_lesson(
                     robot.stage,
@@ -182,7 +182,7 @@ class StepJob:
                     report=time.report,
                     plan=plan,
                 )
-                teaching, alone = told(lesson, events[before:]), lesson.alone
+                teaching, autonomous_values = told(lesson, events[before:]), lesson.autonomous_values
                 if step.aside:
                     self._copy_knowledge(knowledge)
                     self._add(knowledge, list(critics_lessons(events[before:])))
@@ -193,7 +193,7 @@ class StepJob:
                 exams = results.read(self.before, JobOutcome).stages[-1].exams
             else:
                 teachers = results.read(self.first, JobOutcome).teachers
-                exams = await robot.examiner(time).robots(events, saved, step.worlds, teachers, alone)
+                exams = await robot.examiner(time).robots(events, saved, step.worlds, teachers, autonomous_values)
             judgements = await robot.examiner(time).critic(events, saved) if step.judges_critic else ()
             results.keep(knowledge, robot.knowledge_of(step.name))
         stage = _stage(step.name, system, teaching, exams, judgements)

@@ -14,10 +14,10 @@ def told(lesson: TrainingResult, events: Iterable[TeachingEvent]) -> TeachingOut
     undone = sum(isinstance(event, LessonUndone) for event in own)
     return TeachingOutcome(
         duration_s=lesson.teaching_s,
-        load=lesson.load,
+        load=lesson.workload,
         asks=lesson.asks,
-        praise=lesson.praise,
-        blame=lesson.blame,
+        praise=lesson.positive_rewards,
+        blame=lesson.negative_rewards,
         refused_signals=lesson.refused_signals,
         collisions=lesson.collisions,
         rescues=lesson.rescues,

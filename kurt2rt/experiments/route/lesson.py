@@ -13,7 +13,7 @@ from hal.settings import SettingsError
 from hal.simulation import Position, SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
-from kurt2rt.experiments.lockstep.exam import ExamResult, examine
+from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan
 from kurt2rt.experiments.route.outcome import Place, RouteDrive, RouteOutcome, Wrong
@@ -67,7 +67,7 @@ class TaughtRoute:
                 stuck=exam.stuck,
                 alarm=exam.alarm,
                 share_unknown=exam.share_unknown,
-                way_m=exam.way_m,
+                way_m=exam.distance_travelled_m,
                 trail=_places(exam.trail[::_PLACE_STRIDE]),
                 collided_at=_places(exam.collision_positions),
             ),
@@ -102,11 +102,9 @@ async def teach_route(
             simulation,
             settings,
             task,
-            world,
             events,
-            seed=seed,
-            on_progress=lambda done_s: report("exam without teacher", done_s, task.exam.duration_s),
-            on_course=watching.look,
+            ExamSetup(world, seed, on_tick=watching.look),
+            lambda done_s: report("exam without teacher", done_s, task.exam.duration_s),
         )
     watching.end()
     route = route_of_task(task).route_in(stage.plan_of(world), task.behaviours)

@@ -1,128 +1,143 @@
-"""A drive without a teacher in which surprises are counted."""
+"""Drive without a teacher in which surprises are counted."""
 
 import random
 from collections.abc import Callable, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from typing import Literal
 
 from hal.robot_settings import RobotSettings
-from hal.simulation import SimulationFactory
+from hal.simulation import Simulation, SimulationFactory
 from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Pursue, Resume
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.experiments.lockstep.drive import Drive
-from kurt2rt.experiments.lockstep.exam import NoTeachingAllowed
+from kurt2rt.experiments.lockstep.episode import Episode
+from kurt2rt.experiments.lockstep.runtimes import build_unattended_runtime
 from kurt2rt.experiments.surprise.stuck_sensor import StuckSensor
-from kurt2rt.platform.clock import LockstepClock
-from kurt2rt.runtime import build_runtime
+from kurt2rt.runtime import Runtime
 
-Different = Literal["nothing", "stuck sensor", "set down elsewhere", "another world"]
-"""What is different from the drive that expectations were learned on."""
+Difference = Literal["nothing", "stuck sensor", "set down elsewhere", "another world"]
+"""Change against the drive from which the expectations were learned."""
 
-_WHO = "experimenter"
+_EXPERIMENTER = "experimenter"
 _STUCK_FROM_S = 5.0
-_SET_DOWN_EVERY_S = 10.0
+_REPOSITION_EVERY_S = 10.0
 
 
 @dataclass(frozen=True, slots=True)
-class Surprises:
-    """What one drive came to."""
+class SurpriseSetup:
+    """World, seed, duration and change of one drive."""
 
-    different: Different
+    world: str
+    difference: Difference
+    seed: int
+    duration_s: float
+    purpose: str
+    """Chooses start and noise together with the seed."""
+
+
+@dataclass(frozen=True, slots=True)
+class SurpriseCounts:
+    """Counters of one drive."""
+
+    difference: Difference
     ends: int
-    """Of RLAs that had ended often enough before, so that it can be said how surprising this one is."""
+    """Ends of RLAs that had ended often enough before to be judged."""
     surprising: int
     new_follow_ups: int
-    """Of these ends, those in which an RLA took over that never had."""
+    """Ends after which an RLA took over that never had before."""
     first_ends: int
-    """Of these ends, the first after each time the robot was set down elsewhere, unless it stood there asking."""
+    """First ends after a repositioning, unless the robot asked there."""
     surprising_first_ends: int
     share_unknown: float
-    """Share of ticks in which the robot did not know the situation."""
+    """Ratio of ticks in unknown situations, 0 to 1."""
 
 
 async def drive(
-    stage: SimulationFactory,
+    factory: SimulationFactory,
     settings: RobotSettings,
     task: TaskSettings,
     events: Sequence[TeachingEvent],
     saved: Statistics,
-    *,
-    world: str,
-    different: Different,
-    seed: int,
-    duration_s: float,
-    purpose: str,
+    setup: SurpriseSetup,
     on_progress: Callable[[float], None],
-) -> tuple[Surprises, Statistics]:
-    """Drive, learning what to expect on; returns the count, and what was learned, to go on from.
+) -> tuple[SurpriseCounts, Statistics]:
+    """Drive and continue to learn what to expect; return the counters, and the statistics to continue from.
 
-    `saved`: what was expected before.
+    Args:
+        saved: expectations of the drives before.
+        on_progress: called once a second with the simulated seconds.
+
+    Raises:
+        hal.settings.SettingsError: task and world do not fit.
     """
-    period_s = settings.can.cycle_s
-    simulation = stage.open(world, seed, purpose)
-    try:
-        chance = random.Random(f"surprise {purpose} {different} {seed}")
+    with closing(factory.open(setup.world, setup.seed, setup.purpose)) as simulation:
+        chance = random.Random(f"surprise {setup.purpose} {setup.difference} {setup.seed}")
         sensor = chance.randrange(len(settings.infrared.names))
-        robot = (
-            StuckSensor(simulation.robot, sensor, _STUCK_FROM_S) if different == "stuck sensor" else simulation.robot
+        robot = StuckSensor(simulation.robot, sensor, _STUCK_FROM_S) if setup.difference == "stuck sensor" else None
+        runtime = build_unattended_runtime(simulation, settings, task, events, saved, robot)
+        run = SurpriseRun(simulation, runtime, chance, setup.difference, on_progress)
+        await run.run(round(setup.duration_s / run.period_s))
+        return run.counts(), runtime.snapshot()
+
+
+class SurpriseRun(Episode):
+    """Episode that counts the surprising ends of RLAs."""
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        runtime: Runtime,
+        chance: random.Random,
+        difference: Difference,
+        on_progress: Callable[[float], None],
+    ) -> None:
+        super().__init__(
+            simulation, runtime, chance, stuck_after_s=runtime.task.exam.stuck_after_s, on_progress=on_progress
         )
-        counter = StatisticsCounter(dict(saved.uses), dict(saved.transitions))
-        runtime = build_runtime(
-            robot,
-            settings,
-            task,
-            events,
-            NoTeachingAllowed(),
-            LockstepClock(simulation.step),
-            statistics=counter,
-            checkpoint=saved,
-            teacher_available=False,
+        self._difference = difference
+        self._reposition_every = round(_REPOSITION_EVERY_S / self.period_s)
+        self._ends = self._surprising = self._new_follow_ups = self._first_ends = self._surprising_first_ends = 0
+        self._just_repositioned = False
+
+    def on_tick(self, record: TickRecord) -> None:
+        """Count surprises, and rescue or reposition the robot."""
+        self._count_surprise(record)
+        if record.guard_result.latched:
+            self.simulation.rescue()
+            self.send(Resume(self.next_id("go"), _EXPERIMENTER))
+        self.measure()
+        if self.metric.stranded:
+            self.reposition()
+        elif self.is_stuck():
+            self.rescue()
+        if self.metric.behaviour != record.behaviour:
+            self.send(Pursue(self.next_id("wanted"), _EXPERIMENTER, self.metric.behaviour))
+        if self._difference == "set down elsewhere" and record.tick % self._reposition_every == 1:
+            self.reposition(in_sight=True)
+            self._just_repositioned = True
+
+    def counts(self) -> SurpriseCounts:
+        """Return the counters."""
+        return SurpriseCounts(
+            self._difference,
+            self._ends,
+            self._surprising,
+            self._new_follow_ups,
+            self._first_ends,
+            self._surprising_first_ends,
+            self.unknown_ticks / max(self.ticks, 1),
         )
-        on_course = Drive(simulation, task, no_way_s=task.exam.stuck_after_s, period_s=period_s, chance=chance)
-        set_down_every = round(_SET_DOWN_EVERY_S / period_s)
-        ends = surprising = new = firsts = surprising_firsts = unknown = ticks = said = 0
-        just_set_down = False
 
-        def say(what: str) -> str:
-            nonlocal said
-            said += 1
-            return f"{what}-{said}"
-
-        def after_tick(record: TickRecord) -> None:
-            nonlocal ends, surprising, new, firsts, surprising_firsts, unknown, ticks, just_set_down
-            ticks += 1
-            unknown += record.decision.asking
-            surprise = record.surprise
-            if surprise is not None:
-                ends += 1
-                surprising += surprise.surprising
-                new += surprise.new_follow_up
-                firsts += just_set_down
-                surprising_firsts += just_set_down and surprise.surprising
-            if surprise is not None or record.decision.asking:
-                just_set_down = False
-            if record.guard_result.latched:
-                simulation.rescue()
-                runtime.inbox.put(Resume(say("go"), _WHO))
-            on_course.follow()
-            if on_course.course.stranded:
-                on_course.reposition()
-            elif on_course.makes_no_way(waits=False):
-                on_course.rescue()
-            if on_course.course.behaviour != record.behaviour:
-                runtime.inbox.put(Pursue(say("wanted"), _WHO, on_course.course.behaviour))
-            if different == "set down elsewhere" and record.tick % set_down_every == 1:
-                on_course.reposition(in_sight=True)
-                just_set_down = True
-            if record.tick % 100 == 0:
-                on_progress(record.now_s)
-
-        await runtime.scheduler.run(round(duration_s / period_s), after_tick)
-        counted = Surprises(different, ends, surprising, new, firsts, surprising_firsts, unknown / max(ticks, 1))
-        return counted, runtime.snapshot()
-    finally:
-        simulation.close()
+    def _count_surprise(self, record: TickRecord) -> None:
+        surprise = record.surprise
+        if surprise is not None:
+            self._ends += 1
+            self._surprising += surprise.surprising
+            self._new_follow_ups += surprise.new_follow_up
+            self._first_ends += self._just_repositioned
+            self._surprising_first_ends += self._just_repositioned and surprise.surprising
+        if surprise is not None or record.decision.asking:
+            self._just_repositioned = False

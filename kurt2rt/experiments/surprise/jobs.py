@@ -12,7 +12,7 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.study.pool import Tell
 from kurt2rt.experiments.study.table import Table
-from kurt2rt.experiments.surprise.drive import Different, Surprises, drive
+from kurt2rt.experiments.surprise.drive import Difference, SurpriseCounts, SurpriseSetup, drive
 from kurt2rt.knowledge.journal.loading import read_lessons
 
 LEARNS_S = 900.0
@@ -43,17 +43,17 @@ class SurpriseJob:
         """All its drives."""
         return self.learns_s + 4 * self.different_s
 
-    def run(self, tell: Tell) -> tuple[Surprises, ...]:
+    def run(self, tell: Tell) -> tuple[SurpriseCounts, ...]:
         """Drive them all."""
         return anyio.run(self._drives, tell)
 
-    async def _drives(self, tell: Tell) -> tuple[Surprises, ...]:
+    async def _drives(self, tell: Tell) -> tuple[SurpriseCounts, ...]:
         events = read_lessons(self.knowledge, self.settings, self.task)
         before_s = 0.0
 
         async def drives(
-            saved: Statistics, different: Different, world: str, purpose: str, duration_s: float
-        ) -> tuple[Surprises, Statistics]:
+            saved: Statistics, difference: Difference, world: str, purpose: str, duration_s: float
+        ) -> tuple[SurpriseCounts, Statistics]:
             nonlocal before_s
             result = await drive(
                 self.stage,
@@ -61,30 +61,26 @@ class SurpriseJob:
                 self.task,
                 events,
                 saved,
-                world=world,
-                different=different,
-                seed=self.seed,
-                duration_s=duration_s,
-                purpose=purpose,
-                on_progress=lambda done_s: tell(before_s + done_s),
+                SurpriseSetup(world, difference, self.seed, duration_s, purpose),
+                lambda done_s: tell(before_s + done_s),
             )
             before_s += duration_s
             return result
 
         known = self.task.teaching.world
         _, learned = await drives(Statistics(), "nothing", known, "getting to know", self.learns_s)
-        cases: tuple[tuple[Different, str], ...] = (
+        cases: tuple[tuple[Difference, str], ...] = (
             ("nothing", known),
             ("stuck sensor", known),
             ("set down elsewhere", known),
             ("another world", f"streets-{self.seed}"),
         )
         return tuple(
-            [(await drives(learned, different, world, "surprise", self.different_s))[0] for different, world in cases]
+            [(await drives(learned, difference, world, "surprise", self.different_s))[0] for difference, world in cases]
         )
 
 
-def sheet_of(results: Sequence[Sequence[Surprises]]) -> Table:
+def sheet_of(results: Sequence[Sequence[SurpriseCounts]]) -> Table:
     """A row for each difference, all robots together; `results`: one sequence for each robot, alike."""
     rows = []
     for drives in zip(*results, strict=True):
@@ -93,7 +89,7 @@ def sheet_of(results: Sequence[Sequence[Surprises]]) -> Table:
         firsts = sum(each.first_ends for each in drives)
         rows.append(
             (
-                drives[0].different,
+                drives[0].difference,
                 str(ends),
                 _percent(sum(each.surprising for each in drives), ends),
                 f"{100 * min(shares):.1f} to {100 * max(shares):.1f} %",

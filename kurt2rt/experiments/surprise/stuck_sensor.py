@@ -1,21 +1,21 @@
-"""A robot of which one infra-red sensor goes on telling what it told once."""
+"""Robot with one infrared sensor that is stuck at a constant count."""
 
 from hal.robot import Robot, SensorReadings
 from hal.robot_proxy import RobotProxy
 
 
 class StuckSensor(RobotProxy):
-    """Another robot, its senses but for one."""
+    """Proxy of a robot that freezes one of its infrared sensors."""
 
     def __init__(self, robot: Robot, sensor: int, from_s: float) -> None:
-        """`sensor`: its place in the robot's table; it is stuck from `from_s` of the runtime's clock on."""
+        """`sensor`: index in the robot's sensor table; stuck from `from_s` of the runtime's clock on."""
         super().__init__(robot)
         self._sensor = sensor
         self._from_s = from_s
         self._counts: int | None = None
 
     def sense(self, now_s: float) -> SensorReadings:
-        """What the robot senses, and of the stuck sensor what it sensed when it got stuck."""
+        """Return the robot's readings, with the stuck sensor at its count of `from_s`."""
         senses = self._robot.sense(now_s)
         if now_s < self._from_s:
             return senses

@@ -98,6 +98,6 @@ def test_laps_of_the_policy_in_narrow_places_are_its_way(world: str, drive_s: fl
     drive = teachers_drive(short_task(exam_s=drive_s, worlds=(world,)))
     simulation = STAGE.open(world, 1, "test")
     try:
-        assert drive.progress * simulation.lap_m == pytest.approx(drive.way_m, rel=0.15)
+        assert drive.progress * simulation.lap_m == pytest.approx(drive.distance_travelled_m, rel=0.15)
     finally:
         simulation.close()

@@ -10,7 +10,7 @@ from kurt2rt.core.perception.weights import weights_of
 from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.task_settings import FeatureWeight, load_task
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.experiments.lockstep.exam import NoTeachingAllowed
+from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
 from tests.core.rla.helpers import created

@@ -48,7 +48,7 @@ def test_the_teacher_says_go_and_the_lesson_goes_on(tmp_path: Path) -> None:
         return result
 
     result = anyio.run(lesson)
-    assert result.alarms == sum(minute.go for minute in result.load) == 1
+    assert result.alarms == sum(minute.go for minute in result.workload) == 1
     at_the_alarm, a_second_later, end = (result.trail[at] for at in (52, 59, -1))
     assert at_the_alarm == a_second_later
     assert abs(end.x_m - a_second_later.x_m) + abs(end.y_m - a_second_later.y_m) > 0.2
@@ -64,7 +64,7 @@ def test_an_alarm_that_the_end_of_what_was_shown_lifts_is_one_all_the_same(tmp_p
         return result
 
     result = anyio.run(lesson)
-    assert [(minute.shown, minute.go) for minute in result.load] == [(1, 1)]
+    assert [(minute.shown, minute.go) for minute in result.workload] == [(1, 1)]
     assert result.alarms == 1
 
 

@@ -12,8 +12,9 @@ from kurt2rt.core.task_settings import SuccessSettings, TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Teach
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams
-from kurt2rt.experiments.lockstep.exam import ExamResult, NoTeachingAllowed, examine
+from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
+from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
 from simbridge.worlds.world_loading import load_world
@@ -41,7 +42,7 @@ def test_a_robot_that_knows_nothing_stands_until_the_exam_ends_it() -> None:
     assert learned.share_unknown == 1.0
     assert learned.unknown_positions == learned.trail[:1]
     assert len(set(learned.trail)) == 1
-    assert (learned.progress, learned.unit, learned.way_m) == (0.0, "laps", 0.0)
+    assert (learned.progress, learned.unit, learned.distance_travelled_m) == (0.0, "laps", 0.0)
     assert (learned.collisions, learned.action_changes_per_s) == (0, 0.0)
 
 
@@ -66,7 +67,7 @@ def test_going_round_on_the_spot_is_stuck_too() -> None:
 def test_the_teachers_own_drive_makes_way_and_touches_nothing() -> None:
     teacher = teachers_drive(short_task(exam_s=14.0, stuck_after_s=10.0))
     assert teacher.progress > 0.1
-    assert 2.0 < teacher.way_m < 0.32 * 14.0  # on the spot at corners
+    assert 2.0 < teacher.distance_travelled_m < 0.32 * 14.0  # on the spot at corners
     assert 0.0 < teacher.findings["distance error, m"] < 0.1
     assert teacher.collisions == 0
     assert not teacher.stuck
@@ -91,7 +92,7 @@ def test_an_exam_starts_where_the_task_says(start: str, *, at_a_start_pose: bool
         here = result.learned.trail[0]
         assert any(math.dist(here, pose) < 0.001 for pose in starts) is at_a_start_pose
         assert math.dist(here, (post.x_m, post.y_m)) < post.radius_m + 0.45 + ROBOT.geometry.outline_length_m / 2 + 0.05
-        assert result.learned.way_m == pytest.approx(0.0, abs=0.001)  # being carried there is no way made
+        assert result.learned.distance_travelled_m == pytest.approx(0.0, abs=0.001)
         # The teacher drives on from the same place.
         assert math.dist(here, result.teacher.trail[0]) < 0.1
 
@@ -148,7 +149,7 @@ def test_progress_is_told_each_second_and_at_the_end() -> None:
     simulation = STAGE.open("a", 1, "exam")
 
     async def run() -> ExamResult:
-        return await examine(simulation, ROBOT, task, "a", [], seed=1, on_progress=told.append)
+        return await examine(simulation, ROBOT, task, [], ExamSetup("a", 1), told.append)
 
     try:
         anyio.run(run)

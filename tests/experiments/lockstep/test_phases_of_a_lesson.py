@@ -11,7 +11,7 @@ from kurt2rt.core.rla.rla import CRITIC, Appraised, Phase, RlaCreated, RlaReward
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
-from kurt2rt.experiments.lockstep.exam import examine
+from kurt2rt.experiments.lockstep.exam import ExamSetup, examine
 from kurt2rt.experiments.lockstep.lesson import TrainingResult
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, SignalTimes, plan_of
 from kurt2rt.knowledge.journal.journal import Journal
@@ -47,10 +47,10 @@ def test_the_plan_of_a_task_is_its_own_lesson() -> None:
 def test_in_phase_3_rewards_are_lessons_and_what_they_made_is_saved(taught: Taught, tmp_path: Path) -> None:
     result, events = go_on(taught, tmp_path, of_phase(Phase.REINFORCEMENT, signs="judge"))
     rewards = [event for event in events if isinstance(event, RlaRewarded)]
-    assert len(rewards) == result.praise + result.blame - result.refused_signals > 0
+    assert len(rewards) == result.positive_rewards + result.negative_rewards - result.refused_signals > 0
     assert {event.origin.phase for event in rewards} == {Phase.REINFORCEMENT}
-    assert sum(minute.rewards for minute in result.load) == result.praise + result.blame
-    assert sum(minute.corrections for minute in result.load) == 0
+    assert sum(minute.rewards for minute in result.workload) == result.positive_rewards + result.negative_rewards
+    assert sum(minute.corrections for minute in result.workload) == 0
     with Journal.read_only(tmp_path / "knowledge") as journal:
         assert journal.statistics().values == result.saved.values
 
@@ -60,11 +60,11 @@ def test_in_phase_4_the_critic_is_taught_where_the_robot_is_set_down(taught: Tau
     plan = of_phase(Phase.CRITIC, 12.0, signs="judge", times=times, set_down_every_s=4.0, shown_s=1.0)
     result, events = go_on(taught, tmp_path, plan)
     assert result.repositions == 3
-    assert [(minute.set_down, minute.shown) for minute in result.load] == [(3, 3)]
+    assert [(minute.set_down, minute.shown) for minute in result.workload] == [(3, 3)]
     critics = [event for event in events if isinstance(event, RlaCreated) and event.rla.level == CRITIC]
     assert critics
     assert all(isinstance(event, RlaCreated | Appraised) or event.origin.phase is Phase.CRITIC for event in events)
-    assert sum(minute.appraisals for minute in result.load) >= len(critics)
+    assert sum(minute.appraisals for minute in result.workload) >= len(critics)
     assert len(result.agreement) == 1
 
 
@@ -78,7 +78,7 @@ def test_in_phase_5_nobody_answers_and_a_robot_that_knows_nothing_is_set_down_el
 
     result, events = anyio.run(lesson)
     assert events == []
-    assert result.rescues == result.unknown_rescues == sum(minute.rescued for minute in result.load) == 3
+    assert result.rescues == result.unknown_rescues == sum(minute.rescued for minute in result.workload) == 3
     assert result.share_unknown > 0.99
 
 
@@ -86,8 +86,8 @@ def test_blame_by_chance_needs_no_judge_and_the_judge_s_does(taught: Taught, tmp
     blind = taught.task.model_copy(update={"judge": None})
     plan = of_phase(Phase.REINFORCEMENT, signs="chance", blame_by_chance=3)
     result, _ = go_on(taught, tmp_path, plan, blind)
-    assert result.blame == 3
-    assert result.praise == 0
+    assert result.negative_rewards == 3
+    assert result.positive_rewards == 0
     with pytest.raises(SettingsError, match="there is no judge, so nobody can praise or blame; add `judge:`"):
         go_on(taught, tmp_path, of_phase(Phase.REINFORCEMENT, signs="judge"), blind)
 
@@ -99,7 +99,12 @@ def test_the_same_lesson_twice_is_the_same_bit_for_bit(taught: Taught, tmp_path:
         folder.mkdir()
     (one, events), (two, again) = (go_on(taught, folder, plan) for folder in folders)
     assert events == again
-    assert (one.knowledge_hash, one.saved, one.trail, one.load) == (two.knowledge_hash, two.saved, two.trail, two.load)
+    assert (one.knowledge_hash, one.saved, one.trail, one.workload) == (
+        two.knowledge_hash,
+        two.saved,
+        two.trail,
+        two.workload,
+    )
 
 
 def rival(action: str) -> RlaCreated:
@@ -129,20 +134,19 @@ def test_an_exam_after_phase_5_asks_the_competitor_that_phase_5_held_best(
         # What a teacher had said of them does not count there.
         saved = Statistics(values={2: -0.05})
         try:
-            exam = await examine(
-                simulation, ROBOT, task, "a", events, seed=1, on_progress=lambda _: None, saved=saved, alone=alone
-            )
+            setup = ExamSetup("a", 1, saved=saved, autonomous_values=alone)
+            exam = await examine(simulation, ROBOT, task, events, setup, lambda _: None)
         finally:
             simulation.close()
-        return exam.way_m
+        return exam.distance_travelled_m
 
     assert (anyio.run(drive) > 0.3) is drives
 
 
 def test_a_lesson_that_ends_in_phase_5_tells_what_that_held_rlas_to_be_worth(taught: Taught, tmp_path: Path) -> None:
-    assert taught.result.alone is None
+    assert taught.result.autonomous_values is None
     result, _ = go_on(taught, tmp_path, of_phase(Phase.AUTONOMOUS, 2.0))
-    assert result.alone == Statistics()  # nobody was trusted
+    assert result.autonomous_values == Statistics()  # nobody was trusted
 
 
 @pytest.mark.parametrize("stuck_ends", [True, False])
@@ -152,16 +156,8 @@ def test_a_stuck_robot_ends_its_exam_or_is_set_down_and_goes_on(stuck_ends: bool
     async def drive() -> tuple[bool, int, float]:
         simulation = STAGE.open("a", 1, "exam")
         try:
-            exam = await examine(
-                simulation,
-                ROBOT,
-                task,
-                "a",
-                [knows_only("stand")],
-                seed=1,
-                on_progress=lambda _: None,
-                stuck_ends=stuck_ends,
-            )
+            setup = ExamSetup("a", 1, stuck_ends=stuck_ends)
+            exam = await examine(simulation, ROBOT, task, [knows_only("stand")], setup, lambda _: None)
         finally:
             simulation.close()
         return exam.stuck, exam.rescues, exam.duration_s

@@ -43,7 +43,7 @@ def test_the_teacher_drives_what_he_teaches(name: str) -> None:
     drive = teachers_drive(lasting(name))
     assert drive.unit == UNITS.get(name, "junctions")
     assert (drive.collisions, drive.stuck, drive.alarm) == (0, False, "")
-    assert 1.0 < drive.way_m < 4.0
+    assert 1.0 < drive.distance_travelled_m < 4.0
     if name != "eight":  # of which the first half takes longer
         assert drive.progress > 0.0
 
@@ -112,7 +112,7 @@ def test_a_robot_that_can_only_go_straight_is_set_down_elsewhere_at_the_end_of_i
     drive = teachers_drive(lasting("straight_on", exam_s=16.0))
     steps_m = [abs(b.x_m - a.x_m) + abs(b.y_m - a.y_m) for a, b in zip(drive.trail, drive.trail[1:], strict=False)]
     assert max(steps_m) > 0.5  # through the air
-    assert drive.way_m < 5.5
+    assert drive.distance_travelled_m < 5.5
     assert drive.findings["junctions"] == drive.findings["junctions right"] > 0.0
 
 

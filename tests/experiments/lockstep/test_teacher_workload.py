@@ -7,11 +7,11 @@ from kurt2rt.experiments.lockstep.teacher_workload import TeacherWorkload, Workl
 
 def test_each_kind_is_counted_in_its_minute() -> None:
     load = TeacherWorkload(ticks=15_000, period_s=0.01)
-    load.note(1, Teach("1", "Ann", "a"))
-    load.note(6_000, Correct("2", "Ann", "a"))
-    load.note(6_001, DeleteRla("3", "Ann", 1))
-    load.note(12_001, Reward("4", "Ann", 1))
-    load.note(15_000, Appraise("5", "Ann", "good"))
+    load.count(1, Teach("1", "Ann", "a"))
+    load.count(6_000, Correct("2", "Ann", "a"))
+    load.count(6_001, DeleteRla("3", "Ann", 1))
+    load.count(12_001, Reward("4", "Ann", 1))
+    load.count(15_000, Appraise("5", "Ann", "good"))
     assert load.minutes == (
         WorkloadMinute(lessons=1, corrections=1),
         WorkloadMinute(corrections=1),
@@ -21,16 +21,16 @@ def test_each_kind_is_counted_in_its_minute() -> None:
 
 def test_the_work_of_the_hands_is_load_too() -> None:
     load = TeacherWorkload(ticks=12_000, period_s=0.01)
-    load.note_hands(1, "set_down")
-    load.note_hands(6_000, "set_down")
-    load.note_hands(6_001, "shown")
-    load.note_hands(6_001, "rescued")
-    load.note_hands(12_000, "go")
+    load.count_manual(1, "set_down")
+    load.count_manual(6_000, "set_down")
+    load.count_manual(6_001, "shown")
+    load.count_manual(6_001, "rescued")
+    load.count_manual(12_000, "go")
     assert load.minutes == (WorkloadMinute(set_down=2), WorkloadMinute(shown=1, rescued=1, go=1))
 
 
 def test_what_teaches_nothing_is_no_load() -> None:
     load = TeacherWorkload(ticks=100, period_s=0.01)
-    load.note(1, SetPhase("1", "Ann", Phase.CRITIC))
-    load.note(2, Pursue("2", "Ann", ""))
+    load.count(1, SetPhase("1", "Ann", Phase.CRITIC))
+    load.count(2, Pursue("2", "Ann", ""))
     assert load.minutes == (WorkloadMinute(),)

@@ -10,7 +10,7 @@ from hal.settings import SettingsError
 from kurt2rt.core.rla.rla import MID, RlaCreated, SituationNamed
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.navigation.figures import draw_errands
-from kurt2rt.experiments.navigation.lesson import errands_of
+from kurt2rt.experiments.navigation.guided_tour import navigation_settings
 from kurt2rt.experiments.navigation.outcome import ErrandsOutcome
 from kurt2rt.experiments.navigation.plan import NavigationPlan, conduct, plan, read_outcomes, robot_time_s
 from kurt2rt.experiments.navigation.tables import sheets
@@ -70,7 +70,7 @@ def test_plan_and_controls_are_sent_to_the_same_goals(done: Done) -> None:
 
 
 def test_it_is_told_and_drawn(done: Done, tmp_path: Path) -> None:
-    assert len(list(sheets([done.outcome], errands_of(done.programme.task)))) == 3
+    assert len(list(sheets([done.outcome], navigation_settings(done.programme.task)))) == 3
     picture = tmp_path / "robot.png"
     draw_errands(STAGE, "manhattan", done.outcome, picture)
     assert imread(picture).shape[0] > 400
@@ -78,7 +78,7 @@ def test_it_is_told_and_drawn(done: Done, tmp_path: Path) -> None:
 
 def test_a_task_without_errands_has_none_to_run() -> None:
     with pytest.raises(SettingsError, match="task route: to run errands it needs the course errands"):
-        errands_of(load_task("route"))
+        navigation_settings(load_task("route"))
 
 
 @pytest.mark.deep

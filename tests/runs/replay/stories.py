@@ -38,8 +38,8 @@ from kurt2rt.core.teaching.commands import (
 )
 from kurt2rt.core.teaching.system_events import PairingRenewed
 from kurt2rt.core.tick import InMemoryEventStore, TickRecord
-from kurt2rt.experiments.navigation.guided_tour import HOME, TourGuide
-from kurt2rt.experiments.navigation.lesson import errands_of
+from kurt2rt.experiments.navigation.guided_tour import navigation_settings
+from kurt2rt.experiments.navigation.tour_guide import HOME, TourGuide
 from kurt2rt.knowledge.exchange.attachments import collect_attachments, hash_attachments
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runs.recording.recorder import RunRecorder, open_run_recorder
@@ -129,7 +129,7 @@ class Errand:
     """Led about in a town, and then sent home."""
 
     def __init__(self, scene: Scene, task: TaskSettings) -> None:
-        self._walk = errands_of(task).walk_in(scene.simulation.plan, task.behaviours)
+        self._walk = navigation_settings(task).walk_in(scene.simulation.plan, task.behaviours)
         self._guide = TourGuide(self._walk, 5, task.teaching.teacher, period_s=0.01, seed=3, session="errand")
         self._walk.put(scene.simulation.pose)
         self._guide.begin()

@@ -1,0 +1,163 @@
+"""Episode: one drive of a simulated robot in lockstep with its world, watched from above."""
+
+import math
+import random
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import ClassVar
+
+from behaviors.metrics.task_metric import RouteMetric
+from hal.simulation import Pose, Position, Simulation
+from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.teaching.commands import Command
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.experiments.lockstep.stuck_detector import StuckDetector
+from kurt2rt.runtime import Runtime
+
+
+class Episode(ABC):
+    """Simulation, runtime, task metric, stuck detection and counters of one drive, one world step a tick.
+
+    A subclass is a kind of drive: lesson, exam, tour, goals or surprise. Each tick calls, in this order: the counters
+    of this class, `on_tick` of the subclass, the trail, and once a second `on_second`.
+    """
+
+    trail_stride: ClassVar[int] = 10
+    """Ticks between two points of the trail."""
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        runtime: Runtime,
+        chance: random.Random,
+        *,
+        stuck_after_s: float,
+        on_progress: Callable[[float], None],
+    ) -> None:
+        """Build the task's metric at the robot's pose; on a route, place the robot on the route first.
+
+        Args:
+            simulation: world of the drive, stepped by the runtime's clock.
+            runtime: robot mind that drives.
+            chance: random choices of the metric and of repositioning.
+            stuck_after_s: time within the task's `exam.stuck_within_m` after which the robot is stuck.
+            on_progress: called once a second with the simulated seconds.
+
+        Raises:
+            hal.settings.SettingsError: the world lacks what the metric needs.
+        """
+        task, period_s = runtime.task, runtime.robot.can.cycle_s
+        self.simulation = simulation
+        self.runtime = runtime
+        self.task = task
+        self.period_s = period_s
+        self.ticks_per_second = round(1 / period_s)
+        self.metric = task.course.build(simulation, task.behaviours, chance)
+        self.trail: list[Position] = []
+        self.ask_positions: list[Position] = []
+        """Position of each question's first tick."""
+        self.mid_asks = 0
+        """Questions of the mid level among them."""
+        self.ticks = 0
+        self.unknown_ticks = 0
+        """Ticks in situations that the robot does not know."""
+        self.latched_ticks = 0
+        """Ticks since the guard latched; 0 while it is not latched."""
+        self.asking = False
+        self.distance_travelled_m = 0.0
+        """Distance on the robot's own wheels."""
+        self.repositions = 0
+        """Planned repositionings, without rescues."""
+        self._chance = chance
+        self._stuck = StuckDetector(stuck_after_s, period_s, least_m=task.exam.stuck_within_m)
+        self._on_progress = on_progress
+        self._sent = 0
+        if isinstance(self.metric, RouteMetric):
+            simulation.put(self.metric.set_down_at)
+        self._pose = simulation.pose
+        self.metric.put(self._pose)
+
+    @abstractmethod
+    def on_tick(self, record: TickRecord) -> None:
+        """Act on one tick, after the counters of this class."""
+
+    def on_second(self, record: TickRecord) -> None:
+        """Report the progress, once a second."""
+        self._on_progress(record.now_s)
+
+    async def run(self, ticks: int) -> None:
+        """Drive for so many ticks, or until the scheduler is ended."""
+        await self.runtime.scheduler.run(ticks, self.after_tick)
+
+    def after_tick(self, record: TickRecord) -> None:
+        """Count one tick and call `on_tick` and `on_second`."""
+        decision = record.decision
+        self.ticks = record.tick
+        self.unknown_ticks += decision.asking
+        self.latched_ticks = self.latched_ticks + 1 if record.guard_result.latched else 0
+        if decision.asking and not self.asking:
+            self.ask_positions.append(self.simulation.position)
+            self.mid_asks += decision.asks_at == MID
+        self.asking = decision.asking
+        self.on_tick(record)
+        if record.tick % self.trail_stride == 0:
+            self.trail.append(self.simulation.position)
+        if record.tick % self.ticks_per_second == 0:
+            self.on_second(record)
+
+    def send(self, command: Command) -> None:
+        """Put a command into the robot's inbox, for the next tick."""
+        self.runtime.inbox.put(command)
+
+    def next_id(self, name: str) -> str:
+        """Return a new command id, such as `exam-1`."""
+        self._sent += 1
+        return f"{name}-{self._sent}"
+
+    def measure(self) -> None:
+        """Update the metric and the travelled distance with the robot's pose; call it once in every tick."""
+        pose = self.simulation.pose
+        self.distance_travelled_m += math.hypot(pose.x_m - self._pose.x_m, pose.y_m - self._pose.y_m)
+        self._pose = pose
+        self.metric.follow(pose)
+
+    def is_stuck(self, *, waiting: bool = False) -> bool:
+        """Return whether the robot stayed in place for too long; `waiting` restarts the time. Call it in every tick."""
+        if waiting:
+            self._stuck.restart()
+            return False
+        return self._stuck.none_since_window(self.simulation.position)
+
+    def rescue(self) -> None:
+        """Put the robot at the nearest start pose, or on its route."""
+        if isinstance(self.metric, RouteMetric):
+            self.simulation.put(self.metric.set_down_at)
+        else:
+            self.simulation.rescue()
+        self._begin_at(self.simulation.pose)
+
+    def reposition(self, *, in_sight: bool = False, close: bool = False) -> None:
+        """Put the robot on its route, or else at a random pose as `Simulation.reposition` chooses it."""
+        if isinstance(self.metric, RouteMetric):
+            self.simulation.put(self.metric.set_down_at)
+        else:
+            self.simulation.reposition(self._chance, in_sight=in_sight, close=close)
+        self.repositions += 1
+        self._begin_at(self.simulation.pose)
+
+    def place(self, pose: Pose) -> None:
+        """Put the robot at this pose and report it to the robot."""
+        self.simulation.put(pose)
+        self.runtime.reposition()
+        self._begin_at(pose)
+
+    def restart_counting(self) -> None:
+        """Start a new stretch here: distance 0, and a new window of the stuck detector."""
+        self._pose = self.simulation.pose
+        self.distance_travelled_m = 0.0
+        self._stuck.restart()
+
+    def _begin_at(self, pose: Pose) -> None:
+        self._pose = self.simulation.pose
+        self._stuck.restart()
+        self.metric.put(pose)

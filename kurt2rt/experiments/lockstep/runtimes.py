@@ -1,0 +1,88 @@
+"""Runtimes of simulated robots in lockstep with their world: with a scripted teacher, and without any teacher."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from hal.robot import Robot
+from hal.robot_settings import RobotSettings
+from hal.simulation import Simulation
+from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.statistics import Statistics
+from kurt2rt.core.rla.usage_counter import StatisticsCounter
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.tick import EventStore
+from kurt2rt.platform.clock import LockstepClock
+from kurt2rt.runtime import Runtime, build_runtime
+
+
+class NoTeachingAllowed:
+    """Event store of a run without a teacher; a teaching event in it is a defect."""
+
+    error: str | None = None
+
+    def submit(self, event: TeachingEvent) -> None:
+        """Raise RuntimeError."""
+        raise RuntimeError(f"a lesson was given in an exam: {event}")
+
+
+@dataclass(frozen=True, slots=True)
+class TrainingStore:
+    """Event store of a training run, with the knowledge that earlier runs left."""
+
+    store: EventStore
+    events: Sequence[TeachingEvent] = ()
+    statistics: StatisticsCounter | None = None
+    """Counters to continue; None: new ones."""
+    saved: Statistics | None = None
+    """Values and expectations of the RLAs; None: initial ones."""
+
+
+def build_training_runtime(
+    simulation: Simulation, settings: RobotSettings, task: TaskSettings, training: TrainingStore
+) -> Runtime:
+    """Build the runtime for a scripted teacher.
+
+    Raises:
+        As `build_runtime` does.
+    """
+    return build_runtime(
+        simulation.robot,
+        settings,
+        task,
+        training.events,
+        training.store,
+        LockstepClock(simulation.step),
+        statistics=training.statistics,
+        checkpoint=training.saved,
+        # The scripted teacher has no bumper input: at a wall its answer is the action that led there.
+        asks_at_bumper=False,
+    )
+
+
+def build_unattended_runtime(
+    simulation: Simulation,
+    settings: RobotSettings,
+    task: TaskSettings,
+    events: Sequence[TeachingEvent],
+    saved: Statistics,
+    robot: Robot | None = None,
+) -> Runtime:
+    """Build the runtime for a drive without a teacher that continues the counters of `saved`.
+
+    Args:
+        robot: driver in place of the simulation's own, for instance with a faulty sensor.
+
+    Raises:
+        As `build_runtime` does.
+    """
+    return build_runtime(
+        robot or simulation.robot,
+        settings,
+        task,
+        events,
+        NoTeachingAllowed(),
+        LockstepClock(simulation.step),
+        statistics=StatisticsCounter(dict(saved.uses), dict(saved.transitions)),
+        checkpoint=saved,
+        teacher_available=False,
+    )

@@ -1,0 +1,145 @@
+"""A scripted teacher who leads the robot about: says at each place what is possible there, and names places."""
+
+import random
+from collections import deque
+from collections.abc import Sequence
+
+from behaviors.metrics.errands import Errands
+from behaviors.metrics.town import Street
+from kurt2rt.core.rla.rla import MID
+from kurt2rt.core.task_settings import TeacherSettings
+from kurt2rt.core.teaching.commands import BeAt, Command, NameSituation, Pursue, Teach
+from kurt2rt.core.tick import TickRecord
+
+HOME = "home"
+_NAME = "scripted teacher"
+_NOTICES_WITHIN_S = 3.0
+"""From a junction that it has left to where the robot says so; later it has missed the junction."""
+
+
+class TourGuide:
+    """Leads along a random route, and rather where he has not led it yet; sees the robot, and what its mid level says.
+
+    Each way that he leads it for the first time he teaches, beside what was taught there; where the robot would do
+    something else, he says what is wanted.
+    """
+
+    def __init__(
+        self, walk: Errands, names: int, settings: TeacherSettings, *, period_s: float, seed: int, session: str
+    ) -> None:
+        """`walk`: where the robot is. `names`: so many places get one. `session`: as in ScriptedTeacher."""
+        self._walk = walk
+        self._names = names
+        self._session = session
+        self._chance = random.Random(f"route of {session}, seed {seed}")
+        self._reaction_ticks = round(settings.reaction_s / period_s)
+        self._patience_ticks = round(settings.patience_s / period_s)
+        self._notices_within_ticks = round(_NOTICES_WITHIN_S / period_s)
+        self._led: set[tuple[Street, str]] = set()
+        self._to_say: deque[Command] = deque()
+        self._wanted: str | None = None
+        """What is to be done at the next junction; None until the robot is at a place where that can be said."""
+        self._waited = 0
+        self._noticed = False
+        self._here: Street | None = None
+        self._unnoticed_ticks = 0
+        self._said = 0
+        self.named: dict[str, Street] = {}
+        """Where each name was given."""
+        self.missed = 0
+        """Junctions that the robot did not notice."""
+
+    @property
+    def ways(self) -> int:
+        """Ways from a street to the next that he taught."""
+        return len(self._led)
+
+    def begin(self) -> None:
+        """The robot was set down at home for the first time: that is its first name."""
+        street = self._walk.street
+        assert street is not None
+        self.named[HOME] = street
+        self._to_say.append(NameSituation(self._next_id(), _NAME, HOME))
+        self._set_out()
+
+    def set_down_at_home(self) -> None:
+        """The robot was set down at home once more."""
+        self._to_say.clear()
+        self._to_say.append(BeAt(self._next_id(), _NAME, HOME))
+        self._set_out()
+
+    def watch(self, record: TickRecord) -> Command | None:
+        """See one tick; what he says to it, if anything."""
+        mid, street = record.decision.mid, self._walk.street
+        assert mid is not None
+        if self._to_say:
+            return self._to_say.popleft()
+        if street is None and self._here is not None:
+            self._here, self._noticed = None, False
+        if mid.event is not None:
+            self._noticed = True
+        if street is None:
+            return None
+        if street != self._here:
+            self._here, self._wanted, self._waited, self._unnoticed_ticks = street, None, 0, 0
+        if not self._noticed:
+            return self._command(street, driving=record.decision.driving)
+        self._noticed_here(street)
+        if self._wanted is None:
+            return None
+        self._waited += 1
+        if mid.asks:
+            if self._waited < self._reaction_ticks:
+                return None
+            self._waited = 0
+            self._led.add((street, self._wanted))
+            return Teach(self._next_id(), _NAME, self._wanted, level=MID)
+        if self._waited < self._patience_ticks:
+            return None
+        wanted = self._wanted
+        if (street, wanted) not in self._led:
+            self._led.add((street, wanted))
+            return Teach(self._next_id(), _NAME, wanted, level=MID, beside=True)
+        if mid.behaviour == wanted:
+            return None
+        return Pursue(self._next_id(), _NAME, wanted)
+
+    def _noticed_here(self, street: Street) -> None:
+        if self._wanted is not None:
+            return
+        self._wanted = self._choose(street)
+        if len(self.named) <= self._names and street not in self.named.values():
+            name = f"place {len(self.named)}"
+            self.named[name] = street
+            self._to_say.append(NameSituation(self._next_id(), _NAME, name))
+
+    def _choose(self, street: Street) -> str:
+        town = self._walk.town
+        possible = town.on_from(street)
+        fresh = [each for each in possible if (street, each) not in self._led]
+        if fresh:
+            return self._chance.choice(fresh)
+        unfinished = [each for each in town.streets if any((each, on) not in self._led for on in town.on_from(each))]
+        way = town.nearest(street, self._shuffled(unfinished))
+        if way is None or len(way) < 2:
+            return self._chance.choice(list(possible))
+        return next(behaviour for behaviour, on in possible.items() if on == way[1])
+
+    def _shuffled(self, streets: Sequence[Street]) -> list[Street]:
+        return self._chance.sample(streets, len(streets))
+
+    def _command(self, street: Street, *, driving: bool) -> Command | None:
+        """The robot is in another street, and does not know it yet: where that lasts too long, he says what to do."""
+        self._unnoticed_ticks += driving
+        if self._unnoticed_ticks != self._notices_within_ticks:
+            return None
+        self.missed += 1
+        return Pursue(self._next_id(), _NAME, self._choose(street))
+
+    def _set_out(self) -> None:
+        self._here, self._wanted, self._waited = self._walk.street, None, 0
+        self._noticed = True
+
+    def _next_id(self) -> str:
+        self._said += 1
+        return f"{self._session}-guide-{self._said}"
