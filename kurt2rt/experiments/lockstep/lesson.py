@@ -307,38 +307,39 @@ def _phase_starts(plan: LessonPlan, period_s: float) -> dict[int, Phase]:
 
 
 def _teacher_of(
-    plan: LessonPlan,
-    task: TaskSettings,
-    settings: RobotSettings,
-    actions: tuple[str, ...],
-    *,
-    seed: int,
-    session: str,
+    plan: LessonPlan, task: TaskSettings, settings: RobotSettings, actions: tuple[str, ...], *, seed: int, session: str
 ) -> ScriptedAppraiser:
     period_s, times = settings.can.cycle_s, plan.times
-    signs: RewardSource | None = None
-    if plan.signs == "unknown":
-        signs = UnknownPenalty()
-    elif plan.signs == "chance":
-        # What is meant in the last second would be said when the lesson is over.
-        last_s = plan.duration_s - task.teaching.teacher.reaction_s
-        signs = RandomPenalty(plan.blame_by_chance, round(last_s / period_s), round(times.bad_every_s / period_s), seed)
-    elif plan.signs == "judge":
-        if task.judge is None:
-            raise SettingsError(
-                "there is no judge, so nobody can praise or blame", where=f"task {task.name}", do="add `judge:`"
-            )
-        signs = JudgeReward(task.judge.build(), round(times.patience_s / period_s))
     every_s = {-1: times.bad_every_s, 0: times.neutral_every_s, 1: times.good_every_s}
-    habits = FeedbackTiming(
+    timing = FeedbackTiming(
         reaction=round(task.teaching.teacher.reaction_s / period_s),
         every={value: round(each_s / period_s) for value, each_s in every_s.items()},
         gap=round(times.gap_s / period_s),
         max_punishments=times.most_blame,
     )
-    # Where several opinions are worth the same, the first one says it.
-    named = {value: name for name, value in reversed(load_critic(task.critic).values.items())} if signs else {}
+    rewards = _reward_source(plan, task, period_s, seed)
+    # The first opinion of each value is used.
+    named = {value: name for name, value in reversed(load_critic(task.critic).values.items())} if rewards else {}
     answering = build_teacher(task, settings, actions, seed=seed, session=session)
     return ScriptedAppraiser(
-        answering, habits, signs, named, session=session, seed=seed, demonstrated=primitives(task.repertoire)
+        answering, timing, rewards, named, session=session, seed=seed, demonstrated=primitives(task.repertoire)
     )
+
+
+def _reward_source(plan: LessonPlan, task: TaskSettings, period_s: float, seed: int) -> RewardSource | None:
+    times = plan.times
+    match plan.signs:
+        case "unknown":
+            return UnknownPenalty()
+        case "chance":
+            # A penalty decided in the last reaction time would be sent after the end.
+            ticks = round((plan.duration_s - task.teaching.teacher.reaction_s) / period_s)
+            return RandomPenalty(plan.blame_by_chance, ticks, round(times.bad_every_s / period_s), seed)
+        case "judge":
+            if task.judge is None:
+                raise SettingsError(
+                    "there is no judge, so the teacher cannot reward", where=f"task {task.name}", do="add `judge:`"
+                )
+            return JudgeReward(task.judge.build(), round(times.patience_s / period_s))
+        case "none":
+            return None
