@@ -222,7 +222,7 @@ def run(
         as_service=service,
         attended=teacher == "channel",
         stopped=service or (robot != SIMULATED and teacher == "channel"),
-        behaviour=behaviour,
+        behaviour=behaviour or "",
         page=page or phone,
         phones=phone,
         scripted_teacher=auto,

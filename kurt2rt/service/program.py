@@ -1,4 +1,4 @@
-"""The robot program: robot, CAN log and companion programs around the service."""
+"""Robot program: robot, CAN log and child processes around the service."""
 
 import asyncio
 import gc
@@ -31,7 +31,8 @@ from kurt2rt.platform.realtime_priority import set_sched_fifo
 from kurt2rt.runs.recording.can_log import CanLog, open_can_log
 from kurt2rt.runs.recording.recording import Recording
 from kurt2rt.runs.recording.run_files import budget_of
-from kurt2rt.service.bus_names import SHARED
+from kurt2rt.service.assembly import RunSettings
+from kurt2rt.service.bus_names import NO_WIRE, SHARED, SIMULATED
 from kurt2rt.service.child_processes import ChildProcesses
 from kurt2rt.service.config_reload import ConfigReloader
 from kurt2rt.service.console_thread import ConsoleThread
@@ -41,7 +42,7 @@ from kurt2rt.service.live_exam import LiveExam
 from kurt2rt.service.open_robot import OpenedRobot, RobotOpener, open_robot
 from kurt2rt.service.post_tick import ProgramConsole, ProgramStatus
 from kurt2rt.service.process_context import ProcessContext
-from kurt2rt.service.serve import ChannelOptions, serve
+from kurt2rt.service.serve import ChannelOptions, ServeOptions, serve
 from kurt2rt.service.settings import ServiceSettings, with_unit_priority
 from kurt2rt.service.shutdown import ShutdownHandler, ShutdownStage, force_exit
 from kurt2rt.service.startup import RETRY_S, Dependency, StartupGate, require_folder
@@ -58,37 +59,52 @@ _SIMULATOR_S = 0.5
 """A simulator that is there sends within 10 ms."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RunOptions:
-    """What the command line says beside the settings."""
+    """Options of the command line that are not in the settings."""
 
-    bus: str
-    settings: str
-    """Name or path of the runtime settings, for the companions."""
-    as_service: bool
-    """A service manager started it."""
-    attended: bool
-    """Teachers come over the channel."""
-    stopped: bool
-    """It stands until its teacher says Go."""
-    behaviour: str | None
-    page: bool
-    phones: bool
-    """The page is for phones as well: open to the network while a device is paired."""
-    scripted_teacher: bool
-    page_port: int | None
-    can_log: Path | None
-    record: bool
-    """To the folder that the settings name."""
-    live_view: tuple[str, int] | None
-    """Host and port."""
-    seconds: float | None
-    seed: int
-    wire: str
+    bus: str = SIMULATED
+    settings: str = "default"
+    """Name or path of the runtime settings, for the child processes."""
+    as_service: bool = False
+    """Whether a service manager started the program."""
+    attended: bool = True
+    """Whether teachers come over the channel."""
+    stopped: bool = False
+    """Whether the robot stands until its teacher says resume."""
+    behaviour: str = ""
+    """Behaviour at the start; empty: the first of the task."""
+    page: bool = False
+    phones: bool = False
+    """Whether the page is open to the network while a device is paired."""
+    scripted_teacher: bool = False
+    page_port: int | None = None
+    """TCP port of the page; None: as the settings say."""
+    can_log: Path | None = None
+    """New file for all frames; None: frames are not logged."""
+    record: bool = True
+    """Whether the run is recorded to the folder that the settings name."""
+    live_view: tuple[str, int] | None = None
+    """Host and port of the live view; None: no live view."""
+    seconds: float | None = None
+    """Length of the program's run in s; None: until a signal ends it."""
+    seed: int = 1
+    wire: str = NO_WIRE
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramEnvironment:
+    """Environment of the program, replaced by tests."""
+
+    open_robot: RobotOpener = open_robot
+    on_timeout: Callable[[ShutdownStage], None] | None = force_exit
+    """As in `ShutdownHandler`."""
+    retry_s: float = RETRY_S
+    """Time between two attempts to find what is missing, in s."""
 
 
 class ProgramScreen(Protocol):
-    """Output of the program. The printer's thread calls all methods while it runs; only `links` is of the loop."""
+    """Output of the program. The printer's thread calls all methods while it runs; the loop reads only `links`."""
 
     @property
     def links(self) -> tuple[str, ...]:
@@ -100,7 +116,7 @@ class ProgramScreen(Protocol):
         ...
 
     def lesson_saved(self, text: str) -> None:
-        """Tell that a lesson is durable, in words."""
+        """Print the text of a lesson that is durable."""
         ...
 
     def show_status(self, status: ProgramStatus, health: Health, trouble: str) -> None:
@@ -117,35 +133,37 @@ class ProgramScreen(Protocol):
 
 
 class RobotProgram:
-    """One run in real time, from the first look at the bus to the last word on the screen."""
+    """Robot program in real time, from the opening of the bus to the last line on the screen."""
 
     def __init__(
         self,
-        orders: RunOptions,
-        read: Callable[[], ServiceSettings],
+        options: RunOptions,
+        read_settings: Callable[[], ServiceSettings],
         robot: RobotSettings,
         task: TaskSettings,
         screen: ProgramScreen,
-        *,
-        opening: RobotOpener = open_robot,
-        give_up: Callable[[ShutdownStage], None] | None = force_exit,
-        again_s: float = RETRY_S,
+        environment: ProgramEnvironment | None = None,
     ) -> None:
-        """`read`: the runtime settings, as the command line changes them. `opening` gives the robot.
+        """Read the settings; nothing is opened before `run`.
 
-        `give_up`: as ShutdownHandler. `again_s`: seconds between two attempts to find what is missing.
+        Args:
+            options: options of the command line.
+            read_settings: reads the runtime settings and applies the command line to them.
+            robot: settings of the robot.
+            task: task of the first run.
+            screen: output of the program.
+            environment: opener of the robot and times; None: those of `kurt2rt run`.
 
-        Raises SettingsError.
+        Raises:
+            SettingsError: the runtime settings cannot be read.
         """
-        self._options = orders
-        self._settings_of = read
+        self._options = options
+        self._read_settings = read_settings
         self._service = self._read()
         self._robot = robot
         self._task = task
-        self._open_robot = opening
         self._screen = screen
-        self._on_timeout = give_up
-        self._retry_s = again_s
+        self._environment = environment or ProgramEnvironment()
         self._program_stack = ExitStack()
         self._run_stack = ExitStack()
         self._simulated: SimulatedRuns | None = None
@@ -156,41 +174,39 @@ class RobotProgram:
 
     def _read(self) -> ServiceSettings:
         """Return the settings as they are now. Raises SettingsError."""
-        settings = self._settings_of()
+        settings = self._read_settings()
         return with_unit_priority(settings) if self._options.as_service else settings
 
     def run(self) -> None:
-        """Run until a user or a signal ends it. Raises what `serve` and `open_robot` do."""
-        service, orders = self._service, self._options
+        """Run until a user or a signal ends it. Raises the errors of `serve` and of the opener of the robot."""
+        service, options = self._service, self._options
         pin_mmap_threshold()
-        end = "" if orders.as_service else "; Ctrl-C ends"
-        self._screen.print_line(f"task {self._task.name}, robot {orders.bus}, knowledge {service.knowledge}{end}")
-        with self._program_stack as around:
-            notifier = around.enter_context(Notifier())
-            reloading = ConfigReloader(self._read, service, notifier, self._log) if orders.as_service else None
-            others = {} if reloading is None else {signal.SIGHUP: reloading.request}
-            ending = around.enter_context(ShutdownHandler(others=others, give_up=self._on_timeout))
+        end = "" if options.as_service else "; Ctrl-C ends"
+        self._screen.print_line(f"task {self._task.name}, robot {options.bus}, knowledge {service.knowledge}{end}")
+        with self._program_stack as stack:
+            notifier = stack.enter_context(Notifier())
+            reloader = ConfigReloader(self._read, service, notifier, self._log) if options.as_service else None
+            others = {} if reloader is None else {signal.SIGHUP: reloader.request}
+            shutdown = stack.enter_context(ShutdownHandler(others=others, on_timeout=self._environment.on_timeout))
             self._context = ProcessContext(
-                ending, notifier, reloading, self._liveness(), self._guard_threads, self._log
+                shutdown, notifier, reloader, self._liveness(), self._guard_threads, self._log
             )
-            self._children = around.enter_context(ChildProcesses(orders.settings, ending.remaining_s, self._log))
-            self._printer = around.enter_context(ConsoleThread(ending.remaining_s))
-            around.callback(self._printer.submit, self._screen.close)
+            self._children = stack.enter_context(ChildProcesses(options.settings, shutdown.remaining_s, self._log))
+            self._printer = stack.enter_context(ConsoleThread(shutdown.remaining_s))
+            stack.callback(self._printer.submit, self._screen.close)
             last = anyio.run(self._serve)
-            service = self._service
-            ending.stage = ShutdownStage.BUS_AND_LOGS
-        ending.stage = ShutdownStage.DISK
-        # Else the interpreter walks all that there is once more, a third of a second, before the process ends.
+            shutdown.stage = ShutdownStage.BUS_AND_LOGS
+        shutdown.stage = ShutdownStage.DISK
+        # Else the interpreter collects everything once more before the process ends, 0.3 s.
         gc.freeze()
-        count = "" if last is None else f"; {len(last.runtime.level.system)} RLAs are in {service.knowledge}"
-        if self._can_log is not None:
-            self._screen.print_line(
-                self._can_log.trouble or f"{self._can_log.written} frames are in {self._can_log.name}"
-            )
+        count = "" if last is None else f"; {len(last.runtime.level.system)} RLAs are in {self._service.knowledge}"
+        log = self._can_log
+        if log is not None:
+            self._screen.print_line(log.trouble or f"{log.written} frames are in {log.name}")
         self._screen.print_line(f"the robot stands{count}")
 
     async def _serve(self) -> ProgramStatus | None:
-        """One run after the other: a teacher of a simulated robot may want another world, task or knowledge file."""
+        """Serve one run after the other: a teacher of a simulated robot may choose another world, task or file."""
         if self._options.seconds is not None:
             self._ends_at_s = time.monotonic() + self._options.seconds
         while True:
@@ -203,9 +219,9 @@ class RobotProgram:
 
     def _advance(self, runs: "SimulatedRuns") -> None:
         try:
-            told = runs.advance()
-            if told:
-                self._log(told)
+            archived = runs.advance()
+            if archived:
+                self._log(archived)
         except KnowledgeError as error:
             self._log(f"the next run goes on in the same knowledge: {error}", "red")
         run = runs.present
@@ -215,74 +231,80 @@ class RobotProgram:
         self._log(f"world {run.world}, task {run.task.name}, knowledge {run.knowledge}")
 
     async def _serve_run(self) -> ProgramStatus | None:
-        orders, ending = self._options, self._context.shutdown
-        self._context.notifier.ready()
-        if orders.as_service:
+        """Open the robot and serve one run; return None if the program is told to end while it waits for the robot."""
+        context = self._context
+        context.notifier.ready()
+        opened = await self._open()
+        if opened is None:
+            return None
+        context.shutdown.stage = ShutdownStage.RUNTIME
+        if self._service.priority:  # not before the watchdog runs
+            self._log(set_sched_fifo(self._service.priority, self._guard_threads()))
+        context.notifier.ping()  # the first tick sends the next ping
+        settings = RunSettings(self._robot, self._task, self._service)
+        console = ProgramConsole(
+            status=self._show, question=self._question, acknowledged=self._on_acknowledged, taught=self._taught
+        )
+        return await serve(opened.robot, settings, console, self._serve_options(opened))
+
+    async def _open(self) -> OpenedRobot | None:
+        if self._options.as_service:
             with anyio.CancelScope() as waiting:
                 await self._wait_for_start(waiting)
             if waiting.cancelled_caught:
                 return None
         else:
             self._claim_robot()
-            if orders.attended:
+            if self._options.attended:
                 self._pair()
-        opened = self._opened
-        assert opened is not None
-        ending.stage = ShutdownStage.RUNTIME
-        if self._service.priority:  # not before the second guard is there
-            self._log(set_sched_fifo(self._service.priority, self._guard_threads()))
-        self._context.notifier.ping()  # the next one comes from the first tick
-        run = None
+        return self._opened
+
+    def _serve_options(self, opened: OpenedRobot) -> ServeOptions:
+        options, run = self._options, None
         if opened.simulated_world is not None:
             self._simulated = self._simulated or self._simulated_runs(opened)
             run = self._simulated.present
-        openness = ChannelOptions(
-            lambda: opened.robot.health.trouble,
-            opened.simulated_world,
-            self._on_channel_open,
-            self._exam(opened),
-            self._simulated,
-            opened.held_world,
-            None if opened.simulation is None else self._measure(opened.simulation),
-            () if run is None else run.first_commands,
+        channel = ChannelOptions(
+            bus_trouble=lambda: opened.robot.health.trouble,
+            simulated_world=opened.simulated_world,
+            on_open=self._on_channel_open,
+            exam=self._exam(opened),
+            run_control=self._simulated,
+            held_world=opened.held_world,
+            measure=None if opened.simulation is None else self._measure(opened.simulation),
+            first_commands=() if run is None else run.first_commands,
         )
         goes_on = run is not None and run.teacher is not None
         left_s = max(self._ends_at_s - time.monotonic(), self._robot.can.cycle_s)
-        return await serve(
-            opened.robot,
-            self._robot,
-            self._service,
-            self._task,
-            ProgramConsole(
-                status=self._show, question=self._question, acknowledged=self._on_acknowledged, taught=self._taught
-            ),
-            openness=openness if orders.attended else None,
+        return ServeOptions(
+            channel=channel if options.attended else None,
             duration_s=left_s if math.isfinite(left_s) else None,
-            stopped=orders.stopped or goes_on,
-            behaviour=None if goes_on else orders.behaviour,
-            instruments=self._probes(opened),
-            upkeep=self._context,
+            stopped=options.stopped or goes_on,
+            behaviour="" if goes_on else options.behaviour,
+            probes=self._probes(opened),
+            context=self._context,
             knowledge=self._knowledge,
             recording=self._recording(opened),
             tolerates_stalls=opened.simulated_world is not None,
         )
 
     async def _wait_for_start(self, waiting: anyio.CancelScope) -> None:
-        """Wait until all is there, or until the program is told to end: then the scope is cancelled."""
+        """Wait for all dependencies; cancel `waiting` if the program is told to end meanwhile."""
         loop = asyncio.get_running_loop()
-        needs = (
+        dependencies = (
             Dependency("bus", self._claim_robot),
             Dependency(_KNOWLEDGE, self._claim_knowledge),
             Dependency("teachers' keys", self._pair),
             Dependency("network", self._check_port),
             *((Dependency("recordings", self._check_recordings),) if self._options.record else ()),
         )
-        start = StartupGate(needs, self._context.notifier, self._log, self._hold, self._retry_s)
+        retry_s = self._environment.retry_s
+        gate = StartupGate(dependencies, self._context.notifier, self._log, self._hold, retry_s)
         with self._context.shutdown.on_shutdown(self._brake, lambda: loop.call_soon_threadsafe(waiting.cancel)):
             try:
                 async with anyio.create_task_group() as tasks:
-                    tasks.start_soon(self._serve_waiting, start)
-                    await start.wait_for_all()
+                    tasks.start_soon(self._serve_waiting, gate)
+                    await gate.wait_for_all()
                     tasks.cancel_scope.cancel()
             except BaseException:
                 if self._knowledge is not None:
@@ -291,13 +313,13 @@ class RobotProgram:
         if self._opened is not None:
             self._opened.robot.release()
 
-    async def _serve_waiting(self, start: StartupGate) -> None:
-        """As soon as the knowledge is this program's: the status of whoever else teaches on in it is not ours."""
-        await start.wait_for(_KNOWLEDGE)
-        await serve_waiting(status_socket_path(Path(self._service.knowledge)), lambda: start.waits_for)
+    async def _serve_waiting(self, gate: StartupGate) -> None:
+        """Serve the list of missing dependencies; not before the knowledge is ours, for its status may be another's."""
+        await gate.wait_for(_KNOWLEDGE)
+        await serve_waiting(status_socket_path(Path(self._service.knowledge)), lambda: gate.waits_for)
 
     def _hold(self) -> None:
-        """Have a robot stand that is there before the rest, and look whether its bus still is."""
+        """Brake a robot that is open before the rest, and check that its bus is still up."""
         if self._opened is not None:
             self._opened.robot.sense(time.monotonic())
         self._brake()
@@ -307,11 +329,11 @@ class RobotProgram:
             self._opened.robot.emergency_stop(GuardReason.PROGRAM_WAITS)
 
     def _claim_robot(self) -> None:
-        orders = self._options
-        if self._can_log is None and orders.can_log is not None:
-            self._can_log = self._program_stack.enter_context(open_can_log(orders.can_log, orders.bus))
-        opening = self._open_robot(
-            self._robot, orders.bus, self._service.world, orders.seed, self._can_log, orders.wire
+        options = self._options
+        if self._can_log is None and options.can_log is not None:
+            self._can_log = self._program_stack.enter_context(open_can_log(options.can_log, options.bus))
+        opening = self._environment.open_robot(
+            self._robot, options.bus, self._service.world, options.seed, self._can_log, options.wire
         )
         self._opened = self._run_stack.enter_context(opening)
 
@@ -321,7 +343,7 @@ class RobotProgram:
         self._knowledge = open_for_teaching(path, self._robot, self._task)
 
     def _pair(self) -> None:
-        """Let programs of this machine in."""
+        """Pair the programs of this machine."""
         service = self._service
         if self._options.as_service:
             for folder in (Path(service.teachers), Path(service.devices)):
@@ -337,30 +359,30 @@ class RobotProgram:
         require_port(LOOPBACK if nobody_paired else EVERYWHERE, self._service.port)
 
     def _on_channel_open(self, channel: Channel) -> None:
-        orders, port = self._options, str(channel.endpoint.port)
-        # Of the next run too: the page looks for the robot there.
+        options, port = self._options, str(channel.endpoint.port)
+        # For the next run, too: the page expects the robot there.
         self._service = self._service.model_copy(update={"port": channel.endpoint.port})
         if self._simulated is not None and self._simulated.present.teacher is not None:
             return
-        at = () if orders.page_port is None else ("--page-port", str(orders.page_port))
+        at = () if options.page_port is None else ("--page-port", str(options.page_port))
         self._log(f"teachers are listened to on UDP port {port}", "cyan")
-        if orders.page:
-            phones = ("--phone",) if orders.phones else ()
+        if options.page:
+            phones = ("--phone",) if options.phones else ()
             words = ("teach", "--pages-as-json", *phones, "--port", port, *at)
             self._children.start("the teacher's page", *words, lasts=True, hear=self._on_page_line)
-        if orders.scripted_teacher:
+        if options.scripted_teacher:
             words = ("teach", "--auto", "--port", port, "--task", self._service.task)
             self._children.start("the scripted teacher", *words, lasts=False)
 
     def _liveness(self) -> dict[str, Callable[[], bool]]:
-        """What has to be alive, beside what the service looks after."""
+        """Return the checks of what must be alive, without the parts that the service checks."""
         return {
             "second guard": lambda: self._opened is None or self._opened.robot.watchdog.running,
             "simulator": lambda: self._opened is None or self._opened.is_alive(),
         }
 
     def _guard_threads(self) -> tuple[Thread, ...]:
-        """Who brakes the robot when the loop hangs, and who ends it."""
+        """Return the threads that brake the robot and end the program if the loop hangs."""
         watchdog = None if self._opened is None else self._opened.robot.watchdog.thread
         return (self._context.shutdown.thread, *(() if watchdog is None else (watchdog,)))
 
@@ -399,15 +421,15 @@ class RobotProgram:
         return SimulatedRuns(self._robot, first, opened.require_world, taught_by_script=self._options.scripted_teacher)
 
     def _recording(self, opened: OpenedRobot) -> Recording | None:
-        orders, service = self._options, self._service
-        if not orders.record and orders.live_view is None:
+        options, service = self._options, self._service
+        if not options.record and options.live_view is None:
             return None
         return Recording(
-            Path(service.recordings) if orders.record else None,
+            Path(service.recordings) if options.record else None,
             budget_of(service.recordings_mb),
-            orders.bus,
+            options.bus,
             opened.simulated_world,
-            orders.live_view,
+            options.live_view,
             self._log,
         )
 

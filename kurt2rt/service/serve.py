@@ -1,9 +1,9 @@
-"""The service: the runtime in real time, until somebody ends it."""
+"""Service of one run: the runtime in real time until a signal, the duration or another run ends it."""
 
 import secrets
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import ExitStack, asynccontextmanager, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
@@ -11,21 +11,14 @@ import anyio
 
 from hal.guard_reason import GuardReason
 from hal.robot import Robot
-from hal.robot_settings import RobotSettings
 from hal.simulation import SimulatedWorld
 from kurt2rt.channel.protocol.health_codec import plain_of
 from kurt2rt.channel.protocol.requests import BOOT_BYTES, FASTEST
-from kurt2rt.channel.security.paired_devices import Teachers
-from kurt2rt.channel.server.channel import Channel, ChannelDependencies, open_channel
+from kurt2rt.channel.server.channel import Channel
 from kurt2rt.channel.server.simulation import RunControl
-from kurt2rt.channel.server.state_builder import JournalStatus
-from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.active_stop import NEXT_RUN, STARTED
-from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.knowledge.exchange.package import package_knowledge
-from kurt2rt.knowledge.files.backup import BackupService
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import OpenedKnowledge, open_for_teaching
 from kurt2rt.knowledge.journal.writer import JournalWriter, utc_now
@@ -37,7 +30,7 @@ from kurt2rt.platform.switch_interval import short_switch_interval
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 from kurt2rt.runs.recording.recorder import RunRecorder
 from kurt2rt.runs.recording.recording import Recording, RunContext
-from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.service.assembly import RobotService, RunSettings, assemble_service, open_service_channel
 from kurt2rt.service.health.monitor import HealthMonitor
 from kurt2rt.service.health.probes import Probes
 from kurt2rt.service.health.status_socket import StatusSocket, status_socket_path
@@ -51,250 +44,250 @@ from kurt2rt.service.systemd.notifier import Notifier
 from kurt2rt.service.systemd.watchdog import WatchdogNotifier
 
 _RECORDING_S = 2.0
-"""For the disk to keep the end of the recording."""
+"""Time to write the end of the recording, unless a signal asks for less."""
 _JOURNAL_S = 10.0
-"""For the disk to keep the last lessons, where nobody told the program to end."""
+"""Time to write the last lessons, unless a signal asks for less."""
 _KEYS_S = 0.3
-"""For the counters of the teachers' messages, which the next start can do without."""
+"""Time to write the counters of the teachers' messages; the next start can do without them."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ChannelOptions:
-    """How the robot is open to teachers over the network."""
+    """Options of a run that teachers reach over the network."""
 
-    bus_trouble: Callable[[], str]
-    """What is wrong with the robot's bus, in a line; empty when nothing is."""
-    simulated_world: SimulatedWorld | None
-    """Of a simulated robot."""
-    on_open: Callable[[Channel], None]
-    """Called when the channel is open."""
+    bus_trouble: Callable[[], str] = lambda: ""
+    """Returns what is wrong with the robot's bus, in a line; empty if nothing is."""
+    simulated_world: SimulatedWorld | None = None
+    """World of a simulated robot; None for a real robot."""
+    on_open: Callable[[Channel], None] = lambda _: None
+    """Called in the loop as soon as the channel is open."""
     exam: LiveExam | None = None
-    """Of a robot that is simulated in this program."""
+    """Exams of a robot simulated in this program; None: no exams."""
     run_control: RunControl | None = None
-    """The same."""
+    """Choice of the next run of a robot simulated in this program."""
     held_world: HeldWorld | None = None
-    """The same, where robot time may pass faster than real time."""
+    """World to step, if robot time may pass faster than real time; None: robot time is real time."""
     measure: LiveMeasure | None = None
-    """The same: how far the robot came with its task."""
+    """Progress of a robot simulated in this program, as its task measures it."""
     first_commands: tuple[Command, ...] = ()
     """Commands of the first tick: they let the teacher of the run before teach on."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ServeOptions:
+    """Optional parts of one run of the service."""
+
+    on_tick: TickCallback | None = None
+    """Teacher inside this program; None: no such teacher."""
+    channel: ChannelOptions | None = None
+    """Teachers over the network: in phases 1 to 4 the robot then drives only while one is there. None: no network."""
+    duration_s: float | None = None
+    """Length of the run in s; None: until a signal ends it."""
+    stopped: bool = False
+    """Whether the robot stands until its teacher says resume."""
+    behaviour: str = ""
+    """Behaviour at the start; empty: the first of the task."""
+    probes: Probes = field(default_factory=Probes)
+    """Parts of the program that the health report reads, without the runtime."""
+    context: ProcessContext | None = None
+    """Signals, service manager and threads of the program; None: signals only."""
+    knowledge: OpenedKnowledge | None = None
+    """Knowledge of the settings, if it is open already; the service closes it."""
+    recording: Recording | None = None
+    """Destination of the recording; None: the run is not recorded."""
+    tolerates_stalls: bool = False
+    """Whether the robot stalls with this program, as a robot simulated in it does."""
+
+
 async def serve(
-    robot: Robot,
-    settings: RobotSettings,
-    service: ServiceSettings,
-    task: TaskSettings,
-    screen: ProgramConsole,
-    *,
-    teacher: TickCallback | None = None,
-    openness: ChannelOptions | None = None,
-    duration_s: float | None,
-    stopped: bool = False,
-    behaviour: str | None = None,
-    instruments: Probes | None = None,
-    upkeep: ProcessContext | None = None,
-    knowledge: OpenedKnowledge | None = None,
-    recording: Recording | None = None,
-    tolerates_stalls: bool = False,
+    robot: Robot, settings: RunSettings, console: ProgramConsole, options: ServeOptions
 ) -> ProgramStatus | None:
-    """Run until a signal ends it, Ctrl-Z too, or for `duration_s`; the wheels stand before anything else ends.
+    """Run the robot until a signal (Ctrl-Z too) or the duration ends it; stop the wheels before anything else ends.
 
-    `teacher`: one inside this program. `openness`: teachers over the network; then the robot needs one who is there.
-    `stopped`: stand until the teacher says resume, as after a stop. `behaviour`: the one that is wanted at first.
-    `instruments`: what the health report reads beside the runtime. `upkeep`: of the program around, with a service
-    manager perhaps. `knowledge`: that of the settings, where it is open already; it is closed here.
-    `recording`: what is kept of the run; None: nothing. `tolerates_stalls`: of a robot simulated in this program.
-    Returns the last status, None when no tick ran. Raises KnowledgeError, SettingsError, UnknownActionError,
-    UnknownBehaviourError, ChannelError; ValueError for a behaviour that the task does not teach.
+    Returns the last status; None if no tick ran.
+
+    Raises:
+        KnowledgeError: the knowledge file cannot be opened or written.
+        SettingsError: a file that the settings name cannot be loaded.
+        UnknownActionError: the knowledge names an action that the task's repertoire lacks.
+        UnknownBehaviourError: the knowledge names a behaviour that the task lacks.
+        CommandRefusedError: the task does not teach the behaviour of the start.
+        ChannelError: the UDP port cannot be opened.
     """
-    path = Path(service.knowledge)
-    wanted = ActiveBehaviour(task.behaviours)
-    if behaviour is not None:
-        wanted.select(behaviour)
-    with ExitStack() as around:
-        clock: Clock = around.enter_context(TimerfdClock())
+    with ExitStack() as stack:
+        clock: Clock = stack.enter_context(TimerfdClock())
         speed = None
-        if openness is not None and openness.held_world is not None:
-            clock = speed = SimulatedClock(clock, openness.held_world, FASTEST)
-        upkeep = upkeep or ProcessContext(around.enter_context(ShutdownHandler()), Notifier({}))
-        ending = upkeep.shutdown
-        opened = knowledge or open_for_teaching(path, settings, task)
-        stamps = opened.stamps
-        boot = secrets.token_bytes(BOOT_BYTES)
-        measure = None if openness is None else openness.measure
-        begin_with = () if openness is None else openness.first_commands
-        stop = None if not stopped else NEXT_RUN if begin_with else STARTED
-        circumstances = RunContext(
-            boot.hex(),
-            str(path),
-            openness is not None,
-            stop,
-            behaviour or "",
-            tolerates_stalls=tolerates_stalls,
-        )
+        if options.channel is not None and options.channel.held_world is not None:
+            clock = speed = SimulatedClock(clock, options.channel.held_world, FASTEST)
+        context = options.context or ProcessContext(stack.enter_context(ShutdownHandler()), Notifier({}))
+        shutdown = context.shutdown
+        path = Path(settings.service.knowledge)
+        knowledge = options.knowledge or open_for_teaching(path, settings.robot, settings.task)
+        run = _run_context(settings.service, options)
         recorder = None
-        if recording is not None:
-            recorder = around.enter_context(_recording(recording, settings, task, opened, circumstances, ending))
-        with _writing(opened.journal, ending) as writer:
-            runtime = build_runtime(
-                robot,
-                settings,
-                task,
-                opened.events,
-                writer,
-                clock,
-                statistics=opened.counter,
-                attended=openness is not None,
-                active_behaviour=wanted,
-                checkpoint=opened.saved,
-                tolerates_stalls=tolerates_stalls,
-            )
-            if stop is not None:
-                runtime.handler.stop(stop)
-            for command in begin_with:
-                runtime.inbox.put(command)
-            watch = HealthMonitor(
-                runtime,
-                writer,
-                instruments or Probes(),
-                boot=boot.hex(),
-                knowledge=path,
-                tolerates_stalls=tolerates_stalls,
-            )
-            status = StatusSocket(watch, status_socket_path(path), (instruments or Probes()).pages)
-            watch.include(errors={"status": lambda: status.trouble})
-            if recorder is not None:
-                watch.include(
-                    drops={"the recording": lambda: recorder.dropped}, errors={"recording": lambda: recorder.trouble}
-                )
-                watch.add_listener(lambda report: recorder.on_health(plain_of(report)))
-            parts = {"knowledge journal": lambda: writer.is_alive, **upkeep.liveness}
-            heartbeat = WatchdogNotifier(upkeep.notifier, settings.can.cycle_s, parts, upkeep.log)
-            async with (
-                anyio.create_task_group() as tasks,
-                _channel(runtime, writer, stamps, service, openness, boot, watch, ending, speed) as channel,
-            ):
-                rounds = PostTick(runtime, writer, stamps, service, screen, teacher, channel, watch, recorder)
-
-                def after_tick(record: TickRecord) -> None:
-                    rounds(record)
-                    if measure is not None:
-                        measure.on_tick(record)
-                    heartbeat.on_tick(record.now_s)
-
-                tasks.start_soon(status.serve)
-                if upkeep.reloader is not None:
-                    tasks.start_soon(upkeep.reloader.serve, _SettingsApplier(rounds, service, upkeep))
-                ticks = None if duration_s is None else round(duration_s / settings.can.cycle_s)
-                # The wheels first, also where the loop hangs.
-                stop_wheels = partial(robot.emergency_stop, GuardReason.SERVICE_ENDS)
-                acts = (stop_wheels, runtime.scheduler.end, upkeep.notifier.stopping)
-                ending.stage = ShutdownStage.LOOP
-                with gc_frozen(), short_switch_interval(), watch, ending.on_shutdown(*acts):
-                    try:
-                        await runtime.scheduler.run(ticks, after_tick)
-                    finally:
-                        stop_wheels()
-                ending.stage = ShutdownStage.CHANNEL
-                tasks.cancel_scope.cancel()
-            rounds.save_statistics()
-            ending.stage = ShutdownStage.LESSONS
+        if options.recording is not None:
+            recorder = stack.enter_context(_recording(options.recording, settings, knowledge, run, shutdown))
+        with _writing(knowledge.journal, shutdown) as writer:
+            service = assemble_service(robot, settings, knowledge, writer, clock, run)
+            for command in () if options.channel is None else options.channel.first_commands:
+                service.runtime.inbox.put(command)
+            last = await _Run(robot, service, run, options, context, recorder).serve(console, speed)
+            shutdown.stage = ShutdownStage.LESSONS
         for acknowledgement in writer.acknowledged():
             if recorder is not None:
                 recorder.on_acknowledged(acknowledgement)
-            screen.acknowledged(acknowledgement)
-        ending.stage = ShutdownStage.RECORDING
-    return rounds.last
+            console.acknowledged(acknowledgement)
+        shutdown.stage = ShutdownStage.RECORDING
+    return last
 
 
-@asynccontextmanager
-async def _channel(
-    runtime: Runtime,
-    writer: JournalWriter,
-    stamps: dict[str, str],
-    service: ServiceSettings,
-    openness: ChannelOptions | None,
-    boot: bytes,
-    watch: HealthMonitor,
-    ending: ShutdownHandler,
-    speed: Speed | None,
-) -> AsyncIterator[Channel | None]:
-    if openness is None:
-        yield None
-        return
-    safekeeping = JournalStatus(
-        unsaved=lambda: writer.unwritten,
-        trouble=lambda: writer.error,
-        stamp_of=lambda command_id: stamps.get(command_id, ""),
+def _run_context(settings: ServiceSettings, options: ServeOptions) -> RunContext:
+    goes_on = options.channel is not None and options.channel.first_commands
+    return RunContext(
+        secrets.token_bytes(BOOT_BYTES).hex(),
+        str(Path(settings.knowledge)),
+        attended=options.channel is not None,
+        stopped=None if not options.stopped else NEXT_RUN if goes_on else STARTED,
+        behaviour=options.behaviour,
+        tolerates_stalls=options.tolerates_stalls,
     )
-    package = partial(package_knowledge, robot=runtime.robot, task=runtime.task)
-    exam = openness.exam
-    safe = BackupService(Path(service.knowledge), writer, package, None if exam is None else exam.begin)
-    surroundings = ChannelDependencies(
-        safekeeping,
-        safe,
-        openness.bus_trouble,
-        openness.simulated_world,
-        boot=boot,
-        health=lambda: watch.newest,
-        exam=None if exam is None else lambda: exam.status,
-        simulation=openness.run_control,
-        speed=speed,
-        measure=openness.measure,
-    )
-    teachers = await anyio.to_thread.run_sync(Teachers, Path(service.teachers))
-    try:
-        async with open_channel(runtime, teachers, service.port, surroundings) as channel:
-            watch.include(
+
+
+class _Run:
+    """Ticks of one run with health report, heartbeat and channel around them."""
+
+    def __init__(
+        self,
+        robot: Robot,
+        service: RobotService,
+        run: RunContext,
+        options: ServeOptions,
+        context: ProcessContext,
+        recorder: RunRecorder | None,
+    ) -> None:
+        self._robot = robot
+        self._service = service
+        self._run = run
+        self._options = options
+        self._context = context
+        self._recorder = recorder
+        self._priority = service.settings.priority
+        knowledge, writer = Path(service.settings.knowledge), service.writer
+        self._health = HealthMonitor(
+            service.runtime,
+            writer,
+            options.probes,
+            boot=run.boot,
+            knowledge=knowledge,
+            tolerates_stalls=run.tolerates_stalls,
+        )
+        status = self._status = StatusSocket(self._health, status_socket_path(knowledge), options.probes.pages)
+        self._health.include(errors={"status": lambda: status.trouble})
+        if recorder is not None:
+            self._health.include(
+                drops={"the recording": lambda: recorder.dropped}, errors={"recording": lambda: recorder.trouble}
+            )
+            self._health.add_listener(lambda report: recorder.on_health(plain_of(report)))
+        liveness = {"knowledge journal": lambda: writer.is_alive, **context.liveness}
+        period_s = service.runtime.robot.can.cycle_s
+        self._heartbeat = WatchdogNotifier(context.notifier, period_s, liveness, context.log)
+
+    async def serve(self, console: ProgramConsole, speed: Speed | None) -> ProgramStatus | None:
+        """Open the channel, run the ticks, close the channel, hand the statistics to the journal's thread."""
+        options, reloader = self._options, self._context.reloader
+        async with anyio.create_task_group() as tasks, self._channel(speed) as channel:
+            post_tick = PostTick(
+                self._service,
+                console,
+                on_tick=options.on_tick,
+                channel=channel,
+                health=self._health,
+                recorder=self._recorder,
+            )
+            tasks.start_soon(self._status.serve)
+            if reloader is not None:
+                tasks.start_soon(reloader.serve, partial(self._apply_settings, post_tick))
+            await self._tick(post_tick)
+            self._context.shutdown.stage = ShutdownStage.CHANNEL
+            tasks.cancel_scope.cancel()
+        post_tick.save_statistics()
+        return post_tick.last
+
+    async def _tick(self, post_tick: PostTick) -> None:
+        options, context, runtime = self._options, self._context, self._service.runtime
+        measure = None if options.channel is None else options.channel.measure
+
+        def after_tick(record: TickRecord) -> None:
+            post_tick(record)
+            if measure is not None:
+                measure.on_tick(record)
+            self._heartbeat.on_tick(record.now_s)
+
+        ticks = None if options.duration_s is None else round(options.duration_s / runtime.robot.can.cycle_s)
+        # The wheels first, also if the loop hangs.
+        stop_wheels = partial(self._robot.emergency_stop, GuardReason.SERVICE_ENDS)
+        callbacks = (stop_wheels, runtime.scheduler.end, context.notifier.stopping)
+        context.shutdown.stage = ShutdownStage.LOOP
+        with gc_frozen(), short_switch_interval(), self._health, context.shutdown.on_shutdown(*callbacks):
+            try:
+                await runtime.scheduler.run(ticks, after_tick)
+            finally:
+                stop_wheels()
+
+    @asynccontextmanager
+    async def _channel(self, speed: Speed | None) -> AsyncIterator[Channel | None]:
+        options, health, shutdown = self._options.channel, self._health, self._context.shutdown
+        if options is None:
+            yield None
+            return
+        exam = options.exam
+        dependencies = replace(
+            self._service.channel_dependencies(None if exam is None else exam.begin),
+            bus_trouble=options.bus_trouble,
+            ground=options.simulated_world,
+            boot=bytes.fromhex(self._run.boot),
+            health=lambda: health.newest,
+            exam=None if exam is None else lambda: exam.status,
+            simulation=options.run_control,
+            speed=speed,
+            measure=options.measure,
+        )
+        async with open_service_channel(self._service, dependencies, partial(shutdown.remaining_s, _KEYS_S)) as channel:
+            health.include(
                 drops={"pictures for teachers": lambda: channel.pictures_skipped},
                 errors={"channel": lambda: channel.trouble},
             )
-            openness.on_open(channel)
+            options.on_open(channel)
             yield channel
-    finally:
-        # In a thread, for the disk may hang; what was reserved and not used is skipped at the next start.
-        with anyio.move_on_after(ending.remaining_s(_KEYS_S), shield=True):
-            await anyio.to_thread.run_sync(teachers.close, abandon_on_cancel=True)
+
+    def _apply_settings(self, post_tick: PostTick, settings: ServiceSettings) -> None:
+        post_tick.apply_settings(settings)
+        if settings.priority != self._priority:
+            self._priority = settings.priority
+            self._context.log(set_sched_fifo(self._priority, self._context.guard_threads()))
 
 
 @contextmanager
-def _writing(journal: Journal, ending: ShutdownHandler) -> Iterator[JournalWriter]:
+def _writing(journal: Journal, shutdown: ShutdownHandler) -> Iterator[JournalWriter]:
     writer = JournalWriter(journal, utc_now)
     try:
         yield writer
     finally:
-        writer.close(ending.remaining_s(_JOURNAL_S))
+        writer.close(shutdown.remaining_s(_JOURNAL_S))
 
 
 @contextmanager
 def _recording(
     recording: Recording,
-    settings: RobotSettings,
-    task: TaskSettings,
+    settings: RunSettings,
     knowledge: OpenedKnowledge,
-    circumstances: RunContext,
-    ending: ShutdownHandler,
+    run: RunContext,
+    shutdown: ShutdownHandler,
 ) -> Iterator[RunRecorder]:
-    recorder = recording.recorder(settings, task, knowledge, circumstances)
+    recorder = recording.recorder(settings.robot, settings.task, knowledge, run)
     recorder.start()
     try:
         yield recorder
     finally:
-        recorder.close(ending.remaining_s(_RECORDING_S))
+        recorder.close(shutdown.remaining_s(_RECORDING_S))
         recording.ended(recorder)
-
-
-class _SettingsApplier:
-    """Takes settings that were read anew."""
-
-    def __init__(self, rounds: PostTick, service: ServiceSettings, upkeep: ProcessContext) -> None:
-        self._rounds = rounds
-        self._priority = service.priority
-        self._upkeep = upkeep
-
-    def __call__(self, service: ServiceSettings) -> None:
-        self._rounds.apply_settings(service)
-        if service.priority != self._priority:
-            self._priority = service.priority
-            self._upkeep.log(set_sched_fifo(self._priority, self._upkeep.guard_threads()))

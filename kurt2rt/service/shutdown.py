@@ -65,14 +65,14 @@ class ShutdownHandler:
         self,
         *,
         others: Mapping[signal.Signals, Callback] | None = None,
-        give_up: Callable[[ShutdownStage], None] | None = None,
+        on_timeout: Callable[[ShutdownStage], None] | None = None,
     ) -> None:
         """`others`: what other signals ask for, done in this thread, too; they end nothing.
 
-        `give_up` ends the process when the time is over; it takes the stage that did not end. None: wait for ever.
+        `on_timeout` ends the process when the time is over; it takes the stage that did not end. None: wait for ever.
         """
         self._others: dict[int, Callback] = {int(number): act for number, act in (others or {}).items()}
-        self._give_up = give_up
+        self._on_timeout = on_timeout
         self._callbacks: list[Callback] = []
         self._failures: list[Exception] = []
         self._deadline_s = math.inf
@@ -127,7 +127,7 @@ class ShutdownHandler:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self.requested and self._give_up is not None:
+        if self.requested and self._on_timeout is not None:
             return  # the interpreter's own end may hang as well
         self._handlers.restore()
         signal.set_wakeup_fd(self._wakeup_before)
@@ -140,8 +140,8 @@ class ShutdownHandler:
     def _listen(self) -> None:
         while True:
             left_s = self._deadline_s - time.monotonic()
-            if left_s <= 0 and self._give_up is not None:
-                self._give_up(self.stage)
+            if left_s <= 0 and self._on_timeout is not None:
+                self._on_timeout(self.stage)
                 return
             self._wakeup_recv.settimeout(left_s if 0 < left_s < math.inf else None)
             try:
@@ -161,7 +161,7 @@ class ShutdownHandler:
             with self._lock:
                 self._deadline_s = time.monotonic() + _GIVES_UP_S
                 acts = tuple(self._callbacks)
-            if self._give_up is not None:
+            if self._on_timeout is not None:
                 # Of the kernel, for an interpreter that hangs as a whole.
                 signal.setitimer(signal.ITIMER_REAL, LONGEST_S)
             self._run_callbacks(acts)

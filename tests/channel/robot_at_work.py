@@ -19,8 +19,9 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.runtime import Runtime
+from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.post_tick import ProgramConsole
-from kurt2rt.service.serve import ChannelOptions, serve
+from kurt2rt.service.serve import ChannelOptions, ServeOptions, serve
 from kurt2rt.service.settings import ServiceSettings, load_service
 
 SETTINGS = load_robot()
@@ -133,13 +134,9 @@ async def robot_at_work(folder: Path) -> AsyncIterator[RobotAtWork]:
         as_robot: Robot = robot
         await serve(
             as_robot,
-            SETTINGS,
-            service,
-            load_task("wall_following"),
+            RunSettings(SETTINGS, load_task("wall_following"), service),
             ProgramConsole(status=_nothing, question=_nothing, acknowledged=_nothing),
-            teacher=records.append,
-            openness=ChannelOptions(lambda: "", None, listening),
-            duration_s=None,
+            ServeOptions(on_tick=records.append, channel=ChannelOptions(on_open=listening)),
         )
         at_work.ended = True
 

@@ -17,8 +17,9 @@ from hal.robot import Robot
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.platform.gc_control import collect_young
+from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.post_tick import ProgramConsole, ProgramStatus
-from kurt2rt.service.serve import ChannelOptions, serve
+from kurt2rt.service.serve import ChannelOptions, ServeOptions, serve
 from tests.channel.robot_at_work import SETTINGS, CheapRobot, service_settings
 
 
@@ -67,13 +68,12 @@ async def work(folder: Path, sweeper: _Sweeper) -> None:
 
     robot: Robot = CheapRobot()
     quiet = ProgramConsole(status=tell, question=lambda _: None, acknowledged=lambda _: None)
-    openness = ChannelOptions(lambda: "", None, listening)
-    task = load_task("wall_following")
-    await serve(robot, SETTINGS, service_settings(folder), task, quiet, openness=openness, duration_s=None)
+    settings = RunSettings(SETTINGS, load_task("wall_following"), service_settings(folder))
+    await serve(robot, settings, quiet, ServeOptions(channel=ChannelOptions(on_open=listening)))
 
 
 if __name__ == "__main__":
     with pytest.MonkeyPatch.context() as patch:
         sweeper = _Sweeper(collect_young if sys.argv[2] == "sweep" else lambda: None)
-        patch.setattr("kurt2rt.service.post_tick.sweep", sweeper)
+        patch.setattr("kurt2rt.service.post_tick.collect_young", sweeper)
         anyio.run(work, Path(sys.argv[1]), sweeper)

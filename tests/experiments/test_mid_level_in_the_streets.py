@@ -19,6 +19,7 @@ from kurt2rt.knowledge.journal.loading import open_for_teaching
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
+from kurt2rt.service.assembly import RobotService
 from kurt2rt.service.post_tick import PostTick, ProgramConsole, ProgramStatus
 from kurt2rt.service.settings import load_service
 from kurt2rt.service.status_line import status_line
@@ -53,7 +54,7 @@ class Service:
             checkpoint=opened.saved,
         )
         screen = ProgramConsole(status=lambda _: None, question=self.questions.append, acknowledged=self.settled.append)
-        self.rounds = PostTick(self.runtime, self.writer, opened.stamps, load_service(), screen, None, None)
+        self.rounds = PostTick(RobotService(self.runtime, self.writer, load_service(), opened.stamps), screen)
         self.record: TickRecord
         self.health: Health = simulation.robot.health
 

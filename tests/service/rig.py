@@ -18,8 +18,9 @@ from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.teaching.question import MidQuestion, Question
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.writer import Acknowledgement
+from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.post_tick import ProgramConsole, ProgramStatus
-from kurt2rt.service.serve import serve
+from kurt2rt.service.serve import ServeOptions, serve
 from kurt2rt.service.settings import ServiceSettings, load_service
 from kurt2rt.teacher.scripted.teacher import build_teacher, view_of_tick
 from simbridge.realtime import RealtimeSimulation
@@ -84,15 +85,8 @@ class Rig:
         screen = ProgramConsole(
             status=self.statuses.append, question=self.questions.append, acknowledged=self.settled.append
         )
-        return await serve(
-            self.robot,
-            SETTINGS,
-            settings_for(knowledge),
-            task or eager_task(),
-            screen,
-            teacher=teacher,
-            duration_s=duration_s,
-        )
+        settings = RunSettings(SETTINGS, task or eager_task(), settings_for(knowledge))
+        return await serve(self.robot, settings, screen, ServeOptions(on_tick=teacher, duration_s=duration_s))
 
 
 def settings_for(knowledge: Path) -> ServiceSettings:

@@ -18,6 +18,7 @@ from kurt2rt.knowledge.journal.loading import open_for_teaching
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
+from kurt2rt.service.assembly import RobotService
 from kurt2rt.service.post_tick import PostTick, ProgramConsole, ProgramStatus
 from kurt2rt.service.settings import load_service
 from tests.channel.desk import ROBOT, STAMP, TASK, Desk, WideRobot, reply_of, turns
@@ -44,7 +45,12 @@ class Shift:
             status=self.statuses.append, question=self.questions.append, acknowledged=self.settled.append
         )
         channel = self.desk.channel if with_channel else None
-        self.rounds = PostTick(self.desk.runtime, self.writer, self.stamps, SERVICE, screen, self._watch, channel)
+        self.rounds = PostTick(
+            RobotService(self.desk.runtime, self.writer, SERVICE, self.stamps),
+            screen,
+            on_tick=self._watch,
+            channel=channel,
+        )
         self._tick = 10_000
 
     def run(self, ticks: int = 1, counts: int | None = None) -> TickRecord:

@@ -13,7 +13,7 @@ from kurt2rt.service.shutdown import SHUTDOWN_SIGNALS, ShutdownHandler, Shutdown
 HANGS = """
 import ctypes, time
 from kurt2rt.service.shutdown import ShutdownHandler, ShutdownStage, force_exit
-with ShutdownHandler(give_up=force_exit) as ending:
+with ShutdownHandler(on_timeout=force_exit) as ending:
     ending.stage = ShutdownStage.LESSONS
     with ending.on_shutdown(lambda: print("wheels", flush=True), lambda: print("loop", flush=True), lambda: {act}):
         print("begun", flush=True)

@@ -26,7 +26,7 @@ from kurt2rt.core.teaching.commands import Command, Teach
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.service.health.status_socket import StatusError, read_reports, status_socket_path
 from kurt2rt.service.open_robot import OpenedRobot
-from kurt2rt.service.program import RobotProgram, RunOptions
+from kurt2rt.service.program import ProgramEnvironment, RobotProgram, RunOptions
 from kurt2rt.service.settings import ServiceSettings, load_service
 from kurt2rt.teacher import TeacherClient
 from tests.service.rig import SETTINGS, Rig, end_service, rig
@@ -37,24 +37,7 @@ BRAKE = bytes(encode_brake().data)
 ALL = ("bus", "disk", "network", "teacher")
 IN_TURN = [ALL[first:] + ALL[:first] for first in range(len(ALL))]
 """Each of them comes last once."""
-ORDERS = RunOptions(
-    bus="can0",
-    settings="default",
-    as_service=True,
-    attended=True,
-    stopped=True,
-    behaviour=None,
-    page=False,
-    phones=False,
-    scripted_teacher=False,
-    page_port=None,
-    can_log=None,
-    record=False,
-    live_view=None,
-    seconds=None,
-    seed=1,
-    wire="none",
-)
+ORDERS = RunOptions(bus="can0", as_service=True, stopped=True, record=False)
 
 
 @pytest.fixture(scope="module")
@@ -248,9 +231,7 @@ def program_in(world: World) -> RobotProgram:
         SETTINGS,
         TASK,
         TerminalScreen(Console(file=world.log), Path(), as_service=True),
-        opening=world.open_robot,
-        give_up=None,
-        again_s=0.01,
+        ProgramEnvironment(world.open_robot, on_timeout=None, retry_s=0.01),
     )
 
 

@@ -3,28 +3,24 @@
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import anyio
 import anyio.to_thread
 
-from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.security.pairing import Device, local_pairing
-from kurt2rt.channel.server.channel import Channel, ChannelDependencies, open_channel
-from kurt2rt.channel.server.state_builder import JournalStatus
+from kurt2rt.channel.server.channel import Channel
 from kurt2rt.checks.bench.lateness_clock import NotingClock
 from kurt2rt.checks.bench.press_schedule import WitnessedRobot
 from kurt2rt.checks.bench.robot_under_test import RobotUnderTest, kept_knowledge
 from kurt2rt.checks.bench.tick_phase import LoopPacer
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.knowledge.exchange.package import package_knowledge
-from kurt2rt.knowledge.files.backup import BackupService
 from kurt2rt.knowledge.journal.writer import JournalWriter
 from kurt2rt.platform.gc_control import gc_frozen
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.service.assembly import RobotService, open_service_channel
 from kurt2rt.service.post_tick import PostTick, ProgramConsole
 from kurt2rt.service.settings import load_service
 
@@ -96,7 +92,9 @@ async def open_robot(subject: RobotUnderTest, folder: Path) -> AsyncIterator[Ope
     Raises KnowledgeError, ChannelError, OSError without a timerfd, and what the block raises as it is.
     """
     pairing = local_pairing(folder / "teachers", folder / "devices")
-    service = load_service().model_copy(update={"knowledge": str(folder / "bench.knowledge")})
+    service = load_service().model_copy(
+        update={"knowledge": str(folder / "bench.knowledge"), "teachers": str(folder / "teachers"), "port": 0}
+    )
     failed: Exception | None = None
     simulation = subject.open_simulation(f"bench {folder.name}")
     try:
@@ -112,35 +110,20 @@ async def open_robot(subject: RobotUnderTest, folder: Path) -> AsyncIterator[Ope
                 witness, subject.settings, subject.task, subject.events, writer, clock, attended=True
             )
             runtime.handler.stop(STARTED)
-            stamps: dict[str, str] = {}
-            safekeeping = JournalStatus(
-                unsaved=lambda: writer.unwritten,
-                trouble=lambda: writer.error,
-                stamp_of=lambda command_id: stamps.get(command_id, ""),
-            )
-            package = partial(package_knowledge, robot=subject.settings, task=subject.task)
-            safe = BackupService(Path(service.knowledge), writer, package)
-            surroundings = ChannelDependencies(safekeeping, safe, lambda: "", None)
-            screen = ProgramConsole(status=lambda _: None, question=lambda _: None, acknowledged=lambda _: None)
-            teachers = await anyio.to_thread.run_sync(Teachers, folder / "teachers")
-            try:
-                async with (
-                    anyio.create_task_group() as tasks,
-                    open_channel(runtime, teachers, 0, surroundings) as channel,
-                ):
-                    rounds = PauseGate(
-                        PostTick(runtime, writer, stamps, service, screen, None, channel),
-                        PostTick(runtime, writer, stamps, service, screen, None, None),
-                    )
-                    pace = LoopPacer(runtime.scheduler, clock)
-                    tasks.start_soon(pace.run, rounds)
-                    try:
-                        yield OpenRobot(runtime, writer, channel, witness, clock, pairing.device, rounds, pace)
-                    except Exception as error:  # noqa: BLE001  # raised below: a task group would wrap it
-                        failed = error
-                    pace.end()
-            finally:
-                teachers.close()
+            robot = RobotService(runtime, writer, service)
+            console = ProgramConsole(status=lambda _: None, question=lambda _: None, acknowledged=lambda _: None)
+            async with (
+                anyio.create_task_group() as tasks,
+                open_service_channel(robot, robot.channel_dependencies()) as channel,
+            ):
+                rounds = PauseGate(PostTick(robot, console, channel=channel), PostTick(robot, console))
+                pace = LoopPacer(runtime.scheduler, clock)
+                tasks.start_soon(pace.run, rounds)
+                try:
+                    yield OpenRobot(runtime, writer, channel, witness, clock, pairing.device, rounds, pace)
+                except Exception as error:  # noqa: BLE001  # raised below: a task group would wrap it
+                    failed = error
+                pace.end()
     finally:
         simulation.close()
     if failed is not None:

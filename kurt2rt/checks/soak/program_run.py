@@ -25,7 +25,7 @@ from kurt2rt.core.teaching.inbox import InboxFullError
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.platform.gc_control import gc_frozen
 from kurt2rt.runs.recording.recording import Recording, RunContext
-from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.service.assembly import RunSettings, assemble_service
 from kurt2rt.service.post_tick import PostTick, ProgramConsole
 from kurt2rt.service.settings import ServiceSettings
 from kurt2rt.teacher.client.manual_drive import BEAT_S
@@ -82,36 +82,19 @@ class ProgramRun:
         teacher.program_started()
         self.clock = SoakClock(rig.time)
         self.level = SoakLevel(rig.time)
-        self.runtime: Runtime = build_runtime(
-            witness,
-            settings,
-            task,
-            opened.events,
-            self.knowledge.writer,
-            self.clock,
-            statistics=opened.counter,
-            level_override=self.level,
-            attended=True,
-            checkpoint=opened.saved,
+        context = RunContext(f"{number:016x}", service.knowledge, attended=True, stopped=STARTED)
+        run_settings = RunSettings(settings, task, service)
+        assembled = assemble_service(
+            witness, run_settings, opened, self.knowledge.writer, self.clock, context, self.level
         )
+        self.runtime = assembled.runtime
         self.level.behind = self.runtime.level
-        self.runtime.handler.stop(STARTED)
-        screen = ProgramConsole(status=lambda _: None, question=lambda _: None, acknowledged=self.knowledge.settled)
-        circumstances = RunContext(f"{number:016x}", service.knowledge, attended=True, stopped=STARTED)
+        console = ProgramConsole(status=lambda _: None, question=lambda _: None, acknowledged=self.knowledge.settled)
         started = _FIRST_DAY + timedelta(seconds=rig.time.now_s())
         # Without its thread: it writes when it is told to, as far as simulated time has gone.
-        self.recorder = recording.recorder(settings, task, opened, circumstances, started=started)
+        self.recorder = recording.recorder(settings, task, opened, context, started=started)
         self.recorder.poll()
-        self._rounds = PostTick(
-            self.runtime,
-            self.knowledge.writer,
-            opened.stamps,
-            service,
-            screen,
-            None,
-            None,
-            recorder=self.recorder,
-        )
+        self._rounds = PostTick(assembled, console, recorder=self.recorder)
 
     @property
     def ready(self) -> bool:

@@ -15,8 +15,9 @@ from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.knowledge.exchange.package import read_package
+from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.post_tick import ProgramConsole
-from kurt2rt.service.serve import ChannelOptions, serve
+from kurt2rt.service.serve import ChannelOptions, ServeOptions, serve
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import RefusedError
 from simbridge.simulated_world import Kurt2World
@@ -46,8 +47,9 @@ async def listening_robot(live: Rig, folder: Path) -> AsyncIterator[int]:
     )
 
     async def run() -> None:
-        openness = ChannelOptions(lambda: "", ground, listening)
-        await serve(live.robot, SETTINGS, settings, eager_task(), screen, openness=openness, duration_s=LONGEST_S)
+        channel = ChannelOptions(simulated_world=ground, on_open=listening)
+        options = ServeOptions(channel=channel, duration_s=LONGEST_S)
+        await serve(live.robot, RunSettings(SETTINGS, eager_task(), settings), screen, options)
 
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(run)
