@@ -1,4 +1,4 @@
-"""The runtime, assembled: everything between the robot and the scheduler, built in one place."""
+"""Assembly of one robot mind: all parts between the robot and the scheduler."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -31,30 +31,53 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.authority import ControlAuthority
-from kurt2rt.core.teaching.command_handler import CommandHandler
+from kurt2rt.core.teaching.command_handler import CommandHandler, HandlerParts
 from kurt2rt.core.teaching.goal_commands import GoalCommands
 from kurt2rt.core.teaching.inbox import TeacherInbox
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 from kurt2rt.core.teaching.system_events import RobotRepositioned
-from kurt2rt.core.tick import EventStore, Tick, TickRecord
+from kurt2rt.core.tick import EventStore, Tick, TickOptions, TickParts, TickRecord
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.platform.clock import Clock
 from kurt2rt.platform.ledger import TickTimer
 from kurt2rt.platform.scheduler import Scheduler
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RuntimeOptions:
+    """Optional parts and settings of a runtime."""
+
+    statistics: StatisticsCounter | None = None
+    """Counts to go on from; new ones by default."""
+    checkpoint: Statistics | None = None
+    """Saved values and expectations of the RLAs."""
+    level_override: Level | None = None
+    """Level that drives instead of the basic level, such as the teacher's own policy. Knowledge and teaching stay
+    connected to the basic level; a mid level commands the override as well."""
+    active_behaviour: ActiveBehaviour | None = None
+    """Shared with a `level_override` that reads it; made from the task by default."""
+    attended: bool = False
+    """Whether the robot drives by its RLAs in phases 1 to 4 only while a teacher is present."""
+    teacher_available: bool = True
+    """False if there is no teacher to ask: RLAs whose action was withdrawn are skipped."""
+    tolerates_stalls: bool = False
+    """Whether the robot stalls with this program, because it is simulated in it."""
+    asks_at_bumper: bool = True
+    """Whether the robot asks that touches something; False for recordings of before it did."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Runtime:
-    """The parts that others talk to."""
+    """Parts of one robot mind that other rooms use."""
 
     robot: RobotSettings
     task: TaskSettings
     definition: SituationDefinition
     level: BasicLevel
     mid: MidLevel | None
-    """Over the basic level; None where the task has none."""
+    """None if the task has no mid level."""
     navigator: Navigator | None
-    """Has the mid level go to goals; None where there is no mid level."""
+    """Leads the mid level to goals; None without a mid level."""
     active_behaviour: ActiveBehaviour
     handler: CommandHandler
     reinforcement: Reinforcement
@@ -64,16 +87,16 @@ class Runtime:
     expectations: ExpectationTracker
     timer: TickTimer
     progress: ProgressMeter
-    """Counts what its owner hands it after each tick."""
+    """Updated by the runtime's owner after each tick."""
     tick: Tick
     scheduler: Scheduler[TickRecord]
 
     def reposition(self) -> None:
-        """Somebody has set the robot down elsewhere, between two ticks: the next one begins anew there."""
+        """Tell the next tick that the robot was set down elsewhere."""
         self.inbox.put(RobotRepositioned())
 
     def snapshot(self) -> Statistics:
-        """What was counted of the RLAs that live, and what they are worth, as it is now."""
+        """Return counts, values and expectations of the active RLAs."""
         counted, system = self.statistics, self.level.system
         counted.drop_dead(lambda rla_id: system.get(rla_id) is not None)
         return replace(
@@ -87,13 +110,98 @@ class Runtime:
 def empty_system(
     task: TaskSettings, definition: SituationDefinition, critic: CriticSettings, mid: MidSettings | None
 ) -> RlaSystem:
-    """The RLA system of all levels of a task, in which nothing was taught yet. Raises hal.settings.SettingsError."""
+    """Return the RLA system of all levels of a task, without any RLA. Raises hal.settings.SettingsError."""
     changed = ((each.features, each.weight) for each in task.learning.weights)
     weights = weights_of(definition, changed, task.learning.past_weight, task.name)
     others = {CRITIC: Space(len(critic.names), critic.learning.radius, critic.weight_vector)}
     if mid is not None:
         others[MID] = mid.space
     return RlaSystem(definition.dimensions, task.learning.radius, weights, others=others)
+
+
+class _Assembly:
+    """Parts of one robot mind during its assembly."""
+
+    def __init__(
+        self, settings: RobotSettings, task: TaskSettings, events: tuple[TeachingEvent, ...], options: RuntimeOptions
+    ) -> None:
+        """Load the settings that the task names and build the levels with the knowledge of `events`."""
+        self._settings, self._task, self._events, self._options = settings, task, events, options
+        self._period_s = settings.can.cycle_s
+        self.definition = load_situation(task.situation, settings.infrared.names)
+        self.critic = load_critic(task.critic)
+        mid_settings = None if task.mid is None else load_mid(task.mid)
+        self._system = empty_system(task, self.definition, self.critic, mid_settings)
+        self.reinforcement = self._restored_reinforcement()
+        self.active_behaviour = options.active_behaviour or ActiveBehaviour(task.behaviours)
+        self.statistics = options.statistics or StatisticsCounter()
+        self.basic = BasicLevel(
+            self._system,
+            load_task_repertoire(task, settings),
+            round(task.learning.minimum_action_s / self._period_s),
+            self.active_behaviour,
+            self.reinforcement.choice,
+        )
+        saved = options.checkpoint or Statistics()
+        self.mid: MidLevel | None = None
+        if mid_settings is not None:
+            situation = mid_settings.build(settings, self.statistics.transitions or saved.transitions)
+            self.mid = MidLevel(self._system, situation, mid_settings, self.active_behaviour)
+        self.expectations = ExpectationTracker(self._system, self.mid, self.statistics.transitions, saved.expectations)
+        self.navigator: Navigator | None = None
+        self.top: Level = options.level_override or self.basic
+        if self.mid is not None:
+            self.navigator = Navigator(self.mid, self.statistics.follow_ups, self.expectations.of)
+            self.top = LayerStack(self.top, self.mid, self.navigator)
+        agreement = Agreement(self.critic.agreement, self.critic.values, self._period_s)
+        agreement.hear_all(events)
+        self.self_teaching = SelfTeaching(self.reinforcement, self._system, self.critic, agreement, self._period_s)
+        self.self_teaching.recall(events, options.checkpoint)
+        self.handler = self._build_handler(agreement)
+
+    def _restored_reinforcement(self) -> Reinforcement:
+        recent, checkpoint = DecisionHistory(self.definition.dimensions), self._options.checkpoint
+        reinforcement = Reinforcement(self._system, recent, self._task.reinforcement, self._period_s)
+        # Counters and expectations are restored by their owners; pass only values here.
+        values = checkpoint and replace(checkpoint, uses={}, transitions={}, expectations={})
+        reinforcement.recall(self._events, values)
+        return reinforcement
+
+    def _build_handler(self, agreement: Agreement) -> CommandHandler:
+        lessons = None if self.mid is None else MidLessons(self.mid)
+        goals = None if self.navigator is None or lessons is None else GoalCommands(self.navigator, lessons)
+        # A repertoire of its own: an action run by the teacher must not disturb the same action run by an RLA.
+        repertoire = load_task_repertoire(self._task, self._settings)
+        return CommandHandler(
+            self.basic,
+            ControlAuthority(repertoire, attended=self._options.attended),
+            insert_beyond_share=self._task.learning.insert_beyond_share,
+            handled_command_ids=(event.origin.command_id for event in self._events),
+            parts=HandlerParts(
+                reinforcement=self.reinforcement,
+                critic=Critic(self._system, self.critic),
+                agreement=agreement,
+                self_teaching=self.self_teaching,
+                mid=lessons,
+                goals=goals,
+            ),
+            teacher_available=self._options.teacher_available,
+        )
+
+    def tick_parts(self, robot: Robot, event_store: EventStore) -> TickParts:
+        """Return the parts of the tick."""
+        return TickParts(
+            robot=robot,
+            perception=Perception(self.definition, self._settings.infrared.names),
+            level=self.top,
+            handler=self.handler,
+            inbox=TeacherInbox(),
+            event_store=event_store,
+            statistics=self.statistics,
+            timer=TickTimer(),
+            appraisal_perception=CircumstancesPerception(self.critic, self._settings),
+            expectations=self.expectations,
+        )
 
 
 def build_runtime(
@@ -103,109 +211,39 @@ def build_runtime(
     events: Iterable[TeachingEvent],
     event_store: EventStore,
     clock: Clock,
-    *,
-    statistics: StatisticsCounter | None = None,
-    level_override: Level | None = None,
-    attended: bool = False,
-    active_behaviour: ActiveBehaviour | None = None,
-    checkpoint: Statistics | None = None,
-    teacher_available: bool = True,
-    tolerates_stalls: bool = False,
-    asks_at_bumper: bool = True,
+    options: RuntimeOptions | None = None,
 ) -> Runtime:
-    """Build the runtime for a robot and a task, with what `events` have taught.
+    """Build the runtime for a robot and a task, with the knowledge that `events` have taught.
 
-    `statistics` goes on from what was counted before, `saved` from what the RLAs were worth and what was expected.
-    `level_override` puts another layer at the wheels, with knowledge and teaching unchanged behind it: the teacher's
-    own policy, for instance, to see what it would reach. A mid level commands that one, too.
-    `attended`: in phases 1 to 4 the robot drives by its RLAs only while a teacher is there.
-    `wanted`: shared with a `level_override` that looks at it, too; made from the task unless given.
-    `asked`: False where nobody is there who could be asked: RLAs whose action was withdrawn are passed over.
-    `tolerates_stalls`: whether the robot stalls with this program, as one does that is simulated in it.
-    `asks_when_held`: whether the robot asks that touches something; False for runs of before it did.
-    Raises hal.settings.SettingsError; UnknownActionError or UnknownBehaviourError for knowledge that cannot act here.
+    Raises:
+        hal.settings.SettingsError: for settings that do not fit each other.
+        UnknownActionError, UnknownBehaviourError: for knowledge that cannot act here.
     """
-    sensors = settings.infrared.names
-    definition = load_situation(task.situation, sensors)
-    critic = load_critic(task.critic)
-    mid_settings = None if task.mid is None else load_mid(task.mid)
-    system = empty_system(task, definition, critic, mid_settings)
-    events = tuple(events)
-    period_s = settings.can.cycle_s
-    recent = DecisionHistory(definition.dimensions)
-    reinforcement = Reinforcement(system, recent, task.reinforcement, period_s)
-    # The rest of what was saved is kept by those who count on from it, and would be kept twice.
-    reinforcement.recall(events, checkpoint and replace(checkpoint, uses={}, transitions={}, expectations={}))
-    repertoire = load_task_repertoire(task, settings)
-    active_behaviour = active_behaviour or ActiveBehaviour(task.behaviours)
-    level = BasicLevel(
-        system, repertoire, round(task.learning.minimum_action_s / period_s), active_behaviour, reinforcement.choice
-    )
-    statistics = statistics or StatisticsCounter()
-    counted = statistics.transitions or (checkpoint.transitions if checkpoint is not None else {})
-    mid = None
-    if mid_settings is not None:
-        mid = MidLevel(system, mid_settings.build(settings, counted), mid_settings, active_behaviour)
-    at_the_wheels = level_override or level
-    expecting = ExpectationTracker(
-        system, mid, statistics.transitions, None if checkpoint is None else checkpoint.expectations
-    )
-    navigator = None if mid is None else Navigator(mid, statistics.follow_ups, expecting.of)
-    lessons = None if mid is None else MidLessons(mid)
-    # Instances of its own: a behaviour that the hand runs must not disturb the one that an RLA runs later.
-    hand = load_task_repertoire(task, settings)
-    agreement = Agreement(critic.agreement, critic.values, period_s)
-    agreement.hear_all(events)
-    self_teaching = SelfTeaching(reinforcement, system, critic, agreement, period_s)
-    self_teaching.recall(events, checkpoint)
-    school = CommandHandler(
-        level,
-        ControlAuthority(hand, attended=attended),
-        insert_beyond_share=task.learning.insert_beyond_share,
-        handled_command_ids=(event.origin.command_id for event in events),
-        reinforcement=reinforcement,
-        critic=Critic(system, critic),
-        agreement=agreement,
-        self_teaching=self_teaching,
-        mid=lessons,
-        goals=None if navigator is None or lessons is None else GoalCommands(navigator, lessons),
-        teacher_available=teacher_available,
-    )
-    inbox = TeacherInbox()
-    ledger = TickTimer()
-    tick = Tick(
-        robot,
-        Perception(definition, sensors),
-        at_the_wheels if mid is None else LayerStack(at_the_wheels, mid, navigator),
-        school,
-        inbox,
-        event_store,
-        statistics,
-        ledger,
-        now=clock.now_s,
+    options = options or RuntimeOptions()
+    mind = _Assembly(settings, task, tuple(events), options)
+    parts = mind.tick_parts(robot, event_store)
+    tick_options = TickOptions(
         stale_infrared_s=settings.guard.stale_infrared_s,
-        appraisal_perception=CircumstancesPerception(critic, settings),
-        expectations=expecting,
-        tolerates_stalls=tolerates_stalls,
-        asks_at_bumper=asks_at_bumper,
+        tolerates_stalls=options.tolerates_stalls,
+        asks_at_bumper=options.asks_at_bumper,
     )
-    scheduler = Scheduler(clock, tick.run, period_s, ledger)
+    tick = Tick(parts, tick_options, now=clock.now_s)
     return Runtime(
-        settings,
-        task,
-        definition,
-        level,
-        mid,
-        navigator,
-        active_behaviour,
-        school,
-        reinforcement,
-        self_teaching,
-        inbox,
-        statistics,
-        expecting,
-        ledger,
-        ProgressMeter(period_s),
-        tick,
-        scheduler,
+        robot=settings,
+        task=task,
+        definition=mind.definition,
+        level=mind.basic,
+        mid=mind.mid,
+        navigator=mind.navigator,
+        active_behaviour=mind.active_behaviour,
+        handler=mind.handler,
+        reinforcement=mind.reinforcement,
+        self_teaching=mind.self_teaching,
+        inbox=parts.inbox,
+        statistics=mind.statistics,
+        expectations=mind.expectations,
+        timer=parts.timer,
+        progress=ProgressMeter(settings.can.cycle_s),
+        tick=tick,
+        scheduler=Scheduler(clock, tick.run, settings.can.cycle_s, parts.timer),
     )

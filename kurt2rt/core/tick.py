@@ -1,4 +1,4 @@
-"""The tick: the one place that knows the order in which things happen, 100 times a second."""
+"""The tick: order of all steps of one control cycle, 100 times a second."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -21,29 +21,29 @@ from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import BeAt, Command, CommandResult, Correct, Drive, Resume, Teach, Watch
 from kurt2rt.core.teaching.inbox import TeacherInbox
-from kurt2rt.core.teaching.system_events import Input, PairingRenewed, RobotRepositioned, SpeedChanged
+from kurt2rt.core.teaching.system_events import Input, PairingRenewed, RobotRepositioned, SpeedChanged, SystemEvent
 from kurt2rt.platform.ledger import Stage, TickTimer
 
-_TELL_KNOWLEDGE_TICKS = 100
-"""How often a record holds all that is known, at least."""
+_KNOWLEDGE_PERIOD_TICKS = 100
+"""A record holds all active RLAs at least this often."""
 
 
 class EventStore(Protocol):
-    """Where teaching events go to be kept; answers at once and works outside the tick."""
+    """Store of teaching events; it works outside the tick, and its methods return at once."""
 
     @property
     def error(self) -> str | None:
-        """Why lessons cannot be saved at the moment, in one line; None when they can."""
+        """Reason that lessons cannot be saved now, in one line; None if they can."""
         ...
 
     def submit(self, event: TeachingEvent) -> None:
-        """Keep an event."""
+        """Queue an event for saving."""
         ...
 
 
 @dataclass(slots=True)
 class InMemoryEventStore:
-    """Events kept in a list, in submission order (EventStore)."""
+    """List of events in submission order (EventStore)."""
 
     events: list[TeachingEvent] = field(default_factory=list)
     error: str | None = None
@@ -54,7 +54,7 @@ class InMemoryEventStore:
 
 
 class TickRecord(NamedTuple):
-    """All that one tick saw, decided and did."""
+    """Inputs, decision and results of one tick."""
 
     tick: int
     now_s: float
@@ -63,285 +63,351 @@ class TickRecord(NamedTuple):
     decision: Decision
     guard_result: GuardResult
     results: tuple[CommandResult, ...]
-    """What became of the teacher's commands that this tick took."""
+    """Answers to the teacher's commands of this tick."""
     behaviour: str = ""
-    """The taught behaviour that was wanted."""
+    """The active behaviour."""
     appraisal_features: AppraisalFeatures | None = None
-    """What the critic looks at; None where the robot sees nothing, or has no critic."""
+    """The critic's features; None without a critic and while the robot is blind."""
     opinion: Opinion | None = None
-    """What the critic thinks of it; None where it was taught nothing, or there is none."""
+    """The critic's opinion of the features; None without a critic and before its first lesson."""
     surprise: Surprise | None = None
-    """What came where an RLA ended in this tick, beside what was expected; None while none ends."""
+    """Comparison with the expectation of the RLA that ended in this tick; None if none ended."""
     commands: tuple[Input, ...] = ()
-    """What the tick took from the inbox, in order."""
-    trouble: str | None = None
-    """Why lessons could not be saved when the tick looked; None when they could."""
+    """Messages taken from the inbox, in order."""
+    error: str | None = None
+    """Reason that lessons cannot be saved, read once in this tick; None if they can."""
     events: tuple[TeachingEvent, ...] = ()
-    """What was taught in it, by teachers and by the robot itself."""
+    """Changes of knowledge in this tick, by teachers and by the robot itself."""
     number: int = 0
-    """1, 2, 3 ... of the ticks that were run; `tick` skips those that were missed."""
+    """1, 2, 3 ... of the ticks that were run; `tick` skips missed ticks."""
     knowledge: tuple[Rla, ...] | None = None
-    """All RLAs that live after it, where something was taught, and once a second; None in the ticks between."""
+    """All active RLAs after this tick, if it changed them and once a second; None otherwise."""
     standing: Standing = DRIVES
-    """Whether the robot drives, and if not why."""
+    """Whether the robot drives, and the reason if it stands."""
 
     @property
     def mid(self) -> MidDecision | None:
-        """What the mid level commanded; None where there is none."""
+        """Command of the mid level; None without one."""
         return self.decision.mid
 
 
-class Tick:
-    """bus -> sense -> perceive -> decide -> guard -> bus, then learn and publish.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TickParts:
+    """Parts that a tick calls; `kurt2rt.runtime` builds them."""
 
-    A deterministic function of its state, the senses and the commands: no wall clock, no chance that a seed does not
-    settle, no I/O but the bus.
+    robot: Robot
+    perception: Perception
+    level: Level
+    handler: CommandHandler
+    inbox: TeacherInbox
+    event_store: EventStore
+    statistics: StatisticsCounter
+    timer: TickTimer
+    appraisal_perception: CircumstancesPerception | None = None
+    """Features for the handler's critic; None without a critic."""
+    expectations: ExpectationTracker | None = None
+    """None: nothing is expected."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TickOptions:
+    """Settings of a tick."""
+
+    stale_infrared_s: float
+    """The robot is blind if its infra-red readings are older."""
+    tolerates_stalls: bool = False
+    """Whether missed ticks extend the teacher's leases, as for a simulated robot that stalls with this program."""
+    asks_at_bumper: bool = True
+    """Whether a robot asks that touches something and would drive on toward it."""
+
+
+class _View(NamedTuple):
+    """Result of the step perceive."""
+
+    situation: Situation
+    blind: bool
+    appraisal_features: AppraisalFeatures | None
+    opinion: Opinion | None
+
+
+class _Choice(NamedTuple):
+    """Result of the step decide."""
+
+    commands: tuple[Input, ...]
+    results: list[CommandResult]
+    events: list[TeachingEvent]
+    """Lessons of the commands; the step learn adds the robot's own."""
+    error: str | None
+    decision: Decision
+    behaviour: str
+
+
+class _Motion(NamedTuple):
+    """Result of the step guard."""
+
+    result: GuardResult
+    drove_at_s: float
+    asks_at_bumper: bool
+    turning: bool
+    """Whether the decided action turns the wheels."""
+
+
+class Tick:
+    """One control cycle: bus -> sense -> perceive -> decide -> guard -> bus, then learn -> publish.
+
+    A deterministic function of its state, the readings and the commands: no wall clock, no unseeded chance, no I/O
+    except the bus.
     """
 
-    def __init__(
-        self,
-        robot: Robot,
-        perception: Perception,
-        level: Level,
-        handler: CommandHandler,
-        inbox: TeacherInbox,
-        event_store: EventStore,
-        statistics: StatisticsCounter,
-        timer: TickTimer,
-        *,
-        now: Callable[[], float],
-        stale_infrared_s: float,
-        appraisal_perception: CircumstancesPerception | None = None,
-        expectations: ExpectationTracker | None = None,
-        tolerates_stalls: bool = False,
-        asks_at_bumper: bool = True,
-    ) -> None:
-        """`now` is the runtime's clock; infra-red readings older than `stale_infrared_s` are no situation.
-
-        `circumstances`: what the school's critic looks at. `expecting`: None: nothing is expected.
-        `tolerates_stalls`: whether ticks that are missed count against no lease of the teacher, as in a simulation that
-        stalls with this program.
-        `asks_when_held`: whether the robot asks that touches something and is to drive on toward it.
-        """
-        self._robot = robot
-        self._perception = perception
-        self._appraisal_perception = appraisal_perception
-        self._level = level
-        self._handler = handler
-        self._inbox = inbox
-        self._event_store = event_store
-        self._statistics = statistics
-        self._mid_uses = MidUsageCounter(statistics)
-        self._expectations = expectations
-        self._timer = timer
+    def __init__(self, parts: TickParts, options: TickOptions, *, now: Callable[[], float]) -> None:
+        """Connect the parts; `now` returns the runtime clock's time in s."""
+        self._robot = parts.robot
+        self._perception = parts.perception
+        self._appraisal_perception = parts.appraisal_perception
+        self._level = parts.level
+        self._handler = parts.handler
+        self._inbox = parts.inbox
+        self._event_store = parts.event_store
+        self._statistics = parts.statistics
+        self._mid_uses = MidUsageCounter(parts.statistics)
+        self._expectations = parts.expectations
+        self._timer = parts.timer
+        self._options = options
         self._now = now
-        self._stale_infrared_s = stale_infrared_s
         self._driving = self._latched = False
         self._waits = False
-        """Whether the robot stood at a bumper in the last tick, and waited for its teacher's answer."""
-        self._asks_at_bumper = asks_at_bumper
+        """Whether the robot stood at a bumper in the last tick and waited for its teacher's answer."""
         self._bumpers = BumperWatch()
         self._standing = StandingWatch()
-        self._trouble: str | None = None
-        self._tell_knowledge_at = 0
-        self._run = 0
-        self._tolerates_stalls = tolerates_stalls
+        self._error: str | None = None
+        self._publish_knowledge_at = 0
+        self._number = 0
         self._last_tick: int | None = None
 
     def run(self, tick: int, now_s: float) -> TickRecord:
-        """One tick at `now_s` of the runtime's clock."""
-        mark = self._timer.lap
-        self._run += 1
-        if self._tolerates_stalls and self._last_tick is not None and tick > self._last_tick + 1:
+        """Run one tick at `now_s` of the runtime's clock, in s, and return its record."""
+        self._count(tick)
+        readings = self._sense(now_s)
+        view = self._perceive(tick, readings)
+        choice = self._decide(tick, readings, view)
+        motion = self._guard(tick, now_s, choice.decision)
+        surprise = self._learn(tick, view, choice, motion)
+        return self._publish(tick, now_s, readings, view, choice, motion, surprise)
+
+    def _count(self, tick: int) -> None:
+        """Number this tick; extend the teacher's leases by missed ticks if the robot stalls with the program."""
+        self._number += 1
+        if self._options.tolerates_stalls and self._last_tick is not None and tick > self._last_tick + 1:
             self._handler.authority.extend_leases(tick - self._last_tick - 1)
         self._last_tick = tick
-        senses = self._robot.sense(now_s)
-        mark(Stage.SENSE)
 
-        # While the robot waits for its teacher history stands still: autonomy has no waits to learn from.
-        situation = self._perception.perceive(senses, history_frozen=not self._driving or self._waits)
-        blind = not senses.infrared_age_s <= self._stale_infrared_s
-        circumstances, opinion = self._appraise(tick, senses, blind=blind)
-        mark(Stage.PERCEIVE)
+    def _sense(self, now_s: float) -> SensorReadings:
+        """Step 1: read the bus without waiting."""
+        readings = self._robot.sense(now_s)
+        self._timer.lap(Stage.SENSE)
+        return readings
 
+    def _perceive(self, tick: int, readings: SensorReadings) -> _View:
+        """Step 2: compute the situation, and the critic's opinion before this tick's commands can change it."""
+        # The averages stand still while the robot waits for its teacher: autonomy has no waits to learn from.
+        situation = self._perception.perceive(readings, history_frozen=not self._driving or self._waits)
+        blind = not readings.infrared_age_s <= self._options.stale_infrared_s
+        features, opinion, critic = None, None, self._handler.critic
+        if self._appraisal_perception is not None and critic is not None:
+            perceived = self._appraisal_perception.perceive(readings, driving=self._driving and not self._waits)
+            if not blind:
+                features, opinion = perceived, critic.think(tick, perceived)
+        self._timer.lap(Stage.PERCEIVE)
+        return _View(situation, blind, features, opinion)
+
+    def _decide(self, tick: int, readings: SensorReadings, view: _View) -> _Choice:
+        """Step 3: handle the teacher's commands, then let the levels decide."""
+        commands = self._inbox.pop_all()
         results: list[CommandResult] = []
         events: list[TeachingEvent] = []
-        commands = self._inbox.pop_all()
         for command in commands:
             if isinstance(command, Watch | Drive):
                 self._handler.handle_stream(command, tick)
-                continue
-            if isinstance(command, PairingRenewed):
-                self._handler.authority.reset_sequence(command.teacher)
-                continue
-            if isinstance(command, SpeedChanged):
-                self._handler.authority.speed = command.times
-                continue
-            if isinstance(command, RobotRepositioned):
-                self._on_repositioned()
-                continue
-            new = not self._handler.was_handled(command.command_id)
-            if new and blind and _is_about_what_is_seen_now(command):
-                results.append(CommandResult(command.command_id, Outcome(RefusalCode.BLIND)))
-                continue
-            result, event = self._handler.handle(command, situation, tick)
-            results.append(result)
-            # Neither a late copy of an old command ends a new emergency stop, nor one that was said before anybody
-            # could see it: the senses of this very tick may have brought it.
-            if new and result.accepted and isinstance(command, Resume) and self._latched:
-                self._robot.release()
-                self._latched = False
-            if new and result.accepted and isinstance(command, BeAt):
-                self._reset_transitions()
-            if event is not None:
-                events.append(event)
-        # Looked at once: another thread may change it meanwhile, and a tick has each of its inputs once.
-        trouble = self._trouble = self._event_store.error
-        decision = self._decide(tick, situation, senses, blind=blind)
-        behaviour = self._handler.active_behaviour.behaviour
-        mark(Stage.DECIDE)
+            elif isinstance(command, PairingRenewed | SpeedChanged | RobotRepositioned):
+                self._apply_system_event(command)
+            else:
+                result, event = self._handle(command, tick, view)
+                results.append(result)
+                if event is not None:
+                    events.append(event)
+        # Read once: the journal's thread may change it during the tick, and a replay has one value a tick.
+        self._error = self._event_store.error
+        decision = self._decision(tick, view.situation, readings, blind=view.blind)
+        self._timer.lap(Stage.DECIDE)
+        return _Choice(commands, results, events, self._error, decision, self._handler.active_behaviour.behaviour)
 
-        # What names no action gets no speed. The clock is read anew: a tick that was held up must not pass its old
-        # decision for a fresh one.
-        wheel_speeds = decision.wheel_speeds if decision.driving else STANDSTILL
+    def _guard(self, tick: int, now_s: float, decision: Decision) -> _Motion:
+        """Step 4: send the decided speeds through the guard; note an emergency stop and a wait at a bumper."""
+        # A decision without an action never drives. The clock is read again, so that the guard sees a decision's
+        # true age if the tick was held up.
+        speeds = decision.wheel_speeds if decision.driving else STANDSTILL
         drove_at_s = self._now()
-        grant = self._robot.drive(wheel_speeds, now_s, drove_at_s)
-        mark(Stage.GUARD)
+        result = self._robot.drive(speeds, now_s, drove_at_s)
+        self._timer.lap(Stage.GUARD)
+        handler = self._handler
+        if result.latched and not self._latched:
+            handler.stopped_at_tick = tick
+        self._latched = result.latched
+        self._driving = decision.driving and not result.latched
+        asks = self._options.asks_at_bumper and self._bumpers.update(decision, result) and handler.teacher_available
+        # In phase 5 the robot does not wait: the critic can still punish the RLA that pushes, and replace its action.
+        self._waits = asks and handler.phase is not Phase.AUTONOMOUS
+        return _Motion(result, drove_at_s, asks, self._driving and not self._waits)
 
-        if grant.latched and not self._latched:
-            self._handler.stopped_at_tick = tick
-        self._latched = grant.latched
-        self._driving = decision.driving and not grant.latched
-        asks = self._asks_at_bumper and self._bumpers.update(decision, grant) and self._handler.teacher_available
-        # Where the critic alone is there, what pushes goes on to be blamed for it, until another action is tried.
-        self._waits = asks and self._handler.phase is not Phase.AUTONOMOUS
-        turning = self._driving and not self._waits
+    def _learn(self, tick: int, view: _View, choice: _Choice, motion: _Motion) -> Surprise | None:
+        """Step 5: count, remember and learn; return the surprise of an RLA that ended."""
+        handler, decision, turning = self._handler, choice.decision, motion.turning
         if turning:
             self._perception.remember_driven(decision.wheel_speeds)
         surprise = None
         if self._expectations is not None:
-            surprise = self._expectations.see(tick, decision, situation, behaviour, driving=turning)
+            surprise = self._expectations.see(tick, decision, view.situation, choice.behaviour, driving=turning)
             if surprise is not None and surprise.surprising and self._appraisal_perception is not None:
                 self._appraisal_perception.be_surprised()
         self._statistics.count(decision.rla_id if turning else None)
         self._mid_uses.count(decision, driving=turning)
-        # A robot that stands blames no RLA, also if the guard has it stand; but for a bumper, which stops it for what
-        # an RLA wants.
-        answered = decision if self._driving else decision._replace(action=None, answers=False)
-        self._handler.recent.remember(
+        # No RLA gets credit for ticks at standstill, including guard stops. A bumper stop is the exception: it is the
+        # RLA's own doing.
+        credited = decision if self._driving else decision._replace(action=None, answers=False)
+        handler.recent.remember(
             tick,
-            situation,
-            answered,
-            behaviour,
-            blind=blind,
-            touches=asks,
-            circumstances=circumstances,
-            opinion=opinion,
+            view.situation,
+            credited,
+            choice.behaviour,
+            blind=view.blind,
+            touches=motion.asks_at_bumper,
+            circumstances=view.appraisal_features,
+            opinion=view.opinion,
         )
-        if self._handler.mid is not None:
-            self._handler.mid.remember(tick, decision)
-        events.extend(self._handler.learn(tick, answered, opinion))
-        mark(Stage.LEARN)
+        if handler.mid is not None:
+            handler.mid.remember(tick, decision)
+        choice.events.extend(handler.learn(tick, credited, view.opinion))
+        self._timer.lap(Stage.LEARN)
+        return surprise
 
-        for event in events:
+    def _publish(
+        self,
+        tick: int,
+        now_s: float,
+        readings: SensorReadings,
+        view: _View,
+        choice: _Choice,
+        motion: _Motion,
+        surprise: Surprise | None,
+    ) -> TickRecord:
+        """Step 6: hand lessons to the journal and return the record of the tick."""
+        for event in choice.events:
             self._event_store.submit(event)
             if self._expectations is not None:
-                led_elsewhere = self._expectations.hear(event)
-                if led_elsewhere is not None:
-                    self._statistics.drop_follow_ups(led_elsewhere)
+                invalidated_rla = self._expectations.hear(event)
+                if invalidated_rla is not None:
+                    self._statistics.drop_follow_ups(invalidated_rla)
         knowledge = None
-        if events or tick >= self._tell_knowledge_at:
+        if choice.events or tick >= self._publish_knowledge_at:
             knowledge = self._handler.active_rlas
-            self._tell_knowledge_at = tick + _TELL_KNOWLEDGE_TICKS
-        # A replay's clock stands still within a tick.
-        stop = self._handler.active_stop
-        if asks:
-            decision = stopped(decision, Cause.TOUCHES)
-        stands = self._standing.update(decision, grant, max(now_s, drove_at_s), stop, trouble)
-        mark(Stage.PUBLISH)
+            self._publish_knowledge_at = tick + _KNOWLEDGE_PERIOD_TICKS
+        decision = stopped(choice.decision, Cause.TOUCHES) if motion.asks_at_bumper else choice.decision
+        # The later of both times: the clock of a replay stands still within a tick.
+        standing_at_s = max(now_s, motion.drove_at_s)
+        standing = self._standing.update(
+            decision, motion.result, standing_at_s, self._handler.active_stop, choice.error
+        )
+        self._timer.lap(Stage.PUBLISH)
         return TickRecord(
-            tick,
-            now_s,
-            senses,
-            situation,
-            decision,
-            grant,
-            tuple(results),
-            behaviour,
-            circumstances,
-            opinion,
-            surprise,
-            commands,
-            trouble,
-            tuple(events),
-            self._run,
-            knowledge,
-            stands,
+            tick=tick,
+            now_s=now_s,
+            senses=readings,
+            situation=view.situation,
+            decision=decision,
+            guard_result=motion.result,
+            results=tuple(choice.results),
+            behaviour=choice.behaviour,
+            appraisal_features=view.appraisal_features,
+            opinion=view.opinion,
+            surprise=surprise,
+            commands=choice.commands,
+            error=choice.error,
+            events=tuple(choice.events),
+            number=self._number,
+            knowledge=knowledge,
+            standing=standing,
         )
 
-    def _on_repositioned(self) -> None:
-        """What the mid level comes to next does not follow what was."""
-        if self._handler.mid is not None:
-            self._handler.mid.mid.restart()
-        self._reset_transitions()
+    def _apply_system_event(self, event: SystemEvent) -> None:
+        match event:
+            case PairingRenewed(teacher):
+                self._handler.authority.reset_sequence(teacher)
+            case SpeedChanged(times):
+                self._handler.authority.speed = times
+            case RobotRepositioned():
+                if self._handler.mid is not None:
+                    self._handler.mid.mid.restart()
+                self._reset_transitions()
+
+    def _handle(self, command: Command, tick: int, view: _View) -> tuple[CommandResult, TeachingEvent | None]:
+        """Carry out one command; refuse a first copy that needs the situation of a blind robot."""
+        assert not isinstance(command, Watch | Drive)
+        new = not self._handler.was_handled(command.command_id)
+        if new and view.blind and _needs_present_situation(command):
+            return CommandResult(command.command_id, Outcome(RefusalCode.BLIND)), None
+        result, event = self._handler.handle(command, view.situation, tick)
+        if new and result.accepted:
+            # A late copy of a resume does not end a new emergency stop.
+            if isinstance(command, Resume) and self._latched:
+                self._robot.release()
+                self._latched = False
+            elif isinstance(command, BeAt):
+                self._reset_transitions()
+        return result, event
 
     def _reset_transitions(self) -> None:
-        """What comes next follows from nothing."""
+        """Forget the predecessor: count no transition into the next RLA."""
         self._mid_uses.restart()
         if self._expectations is not None:
             self._expectations.restart()
 
-    def _appraise(
-        self, tick: int, senses: SensorReadings, *, blind: bool
-    ) -> tuple[AppraisalFeatures | None, Opinion | None]:
-        """What the critic looks at and thinks, before the teacher's commands of this tick change what it thinks."""
-        critic = self._handler.critic
-        if self._appraisal_perception is None or critic is None:
-            return None, None
-        circumstances = self._appraisal_perception.perceive(senses, driving=self._driving and not self._waits)
-        if blind:
-            return None, None
-        return circumstances, critic.think(tick, circumstances)
-
-    def _decide(self, tick: int, situation: Situation, senses: SensorReadings, *, blind: bool) -> Decision:
-        school, authority = self._handler, self._handler.authority
-        school.before_decision(tick, was_driving=self._driving)
-        stand = self._reason_to_stand(tick, blind=blind)
+    def _decision(self, tick: int, situation: Situation, readings: SensorReadings, *, blind: bool) -> Decision:
+        """Return the decision of the levels, or of the teacher who drives by hand."""
+        handler, authority = self._handler, self._handler.authority
+        handler.before_decision(tick, was_driving=self._driving)
+        cause = self._stand_cause(tick, blind=blind)
         authority.expire(tick)
         if authority.is_manual(tick):
             because = self._blocking_cause(blind=blind) or Cause.TEACHER
-            aside = stopped(self._level.decide(situation, senses, because), because)
+            idle_decision = stopped(self._level.decide(situation, readings, because), because)
             if because is not Cause.TEACHER:
-                return aside
-            name, wheel_speeds = authority.step(senses)
-            return aside._replace(wheel_speeds=wheel_speeds, action=name)
-        decision = stopped(self._level.decide(situation, senses, stand), stand)
-        if stand is Cause.UNATTENDED and not (decision.match is not None and decision.match.known):
-            return decision._replace(cause=Cause.UNKNOWN)  # what it does not know it asks, whoever comes
+                return idle_decision
+            name, wheel_speeds = authority.step(readings)
+            return idle_decision._replace(wheel_speeds=wheel_speeds, action=name)
+        decision = stopped(self._level.decide(situation, readings, cause), cause)
+        if cause is Cause.UNATTENDED and not (decision.match is not None and decision.match.known):
+            return decision._replace(cause=Cause.UNKNOWN)  # an unknown situation is asked about even without a teacher
         return decision
 
-    def _reason_to_stand(self, tick: int, *, blind: bool) -> Cause | None:
-        school = self._handler
-        if school.active_stop is not None:
+    def _stand_cause(self, tick: int, *, blind: bool) -> Cause | None:
+        """Return the cause that RLAs may not drive; None if they may."""
+        handler = self._handler
+        if handler.active_stop is not None:
             return Cause.STOPPED
-        unable = self._blocking_cause(blind=blind)
-        if unable is not None:
-            return unable
-        if school.requires_teacher and not school.authority.is_present(tick):
+        cause = self._blocking_cause(blind=blind)
+        if cause is None and handler.requires_teacher and not handler.authority.is_present(tick):
             return Cause.UNATTENDED
-        return None
+        return cause
 
     def _blocking_cause(self, *, blind: bool) -> Cause | None:
-        """Why neither an RLA nor the teacher's hand may drive."""
+        """Return the cause that neither an RLA nor manual drive may move the robot; None if they may."""
         if blind:
             return Cause.BLIND
-        if self._trouble is not None:
-            return Cause.UNSAVED
-        return None
+        return None if self._error is None else Cause.UNSAVED
 
 
-def _is_about_what_is_seen_now(command: Command) -> bool:
-    """The mid level has its situation also while the robot sees nothing."""
+def _needs_present_situation(command: Command) -> bool:
+    """Return whether a command is about the present sensor readings; the mid level's situation needs none."""
     if not isinstance(command, Teach | Correct):
         return False
     return command.level == BASIC and command.decision_tick is None

@@ -24,7 +24,7 @@ from kurt2rt.knowledge.journal.loading import OpenedKnowledge
 from kurt2rt.knowledge.journal.writer import JournalWriter
 from kurt2rt.platform.clock import Clock
 from kurt2rt.runs.recording.recording import RunContext
-from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 from kurt2rt.service.settings import ServiceSettings
 
 
@@ -100,12 +100,14 @@ def assemble_service(
         knowledge.events,
         writer,
         clock,
-        statistics=knowledge.counter,
-        level_override=level_override,
-        attended=context.attended,
-        active_behaviour=behaviour,
-        checkpoint=knowledge.saved,
-        tolerates_stalls=context.tolerates_stalls,
+        RuntimeOptions(
+            statistics=knowledge.counter,
+            level_override=level_override,
+            attended=context.attended,
+            active_behaviour=behaviour,
+            checkpoint=knowledge.saved,
+            tolerates_stalls=context.tolerates_stalls,
+        ),
     )
     if context.stopped is not None:
         runtime.handler.stop(context.stopped)

@@ -39,7 +39,7 @@ from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.platform.simulated_clock import HeldWorld, SimulatedClock
 from kurt2rt.runs.explain.live import LiveExplainer
-from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 from tests.core.test_tick import CorridorRobot
 
 ROBOT = load_robot()
@@ -155,7 +155,7 @@ class Desk:
         clock = LockstepClock(lambda: None)
         task = TASK.model_copy(update={"behaviours": behaviours, "mid": mid})
         self.runtime: Runtime = build_runtime(
-            self.robot, ROBOT, task, (), keeper or self.notebook, clock, attended=True
+            self.robot, ROBOT, task, (), keeper or self.notebook, clock, RuntimeOptions(attended=True)
         )
         stamp_of = lambda command_id: self.stamps.get(command_id, "")  # noqa: E731
         hello = describe(self.runtime, BOOT, simulated=ground is not None)

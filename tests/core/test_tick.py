@@ -9,7 +9,7 @@ import pytest
 from behaviors.behaviour import Behaviour
 from behaviors.motor_primitive import MotorPrimitive
 from hal.guard_reason import GuardReason
-from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings, WheelSpeeds
+from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Cause, Decision
@@ -22,7 +22,7 @@ from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import Command, Resume
 from kurt2rt.core.teaching.inbox import TeacherInbox
-from kurt2rt.core.tick import InMemoryEventStore, Tick, TickRecord
+from kurt2rt.core.tick import InMemoryEventStore, Tick, TickOptions, TickParts, TickRecord
 from kurt2rt.platform.ledger import TickTimer
 from tests.core.perception.helpers import READINGS, SENSORS, WHEELS, definition
 from tests.teacher.helpers import correct, delete, pursue, resume, set_phase, stop, teach
@@ -98,21 +98,18 @@ class Corridor:
         self.school = CommandHandler(
             self.level, authority, insert_beyond_share=0.5, handled_command_ids=(), teacher_available=asked
         )
-        robot: Robot = self.robot
-        self.tick = Tick(
-            robot,
-            Perception(small, SENSORS),
-            self.level,
-            self.school,
-            self.inbox,
-            self.notebook,
-            self.statistics,
-            self.ledger,
-            now=lambda: self.ticks * 0.01 + self.held_up_s,
-            stale_infrared_s=0.05,
-            tolerates_stalls=tolerates_stalls,
-            asks_at_bumper=asks_when_held,
+        parts = TickParts(
+            robot=self.robot,
+            perception=Perception(small, SENSORS),
+            level=self.level,
+            handler=self.school,
+            inbox=self.inbox,
+            event_store=self.notebook,
+            statistics=self.statistics,
+            timer=self.ledger,
         )
+        options = TickOptions(stale_infrared_s=0.05, tolerates_stalls=tolerates_stalls, asks_at_bumper=asks_when_held)
+        self.tick = Tick(parts, options, now=lambda: self.ticks * 0.01 + self.held_up_s)
         self.ticks = 0
 
     def run(self, counts: int | None = None, *commands: Command) -> TickRecord:

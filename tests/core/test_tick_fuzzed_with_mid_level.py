@@ -36,7 +36,7 @@ from kurt2rt.core.teaching.commands import (
 )
 from kurt2rt.core.tick import InMemoryEventStore
 from kurt2rt.platform.clock import LockstepClock
-from kurt2rt.runtime import build_runtime
+from kurt2rt.runtime import RuntimeOptions, build_runtime
 from tests.channel.desk import ROBOT
 from tests.core.test_tick_seeking import PLACES
 from tests.core.test_tick_with_mid_level import (
@@ -62,7 +62,13 @@ class Bedlam(Town):
         self.notebook = InMemoryEventStore()
         self.taught_before = [*basic_knowledge(), *events]
         self.runtime = build_runtime(
-            self.robot, ROBOT, task, self.taught_before, self.notebook, LockstepClock(lambda: None), attended=True
+            self.robot,
+            ROBOT,
+            task,
+            self.taught_before,
+            self.notebook,
+            LockstepClock(lambda: None),
+            RuntimeOptions(attended=True),
         )
         self.tick = self.passed = 0
         self.chance = random.Random(seed)

@@ -23,7 +23,7 @@ from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Appraise, Command, Correct, Reward, SetPhase, Teach, Undo
 from kurt2rt.core.tick import InMemoryEventStore, TickRecord
 from kurt2rt.platform.clock import LockstepClock
-from kurt2rt.runtime import build_runtime
+from kurt2rt.runtime import RuntimeOptions, build_runtime
 from tests.channel.desk import ROBOT, WideRobot
 from tests.core.rla.helpers import created, withdrawn
 
@@ -46,7 +46,13 @@ class Drive:
         self.notebook = InMemoryEventStore()
         clock = LockstepClock(lambda: None)
         self.runtime = build_runtime(
-            self.robot, ROBOT, task, events, self.notebook, clock, checkpoint=saved, teacher_available=asked
+            self.robot,
+            ROBOT,
+            task,
+            events,
+            self.notebook,
+            clock,
+            RuntimeOptions(checkpoint=saved, teacher_available=asked),
         )
         self.tick = 0
 

@@ -39,7 +39,7 @@ from kurt2rt.core.teaching.commands import (
 )
 from kurt2rt.core.tick import InMemoryEventStore, TickRecord
 from kurt2rt.platform.clock import LockstepClock
-from kurt2rt.runtime import build_runtime
+from kurt2rt.runtime import RuntimeOptions, build_runtime
 from tests.channel.desk import ROBOT, WideRobot
 from tests.core.rla.helpers import created, deleted, replaced
 
@@ -85,7 +85,7 @@ class Town:
         self.taught_before = basic_knowledge() if events is None else list(events)
         clock = LockstepClock(lambda: None)
         self.runtime = build_runtime(
-            self.robot, ROBOT, ROUTE, self.taught_before, self.notebook, clock, attended=attended
+            self.robot, ROBOT, ROUTE, self.taught_before, self.notebook, clock, RuntimeOptions(attended=attended)
         )
         self.tick = 0
         self.passed = 0

@@ -18,7 +18,7 @@ from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.loading import open_for_teaching
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
 from kurt2rt.platform.clock import LockstepClock
-from kurt2rt.runtime import build_runtime
+from kurt2rt.runtime import RuntimeOptions, build_runtime
 from kurt2rt.service.assembly import RobotService
 from kurt2rt.service.post_tick import PostTick, ProgramConsole, ProgramStatus
 from kurt2rt.service.settings import load_service
@@ -48,10 +48,9 @@ class Service:
             opened.events,
             self.writer,
             clock,
-            statistics=opened.counter,
-            level_override=driver,
-            active_behaviour=wanted,
-            checkpoint=opened.saved,
+            RuntimeOptions(
+                statistics=opened.counter, level_override=driver, active_behaviour=wanted, checkpoint=opened.saved
+            ),
         )
         screen = ProgramConsole(status=lambda _: None, question=self.questions.append, acknowledged=self.settled.append)
         self.rounds = PostTick(RobotService(self.runtime, self.writer, load_service(), opened.stamps), screen)

@@ -19,7 +19,7 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.platform.clock import LockstepClock
-from kurt2rt.runtime import build_runtime
+from kurt2rt.runtime import RuntimeOptions, build_runtime
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.worlds.world_loading import load_world
 from tests.hal.fuzz_frames import FuzzFrames
@@ -54,7 +54,9 @@ class FuzzedRobot:
             ActiveBehaviour(),
         )
         clock = LockstepClock(self._step)
-        runtime = build_runtime(self.kurt2, ROBOT, task, [], NoTeachingAllowed(), clock, level_override=level)
+        runtime = build_runtime(
+            self.kurt2, ROBOT, task, [], NoTeachingAllowed(), clock, RuntimeOptions(level_override=level)
+        )
         self._scheduler = runtime.scheduler
 
     async def drive(self, bad_frames: int) -> None:

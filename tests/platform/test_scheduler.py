@@ -17,7 +17,7 @@ from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.inbox import TeacherInbox
-from kurt2rt.core.tick import Tick, TickRecord
+from kurt2rt.core.tick import Tick, TickOptions, TickParts, TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.platform.ledger import TickTimer
 from kurt2rt.platform.scheduler import Scheduler
@@ -73,19 +73,17 @@ class Run:
         school = CommandHandler(
             level, ControlAuthority(level.repertoire, attended=False), insert_beyond_share=0.5, handled_command_ids=()
         )
-        perception, statistics = Perception(small, SENSORS), StatisticsCounter()
-        tick = Tick(
-            StandingRobot(),
-            perception,
-            level,
-            school,
-            TeacherInbox(),
-            NoTeachingAllowed(),
-            statistics,
-            self.ledger,
-            now=clock.now_s,
-            stale_infrared_s=0.05,
+        parts = TickParts(
+            robot=StandingRobot(),
+            perception=Perception(small, SENSORS),
+            level=level,
+            handler=school,
+            inbox=TeacherInbox(),
+            event_store=NoTeachingAllowed(),
+            statistics=StatisticsCounter(),
+            timer=self.ledger,
         )
+        tick = Tick(parts, TickOptions(stale_infrared_s=0.05), now=clock.now_s)
         self.scheduler = Scheduler(clock, tick.run, PERIOD_S, self.ledger)
         self.records: list[TickRecord] = []
         self.delays_s: dict[int, float] = {}

@@ -17,7 +17,7 @@ from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_for_teaching
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
 from kurt2rt.platform.clock import LockstepClock
-from kurt2rt.runtime import build_runtime
+from kurt2rt.runtime import RuntimeOptions, build_runtime
 from kurt2rt.service.assembly import RobotService
 from kurt2rt.service.post_tick import PostTick, ProgramConsole, ProgramStatus
 from kurt2rt.service.settings import load_service
@@ -156,7 +156,13 @@ def test_what_the_rlas_are_worth_is_saved_with_the_counts_and_gone_on_from(shift
         saved = journal.statistics()
     assert saved.values == {7: -0.25}
     again = build_runtime(
-        WideRobot(), ROBOT, TASK, (taught,), InMemoryEventStore(), LockstepClock(lambda: None), checkpoint=saved
+        WideRobot(),
+        ROBOT,
+        TASK,
+        (taught,),
+        InMemoryEventStore(),
+        LockstepClock(lambda: None),
+        RuntimeOptions(checkpoint=saved),
     )
     assert again.reinforcement.worth(7) == -0.25
 

@@ -19,7 +19,7 @@ from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.writer import JournalWriter
 from kurt2rt.platform.gc_control import gc_frozen
 from kurt2rt.platform.timerfd_clock import TimerfdClock
-from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 from kurt2rt.service.assembly import RobotService, open_service_channel
 from kurt2rt.service.post_tick import PostTick, ProgramConsole
 from kurt2rt.service.settings import load_service
@@ -107,7 +107,7 @@ async def open_robot(subject: RobotUnderTest, folder: Path) -> AsyncIterator[Ope
             clock = NotingClock(real_clock)
             witness = WitnessedRobot(simulation.robot, clock)
             runtime = build_runtime(
-                witness, subject.settings, subject.task, subject.events, writer, clock, attended=True
+                witness, subject.settings, subject.task, subject.events, writer, clock, RuntimeOptions(attended=True)
             )
             runtime.handler.stop(STARTED)
             robot = RobotService(runtime, writer, service)

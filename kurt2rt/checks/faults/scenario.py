@@ -23,7 +23,7 @@ from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick import EventStore, InMemoryEventStore, TickRecord
 from kurt2rt.platform.clock import Clock
-from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 
 """The word with which the service stops the robot when its loop ends, for whatever reason."""
 
@@ -127,8 +127,7 @@ class _Drill:
             events,
             self._keeper,
             clock,
-            level_override=self._level,
-            attended=self._case.target == "teacher_link",
+            RuntimeOptions(level_override=self._level, attended=self._case.target == "teacher_link"),
         )
 
     def _require_driving(self) -> None:

@@ -2,6 +2,7 @@
 
 from collections import deque
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.critic.agreement import Agreement
@@ -55,6 +56,21 @@ _KNOWN_STOPS = 32
 _Answer = tuple[CommandResult, TeachingEvent | None]
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HandlerParts:
+    """Optional parts of a command handler, each None if the task lacks it."""
+
+    reinforcement: Reinforcement | None = None
+    """Without it the robot learns nothing from rewards."""
+    critic: Critic | None = None
+    agreement: Agreement | None = None
+    self_teaching: SelfTeaching | None = None
+    """Without it the robot learns nothing in phase 5."""
+    mid: MidLessons | None = None
+    """Without it the teacher alone selects the behaviour."""
+    goals: GoalCommands | None = None
+
+
 class CommandHandler:
     """What teachers may do: lessons, rewards, appraisals and undo, sessions, phases, stop and resume."""
 
@@ -65,30 +81,30 @@ class CommandHandler:
         *,
         insert_beyond_share: float,
         handled_command_ids: Iterable[str],
-        reinforcement: Reinforcement | None = None,
-        critic: Critic | None = None,
-        agreement: Agreement | None = None,
-        self_teaching: SelfTeaching | None = None,
-        mid: MidLessons | None = None,
-        goals: GoalCommands | None = None,
+        parts: HandlerParts | None = None,
         teacher_available: bool = True,
     ) -> None:
-        """Without `reinforcement` nothing is learnt from rewards, without `self_teaching` nothing in phase 5.
+        """Connect the level, the authority and the optional parts.
 
-        Without `mid` the teacher alone says what is wanted; without `errands` there are no goals.
-
-        `asked`: False where nobody is there who could be asked, as in an exam.
+        Args:
+            level: taught by the commands.
+            authority: decides which teacher may command.
+            insert_beyond_share: a correction farther than this share of R from the nearest condition inserts an RLA.
+            handled_command_ids: ids of earlier runs, whose commands are not carried out again.
+            parts: optional parts of the task; none by default.
+            teacher_available: False if there is no teacher to ask, as in an exam.
         """
+        parts = parts or HandlerParts()
         self._level = level
         self.teacher_available = teacher_available
         """Whether there is a teacher to ask."""
         self.active_behaviour = level.active_behaviour
         self.authority = authority
-        self.critic = critic
-        self.agreement = agreement
-        self.reinforcement = reinforcement
-        self.mid = mid
-        self._goals = goals
+        self.critic = critic = parts.critic
+        self.agreement = parts.agreement
+        self.reinforcement = reinforcement = parts.reinforcement
+        self.mid = parts.mid
+        self._goals = parts.goals
         self.recent = DecisionHistory(level.system.dimensions) if reinforcement is None else reinforcement.recent
         self._lessons = LessonBuilder(
             level,
@@ -96,14 +112,14 @@ class CommandHandler:
             insert_beyond_share=insert_beyond_share,
             reinforcement=reinforcement,
             appraisal_lessons=None if critic is None else AppraisalLessons(critic, level.system, self.recent),
-            mid=mid,
+            mid=parts.mid,
         )
         self.updater = KnowledgeUpdater(
             level,
             handled_command_ids=handled_command_ids,
             reinforcement=reinforcement,
-            agreement=agreement,
-            self_teaching=self_teaching,
+            agreement=parts.agreement,
+            self_teaching=parts.self_teaching,
         )
         self.phase = Phase.SUPERVISED
         self.active_stop: ActiveStop | None = None
@@ -112,7 +128,7 @@ class CommandHandler:
         self.stopped_at_tick = -1
         """When a teacher last said stop, or the guard did: what was said on an older picture must not lift it."""
         self._stops_since_resume: deque[str] = deque(maxlen=_KNOWN_STOPS)
-        self._selection = BehaviourSelection(self.active_behaviour, mid)
+        self._selection = BehaviourSelection(self.active_behaviour, parts.mid)
         self._clock = SessionClock()
 
     def was_handled(self, command_id: str) -> bool:

@@ -22,7 +22,7 @@ from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.platform.clock import LockstepClock
-from kurt2rt.runtime import build_runtime
+from kurt2rt.runtime import RuntimeOptions, build_runtime
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,10 +154,9 @@ class ExamRun(Episode):
             events,
             NoTeachingAllowed(),
             LockstepClock(simulation.step),
-            level_override=level,
-            active_behaviour=behaviour,
-            checkpoint=setup.saved,
-            teacher_available=False,
+            RuntimeOptions(
+                level_override=level, active_behaviour=behaviour, checkpoint=setup.saved, teacher_available=False
+            ),
         )
         if setup.autonomous_values is not None:
             values = _values_in_phase_5(setup.autonomous_values, runtime.level.system.rlas, task)

@@ -12,7 +12,7 @@ from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick import EventStore
 from kurt2rt.platform.clock import LockstepClock
-from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 
 
 class NoTeachingAllowed:
@@ -52,10 +52,12 @@ def build_training_runtime(
         training.events,
         training.store,
         LockstepClock(simulation.step),
-        statistics=training.statistics,
-        checkpoint=training.saved,
-        # The scripted teacher has no bumper input: at a wall its answer is the action that led there.
-        asks_at_bumper=False,
+        RuntimeOptions(
+            statistics=training.statistics,
+            checkpoint=training.saved,
+            # The scripted teacher has no bumper input: at a wall its answer is the action that led there.
+            asks_at_bumper=False,
+        ),
     )
 
 
@@ -82,7 +84,9 @@ def build_unattended_runtime(
         events,
         NoTeachingAllowed(),
         LockstepClock(simulation.step),
-        statistics=StatisticsCounter(dict(saved.uses), dict(saved.transitions)),
-        checkpoint=saved,
-        teacher_available=False,
+        RuntimeOptions(
+            statistics=StatisticsCounter(dict(saved.uses), dict(saved.transitions)),
+            checkpoint=saved,
+            teacher_available=False,
+        ),
     )

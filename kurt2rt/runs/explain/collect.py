@@ -55,7 +55,7 @@ def collect_facts(
         reasons=record.guard_result.reasons,
         latched=record.guard_result.latched,
         stopped=school.active_stop,
-        trouble=record.trouble or "",
+        trouble=record.error or "",
         teacher=school.authority.teacher or "",
         infrared_counts=record.senses.infrared_counts,
         infrared_age_s=record.senses.infrared_age_s,
@@ -76,7 +76,7 @@ def _blocking_causes(runtime: Runtime, record: TickRecord) -> tuple[str, ...]:
     found = []
     if not record.senses.infrared_age_s <= runtime.robot.guard.stale_infrared_s:
         found.append(Cause.BLIND)
-    if record.trouble is not None:
+    if record.error is not None:
         found.append(Cause.UNSAVED)
     if school.requires_teacher and not school.authority.is_present(record.tick):
         found.append(Cause.UNATTENDED)

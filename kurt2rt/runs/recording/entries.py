@@ -116,7 +116,7 @@ def tick_entry(record: TickRecord, *, saved: bool, knowledge: str | None) -> Tic
         record.senses,
         record.guard_result,
         record.commands,
-        record.trouble,
+        record.error,
         saved,
         decision_entry(record.decision),
         record.behaviour,

@@ -159,8 +159,8 @@ class Topics:
                 gently = LogLevel.Debug if all(reason.routine for reason in self._reasons) else LogLevel.Warning
                 level = LogLevel.Error if record.guard_result.latched else gently
                 self.log_text(f"guard: {', '.join(self._reasons)}", level, time_ns)
-        if record.trouble != self._trouble:
-            self._trouble = record.trouble
+        if record.error != self._trouble:
+            self._trouble = record.error
             self.log_text(self._trouble or "lessons are saved again", LogLevel.Error, time_ns)
 
     def _log_pose(self, record: TickRecord, time_ns: int) -> None:

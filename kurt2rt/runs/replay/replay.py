@@ -15,7 +15,7 @@ from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.replay.environment import ReplayEnvironment
 from kurt2rt.runs.replay.run import Run
-from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 
 
 class ReplayedTick(NamedTuple):
@@ -66,13 +66,15 @@ class Replay:
                     [lesson.event for lesson in run.lessons],
                     self._replayed,
                     self._replayed,
-                    statistics=StatisticsCounter(dict(run.saved.uses), dict(run.saved.transitions)),
-                    attended=head.attended,
-                    active_behaviour=wanted,
-                    checkpoint=run.saved,
-                    teacher_available=head.asked,
-                    tolerates_stalls=head.tolerates_stalls,
-                    asks_at_bumper=head.asks_when_held,
+                    RuntimeOptions(
+                        statistics=StatisticsCounter(dict(run.saved.uses), dict(run.saved.transitions)),
+                        attended=head.attended,
+                        active_behaviour=wanted,
+                        checkpoint=run.saved,
+                        teacher_available=head.asked,
+                        tolerates_stalls=head.tolerates_stalls,
+                        asks_at_bumper=head.asks_when_held,
+                    ),
                 )
         except (SettingsError, KnowledgeError, InvalidEventError, UnknownActionError, UnknownBehaviourError) as error:
             raise RecordingError(f"cannot be replayed by this kurt2rt: {error}", where=run.name) from error

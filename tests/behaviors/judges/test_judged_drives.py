@@ -11,7 +11,7 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.platform.clock import LockstepClock
-from kurt2rt.runtime import build_runtime
+from kurt2rt.runtime import RuntimeOptions, build_runtime
 from simbridge.simulation import Kurt2Simulation
 from tests.behaviors.helpers import ROBOT
 
@@ -37,7 +37,13 @@ async def judged(task_name: str, seconds: float, action: str | None = None) -> d
     level = PolicyLevel(policy, load_repertoire(task.repertoire, ROBOT), 10, wanted)
     clock = LockstepClock(simulation.step)
     runtime = build_runtime(
-        simulation.robot, ROBOT, task, (), NoTeachingAllowed(), clock, level_override=level, active_behaviour=wanted
+        simulation.robot,
+        ROBOT,
+        task,
+        (),
+        NoTeachingAllowed(),
+        clock,
+        RuntimeOptions(level_override=level, active_behaviour=wanted),
     )
     heard: Counter[int] = Counter()
 

@@ -22,7 +22,7 @@ from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.teaching.authority import ControlAuthority
-from kurt2rt.core.teaching.command_handler import CommandHandler
+from kurt2rt.core.teaching.command_handler import CommandHandler, HandlerParts
 from kurt2rt.core.teaching.commands import Command, CommandResult, Drive, Reward, Watch
 from tests.core.critic.helpers import FREE, SETTINGS, appraisal, origin
 from tests.core.helpers import MINIMUM_TICKS, RADIUS, Counted, sensed, situation
@@ -94,10 +94,12 @@ class Track:
             ControlAuthority(actions, attended=False),
             insert_beyond_share=SHARE,
             handled_command_ids=(event.origin.command_id for event in events),
-            reinforcement=self.reinforcement,
-            critic=self.critic,
-            agreement=self.agreement,
-            self_teaching=self.self_teaching,
+            parts=HandlerParts(
+                reinforcement=self.reinforcement,
+                critic=self.critic,
+                agreement=self.agreement,
+                self_teaching=self.self_teaching,
+            ),
         )
         self.school.phase = phase
         self.events = list(events)

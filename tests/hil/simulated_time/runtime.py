@@ -23,7 +23,7 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
 from kurt2rt.platform.timerfd_clock import TimerfdClock
-from kurt2rt.runtime import build_runtime
+from kurt2rt.runtime import RuntimeOptions, build_runtime
 
 HANG_S = 1.0
 
@@ -65,7 +65,9 @@ async def drive(bus: str, seconds: float, hangs_at: int) -> None:
             turns.append({"tick": record.tick, "reasons": reasons, "infrared_age_s": record.senses.infrared_age_s})
 
     with TimerfdClock() as clock, robot.watchdog:
-        runtime = build_runtime(robot, settings, task, (), NoTeachingAllowed(), clock, level_override=level)
+        runtime = build_runtime(
+            robot, settings, task, (), NoTeachingAllowed(), clock, RuntimeOptions(level_override=level)
+        )
         await runtime.scheduler.run(round(seconds / period_s), after_tick)
     robot.close()
     ledger = runtime.timer

@@ -15,7 +15,7 @@ from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, sensor_counterfactuals
 from kurt2rt.runs.explain.facts import DecisionFacts, LessonFact, LevelFacts, RlaFacts
 from kurt2rt.runs.recording.entries import TickEntry, tick_entry
-from kurt2rt.runtime import build_runtime
+from kurt2rt.runtime import RuntimeOptions, build_runtime
 from simbridge.simulation import Kurt2SimulationFactory
 
 ROBOT = load_robot()
@@ -35,7 +35,7 @@ class Lesson:
             (),
             self.notebook,
             LockstepClock(self._simulation.step),
-            attended=attended,
+            RuntimeOptions(attended=attended),
         )
         self.records: list[TickRecord] = []
 

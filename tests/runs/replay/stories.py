@@ -46,7 +46,7 @@ from kurt2rt.runs.recording.recorder import RunRecorder, open_run_recorder
 from kurt2rt.runs.recording.run_files import budget_of
 from kurt2rt.runs.recording.run_head import RUN_METADATA, RunHead
 from kurt2rt.runs.recording.segment_reader import SegmentReader
-from kurt2rt.runtime import Runtime, build_runtime
+from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 from kurt2rt.teacher.scripted.teacher import ScriptedTeacher, build_teacher, view_of_tick
 from simbridge.simulation import Kurt2Simulation
 from tests.runs.replay.stored_runs import STORED
@@ -201,7 +201,13 @@ def record_story(
     )
     wanted = ActiveBehaviour(task.behaviours)
     runtime = build_runtime(
-        simulation.robot, settings, task, (), notebook, clock, attended=told.attended, active_behaviour=wanted
+        simulation.robot,
+        settings,
+        task,
+        (),
+        notebook,
+        clock,
+        RuntimeOptions(attended=told.attended, active_behaviour=wanted),
     )
     if told.stopped:
         runtime.handler.stop(told.stopped)
