@@ -7,7 +7,7 @@ from hal.robot import Robot
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.critic.agreement import Agreement
-from kurt2rt.core.critic.appraisal_features import CircumstancesPerception
+from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.critic import Critic
 from kurt2rt.core.critic.settings import CriticSettings, load_critic
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
@@ -15,10 +15,10 @@ from kurt2rt.core.decision.level import Level
 from kurt2rt.core.expectations.tracker import ExpectationTracker
 from kurt2rt.core.layer_stack import LayerStack
 from kurt2rt.core.mid.mid_level import MidLevel
-from kurt2rt.core.mid.settings import MidSettings, load_mid
+from kurt2rt.core.mid.settings import MidSettings, load_mid_level
 from kurt2rt.core.perception.definition import SituationDefinition, load_situation
 from kurt2rt.core.perception.perception import Perception
-from kurt2rt.core.perception.weights import weights_of
+from kurt2rt.core.perception.weights import feature_weights
 from kurt2rt.core.planning.navigator import Navigator
 from kurt2rt.core.progress_meter import ProgressMeter
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
@@ -98,12 +98,12 @@ class Runtime:
     def snapshot(self) -> Statistics:
         """Return counts, values and expectations of the active RLAs."""
         counted, system = self.statistics, self.level.system
-        counted.drop_dead(lambda rla_id: system.get(rla_id) is not None)
+        counted.drop_deleted(lambda rla_id: system.get(rla_id) is not None)
         return replace(
-            self.self_teaching.with_best(self.reinforcement.to_save()),
+            self.self_teaching.with_best(self.reinforcement.snapshot()),
             uses=dict(counted.uses),
             transitions=dict(counted.transitions),
-            expectations=self.expectations.to_save(),
+            expectations=self.expectations.snapshot(),
         )
 
 
@@ -112,7 +112,7 @@ def empty_system(
 ) -> RlaSystem:
     """Return the RLA system of all levels of a task, without any RLA. Raises hal.settings.SettingsError."""
     changed = ((each.features, each.weight) for each in task.learning.weights)
-    weights = weights_of(definition, changed, task.learning.past_weight, task.name)
+    weights = feature_weights(definition, changed, task.learning.past_weight, task.name)
     others = {CRITIC: Space(len(critic.names), critic.learning.radius, critic.weight_vector)}
     if mid is not None:
         others[MID] = mid.space
@@ -130,7 +130,7 @@ class _Assembly:
         self._period_s = settings.can.cycle_s
         self.definition = load_situation(task.situation, settings.infrared.names)
         self.critic = load_critic(task.critic)
-        mid_settings = None if task.mid is None else load_mid(task.mid)
+        mid_settings = None if task.mid is None else load_mid_level(task.mid)
         self._system = empty_system(task, self.definition, self.critic, mid_settings)
         self.reinforcement = self._restored_reinforcement()
         self.active_behaviour = options.active_behaviour or ActiveBehaviour(task.behaviours)
@@ -151,12 +151,12 @@ class _Assembly:
         self.navigator: Navigator | None = None
         self.top: Level = options.level_override or self.basic
         if self.mid is not None:
-            self.navigator = Navigator(self.mid, self.statistics.follow_ups, self.expectations.of)
+            self.navigator = Navigator(self.mid, self.statistics.follow_ups, self.expectations.get)
             self.top = LayerStack(self.top, self.mid, self.navigator)
         agreement = Agreement(self.critic.agreement, self.critic.values, self._period_s)
-        agreement.hear_all(events)
+        agreement.replay(events)
         self.self_teaching = SelfTeaching(self.reinforcement, self._system, self.critic, agreement, self._period_s)
-        self.self_teaching.recall(events, options.checkpoint)
+        self.self_teaching.restore(events, options.checkpoint)
         self.handler = self._build_handler(agreement)
 
     def _restored_reinforcement(self) -> Reinforcement:
@@ -164,7 +164,7 @@ class _Assembly:
         reinforcement = Reinforcement(self._system, recent, self._task.reinforcement, self._period_s)
         # Counters and expectations are restored by their owners; pass only values here.
         values = checkpoint and replace(checkpoint, uses={}, transitions={}, expectations={})
-        reinforcement.recall(self._events, values)
+        reinforcement.restore(self._events, values)
         return reinforcement
 
     def _build_handler(self, agreement: Agreement) -> CommandHandler:
@@ -199,7 +199,7 @@ class _Assembly:
             event_store=event_store,
             statistics=self.statistics,
             timer=TickTimer(),
-            appraisal_perception=CircumstancesPerception(self.critic, self._settings),
+            appraisal_perception=AppraisalPerception(self.critic, self._settings),
             expectations=self.expectations,
         )
 

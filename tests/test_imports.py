@@ -46,8 +46,9 @@ ROOMS: dict[str, frozenset[str]] = {
 """
 CORE_NEVER_IMPORTS = {"time", "asyncio", "anyio", "threading", "socket", "sqlite3", "os"}
 LAYERS_OF_CORE = (
-    {"rla", "perception", "numerics"},
-    {"decision"},
+    {"numerics", "outcome"},
+    {"rla", "perception"},
+    {"decision", "outcome_text"},
     {"basic", "mid"},
     {"planning", "expectations", "critic"},
     {"reinforcement"},

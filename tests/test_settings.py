@@ -19,7 +19,7 @@ from hal.settings import Settings, SettingsError, content_of, find_config, load_
 from hal.settings_by_kind import find_kind
 from kurt2rt.checks.faults.table import FaultTable
 from kurt2rt.core.critic.settings import CriticSettings
-from kurt2rt.core.mid.settings import MidSettings, load_mid
+from kurt2rt.core.mid.settings import MidSettings, load_mid_level
 from kurt2rt.core.perception.definition import SituationDefinition, load_situation
 from kurt2rt.core.rla.rla import ASK
 from kurt2rt.core.task_settings import TaskSettings, load_task
@@ -327,9 +327,9 @@ def test_a_task_may_have_a_mid_level_by_name_or_by_its_settings(mid: str, told: 
         assert told in refusal(path, TaskSettings)
     else:
         assert load_task(str(path)).mid == mid
-        written_out = load_task(str(path)).model_copy(update={"mid": load_mid(mid)})
+        written_out = load_task(str(path)).model_copy(update={"mid": load_mid_level(mid)})
         path.write_text(written_out.model_dump_json(exclude_none=True))
-        assert load_task(str(path)).mid == load_mid(mid)
+        assert load_task(str(path)).mid == load_mid_level(mid)
 
 
 def test_a_mid_level_commands_behaviours_that_have_names(tmp_path: Path) -> None:

@@ -169,8 +169,8 @@ def run(
         from kurt2rt.cli.scripted_file import own_file, require_agreement
         from kurt2rt.cli.terminal_screen import TerminalScreen
         from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-        from kurt2rt.core.rla.outcome import CommandRefusedError
-        from kurt2rt.core.rla.outcome_text import text_of
+        from kurt2rt.core.outcome import CommandRefusedError
+        from kurt2rt.core.outcome_text import text_of
         from kurt2rt.core.task_settings import load_task
         from kurt2rt.runs.recording.live_view import parse_address
         from kurt2rt.service.program import RobotProgram, RunOptions

@@ -31,7 +31,7 @@ class LayerStack:
         commanded = self.mid.decide(senses, self._before)
         navigator = self.navigator
         if navigator is not None:
-            navigator.go_on()
+            navigator.step()
         if commanded.asks:
             decision = self._decide_below(situation, senses, blocking_cause or Cause.UNKNOWN)
             self._before = decision._replace(match=commanded.match, asks_at=MID, mid=commanded)
@@ -41,7 +41,7 @@ class LayerStack:
             decision = self._decide_below(situation, senses, blocking_cause)
             self._before = decision._replace(mid=commanded)
         if navigator is not None and navigator.step is not None:
-            self._before = self._before._replace(plan=navigator.step)
+            self._before = self._before._replace(plan=navigator.status)
         return self._before
 
     def restart(self) -> None:

@@ -6,7 +6,7 @@ from typing import NamedTuple, Protocol
 
 from behaviors.judges.judge import AppraisalFeatures
 from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings
-from kurt2rt.core.critic.appraisal_features import CircumstancesPerception
+from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.critic import Opinion
 from kurt2rt.core.decision.decision import Cause, Decision, MidDecision, stopped
 from kurt2rt.core.decision.level import Level
@@ -14,8 +14,8 @@ from kurt2rt.core.decision.standing import DRIVES, BumperWatch, Standing, Standi
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.expectations.tracker import ExpectationTracker
 from kurt2rt.core.mid.usage_counter import MidUsageCounter
+from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.perception.perception import Perception, Situation
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.rla import BASIC, Phase, Rla, TeachingEvent
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.teaching.command_handler import CommandHandler
@@ -103,7 +103,7 @@ class TickParts:
     event_store: EventStore
     statistics: StatisticsCounter
     timer: TickTimer
-    appraisal_perception: CircumstancesPerception | None = None
+    appraisal_perception: AppraisalPerception | None = None
     """Features for the handler's critic; None without a critic."""
     expectations: ExpectationTracker | None = None
     """None: nothing is expected."""
@@ -216,7 +216,7 @@ class Tick:
         if self._appraisal_perception is not None and critic is not None:
             perceived = self._appraisal_perception.perceive(readings, driving=self._driving and not self._waits)
             if not blind:
-                features, opinion = perceived, critic.think(tick, perceived)
+                features, opinion = perceived, critic.appraise(tick, perceived)
         self._timer.lap(Stage.PERCEIVE)
         return _View(situation, blind, features, opinion)
 
@@ -266,15 +266,15 @@ class Tick:
             self._perception.remember_driven(decision.wheel_speeds)
         surprise = None
         if self._expectations is not None:
-            surprise = self._expectations.see(tick, decision, view.situation, choice.behaviour, driving=turning)
+            surprise = self._expectations.update(tick, decision, view.situation, choice.behaviour, driving=turning)
             if surprise is not None and surprise.surprising and self._appraisal_perception is not None:
-                self._appraisal_perception.be_surprised()
+                self._appraisal_perception.notify_surprise()
         self._statistics.count(decision.rla_id if turning else None)
         self._mid_uses.count(decision, driving=turning)
         # No RLA gets credit for ticks at standstill, including guard stops. A bumper stop is the exception: it is the
         # RLA's own doing.
         credited = decision if self._driving else decision._replace(action=None, answers=False)
-        handler.recent.remember(
+        handler.recent.add(
             tick,
             view.situation,
             credited,
@@ -304,7 +304,7 @@ class Tick:
         for event in choice.events:
             self._event_store.submit(event)
             if self._expectations is not None:
-                invalidated_rla = self._expectations.hear(event)
+                invalidated_rla = self._expectations.on_event(event)
                 if invalidated_rla is not None:
                     self._statistics.drop_follow_ups(invalidated_rla)
         knowledge = None

@@ -9,7 +9,9 @@ from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError, find_beside
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.mid.place import PlaceSettings
-from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.mid.settings import load_mid_level
+from kurt2rt.core.outcome import CommandRefusedError
+from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.knowledge.journal.loading import read_lessons
@@ -43,9 +45,12 @@ class _Building:
         task = load_task(action.task)
         wanted, mid = ActiveBehaviour(task.behaviours), None
         if isinstance(action, TaughtAction):
-            wanted.select(action.behaviour)
+            try:
+                wanted.select(action.behaviour)
+            except CommandRefusedError as error:
+                raise ValueError(text_of(error.outcome)) from error
         elif task.mid is not None:
-            mid = load_mid(task.mid)
+            mid = load_mid_level(task.mid)
             if isinstance(mid.situation, PlaceSettings):
                 raise SettingsError(
                     f"the mid level of the task {task.name} goes by places, and an action does not know at "

@@ -13,7 +13,7 @@ from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.mid.settings import MidSettings
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.perception.perception import Perception
-from kurt2rt.core.perception.weights import weights_of
+from kurt2rt.core.perception.weights import feature_weights
 from kurt2rt.core.rla.rla import MID, TeachingEvent
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.task_settings import TaskSettings
@@ -37,7 +37,7 @@ def build_taught_system(
     definition = load_situation(task.situation, sensors)
     learning = task.learning
     changed = ((each.features, each.weight) for each in learning.weights)
-    weights = weights_of(definition, changed, learning.past_weight, task.name)
+    weights = feature_weights(definition, changed, learning.past_weight, task.name)
     others = {} if mid is None else {MID: mid.space}
     system = RlaSystem(definition.dimensions, learning.radius, weights, others=others)
     system.apply_all(lessons)

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from kurt2rt.channel.server.channel import Channel
 from kurt2rt.core.decision.decision import withdrawn_rla_in
 from kurt2rt.core.decision.standing_text import question_text
+from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.perception.sensor_words import words_for
-from kurt2rt.core.rla.outcome_text import text_of
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.teaching.question import MidQuestion, Question, ask, ask_the_way
@@ -164,9 +164,9 @@ class PostTick:
     def _question_of(self, record: TickRecord) -> Question | MidQuestion:
         runtime, match = self._runtime, record.decision.match
         if runtime.mid is not None and record.decision.asks_at == MID:
-            return ask_the_way(match, runtime.mid.settings.situation.words(runtime.mid.vector))
+            return ask_the_way(match, runtime.mid.settings.situation.describe(runtime.mid.vector))
         weights, names = runtime.level.system.weights, runtime.definition.names
         question = ask(match, record.situation.vector, weights, names, record.behaviour, words=self._words)
         blamed = withdrawn_rla_in(record.decision)
-        worth = None if blamed is None else float(runtime.reinforcement.worth(blamed))
+        worth = None if blamed is None else float(runtime.reinforcement.value(blamed))
         return replace(question, worth=worth, touches=question_text(record.standing))

@@ -18,7 +18,7 @@ from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
 from kurt2rt.core.mid.mid_level import MidLevel
-from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.rla.rla import Phase, TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
@@ -201,7 +201,7 @@ class SimulatedRuns:
 
 def _require_able(events: Iterable[TeachingEvent], robot: RobotSettings, task: TaskSettings) -> None:
     """Raises UnknownActionError or UnknownBehaviourError, as the next run would, and that one ends the program."""
-    mid = None if task.mid is None else load_mid(task.mid)
+    mid = None if task.mid is None else load_mid_level(task.mid)
     definition = load_situation(task.situation, robot.infrared.names)
     system = empty_system(task, definition, load_critic(task.critic), mid)
     system.apply_all(events)

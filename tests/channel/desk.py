@@ -29,7 +29,7 @@ from kurt2rt.channel.server.request_handler import LONGEST_WAIT_S, RequestHandle
 from kurt2rt.channel.server.resources import Keys, RobotSite
 from kurt2rt.channel.server.simulation import TeacherNow
 from kurt2rt.channel.server.state_builder import JournalStatus, StateBuilder
-from kurt2rt.core.rla.outcome import Outcome, outcome_in
+from kurt2rt.core.outcome import Outcome, outcome_in
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.tick import EventStore, InMemoryEventStore, TickRecord
 from kurt2rt.knowledge.files.atomic_write import SavedCopy

@@ -38,8 +38,8 @@ from kurt2rt.channel.protocol.requests import (
 from kurt2rt.channel.security.pairing import Pairing, pair
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
 from kurt2rt.core.decision.standing import Standing, StandReason
-from kurt2rt.core.perception.sensor_words import law_of
-from kurt2rt.core.rla.outcome import Outcome, ResultCode
+from kurt2rt.core.outcome import Outcome, ResultCode
+from kurt2rt.core.perception.sensor_words import infrared_law
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.question import FeatureDifference
 from kurt2rt.teacher import TeacherClient
@@ -334,7 +334,11 @@ async def test_terminal_says_the_task_and_asks_by_place_and_centimetres(pairing:
         if not isinstance(request, HelloRequest):
             return await mind(request)
         sensors = [["s9", "front left", 0.2, 0.1, 0.0]]
-        told = {"what": "Teach it to follow the wall", "law": list(law_of(load_robot().infrared)), "sensors": sensors}
+        told = {
+            "what": "Teach it to follow the wall",
+            "law": list(infrared_law(load_robot().infrared)),
+            "sensors": sensors,
+        }
         return Reply(ReplyStatus.DONE, HELLO | told)
 
     robot.mind = tells_more

@@ -10,7 +10,7 @@ from kurt2rt.core.decision.decision import Cause, Decision, MidDecision
 from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.layer_stack import LayerStack
 from kurt2rt.core.mid.mid_level import MidLevel
-from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.rla.rla import MID, RlaCreated, TeachingEvent
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
@@ -59,7 +59,7 @@ class SmallStack:
         self.actions = {name: Counted() for name in "abc"}
         self.wanted = ActiveBehaviour(BEHAVIOURS)
         self.symbols = Symbols()
-        self.mid = MidLevel(self.system, self.symbols, load_mid("turns"), self.wanted)
+        self.mid = MidLevel(self.system, self.symbols, load_mid_level("turns"), self.wanted)
         basic = BasicLevel(self.system, self.actions, MINIMUM_TICKS, self.wanted)
         self.stack = LayerStack(basic, self.mid)
 

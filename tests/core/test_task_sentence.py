@@ -8,7 +8,7 @@ from hal.settings import SettingsError, find_config
 from kurt2rt.channel.protocol.codec import decode_answer, encode_answer
 from kurt2rt.channel.protocol.hello import hello_of
 from kurt2rt.channel.server.channel import describe
-from kurt2rt.core.perception.sensor_words import law_of
+from kurt2rt.core.perception.sensor_words import infrared_law
 from kurt2rt.core.task_settings import load_task
 from tests.channel.desk import BOOT, ROBOT, TASK, Desk
 
@@ -42,5 +42,5 @@ def test_hello_tells_the_sentence_and_the_law_over_the_wire() -> None:
     told = encode_answer({"tick": 0, **describe(Desk().runtime, BOOT, simulated=True)})
     hello = hello_of(decode_answer(told))
     assert hello.what == TASK.what
-    assert hello.law == law_of(ROBOT.infrared)
+    assert hello.law == infrared_law(ROBOT.infrared)
     assert hello.sensor_words.difference("s9", 441.0, 108.0) == "front left: 13 cm, was 46 cm"

@@ -13,8 +13,8 @@ from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.perception.perception import Perception
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import Phase, TeachingEvent
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.usage_counter import StatisticsCounter

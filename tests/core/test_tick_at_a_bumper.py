@@ -10,7 +10,7 @@ from hal.robot import STANDSTILL, WheelSpeeds
 from hal.simulation import Pose
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.decision.standing import ASKS_AFTER_TICKS, DRIVES, Standing, StandReason
-from kurt2rt.core.rla.outcome import Outcome, ResultCode
+from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import Command, Resume, Teach, Watch
 from kurt2rt.core.tick import TickRecord
@@ -125,7 +125,7 @@ def test_what_pushes_may_be_blamed_for_it(corridor: Corridor) -> None:
         corridor.run(100, set_phase(phase))
         record = held(corridor)
         assert record.decision.cause is Cause.TOUCHES  # in phase 5, too: it does not stand without saying why
-        assert corridor.school.recent.answering(record.tick) == 1
+        assert corridor.school.recent.answering_rla(record.tick) == 1
 
 
 def test_it_asks_nobody_in_an_exam_nor_in_a_run_of_before() -> None:

@@ -12,7 +12,7 @@ from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.decision.decision import Cause, Decision
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import Phase, RlaRewarded
 from kurt2rt.core.teaching.commands import (
     BeginSession,

@@ -163,7 +163,7 @@ def check(task: TaskSettings, seed: int, ticks: int) -> None:
     assert known.issuperset(saved.expectations)
     reopened = Bedlam(task, seed, town.notebook.events).runtime.level.system
     assert reopened.knowledge_hash() == system.knowledge_hash()
-    assert reopened.named_at(MID) == system.named_at(MID)
+    assert reopened.named_situations(MID) == system.named_situations(MID)
     assert reopened.lessons == system.lessons
 
 

@@ -6,8 +6,8 @@ import pytest
 
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.rla.credit import Credit
-from kurt2rt.core.rla.outcome import Outcome, ResultCode
 from kurt2rt.core.rla.rla import (
     CRITIC,
     ActionWithdrawn,
@@ -221,9 +221,9 @@ def test_in_phase_five_nobody_is_asked_and_after_it_somebody_is_again() -> None:
 def test_values_go_on_from_what_was_saved_or_else_from_the_credits_in_the_journal() -> None:
     origin = Origin("r-1", "Ann", Phase.REINFORCEMENT, 5)
     events = (created(1, (float(NEAR),) * 72), RlaRewarded(1, -1, 4, origin, (Credit(1, -0.05),)))
-    assert Drive(events).runtime.reinforcement.worth(1) == -0.05
-    assert Drive(events, saved=Statistics(values={1: -0.08})).runtime.reinforcement.worth(1) == -0.08
-    assert Drive(events, saved=Statistics(uses={1: 7})).runtime.reinforcement.worth(1) == -0.05
+    assert Drive(events).runtime.reinforcement.value(1) == -0.05
+    assert Drive(events, saved=Statistics(values={1: -0.08})).runtime.reinforcement.value(1) == -0.08
+    assert Drive(events, saved=Statistics(uses={1: 7})).runtime.reinforcement.value(1) == -0.05
 
 
 def story(drive: Drive) -> tuple[list[TeachingEvent], Statistics]:

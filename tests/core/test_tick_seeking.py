@@ -9,7 +9,7 @@ from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import MID, SituationNamed, TeachingEvent
 from kurt2rt.core.teaching.commands import (
     BeAt,
@@ -94,7 +94,7 @@ def block() -> Block:
 def test_the_way_round_the_block_comes_back_to_a_place_that_it_knows(block: Block) -> None:
     assert block.ways == {4: "turn_left", 5: "turn_left", 6: "turn_left", 7: "turn_left"}
     assert not block.run().decision.asking
-    expected = block.runtime.expectations.of(7)
+    expected = block.runtime.expectations.get(7)
     assert expected is not None
     system = block.runtime.level.system
     match = system.match(expected.mean, level=MID)

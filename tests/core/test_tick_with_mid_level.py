@@ -7,7 +7,7 @@ import pytest
 
 from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.decision.decision import Cause, Decision
-from kurt2rt.core.rla.outcome import Field, Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome import Field, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import (
     BASIC,
     CRITIC,
@@ -131,7 +131,7 @@ class Town:
     @property
     def history(self) -> tuple[str, ...]:
         assert self.runtime.mid is not None
-        words = self.runtime.mid.settings.situation.words(self.runtime.mid.vector)
+        words = self.runtime.mid.settings.situation.describe(self.runtime.mid.vector)
         return tuple(word for word in words if word)
 
 
@@ -231,7 +231,7 @@ def test_the_teacher_may_mean_a_junction_that_was_passed_long_ago(town: Town) ->
         town.junction(quarters)
     for _ in range(1500):
         town.run()
-    assert not town.runtime.handler.recent.knows(meant)
+    assert not town.runtime.handler.recent.contains(meant)
     record = town.run(another_way("turn_left", of=meant))
     assert told(record) == Outcome.of(ResultCode.RLA_CORRECTED, rla=4, level=MID, action="turn_left", was="straight_on")
     assert told(town.run(another_way("turn_left", "never", of=town.tick + 100))) == Outcome.of(

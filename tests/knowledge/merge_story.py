@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from kurt2rt.core.rla.credit import Credit
-from kurt2rt.core.rla.lesson_history import pile_of
+from kurt2rt.core.rla.lesson_history import lesson_stack
 from kurt2rt.core.rla.rla import (
     BASIC,
     ActionReplaced,
@@ -190,7 +190,7 @@ class Story:
         if system.lesson(own) is not None:
             own = f"c{self._count}"
         origin = Origin(own, chance.choice(("Hertha", "Joachim", "critic")), Phase.CORRECTIONS, self._count)
-        kind, living = chance.choice(KINDS), sorted(system.living, key=lambda rla: rla.rla_id)
+        kind, living = chance.choice(KINDS), sorted(system.active_rlas, key=lambda rla: rla.rla_id)
         ids = [record.event.origin.command_id for record in system.lessons]
         match kind:
             case "create":
@@ -214,7 +214,7 @@ class Story:
                 action = chance.choice([action for action in ACTIONS if action != rla.action])
                 return ActionReplaced(rla.rla_id, action, rla.action, origin)
             case "withdraw":
-                return None if rla.asks else ActionWithdrawn(rla.rla_id, rla.action, origin)
+                return None if rla.is_withdrawn else ActionWithdrawn(rla.rla_id, rla.action, origin)
             case "delete":
                 return RlaDeleted(rla.rla_id, origin)
         credits_ = tuple(Credit(each.rla_id, -0.5) for each in living[:2])
@@ -249,7 +249,7 @@ def _piles(system: RlaSystem) -> dict[int, object]:
         if isinstance(record.event, RlaCreated)
     }
     return {
-        record.event.origin.tick: pile if isinstance(pile := pile_of(record.event), tuple) else created[pile]
+        record.event.origin.tick: pile if isinstance(pile := lesson_stack(record.event), tuple) else created[pile]
         for record in system.lessons
     }
 
@@ -258,8 +258,8 @@ def _outcomes(system: RlaSystem) -> Mapping[object, object]:
     """What the robot makes of each pile: the action of an RLA, the place of a name."""
     about, outcomes = _piles(system), dict[object, object]()
     for record in system.lessons:
-        pile = pile_of(record.event)
+        pile = lesson_stack(record.event)
         rla = system.get(pile) if isinstance(pile, int) else None
-        outcome = (rla and rla.action) if isinstance(pile, int) else system.named_at(pile[0]).get(pile[1])
+        outcome = (rla and rla.action) if isinstance(pile, int) else system.named_situations(pile[0]).get(pile[1])
         outcomes[about[record.event.origin.tick]] = outcome
     return outcomes

@@ -7,7 +7,7 @@ import pytest
 
 from kurt2rt.channel.protocol.requests import CorrectRequest
 from kurt2rt.channel.server.reply import ReplyStatus
-from kurt2rt.core.rla.outcome import ResultCode
+from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.rla.rla import RlaCreated, RlaDeleted
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.teaching.commands import Command, Teach
@@ -164,7 +164,7 @@ def test_what_the_rlas_are_worth_is_saved_with_the_counts_and_gone_on_from(shift
         LockstepClock(lambda: None),
         RuntimeOptions(checkpoint=saved),
     )
-    assert again.reinforcement.worth(7) == -0.25
+    assert again.reinforcement.value(7) == -0.25
 
 
 def test_of_rlas_that_are_no_more_nothing_is_saved(shift: Shift) -> None:

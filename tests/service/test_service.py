@@ -6,7 +6,7 @@ import pytest
 from hal.control import encode_brake
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import Cause
-from kurt2rt.core.rla.outcome import ResultCode
+from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import Cause
-from kurt2rt.core.rla.outcome import ResultCode
+from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.teaching.commands import Command, Resume, Stop
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.journal import Journal

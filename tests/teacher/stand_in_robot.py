@@ -17,7 +17,7 @@ from kurt2rt.channel.server.endpoint import open_endpoint
 from kurt2rt.channel.server.reply import Reply, done, refusal
 from kurt2rt.channel.server.request_handler import RequestHandler, Sender
 from kurt2rt.channel.server.resources import RobotSite
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode
+from kurt2rt.core.outcome import Outcome, RefusalCode
 from tests.channel.states import ASKING
 
 Mind = Callable[[Request], Awaitable[Reply]]

@@ -1,9 +1,9 @@
-"""Listing of the texts of `kurt2rt.core.rla.outcome_text`."""
+"""Listing of the texts of `kurt2rt.core.outcome_text`."""
 
 from collections.abc import Iterator
 
-from kurt2rt.core.rla.outcome import Code, Field, Outcome, RefusalCode, ResultCode
-from kurt2rt.core.rla.outcome_text import Surface, fields_of, text_of
+from kurt2rt.core.outcome import Code, Field, Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome_text import Surface, fields_of, text_of
 from kurt2rt.core.rla.rla import MID
 
 SAMPLES: dict[str, Field] = {

@@ -21,8 +21,8 @@ from kurt2rt.channel.server.request_handler import RequestHandler
 from kurt2rt.channel.server.resources import RobotSite
 from kurt2rt.channel.server.simulation import ProgressMeter, RunControl
 from kurt2rt.channel.server.state_builder import JournalStatus, StateBuilder
-from kurt2rt.core.perception.sensor_words import law_of
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode
+from kurt2rt.core.outcome import Outcome, RefusalCode
+from kurt2rt.core.perception.sensor_words import infrared_law
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import HandOver, Stop
 from kurt2rt.core.teaching.inbox import InboxFullError
@@ -219,7 +219,7 @@ def describe(runtime: Runtime, boot: bytes, *, simulated: bool) -> dict[str, Any
         "outline": [robot.geometry.outline_length_m, robot.geometry.outline_width_m],
         "max_m_s": robot.guard.maximum_speed_m_s,
         "what": runtime.task.sentence,
-        "law": list(law_of(robot.infrared)),
+        "law": list(infrared_law(robot.infrared)),
         "simulated": simulated,
         "phases": {int(phase): phase.name.lower() for phase in Phase},
     }

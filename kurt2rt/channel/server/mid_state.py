@@ -13,7 +13,7 @@ def mid_state(mid: MidLevel, decided: MidDecision, stamp_of: Callable[[str], str
     """What the mid level commands and why; `stamp_of`: when the lesson of a command became durable."""
     settings, match = mid.settings, decided.match
     nearest = None if match is None else match.rla
-    words = settings.situation.words
+    words = settings.situation.describe
     return MidState(
         behaviour=decided.behaviour,
         rla=decided.rla_id,

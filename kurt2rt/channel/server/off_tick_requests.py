@@ -32,7 +32,7 @@ from kurt2rt.channel.server.pending_commands import PendingCommands
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, plain_outcome, refusal, restarted, unsaved
 from kurt2rt.channel.server.simulation import ProgressMeter, RunControl, TeacherNow
 from kurt2rt.channel.server.upload import Upload
-from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.teaching.system_events import SpeedChanged
 from kurt2rt.knowledge.files.atomic_write import SavedCopy
 from kurt2rt.knowledge.knowledge_error import KnowledgeError

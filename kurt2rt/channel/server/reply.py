@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode
-from kurt2rt.core.rla.outcome_text import text_of
+from kurt2rt.core.outcome import Outcome, RefusalCode
+from kurt2rt.core.outcome_text import text_of
 
 
 class ReplyStatus(Enum):

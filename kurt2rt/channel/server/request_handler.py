@@ -35,7 +35,7 @@ from kurt2rt.channel.server.off_tick_requests import Copies, OffTickCommand, Off
 from kurt2rt.channel.server.pending_commands import PendingCommands
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal, restarted, unsaved
 from kurt2rt.channel.server.simulation import ProgressMeter, RunControl
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import Command, Drive, Stop, Watch
 from kurt2rt.core.teaching.inbox import InboxFullError
@@ -248,4 +248,4 @@ class RequestHandler:
         return rows
 
     def _situations(self) -> list[str]:
-        return sorted(self._runtime.level.system.named_at(MID))[:MOST_SITUATIONS]
+        return sorted(self._runtime.level.system.named_situations(MID))[:MOST_SITUATIONS]

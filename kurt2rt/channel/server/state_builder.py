@@ -104,7 +104,7 @@ class StateBuilder:
             missed_ticks=runtime.timer.missed_ticks,
             place=None if self._ground is None else self._ground.place(),
             behaviour=record.behaviour,
-            value=None if decision.rla_id is None else float(runtime.reinforcement.worth(decision.rla_id)),
+            value=None if decision.rla_id is None else float(runtime.reinforcement.value(decision.rla_id)),
             opinion=None if opinion is None else opinion.said,
             opinion_of=None if of is None else of.rla_id,
             agreement=None if agreement is None else agreement.share,
@@ -126,7 +126,7 @@ class StateBuilder:
     def _withdrawn_at(self, nearest: Rla | None) -> float | None:
         if nearest is None or nearest.level != BASIC or nearest.action != ASK:
             return None
-        return float(self._runtime.reinforcement.worth(nearest.rla_id))
+        return float(self._runtime.reinforcement.value(nearest.rla_id))
 
     def _late(self) -> float:
         health = self._health()
@@ -153,7 +153,7 @@ class StateBuilder:
         if critic is None or agreement is None:
             return 0, 0
         least = critic.settings.agreement.least
-        return max(0, least - agreement.heard_of(-1)), max(0, least - agreement.heard_of(1))
+        return max(0, least - agreement.count_for(-1)), max(0, least - agreement.count_for(1))
 
 
 def _latched(record: TickRecord) -> ActiveStop | None:

@@ -3,7 +3,7 @@
 import hashlib
 
 from kurt2rt.channel.protocol.requests import MOST_UPLOAD_BYTES
-from kurt2rt.core.rla.outcome import CommandRefusedError, RefusalCode
+from kurt2rt.core.outcome import CommandRefusedError, RefusalCode
 
 
 class Upload:

@@ -53,7 +53,7 @@ class BasicLevel:
                     f"{', '.join(active_behaviour.behaviours) or 'one without a name'}; "
                     "give the task that this knowledge was taught with"
                 )
-            if rla.action not in repertoire and not rla.asks:
+            if rla.action not in repertoire and not rla.is_withdrawn:
                 raise UnknownActionError(
                     f"RLA {rla.rla_id} has the action {rla.action}, which the repertoire lacks; "
                     f"add it there, or teach with the repertoire it came from: {', '.join(repertoire)}"

@@ -22,14 +22,14 @@ class EpsilonGreedy:
 
     def choose(self, group: Sequence[Rla], tick: int) -> Rla:
         """The one that answers in a tick, of a group of at least one, oldest first."""
-        candidates = [rla for rla in group if not rla.asks] or group
+        candidates = [rla for rla in group if not rla.is_withdrawn] or group
         rla = self._previous(group, candidates, tick) or self._draw(candidates)
         self._chosen[group[0].rla_id] = (rla.rla_id, tick)
         return rla
 
     def preview(self, group: Sequence[Rla], tick: int) -> Rla:
         """Which one `among` would say, chance left out; nothing is chosen by asking."""
-        candidates = [rla for rla in group if not rla.asks] or group
+        candidates = [rla for rla in group if not rla.is_withdrawn] or group
         return self._previous(group, candidates, tick) or self.best(candidates)
 
     def best(self, group: Sequence[Rla]) -> Rla:
@@ -38,7 +38,7 @@ class EpsilonGreedy:
         It was tried because those before it had sunk: also a robot that was started anew, and no longer knows how far
         they had, goes on with it.
         """
-        candidates = [rla for rla in group if not rla.asks] or group
+        candidates = [rla for rla in group if not rla.is_withdrawn] or group
         return max(candidates, key=lambda rla: (self._value(rla.rla_id), rla.rla_id))
 
     def reset(self) -> None:

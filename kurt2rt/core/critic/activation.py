@@ -1,6 +1,6 @@
 """Whether a robot that is alone needs its critic: one that does well is left alone."""
 
-from kurt2rt.core.critic.settings import NeedSettings
+from kurt2rt.core.critic.settings import ActivationSettings
 
 
 class ActivationMonitor:
@@ -9,14 +9,14 @@ class ActivationMonitor:
     A critic errs at times, and what it errs about is a small share of the time where nothing is wrong.
     """
 
-    def __init__(self, settings: NeedSettings, period_s: float) -> None:
+    def __init__(self, settings: ActivationSettings, period_s: float) -> None:
         """`period_s` of a tick."""
         self._bad_share = settings.bad_share
         self._kept = 1.0 - min(1.0, period_s / settings.mean_s)
         self._first_ticks = round(settings.first_s / period_s)
-        self.begin()
+        self.reset()
 
-    def begin(self) -> None:
+    def reset(self) -> None:
         """The robot is alone from now on."""
         self.needed = False
         """Whether the critic has to act."""
@@ -28,7 +28,7 @@ class ActivationMonitor:
         """Mean share of bad time; 0 before it drove."""
         return self._bad / self._weight if self._weight else 0.0
 
-    def look(self, *, driving: bool, bad: bool) -> None:
+    def update(self, *, driving: bool, bad: bool) -> None:
         """Count one tick of phase 5; time in which nothing drives does not count."""
         self._ticks += 1
         if driving:

@@ -13,7 +13,7 @@ from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.numerics import round_portable
 
 
-class CircumstancesPerception:
+class AppraisalPerception:
     """Turns SensorReadings into AppraisalFeatures, once per tick, in memory that does not grow."""
 
     def __init__(self, critic: CriticSettings, robot: RobotSettings) -> None:
@@ -61,7 +61,7 @@ class CircumstancesPerception:
         self._driven = 0  # ticks without a pause, so many places of the ring are of this drive
         self._next = 0
 
-    def be_surprised(self) -> None:
+    def notify_surprise(self) -> None:
         """In the tick before something else came than was expected."""
         self._since_surprise = -1
 
@@ -92,7 +92,7 @@ class CircumstancesPerception:
             self._speed_m_s,
             self._turn_rad_s,
             1.0 if self._since_bump < self._bump_held_ticks else 0.0,
-            1.0 if self._gets_nowhere(driving=driving) else 0.0,
+            1.0 if self._no_progress(driving=driving) else 0.0,
             1.0 if self._without_wall >= self._no_wall_ticks else 0.0,
             1.0 if self._since_surprise < self._surprise_held_ticks else 0.0,
         )
@@ -113,7 +113,7 @@ class CircumstancesPerception:
         self._here_x_m += way_m * round_portable(math.cos(self._heading_rad))
         self._here_y_m += way_m * round_portable(math.sin(self._heading_rad))
 
-    def _gets_nowhere(self, *, driving: bool) -> bool:
+    def _no_progress(self, *, driving: bool) -> bool:
         """Whether it has driven for the whole time and is about where it was."""
         if not driving:
             self._driven = 0

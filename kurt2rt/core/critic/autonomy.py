@@ -26,18 +26,18 @@ class Autonomy:
     def __init__(self, settings: CriticSettings, agreement: Agreement, period_s: float) -> None:
         """`period_s` of a tick."""
         self._agreement = agreement
-        self.need = ActivationMonitor(settings.need, period_s)
+        self.activation = ActivationMonitor(settings.need, period_s)
         every_s = settings.signal_every_s
         self._every_ticks = {-1: round(every_s.bad / period_s), 1: round(every_s.good / period_s)}
         self._next_tick = {-1: 0, 1: 0}
         self._patience_ticks = round(settings.patience_s / period_s)
-        self._thought = 0
-        self._thought_since = 0
-        self._looked_at = -1
+        self._opinion_value = 0
+        self._since_tick = 0
+        self._last_tick = -1
 
-    def begin(self) -> None:
+    def restart(self) -> None:
         """The robot is alone from now on."""
-        self.need.begin()
+        self.activation.reset()
 
     def signal(self, tick: int, opinion: Opinion | None, driving: bool, *, listening: bool = False) -> Signal | None:
         """What is to be learnt from in this tick, of what the critic thinks; to be asked in every tick of phase 5.
@@ -47,12 +47,12 @@ class Autonomy:
         a moment is often chance.
         """
         thought = opinion.value if opinion is not None and driving and opinion.known else 0
-        if thought != self._thought or tick != self._looked_at + 1:
-            self._thought, self._thought_since = thought, tick
-        self._looked_at = tick
-        held = thought != 0 and tick - self._thought_since >= self._patience_ticks
-        self.need.look(driving=driving, bad=held and thought < 0)
-        if opinion is None or not held or listening or not self.need.needed:
+        if thought != self._opinion_value or tick != self._last_tick + 1:
+            self._opinion_value, self._since_tick = thought, tick
+        self._last_tick = tick
+        held = thought != 0 and tick - self._since_tick >= self._patience_ticks
+        self.activation.update(driving=driving, bad=held and thought < 0)
+        if opinion is None or not held or listening or not self.activation.needed:
             return None
         if tick < self._next_tick[opinion.value] or not self._agreement.trusted:
             return None

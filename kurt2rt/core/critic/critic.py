@@ -41,9 +41,9 @@ class Critic:
         self._system = system
         self._dimensions = len(settings.names)
         self._appraisals: dict[str, AppraisalSettings] = {each.name: each for each in settings.appraisals}
-        self._thought: Opinion | None = None
+        self._opinion: Opinion | None = None
         self._lessons = -1
-        self._think_again_tick = 0
+        self._next_tick = 0
 
     @property
     def appraisals(self) -> tuple[str, ...]:
@@ -55,19 +55,19 @@ class Critic:
         """Farther than this from the nearest condition another opinion is inserted, else it replaces."""
         return self.settings.learning.insert_beyond_share * self.settings.learning.radius
 
-    def think(self, tick: int, circumstances: AppraisalFeatures) -> Opinion | None:
+    def appraise(self, tick: int, circumstances: AppraisalFeatures) -> Opinion | None:
         """What it thinks in this tick, looked up anew every few ticks and after each lesson; None before its first one.
 
         The features do not change within hundredths of a second, and the search would be the dearest part of a tick.
         """
         lessons = self._system.standing_lessons
-        if tick >= self._think_again_tick or lessons != self._lessons:
-            self._thought = self.opinion(self.vector_of(circumstances))
+        if tick >= self._next_tick or lessons != self._lessons:
+            self._opinion = self.opinion(self.to_vector(circumstances))
             self._lessons = lessons
-            self._think_again_tick = tick + self.settings.think_every_ticks
-        return self._thought
+            self._next_tick = tick + self.settings.think_every_ticks
+        return self._opinion
 
-    def vector_of(self, circumstances: AppraisalFeatures) -> NDArray[np.float64]:
+    def to_vector(self, circumstances: AppraisalFeatures) -> NDArray[np.float64]:
         """Appraisal situation vector (d,), unweighted, for `opinion` and for conditions."""
         return np.array(circumstances[: self._dimensions], dtype=np.float64)
 

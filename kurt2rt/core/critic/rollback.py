@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from kurt2rt.core.critic.settings import BestSettings
-from kurt2rt.core.rla.lesson_history import rla_of
+from kurt2rt.core.critic.settings import RollbackSettings
+from kurt2rt.core.rla.lesson_history import rla_id_of
 from kurt2rt.core.rla.rla import (
     CRITIC,
     Appraised,
@@ -38,7 +38,7 @@ class RollbackMonitor:
     that is ever learnt after it. A window that is won proves what was changed before it began, and no more.
     """
 
-    def __init__(self, settings: BestSettings, period_s: float) -> None:
+    def __init__(self, settings: RollbackSettings, period_s: float) -> None:
         """`period_s` of a tick."""
         self._window_ticks = max(1, round(settings.window_s / period_s))
         self._margin = settings.margin
@@ -48,9 +48,9 @@ class RollbackMonitor:
         """How many teaching events there were when the best window began: what the critic changed later is unproven."""
         self.score: float | None = None
         """Score of the last window."""
-        self.proofs = 0
+        self.windows_won = 0
         """How many windows were won."""
-        self.measures = True
+        self.is_measuring = True
         """Whether knowledge is measured as it is: in this window the critic changes nothing."""
         self._sum = self._counted = 0
         self._events = 0
@@ -60,20 +60,20 @@ class RollbackMonitor:
         self._unproven: list[_Change] = []
         """Oldest first."""
 
-    def recall(self, events: Iterable[TeachingEvent], best: float | None, includes: int) -> None:
+    def restore(self, events: Iterable[TeachingEvent], best: float | None, includes: int) -> None:
         """Go on from another run: all its events, and what `best` and `includes` were at its end."""
         for event in events:
-            self.changed(event)
+            self.on_event(event)
         self.best, self.includes = best, includes
         # Knowledge without a best is measured as it is.
         self._unproven = [] if best is None else [each for each in self._unproven if each.number > includes]
 
-    def begin(self) -> None:
+    def restart(self) -> None:
         """The robot is alone from now on: what counted before may have been elsewhere, so it is measured first."""
-        self.measures = True
+        self.is_measuring = True
         self._sum = self._counted = 0
 
-    def changed(self, event: TeachingEvent) -> None:
+    def on_event(self, event: TeachingEvent) -> None:
         """An event that was applied, whoever made it, and in whichever phase."""
         self._events += 1
         match event:
@@ -84,12 +84,12 @@ class RollbackMonitor:
             case LessonRedone():  # a person wants it back, whoever it was from: it needs no proof
                 pass
             case _ if event.origin.teacher == CRITIC:
-                self._unproven.append(_Change(event.origin.command_id, rla_of(event), self._events))
+                self._unproven.append(_Change(event.origin.command_id, rla_id_of(event), self._events))
             case _:  # a teacher went on from there: what stands below a lesson of his stays
-                taught = rla_of(event)
+                taught = rla_id_of(event)
                 self._unproven = [each for each in self._unproven if each.rla_id != taught]
 
-    def look(
+    def update(
         self, tick: int, opinion_value: int | None, answers: bool, *, asking: bool = False
     ) -> tuple[LessonUndone, ...]:
         """Count one tick; at the end of a window that was too bad: what to undo, in this order, newest first.
@@ -112,17 +112,17 @@ class RollbackMonitor:
         return self._judge_window(self.score, tick)
 
     def _judge_window(self, score: float, tick: int) -> tuple[LessonUndone, ...]:
-        measured, self.measures = self.measures, False
+        measured, self.is_measuring = self.is_measuring, False
         nothing_to_prove = measured and not self._unproven
         if self.best is None or score >= self.best or nothing_to_prove:
             self.best, self.includes = score, self._window_from
-            self.proofs += 1
+            self.windows_won += 1
             self._unproven = [each for each in self._unproven if each.number > self._window_from]
             return ()
         if score >= self.best - self._margin or not self._unproven:
             return ()
         undone, self._unproven = self._unproven, []
-        self.best, self.measures = None, True
+        self.best, self.is_measuring = None, True
         return tuple(
             LessonUndone(each.lesson, Origin(f"{each.lesson}/rolled-back", CRITIC, Phase.AUTONOMOUS, tick))
             for each in reversed(undone)

@@ -52,7 +52,7 @@ class SideSensors(Settings):
         return frozenset(name for names in self.model_dump().values() for name in names)
 
 
-class CircumstancesSettings(Settings):
+class AppraisalPerceptionSettings(Settings):
     """How circumstances are told from senses."""
 
     sensors: SideSensors
@@ -70,7 +70,7 @@ class CircumstancesSettings(Settings):
     """Something surprising (kurt2rt.core.expectations) is a circumstance for so long; left out: it is none."""
 
 
-class CircumstanceWeights(Settings):
+class AppraisalWeights(Settings):
     """What each circumstance counts in a distance; nothing where it is left out. One for each of AppraisalFeatures."""
 
     left_m: Weight = 0.0
@@ -101,7 +101,7 @@ class CriticLearningSettings(Settings):
     radius: Annotated[float, Field(gt=0, le=100_000)]
     insert_beyond_share: Share
     """Another opinion farther than this share of the radius from the nearest condition inserts, else it replaces."""
-    weights: CircumstanceWeights
+    weights: AppraisalWeights
 
 
 class AgreementSettings(Settings):
@@ -132,7 +132,7 @@ class SignalEverySettings(Settings):
     good: Seconds
 
 
-class NeedSettings(Settings):
+class ActivationSettings(Settings):
     """When a critic that is trusted begins to act: what drives well enough is left alone."""
 
     bad_share: Share
@@ -143,7 +143,7 @@ class NeedSettings(Settings):
     """Not before phase 5 has lasted so long."""
 
 
-class BestSettings(Settings):
+class RollbackSettings(Settings):
     """The guard that keeps the best knowledge."""
 
     window_s: Seconds
@@ -157,7 +157,7 @@ class CriticSettings(Settings):
 
     name: Name
     appraisals: Annotated[tuple[AppraisalSettings, ...], Field(min_length=1)]
-    perception: CircumstancesSettings
+    perception: AppraisalPerceptionSettings
     learning: CriticLearningSettings
     think_every_ticks: Annotated[int, Field(ge=1, le=100)]
     """How often it is looked up what it thinks."""
@@ -165,8 +165,8 @@ class CriticSettings(Settings):
     signal_every_s: SignalEverySettings
     patience_s: Annotated[float, Field(ge=0, le=10)]
     """It gives a signal only when it has thought the same for so long."""
-    need: NeedSettings
-    best: BestSettings
+    need: ActivationSettings
+    best: RollbackSettings
 
     @field_validator("appraisals")
     @classmethod

@@ -1,6 +1,6 @@
 """The taught behaviour that the robot is to follow now."""
 
-from kurt2rt.core.rla.outcome import CommandRefusedError, RefusalCode
+from kurt2rt.core.outcome import CommandRefusedError, RefusalCode
 
 
 class ActiveBehaviour:

@@ -90,7 +90,7 @@ def withdrawn_rla_in(decision: Decision) -> int | None:
     match = decision.match
     if decision.cause is not Cause.UNKNOWN or decision.asks_at != BASIC or match is None:
         return None
-    return match.rla.rla_id if match.rla.asks and match.distance <= match.radius else None
+    return match.rla.rla_id if match.rla.is_withdrawn and match.distance <= match.radius else None
 
 
 def stopped(decision: Decision, cause: Cause | None) -> Decision:

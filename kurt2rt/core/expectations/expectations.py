@@ -64,7 +64,7 @@ class Expectations:
         self._learned = {
             rla_id: expectation
             for rla_id, expectation in (saved or {}).items()
-            if is_of(system, rla_id, expectation, level)
+            if is_valid_for(system, rla_id, expectation, level)
         }
         for rla_id, expectation in self._learned.items():
             values, spreads = len(expectation.mean), len(expectation.squares)
@@ -74,7 +74,7 @@ class Expectations:
                     f"its level has {space.dimensions} features"
                 )
 
-    def of(self, rla_id: int) -> Expectation | None:
+    def get(self, rla_id: int) -> Expectation | None:
         """What is expected of an RLA now; None for one that was never seen to end."""
         return self._learned.get(rla_id)
 
@@ -95,7 +95,7 @@ class Expectations:
             self._learned[rla_id] = _with(before, deviation, end)
         return surprise
 
-    def hear(self, event: TeachingEvent) -> int | None:
+    def on_event(self, event: TeachingEvent) -> int | None:
         """Forget what is expected of the RLA that an event, already applied, has ended or given another action.
 
         Returns its id; None where the event changes no action.
@@ -105,7 +105,7 @@ class Expectations:
             return None if record is None else self._forget(record.event)
         return self._forget(event)
 
-    def to_save(self) -> dict[int, Expectation]:
+    def snapshot(self) -> dict[int, Expectation]:
         """All of them as they are now: what has not changed since the last call is the same object."""
         return dict(self._learned)
 
@@ -123,14 +123,14 @@ class Expectations:
         return Surprise(self.level, end.rla_id, end.follow_up, distance, usual, count, seen, surprising)
 
     def _forget(self, event: TeachingEvent) -> int | None:
-        rla_id = whose_action(event)
+        rla_id = affected_rla(event)
         if rla_id is None:
             return None
         self._learned.pop(rla_id, None)
         return rla_id
 
 
-def whose_action(event: TeachingEvent) -> int | None:
+def affected_rla(event: TeachingEvent) -> int | None:
     """Id of the RLA whose action an event gives, changes or ends; None where it does nothing of the kind."""
     match event:
         case RlaCreated(rla):
@@ -140,12 +140,16 @@ def whose_action(event: TeachingEvent) -> int | None:
     return None
 
 
-def still_valid(system: RlaSystem, saved: Mapping[int, Expectation], levels: Iterable[str]) -> dict[int, Expectation]:
+def valid_expectations(
+    system: RlaSystem, saved: Mapping[int, Expectation], levels: Iterable[str]
+) -> dict[int, Expectation]:
     """Those of RLAs that live at one of these levels and have the action that they are about."""
-    return {rla_id: each for rla_id, each in saved.items() if any(is_of(system, rla_id, each, at) for at in levels)}
+    return {
+        rla_id: each for rla_id, each in saved.items() if any(is_valid_for(system, rla_id, each, at) for at in levels)
+    }
 
 
-def is_of(system: RlaSystem, rla_id: int, expectation: Expectation, level: str) -> bool:
+def is_valid_for(system: RlaSystem, rla_id: int, expectation: Expectation, level: str) -> bool:
     """Whether that RLA lives at that level and has the action that the expectation is about."""
     rla = system.get(rla_id)
     return rla is not None and rla.level == level and rla.origin.command_id == expectation.lesson

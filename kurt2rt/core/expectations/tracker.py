@@ -32,55 +32,55 @@ class ExpectationTracker:
         self._system = system
         self._mid = mid
         basic = Space(system.dimensions, system.radius, system.weights)
-        self._basic_following = BasicTransitionTracker(Expectations(BASIC, system, basic, transitions, saved))
-        self._mid_following = (
+        self._basic = BasicTransitionTracker(Expectations(BASIC, system, basic, transitions, saved))
+        self._mid_transitions = (
             None
             if mid is None
             else MidTransitionTracker(Expectations(MID, system, mid.settings.space, transitions, saved))
         )
-        self._levels = {BASIC: self._basic_following.expectations}
-        if self._mid_following is not None:
-            self._levels[MID] = self._mid_following.expectations
+        self._levels = {BASIC: self._basic.expectations}
+        if self._mid_transitions is not None:
+            self._levels[MID] = self._mid_transitions.expectations
         self._others = {rla_id: each for rla_id, each in (saved or {}).items() if self._is_elsewhere(rla_id)}
 
-    def see(
+    def update(
         self, tick: int, decision: Decision, situation: Situation, behaviour: str, *, driving: bool
     ) -> Surprise | None:
         """Take in one tick, before its transition is counted. Of two levels that have something to say, the higher."""
-        surprise = self._basic_following.see(tick, decision.rla_id if driving else None, situation.vector, behaviour)
-        following, mid, commanded = self._mid_following, self._mid, decision.mid
+        surprise = self._basic.update(tick, decision.rla_id if driving else None, situation.vector, behaviour)
+        following, mid, commanded = self._mid_transitions, self._mid, decision.mid
         if following is None or mid is None or commanded is None:
             return surprise
         if commanded.overridden or decision.cause is Cause.TEACHER:
             following.restart()
-        return following.see(commanded, mid.vector, driving=driving) or surprise
+        return following.update(commanded, mid.vector, driving=driving) or surprise
 
-    def hear(self, event: TeachingEvent) -> int | None:
+    def on_event(self, event: TeachingEvent) -> int | None:
         """An event that was applied: what an RLA did with another action is expected no more.
 
         Returns the RLA of which that is so: what was counted as following it does so no more, either.
         """
-        changed = self._basic_following.hear(event)
-        if self._mid_following is not None:
-            changed = self._mid_following.hear(event) or changed
+        changed = self._basic.on_event(event)
+        if self._mid_transitions is not None:
+            changed = self._mid_transitions.on_event(event) or changed
         return None if isinstance(event, RlaCreated) else changed
 
     def restart(self) -> None:
         """The robot was set down elsewhere: what comes next follows from nothing."""
-        self._basic_following.restart()
-        if self._mid_following is not None:
-            self._mid_following.restart()
+        self._basic.restart()
+        if self._mid_transitions is not None:
+            self._mid_transitions.restart()
 
-    def of(self, rla_id: int) -> Expectation | None:
+    def get(self, rla_id: int) -> Expectation | None:
         """What is expected of an RLA; None for one that was never seen to end, and for levels that do not drive."""
         rla = self._system.get(rla_id)
         expectations = None if rla is None else self._levels.get(rla.level)
-        return None if expectations is None else expectations.of(rla_id)
+        return None if expectations is None else expectations.get(rla_id)
 
-    def to_save(self) -> dict[int, Expectation]:
+    def snapshot(self) -> dict[int, Expectation]:
         """All of them as they are now; what has not changed since the last call is the same object."""
         kept = {rla_id: each for rla_id, each in self._others.items() if self._is_elsewhere(rla_id)}
-        return dict(chain(kept.items(), *(each.to_save().items() for each in self._levels.values())))
+        return dict(chain(kept.items(), *(each.snapshot().items() for each in self._levels.values())))
 
     def _is_elsewhere(self, rla_id: int) -> bool:
         rla = self._system.get(rla_id)

@@ -20,7 +20,7 @@ class BasicTransitionTracker:
         self._behaviour = ""
         self._since_tick = 0
 
-    def see(self, tick: int, rla_id: int | None, situation: NDArray[np.float64], behaviour: str) -> Surprise | None:
+    def update(self, tick: int, rla_id: int | None, situation: NDArray[np.float64], behaviour: str) -> Surprise | None:
         """Take in one tick: the RLA that drives, None while the robot stands; `situation`: vector (d,)."""
         if rla_id == self._driver:
             return None
@@ -34,9 +34,9 @@ class BasicTransitionTracker:
         """What comes now follows from nothing: the robot was set down elsewhere."""
         self._driver = None
 
-    def hear(self, event: TeachingEvent) -> int | None:
+    def on_event(self, event: TeachingEvent) -> int | None:
         """As `Expectations.hear`."""
-        changed = self.expectations.hear(event)
+        changed = self.expectations.on_event(event)
         if changed is not None and changed == self._driver:
             self.restart()
         return changed
@@ -58,7 +58,7 @@ class MidTransitionTracker:
         """The one that led here, while nobody knows this situation."""
         self._before_ticks = 0
 
-    def see(self, mid: MidDecision, situation: NDArray[np.float64], *, driving: bool) -> Surprise | None:
+    def update(self, mid: MidDecision, situation: NDArray[np.float64], *, driving: bool) -> Surprise | None:
         """Take in one tick. `situation`: a new array (d,) whenever it becomes another; `driving`: whether it drove."""
         rla_id = mid.rla_id
         if situation is self._situation:
@@ -82,9 +82,9 @@ class MidTransitionTracker:
         self._commander = self._before = None
         self._driven_ticks = 0
 
-    def hear(self, event: TeachingEvent) -> int | None:
+    def on_event(self, event: TeachingEvent) -> int | None:
         """As `Expectations.hear`."""
-        changed = self.expectations.hear(event)
+        changed = self.expectations.on_event(event)
         if changed is not None and changed in (self._commander, self._before):
             self.restart()
         return changed

@@ -36,7 +36,7 @@ class HistorySettings(MidSituationSettings):
         """Symbols are equal or not."""
         return self.distance
 
-    def words(self, vector: Sequence[float] | NDArray[np.float64]) -> tuple[str, ...]:
+    def describe(self, vector: Sequence[float] | NDArray[np.float64]) -> tuple[str, ...]:
         """The newest symbol first."""
         named = dict(enumerate(("", *self.symbols.names)))
         return tuple(named.get(int(symbol), str(int(symbol))) for symbol in vector)

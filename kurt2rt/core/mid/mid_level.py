@@ -41,7 +41,7 @@ class MidLevel:
         Raises UnknownBehaviourError for RLAs that command what the task does not teach.
         """
         for rla in system.rlas_at(MID):
-            if rla.action not in wanted.behaviours and not rla.asks:
+            if rla.action not in wanted.behaviours and not rla.is_withdrawn:
                 raise UnknownBehaviourError(
                     f"{rla.title} commands the behaviour {rla.action}, and this task teaches "
                     f"{', '.join(wanted.behaviours)}; give the task that this knowledge was taught with"
@@ -49,7 +49,7 @@ class MidLevel:
         self.system = system
         self.situation = situation
         self.settings = settings
-        self.chooser: TieBreaker | None = None
+        self.tie_breaker: TieBreaker | None = None
         self._wanted = wanted
         self._overridden = self._answered_overridden = False
         self._match: Match | None = None
@@ -79,7 +79,7 @@ class MidLevel:
         self._wanted.select(behaviour)
         self._overridden = True
 
-    def release(self) -> None:
+    def end_override(self) -> None:
         """What a teacher commanded counts no more: the mid level commands from the next decision on."""
         self._overridden = False
 
@@ -98,7 +98,7 @@ class MidLevel:
         if changed or self._changes != self.system.changes:
             self._match = self.system.match(self.situation.vector, level=MID)
             self._changes = self.system.changes
-        elif event is None and self.chooser is None and self._still_holds():
+        elif event is None and self.tie_breaker is None and self._still_holds():
             return self._last
         self._last = self._answer()
         return self._last if event is None else self._last._replace(event=event)
@@ -118,7 +118,7 @@ class MidLevel:
         if match is None or not match.known:
             return MidDecision(wanted.behaviour, None, match, True, False, None)
         rla = match.rla
-        if self.chooser is not None:
-            rla = self.chooser.choose(self.system.competitors(rla), self.situation.vector) or rla
+        if self.tie_breaker is not None:
+            rla = self.tie_breaker.choose(self.system.competitors(rla), self.situation.vector) or rla
         wanted.select(rla.action)
         return MidDecision(rla.action, rla.rla_id, match, False, False, None)

@@ -74,12 +74,12 @@ class Place:
         self.features = settings.features
         self.dimensions = len(settings.features)
         self.passed: JunctionEvent | None = None
-        self.known: KnownPlace | None = None
+        self.known_place: KnownPlace | None = None
         """Where there is one, the reckoning goes on from the places that it knows."""
         self._blind_m = settings.blind_m
         self._detector = detector
         self._metres_per_tick = robot.geometry.metres_per_tick
-        self._told = False
+        self._moved = False
         self._begin((0.0, 0.0, 1.0, 0.0, _UNKNOWN_WALL, _UNKNOWN_WALL))
 
     @property
@@ -94,7 +94,7 @@ class Place:
 
     def perceive(self, senses: SensorReadings, before: Decision) -> bool:  # noqa: ARG002 - what was decided does not matter here
         """Take in one tick."""
-        told, self._told = self._told, False
+        told, self._moved = self._moved, False
         self.passed = passed = self._detector.perceive(senses)
         self._reckon(senses)
         if passed is not None and passed.quarters == 0 and self._way_m < self._blind_m:
@@ -109,14 +109,14 @@ class Place:
         self._begin((math.nan, math.nan, 1.0, 0.0, _UNKNOWN_WALL, _UNKNOWN_WALL))
         self._detector.restart()
         self.passed = None
-        self._told = True
+        self._moved = True
 
-    def be_at(self, place: Condition) -> None:
+    def localise(self, place: Condition) -> None:
         """Somebody says where the robot is: the reckoning goes on from there."""
         self._begin(place)
         self._detector.restart()
         self.passed = None
-        self._told = True
+        self._moved = True
 
     def _begin(self, place: Condition) -> None:
         self.vector: NDArray[np.float64] = np.array(place, dtype=np.float64)
@@ -143,7 +143,7 @@ class Place:
         self._quarters = (self._quarters + passed.quarters) % 4
         walls = (float(not passed.left_open), float(not passed.right_open))
         self.vector = np.array([self._x_m, self._y_m, *_HEADINGS[self._quarters], *walls])
-        known = None if self.known is None else self.known(self.vector)
+        known = None if self.known_place is None else self.known_place(self.vector)
         if known is not None:
             self._x_m, self._y_m = known[X], known[Y]
         self._begin_leg()

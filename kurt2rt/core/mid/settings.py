@@ -71,7 +71,7 @@ class MidSettings(Settings):
         return self.situation.build(JunctionDetector(self.junctions, robot), robot, transitions or {})
 
 
-def load_mid(name_or_path: str | MidSettings) -> MidSettings:
+def load_mid_level(name_or_path: str | MidSettings) -> MidSettings:
     """Settings of a shipped mid level by name, or of a file by path; settings are taken as they are.
 
     Raises hal.settings.SettingsError.

@@ -68,7 +68,7 @@ class MidSituationSettings(KindSettings):
     def metric(self) -> Metric:
         """How distances are measured."""
 
-    def words(self, vector: Sequence[float] | NDArray[np.float64]) -> tuple[str, ...]:
+    def describe(self, vector: Sequence[float] | NDArray[np.float64]) -> tuple[str, ...]:
         """A situation or condition for people to read: a word per feature, empty where nothing is there yet.
 
         All are empty where the robot does not know where it is.

@@ -40,7 +40,7 @@ class History:
         self._sums[:] = len(self._ring) * values
         self._filled = len(self._ring)
 
-    def forget(self) -> None:
+    def clear(self) -> None:
         """Hold no step any more."""
         self._ring[:] = 0
         self._sums[:] = 0

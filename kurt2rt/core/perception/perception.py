@@ -34,7 +34,7 @@ class Perception:
 
     def restart(self) -> None:
         """Forget what was, as a robot that has just been switched on."""
-        self._history.forget()
+        self._history.clear()
         self._driven = STANDSTILL
 
     def perceive(self, senses: SensorReadings, *, history_frozen: bool) -> Situation:

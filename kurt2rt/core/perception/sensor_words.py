@@ -25,18 +25,18 @@ class InfraredLaw(NamedTuple):
     nothing_counts: float
     """Readings up to here are noise: the sensor sees nothing."""
 
-    def sees(self, counts: float) -> bool:
+    def detects(self, counts: float) -> bool:
         """Return whether a reading stands for anything but noise."""
         return counts > self.nothing_counts
 
     def distance_m(self, counts: float) -> float:
         """Return the distance from the sensor's face that a reading stands for, near_m to far_m."""
-        if not self.sees(counts):
+        if not self.detects(counts):
             return self.far_m
         return min(self.far_m, max(self.near_m, self.numerator_counts_m / (counts + self.bias_counts) - self.offset_m))
 
 
-def law_of(infrared: InfraredSettings) -> InfraredLaw:
+def infrared_law(infrared: InfraredSettings) -> InfraredLaw:
     """Return the inverse law of a robot's sensors."""
     return InfraredLaw(
         infrared.numerator_counts_m,
@@ -78,7 +78,7 @@ class SensorWords:
             return f"by {value:.0f} counts" if round(value) else "not"
         if self._law is None or not self.is_reading(feature):
             return f"{value:.0f}" if abs(value) >= 10 else f"{value:.2f}".rstrip("0").rstrip(".")
-        if not self._law.sees(value):
+        if not self._law.detects(value):
             return f"nothing within {_centimetres(self._law.far_m)}"
         distance_m = self._law.distance_m(value)
         return f"{_centimetres(distance_m)}{' or less' if distance_m <= self._law.near_m else ''}"
@@ -106,7 +106,7 @@ NO_WORDS = SensorWords({}, None)
 
 def words_for(infrared: InfraredSettings) -> SensorWords:
     """Return the words for a robot's sensors."""
-    return SensorWords({each.name: each.label for each in infrared.sensors}, law_of(infrared))
+    return SensorWords({each.name: each.label for each in infrared.sensors}, infrared_law(infrared))
 
 
 def _centimetres(distance_m: float) -> str:

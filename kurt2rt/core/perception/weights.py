@@ -9,7 +9,7 @@ from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import SituationDefinition
 
 
-def weights_of(
+def feature_weights(
     definition: SituationDefinition, changed: Iterable[tuple[Iterable[str], float]], past_weight: float, task: str
 ) -> NDArray[np.float64]:
     """Weights (d,): 1 for recent features but those of `changed`, and `past_weight` times that for averaged ones.

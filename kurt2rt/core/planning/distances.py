@@ -8,7 +8,7 @@ from kurt2rt.core.rla.space import Space
 from kurt2rt.core.rla.symbol_index import edit_distances, hamming_distances
 
 
-def distance_in(space: Space) -> Distance:
+def distance_function(space: Space) -> Distance:
     """Distances in a space."""
     match space.metric:
         case "hamming":

@@ -9,13 +9,13 @@ from kurt2rt.core.decision.goal import Goal, NamedGoal, RlaGoal
 from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.mid.place import Place
-from kurt2rt.core.planning.distances import distance_in
+from kurt2rt.core.outcome import CommandRefusedError, RefusalCode
+from kurt2rt.core.outcome_text import text_of
+from kurt2rt.core.planning.distances import distance_function
 from kurt2rt.core.planning.goal_pursuit import GoalPursuit
-from kurt2rt.core.planning.target import Target, Vector, target_of
-from kurt2rt.core.planning.topological_map import Charting, Forecast, charting
+from kurt2rt.core.planning.target import Target, Vector, make_target
+from kurt2rt.core.planning.topological_map import Forecast, MapBuild, build_map
 from kurt2rt.core.rla.condition import Condition
-from kurt2rt.core.rla.outcome import CommandRefusedError, RefusalCode
-from kurt2rt.core.rla.outcome_text import text_of
 from kurt2rt.core.rla.rla import MID, Rla
 
 _BEFORE_THE_NEXT_M = 0.3
@@ -44,60 +44,60 @@ class Navigator:
         self._mid = mid
         self._system = mid.system
         self._space = mid.settings.space
-        self._distance = distance_in(self._space)
+        self._distance = distance_function(self._space)
         self._follow_ups = follow_ups
         self._forecast = forecast
-        self._seeking = GoalPursuit(self._charting, self._group_at)
-        self._seen: Vector | None = None
+        self._pursuit = GoalPursuit(self._build_map, self._group_at)
+        self._refreshed_at: Vector | None = None
         """The situation that the plan was last looked at in."""
         self._changes = self._system.changes
         self._rlas = self._system.rlas_at(MID)
-        self._meant: Condition | None = None
+        self._goal_condition: Condition | None = None
         """The situation that the goal meant when it was last looked at; None where it means more than one."""
         self._outdated = False
         """Whether the plan is to be begun anew, for what is known has changed."""
         self._ticks = 0
-        self._begun_at_tick = -_ANEW_AFTER_TICKS
+        self._planned_at_tick = -_ANEW_AFTER_TICKS
         self._chosen: int | None = None
         self._chosen_at: Vector | None = None
         """What was chosen last, and in which situation."""
-        mid.chooser = self
+        mid.tie_breaker = self
         if isinstance(mid.situation, Place):
-            mid.situation.known = self._known_place
-            if self._rlas or self.named:
+            mid.situation.known_place = self._known_place
+            if self._rlas or self.named_situations:
                 mid.restart()
-        self.step: PlanStep | None = None
+        self.status: PlanStep | None = None
         """How it stands with the goal; None while there is none."""
 
     @property
-    def course(self) -> GoalStatus:
+    def goal_status(self) -> GoalStatus:
         """How it stands with the goal."""
-        return self._seeking.course
+        return self._pursuit.status
 
     @property
     def stands_as(self) -> GoalStatus | None:
         """Why the robot is to stand: at its goal, or without a way there; None where it is not."""
-        return self._seeking.stands_as
+        return self._pursuit.stands_as
 
     @property
-    def named(self) -> Mapping[str, Condition]:
+    def named_situations(self) -> Mapping[str, Condition]:
         """What can be gone to by name."""
-        return self._system.named_at(MID)
+        return self._system.named_situations(MID)
 
     def seek(self, goal: Goal) -> str:
         """Go there from now on; how it stands. Raises CommandRefusedError."""
         target = self._target_of(goal)
         self._changes, self._rlas = self._system.changes, self._system.rlas_at(MID)
         self._begin(goal, target)
-        assert self.step is not None
-        return self.step.says
+        assert self.status is not None
+        return self.status.says
 
     def stop(self) -> None:
         """Seek nothing any more: from the next junction on the mid level commands as ever."""
-        self._seeking.stop()
-        self._tell()
+        self._pursuit.stop()
+        self._publish()
 
-    def be_at(self, name: str) -> None:
+    def localise(self, name: str) -> None:
         """The robot is at a place that has a name, or at that of an RLA, such as RLA 12.
 
         Raises CommandRefusedError where it is none, or places are not known.
@@ -105,81 +105,81 @@ class Navigator:
         situation = self._mid.situation
         if not isinstance(situation, Place):
             raise CommandRefusedError(RefusalCode.NO_PLACES)
-        situation.be_at(self._place_called(name))
-        self._seeking.plan = None
+        situation.localise(self._named_condition(name))
+        self._pursuit.plan = None
 
     def choose(self, group: tuple[Rla, ...], vector: Vector) -> Rla | None:
         """The way that the plan says, of those from here; one that was begun is gone to its end."""
-        self.look()
-        chosen = self._seeking.choose(group)
+        self.refresh()
+        chosen = self._pursuit.choose(group)
         if chosen is None and vector is self._chosen_at:
             chosen = next((rla for rla in group if rla.rla_id == self._chosen), None)
         if chosen is not None:
             self._chosen, self._chosen_at = chosen.rla_id, vector
         return chosen
 
-    def go_on(self) -> None:
+    def step(self) -> None:
         """Once in each tick: look, and work on the plan as long as a tick has time for that."""
         self._ticks += 1
-        self.look()
+        self.refresh()
         if self._outdated:
-            if self._ticks - self._begun_at_tick >= _ANEW_AFTER_TICKS:
-                self._begun_at_tick, self._outdated = self._ticks, False
-                self._seeking.replan(self._mid.vector)
-                self._tell()
+            if self._ticks - self._planned_at_tick >= _ANEW_AFTER_TICKS:
+                self._planned_at_tick, self._outdated = self._ticks, False
+                self._pursuit.replan(self._mid.vector)
+                self._publish()
             return
-        stands = self._seeking.stands
-        if self._seeking.think():
-            if not stands and self._comes_too_late():
-                self._seeking.wait_for_the_next_place()
-            self._tell()
+        stands = self._pursuit.stands
+        if self._pursuit.plan_step():
+            if not stands and self._is_too_late():
+                self._pursuit.defer_plan()
+            self._publish()
 
-    def look(self) -> None:
+    def refresh(self) -> None:
         """Notice a new situation, or that the plan cannot be followed any more; begin a plan where that is needed."""
-        if self._seeking.goal is None:
+        if self._pursuit.goal is None:
             return
         vector, changes = self._mid.vector, self._system.changes
-        if vector is self._seen and changes == self._changes:
+        if vector is self._refreshed_at and changes == self._changes:
             return
         if changes != self._changes:
             self._changes = changes
-            self._hear_of_changes()
-        if vector is not self._seen:
-            self._seen, self._outdated = vector, False
-            self._seeking.arrive(vector)
-        self._tell()
+            self._on_knowledge_changed()
+        if vector is not self._refreshed_at:
+            self._refreshed_at, self._outdated = vector, False
+            self._pursuit.arrive(vector)
+        self._publish()
 
-    def _hear_of_changes(self) -> None:
-        seeking, before = self._seeking, self._rlas
+    def _on_knowledge_changed(self) -> None:
+        seeking, before = self._pursuit, self._rlas
         self._rlas = self._system.rlas_at(MID)
-        if seeking.goal is None or seeking.course is GoalStatus.ARRIVED:
+        if seeking.goal is None or seeking.status is GoalStatus.ARRIVED:
             return
         try:
             target = self._target_of(seeking.goal)
         except CommandRefusedError as error:
-            self._meant, self._outdated = None, False
+            self._goal_condition, self._outdated = None, False
             seeking.give_up(text_of(error.outcome))
             return
-        if self._meaning_of(seeking.goal) != self._meant:
+        if self._condition_of(seeking.goal) != self._goal_condition:
             self._begin(seeking.goal, target)
         elif self._rlas != before:
-            seeking.mean(target)
-            planning = seeking.course is GoalStatus.PLANNING
-            self._outdated = self._outdated or planning or seeking.stands or not self._still_possible()
+            seeking.retarget(target)
+            planning = seeking.status is GoalStatus.PLANNING
+            self._outdated = self._outdated or planning or seeking.stands or not self._is_plan_valid()
 
     def _begin(self, goal: Goal, target: Target) -> None:
-        at_once = self._seeking.stands or self._has_just_come()
-        self._meant, self._outdated = self._meaning_of(goal), False
-        self._seeking.seek(goal, target)
+        at_once = self._pursuit.stands or self._is_near_junction()
+        self._goal_condition, self._outdated = self._condition_of(goal), False
+        self._pursuit.seek(goal, target)
         # Else the next junction is left as it was to be, and the plan begins behind it.
-        self._seen = None if at_once else self._mid.vector
-        self.look()
-        self._tell()
+        self._refreshed_at = None if at_once else self._mid.vector
+        self.refresh()
+        self._publish()
 
     def _target_of(self, goal: Goal) -> Target:
-        return target_of(
+        return make_target(
             goal,
-            named=self.named,
+            named=self.named_situations,
             rla=self._system.get,
             level=MID,
             features=self._mid.situation.features,
@@ -188,40 +188,40 @@ class Navigator:
             group_at=self._group_at,
         )
 
-    def _meaning_of(self, goal: Goal) -> Condition | None:
+    def _condition_of(self, goal: Goal) -> Condition | None:
         match goal:
             case NamedGoal(name):
-                return self.named.get(name)
+                return self.named_situations.get(name)
             case RlaGoal(rla_id):
                 rla = self._system.get(rla_id)
                 return None if rla is None else rla.condition
         return None
 
-    def _place_called(self, name: str) -> Condition:
-        if name in self.named:
-            return self.named[name]
+    def _named_condition(self, name: str) -> Condition:
+        if name in self.named_situations:
+            return self.named_situations[name]
         number = _PLACE_OF.fullmatch(name)
         rla = None if number is None else self._system.get(int(number[1]))
         if rla is not None and rla.level == MID:
             return rla.condition
-        raise CommandRefusedError(RefusalCode.NO_PLACE, name=name, known=tuple(sorted(self.named)))
+        raise CommandRefusedError(RefusalCode.NO_PLACE, name=name, known=tuple(sorted(self.named_situations)))
 
-    def _still_possible(self) -> bool:
+    def _is_plan_valid(self) -> bool:
         """Whether the way that is being gone still is what it was when it was planned."""
-        plan = self._seeking.plan
+        plan = self._pursuit.plan
         if plan is None or plan.next is None:
             return True
         rla = self._system.get(plan.next.rla_id)
         return rla is not None and rla.action == plan.next.action
 
-    def _comes_too_late(self) -> bool:
+    def _is_too_late(self) -> bool:
         """Whether the robot may be in the next junction already, on another way than the one that was planned."""
-        plan, situation = self._seeking.plan, self._mid.situation
+        plan, situation = self._pursuit.plan, self._mid.situation
         if plan is None or plan.next is None or not isinstance(situation, Place):
             return False
         return situation.since_m > _BEFORE_THE_NEXT_M and plan.next.action != self._mid.commanded
 
-    def _has_just_come(self) -> bool:
+    def _is_near_junction(self) -> bool:
         situation = self._mid.situation
         return isinstance(situation, Place) and situation.since_m <= _BEFORE_THE_NEXT_M
 
@@ -233,24 +233,24 @@ class Navigator:
         group = self._group_at(situation)
         if group:
             return group[0].condition
-        near = [place for place in self.named.values() if self._is_near(situation, place)]
+        near = [place for place in self.named_situations.values() if self._is_near(situation, place)]
         return min(near, key=lambda place: self._distance(situation, np.array(place))) if near else None
 
     def _is_near(self, situation: Vector, place: Condition) -> bool:
         return self._distance(situation, np.array(place)) <= self._space.radius
 
-    def _charting(self) -> Charting:
-        return charting(self._rlas, self._group_at, self._follow_ups, self._forecast)
+    def _build_map(self) -> MapBuild:
+        return build_map(self._rlas, self._group_at, self._follow_ups, self._forecast)
 
-    def _tell(self) -> None:
-        seeking = self._seeking
+    def _publish(self) -> None:
+        seeking = self._pursuit
         if seeking.goal is None:
-            self.step = None
+            self.status = None
             return
-        ways = () if seeking.plan is None else seeking.plan.ways
-        self.step = PlanStep(
+        ways = () if seeking.plan is None else seeking.plan.edges
+        self.status = PlanStep(
             seeking.goal.text,
-            seeking.course,
+            seeking.status,
             tuple(way.action for way in ways),
             ways[0].rla_id if ways else None,
             seeking.text,

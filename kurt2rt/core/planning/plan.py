@@ -13,21 +13,21 @@ from kurt2rt.core.planning.topological_map import Edge, TopologicalMap
 class Plan:
     """Ways that follow each other, in the order of driving."""
 
-    ways: tuple[Edge, ...]
+    edges: tuple[Edge, ...]
 
     @property
     def ticks(self) -> float:
         """How long it is expected to take."""
-        return sum(way.ticks for way in self.ways)
+        return sum(way.ticks for way in self.edges)
 
     @property
     def next(self) -> Edge | None:
         """The way to go now; None at the goal."""
-        return self.ways[0] if self.ways else None
+        return self.edges[0] if self.edges else None
 
     def after_first(self) -> "Plan":
         """What is left of it where its first way leads."""
-        return Plan(self.ways[1:])
+        return Plan(self.edges[1:])
 
 
 def plan_to(chart: TopologicalMap, start: int, goals: Collection[int]) -> Plan | None:
@@ -41,4 +41,4 @@ def plan_to(chart: TopologicalMap, start: int, goals: Collection[int]) -> Plan |
     if not reached:
         return None
     path = paths[min(reached, key=lambda goal: (costs[goal], goal))]
-    return Plan(tuple(chart.way(*pair) for pair in pairwise(path)))
+    return Plan(tuple(chart.edge(*pair) for pair in pairwise(path)))

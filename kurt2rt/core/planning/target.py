@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
+from kurt2rt.core.outcome import CommandRefusedError, RefusalCode
 from kurt2rt.core.rla.condition import Condition
-from kurt2rt.core.rla.outcome import CommandRefusedError, RefusalCode
 from kurt2rt.core.rla.rla import Rla
 
 Vector = NDArray[np.float64]
@@ -23,12 +23,12 @@ GroupAt = Callable[[Vector], tuple[Rla, ...]]
 class Target(Protocol):
     """What tells whether a situation is one that was to be reached."""
 
-    def met_by(self, situation: Vector) -> bool:
+    def matches(self, situation: Vector) -> bool:
         """Whether a situation of the mid level is; never that of a robot that does not know where it is."""
         ...
 
 
-class Near:
+class NearTarget:
     """All situations at the same place as one; where one of them is at no place that is known, near enough ones."""
 
     def __init__(self, situation: Condition, within: float, distance: Distance, group_at: GroupAt) -> None:
@@ -39,7 +39,7 @@ class Near:
         self._group_at = group_at
         self._there = group_at(self._situation)
 
-    def met_by(self, situation: Vector) -> bool:
+    def matches(self, situation: Vector) -> bool:
         """Whether a situation is."""
         if not np.isfinite(situation).all():
             return False
@@ -49,7 +49,7 @@ class Near:
         return self._distance(situation, self._situation) <= self._within
 
 
-class Having:
+class FeatureTarget:
     """All situations with some features about as wanted."""
 
     def __init__(self, wanted: Mapping[int, float], tolerance: float) -> None:
@@ -58,14 +58,14 @@ class Having:
         self._values = np.array(list(wanted.values()), dtype=np.float64)
         self._tolerance = tolerance
 
-    def met_by(self, situation: Vector) -> bool:
+    def matches(self, situation: Vector) -> bool:
         """Whether all of them are."""
         if not np.isfinite(situation).all():
             return False
         return bool((np.abs(situation[self._at] - self._values) <= self._tolerance).all())
 
 
-def target_of(
+def make_target(
     goal: Goal,
     *,
     named: Mapping[str, Condition],
@@ -84,16 +84,16 @@ def target_of(
         case NamedGoal(name):
             if name not in named:
                 raise CommandRefusedError(RefusalCode.NOT_NAMED, name=name, known=tuple(sorted(named)))
-            return Near(named[name], radius, distance, group_at)
+            return NearTarget(named[name], radius, distance, group_at)
         case RlaGoal(rla_id):
             meant = rla(rla_id)
             if meant is None or meant.level != level:
                 raise CommandRefusedError(RefusalCode.NO_RLA, rla=rla_id)
-            return Near(meant.condition, radius if meant.radius is None else meant.radius, distance, group_at)
+            return NearTarget(meant.condition, radius if meant.radius is None else meant.radius, distance, group_at)
         case PartialGoal(wanted, tolerance):
             unknown = sorted(name for name, _ in wanted if name not in features)
             if unknown or not wanted:
                 raise CommandRefusedError(
                     RefusalCode.NO_FEATURE, features=tuple(unknown), level=level, known=tuple(features)
                 )
-            return Having({features.index(name): value for name, value in wanted}, tolerance)
+            return FeatureTarget({features.index(name): value for name, value in wanted}, tolerance)

@@ -16,7 +16,7 @@ from kurt2rt.core.planning.target import GroupAt, Vector
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.rla import Rla
 
-Charting = Generator[None, None, "TopologicalMap"]
+MapBuild = Generator[None, None, "TopologicalMap"]
 """A chart in the making: each piece of the work looks at one RLA, whose situation is matched at most once in it."""
 
 _LIGHT = 8
@@ -80,7 +80,7 @@ class TopologicalMap:
         self.places[place.place_id] = place
         self.graph.add_node(place.place_id)
 
-    def add_way(self, way: Edge) -> None:
+    def add_edge(self, way: Edge) -> None:
         """Put a way on it; of several from one place to another only the cheapest stays."""
         known = (way.start, way.end) in self.graph.edges
         if not known or way.cost < self.graph.edges[way.start, way.end]["cost"]:
@@ -90,18 +90,18 @@ class TopologicalMap:
         """Ids of the RLAs on a place."""
         return frozenset(rla.rla_id for rla in self.places[place_id].members)
 
-    def way(self, start: int, end: int) -> Edge:
+    def edge(self, start: int, end: int) -> Edge:
         """The cheapest way from a place straight to another."""
         way: Edge = self.graph.edges[start, end]["way"]
         return way
 
 
-def charting(
+def build_map(
     rlas: Iterable[Rla],
     group_at: GroupAt,
     follow_ups: Callable[[int], Mapping[int, int]],
     forecast: Callable[[int], Forecast | None],
-) -> Charting:
+) -> MapBuild:
     """Make the chart of all RLAs of the mid level, which must stay as they are until it stands.
 
     `follow_ups`: how often each RLA followed one.
@@ -128,7 +128,7 @@ def charting(
     usual_ticks = float(np.mean([each.ticks for each in forecasts.values()])) if forecasts else 1.0
     for start, place in list(chart.places.items()):
         for rla in place.members:
-            if rla.asks:
+            if rla.is_withdrawn:
                 continue
             ends = Counter[int]()
             for after, times in follow_ups(rla.rla_id).items():
@@ -143,7 +143,7 @@ def charting(
             seen = ends.total()
             for end, times in ends.items():
                 if end != start:
-                    chart.add_way(Edge(rla.rla_id, rla.action, start, end, times / seen, ticks))
+                    chart.add_edge(Edge(rla.rla_id, rla.action, start, end, times / seen, ticks))
             yield
     return chart
 

@@ -17,7 +17,7 @@ class DecisionHistory:
         self._ticks = np.full(capacity, -1, dtype=np.int64)
         # Written once here: memory that is only promised costs the first tick that touches it half a millisecond.
         self._situations = np.full((capacity, dimensions), np.nan)
-        self._seeing = np.zeros(capacity, dtype=np.bool_)
+        self._has_situation = np.zeros(capacity, dtype=np.bool_)
         self._touches = np.zeros(capacity, dtype=np.bool_)
         self._rlas: list[int | None] = [None] * capacity
         self._behaviours = [""] * capacity
@@ -27,7 +27,7 @@ class DecisionHistory:
         self.newest = -1
         """Tick of the newest decision; -1 before the first."""
 
-    def remember(
+    def add(
         self,
         tick: int,
         situation: Situation,
@@ -47,7 +47,7 @@ class DecisionHistory:
         row = tick % self._capacity
         self.newest = tick
         self._ticks[row] = tick
-        self._seeing[row] = not blind
+        self._has_situation[row] = not blind
         self._touches[row] = touches
         self._situations[row] = situation.vector
         self._rlas[row] = decision.rla_id
@@ -56,13 +56,13 @@ class DecisionHistory:
         self._circumstances[row] = circumstances
         self._opinions[row] = opinion
 
-    def knows(self, tick: int) -> bool:
+    def contains(self, tick: int) -> bool:
         """Whether that tick is kept: it ran, and not too long ago."""
         return tick >= 0 and int(self._ticks[tick % self._capacity]) == tick
 
-    def saw(self, tick: int) -> bool:
+    def has_situation(self, tick: int) -> bool:
         """Whether the robot saw anything in a tick that is known."""
-        return bool(self._seeing[tick % self._capacity])
+        return bool(self._has_situation[tick % self._capacity])
 
     def touched(self, tick: int) -> bool:
         """Whether the robot asked what to do with what it touched, in a tick that is known."""
@@ -73,7 +73,7 @@ class DecisionHistory:
         row: NDArray[np.float64] = self._situations[tick % self._capacity]
         return row
 
-    def rla(self, tick: int) -> int | None:
+    def driving_rla(self, tick: int) -> int | None:
         """The RLA that drove in a tick that is known."""
         return self._rlas[tick % self._capacity]
 
@@ -81,7 +81,7 @@ class DecisionHistory:
         """The taught behaviour that was wanted in a tick that is known."""
         return self._behaviours[tick % self._capacity]
 
-    def answering(self, tick: int) -> int | None:
+    def answering_rla(self, tick: int) -> int | None:
         """The RLA that drove in a tick that is known while the situation lay inside its radius: who may be blamed."""
         return int(self._answering[tick % self._capacity]) or None
 

@@ -29,35 +29,35 @@ class EdgeWeights:
 
     def __init__(self, settings: ReinforcementSettings) -> None:
         self._factors = settings.factors
-        self._accounts = ValueHistory[_Edges]()
+        self._history = ValueHistory[_Edges]()
         self._before: int | None = None
 
-    def drove(self, rla_id: int | None, tick: int) -> None:  # noqa: ARG002 - what follows what is all that counts
+    def update(self, rla_id: int | None, tick: int) -> None:  # noqa: ARG002 - what follows what is all that counts
         """Take in one tick: another RLA than before makes an edge used."""
         if rla_id == self._before:
             return
         if rla_id is not None and self._before is not None:
-            self._accounts.present.setdefault(rla_id, {}).setdefault(self._before, FIRST_WEIGHT)
+            self._history.present.setdefault(rla_id, {}).setdefault(self._before, FIRST_WEIGHT)
         self._before = rla_id
 
-    def credits_of(self, value: int, trace: EligibilityTrace) -> tuple[Credit, ...]:
+    def credits_for(self, value: int, trace: EligibilityTrace) -> tuple[Credit, ...]:
         """What each weight changes by, as a share of the first one: falling weights are worth more."""
-        present = self._accounts.present
+        present = self._history.present
         return tuple(
             Credit(rla_id, (present.get(rla_id, {}).get(before, FIRST_WEIGHT) - edges[before]) / FIRST_WEIGHT, before)
-            for rla_id, edges in self._changed(value, trace).items()
+            for rla_id, edges in self._weights_after(value, trace).items()
             for before in edges
             if edges[before] != present.get(rla_id, {}).get(before)
         )
 
-    def take(self, value: int, trace: EligibilityTrace) -> None:
+    def learn(self, value: int, trace: EligibilityTrace) -> None:
         """Multiply or divide the weights of the last transitions."""
-        self._accounts.present.update(self._changed(value, trace))
+        self._history.present.update(self._weights_after(value, trace))
 
-    def book(self, bookings: Iterable[CreditUpdate], sign: int) -> None:
+    def apply_credits(self, bookings: Iterable[CreditUpdate], sign: int) -> None:
         """Change the edge that a credit is of; in old journals it is of an RLA, and shifts all edges into that one."""
         for (rla_id, change, before), depth in bookings:
-            edges = self._accounts.at(rla_id, depth)
+            edges = self._history.get(rla_id, depth)
             if edges is None and (before is None or sign < 0):
                 continue
             edges = dict(edges or {})
@@ -65,32 +65,32 @@ class EdgeWeights:
                 edges.setdefault(before, FIRST_WEIGHT)
             for edge in edges if before is None else edges.keys() & {before}:
                 edges[edge] = _bounded(edges[edge] - sign * change * FIRST_WEIGHT)
-            self._accounts.put(rla_id, depth, edges)
+            self._history.set(rla_id, depth, edges)
 
-    def worth(self, rla_id: int) -> float:
+    def value(self, rla_id: int) -> float:
         """From -1 to 1; 0 for one that nothing was ever said of."""
-        return max(-1.0, min(1.0, _worth(self._accounts.present.get(rla_id))))
+        return max(-1.0, min(1.0, _worth(self._history.present.get(rla_id))))
 
     def depth(self, rla_id: int) -> int:
         """How many actions it has had before."""
-        return self._accounts.depth(rla_id)
+        return self._history.depth(rla_id)
 
-    def renew(self, rla_id: int) -> None:
+    def reset(self, rla_id: int) -> None:
         """The edges into it begin anew."""
-        self._accounts.renew(rla_id)
+        self._history.reset(rla_id)
 
-    def go_back(self, rla_id: int) -> None:
+    def restore_previous(self, rla_id: int) -> None:
         """The edges into it as they were."""
-        self._accounts.go_back(rla_id)
+        self._history.restore_previous(rla_id)
 
-    def leave(self, rla_id: int) -> None:
+    def archive(self, rla_id: int) -> None:
         """The edges into it wait; those out of it are gone, for nothing could ever heal them."""
-        self._accounts.renew(rla_id)
+        self._history.reset(rla_id)
         self._drop_edges_from(rla_id)
 
-    def forget(self, rla_id: int) -> None:
+    def discard(self, rla_id: int) -> None:
         """All its edges are gone."""
-        self._accounts.forget(rla_id)
+        self._history.discard(rla_id)
         self._drop_edges_from(rla_id)
 
     @property
@@ -103,7 +103,7 @@ class EdgeWeights:
         """Weights of all edges that were used."""
         return {
             (before, after): weight
-            for after, edges in self._accounts.present.items()
+            for after, edges in self._history.present.items()
             for before, weight in edges.items()
         }
 
@@ -112,19 +112,19 @@ class EdgeWeights:
         edges_into: dict[int, _Edges] = {}
         for (before, after), weight in saved.edge_weights.items():
             edges_into.setdefault(after, {})[before] = _bounded(weight)
-        self._accounts.restore(edges_into, only)
+        self._history.restore(edges_into, only)
 
     def _drop_edges_from(self, rla_id: int) -> None:
-        for edges in self._accounts.present.values():
+        for edges in self._history.present.values():
             edges.pop(rla_id, None)
         if self._before == rla_id:
             self._before = None
 
-    def _changed(self, value: int, trace: EligibilityTrace) -> dict[int, _Edges]:
+    def _weights_after(self, value: int, trace: EligibilityTrace) -> dict[int, _Edges]:
         """Edges into each RLA that the signal means, after it."""
         changed: dict[int, _Edges] = {}
         for (before, after), factor in zip(trace.transitions, self._factors, strict=False):
-            edges = changed.setdefault(after, dict(self._accounts.present.get(after, {})))
+            edges = changed.setdefault(after, dict(self._history.present.get(after, {})))
             weight = edges.get(before, FIRST_WEIGHT)
             edges[before] = _bounded(weight * factor if value > 0 else weight / factor)
         return changed

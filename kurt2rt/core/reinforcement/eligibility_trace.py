@@ -22,7 +22,7 @@ class EligibilityTrace(NamedTuple):
     """(RLA id, follow-up RLA id), newest first."""
 
 
-def trace_of(
+def make_trace(
     recent: DecisionHistory,
     tick: int,
     *,

@@ -19,23 +19,23 @@ class CreditUpdate(NamedTuple):
 class ReinforcementRule(Protocol):
     """Learns from what follows what, and from signals. All of it is statistics: undo takes credits off, no more."""
 
-    def drove(self, rla_id: int | None, tick: int) -> None:
+    def update(self, rla_id: int | None, tick: int) -> None:
         """Take in one tick: the RLA that answered; None where the robot stood, or nobody may be blamed."""
         ...
 
-    def credits_of(self, value: int, trace: EligibilityTrace) -> tuple[Credit, ...]:
+    def credits_for(self, value: int, trace: EligibilityTrace) -> tuple[Credit, ...]:
         """By what a signal of -1 or +1 would change the worth of each RLA; changes nothing."""
         ...
 
-    def take(self, value: int, trace: EligibilityTrace) -> None:
+    def learn(self, value: int, trace: EligibilityTrace) -> None:
         """Learn from a signal: worths change by what `credits_of` says."""
         ...
 
-    def book(self, bookings: Iterable[CreditUpdate], sign: int) -> None:
+    def apply_credits(self, bookings: Iterable[CreditUpdate], sign: int) -> None:
         """Add credits from the journal (+1), or take them off again (-1), where there is anything to take them off."""
         ...
 
-    def worth(self, rla_id: int) -> float:
+    def value(self, rla_id: int) -> float:
         """What the action is worth that an RLA has now; the more the better, 1 at most, or about."""
         ...
 
@@ -43,19 +43,19 @@ class ReinforcementRule(Protocol):
         """How many actions an RLA has had before, which can be come back to."""
         ...
 
-    def renew(self, rla_id: int) -> None:
+    def reset(self, rla_id: int) -> None:
         """The RLA has got another action, which begins anew."""
         ...
 
-    def go_back(self, rla_id: int) -> None:
+    def restore_previous(self, rla_id: int) -> None:
         """The RLA has got back the action that it had before, or has come back itself, with what it had earned."""
         ...
 
-    def leave(self, rla_id: int) -> None:
+    def archive(self, rla_id: int) -> None:
         """The RLA was deleted; it may come back."""
         ...
 
-    def forget(self, rla_id: int) -> None:
+    def discard(self, rla_id: int) -> None:
         """The RLA is no more, and never comes back."""
         ...
 

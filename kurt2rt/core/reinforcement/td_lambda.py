@@ -25,10 +25,10 @@ class TdLambda:
     def __init__(self, settings: ReinforcementSettings, worths: ValueSettings, period_s: float) -> None:
         """`worths`: where values begin, and how high they may rise. `period_s` of a tick."""
         self._settings = settings
-        self._worths = worths
+        self._value_settings = worths
         self._decay = round_portable(math.exp(-period_s / settings.trace_s))
         self._step_ticks = max(1, round(settings.step_s / period_s))
-        self._accounts = ValueHistory[float]()
+        self._history = ValueHistory[float]()
         """V less the first value."""
         self._trace: dict[int, float] = {}
         """Divided by the scale, so that a tick need not touch what only fades."""
@@ -40,7 +40,7 @@ class TdLambda:
         self._trace_before: dict[int, float] = {}
         """The trace as it was in the tick of the last step."""
 
-    def drove(self, rla_id: int | None, tick: int) -> None:
+    def update(self, rla_id: int | None, tick: int) -> None:
         """Take in one tick: the trace fades, grows for the one that answered, and every so often a step is made."""
         self._scale *= self._decay if tick == self._tick + 1 else power(self._decay, tick - self._tick)
         self._tick = tick
@@ -51,61 +51,61 @@ class TdLambda:
         if tick % self._step_ticks == 0:
             self._step(rla_id, tick)
 
-    def credits_of(self, value: int, trace: EligibilityTrace) -> tuple[Credit, ...]:
+    def credits_for(self, value: int, trace: EligibilityTrace) -> tuple[Credit, ...]:
         """Each RLA its share of the signal, as far as its value may rise."""
         alpha = self._settings.alpha
         changes = ((rla_id, self._change(rla_id, alpha * value * share)) for rla_id, share in trace.shares.items())
         return tuple(Credit(rla_id, change) for rla_id, change in changes if change != 0.0)
 
-    def take(self, value: int, trace: EligibilityTrace) -> None:
+    def learn(self, value: int, trace: EligibilityTrace) -> None:
         """V_i += alpha r e_i(t)."""
-        for rla_id, change, _ in self.credits_of(value, trace):
+        for rla_id, change, _ in self.credits_for(value, trace):
             self._add(rla_id, change)
 
-    def book(self, bookings: Iterable[CreditUpdate], sign: int) -> None:
+    def apply_credits(self, bookings: Iterable[CreditUpdate], sign: int) -> None:
         """Add credits to values, or take them off."""
         for (rla_id, change, before), depth in bookings:
             if before is not None:  # of the other rule
                 continue
-            earned = self._accounts.at(rla_id, depth)
+            earned = self._history.get(rla_id, depth)
             if earned is not None or sign > 0:
-                self._accounts.put(rla_id, depth, (earned or 0.0) + sign * change)
+                self._history.set(rla_id, depth, (earned or 0.0) + sign * change)
 
-    def worth(self, rla_id: int) -> float:
+    def value(self, rla_id: int) -> float:
         """V."""
-        return self._worths.first_value + self._accounts.present.get(rla_id, 0.0)
+        return self._value_settings.first_value + self._history.present.get(rla_id, 0.0)
 
     def depth(self, rla_id: int) -> int:
         """How many actions it has had before."""
-        return self._accounts.depth(rla_id)
+        return self._history.depth(rla_id)
 
-    def renew(self, rla_id: int) -> None:
+    def reset(self, rla_id: int) -> None:
         """V of the new action is that of the beginning, and what the old one did is not its merit."""
-        self._accounts.renew(rla_id)
+        self._history.reset(rla_id)
         self._drop_trace(rla_id)
 
-    def go_back(self, rla_id: int) -> None:
+    def restore_previous(self, rla_id: int) -> None:
         """V as it was."""
-        self._accounts.go_back(rla_id)
+        self._history.restore_previous(rla_id)
         self._drop_trace(rla_id)
 
-    def leave(self, rla_id: int) -> None:
+    def archive(self, rla_id: int) -> None:
         """Its V waits."""
-        self._accounts.renew(rla_id)
+        self._history.reset(rla_id)
         self._drop_trace(rla_id)
         self._end_step_from(rla_id)
 
-    def forget(self, rla_id: int) -> None:
+    def discard(self, rla_id: int) -> None:
         """Nothing is left of it."""
-        self._accounts.forget(rla_id)
+        self._history.discard(rla_id)
         self._drop_trace(rla_id)
         self._end_step_from(rla_id)
 
     @property
     def values(self) -> Mapping[int, float]:
         """V, where it is not that of the beginning."""
-        first_value = self._worths.first_value
-        return {rla_id: first_value + change for rla_id, change in self._accounts.present.items()}
+        first_value = self._value_settings.first_value
+        return {rla_id: first_value + change for rla_id, change in self._history.present.items()}
 
     @property
     def edge_weights(self) -> Mapping[tuple[int, int], float]:
@@ -114,9 +114,9 @@ class TdLambda:
 
     def restore(self, saved: Statistics, only: Collection[int] | None = None) -> None:
         """Values as they were saved."""
-        first_value = self._worths.first_value
+        first_value = self._value_settings.first_value
         changes = {rla_id: value - first_value for rla_id, value in saved.values.items()}
-        self._accounts.restore(changes, only)
+        self._history.restore(changes, only)
 
     def _change(self, rla_id: int, change: float) -> float:
         """What a signal changes: praise up to the highest value, blame down from there where V is above it."""
@@ -125,11 +125,11 @@ class TdLambda:
 
     def _room_above(self, rla_id: int) -> float:
         """How far V may rise; negative where it stands higher: blame was undone that praise had healed."""
-        highest = self._worths.highest_value
-        return math.inf if highest is None else highest - self.worth(rla_id)
+        highest = self._value_settings.highest_value
+        return math.inf if highest is None else highest - self.value(rla_id)
 
     def _add(self, rla_id: int, change: float) -> None:
-        self._accounts.present[rla_id] = self._accounts.present.get(rla_id, 0.0) + change
+        self._history.present[rla_id] = self._history.present.get(rla_id, 0.0) + change
 
     def _drop_trace(self, rla_id: int) -> None:
         self._trace.pop(rla_id, None)
@@ -142,7 +142,7 @@ class TdLambda:
     def _step(self, now: int | None, tick: int) -> None:
         alpha, gamma = self._settings.alpha, self._settings.gamma
         if now is not None and self._before is not None and tick - self._before_tick == self._step_ticks:
-            delta = gamma * self.worth(now) - self.worth(self._before)
+            delta = gamma * self.value(now) - self.value(self._before)
             for rla_id, share in self._trace_before.items():
                 change = alpha * delta * share
                 self._add(rla_id, min(change, max(0.0, self._room_above(rla_id))))

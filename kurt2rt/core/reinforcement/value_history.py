@@ -21,11 +21,11 @@ class ValueHistory(Generic[EarnedT]):
         """How many accounts lie below the present one."""
         return len(self._former.get(rla_id, ()))
 
-    def renew(self, rla_id: int) -> None:
+    def reset(self, rla_id: int) -> None:
         """The RLA has another action now."""
         self._former.setdefault(rla_id, []).append(self.present.pop(rla_id, None))
 
-    def go_back(self, rla_id: int) -> None:
+    def restore_previous(self, rla_id: int) -> None:
         """The RLA has the action again that it had before."""
         former = self._former.get(rla_id)
         earned = former.pop() if former else None
@@ -33,7 +33,7 @@ class ValueHistory(Generic[EarnedT]):
         if earned is not None:
             self.present[rla_id] = earned
 
-    def forget(self, rla_id: int) -> None:
+    def discard(self, rla_id: int) -> None:
         """The RLA never comes back."""
         self.present.pop(rla_id, None)
         self._former.pop(rla_id, None)
@@ -48,12 +48,12 @@ class ValueHistory(Generic[EarnedT]):
             if rla_id in saved:
                 self.present[rla_id] = saved[rla_id]
 
-    def at(self, rla_id: int, depth: int) -> EarnedT | None:
+    def get(self, rla_id: int, depth: int) -> EarnedT | None:
         """What lies at a depth; None where nothing was earned."""
         former = self._former.get(rla_id, [])
         return former[depth] if depth < len(former) else self.present.get(rla_id)
 
-    def put(self, rla_id: int, depth: int, earned: EarnedT) -> None:
+    def set(self, rla_id: int, depth: int, earned: EarnedT) -> None:
         """Put something else at a depth."""
         former = self._former.get(rla_id, [])
         if depth < len(former):

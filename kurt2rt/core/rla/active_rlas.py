@@ -22,7 +22,7 @@ class ActiveRlas:
         """`spaces`: by level. With RLAs of a level that is not among them nothing is matched."""
         self._spaces = spaces
         self._rlas: dict[int, Rla] = {}
-        self._contests: dict[tuple[str, str], CandidateIndex] = {}
+        self._indexes: dict[tuple[str, str], CandidateIndex] = {}
         """By level and behaviour."""
         self._groups = CompetitorGroups()
         self._count_at: Counter[str] = Counter()
@@ -36,7 +36,7 @@ class ActiveRlas:
         """Of all levels, in no order: a copy that costs a tick next to nothing."""
         return tuple(self._rlas.values())
 
-    def count_at(self, level: str) -> int:
+    def count(self, level: str) -> int:
         """How many of a level live."""
         return self._count_at[level]
 
@@ -49,24 +49,24 @@ class ActiveRlas:
 
         All are infinitely far from a situation that holds NaN. `asking`: False passes over those that ask.
         """
-        contest = self._contests.get((level, behaviour))
+        contest = self._indexes.get((level, behaviour))
         nearest = None if contest is None else contest.index.nearest(situation * contest.weights)
         if contest is None or nearest is None:
             return None
         rla = self._rlas[contest.ids[nearest.position]]
-        if not asking and rla.asks:
-            return self._match_passing_over(contest, situation)
+        if not asking and rla.is_withdrawn:
+            return self._match_without_withdrawn(contest, situation)
         runner_up = self._rlas[contest.ids[nearest.runner_up]] if nearest.runner_up >= 0 else None
         radius = contest.radius if rla.radius is None else rla.radius
         if math.isnan(nearest.distance):  # of a robot that does not know where it is: far from all, not near nothing
             return Match(rla, math.inf, radius, runner_up, math.inf)
         return Match(rla, nearest.distance, radius, runner_up, nearest.runner_up_distance)
 
-    def _match_passing_over(self, contest: CandidateIndex, situation: NDArray[np.float64]) -> Match | None:
+    def _match_without_withdrawn(self, contest: CandidateIndex, situation: NDArray[np.float64]) -> Match | None:
         """The nearest that has an action: looks at all, for it is seldom needed."""
         distances = contest.index.distances(situation * contest.weights)
         order = np.argsort(distances, kind="stable").tolist()  # of equally near ones the older
-        found = [place for place in order if not self._rlas[contest.ids[place]].asks][:2]
+        found = [place for place in order if not self._rlas[contest.ids[place]].is_withdrawn][:2]
         if not found:
             return None
         rla = self._rlas[contest.ids[found[0]]]
@@ -83,7 +83,7 @@ class ActiveRlas:
 
         `most`: so many of them; None: all. Looks at all of them: to explain with, not for every tick.
         """
-        contest = self._contests.get((level, behaviour))
+        contest = self._indexes.get((level, behaviour))
         if contest is None or not contest.ids:
             return ()
         distances = contest.index.distances(situation * contest.weights)
@@ -99,42 +99,42 @@ class ActiveRlas:
             for place in order
         )
 
-    def competing(self, behaviour: str, level: str) -> int:
+    def candidate_count(self, behaviour: str, level: str) -> int:
         """How many RLAs of a level and behaviour compete."""
-        contest = self._contests.get((level, behaviour))
+        contest = self._indexes.get((level, behaviour))
         return 0 if contest is None else len(contest.ids)
 
     def competitors(self, rla: Rla) -> tuple[Rla, ...]:
         """Those of its level and behaviour with exactly its condition, itself among them, oldest first."""
-        return self._groups.of(rla)
+        return self._groups.for_rla(rla)
 
     def neighbours(self, rla: Rla, count: int) -> tuple[Rla, ...]:
         """Those of its level and behaviour with another condition, nearest first, at most `count`; sorts all."""
-        contest = self._contests.get((rla.level, rla.behaviour))
+        contest = self._indexes.get((rla.level, rla.behaviour))
         if contest is None:
             return ()
         others = (self._rlas[rla_id] for rla_id in contest.nearest_first(rla.condition))
         return tuple(islice((other for other in others if other.condition != rla.condition), count))
 
-    def enter(self, rla: Rla) -> None:
+    def add(self, rla: Rla) -> None:
         """One begins to live. Raises ValueError, and changes nothing, where its condition cannot be matched."""
         space = self._spaces.get(rla.level)
         if space is not None:
-            contest = self._contests.get((rla.level, rla.behaviour)) or CandidateIndex(space)
-            contest.enter(rla.rla_id, rla.condition)
-            self._contests[rla.level, rla.behaviour] = contest
-        self.put(rla)
+            contest = self._indexes.get((rla.level, rla.behaviour)) or CandidateIndex(space)
+            contest.add(rla.rla_id, rla.condition)
+            self._indexes[rla.level, rla.behaviour] = contest
+        self.replace(rla)
         self._count_at[rla.level] += 1
 
-    def put(self, rla: Rla) -> None:
+    def replace(self, rla: Rla) -> None:
         """In the place of one that lives, with the same condition."""
         self._rlas[rla.rla_id] = rla
-        self._groups.put(rla)
+        self._groups.add_or_replace(rla)
 
-    def leave(self, rla: Rla) -> Rla:
+    def remove(self, rla: Rla) -> Rla:
         """One that lives does so no more; returns it."""
         if rla.level in self._spaces:
-            self._contests[rla.level, rla.behaviour].leave(rla.rla_id)
-        self._groups.leave(rla)
+            self._indexes[rla.level, rla.behaviour].remove(rla.rla_id)
+        self._groups.remove(rla)
         self._count_at[rla.level] -= 1
         return self._rlas.pop(rla.rla_id)

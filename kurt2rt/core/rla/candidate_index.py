@@ -20,7 +20,7 @@ class CandidateIndex:
         self.ids: list[int] = []  # oldest first
         self.index = _index_of(space)
 
-    def enter(self, rla_id: int, condition: Condition) -> None:
+    def add(self, rla_id: int, condition: Condition) -> None:
         """Put one where its age belongs. Raises ValueError for a wrong length or a number that is not finite."""
         dimensions = len(self.weights)
         if len(condition) != dimensions:
@@ -29,7 +29,7 @@ class CandidateIndex:
         self.index.insert(position, self._weighted(condition))
         self.ids.insert(position, rla_id)
 
-    def leave(self, rla_id: int) -> None:
+    def remove(self, rla_id: int) -> None:
         """Take out one that is there."""
         position = bisect_left(self.ids, rla_id)
         self.index.remove(position)

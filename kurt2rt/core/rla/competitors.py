@@ -13,18 +13,18 @@ class CompetitorGroups:
         self._group: dict[int, tuple[Rla, ...]] = {}
         """By the id of each member: asked in every tick, where hashing a condition would cost more than the answer."""
 
-    def of(self, rla: Rla) -> tuple[Rla, ...]:
+    def for_rla(self, rla: Rla) -> tuple[Rla, ...]:
         """The living RLAs on the condition of an RLA, oldest first; it may itself have been deleted."""
         group = self._group.get(rla.rla_id)
         if group is None:
             return self._members.get(_place(rla), ())
         return group
 
-    def put(self, rla: Rla) -> None:
+    def add_or_replace(self, rla: Rla) -> None:
         """Add one, or put it in the place of what it was before."""
         self._regroup(rla, (*self._others(rla), rla))
 
-    def leave(self, rla: Rla) -> None:
+    def remove(self, rla: Rla) -> None:
         """Take out one that is there."""
         others = self._others(rla)
         del self._group[rla.rla_id]

@@ -3,7 +3,7 @@
 from bisect import bisect_left
 from dataclasses import dataclass, replace
 
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode
+from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.rla import (
     ASK,
     BASIC,
@@ -18,7 +18,7 @@ from kurt2rt.core.rla.rla import (
     rla_title,
 )
 
-Pile = int | tuple[str, str]
+LessonStack = int | tuple[str, str]
 """What lessons are about, and stand on one another for: an RLA by its id, or a level and a name."""
 
 
@@ -38,7 +38,7 @@ class LessonRecord:
         """In a few words, for a teacher."""
         if isinstance(self.event, SituationNamed):
             return f"situation named: {self.event.name}"
-        rla = rla_title(rla_of(self.event), self.behaviour, self.level)
+        rla = rla_title(rla_id_of(self.event), self.behaviour, self.level)
         match self.event:
             case RlaCreated(taught):
                 return f"{rla} taught: {taught.action}"
@@ -54,14 +54,14 @@ class LessonRecord:
                 return f"{rla} {'rewarded' if value > 0 else 'punished'}"
 
 
-def rla_of(lesson: RlaLesson) -> int:
+def rla_id_of(lesson: RlaLesson) -> int:
     """Id of the RLA that a lesson is about."""
     return lesson.rla.rla_id if isinstance(lesson, RlaCreated) else lesson.rla_id
 
 
-def pile_of(lesson: Lesson) -> Pile:
+def lesson_stack(lesson: Lesson) -> LessonStack:
     """Lessons of one pile are undone in the order of the pile: all about one RLA, or all that gave one name."""
-    return (lesson.level, lesson.name) if isinstance(lesson, SituationNamed) else rla_of(lesson)
+    return (lesson.level, lesson.name) if isinstance(lesson, SituationNamed) else rla_id_of(lesson)
 
 
 class LessonHistory:
@@ -75,9 +75,9 @@ class LessonHistory:
         """Number of lessons that stand."""
         self._records: list[LessonRecord] = []
         self._place: dict[str, int] = {}
-        self._places_of: dict[Pile, list[int]] = {}
+        self._places_of: dict[LessonStack, list[int]] = {}
         """Of all lessons of a pile, those that do not stand among them."""
-        self._standing_of: dict[Pile, list[int]] = {}
+        self._standing_of: dict[LessonStack, list[int]] = {}
         self._home_of: dict[int, tuple[str, str]] = {}
         """Behaviour and level of each RLA that ever lived."""
         self._newest: list[int] = []
@@ -107,26 +107,28 @@ class LessonHistory:
         place = self._place.get(command_id)
         return None if place is None else self._records[place]
 
-    def about(self, pile: Pile) -> tuple[LessonRecord, ...]:
+    def about(self, pile: LessonStack) -> tuple[LessonRecord, ...]:
         """All lessons about an RLA, or that gave a name, oldest first, those that were undone among them."""
         return tuple(self._records[place] for place in self._places_of.get(pile, ()))
 
-    def first_about(self, pile: Pile) -> LessonRecord:
+    def first_about(self, pile: LessonStack) -> LessonRecord:
         """The oldest of these. Raises KeyError where there is none."""
         return self._records[self._places_of[pile][0]]
 
-    def enter(self, lesson: Lesson) -> None:
+    def add(self, lesson: Lesson) -> None:
         """Put a lesson behind all others. Its command id must be new."""
         place = len(self._records)
         self._place[lesson.origin.command_id] = place
-        pile = self._standing_of.setdefault(pile_of(lesson), [])
+        pile = self._standing_of.setdefault(lesson_stack(lesson), [])
         self._below.append(pile[-1] if pile else None)
         pile.append(place)
-        self._places_of.setdefault(pile_of(lesson), []).append(place)
+        self._places_of.setdefault(lesson_stack(lesson), []).append(place)
         self._newest.append(place)
         if isinstance(lesson, RlaCreated):
             self._home_of[lesson.rla.rla_id] = (lesson.rla.behaviour, lesson.rla.level)
-        behaviour, level = ("", lesson.level) if isinstance(lesson, SituationNamed) else self._home_of[rla_of(lesson)]
+        behaviour, level = (
+            ("", lesson.level) if isinstance(lesson, SituationNamed) else self._home_of[rla_id_of(lesson)]
+        )
         self._records.append(LessonRecord(lesson, behaviour=behaviour, level=level))
         self.standing += 1
 
@@ -137,21 +139,21 @@ class LessonHistory:
             return Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson=command_id)
         if record.undone:
             return Outcome.of(RefusalCode.UNDONE_ALREADY, lesson=command_id)
-        newest = self._records[self._standing_of[pile_of(record.event)][-1]]
+        newest = self._records[self._standing_of[lesson_stack(record.event)][-1]]
         if newest is not record:
             later = newest.event.origin.command_id
             return Outcome.of(RefusalCode.TAUGHT_AFTER, later=later, lesson=command_id, says=newest.text)
         return None
 
-    def strike(self, command_id: str) -> Lesson:
+    def undo(self, command_id: str) -> Lesson:
         """Mark a lesson as undone, for which `why_not_undo` has no reason against it; returns it."""
         place = self._place[command_id]
         record = self._records[place]
         lesson = record.event
-        pile = self._standing_of[pile_of(lesson)]
+        pile = self._standing_of[lesson_stack(lesson)]
         pile.pop()
         if not pile:
-            del self._standing_of[pile_of(lesson)]
+            del self._standing_of[lesson_stack(lesson)]
         self._records[place] = replace(record, undone=True)
         self._undone.append(place)
         self.standing -= 1
@@ -170,7 +172,7 @@ class LessonHistory:
         if not record.undone:
             return Outcome.of(RefusalCode.STANDS_ALREADY, lesson=command_id)
         below = self._below[self._place[command_id]]
-        pile = self._standing_of.get(pile_of(record.event))
+        pile = self._standing_of.get(lesson_stack(record.event))
         top = pile[-1] if pile else None
         if top == below:
             return None
@@ -183,11 +185,11 @@ class LessonHistory:
         later = newest.event.origin.command_id
         return Outcome.of(RefusalCode.TAUGHT_INSTEAD, later=later, lesson=command_id, says=newest.text)
 
-    def put_back(self, command_id: str) -> Lesson:
+    def redo(self, command_id: str) -> Lesson:
         """Mark a lesson as standing, for which `why_not_redo` has no reason against it; returns it."""
         place = self._place[command_id]
         record = self._records[place] = replace(self._records[place], undone=False)
-        self._standing_of.setdefault(pile_of(record.event), []).append(place)
+        self._standing_of.setdefault(lesson_stack(record.event), []).append(place)
         self._undone.remove(place)
         self.standing += 1
         spot = bisect_left(self._newest, place)

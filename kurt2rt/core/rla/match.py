@@ -19,4 +19,4 @@ class Match(NamedTuple):
     @property
     def known(self) -> bool:
         """Whether the situation lies within the nearest RLA's confidence radius, and that one has an action."""
-        return self.distance <= self.radius and not self.rla.asks
+        return self.distance <= self.radius and not self.rla.is_withdrawn

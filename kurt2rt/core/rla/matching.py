@@ -62,7 +62,7 @@ def exact_square(difference: NDArray[np.float64]) -> float:
     return float(_sum(difference * difference))
 
 
-def fitting_row(condition: tuple[float, ...] | NDArray[np.float64], dimensions: int) -> NDArray[np.float64]:
+def validated_row(condition: tuple[float, ...] | NDArray[np.float64], dimensions: int) -> NDArray[np.float64]:
     """A condition as an array (d,). Raises ValueError for a wrong length or a number that is not finite."""
     row = np.array(condition, dtype=np.float64)
     if row.shape != (dimensions,):
@@ -89,7 +89,7 @@ class ConditionIndex:
         self._norms = np.zeros(64)
         self._pair, self._squares = np.empty((2, dimensions)), np.empty(2)
         self._largest_norm = _SMALLEST_NORM
-        self._narrow_views()
+        self._update_views()
 
     def __len__(self) -> int:
         return self._count
@@ -100,7 +100,7 @@ class ConditionIndex:
 
     def insert(self, position: int, condition: tuple[float, ...] | NDArray[np.float64]) -> None:
         """Add a condition before that at `position`: it is older than those behind. Raises as `append`."""
-        row = fitting_row(condition, self._dimensions)
+        row = validated_row(condition, self._dimensions)
         if self._count == len(self._exact):
             self._grow()
         for array in (self._exact, self._rough, self._half_squares, self._norms):
@@ -113,7 +113,7 @@ class ConditionIndex:
         self._norms[position] = norm = math.sqrt(square)
         self._largest_norm = max(self._largest_norm, norm)
         self._count += 1
-        self._narrow_views()
+        self._update_views()
 
     def remove(self, position: int) -> None:
         """Take one condition out; those behind it move up."""
@@ -123,7 +123,7 @@ class ConditionIndex:
         self._count -= 1
         if norm >= self._largest_norm:  # a far one that was taken back leaves no doubt behind
             self._largest_norm = float(self._norms[: self._count].max(initial=_SMALLEST_NORM))
-        self._narrow_views()
+        self._update_views()
 
     def distances(self, situation: NDArray[np.float64]) -> NDArray[np.float64]:
         """Exact distance of each condition to `situation` (d,), shape (n,), in order of age: not for every tick."""
@@ -138,7 +138,7 @@ class ConditionIndex:
         square = float(situation.dot(situation))
         reach = math.sqrt(square) + self._largest_norm
         if not reach < _FLOAT32_REACH:  # true for NaN as well
-            return self._decide_exactly(situation, np.arange(self._count))
+            return self._nearest_exact(situation, np.arange(self._count))
         scores = self._scores
         np.dot(self._rough_rows, situation.astype(np.float32), out=scores)
         np.subtract(self._half_squares_rows, scores, out=scores)
@@ -151,11 +151,11 @@ class ConditionIndex:
         third_score = scores.item(int(scores.argmin()))
         doubt = _DOUBT * (self._dimensions + 4) * reach * (self._largest_norm + _BRUTE_FORCE_DOUBT * reach)
         if second_score - best_score > doubt and third_score - second_score > doubt:
-            return self._two(best, second, situation)
+            return self._nearest_two(best, second, situation)
         scores[best], scores[second] = best_score, second_score
-        return self._decide_exactly(situation, np.flatnonzero(scores <= second_score + doubt))
+        return self._nearest_exact(situation, np.flatnonzero(scores <= second_score + doubt))
 
-    def _decide_exactly(self, situation: NDArray[np.float64], candidates: NDArray[np.intp]) -> NearestCondition:
+    def _nearest_exact(self, situation: NDArray[np.float64], candidates: NDArray[np.intp]) -> NearestCondition:
         distances = exact_distances(self._exact[candidates], situation)
         first = int(distances.argmin())  # the first of equal ones: candidates are in order of age
         winner, distance = int(candidates[first]), float(distances[first])
@@ -167,7 +167,7 @@ class ConditionIndex:
         """`exact_distances` for one row."""
         return math.sqrt(exact_square(self._exact[position] - situation))
 
-    def _two(self, best: int, second: int, situation: NDArray[np.float64]) -> NearestCondition:
+    def _nearest_two(self, best: int, second: int, situation: NDArray[np.float64]) -> NearestCondition:
         """`exact_distances` for two rows: the same sums, at half of what `_distance` would cost twice."""
         rows, squares = self._pair, self._squares
         np.subtract(self._exact[best], situation, rows[0])
@@ -177,18 +177,18 @@ class ConditionIndex:
         return NearestCondition(best, math.sqrt(squares.item(0)), second, math.sqrt(squares.item(1)))
 
     def _grow(self) -> None:
-        self._exact = _twice_as_long(self._exact)
-        self._rough = _twice_as_long(self._rough)
-        self._half_squares = _twice_as_long(self._half_squares)
-        self._norms = _twice_as_long(self._norms)
+        self._exact = _doubled(self._exact)
+        self._rough = _doubled(self._rough)
+        self._half_squares = _doubled(self._half_squares)
+        self._norms = _doubled(self._norms)
 
-    def _narrow_views(self) -> None:
+    def _update_views(self) -> None:
         self._rough_rows = self._rough[: self._count]
         self._half_squares_rows = self._half_squares[: self._count]
         self._scores = np.empty(self._count, dtype=np.float32)
 
 
-def _twice_as_long(array: NDArray[_Number]) -> NDArray[_Number]:
+def _doubled(array: NDArray[_Number]) -> NDArray[_Number]:
     """The same rows with room behind them that is not filled: it costs its time when it is, not in this tick."""
     longer = np.empty((2 * len(array), *array.shape[1:]), dtype=array.dtype)
     longer[: len(array)] = array

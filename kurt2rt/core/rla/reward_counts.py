@@ -16,20 +16,20 @@ class RewardCounts:
     def __init__(self) -> None:
         self._of: dict[int, Appraisal] = {}
 
-    def of(self, rla_id: int) -> Appraisal:
+    def get(self, rla_id: int) -> Appraisal:
         """What teachers thought of an RLA; none and none where nobody said so."""
         return self._of.get(rla_id, Appraisal())
 
-    def enter(self, rla_id: int, value: int) -> None:
+    def add(self, rla_id: int, value: int) -> None:
         """A reward (1) or a punishment (-1) is given."""
         self._count(rla_id, value, 1)
 
-    def leave(self, rla_id: int, value: int) -> None:
+    def remove(self, rla_id: int, value: int) -> None:
         """One that was given is taken back."""
         self._count(rla_id, value, -1)
 
     def _count(self, rla_id: int, value: int, more: int) -> None:
-        rewards, punishments = self.of(rla_id)
+        rewards, punishments = self.get(rla_id)
         self._of[rla_id] = (
             Appraisal(rewards + more, punishments) if value > 0 else Appraisal(rewards, punishments + more)
         )

@@ -76,7 +76,7 @@ class Rla:
         return rla_title(self.rla_id, self.behaviour, self.level)
 
     @property
-    def asks(self) -> bool:
+    def is_withdrawn(self) -> bool:
         """Whether its action was withdrawn: it knows the situation as one in which the teacher is asked."""
         return self.action == ASK
 

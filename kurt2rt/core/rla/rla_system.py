@@ -7,18 +7,18 @@ Where a task teaches several behaviours there is one such system for each, and w
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
+from kurt2rt.core.outcome import Outcome
 from kurt2rt.core.rla.active_rlas import ActiveRlas
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.fingerprint import knowledge_hash_of
 from kurt2rt.core.rla.lesson_history import LessonHistory, LessonRecord
 from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.named_situations import NamedSituations
-from kurt2rt.core.rla.outcome import Outcome
-from kurt2rt.core.rla.outcome_text import text_of
 from kurt2rt.core.rla.reward_counts import Appraisal, RewardCounts
 from kurt2rt.core.rla.rla import (
     ASK,
@@ -43,8 +43,32 @@ from kurt2rt.core.rla.rla import (
 from kurt2rt.core.rla.space import Space
 
 
+class EventFault(StrEnum):
+    """Code for why a teaching event does not fit the knowledge."""
+
+    NOT_UNDOABLE = "not undoable"
+    NOT_REDOABLE = "not redoable"
+    LESSON_EXISTS = "lesson exists"
+    """Another lesson has its command id."""
+    RLA_EXISTS = "rla exists"
+    NO_RLA = "no rla"
+    BAD_CONDITION = "bad condition"
+    BAD_SITUATION = "bad situation"
+    BAD_ACTION = "bad action"
+    BAD_REWARD = "bad reward"
+    WITHDRAWN_ALREADY = "withdrawn already"
+    NO_LEVEL = "no level"
+    """The knowledge file does not name the features of its level."""
+
+
 class InvalidEventError(ValueError):
-    """A teaching event does not fit the knowledge it should change."""
+    """Teaching event that does not fit the knowledge it should change."""
+
+    def __init__(self, fault: EventFault, what: str, refusal: Outcome | None = None) -> None:
+        """`refusal`: why a lesson cannot be undone or redone; None for other faults."""
+        super().__init__(what)
+        self.fault = fault
+        self.refusal = refusal
 
 
 class RlaSystem:
@@ -71,11 +95,11 @@ class RlaSystem:
         self.changes = 0
         """How many events were applied: while it stays as it is, equal situations have equal answers."""
         self._spaces = {**(others or {}), BASIC: Space(dimensions, radius, self.weights)}
-        self._living = ActiveRlas(self._spaces)
+        self._active = ActiveRlas(self._spaces)
         self._last_id = 0
-        self._appraisals = RewardCounts()
+        self._rewards = RewardCounts()
         self._names = NamedSituations()
-        self._book = LessonHistory()
+        self._history = LessonHistory()
         self._before: dict[str, str] = {}
         """Of each lesson that stands and changed an action: that which had given the one before. By command ids, for an
         RLA as it was would be kept of every correction."""
@@ -83,7 +107,7 @@ class RlaSystem:
         """The RLA as it was before a lesson that stands and deleted it, by command id."""
 
     def __len__(self) -> int:
-        return self._living.count_at(BASIC)
+        return self._active.count(BASIC)
 
     @property
     def rlas(self) -> tuple[Rla, ...]:
@@ -92,12 +116,12 @@ class RlaSystem:
 
     def rlas_at(self, level: str) -> tuple[Rla, ...]:
         """All living RLAs of a level, of all behaviours, oldest first."""
-        return tuple(rla for rla in self._living if rla.level == level)
+        return tuple(rla for rla in self._active if rla.level == level)
 
     @property
-    def living(self) -> tuple[Rla, ...]:
+    def active_rlas(self) -> tuple[Rla, ...]:
         """All living RLAs of all levels, in no order: a copy that costs a tick next to nothing."""
-        return self._living.unsorted
+        return self._active.unsorted
 
     @property
     def next_id(self) -> int:
@@ -106,53 +130,53 @@ class RlaSystem:
 
     def get(self, rla_id: int) -> Rla | None:
         """The living RLA of that id, of whatever level."""
-        return self._living.get(rla_id)
+        return self._active.get(rla_id)
 
-    def named_at(self, level: str) -> Mapping[str, Condition]:
+    def named_situations(self, level: str) -> Mapping[str, Condition]:
         """The situations of a level that teachers gave names to, by name."""
-        return self._names.at(level)
+        return self._names.for_level(level)
 
     def appraisal(self, rla_id: int) -> Appraisal:
         """What teachers thought of an RLA; none and none where nobody said so."""
-        return self._appraisals.of(rla_id)
+        return self._rewards.get(rla_id)
 
     @property
     def lessons(self) -> tuple[LessonRecord, ...]:
         """All lessons, oldest first, those that were undone among them."""
-        return self._book.records
+        return self._history.records
 
     def lessons_about(self, rla_id: int) -> tuple[LessonRecord, ...]:
         """All lessons about one RLA, oldest first, those that were undone among them."""
-        return self._book.about(rla_id)
+        return self._history.about(rla_id)
 
     @property
     def standing_lessons(self) -> int:
         """Number of lessons that stand, rewards among them."""
-        return self._book.standing
+        return self._history.standing
 
     @property
     def last_standing_lesson(self) -> str | None:
         """Command id of the newest lesson that stands."""
-        return self._book.last_standing
+        return self._history.last_standing
 
     def lesson(self, command_id: str) -> LessonRecord | None:
         """The lesson of that command."""
-        return self._book.get(command_id)
+        return self._history.get(command_id)
 
     def why_not_undo(self, command_id: str) -> Outcome | None:
         """Return why the lesson of that command cannot be undone now; None if it can."""
-        return self._book.why_not_undo(command_id)
+        return self._history.why_not_undo(command_id)
 
     @property
     def last_undone_lesson(self) -> str | None:
         """Command id of the lesson that was undone last and does not stand again."""
-        return self._book.last_undone
+        return self._history.last_undone
 
     def why_not_redo(self, command_id: str) -> Outcome | None:
         """Return why the undone lesson of that command cannot stand again now; None if it can."""
-        return self._book.why_not_redo(command_id)
+        return self._history.why_not_redo(command_id)
 
-    def comes_back(self, command_id: str) -> Rla | None:
+    def restored_by_undo(self, command_id: str) -> Rla | None:
         """The RLA as it will be when the lesson of that command is undone; None where no action comes back by that."""
         before = self._before.get(command_id)
         return self._deleted.get(command_id) if before is None else self._as_taught_by(before)
@@ -165,7 +189,7 @@ class RlaSystem:
         None when nothing was taught there yet; all are infinitely far from a situation that holds NaN. `asking`: False
         passes over those that ask, for nobody is there.
         """
-        return self._living.match(situation, behaviour, level, asking)
+        return self._active.match(situation, behaviour, level, asking)
 
     def nearest_first(
         self, situation: NDArray[np.float64], behaviour: str = "", level: str = BASIC, *, most: int | None = None
@@ -174,46 +198,48 @@ class RlaSystem:
 
         `most`: so many of them; None: all. Looks at all of them: to explain with, not for every tick.
         """
-        return self._living.nearest_first(situation, behaviour, level, most)
+        return self._active.nearest_first(situation, behaviour, level, most)
 
-    def competing(self, behaviour: str = "", level: str = BASIC) -> int:
+    def candidate_count(self, behaviour: str = "", level: str = BASIC) -> int:
         """How many RLAs of a level and behaviour compete."""
-        return self._living.competing(behaviour, level)
+        return self._active.candidate_count(behaviour, level)
 
     def competitors(self, rla: Rla) -> tuple[Rla, ...]:
         """The living RLAs of its level and behaviour with exactly its condition, itself among them, oldest first."""
-        return self._living.competitors(rla)
+        return self._active.competitors(rla)
 
     def neighbours(self, rla: Rla, count: int) -> tuple[Rla, ...]:
         """The RLAs of its level and behaviour with another condition, nearest first, at most `count`.
 
         Sorts all of them: not for every tick.
         """
-        return self._living.neighbours(rla, count)
+        return self._active.neighbours(rla, count)
 
     def apply(self, event: TeachingEvent) -> None:
         """Change the knowledge by an event. Raises InvalidEventError, changing nothing, if the event does not fit."""
         match event:
             case LessonUndone(lesson, _):
-                problem = self._book.why_not_undo(lesson)
+                problem = self._history.why_not_undo(lesson)
                 if problem is not None:
-                    raise InvalidEventError(text_of(problem))
-                self._take_back(self._book.strike(lesson))
+                    raise _not_possible(EventFault.NOT_UNDOABLE, lesson, problem)
+                self._undo(self._history.undo(lesson))
             case LessonRedone(lesson, _):
-                problem = self._book.why_not_redo(lesson)
+                problem = self._history.why_not_redo(lesson)
                 if problem is not None:
-                    raise InvalidEventError(text_of(problem))
-                self._learn(self._book.put_back(lesson), again=True)
+                    raise _not_possible(EventFault.NOT_REDOABLE, lesson, problem)
+                self._learn(self._history.redo(lesson), again=True)
             case SessionBegun() | Appraised() | KnowledgeMerged():
                 pass
             case SessionEnded(lasted_ticks, _):
                 self.teaching_ticks += lasted_ticks
             case _:
                 command_id = event.origin.command_id
-                if self._book.get(command_id) is not None:
-                    raise InvalidEventError(f"command {command_id!r} has taught a lesson already")
+                if self._history.get(command_id) is not None:
+                    raise InvalidEventError(
+                        EventFault.LESSON_EXISTS, f"command {command_id!r} has taught a lesson already"
+                    )
                 self._learn(event)
-                self._book.enter(event)
+                self._history.add(event)
         self.changes += 1
 
     def apply_all(self, events: Iterable[TeachingEvent]) -> None:
@@ -223,71 +249,81 @@ class RlaSystem:
 
     def knowledge_hash(self) -> str:
         """Fingerprint of what the system knows: ids, levels, behaviours, conditions, actions, radii; not who taught."""
-        return knowledge_hash_of(self._living)
+        return knowledge_hash_of(self._active)
 
     def _learn(self, lesson: Lesson, *, again: bool = False) -> None:
         """`again`: it was taken back, and its RLA or name is as it found it."""
         match lesson:
             case RlaCreated(rla):
                 if rla.rla_id <= self._last_id and not again:
-                    raise InvalidEventError(f"RLA {rla.rla_id} cannot be created: ids up to {self._last_id} are taken")
-                _require_an_action(rla.action)
+                    raise InvalidEventError(
+                        EventFault.RLA_EXISTS,
+                        f"RLA {rla.rla_id} cannot be created: ids up to {self._last_id} are taken",
+                    )
+                _require_action(rla.action)
                 try:
-                    self._living.enter(rla)
+                    self._active.add(rla)
                 except ValueError as error:
-                    raise InvalidEventError(f"RLA {rla.rla_id}: {error}") from error
+                    raise InvalidEventError(EventFault.BAD_CONDITION, f"RLA {rla.rla_id}: {error}") from error
                 self._last_id = max(self._last_id, rla.rla_id)
             case ActionReplaced(rla_id, action, _, origin):
-                _require_an_action(action)
-                self._change(self._that_lives(rla_id), action, origin)
+                _require_action(action)
+                self._change(self._require_active(rla_id), action, origin)
             case ActionWithdrawn(rla_id, _, origin):
-                rla = self._that_lives(rla_id)
-                if rla.asks:
-                    raise InvalidEventError(f"{rla.title} asks already; its action cannot be withdrawn twice")
+                rla = self._require_active(rla_id)
+                if rla.is_withdrawn:
+                    raise InvalidEventError(
+                        EventFault.WITHDRAWN_ALREADY, f"{rla.title} has no action; withdraw an action once"
+                    )
                 self._change(rla, ASK, origin)
             case RlaDeleted(rla_id, origin):
-                self._deleted[origin.command_id] = self._living.leave(self._that_lives(rla_id))
+                self._deleted[origin.command_id] = self._active.remove(self._require_active(rla_id))
             case SituationNamed(name, situation, level):
                 self._require_situation(name, situation, level)
-                self._names.enter(lesson)
+                self._names.add(lesson)
             case RlaRewarded(rla_id, value):
-                self._that_lives(rla_id)
+                self._require_active(rla_id)
                 if value not in (1, -1):
-                    raise InvalidEventError(f"a reward of {value} for RLA {rla_id}: it must be 1 or -1")
-                self._appraisals.enter(rla_id, value)
+                    raise InvalidEventError(
+                        EventFault.BAD_REWARD, f"RLA {rla_id}: wrong reward (got {value}, allowed -1, 1)"
+                    )
+                self._rewards.add(rla_id, value)
 
-    def _take_back(self, lesson: Lesson) -> None:
+    def _undo(self, lesson: Lesson) -> None:
         """Undo a lesson after which nothing that stands happened to its RLA."""
         match lesson:
             case RlaCreated(rla):
-                self._living.leave(self._that_lives(rla.rla_id))
+                self._active.remove(self._require_active(rla.rla_id))
             case ActionReplaced(rla_id, origin=origin) | ActionWithdrawn(rla_id, origin=origin):
-                self._that_lives(rla_id)
-                self._living.put(self._as_taught_by(self._before.pop(origin.command_id)))
+                self._require_active(rla_id)
+                self._active.replace(self._as_taught_by(self._before.pop(origin.command_id)))
             case RlaDeleted(_, origin):
-                self._living.enter(self._deleted.pop(origin.command_id))
+                self._active.add(self._deleted.pop(origin.command_id))
             case RlaRewarded(rla_id, value):
-                self._appraisals.leave(rla_id, value)
+                self._rewards.remove(rla_id, value)
             case SituationNamed():
-                self._names.leave(lesson)
+                self._names.remove(lesson)
 
     def _require_situation(self, name: str, situation: Condition, level: str) -> None:
         """A situation of a level that nothing is matched at here may be named all the same, as its RLAs are kept."""
         space = self._spaces.get(level)
         if not all(map(math.isfinite, situation)):
-            raise InvalidEventError(f"the situation named {name!r} holds a value that is not finite")
+            raise InvalidEventError(
+                EventFault.BAD_SITUATION, f"the situation named {name!r} holds a value that is not finite"
+            )
         if space is not None and len(situation) != space.dimensions:
             raise InvalidEventError(
-                f"the situation named {name!r} has {len(situation)} values, level {level} matches {space.dimensions}"
+                EventFault.BAD_SITUATION,
+                f"the situation named {name!r} has {len(situation)} values, level {level} matches {space.dimensions}",
             )
 
     def _change(self, old: Rla, action: str, origin: Origin) -> None:
-        self._living.put(replace(old, action=action, origin=origin))
+        self._active.replace(replace(old, action=action, origin=origin))
         self._before[origin.command_id] = old.origin.command_id
 
     def _as_taught_by(self, command_id: str) -> Rla:
         """The RLA as the lesson of that command, which gave it an action or took it away, left it."""
-        record = self._book.get(command_id)
+        record = self._history.get(command_id)
         assert record is not None
         match record.event:
             case RlaCreated(rla):
@@ -299,17 +335,27 @@ class RlaSystem:
         raise AssertionError(f"{command_id!r} gave no action")
 
     def _as_created(self, rla_id: int) -> Rla:
-        first = self._book.first_about(rla_id).event
+        first = self._history.first_about(rla_id).event
         assert isinstance(first, RlaCreated)
         return first.rla
 
-    def _that_lives(self, rla_id: int) -> Rla:
-        rla = self._living.get(rla_id)
+    def _require_active(self, rla_id: int) -> Rla:
+        rla = self._active.get(rla_id)
         if rla is None:
-            raise InvalidEventError(f"there is no RLA {rla_id}; living ones: 1 to {self._last_id}, fewer the deleted")
+            raise InvalidEventError(
+                EventFault.NO_RLA,
+                f"RLA {rla_id} does not exist (ids 1 to {self._last_id} were used; some are deleted)",
+            )
         return rla
 
 
-def _require_an_action(action: str) -> None:
+def _not_possible(fault: EventFault, lesson: str, refusal: Outcome) -> InvalidEventError:
+    details = "".join(f", {key} {value}" for key, value in refusal.fields.items() if key != "lesson")
+    return InvalidEventError(fault, f"lesson {lesson!r} is {fault}: {refusal.code}{details}", refusal)
+
+
+def _require_action(action: str) -> None:
     if action == ASK:
-        raise InvalidEventError(f"{ASK!r} is no action that can be taught; withdraw the RLA's action instead")
+        raise InvalidEventError(
+            EventFault.BAD_ACTION, f"{ASK!r} is no action that can be taught; withdraw the RLA's action instead"
+        )

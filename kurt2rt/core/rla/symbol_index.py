@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.core.rla.matching import NearestCondition, fitting_row
+from kurt2rt.core.rla.matching import NearestCondition, validated_row
 
 
 def hamming_distances(rows: NDArray[np.float64], symbols: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -58,7 +58,7 @@ class SymbolIndex:
 
     def insert(self, position: int, condition: tuple[float, ...] | NDArray[np.float64]) -> None:
         """Add a condition before that at `position`: it is older than those behind. Raises as `append`."""
-        self._rows = np.insert(self._rows, position, fitting_row(condition, self._dimensions), axis=0)
+        self._rows = np.insert(self._rows, position, validated_row(condition, self._dimensions), axis=0)
 
     def remove(self, position: int) -> None:
         """Take one condition out; those behind it move up."""

@@ -20,7 +20,7 @@ class StatisticsCounter:
         self._followers: dict[int, tuple[int, ...]] = {}
         """Of each RLA that was ever followed: to look at one must not cost looking at all. Sets take much more room."""
         for before, after in self.transitions:
-            self._follows(before, after)
+            self._add_follower(before, after)
         self._previous: dict[str, int | None] = {}
         """By level."""
 
@@ -40,11 +40,11 @@ class StatisticsCounter:
             self.uses[current] += 1
             if previous is not None:
                 if (previous, current) not in self.transitions:
-                    self._follows(previous, current)
+                    self._add_follower(previous, current)
                 self.transitions[previous, current] += 1
         self._previous[level] = current
 
-    def drop_dead(self, lives: Callable[[int], bool]) -> None:
+    def drop_deleted(self, lives: Callable[[int], bool]) -> None:
         """Forget the RLAs of which `lives` says no: in a day on its own a robot tries, and deletes, a great many."""
         dead = {rla_id for rla_id in self.uses if not lives(rla_id)}
         if not dead:
@@ -58,19 +58,19 @@ class StatisticsCounter:
         for before, followers in self._followers.items():
             if not dead.isdisjoint(followers):
                 self._followers[before] = tuple(after for after in followers if after not in dead)
-        self._begin_anew(dead)
+        self._reset_predecessors(dead)
 
     def drop_follow_ups(self, rla_id: int) -> None:
         """Forget what followed this RLA: with another action it leads elsewhere."""
         for after in self._followers.pop(rla_id, ()):
             del self.transitions[rla_id, after]
-        self._begin_anew((rla_id,))
+        self._reset_predecessors((rla_id,))
 
-    def _follows(self, before: int, after: int) -> None:
+    def _add_follower(self, before: int, after: int) -> None:
         """For the first time."""
         self._followers[before] = (*self._followers.get(before, ()), after)
 
-    def _begin_anew(self, rla_ids: Container[int]) -> None:
+    def _reset_predecessors(self, rla_ids: Container[int]) -> None:
         """What comes next follows none of these."""
         for level, previous in self._previous.items():
             if previous in rla_ids:

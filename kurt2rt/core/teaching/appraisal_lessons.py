@@ -1,8 +1,8 @@
 """Teaching the critic what a situation was worth (paper, phase 4)."""
 
 from kurt2rt.core.critic.critic import Critic
+from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
-from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import CRITIC, ActionReplaced, Appraised, Origin, Rla, RlaCreated
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.teaching.commands import Appraise
@@ -33,7 +33,7 @@ class AppraisalLessons:
         circumstances = self._recent.circumstances(meant)
         if circumstances is None:
             raise CommandRefusedError(RefusalCode.WAS_BLIND)
-        vector = self._critic.vector_of(circumstances)
+        vector = self._critic.to_vector(circumstances)
         now, then = self._critic.opinion(vector), self._recent.opinion(meant)
         if now is not None and now.known and now.appraisal == command.appraisal:
             if then is not None and then.known and then.appraisal == command.appraisal:

@@ -4,7 +4,7 @@ from behaviors.behaviour import Behaviour
 from behaviors.repertoire import Repertoire
 from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode
+from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.teaching.commands import Drive
 
 _BY_HAND = "by hand"

@@ -1,7 +1,7 @@
 """The teacher says which taught behaviour is to be followed: for good, or before a mid level until a junction."""
 
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.teaching.commands import Pursue
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 

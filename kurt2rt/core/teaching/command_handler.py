@@ -9,11 +9,11 @@ from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.critic import Critic, Opinion
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import Decision
+from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
-from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.rla.rla import BASIC, CRITIC, MID, Origin, Phase, Rla, TeachingEvent
 from kurt2rt.core.rla.rla_system import InvalidEventError
 from kurt2rt.core.teaching.appraisal_lessons import AppraisalLessons
@@ -157,7 +157,7 @@ class CommandHandler:
     @property
     def active_rlas(self) -> tuple[Rla, ...]:
         """All RLAs that live, of all levels, in no order."""
-        return self._level.system.living
+        return self._level.system.active_rlas
 
     @property
     def session(self) -> str | None:

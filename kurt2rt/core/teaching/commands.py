@@ -7,7 +7,7 @@ Four kinds, as in the paper: motor commands, behaviours, reinforcements, and org
 from dataclasses import dataclass
 
 from kurt2rt.core.decision.goal import Goal
-from kurt2rt.core.rla.outcome import Code, Outcome
+from kurt2rt.core.outcome import Code, Outcome
 from kurt2rt.core.rla.rla import BASIC, Phase
 
 # Motor commands and presence: streams.

@@ -1,7 +1,7 @@
 """What a teacher says of places and goals: names for situations, where the robot is, where it is to go."""
 
+from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.planning.navigator import Navigator
-from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import MID, Origin, SituationNamed, TeachingEvent
 from kurt2rt.core.teaching.commands import BeAt, NameSituation, Seek, StopSeeking
 from kurt2rt.core.teaching.mid_lessons import MidLessons
@@ -53,5 +53,5 @@ class GoalCommands:
     def _locate(self, name: str, seen_tick: int) -> Outcome:
         if seen_tick < self._lessons.passed_at_tick:
             raise CommandRefusedError(RefusalCode.JUNCTION_PASSED)
-        self._navigator.be_at(name)
+        self._navigator.localise(name)
         return Outcome.of(ResultCode.LOCATED, name=name)

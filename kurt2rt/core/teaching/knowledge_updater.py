@@ -39,7 +39,7 @@ class KnowledgeUpdater:
     @property
     def critic_state(self) -> CriticState:
         """What the critic did in the last tick; it listens where there is none."""
-        return CriticState.LISTENS if self._self_teaching is None else self._self_teaching.role
+        return CriticState.LISTENS if self._self_teaching is None else self._self_teaching.state
 
     @property
     def bad_share(self) -> float | None:
@@ -51,11 +51,11 @@ class KnowledgeUpdater:
         self._level.apply(event)
         self.handled_ids.add(event.origin.command_id)
         if self._reinforcement is not None:
-            self._reinforcement.hear(event)
+            self._reinforcement.on_event(event)
         if self._agreement is not None:
-            self._agreement.hear(event)
+            self._agreement.on_event(event)
         if self._self_teaching is not None:
-            self._self_teaching.hear(event)
+            self._self_teaching.on_event(event)
 
     def learn_from_tick(
         self, phase: Phase, tick: int, decision: Decision, opinion: Opinion | None
@@ -67,14 +67,14 @@ class KnowledgeUpdater:
         reinforcement, alone = self._reinforcement, self._self_teaching
         if reinforcement is None:
             return []
-        reinforcement.count_for(phase)
-        if alone is not None and not alone.stands_in(phase):
+        reinforcement.set_phase(phase)
+        if alone is not None and not alone.set_phase(phase):
             alone = None
-        changes_itself = alone is not None and not alone.measures
+        changes_itself = alone is not None and not alone.is_measuring
         learns = phase in (Phase.REINFORCEMENT, Phase.CRITIC) or changes_itself
         reinforcement.choice.explores = learns
         if learns:
-            reinforcement.drove(decision.rla_id if decision.answers else None, tick)
+            reinforcement.update(decision.rla_id if decision.answers else None, tick)
         if alone is not None:
             alone.signal(tick, decision, opinion)
         events: list[TeachingEvent] = []

@@ -4,11 +4,11 @@ from collections import Counter
 from collections.abc import Iterable
 
 from kurt2rt.core.basic.basic_level import BasicLevel
+from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.rla.match import Match
-from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.rla.rla import (
     BASIC,
     MID,
@@ -99,7 +99,7 @@ class LessonBuilder:
         if isinstance(command, Correct):
             self.corrections_at[command.level] += 1
             replace_within_share = meant.insert_beyond_share
-        elif meant.touched or (nearest is not None and nearest.rla.asks):
+        elif meant.touched or (nearest is not None and nearest.rla.is_withdrawn):
             replace_within_share = meant.insert_beyond_share  # it waits for this answer
         elif meant.level == MID and nearest is not None and _is_at_known_place(nearest, meant):
             return self._add_alternative(command.action, meant, nearest, origin)
@@ -117,12 +117,12 @@ class LessonBuilder:
         share = self._insert_beyond_share
         if decision_tick is None:
             newest = self._recent.newest
-            drove, touched = self._recent.rla(newest), self._recent.touched(newest)
+            drove, touched = self._recent.driving_rla(newest), self._recent.touched(newest)
             return LessonContext(situation.vector, self._level.active_behaviour.behaviour, BASIC, drove, share, touched)
         self._require_known(decision_tick)
-        if not self._recent.saw(decision_tick):
+        if not self._recent.has_situation(decision_tick):
             raise CommandRefusedError(RefusalCode.WAS_BLIND)
-        behaviour, drove = self._recent.behaviour(decision_tick), self._recent.rla(decision_tick)
+        behaviour, drove = self._recent.behaviour(decision_tick), self._recent.driving_rla(decision_tick)
         touched = self._recent.touched(decision_tick)
         return LessonContext(self._recent.situation(decision_tick), behaviour, BASIC, drove, share, touched)
 
@@ -142,7 +142,7 @@ class LessonBuilder:
     def _corrected_rla(self, nearest: Rla, meant: LessonContext) -> Rla:
         """Where several stand on one condition: the one that drove then, else the one that would answer."""
         group = self._system.competitors(nearest)
-        if len(group) == 1 or nearest.asks:
+        if len(group) == 1 or nearest.is_withdrawn:
             return nearest
         for rla in group:
             if rla.rla_id == meant.drove:
@@ -169,25 +169,25 @@ class LessonBuilder:
 
     def _replace(self, rla: Rla, action: str, origin: Origin) -> LessonResult:
         event = ActionReplaced(rla.rla_id, action, rla.action, origin)
-        if rla.asks:
+        if rla.is_withdrawn:
             return LessonResult(rla_outcome(ResultCode.RLA_ANSWERED, rla, action=action), event)
         return LessonResult(rla_outcome(ResultCode.RLA_CORRECTED, rla, action=action, was=rla.action), event)
 
     def _competitor_with(self, action: str, rla: Rla) -> Rla | None:
         """Another RLA on the same condition that says so: at the mid level they are ways, and no two are the same."""
-        if rla.level != MID or rla.asks:
+        if rla.level != MID or rla.is_withdrawn:
             return None
         return next((each for each in self._system.competitors(rla) if each is not rla and each.action == action), None)
 
     def _reward(self, command: Reward, origin: Origin) -> LessonResult:
         meant = self._known_tick(command.decision_tick)
-        rla_id = self._recent.rla(meant)
+        rla_id = self._recent.driving_rla(meant)
         if rla_id is None:
             raise CommandRefusedError(RefusalCode.NO_RLA_DROVE)
         rla = self._require_rla(rla_id)
-        if self._recent.answering(meant) != rla_id:
+        if self._recent.answering_rla(meant) != rla_id:
             refuse(rla_outcome(RefusalCode.OUTSIDE_RADIUS, rla))
-        credits_ = () if self._reinforcement is None else self._reinforcement.credits_of(command.value, meant)
+        credits_ = () if self._reinforcement is None else self._reinforcement.credits_for(command.value, meant)
         opinion = self._recent.opinion(meant)
         said = None if opinion is None else opinion.said
         code = ResultCode.RLA_REWARDED if command.value > 0 else ResultCode.RLA_PUNISHED
@@ -202,7 +202,7 @@ class LessonBuilder:
         if lesson is None:
             raise CommandRefusedError(RefusalCode.NO_LESSON)
         refuse(self._system.why_not_undo(lesson))
-        back = self._system.comes_back(lesson)
+        back = self._system.restored_by_undo(lesson)
         if back is not None and not self._can_act(back):
             refuse(rla_outcome(RefusalCode.ACTION_NOT_IN_TASK, back, action=back.action))
         record = self._system.lesson(lesson)
@@ -225,9 +225,9 @@ class LessonBuilder:
         """Whether an RLA that comes back can be followed: knowledge may be older than the task, or another task's."""
         behaviours = self._level.active_behaviour.behaviours
         if rla.level == BASIC:
-            return rla.behaviour in behaviours and (rla.asks or rla.action in self._level.repertoire)
+            return rla.behaviour in behaviours and (rla.is_withdrawn or rla.action in self._level.repertoire)
         if rla.level == MID:
-            return self._mid is None or rla.asks or rla.action in behaviours
+            return self._mid is None or rla.is_withdrawn or rla.action in behaviours
         return self._appraisal_lessons is None or rla.action in self._appraisals
 
     def _require_rla(self, rla_id: int) -> Rla:
@@ -237,7 +237,7 @@ class LessonBuilder:
         return rla
 
     def _require_known(self, tick: int) -> None:
-        if not self._recent.knows(tick):
+        if not self._recent.contains(tick):
             raise CommandRefusedError(RefusalCode.TICK_FORGOTTEN, tick=tick)
 
 

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from kurt2rt.core.rla.outcome import Field, Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome import Field, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import BASIC, Rla, TeachingEvent
 
 

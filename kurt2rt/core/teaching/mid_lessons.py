@@ -4,7 +4,7 @@ import numpy as np
 
 from kurt2rt.core.decision.decision import Decision
 from kurt2rt.core.mid.mid_level import MidLevel
-from kurt2rt.core.rla.outcome import CommandRefusedError, RefusalCode
+from kurt2rt.core.outcome import CommandRefusedError, RefusalCode
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import Correct, Teach
 from kurt2rt.core.teaching.lesson_context import LessonContext
@@ -55,7 +55,7 @@ class MidLessons:
             return
         match = mid.system.match(mid.vector, level=MID)
         if match is None or not match.known or match.rla.action == command.action:
-            mid.release()
+            mid.end_override()
         else:
             mid.override(command.action)
 

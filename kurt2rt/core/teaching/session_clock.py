@@ -1,6 +1,6 @@
 """Sessions, and how long they last: the time that the paper counts as teaching."""
 
-from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import Origin, SessionBegun, SessionEnded, TeachingEvent
 from kurt2rt.core.teaching.commands import BeginSession, EndSession
 

@@ -237,7 +237,7 @@ class TrainingRun(Episode):
             mid_asks=self.mid_asks,
             mid_corrections=runtime.handler.corrections_at(MID),
             missed_junctions=0 if self._dispatcher is None else self._dispatcher.missed,
-            autonomous_values=runtime.reinforcement.worths_alone() if autonomous else None,
+            autonomous_values=runtime.reinforcement.autonomous_values() if autonomous else None,
         )
 
     def _begin_phase(self, phase: Phase) -> None:

@@ -73,7 +73,7 @@ class GoalsRun(Episode):
         assert runtime.mid is not None
         assert isinstance(self.metric, Errands)
         if how == "chance":
-            runtime.mid.chooser = RandomChooser(random.Random(f"ways of robot {seed}"))
+            runtime.mid.tie_breaker = RandomChooser(random.Random(f"ways of robot {seed}"))
         self._tracker = self.metric
         self._goals = goals
         self._how = how

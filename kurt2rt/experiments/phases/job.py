@@ -279,6 +279,6 @@ def _stage(
         knowledge_hash=system.knowledge_hash(),
         teaching=teaching,
         exams=exams,
-        still_withdrawn=sum(rla.asks for rla in system.rlas),
+        still_withdrawn=sum(rla.is_withdrawn for rla in system.rlas),
         judgements=judgements,
     )

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, plan_of
@@ -34,7 +34,7 @@ class Variant:
         """The task with what is different."""
         if self.mid is None or task.mid is None:
             return task.model_copy(update={"mid": None})
-        mid = load_mid(self.mid or task.mid)
+        mid = load_mid_level(self.mid or task.mid)
         if self.distance is not None:
             mid = mid.model_copy(update={"situation": mid.situation.model_copy(update={"distance": self.distance})})
         if self.radius is not None:

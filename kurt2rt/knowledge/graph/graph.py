@@ -6,7 +6,7 @@ from typing import NoReturn, TypeAlias
 
 import networkx as nx
 
-from kurt2rt.core.expectations.expectations import is_of
+from kurt2rt.core.expectations.expectations import is_valid_for
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics, follow_ups
@@ -57,7 +57,7 @@ def build_network(
             uses=statistics.uses.get(rla.rla_id, 0),
         )
         expectation = statistics.expectations.get(rla.rla_id)
-        if expectation is not None and is_of(system, rla.rla_id, expectation, level):
+        if expectation is not None and is_valid_for(system, rla.rla_id, expectation, level):
             network.add_node(rla.rla_id, ends=expectation.count, ticks=expectation.ticks)
         if place is not None:
             x, y = place

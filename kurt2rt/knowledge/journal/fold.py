@@ -2,8 +2,9 @@
 
 from collections.abc import Container, Iterable
 
+from kurt2rt.core.outcome_text import event_error_text
 from kurt2rt.core.rla.rla import BASIC, RlaCreated, SituationNamed
-from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
+from kurt2rt.core.rla.rla_system import EventFault, InvalidEventError, RlaSystem
 from kurt2rt.core.rla.space import Space
 from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.journal.journal import Journal
@@ -29,7 +30,7 @@ def fold_entries(journal: Journal, entries: Iterable[StoredEntry], radius: float
             system.apply(entry.event)
         except InvalidEventError as error:
             raise KnowledgeError(
-                f"row {entry.sequence}: does not fit the lessons before it: {error}",
+                f"row {entry.sequence}: does not fit the lessons before it: {event_error_text(error)}",
                 where=journal.path,
                 do="keep the file, and go on with a backup copy",
             ) from error
@@ -50,4 +51,6 @@ def check_knowledge(journal: Journal) -> list[str]:
 
 def _require_level(what: str, level: str, levels: Container[str]) -> None:
     if level != BASIC and level not in levels:
-        raise InvalidEventError(f"{what} is of the level {level!r}, of which the file does not name the features")
+        raise InvalidEventError(
+            EventFault.NO_LEVEL, f"{what} is of the level {level!r}, of which the file does not name the features"
+        )

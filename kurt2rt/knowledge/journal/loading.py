@@ -6,7 +6,7 @@ from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.critic.settings import load_critic
-from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.rla.rla import CRITIC, MID, TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
@@ -113,5 +113,5 @@ def binding_for(settings: RobotSettings, task: TaskSettings) -> KnowledgeBinding
     definition = load_situation(task.situation, sensors)
     levels = {CRITIC: load_critic(task.critic).level_features}
     if task.mid is not None:
-        levels[MID] = load_mid(task.mid).level_features
+        levels[MID] = load_mid_level(task.mid).level_features
     return KnowledgeBinding(definition.hash(sensors), definition.names, task.system_name, settings.name, levels)

@@ -85,7 +85,7 @@ def render_knowledge(journal: Journal, limit: int | None = None, *, wide: bool =
                 parts.append(level_table(level, of_level[:limit], features.feature_names, taught))
             more = len(of_level) - len(of_level[:limit])
             parts.extend([Text(f"and {more} more of the level {level}")] if more else [])
-        names = system.named_at(level)
+        names = system.named_situations(level)
         if names:
             parts.append(named_table(names, features))
     return Group(*parts)
@@ -142,10 +142,11 @@ def knowledge_data(journal: Journal) -> dict[str, Any]:
         ],
         "named": {
             level: {
-                name: dict(zip(names, situation, strict=True)) for name, situation in system.named_at(level).items()
+                name: dict(zip(names, situation, strict=True))
+                for name, situation in system.named_situations(level).items()
             }
             for level, names in features.items()
-            if system.named_at(level)
+            if system.named_situations(level)
         },
     }
 
@@ -159,7 +160,7 @@ def _rla_as_data(
         "level": rla.level,
         "behaviour": rla.behaviour,
         "action": rla.action,
-        "asks": rla.asks,
+        "asks": rla.is_withdrawn,
         "instead_of": instead_of(entry).plain,
         "teacher": rla.origin.teacher,
         "phase": rla.origin.phase.value,
@@ -257,7 +258,7 @@ def _names(teachers: Iterable[str]) -> str:
 
 
 def _how_many(system: RlaSystem) -> str:
-    asking = sum(rla.asks for rla in system.rlas)
+    asking = sum(rla.is_withdrawn for rla in system.rlas)
     ways, appraisals = len(system.rlas_at(MID)), len(system.rlas_at(CRITIC))
     return (
         f"{len(system)} RLAs"

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 
 from hal.settings import shipped_names
-from kurt2rt.core.mid.settings import MidSettings, load_mid
+from kurt2rt.core.mid.settings import MidSettings, load_mid_level
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.feature_set import LevelFeatures
 from kurt2rt.core.rla.rla import Rla
@@ -64,13 +64,13 @@ def _shipped_mid(feature_hash: str) -> MidSettings | None:
 
     None: settings of a user, or of another kurt2rt. Raises SettingsError.
     """
-    shipped = map(load_mid, shipped_names("mid_levels"))
+    shipped = map(load_mid_level, shipped_names("mid_levels"))
     return next((each for each in shipped if each.feature_hash == feature_hash), None)
 
 
 def _where(situation: Condition, settings: MidSettings | None, feature_names: tuple[str, ...]) -> str:
     if settings is not None:
-        words = [word for word in settings.situation.words(situation) if word]
+        words = [word for word in settings.situation.describe(situation) if word]
     else:
         named = zip(feature_names, situation, strict=True)
         words = [f"{name} {value:.3g}" for name, value in named if value]

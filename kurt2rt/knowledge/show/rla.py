@@ -6,7 +6,7 @@ from typing import Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from kurt2rt.core.expectations.expectations import is_of
+from kurt2rt.core.expectations.expectations import is_valid_for
 from kurt2rt.core.perception.definition import AVERAGED
 from kurt2rt.core.rla.expectation import Expectation
 from kurt2rt.core.rla.rla import BASIC, Rla
@@ -33,7 +33,7 @@ def render_rla(journal: Journal, rla_id: int, limit: int | None = None) -> Rende
     binding = journal.binding
     names = binding.feature_names if rla.level == BASIC else binding.levels[rla.level].feature_names
     known = statistics.expectations.get(rla_id)
-    expectation = known if known is not None and is_of(system, rla_id, known, rla.level) else None
+    expectation = known if known is not None and is_valid_for(system, rla_id, known, rla.level) else None
     origin = rla.origin
     uses = statistics.uses.get(rla_id, 0)
     parts: list[RenderableType] = [
@@ -63,7 +63,7 @@ def expectation_data(journal: Journal, rla_id: int) -> dict[str, Any] | None:
     binding = journal.binding
     names = binding.feature_names if rla.level == BASIC else binding.levels[rla.level].feature_names
     known = journal.statistics().expectations.get(rla_id)
-    if known is None or not is_of(system, rla_id, known, rla.level):
+    if known is None or not is_valid_for(system, rla_id, known, rla.level):
         return None
     return {
         "ends_seen": known.count,

@@ -21,7 +21,7 @@ def stamp_and_teacher(stamped_at: str, teacher: str) -> Text:
 
 def answer(rla: Rla) -> Text:
     """Its action, or that it was withdrawn."""
-    return plain(_ASKS if rla.asks else rla.action)
+    return plain(_ASKS if rla.is_withdrawn else rla.action)
 
 
 def instead_of(entry: StoredEntry) -> Text:

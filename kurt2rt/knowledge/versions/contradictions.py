@@ -7,9 +7,9 @@ import numpy as np
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.critic.settings import load_critic
-from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.perception.weights import weights_of
+from kurt2rt.core.perception.weights import feature_weights
 from kurt2rt.core.rla.rla import BASIC, CRITIC, MID, Rla, RlaCreated
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
@@ -37,7 +37,7 @@ def load_radii(task: TaskSettings, robot: RobotSettings) -> Radii:
     """Those of a task on a robot. Raises hal.settings.SettingsError."""
     definition = load_situation(task.situation, robot.infrared.names)
     changed = ((each.features, each.weight) for each in task.learning.weights)
-    weights = weights_of(definition, changed, task.learning.past_weight, task.name)
+    weights = feature_weights(definition, changed, task.learning.past_weight, task.name)
     critic = load_critic(task.critic)
     radius = critic.learning.radius
     spaces = {
@@ -46,7 +46,7 @@ def load_radii(task: TaskSettings, robot: RobotSettings) -> Radii:
     }
     fractions = {BASIC: task.learning.insert_beyond_share, CRITIC: critic.learning.insert_beyond_share}
     if task.mid is not None:
-        mid = load_mid(task.mid)
+        mid = load_mid_level(task.mid)
         spaces[MID], fractions[MID] = mid.space, mid.learning.insert_beyond_share
     return Radii(spaces, fractions)
 
@@ -60,7 +60,7 @@ class Contradictions:
         basic = borders.spaces[BASIC]
         self._system = RlaSystem(basic.dimensions, basic.radius, basic.weights, others=borders.spaces)
         for rla in sorted(rlas, key=lambda each: each.rla_id):
-            if not rla.asks:
+            if not rla.is_withdrawn:
                 self._system.apply(RlaCreated(rla))
 
     def of(self, rla: Rla) -> Overlap | None:

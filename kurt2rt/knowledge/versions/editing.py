@@ -56,5 +56,5 @@ def statistics_after(
     account = Reinforcement(RlaSystem(dimensions, math.inf), DecisionHistory(dimensions), settings, period_s=0.01)
     # An earlier kurt2rt did not say how many rows the values include: all that there were.
     numbers = {VALUES_INCLUDE: float(len(before)), **saved.numbers}
-    account.recall([*before, *new], replace(saved, numbers=numbers))
-    return account.to_save()
+    account.restore([*before, *new], replace(saved, numbers=numbers))
+    return account.snapshot()

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
-from kurt2rt.core.rla.lesson_history import LessonRecord, Pile, pile_of
+from kurt2rt.core.rla.lesson_history import LessonRecord, LessonStack, lesson_stack
 from kurt2rt.core.rla.rla import RlaCreated, RlaRewarded, TeachingEvent
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.knowledge.journal.entry import StoredEntry
@@ -62,11 +62,11 @@ class KnowledgeContent:
     def lesson_keys(self) -> Mapping[str, LessonKey]:
         """Of all lessons, in their order, by the command id that they have here."""
         lesson_keys, created = dict[str, LessonKey](), Counter[tuple[str, int]]()
-        of_rla = dict[Pile, StackKey]()
+        of_rla = dict[LessonStack, StackKey]()
         for record in self.system.lessons:
             lesson = record.event
             first, content = _as_first_taught(lesson)
-            stack = pile_of(lesson)
+            stack = lesson_stack(lesson)
             if isinstance(lesson, RlaCreated):
                 of_rla[stack] = (first, content, created[first, content])
                 created[first, content] += 1
@@ -75,10 +75,10 @@ class KnowledgeContent:
         return lesson_keys
 
     @cached_property
-    def stacks(self) -> Mapping[StackKey, Pile]:
+    def stacks(self) -> Mapping[StackKey, LessonStack]:
         """All piles that ever were, in their order."""
         return {
-            self.lesson_keys[record.event.origin.command_id].stack: pile_of(record.event)
+            self.lesson_keys[record.event.origin.command_id].stack: lesson_stack(record.event)
             for record in self.system.lessons
         }
 

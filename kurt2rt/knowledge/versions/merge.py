@@ -226,7 +226,9 @@ class Merger:
         stack = self._theirs.stacks[key]
         if isinstance(stack, tuple):
             level, name = stack
-            return self._theirs.system.named_at(level).get(name) == self._mine.system.named_at(level).get(name)
+            return self._theirs.system.named_situations(level).get(name) == self._mine.system.named_situations(
+                level
+            ).get(name)
         theirs, mine = self._theirs.system.get(stack), self._rla_here(key)
         return (theirs and theirs.action) == (mine and mine.action)
 
@@ -240,7 +242,7 @@ class Merger:
             level, name = stack
             title = f"the name {name}"
             there, here = (
-                f"{title} is given" if name in side.system.named_at(level) else f"{title} is not given"
+                f"{title} is given" if name in side.system.named_situations(level) else f"{title} is not given"
                 for side in (self._theirs, self._mine)
             )
             return Conflict(here, there, ConflictCode.OTHER_SITUATION)
@@ -256,7 +258,7 @@ class Merger:
         if isinstance(stack, tuple) or each.key in self._mine.stacks:
             return None
         rla = self._theirs.system.get(stack)
-        return None if rla is None or rla.asks else rla
+        return None if rla is None or rla.is_withdrawn else rla
 
     def _stays(self, key: LessonKey) -> str:
         names = [name for name, other in self._mine.lesson_keys.items() if other == key]
@@ -324,4 +326,4 @@ def _says(rla: Rla) -> str:
 def _state(rla: Rla | None, rla_id: int) -> str:
     if rla is None:
         return f"{rla_title(rla_id, '')} is gone"
-    return f"{rla.title} asks" if rla.asks else _says(rla)
+    return f"{rla.title} asks" if rla.is_withdrawn else _says(rla)

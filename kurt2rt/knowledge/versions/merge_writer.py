@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from kurt2rt.core.outcome_text import event_error_text
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.rla import (
@@ -185,7 +186,7 @@ class MergeWriter:
             self._system.apply(event)
         except InvalidEventError as error:
             raise KnowledgeError(
-                f"cannot be brought into {self._mine.journal.path.name}: {error}",
+                f"cannot be brought into {self._mine.journal.path.name}: {event_error_text(error)}",
                 where=self._theirs.journal.path,
                 do="undo there what is in the way, or go on in one of them",
             ) from error

@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from kurt2rt.core.outcome import Outcome
+from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.lesson_history import LessonRecord
-from kurt2rt.core.rla.outcome import Outcome
-from kurt2rt.core.rla.outcome_text import text_of
 from kurt2rt.core.rla.rla import LessonRedone, LessonUndone, TeachingEvent
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics

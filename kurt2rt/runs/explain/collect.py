@@ -120,7 +120,7 @@ class _Reader:
         facts = self._level(
             MID, "", mid.settings.features, vector, weights, decision.match, decision.rla_id, symbols=symbols
         )
-        words = mid.settings.situation.words
+        words = mid.settings.situation.describe
         there = () if facts.nearest is None else words(facts.nearest.condition)
         return _with_words(facts, words(vector), there)
 
@@ -150,7 +150,7 @@ class _Reader:
             rla = self._system.get(rla_id)
             if rla is None or (match is not None and rla_id == match.rla.rla_id):
                 continue
-            if rla.asks and level == BASIC and self._runtime.level.skip_withdrawn:
+            if rla.is_withdrawn and level == BASIC and self._runtime.level.skip_withdrawn:
                 continue  # passed over
             if self._most is not None and len(others) >= self._most:
                 break
@@ -165,7 +165,7 @@ class _Reader:
             nearest=nearest,
             driver=driver,
             others=tuple(others),
-            count=self._system.competing(behaviour, level),
+            count=self._system.candidate_count(behaviour, level),
         )
 
     def _ranking(
@@ -176,7 +176,7 @@ class _Reader:
             ranking = self._system.nearest_first(vector, behaviour, level, most=self._most + 1 + _PASSED_OVER)
             ids = {rla_id for rla_id, _ in ranking}
             rlas = [self._system.get(rla_id) for rla_id in ids]
-            speak = sum(rla is not None and not rla.asks for rla in rlas)
+            speak = sum(rla is not None and not rla.is_withdrawn for rla in rlas)
             if (driver_id is None or driver_id in ids) and speak > self._most:
                 return ranking
         return self._system.nearest_first(vector, behaviour, level)
@@ -208,8 +208,8 @@ class _Reader:
             uses_since=None if before is None else max(0, uses - before),
             rewards=appraisal.rewards,
             punishments=appraisal.punishments,
-            value=float(self._runtime.reinforcement.worth(rla.rla_id)) if rewarded else None,
-            asks=rla.asks,
+            value=float(self._runtime.reinforcement.value(rla.rla_id)) if rewarded else None,
+            asks=rla.is_withdrawn,
             leads=self._leads(rla),
         )
 

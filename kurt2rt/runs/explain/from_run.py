@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from kurt2rt.core.rla.lesson_history import rla_of
+from kurt2rt.core.rla.lesson_history import rla_id_of
 from kurt2rt.core.rla.rla import (
     ActionReplaced,
     ActionWithdrawn,
@@ -80,13 +80,13 @@ def _count_uses_before(event: TeachingEvent, uses: dict[int, int], before: dict[
     """How often an RLA had been used when it got the action that it has."""
     match event:
         case RlaCreated() | ActionReplaced() | ActionWithdrawn() | RlaDeleted():
-            before[rla_of(event)] = uses.get(rla_of(event), 0)
+            before[rla_id_of(event)] = uses.get(rla_id_of(event), 0)
         case LessonUndone(lesson) | LessonRedone(lesson):
             record = system.lesson(lesson)
             if record is not None and isinstance(
                 record.event, RlaCreated | ActionReplaced | ActionWithdrawn | RlaDeleted
             ):
-                before.pop(rla_of(record.event), None)  # the action is older than the run may know
+                before.pop(rla_id_of(record.event), None)  # the action is older than the run may know
 
 
 def _stamp(started_at: str, at_s: float) -> str:

@@ -1,6 +1,6 @@
 """Teaching events in a few words each, as they come: what is taken back is told by what it was."""
 
-from kurt2rt.core.rla.lesson_history import LessonRecord, rla_of
+from kurt2rt.core.rla.lesson_history import LessonRecord, rla_id_of
 from kurt2rt.core.rla.rla import (
     BASIC,
     Appraised,
@@ -42,7 +42,7 @@ class LessonDescriber:
             case RlaCreated(rla):
                 self._home_of[rla.rla_id] = rla.behaviour, rla.level
         behaviour, level = (
-            ("", BASIC) if isinstance(event, SituationNamed) else self._home_of.get(rla_of(event), ("", BASIC))
+            ("", BASIC) if isinstance(event, SituationNamed) else self._home_of.get(rla_id_of(event), ("", BASIC))
         )
         text = LessonRecord(event, behaviour=behaviour, level=level).text
         self._texts[event.origin.command_id] = text

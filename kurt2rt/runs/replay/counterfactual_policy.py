@@ -13,7 +13,7 @@ from hal.settings import SettingsError
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.decision.decision import Cause
-from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
@@ -71,11 +71,11 @@ class CounterfactualPolicy:
             with run.settings():
                 task = run.task
                 definition = load_situation(task.situation, run.robot.infrared.names)
-                mid = None if task.mid is None else load_mid(task.mid)
+                mid = None if task.mid is None else load_mid_level(task.mid)
                 self._system = empty_system(task, definition, load_critic(task.critic), mid)
             recent = DecisionHistory(definition.dimensions)
             self._worths = Reinforcement(self._system, recent, task.reinforcement, run.robot.can.cycle_s)
-            self._worths.recall(tuple(events), statistics)
+            self._worths.restore(tuple(events), statistics)
         except (SettingsError, InvalidEventError) as error:
             raise RecordingError(f"this knowledge cannot decide there: {error}", where=run.name) from error
 

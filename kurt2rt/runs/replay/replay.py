@@ -7,6 +7,8 @@ from hal.settings import SettingsError
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
 from kurt2rt.core.decision.standing_text import stop_of_text
+from kurt2rt.core.outcome import CommandRefusedError
+from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.rla_system import InvalidEventError
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.tick import TickRecord
@@ -78,6 +80,8 @@ class Replay:
                 )
         except (SettingsError, KnowledgeError, InvalidEventError, UnknownActionError, UnknownBehaviourError) as error:
             raise RecordingError(f"cannot be replayed by this kurt2rt: {error}", where=run.name) from error
+        except CommandRefusedError as error:
+            raise RecordingError(f"cannot be replayed: {text_of(error.outcome)}", where=run.name) from error
         except ValueError as error:
             raise RecordingError(f"cannot be replayed: {error}", where=run.name) from error
         stop = stop_of_text(head.stopped)

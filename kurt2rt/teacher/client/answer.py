@@ -6,8 +6,8 @@ from enum import StrEnum
 from typing import Any, Final
 
 from hal.errors import UserError
-from kurt2rt.core.rla.outcome import Code, Outcome, RefusalCode, outcome_in
-from kurt2rt.core.rla.outcome_text import Surface, fields_of, text_of
+from kurt2rt.core.outcome import Code, Outcome, RefusalCode, outcome_in
+from kurt2rt.core.outcome_text import Surface, fields_of, text_of
 
 
 class NoAnswer(StrEnum):

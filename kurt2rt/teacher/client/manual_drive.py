@@ -8,7 +8,7 @@ from functools import partial
 from kurt2rt.channel.protocol.codec import WireError, decode_answer, encode_request
 from kurt2rt.channel.protocol.requests import DriveRequest, StreamRequest, WatchRequest
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.core.rla.outcome import RefusalCode
+from kurt2rt.core.outcome import RefusalCode
 from kurt2rt.teacher.client.answer import Answer, answer_of, local_refusal
 from kurt2rt.teacher.client.link_quality import LinkMeter
 from kurt2rt.teacher.client.state_stream import StateStream

@@ -19,7 +19,7 @@ from kurt2rt.channel.protocol.requests import (
 )
 from kurt2rt.channel.protocol.schema import Int
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.core.rla.outcome import RefusalCode
+from kurt2rt.core.outcome import RefusalCode
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.teacher.client.answer import Answer, NoAnswer, NoAnswerError, RefusedError, answer_of, local_refusal
 from kurt2rt.teacher.client.state_stream import StateStream

@@ -10,8 +10,8 @@ import anyio
 import anyio.abc
 
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode
-from kurt2rt.core.rla.outcome_text import Surface, text_of
+from kurt2rt.core.outcome import Outcome, RefusalCode
+from kurt2rt.core.outcome_text import Surface, text_of
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.page.commands import carry_out, ends_run, lets_drive, oldest_picture_s

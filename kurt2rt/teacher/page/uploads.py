@@ -8,7 +8,7 @@ from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.types import Receive, Scope, Send
 
 from kurt2rt.channel.protocol.requests import MOST_UPLOAD_BYTES, UPLOAD_ID_BYTES
-from kurt2rt.core.rla.outcome_text import Surface
+from kurt2rt.core.outcome_text import Surface
 from kurt2rt.teacher.client.answer import NoAnswerError, RefusedError
 from kurt2rt.teacher.page.access import Access
 from kurt2rt.teacher.page.robot_link import RobotLink

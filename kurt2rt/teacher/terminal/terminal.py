@@ -14,8 +14,8 @@ from kurt2rt.channel.protocol.codec import WireError
 from kurt2rt.channel.protocol.health_text import lines_of
 from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.channel.protocol.state import State
+from kurt2rt.core.outcome_text import Surface
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
-from kurt2rt.core.rla.outcome_text import Surface
 from kurt2rt.core.rla.rla import CRITIC, Phase
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient

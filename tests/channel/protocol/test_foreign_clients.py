@@ -19,7 +19,7 @@ from aiocoap import oscore
 from kurt2rt.channel.protocol.codec import PATHS, decode_answer, decode_state, encode_request
 from kurt2rt.channel.protocol.requests import TakeRequest
 from kurt2rt.channel.security.pairing import Pairing
-from kurt2rt.core.rla.outcome import ResultCode
+from kurt2rt.core.outcome import ResultCode
 from tests.channel.robot_at_work import RobotAtWork, journal_of, robot_at_work
 
 _NAMES = ("coap-client", "coap-client-notls", "coap-client-openssl", "coap-client-gnutls")

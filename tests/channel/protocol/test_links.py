@@ -20,7 +20,7 @@ from anyio.abc import Process
 
 from kurt2rt.channel.protocol.requests import AnswerRequest, CommandRequest, ReplaceRequest, Request, RewardRequest
 from kurt2rt.core.decision.decision import Cause
-from kurt2rt.core.rla.outcome import ResultCode
+from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError

@@ -24,7 +24,7 @@ from kurt2rt.channel.protocol.state import State, SurpriseState
 from kurt2rt.channel.server.reply import ReplyStatus
 from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import BASIC, MID
 from tests.channel.desk import STAMP, Desk, outcome_of, why
 from tests.channel.grounds import Yard

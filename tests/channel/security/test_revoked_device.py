@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.channel.security.pairing import pair, renew, revoke
-from kurt2rt.core.rla.outcome import ResultCode
+from kurt2rt.core.outcome import ResultCode
 from tests.channel.device_by_the_book import Device
 from tests.channel.jumping_loop import run_jumping
 from tests.channel.robot_at_work import RobotAtWork, robot_at_work

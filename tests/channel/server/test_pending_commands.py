@@ -4,7 +4,7 @@ import pytest
 
 from kurt2rt.channel.server.pending_commands import PendingCommands
 from kurt2rt.channel.server.reply import done, refusal
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 
 
 async def test_a_command_under_way_has_a_reply_to_come_and_then_that_reply_for_good() -> None:

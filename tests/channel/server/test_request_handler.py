@@ -60,7 +60,7 @@ from kurt2rt.channel.server.request_handler import COMMAND_TICKS, MOVING_TICKS, 
 from kurt2rt.channel.server.simulation import TeacherNow
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.decision.decision import Cause
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import CRITIC, Phase
 from kurt2rt.core.teaching.commands import Stop, Watch
 from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, outcome_of, reply_of, turns, why

@@ -38,7 +38,7 @@ from kurt2rt.channel.server.channel import Channel, ChannelDependencies, open_ch
 from kurt2rt.channel.server.resources import RobotSite
 from kurt2rt.channel.server.state_builder import JournalStatus
 from kurt2rt.core.decision.decision import Cause
-from kurt2rt.core.rla.outcome import RefusalCode, ResultCode
+from kurt2rt.core.outcome import RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import Phase
 from tests.channel.desk import BOOT, ROBOT, Desk, turns
 from tests.channel.sides import answer_challenge, carried, header_of

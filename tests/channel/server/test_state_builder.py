@@ -24,7 +24,7 @@ from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.standing import Standing, StandReason
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import ASK, CRITIC, Phase
 from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, outcome_of, reply_of
 from tests.channel.grounds import Yard

@@ -5,7 +5,7 @@ import hashlib
 import pytest
 
 from kurt2rt.channel.server.upload import Upload
-from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode
+from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode
 
 ABC = hashlib.sha256(b"abc").digest()
 

@@ -11,7 +11,7 @@ from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.checks.soak.operator import SoakOperator
 from kurt2rt.core.decision.decision import Cause
-from kurt2rt.core.rla.outcome import Outcome, ResultCode
+from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.teaching.commands import CommandResult, Resume
 from kurt2rt.core.tick import TickRecord
 from simbridge.faults.long_run_rig import LongRunRig

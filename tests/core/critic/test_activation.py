@@ -3,18 +3,18 @@
 import pytest
 
 from kurt2rt.core.critic.activation import ActivationMonitor
-from kurt2rt.core.critic.settings import NeedSettings
+from kurt2rt.core.critic.settings import ActivationSettings
 
 
 def need(first_s: float = 0.0, mean_s: float = 1.0) -> ActivationMonitor:
     """Of ticks of 10 ms."""
-    return ActivationMonitor(NeedSettings(bad_share=0.1, mean_s=mean_s, first_s=first_s), 0.01)
+    return ActivationMonitor(ActivationSettings(bad_share=0.1, mean_s=mean_s, first_s=first_s), 0.01)
 
 
 def drive(one: ActivationMonitor, ticks: int, bad_each: int) -> None:
     """So many ticks; of each so many the last one is bad."""
     for tick in range(1, ticks + 1):
-        one.look(driving=True, bad=tick % bad_each == 0)
+        one.update(driving=True, bad=tick % bad_each == 0)
 
 
 def test_at_first_the_mean_is_a_plain_one() -> None:
@@ -31,7 +31,7 @@ def test_too_much_that_is_bad_makes_it_needed_and_it_stays_so() -> None:
     drive(one, 5000, bad_each=10_000)
     assert one.share < 0.01
     assert one.needed
-    one.begin()
+    one.reset()
     assert (one.needed, one.share) == (False, 0.0)
 
 
@@ -39,12 +39,12 @@ def test_not_before_the_first_time_is_over() -> None:
     one = need(first_s=1.0)
     drive(one, 99, bad_each=2)
     assert not one.needed
-    one.look(driving=True, bad=True)
+    one.update(driving=True, bad=True)
     assert one.needed
 
 
 def test_time_in_which_nothing_drives_does_not_count() -> None:
     one = need()
     for _ in range(1000):
-        one.look(driving=False, bad=True)
+        one.update(driving=False, bad=True)
     assert (one.needed, one.share) == (False, 0.0)

@@ -39,81 +39,81 @@ def agreed(value: int, times: int = 1) -> list[TeachingEvent]:
 
 def test_before_enough_was_said_of_good_and_bad_there_is_no_trust() -> None:
     one = agreement()
-    one.hear_all([*agreed(1, 5), *agreed(0, 5), *agreed(-1, 1)])
+    one.replay([*agreed(1, 5), *agreed(0, 5), *agreed(-1, 1)])
     assert (one.share, one.trusted) == (None, False)
-    one.hear_all(agreed(-1))
+    one.replay(agreed(-1))
     assert (one.share, one.trusted) == (1.0, True)
 
 
 def test_each_value_counts_the_same_however_often_it_was_said() -> None:
     one = agreement(bound=0.75)
-    one.hear(appraisal(1, "bad"))
-    one.hear_all([*agreed(-1), *agreed(1, 5)])
+    one.on_event(appraisal(1, "bad"))
+    one.replay([*agreed(-1), *agreed(1, 5)])
     assert one.share == (0.5 + 1.0) / 2
     assert one.trusted
-    one.hear(rewarded(-1, said=1))
+    one.on_event(rewarded(-1, said=1))
     assert one.share == (1 / 3 + 1.0) / 2
     assert not one.trusted
 
 
 def test_only_the_latest_of_each_value_count() -> None:
     one = agreement(window=3)
-    one.hear_all([*agreed(1, 3), *agreed(-1, 3), *[rewarded(1, said=None) for _ in range(3)]])
+    one.replay([*agreed(1, 3), *agreed(-1, 3), *[rewarded(1, said=None) for _ in range(3)]])
     assert one.share == 1.0  # it has no appraisal yet that could have said anything
-    one.hear(appraisal(1, "neutral"))
-    one.hear_all([rewarded(1, said=None) for _ in range(3)])
-    assert (one.share, one.heard_of(1), one.share_of(1)) == (0.5, 3, 0.0)
-    one.hear_all(agreed(1, 3))
+    one.on_event(appraisal(1, "neutral"))
+    one.replay([rewarded(1, said=None) for _ in range(3)])
+    assert (one.share, one.count_for(1), one.share_for(1)) == (0.5, 3, 0.0)
+    one.replay(agreed(1, 3))
     assert one.share == 1.0
 
 
 def test_neutral_ones_count_from_enough_on() -> None:
     one = agreement()
-    one.hear_all([*agreed(1, 2), *agreed(-1, 2), appraisal(1, "neutral")])
+    one.replay([*agreed(1, 2), *agreed(-1, 2), appraisal(1, "neutral")])
     assert one.share == 1.0
-    one.hear(appraisal(2, "neutral"))
+    one.on_event(appraisal(2, "neutral"))
     assert one.share == 2 / 3
-    assert (one.heard_of(0), one.share_of(0)) == (2, 0.0)
+    assert (one.count_for(0), one.share_for(0)) == (2, 0.0)
 
 
 def test_a_lesson_to_the_critic_is_a_disagreement_and_one_to_the_robot_is_not() -> None:
     one = agreement()
-    one.hear_all([*agreed(1, 2), *agreed(-1, 2)])
-    one.hear(RlaCreated(Rla(1, (0.0,), "good", None, origin())))
-    one.hear(ActionReplaced(1, "bad", "good", origin()))
-    assert (one.heard_of(1), one.heard_of(-1)) == (2, 2)
-    one.hear(appraisal(2, "good"))
-    assert one.share_of(1) == 2 / 3
-    one.hear(ActionReplaced(2, "bad", "good", origin()))
-    assert one.share_of(-1) == 2 / 3
+    one.replay([*agreed(1, 2), *agreed(-1, 2)])
+    one.on_event(RlaCreated(Rla(1, (0.0,), "good", None, origin())))
+    one.on_event(ActionReplaced(1, "bad", "good", origin()))
+    assert (one.count_for(1), one.count_for(-1)) == (2, 2)
+    one.on_event(appraisal(2, "good"))
+    assert one.share_for(1) == 2 / 3
+    one.on_event(ActionReplaced(2, "bad", "good", origin()))
+    assert one.share_for(-1) == 2 / 3
 
 
 def test_what_the_critic_says_itself_does_not_count() -> None:
     one = agreement()
-    one.hear(appraisal(1, "bad"))
-    one.hear(rewarded(-1, said=-1, said_by=origin(teacher=CRITIC, phase=Phase.AUTONOMOUS)))
-    assert one.heard_of(-1) == 1
+    one.on_event(appraisal(1, "bad"))
+    one.on_event(rewarded(-1, said=-1, said_by=origin(teacher=CRITIC, phase=Phase.AUTONOMOUS)))
+    assert one.count_for(-1) == 1
 
 
 def test_what_was_taken_back_was_never_said() -> None:
     one = agreement()
-    one.hear_all([*agreed(1, 2), *agreed(-1, 2)])
+    one.replay([*agreed(1, 2), *agreed(-1, 2)])
     mistaken = origin("mistaken")
-    one.hear(appraisal(1, "bad", said_by=mistaken))
-    assert one.share_of(-1) == 2 / 3
-    one.hear(LessonUndone("mistaken", origin()))
-    one.hear(LessonUndone("nobody heard of", origin()))
-    assert (one.share, one.heard_of(-1)) == (1.0, 2)
-    one.hear(LessonRedone("mistaken", origin()))
-    one.hear(LessonRedone("nobody heard of", origin()))
-    assert one.share_of(-1) == 2 / 3
+    one.on_event(appraisal(1, "bad", said_by=mistaken))
+    assert one.share_for(-1) == 2 / 3
+    one.on_event(LessonUndone("mistaken", origin()))
+    one.on_event(LessonUndone("nobody heard of", origin()))
+    assert (one.share, one.count_for(-1)) == (1.0, 2)
+    one.on_event(LessonRedone("mistaken", origin()))
+    one.on_event(LessonRedone("nobody heard of", origin()))
+    assert one.share_for(-1) == 2 / 3
 
 
 def test_sessions_say_nothing_and_an_appraisal_of_other_settings_neither() -> None:
     one = agreement()
-    one.hear_all([SessionBegun("monday", origin()), SessionEnded(3, origin()), appraisal(1, "splendid")])
-    assert [one.heard_of(value) for value in (-1, 0, 1)] == [0, 0, 0]
-    assert one.share_of(1) is None
+    one.replay([SessionBegun("monday", origin()), SessionEnded(3, origin()), appraisal(1, "splendid")])
+    assert [one.count_for(value) for value in (-1, 0, 1)] == [0, 0, 0]
+    assert one.share_for(1) is None
 
 
 def said_at(tick: int, *, right: bool) -> TeachingEvent:
@@ -124,14 +124,14 @@ def said_at(tick: int, *, right: bool) -> TeachingEvent:
 def test_what_is_said_soon_after_a_signal_that_counts_does_not_count_whether_they_agree_or_not() -> None:
     """Somebody who clicks "good" ten times in one place would be trusted else; and only agreements would be lost."""
     one = agreement(apart_s=5.0)
-    one.hear(appraisal(1, "good", said_by=origin(tick=100)))
-    one.hear_all([said_at(100 + after, right=after % 2 == 0) for after in range(1, 500, 50)])
-    assert (one.heard_of(1), one.share_of(1)) == (1, 0.0)
-    one.hear_all([said_at(600, right=True), said_at(1099, right=False), said_at(1100, right=False)])
-    assert (one.heard_of(1), one.share_of(1)) == (3, 1 / 3)
+    one.on_event(appraisal(1, "good", said_by=origin(tick=100)))
+    one.replay([said_at(100 + after, right=after % 2 == 0) for after in range(1, 500, 50)])
+    assert (one.count_for(1), one.share_for(1)) == (1, 0.0)
+    one.replay([said_at(600, right=True), said_at(1099, right=False), said_at(1100, right=False)])
+    assert (one.count_for(1), one.share_for(1)) == (3, 1 / 3)
 
 
 def test_the_ticks_of_another_run_are_no_reason_not_to_count() -> None:
     one = agreement(apart_s=5.0)
-    one.hear_all([appraisal(1, "good", said_by=origin(tick=9000)), said_at(10, right=True), said_at(20, right=True)])
-    assert one.heard_of(1) == 2
+    one.replay([appraisal(1, "good", said_by=origin(tick=9000)), said_at(10, right=True), said_at(20, right=True)])
+    assert one.count_for(1) == 2

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from behaviors.judges.judge import AppraisalFeatures
 from hal.robot import SensorReadings
 from hal.settings import SettingsError
-from kurt2rt.core.critic.appraisal_features import CircumstancesPerception
+from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.settings import CriticSettings, load_critic
 from tests.behaviors.helpers import ROBOT, counts
 
@@ -27,12 +27,12 @@ def senses(
     return SensorReadings(0.0, counts(0.7, **distances_m), age_s, left, right, 0.0, bumpers, 0.0)
 
 
-def perception() -> CircumstancesPerception:
-    return CircumstancesPerception(CRITIC, ROBOT)
+def perception() -> AppraisalPerception:
+    return AppraisalPerception(CRITIC, ROBOT)
 
 
 def after(
-    seconds: float, of: CircumstancesPerception, sensed: SensorReadings, *, driving: bool = True
+    seconds: float, of: AppraisalPerception, sensed: SensorReadings, *, driving: bool = True
 ) -> AppraisalFeatures:
     """AppraisalFeatures of the last tick of so many alike."""
     for _ in range(round(seconds * 100)):
@@ -179,27 +179,27 @@ def test_the_same_senses_give_the_same_finite_circumstances(ticks: list[tuple[li
 def test_sensors_that_the_robot_does_not_have_are_named() -> None:
     sensors = CRITIC.perception.sensors.model_dump(mode="json") | {"ahead_left": ["s15", "s99"]}
     with pytest.raises(SettingsError, match=r"critic basic: perception.sensors: the robot has no sensor s99; allowed"):
-        CircumstancesPerception(changed(sensors=sensors), ROBOT)
+        AppraisalPerception(changed(sensors=sensors), ROBOT)
 
 
 def test_a_side_the_wrong_way_round_has_no_angle() -> None:
     sensors = CRITIC.perception.sensors.model_dump(mode="json") | {"right": ["s6", "s5"]}
     with pytest.raises(SettingsError, match="s6 does not sit ahead of s5; give the sensors of a side from front"):
-        CircumstancesPerception(changed(sensors=sensors), ROBOT)
+        AppraisalPerception(changed(sensors=sensors), ROBOT)
 
 
 # Surprise
 
 
 def test_a_surprise_is_a_circumstance_for_as_long_as_it_is_held() -> None:
-    of = CircumstancesPerception(changed(surprise_held_s=1.0), ROBOT)
+    of = AppraisalPerception(changed(surprise_held_s=1.0), ROBOT)
     assert of.perceive(senses(), driving=True).surprised == 0.0
-    of.be_surprised()
+    of.notify_surprise()
     assert after(1.0, of, senses()).surprised == 1.0
     assert of.perceive(senses(), driving=True).surprised == 0.0
 
 
 def test_a_critic_that_does_not_hold_surprises_sees_none() -> None:
     of = perception()
-    of.be_surprised()
+    of.notify_surprise()
     assert after(0.1, of, senses()).surprised == 0.0

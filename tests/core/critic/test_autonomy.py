@@ -3,7 +3,7 @@
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.autonomy import Autonomy, Signal
 from kurt2rt.core.critic.critic import Opinion
-from kurt2rt.core.critic.settings import AgreementSettings, NeedSettings, SignalEverySettings
+from kurt2rt.core.critic.settings import ActivationSettings, AgreementSettings, SignalEverySettings
 from kurt2rt.core.rla.rla import Appraised, RlaRewarded
 from tests.core.critic.helpers import SETTINGS, appraisal, origin
 
@@ -11,7 +11,7 @@ BAD = Opinion(-1, "bad", 0.7, None, 0.1, 1.0, True)
 GOOD = Opinion(1, "good", 0.5, None, 0.1, 1.0, True)
 NEUTRAL = Opinion(0, "neutral", 0.7, None, 0.1, 1.0, True)
 UNKNOWN = Opinion(0, "", 0.0, None, 2.0, 1.0, False)
-ALWAYS = NeedSettings(bad_share=0.0, mean_s=1.0, first_s=0.0)
+ALWAYS = ActivationSettings(bad_share=0.0, mean_s=1.0, first_s=0.0)
 RATES = SETTINGS.model_copy(
     update={"signal_every_s": SignalEverySettings(bad=1.0, good=2.0), "patience_s": 0.0, "need": ALWAYS}
 )
@@ -19,9 +19,9 @@ RATES = SETTINGS.model_copy(
 
 def agreement(*, trusted: bool = True) -> Agreement:
     heard = Agreement(AgreementSettings(bound=0.8, window=2, least=1, apart_s=0.0), SETTINGS.values, 0.01)
-    heard.hear(Appraised("bad", -1, 0, origin()))
+    heard.on_event(Appraised("bad", -1, 0, origin()))
     if trusted:
-        heard.hear(Appraised("good", 1, 0, origin()))
+        heard.on_event(Appraised("good", 1, 0, origin()))
     assert heard.trusted is trusted
     return heard
 
@@ -51,9 +51,9 @@ def test_it_holds_its_tongue_while_it_is_not_trusted() -> None:
     heard = agreement(trusted=False)
     speaking = Autonomy(RATES, heard, 0.01)
     assert speaking.signal(1, BAD, True) is None
-    heard.hear(Appraised("good", 1, 0, origin()))
+    heard.on_event(Appraised("good", 1, 0, origin()))
     assert speaking.signal(2, BAD, True) is not None
-    heard.hear_all([appraisal(1, "bad"), RlaRewarded(9, -1, 0, origin(), said=1)])
+    heard.replay([appraisal(1, "bad"), RlaRewarded(9, -1, 0, origin(), said=1)])
     assert speaking.signal(300, BAD, True) is None
 
 
@@ -70,16 +70,16 @@ def test_a_wait_or_a_gap_begins_the_thought_anew() -> None:
 
 
 def test_what_drives_well_enough_is_left_alone() -> None:
-    need = NeedSettings(bad_share=0.05, mean_s=1.0, first_s=0.0)
+    need = ActivationSettings(bad_share=0.05, mean_s=1.0, first_s=0.0)
     listening = Autonomy(RATES.model_copy(update={"need": need}), agreement(), 0.01)
     said = [tick for tick in range(2000) if listening.signal(tick, BAD if tick % 50 == 49 else GOOD, True)]
-    assert (said, listening.need.needed) == ([], False)
+    assert (said, listening.activation.needed) == ([], False)
     assert next(tick for tick in range(2000, 2100) if listening.signal(tick, BAD, True)) < 2010
     assert listening.signal(2300, GOOD, True) is not None  # from then on it acts
 
 
 def test_while_it_is_told_to_listen_it_finds_out_whether_it_is_needed() -> None:
-    need = NeedSettings(bad_share=0.5, mean_s=1.0, first_s=0.0)
+    need = ActivationSettings(bad_share=0.5, mean_s=1.0, first_s=0.0)
     listening = Autonomy(RATES.model_copy(update={"need": need}), agreement(), 0.01)
     assert not any(listening.signal(tick, BAD, True, listening=True) for tick in range(100))
     assert listening.signal(100, GOOD, True) is not None

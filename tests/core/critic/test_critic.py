@@ -21,23 +21,23 @@ def system() -> RlaSystem:
 def test_before_its_first_lesson_it_thinks_nothing() -> None:
     knowledge = system()
     critic = Critic(knowledge, SETTINGS)
-    assert critic.opinion(critic.vector_of(FREE)) is None
+    assert critic.opinion(critic.to_vector(FREE)) is None
     knowledge.apply(RlaCreated(Rla(1, (0.0, 0.0), "forward", None, origin(), level=BASIC)))
-    assert critic.opinion(critic.vector_of(FREE)) is None
+    assert critic.opinion(critic.to_vector(FREE)) is None
 
 
 def test_it_thinks_what_the_nearest_appraisal_says() -> None:
     knowledge = system()
     critic = Critic(knowledge, SETTINGS)
     knowledge.apply_all([appraisal(1, "good", FREE), appraisal(2, "bad", CLOSE)])
-    said = critic.opinion(critic.vector_of(CLOSE._replace(front_m=0.13)))
+    said = critic.opinion(critic.to_vector(CLOSE._replace(front_m=0.13)))
     assert said is not None
     assert (said.value, said.appraisal, said.known, said.said) == (-1, "bad", True, -1)
     assert said.rla is not None
     assert said.rla.rla_id == 2
     assert said.trace_s == next(each.trace_s for each in SETTINGS.appraisals if each.name == "bad")
     assert said.distance == pytest.approx(0.01 * SETTINGS.learning.weights.front_m)
-    there = critic.opinion(critic.vector_of(FREE))
+    there = critic.opinion(critic.to_vector(FREE))
     assert there is not None
     assert there.said == 1
 
@@ -46,7 +46,7 @@ def test_what_is_far_from_all_it_was_taught_it_does_not_know() -> None:
     knowledge = system()
     critic = Critic(knowledge, SETTINGS)
     knowledge.apply(appraisal(1, "bad", CLOSE))
-    said = critic.opinion(critic.vector_of(FREE._replace(left_m=0.1)))
+    said = critic.opinion(critic.to_vector(FREE._replace(left_m=0.1)))
     assert said is not None
     assert (said.value, said.appraisal, said.known, said.said) == (0, "", False, None)
     assert said.distance > said.radius == SETTINGS.learning.radius
@@ -58,7 +58,7 @@ def test_an_appraisal_that_was_withdrawn_or_has_no_meaning_here_is_no_opinion() 
     knowledge.apply_all([appraisal(1, "splendid", FREE), appraisal(2, "bad", CLOSE)])
     knowledge.apply(ActionWithdrawn(2, "bad", origin()))
     for circumstances in (FREE, CLOSE):
-        said = critic.opinion(critic.vector_of(circumstances))
+        said = critic.opinion(critic.to_vector(circumstances))
         assert said is not None
         assert said.said is None
 
@@ -66,19 +66,19 @@ def test_an_appraisal_that_was_withdrawn_or_has_no_meaning_here_is_no_opinion() 
 def test_it_thinks_anew_every_few_ticks_and_after_each_lesson() -> None:
     knowledge = system()
     critic = Critic(knowledge, SETTINGS.model_copy(update={"think_every_ticks": 5}))
-    assert critic.think(10, FREE) is None
+    assert critic.appraise(10, FREE) is None
     knowledge.apply_all([appraisal(1, "good", FREE), appraisal(2, "bad", CLOSE)])
-    thought = [critic.think(tick, FREE if tick == 11 else CLOSE) for tick in range(11, 18)]
+    thought = [critic.appraise(tick, FREE if tick == 11 else CLOSE) for tick in range(11, 18)]
     assert [opinion.value for opinion in thought if opinion is not None] == [1, 1, 1, 1, 1, -1, -1]
     knowledge.apply(ActionReplaced(2, "neutral", "bad", origin()))
-    now = critic.think(18, CLOSE)
+    now = critic.appraise(18, CLOSE)
     assert now is not None
     assert now.appraisal == "neutral"
 
 
 def test_circumstances_become_numbers_in_their_order() -> None:
     critic = Critic(system(), SETTINGS)
-    assert critic.vector_of(FREE).tolist() == list(FREE)[: len(NAMES)]
-    assert critic.vector_of(FREE).dtype == np.float64
+    assert critic.to_vector(FREE).tolist() == list(FREE)[: len(NAMES)]
+    assert critic.to_vector(FREE).dtype == np.float64
     assert critic.appraisals == ("bad", "neutral", "good")
     assert 0 < critic.insert_beyond <= SETTINGS.learning.radius

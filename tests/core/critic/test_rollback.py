@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.core.critic.rollback import RollbackMonitor
-from kurt2rt.core.critic.settings import BestSettings
+from kurt2rt.core.critic.settings import RollbackSettings
 from kurt2rt.core.rla.rla import (
     CRITIC,
     ActionReplaced,
@@ -24,7 +24,7 @@ from tests.examples import examples
 
 def best(margin: float = 0.2) -> RollbackMonitor:
     """With windows of ten ticks."""
-    return RollbackMonitor(BestSettings(window_s=0.1, margin=margin), 0.01)
+    return RollbackMonitor(RollbackSettings(window_s=0.1, margin=margin), 0.01)
 
 
 def window(kept: RollbackMonitor, good: int, tick: int = 0) -> tuple[LessonUndone, ...]:
@@ -32,7 +32,7 @@ def window(kept: RollbackMonitor, good: int, tick: int = 0) -> tuple[LessonUndon
     undone: tuple[LessonUndone, ...] = ()
     for place in range(10):
         assert not undone
-        undone = kept.look(tick + place, 1 if place < good else None, True)
+        undone = kept.update(tick + place, 1 if place < good else None, True)
     return undone
 
 
@@ -49,7 +49,7 @@ def test_what_made_it_worse_is_undone_newest_first() -> None:
     kept = best()
     assert window(kept, good=8) == ()
     for event in (created(1, "first"), replaced(1, "second"), created(2, "third")):
-        kept.changed(event)
+        kept.on_event(event)
     undone = window(kept, good=5, tick=990)
     assert [each.lesson for each in undone] == ["third", "second", "first"]
     assert {each.origin.teacher for each in undone} == {CRITIC}
@@ -61,11 +61,11 @@ def test_what_made_it_worse_is_undone_newest_first() -> None:
 def test_a_little_worse_is_chance_and_better_is_kept() -> None:
     kept = best()
     window(kept, good=5)
-    kept.changed(created(1, "first"))
+    kept.on_event(created(1, "first"))
     assert window(kept, good=4) == ()
     assert window(kept, good=7) == ()
     assert (kept.best, kept.score) == (0.7, 0.7)
-    kept.changed(created(2, "second"))
+    kept.on_event(created(2, "second"))
     assert [each.lesson for each in window(kept, good=2)] == ["second"]
 
 
@@ -79,7 +79,7 @@ def test_nothing_is_undone_where_nothing_was_changed() -> None:
 def test_time_in_which_it_stands_does_not_count() -> None:
     kept = best()
     for tick in range(1000):
-        assert kept.look(tick, -1, False) == ()
+        assert kept.update(tick, -1, False) == ()
     assert kept.score is None
     window(kept, good=3)
     assert kept.score == 0.3
@@ -88,8 +88,8 @@ def test_time_in_which_it_stands_does_not_count() -> None:
 def test_a_robot_that_has_come_to_know_no_way_on_goes_back() -> None:
     kept = best()
     window(kept, good=1)
-    kept.changed(created(1, "first"))
-    undone = [event for tick in range(10) for event in kept.look(tick, 1, False, asking=True)]
+    kept.on_event(created(1, "first"))
+    undone = [event for tick in range(10) for event in kept.update(tick, 1, False, asking=True)]
     assert [each.lesson for each in undone] == ["first"]
     assert kept.score == -1.0
 
@@ -97,32 +97,32 @@ def test_a_robot_that_has_come_to_know_no_way_on_goes_back() -> None:
 def test_what_was_undone_by_hand_is_not_undone_again() -> None:
     kept = best()
     window(kept, good=9)
-    kept.changed(created(1, "first"))
-    kept.changed(created(2, "second"))
-    kept.changed(LessonUndone("second", origin()))
-    kept.changed(LessonRedone("second", origin()))  # by hand, too: a person wants it
-    kept.changed(SessionBegun("monday", origin()))
+    kept.on_event(created(1, "first"))
+    kept.on_event(created(2, "second"))
+    kept.on_event(LessonUndone("second", origin()))
+    kept.on_event(LessonRedone("second", origin()))  # by hand, too: a person wants it
+    kept.on_event(SessionBegun("monday", origin()))
     assert [each.lesson for each in window(kept, good=0)] == ["first"]
 
 
 def test_what_a_teacher_went_on_from_stays() -> None:
     kept = best()
     window(kept, good=9)
-    kept.changed(created(1, "first"))
-    kept.changed(created(2, "second"))
-    kept.changed(replaced(1, "by ada", teacher="ada"))
+    kept.on_event(created(1, "first"))
+    kept.on_event(created(2, "second"))
+    kept.on_event(replaced(1, "by ada", teacher="ada"))
     assert [each.lesson for each in window(kept, good=0)] == ["second"]
 
 
 def test_after_a_roll_back_the_restored_knowledge_is_scored_anew() -> None:
     kept = best()
     window(kept, good=10)  # by chance
-    kept.changed(created(1, "first"))
+    kept.on_event(created(1, "first"))
     for undone in window(kept, good=5):
-        kept.changed(undone)
+        kept.on_event(undone)
     assert window(kept, good=5) == ()
     assert kept.best == 0.5
-    kept.changed(created(2, "second"))
+    kept.on_event(created(2, "second"))
     assert window(kept, good=6) == ()
     assert window(kept, good=5) == ()
     assert kept.best == 0.6
@@ -130,27 +130,27 @@ def test_after_a_roll_back_the_restored_knowledge_is_scored_anew() -> None:
 
 def test_while_it_is_measured_nothing_is_to_be_changed() -> None:
     kept = best()
-    assert kept.measures
+    assert kept.is_measuring
     window(kept, good=8)
-    assert not kept.measures
-    kept.changed(created(1, "first"))
+    assert not kept.is_measuring
+    kept.on_event(created(1, "first"))
     window(kept, good=5)  # rolled back
-    assert kept.measures
+    assert kept.is_measuring
     window(kept, good=5)
-    assert not kept.measures
-    kept.begin()
-    assert kept.measures
+    assert not kept.is_measuring
+    kept.restart()
+    assert kept.is_measuring
 
 
 def test_what_was_changed_during_a_window_that_is_won_is_not_proven_by_it() -> None:
     kept = best()
     window(kept, good=5)
-    kept.changed(created(1, "before"))
+    kept.on_event(created(1, "before"))
     for tick in range(8):
-        kept.look(tick, 1, True)
-    kept.changed(created(2, "late"))
+        kept.update(tick, 1, True)
+    kept.on_event(created(2, "late"))
     for tick in range(2):
-        kept.look(tick, None, True)
+        kept.update(tick, None, True)
     assert kept.best == 0.8
     assert [each.lesson for each in window(kept, good=3)] == ["late"]
 
@@ -159,10 +159,10 @@ def test_what_is_left_to_be_proven_is_proven_by_the_next_window_that_is_won() ->
     kept = best()
     window(kept, good=5)
     for tick in range(5):
-        kept.look(tick, 1, True)
-    kept.changed(created(1, "late"))
+        kept.update(tick, 1, True)
+    kept.on_event(created(1, "late"))
     for tick in range(5):
-        kept.look(tick, None, True)
+        kept.update(tick, None, True)
     window(kept, good=6)
     assert window(kept, good=0) == ()
 
@@ -173,7 +173,7 @@ def test_knowledge_that_slowly_gets_worse_does_not_slip_through() -> None:
     window(kept, good=6)
     scores: list[int] = []
     for number in range(1, 20):
-        kept.changed(created(number, f"change-{number}"))
+        kept.on_event(created(number, f"change-{number}"))
         scores.append(6 - len(scores))
         undone = window(kept, good=scores[-1])
         if undone:
@@ -185,8 +185,8 @@ def test_knowledge_that_slowly_gets_worse_does_not_slip_through() -> None:
 def test_the_time_before_it_was_alone_does_not_count() -> None:
     kept = best()
     for tick in range(9):
-        kept.look(tick, -1, True)
-    kept.begin()
+        kept.update(tick, -1, True)
+    kept.restart()
     window(kept, good=7)
     assert kept.best == 0.7
 
@@ -194,11 +194,11 @@ def test_the_time_before_it_was_alone_does_not_count() -> None:
 def test_alone_again_it_is_held_against_what_it_is_now_unless_something_is_to_be_proven() -> None:
     kept = best()
     window(kept, good=9)
-    kept.begin()
+    kept.restart()
     window(kept, good=3)
     assert kept.best == 0.3
-    kept.changed(created(1, "first"))
-    kept.begin()
+    kept.on_event(created(1, "first"))
+    kept.restart()
     assert [each.lesson for each in window(kept, good=0)] == ["first"]
 
 
@@ -210,22 +210,22 @@ def test_in_another_run_it_goes_on_from_the_best_window_and_what_was_changed_aft
         created(3, "undone"),
         LessonUndone("undone", origin()),
     ]
-    kept.changed(events[0])
+    kept.on_event(events[0])
     window(kept, good=8)
     for event in events[1:]:
-        kept.changed(event)
+        kept.on_event(event)
     assert (kept.best, kept.includes) == (0.8, 1)
     again = best()
-    again.recall(events, kept.best, kept.includes)
-    assert again.measures
+    again.restore(events, kept.best, kept.includes)
+    assert again.is_measuring
     assert [each.lesson for each in window(again, good=2)] == ["late"]
 
 
 def test_without_a_best_another_run_begins_with_knowledge_as_it_is() -> None:
     again = best()
-    again.recall([created(1, "first")], None, 0)
+    again.restore([created(1, "first")], None, 0)
     window(again, good=8)
-    again.begin()
+    again.restart()
     assert window(again, good=0) == ()
 
 
@@ -251,7 +251,7 @@ def test_whatever_is_changed_by_whom_a_roll_back_fits_the_knowledge(windows: lis
 
     def happens(event: TeachingEvent) -> None:
         knowledge.apply(event)
-        kept.changed(event)
+        kept.on_event(event)
 
     for acts, good in windows:
         for act, which in acts:

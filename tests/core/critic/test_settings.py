@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from hal.settings import SettingsError, load_settings
-from kurt2rt.core.critic.settings import NAMES, SURPRISED, CircumstanceWeights, CriticSettings, load_critic
+from kurt2rt.core.critic.settings import NAMES, SURPRISED, AppraisalWeights, CriticSettings, load_critic
 from kurt2rt.core.task_settings import load_task
 
 CONTENT: dict[str, Any] = load_critic().model_dump(mode="json")
@@ -66,7 +66,7 @@ def test_what_makes_no_sense_is_refused(content: dict[str, Any], told: str) -> N
 
 
 def test_each_circumstance_may_be_weighed_and_nothing_else(tmp_path: Path) -> None:
-    assert set(CircumstanceWeights.model_fields) == {*NAMES, SURPRISED}
+    assert set(AppraisalWeights.model_fields) == {*NAMES, SURPRISED}
     wrong = tmp_path / "wrong.yaml"
     wrong.write_text(json.dumps(changed("learning", weights={"lift_m": 1.0})))
     with pytest.raises(SettingsError, match=r"weights.lift_m: no such key; allowed here: left_m, front_m, right_m"):

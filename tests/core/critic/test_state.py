@@ -2,14 +2,14 @@
 
 import pytest
 
-from kurt2rt.core.critic.settings import NeedSettings
+from kurt2rt.core.critic.settings import ActivationSettings
 from kurt2rt.core.critic.state import CriticState
 from kurt2rt.core.rla.rla import Phase
 from tests.core.reinforcement.helpers import CALM, CRASHED, QUICK, Track, knows_good_from_bad
 from tests.core.rla.helpers import created
 
 WINDOW_TICKS = 100
-NEEDS_A_TENTH = QUICK.model_copy(update={"need": NeedSettings(bad_share=0.1, mean_s=100.0, first_s=0.0)})
+NEEDS_A_TENTH = QUICK.model_copy(update={"need": ActivationSettings(bad_share=0.1, mean_s=100.0, first_s=0.0)})
 
 
 def alone(*taught_the_critic: bool) -> Track:

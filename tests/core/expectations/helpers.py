@@ -33,10 +33,10 @@ class Small:
     def happens(self, event: TeachingEvent) -> int | None:
         """A lesson acts, and the expectations hear of it."""
         self.system.apply(event)
-        return self.expectations.hear(event)
+        return self.expectations.on_event(event)
 
     def expected(self, rla_id: int) -> Expectation:
         """What is expected of one that ended before."""
-        expectation = self.expectations.of(rla_id)
+        expectation = self.expectations.get(rla_id)
         assert expectation is not None
         return expectation

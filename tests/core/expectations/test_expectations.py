@@ -36,7 +36,7 @@ def test_how_long_it_drives_is_expected_too() -> None:
 def test_nothing_is_expected_of_an_rla_that_was_never_seen_to_end() -> None:
     small = Small()
     small.ends(1, 2, 5.0, 5.0)
-    assert small.expectations.of(2) is None
+    assert small.expectations.get(2) is None
 
 
 def test_what_comes_as_ever_is_no_surprise_and_what_lies_far_off_is_one() -> None:
@@ -113,23 +113,23 @@ def test_an_rla_with_another_action_is_expected_to_do_nothing_that_the_old_one_d
     small.ends(1, 2, 5.0, 5.0)
     small.ends(2, 1, 7.0, 7.0)
     assert small.happens(replaced(1, "backward", "forward")) == 1
-    assert small.expectations.of(1) is None
-    assert small.expectations.of(2) is not None
+    assert small.expectations.get(1) is None
+    assert small.expectations.get(2) is not None
     small.ends(1, 2, 9.0, 9.0)
     assert small.happens(undone("correction-1")) == 1
-    assert small.expectations.of(1) is None
+    assert small.expectations.get(1) is None
 
 
 def test_what_was_deleted_comes_back_without_expectation() -> None:
     small = Small()
     small.ends(1, 2, 5.0, 5.0)
-    small.expectations.to_save()
+    small.expectations.snapshot()
     small.happens(deleted(1))
-    assert small.expectations.to_save() == {}
+    assert small.expectations.snapshot() == {}
     assert small.ends(1, 2, 5.0, 5.0) is None
-    assert small.expectations.of(1) is None
+    assert small.expectations.get(1) is None
     small.happens(undone("deletion-1"))
-    assert small.expectations.of(1) is None
+    assert small.expectations.get(1) is None
     small.ends(1, 2, 6.0, 5.0)
     assert small.expected(1).mean.tolist() == [6.0, 5.0]
 
@@ -138,7 +138,7 @@ def test_a_lesson_that_is_undone_takes_its_expectation_with_it() -> None:
     small = Small()
     small.ends(3, 2, 5.0, 5.0)
     assert small.happens(undone("lesson-3")) == 3
-    assert small.expectations.to_save() == {}
+    assert small.expectations.snapshot() == {}
 
 
 def test_praise_changes_no_expectation() -> None:
@@ -146,7 +146,7 @@ def test_praise_changes_no_expectation() -> None:
     small.ends(1, 2, 5.0, 5.0)
     assert small.happens(rewarded(1)) is None
     assert small.happens(undone("reward-1")) is None
-    assert small.expectations.of(1) is not None
+    assert small.expectations.get(1) is not None
 
 
 @pytest.mark.parametrize("metric", ["euclidean", "hamming"])
@@ -160,7 +160,7 @@ def test_it_goes_on_from_what_was_saved(metric: str) -> None:
         whole.ends(1, 2, *situation)
     for situation in situations[:7]:
         first.ends(1, 2, *situation)
-    second = Small("hamming" if metric == "hamming" else "euclidean", first.expectations.to_save())
+    second = Small("hamming" if metric == "hamming" else "euclidean", first.expectations.snapshot())
     for situation in situations[7:]:
         second.ends(1, 2, *situation)
     assert second.expected(1) == whole.expected(1)  # to the last bit
@@ -170,21 +170,21 @@ def test_what_was_saved_of_the_dead_or_of_another_action_is_left_behind() -> Non
     before = Small()
     for rla_id in (1, 2, 3):
         before.ends(rla_id, 2, 5.0, 5.0)
-    saved = before.expectations.to_save()
+    saved = before.expectations.snapshot()
     again = Small()
     again.system.apply(deleted(1))
     again.system.apply(replaced(2, "backward", "forward"))
     expectations = type(again.expectations)(again.level, again.system, again.space, {}, saved)
-    assert expectations.to_save() == {3: saved[3]}
+    assert expectations.snapshot() == {3: saved[3]}
 
 
 def test_only_what_has_changed_is_made_anew_to_be_saved() -> None:
     small = Small()
     for rla_id in (1, 2, 3):
         small.ends(rla_id, 2, 5.0, 5.0)
-    first = small.expectations.to_save()
+    first = small.expectations.snapshot()
     small.ends(2, 3, 6.0, 5.0)
-    second = small.expectations.to_save()
+    second = small.expectations.snapshot()
     assert [second[rla_id] is first[rla_id] for rla_id in (1, 2, 3)] == [True, False, True]
     assert first[2].count == 1  # what was handed over does not change any more
 

@@ -18,7 +18,7 @@ class Drive:
 
     def see(self, rla_id: int | None, place: float = 0.0, *, ticks: int = 1, behaviour: str = "") -> None:
         for _ in range(ticks):
-            self.following.see(self.tick, rla_id, np.array([place, 0.0]), behaviour)
+            self.following.update(self.tick, rla_id, np.array([place, 0.0]), behaviour)
             self.tick += 1
 
 
@@ -36,7 +36,7 @@ class Journey:
     def sees(self, rla_id: int | None, ticks: int = 1, *, driving: bool = True) -> None:
         decision = MidDecision("straight_on", rla_id, None, rla_id is None, False, None)
         for _ in range(ticks):
-            self.following.see(decision, self.situation, driving=driving)
+            self.following.update(decision, self.situation, driving=driving)
 
 
 def test_an_rla_ends_in_the_situation_in_which_another_takes_over() -> None:
@@ -52,7 +52,7 @@ def test_standing_is_no_follow_up() -> None:
     drive.see(1, 10.0, ticks=3)
     drive.see(None, 20.0, ticks=3)
     drive.see(2, 30.0)
-    assert drive.small.expectations.of(1) is None
+    assert drive.small.expectations.get(1) is None
 
 
 def test_what_a_command_ended_did_not_lead_there() -> None:
@@ -60,7 +60,7 @@ def test_what_a_command_ended_did_not_lead_there() -> None:
     drive.see(1, 10.0, ticks=3, behaviour="straight_on")
     drive.see(2, 20.0, ticks=3, behaviour="turn_left")
     drive.see(3, 30.0, behaviour="turn_left")
-    assert drive.small.expectations.of(1) is None
+    assert drive.small.expectations.get(1) is None
     assert drive.small.expected(2).mean.tolist() == [30.0, 0.0]
 
 
@@ -69,7 +69,7 @@ def test_a_correction_of_the_one_that_drives_begins_anew() -> None:
     drive.see(1, ticks=50)
     event = replaced(1, "backward", "forward")
     drive.small.system.apply(event)
-    assert drive.following.hear(event) == 1
+    assert drive.following.on_event(event) == 1
     drive.see(1, ticks=5)
     drive.see(2, 20.0)
     assert drive.small.expected(1).ticks == 5.0
@@ -111,7 +111,7 @@ def test_what_changes_while_no_junction_was_passed_follows_from_nothing() -> Non
     journey.sees(2, ticks=10)
     journey.comes_to(2.0, 1.0, 0.0)
     journey.sees(3)
-    assert journey.small.expectations.of(1) is None
+    assert journey.small.expectations.get(1) is None
     assert journey.small.expected(2).ticks == 10.0
 
 
@@ -134,4 +134,4 @@ def test_who_was_set_down_elsewhere_came_from_nowhere() -> None:
     journey.following.restart()
     journey.comes_to(0.0, 0.0, 0.0)
     journey.sees(2)
-    assert journey.small.expectations.of(1) is None
+    assert journey.small.expectations.get(1) is None

@@ -7,7 +7,7 @@ import pytest
 
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import Cause, Decision
-from kurt2rt.core.mid.settings import MidSettings, load_mid
+from kurt2rt.core.mid.settings import MidSettings, load_mid_level
 from kurt2rt.core.mid.situation import MidSituation
 from tests.core.mid.walk import OPEN_M, ROBOT, STREET_M, sensed
 
@@ -42,12 +42,12 @@ class Led:
     @property
     def words(self) -> list[str]:
         """What is remembered, newest first, as far as there is something."""
-        names = self.settings.situation.words(self.situation.vector)
+        names = self.settings.situation.describe(self.situation.vector)
         return [each for each in names if each]
 
 
 def test_what_was_done_at_each_junction_newest_first() -> None:
-    led = Led(load_mid("turns")).go(0.5)
+    led = Led(load_mid_level("turns")).go(0.5)
     assert led.situation.dimensions == len(led.situation.features) == 12
     assert led.situation.vector.tolist() == [0.0] * 12
     led.over(90.0, 0.0, 0.0, -90.0)
@@ -58,7 +58,7 @@ def test_what_was_done_at_each_junction_newest_first() -> None:
 
 
 def test_the_vector_of_an_earlier_moment_stays_as_it_was() -> None:
-    led = Led(load_mid("turns")).go(0.5)
+    led = Led(load_mid_level("turns")).go(0.5)
     before = led.situation.vector
     led.over(90.0)
     assert before.tolist() == [0.0] * 12
@@ -68,7 +68,7 @@ def test_the_vector_of_an_earlier_moment_stays_as_it_was() -> None:
 
 
 def test_a_junction_is_told_in_the_tick_in_which_it_has_been_passed_and_in_no_other() -> None:
-    situation = load_mid("turns").build(ROBOT)
+    situation = load_mid_level("turns").build(ROBOT)
     seen = []
     for away_m, steps in ((STREET_M, 100), (OPEN_M, 160), (STREET_M, 100)):
         for _ in range(steps):
@@ -79,7 +79,7 @@ def test_a_junction_is_told_in_the_tick_in_which_it_has_been_passed_and_in_no_ot
 
 
 def test_a_robot_that_was_set_down_has_no_past() -> None:
-    led = Led(load_mid("turns")).go(0.5).over(90.0, 0.0)
+    led = Led(load_mid_level("turns")).go(0.5).over(90.0, 0.0)
     led.go(0.8, OPEN_M)
     led.situation.restart()
     assert led.situation.vector.tolist() == [0.0] * 12
@@ -88,7 +88,7 @@ def test_a_robot_that_was_set_down_has_no_past() -> None:
 
 
 def test_low_passed_symbols_tell_streets_crossings_and_turns_each_once_while_it_lasts() -> None:
-    led = Led(load_mid("low_passed")).go(1.0)
+    led = Led(load_mid_level("low_passed")).go(1.0)
     assert led.words == ["street"]
     led.over(90.0, 90.0, 0.0)
     assert led.words == ["street", "crossing", "street", "left", "street", "left", "street"]
@@ -97,12 +97,12 @@ def test_low_passed_symbols_tell_streets_crossings_and_turns_each_once_while_it_
 
 
 def test_turning_on_the_spot_is_a_turn_of_low_passed_symbols_too() -> None:
-    led = Led(load_mid("low_passed")).go(1.0).go(0.3, OPEN_M).go(0.0, OPEN_M, turn_deg=-90.0).go(1.0)
+    led = Led(load_mid_level("low_passed")).go(1.0).go(0.3, OPEN_M).go(0.0, OPEN_M, turn_deg=-90.0).go(1.0)
     assert led.words == ["street", "right", "street"]
 
 
 def test_actions_of_the_basic_level_as_symbols_count_when_they_differ() -> None:
-    led = Led(load_mid("actions"))
+    led = Led(load_mid_level("actions"))
     for action in ("forward", "forward", None, "forward", "sharp_left", "stand", "sharp_left", "forward"):
         led.situation.perceive(sensed(STREET_M, STREET_M), driven(action))
     assert led.words == ["forward", "sharp_left", "forward"]
@@ -113,15 +113,15 @@ def test_actions_of_the_basic_level_as_symbols_count_when_they_differ() -> None:
 
 @pytest.mark.parametrize("name", ["turns", "low_passed", "actions"])
 def test_conditions_of_whatever_symbols_can_be_read(name: str) -> None:
-    situation = load_mid(name).situation
-    assert situation.words(np.array([1.0, 0.0, 2.0] + [0.0] * 9))[1] == ""
-    assert all(situation.words([1.0] * 12))
+    situation = load_mid_level(name).situation
+    assert situation.describe(np.array([1.0, 0.0, 2.0] + [0.0] * 9))[1] == ""
+    assert all(situation.describe([1.0] * 12))
 
 
 def test_what_the_basic_level_expected_and_got_counts_and_what_came_by_chance_does_not() -> None:
-    mid = load_mid("expectations")
+    mid = load_mid_level("expectations")
     situation = mid.build(ROBOT, {(1, 2): 5, (1, 3): 2, (2, 3): 1, (3, 1): 4})
     for rla_id in (1, 1, 2, 3, 1, 3, None, 2, 3):
         situation.perceive(sensed(STREET_M, STREET_M), STANDS._replace(rla_id=rla_id))
     # 1 is followed by 2, as ever, that by 3, that by 1; then 3 follows, which it seldom does; standing ends a chain.
-    assert [word for word in mid.situation.words(situation.vector) if word] == ["3", "1", "3", "2"]
+    assert [word for word in mid.situation.describe(situation.vector) if word] == ["3", "1", "3", "2"]

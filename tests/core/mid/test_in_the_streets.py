@@ -16,7 +16,7 @@ from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector
-from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.task_settings import load_task
 from simbridge.simulation import Kurt2Simulation
@@ -53,7 +53,7 @@ class Drive:
 def test_corners_ts_and_crossings_each_tell_what_was_done_there_and_where_it_could_go() -> None:
     drive = Drive(1)
     drive.simulation.simulated_robot.place(Pose(0.4, 1.3, math.pi / 2))
-    detector = JunctionDetector(load_mid("turns").junctions, ROBOT)
+    detector = JunctionDetector(load_mid_level("turns").junctions, ROBOT)
     way = iter(["straight_on", "turn_right", "straight_on", "turn_left", "turn_right", "turn_right", "straight_on"])
     drive.wanted.select(next(way))
     passed: list[JunctionEvent] = []
@@ -103,7 +103,7 @@ def random_drive(seed: int, duration_s: float, robot: RobotSettings) -> tuple[li
     streets = StreetMap(drive.simulation.plan)
     course = Junctions(streets, TASK.behaviours, random.Random(seed))
     course.put(drive.simulation.pose)
-    truth, detector = Truth(streets), JunctionDetector(load_mid("turns").junctions, robot)
+    truth, detector = Truth(streets), JunctionDetector(load_mid_level("turns").junctions, robot)
     passed: list[object] = []
     told: list[object] = []
     for senses in drive.ticks(duration_s):

@@ -7,10 +7,10 @@ import pytest
 
 from hal.settings import SettingsError
 from kurt2rt.core.mid.junction_detector import JunctionDetector, JunctionDetectorSettings
-from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.mid.settings import load_mid_level
 from tests.core.mid.walk import OPEN_M, ROBOT, STREET_M, Walk
 
-SETTINGS = load_mid("turns").junctions
+SETTINGS = load_mid_level("turns").junctions
 
 
 def test_straight_over_a_crossing() -> None:

@@ -106,7 +106,7 @@ def test_nobody_else_changes_what_is_wanted_for_longer_than_a_tick() -> None:
 
 def test_a_teacher_cannot_command_what_is_not_taught() -> None:
     small = SmallStack()
-    with pytest.raises(ValueError, match="no taught behaviour 'fly'"):
+    with pytest.raises(ValueError, match="NO_BEHAVIOUR"):
         small.mid.override("fly")
     assert small.commanded().asks
 

@@ -14,7 +14,7 @@ from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Cause, Decision
 from kurt2rt.core.mid.place import EAST, NORTH, WALL_LEFT, WALL_RIGHT, Place, X, Y
-from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.task_settings import load_task
@@ -22,7 +22,7 @@ from simbridge.simulation import Kurt2Simulation
 
 ROBOT = load_robot()
 STREETS = load_task("streets")
-PLACES = load_mid("places")
+PLACES = load_mid_level("places")
 NOTHING = Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
 NOWHERE = Situation(np.zeros(1), history_frozen=False)
 
@@ -78,7 +78,7 @@ AT_START: Condition = (2.2, 3.1, 0.0, 1.0, 0.5, 0.5)
 @pytest.fixture
 def drive() -> Iterator[Drive]:
     drives = Drive(place(), NORTHWARD)
-    drives.place.be_at(AT_START)
+    drives.place.localise(AT_START)
     yield drives
     drives.simulation.close()
 
@@ -104,7 +104,7 @@ def test_what_stood_beside_it_in_the_junction_is_part_of_the_place(drive: Drive)
 def test_at_a_place_that_it_knows_the_reckoning_is_put_right(drive: Drive) -> None:
     drive.lead("turn_right")
     known: Condition = (3.0, 4.1, 1.0, 0.0, 0.0, 0.0)
-    drive.place.known = lambda vector: known if np.hypot(vector[X] - 4.9, vector[Y] - 4.1) < 0.6 else None
+    drive.place.known_place = lambda vector: known if np.hypot(vector[X] - 4.9, vector[Y] - 4.1) < 0.6 else None
     drive.lead("straight_on")
     reckoned = drive.place.vector.copy()
     assert math.hypot(reckoned[X] - 4.8, reckoned[Y] - 4.0) < 0.3  # it says what it found, not what it knew
@@ -130,7 +130,7 @@ def test_set_down_elsewhere_it_is_lost_until_somebody_says_where_it_is(drive: Dr
         drive.step()
     assert drive.place.lost
     drive.simulation.simulated_robot.place(NORTHWARD)
-    drive.place.be_at(AT_START)
+    drive.place.localise(AT_START)
     drive.lead("turn_right")
     assert drive.off_m < 0.15
 
@@ -147,4 +147,4 @@ def test_places_at_one_point_with_opposite_headings_are_two() -> None:
     assert space.weights is not None
     apart = np.array([0.0, 0.0, 2.0, 0.0, 1.0, 1.0]) * space.weights
     assert np.linalg.norm(apart) > space.radius
-    assert PLACES.situation.words(AT_START)[:2] == ("x_m 2.20", "y_m 3.10")
+    assert PLACES.situation.describe(AT_START)[:2] == ("x_m 2.20", "y_m 3.10")

@@ -6,9 +6,9 @@ from typing import Any
 import pytest
 
 from hal.settings import SettingsError
-from kurt2rt.core.mid.settings import MidSettings, load_mid
+from kurt2rt.core.mid.settings import MidSettings, load_mid_level
 
-CONTENT: dict[str, Any] = load_mid("turns").model_dump(mode="json", serialize_as_any=True)
+CONTENT: dict[str, Any] = load_mid_level("turns").model_dump(mode="json", serialize_as_any=True)
 
 
 def checked(**sections: dict[str, object]) -> MidSettings:
@@ -17,21 +17,21 @@ def checked(**sections: dict[str, object]) -> MidSettings:
 
 
 def test_the_shipped_mid_level_is_the_papers_with_junctions_for_symbols() -> None:
-    mid = load_mid("turns")
+    mid = load_mid_level("turns")
     assert (mid.space.dimensions, mid.space.radius, mid.space.metric) == (12, 6.0, "hamming")
     assert mid.situation.kind == "history"
     assert mid.features[0] == "symbol 1"
-    assert load_mid(mid) is mid
+    assert load_mid_level(mid) is mid
 
 
 def test_a_name_that_is_not_there_is_told() -> None:
     with pytest.raises(SettingsError, match="no such file in mid_levels"):
-        load_mid("nowhere")
+        load_mid_level("nowhere")
 
 
 def test_knowledge_is_bound_to_what_the_features_are_and_to_nothing_else() -> None:
-    bound = load_mid("turns").level_features
-    assert bound.feature_names == load_mid("turns").features
+    bound = load_mid_level("turns").level_features
+    assert bound.feature_names == load_mid_level("turns").features
     for same in (checked(learning={"radius": 3.0}), checked(situation={"distance": "edit"})):
         assert same.level_features == bound
     others = (
@@ -39,7 +39,7 @@ def test_knowledge_is_bound_to_what_the_features_are_and_to_nothing_else() -> No
         checked(situation={"length": 8}),
         checked(situation={"symbols": {"kind": "actions", "actions": ["forward"]}}),
     )
-    assert len({each.level_features.feature_hash for each in (load_mid("turns"), *others)}) == 4
+    assert len({each.level_features.feature_hash for each in (load_mid_level("turns"), *others)}) == 4
 
 
 @pytest.mark.parametrize(

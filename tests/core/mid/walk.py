@@ -6,7 +6,7 @@ from hal.robot import SensorReadings
 from hal.robot_settings import load_robot
 from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector
-from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.mid.settings import load_mid_level
 
 ROBOT = load_robot()
 STREET_M, OPEN_M = 0.235, 0.60
@@ -33,7 +33,7 @@ class Walk:
     """Shows a detector each step, and keeps what it said."""
 
     def __init__(self, detector: JunctionDetector | None = None) -> None:
-        self.detector = detector or JunctionDetector(load_mid("turns").junctions, ROBOT)
+        self.detector = detector or JunctionDetector(load_mid_level("turns").junctions, ROBOT)
         self.passed: list[JunctionEvent] = []
 
     def go(

@@ -4,7 +4,7 @@ import pytest
 
 from hal.robot_settings import load_robot
 from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.perception.sensor_words import NO_WORDS, law_of, words_for
+from kurt2rt.core.perception.sensor_words import NO_WORDS, infrared_law, words_for
 
 INFRARED = load_robot().infrared
 WORDS = words_for(INFRARED)
@@ -44,8 +44,8 @@ def test_feature_that_is_no_reading_keeps_its_number() -> None:
 
 
 def test_law_agrees_with_the_robot_settings_where_it_sees() -> None:
-    law = law_of(INFRARED)
-    seen = [counts for counts in range(1024) if law.sees(counts)]
+    law = infrared_law(INFRARED)
+    seen = [counts for counts in range(1024) if law.detects(counts)]
     assert [law.distance_m(each) for each in seen] == [INFRARED.distance_m(each) for each in seen]
 
 

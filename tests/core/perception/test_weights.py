@@ -6,7 +6,7 @@ import pytest
 
 from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.perception.weights import weights_of
+from kurt2rt.core.perception.weights import feature_weights
 from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.task_settings import FeatureWeight, load_task
 from kurt2rt.core.tick import TickRecord
@@ -21,13 +21,17 @@ NAMES = DEFINITION.names
 
 
 def test_all_recent_features_weigh_one_and_their_averages_a_share_of_it() -> None:
-    weights = weights_of(DEFINITION, (), 0.25, "mine")
+    weights = feature_weights(DEFINITION, (), 0.25, "mine")
     assert weights.tolist() == [1.0] * 36 + [0.25] * 36
 
 
 def test_some_weigh_something_else_in_both_halves() -> None:
     weights = dict(
-        zip(NAMES, weights_of(DEFINITION, [(("s15", "maximum front"), 3.0), (("s2",), 0.0)], 0.5, "mine"), strict=True)
+        zip(
+            NAMES,
+            feature_weights(DEFINITION, [(("s15", "maximum front"), 3.0), (("s2",), 0.0)], 0.5, "mine"),
+            strict=True,
+        )
     )
     assert weights["s15"] == weights["maximum front"] == 3.0
     assert weights["s15 (10 s average)"] == 1.5
@@ -54,7 +58,7 @@ def test_a_feature_that_is_not_there_or_twice_is_refused(
     changed: list[tuple[tuple[str, ...], float]], told: str
 ) -> None:
     with pytest.raises(SettingsError) as caught:
-        weights_of(DEFINITION, changed, 1.0, "mine")
+        feature_weights(DEFINITION, changed, 1.0, "mine")
     assert told in str(caught.value)
 
 

@@ -5,10 +5,10 @@ import pytest
 
 from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.decision.plan_step import GoalStatus
+from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode
 from kurt2rt.core.planning.goal_pursuit import PIECES, GoalPursuit
-from kurt2rt.core.planning.target import Target, Vector, target_of
-from kurt2rt.core.planning.topological_map import charting
-from kurt2rt.core.rla.outcome import CommandRefusedError, Outcome, RefusalCode
+from kurt2rt.core.planning.target import Target, Vector, make_target
+from kurt2rt.core.planning.topological_map import build_map
 from kurt2rt.core.rla.rla import MID, Rla
 from tests.core.planning.town import FEATURES, RADIUS, Town
 from tests.core.rla.helpers import deleted
@@ -28,7 +28,7 @@ def grid() -> Town:
 
 def target(town: Town, goal: Goal) -> Target:
     door = {"door": tuple(town.at("e").tolist())} if "e" in town.places else {}
-    return target_of(
+    return make_target(
         goal,
         named=door,
         rla=town.system.get,
@@ -44,7 +44,7 @@ DOOR = NamedGoal("door")
 
 
 def seeking(town: Town, goal: Goal = DOOR) -> GoalPursuit:
-    seeks = GoalPursuit(town.charting, town.group_at)
+    seeks = GoalPursuit(town.build_map, town.group_at)
     seeks.seek(goal, target(town, goal))
     return seeks
 
@@ -52,8 +52,8 @@ def seeking(town: Town, goal: Goal = DOOR) -> GoalPursuit:
 def think(seeks: GoalPursuit) -> int:
     """Until it is settled how it goes on; after how many ticks."""
     ticks = 0
-    while seeks.course is GoalStatus.PLANNING:
-        seeks.think()
+    while seeks.status is GoalStatus.PLANNING:
+        seeks.plan_step()
         ticks += 1
     return ticks
 
@@ -64,7 +64,7 @@ def arrive(seeks: GoalPursuit, situation: Vector) -> int:
 
 
 def course(seeks: GoalPursuit) -> GoalStatus:
-    return seeks.course
+    return seeks.status
 
 
 def chosen(town: Town, seeks: GoalPursuit, place: str) -> str | None:
@@ -222,27 +222,27 @@ def test_a_plan_in_a_large_town_is_made_over_many_ticks_and_is_the_same_again() 
 
     took = []
     for _ in range(2):
-        seeks = GoalPursuit(lambda: charting(row.system.rlas_at(MID), group_at, row.followed, row.seen.get), group_at)
+        seeks = GoalPursuit(lambda: build_map(row.system.rlas_at(MID), group_at, row.followed, row.seen.get), group_at)
         seeks.seek(last, target(row, last))
         seeks.arrive(row.at("p0"))
         ticks = most = 0
-        while seeks.course is GoalStatus.PLANNING:
+        while seeks.status is GoalStatus.PLANNING:
             matched = 0
-            seeks.think()
+            seeks.plan_step()
             ticks, most = ticks + 1, max(most, matched)
         assert most <= PIECES
         took.append(ticks)
     assert took[0] == took[1]
     assert took[0] > 2 * 200 // PIECES
     assert seeks.plan is not None
-    assert len(seeks.plan.ways) == 199
+    assert len(seeks.plan.edges) == 199
 
 
 def test_nowhere_is_no_goal() -> None:
     town = grid()
     nowhere = np.array([np.nan, np.nan, 1.0])
     for goal in (DOOR, PartialGoal((("wall_left", 1.0),))):
-        assert not target(town, goal).met_by(nowhere)
+        assert not target(town, goal).matches(nowhere)
         seeks = seeking(town, goal)
         arrive(seeks, nowhere)
         assert course(seeks) is GoalStatus.LOST

@@ -3,7 +3,7 @@
 import numpy as np
 
 from kurt2rt.core.planning.plan import Plan, plan_to
-from kurt2rt.core.planning.target import Having, Near, Target
+from kurt2rt.core.planning.target import FeatureTarget, NearTarget, Target
 from kurt2rt.core.planning.topological_map import TopologicalMap
 from tests.core.planning.town import RADIUS, Town
 from tests.core.rla.helpers import withdrawn
@@ -24,18 +24,18 @@ def place_id(town: Town, place: str) -> int:
 
 
 def meeting(chart: TopologicalMap, target: Target) -> set[int]:
-    return {each for each, place in chart.places.items() if target.met_by(np.array(place.condition))}
+    return {each for each, place in chart.places.items() if target.matches(np.array(place.condition))}
 
 
 def plan(town: Town, start: str, end: str) -> Plan | None:
     chart = town.chart()
-    target = Near(tuple(town.at(end).tolist()), RADIUS, town.distance, town.group_at)
+    target = NearTarget(tuple(town.at(end).tolist()), RADIUS, town.distance, town.group_at)
     return plan_to(chart, place_id(town, start), meeting(chart, target))
 
 
 def actions(found: Plan | None) -> list[str]:
     assert found is not None
-    return [way.action for way in found.ways]
+    return [way.action for way in found.edges]
 
 
 def test_a_plan_is_a_chain_of_ways_that_were_never_gone_one_after_the_other() -> None:
@@ -87,7 +87,7 @@ def test_what_followed_tells_where_an_rla_leads_when_its_expectation_lies_betwee
     town.follow_ups[torn, place_id(town, "ne")] = 1
     town.follow_ups[torn, place_id(town, "nw")] = 1
     chart, here = town.chart(), place_id(town, "sw")
-    ways = [chart.way(here, place_id(town, each)) for each in ("ne", "nw")]
+    ways = [chart.edge(here, place_id(town, each)) for each in ("ne", "nw")]
     assert {way.rla_id for way in ways} == {torn}
     assert {(way.end, way.share) for way in ways} == {(place_id(town, "ne"), 0.5), (place_id(town, "nw"), 0.5)}
 
@@ -101,7 +101,7 @@ def test_a_partial_goal_is_the_nearest_place_that_has_it() -> None:
         fresh.way(start, "turn_left", end)
     fresh.teach("nw", "turn_left")
     chart = fresh.chart()
-    goals = meeting(chart, Having({2: 1.0}, 0.1))
+    goals = meeting(chart, FeatureTarget({2: 1.0}, 0.1))
     assert goals == {place_id(fresh, "ne"), place_id(fresh, "nw")}
     found = plan_to(chart, place_id(fresh, "sw"), goals)
     assert actions(found) == ["turn_left", "turn_left"]

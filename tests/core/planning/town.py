@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 
 from kurt2rt.core.planning.map_builder import MapBuilder
-from kurt2rt.core.planning.target import Having, Vector
-from kurt2rt.core.planning.topological_map import Charting, TopologicalMap, charting
+from kurt2rt.core.planning.target import FeatureTarget, Vector
+from kurt2rt.core.planning.topological_map import MapBuild, TopologicalMap, build_map
 from kurt2rt.core.rla.rla import MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
@@ -55,17 +55,17 @@ class Town:
         match = self.system.match(situation, level=MID)
         return self.system.competitors(match.rla) if match is not None and match.known else ()
 
-    def charting(self) -> Charting:
+    def build_map(self) -> MapBuild:
         """Begin a chart of what is known now."""
-        return charting(self.system.rlas_at(MID), self.group_at, self.followed, self.seen.get)
+        return build_map(self.system.rlas_at(MID), self.group_at, self.followed, self.seen.get)
 
     def chart(self) -> TopologicalMap:
         """As it is known now."""
-        survey = MapBuilder(self.charting(), Having({}, 0.0))
+        survey = MapBuilder(self.build_map(), FeatureTarget({}, 0.0))
         while not survey.step(1):
             pass
-        assert survey.chart is not None
-        return survey.chart
+        assert survey.topological_map is not None
+        return survey.topological_map
 
     def followed(self, rla_id: int) -> dict[int, int]:
         """How often each RLA followed one."""

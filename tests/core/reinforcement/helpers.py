@@ -5,10 +5,10 @@ from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.critic import Critic
 from kurt2rt.core.critic.settings import (
+    ActivationSettings,
     AgreementSettings,
-    BestSettings,
     CriticSettings,
-    NeedSettings,
+    RollbackSettings,
     SignalEverySettings,
 )
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
@@ -49,8 +49,8 @@ QUICK = SETTINGS.model_copy(
         "patience_s": 0.0,
         "agreement": AgreementSettings(bound=0.8, window=5, least=2, apart_s=0.0),
         "signal_every_s": SignalEverySettings(bad=0.1, good=0.2),
-        "need": NeedSettings(bad_share=0.0, mean_s=1.0, first_s=0.0),
-        "best": BestSettings(window_s=1.0, margin=0.1),
+        "need": ActivationSettings(bad_share=0.0, mean_s=1.0, first_s=0.0),
+        "best": RollbackSettings(window_s=1.0, margin=0.1),
     }
 )
 """A critic that is trusted after two signals of each value, and speaks ten times a second."""
@@ -80,15 +80,15 @@ class Track:
         self.system = RlaSystem(1, RADIUS, others={CRITIC: space})
         self.recent = DecisionHistory(1)
         self.reinforcement = Reinforcement(self.system, self.recent, reinforcement or SIGNALS_ONLY, PERIOD_S)
-        self.reinforcement.recall(events, saved)
+        self.reinforcement.restore(events, saved)
         actions = {name: Counted() for name in "abc"}
         choice = self.reinforcement.choice
         self.level = BasicLevel(self.system, actions, MINIMUM_TICKS, ActiveBehaviour(), choice)
         self.critic = Critic(self.system, critic)
         self.agreement = Agreement(critic.agreement, critic.values, PERIOD_S)
-        self.agreement.hear_all(events)
+        self.agreement.replay(events)
         self.self_teaching = SelfTeaching(self.reinforcement, self.system, critic, self.agreement, PERIOD_S)
-        self.self_teaching.recall(events, saved)
+        self.self_teaching.restore(events, saved)
         self.school = CommandHandler(
             self.level,
             ControlAuthority(actions, attended=False),
@@ -115,11 +115,9 @@ class Track:
         self.learnt = []
         for _ in range(ticks):
             self.tick += 1
-            opinion = self.critic.think(self.tick, seen)
+            opinion = self.critic.appraise(self.tick, seen)
             decision = self.level.decide(situation(place), sensed(), because)
-            self.recent.remember(
-                self.tick, situation(place), decision, blind=False, circumstances=seen, opinion=opinion
-            )
+            self.recent.add(self.tick, situation(place), decision, blind=False, circumstances=seen, opinion=opinion)
             self.learnt += self.school.learn(self.tick, decision, opinion)
         self.events += self.learnt
         return decision
@@ -142,7 +140,7 @@ class Track:
         return event
 
     def worth(self, rla_id: int) -> float:
-        return self.reinforcement.worth(rla_id)
+        return self.reinforcement.value(rla_id)
 
     @property
     def actions(self) -> dict[int, str]:

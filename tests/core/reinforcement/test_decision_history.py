@@ -23,59 +23,57 @@ def remembered(*ticks: int, capacity: int = 10) -> DecisionHistory:
 
 def remember(recent: DecisionHistory, tick: int, behaviour: str = "", *, blind: bool = False) -> None:
     situation = Situation(np.array([tick, -tick], dtype=np.float64), history_frozen=False)
-    recent.remember(
-        tick, situation, Decision(STANDSTILL, Cause.RLA, "a", 100 + tick, None, True), behaviour, blind=blind
-    )
+    recent.add(tick, situation, Decision(STANDSTILL, Cause.RLA, "a", 100 + tick, None, True), behaviour, blind=blind)
 
 
 @pytest.mark.parametrize("tick", [-1, 0, 1, 9, 10, 11, 2**53])
 def test_nothing_is_known_before_the_first_tick(tick: int) -> None:
-    assert not remembered().knows(tick)
+    assert not remembered().contains(tick)
     assert remembered().newest == -1
 
 
 def test_each_tick_has_its_own_situation_and_rla() -> None:
     recent = remembered(3, 4, 5)
     for tick in (3, 4, 5):
-        assert recent.knows(tick)
-        assert recent.saw(tick)
+        assert recent.contains(tick)
+        assert recent.has_situation(tick)
         assert recent.situation(tick).tolist() == [tick, -tick]
-        assert recent.rla(tick) == 100 + tick
+        assert recent.driving_rla(tick) == 100 + tick
     assert recent.newest == 5
 
 
 def test_as_many_as_fit_are_kept_and_the_oldest_is_forgotten() -> None:
     recent = remembered(*range(1, 11))
-    assert [recent.knows(tick) for tick in (0, 1, 10, 11)] == [False, True, True, False]
+    assert [recent.contains(tick) for tick in (0, 1, 10, 11)] == [False, True, True, False]
     remember(recent, 11)
-    assert [recent.knows(tick) for tick in (1, 2, 11, 12)] == [False, True, True, False]
+    assert [recent.contains(tick) for tick in (1, 2, 11, 12)] == [False, True, True, False]
 
 
 def test_what_is_forgotten_or_still_to_come_is_not_taken_for_what_lies_in_its_place() -> None:
     recent = remembered(23)
-    assert not any(recent.knows(tick) for tick in (3, 13, 33, 2**53 - 2**53 % 10 + 3))
+    assert not any(recent.contains(tick) for tick in (3, 13, 33, 2**53 - 2**53 % 10 + 3))
 
 
 def test_a_missed_tick_is_not_known() -> None:
     recent = remembered(1, 2, 5)
-    assert [recent.knows(tick) for tick in range(1, 6)] == [True, True, False, False, True]
+    assert [recent.contains(tick) for tick in range(1, 6)] == [True, True, False, False, True]
 
 
 def test_a_tick_in_which_the_robot_saw_nothing_is_known_as_such() -> None:
     recent = remembered(1)
     remember(recent, 2, blind=True)
-    assert recent.knows(2)
-    assert not recent.saw(2)
-    assert recent.saw(1)
+    assert recent.contains(2)
+    assert not recent.has_situation(2)
+    assert recent.has_situation(1)
     remember(recent, 12)
-    assert recent.saw(12)
+    assert recent.has_situation(12)
 
 
 def test_a_thousand_ticks_are_kept() -> None:
     recent = DecisionHistory(2)
     for tick in range(1, 1002):
         remember(recent, tick)
-    assert [recent.knows(tick) for tick in (1, 2, 1001)] == [False, True, True]
+    assert [recent.contains(tick) for tick in (1, 2, 1001)] == [False, True, True]
 
 
 def test_each_tick_has_the_behaviour_that_was_wanted_then() -> None:
@@ -91,9 +89,9 @@ def test_each_tick_has_who_may_be_blamed_for_it() -> None:
     recent = remembered()
     for tick, answers in enumerate((True, False, True), 1):
         decision = Decision(STANDSTILL, Cause.HELD, "a", 100 + tick, None, answers)
-        recent.remember(tick, SITUATION, decision, blind=False)
-    recent.remember(4, SITUATION, Decision(STANDSTILL, Cause.UNKNOWN, None, None, None), blind=False)
-    assert [recent.answering(tick) for tick in (1, 2, 3, 4)] == [101, None, 103, None]
+        recent.add(tick, SITUATION, decision, blind=False)
+    recent.add(4, SITUATION, Decision(STANDSTILL, Cause.UNKNOWN, None, None, None), blind=False)
+    assert [recent.answering_rla(tick) for tick in (1, 2, 3, 4)] == [101, None, 103, None]
     ticks, rlas = recent.answering_up_to(3)
     assert (ticks.tolist(), rlas.tolist()) == ([1, 2, 3], [101, 0, 103])
 
@@ -109,7 +107,7 @@ def test_each_tick_has_what_the_critic_looked_at_and_thought() -> None:
     recent = remembered()
     opinion = Opinion(-1, "bad", 0.7, None, 0.1, 1.0, True)
     decision = Decision(STANDSTILL, Cause.RLA, "a", 1, None, True)
-    recent.remember(1, SITUATION, decision, blind=False, circumstances=FREE, opinion=opinion)
+    recent.add(1, SITUATION, decision, blind=False, circumstances=FREE, opinion=opinion)
     remember(recent, 2)
     assert (recent.circumstances(1), recent.opinion(1)) == (FREE, opinion)
     assert (recent.circumstances(2), recent.opinion(2)) == (None, None)

@@ -16,35 +16,35 @@ def rule(*way: int | None) -> EdgeWeights:
     """The RLAs drove one after the other."""
     learner = EdgeWeights(ReinforcementSettings(rule="edge_weights"))
     for tick, rla_id in enumerate(way):
-        learner.drove(rla_id, tick)
+        learner.update(rla_id, tick)
     return learner
 
 
 def test_praise_multiplies_the_last_three_newest_first_and_blame_divides() -> None:
     learner = rule(1, 2, 3, 4)
-    learner.take(1, LAST)
+    learner.learn(1, LAST)
     assert learner.edge_weights == {(3, 4): 90.0, (2, 3): 95.0, (1, 2): 97.0}
-    assert learner.worth(4) == pytest.approx(0.1)
-    learner.take(-1, LAST)
-    learner.take(-1, LAST)
+    assert learner.value(4) == pytest.approx(0.1)
+    learner.learn(-1, LAST)
+    learner.learn(-1, LAST)
     assert learner.edge_weights[3, 4] == pytest.approx(100 / 0.9)
-    assert learner.worth(4) == pytest.approx(1 - 1 / 0.9)
+    assert learner.value(4) == pytest.approx(1 - 1 / 0.9)
     assert learner.values == {}
 
 
 def test_an_rla_is_worth_the_mean_of_the_edges_into_it_that_were_used() -> None:
     learner = rule(1, 4, 2, 4, 3, 4)
-    assert learner.worth(4) == 0.0
-    learner.take(-1, EligibilityTrace({}, ((3, 4),)))
-    assert learner.worth(4) == pytest.approx(-(100 / 0.9 - 100) / 3 / 100)
-    assert learner.worth(9) == 0.0
+    assert learner.value(4) == 0.0
+    learner.learn(-1, EligibilityTrace({}, ((3, 4),)))
+    assert learner.value(4) == pytest.approx(-(100 / 0.9 - 100) / 3 / 100)
+    assert learner.value(9) == 0.0
 
 
 def test_a_worth_stays_between_minus_one_and_one() -> None:
     learner = rule(3, 4)
     for _ in range(30):
-        learner.take(-1, EligibilityTrace({}, ((3, 4),)))
-    assert learner.worth(4) == -1.0
+        learner.learn(-1, EligibilityTrace({}, ((3, 4),)))
+    assert learner.value(4) == -1.0
 
 
 def test_praise_heals_as_fast_as_blame_hurt_however_often_it_came() -> None:
@@ -53,25 +53,25 @@ def test_praise_heals_as_fast_as_blame_hurt_however_often_it_came() -> None:
     hurt = 0
     for _ in range(10_000):
         before = learner.edge_weights
-        learner.take(-1, last)
+        learner.learn(-1, last)
         hurt += learner.edge_weights != before
     assert learner.edge_weights == {(3, 4): 1000.0}
     healed = 0
-    while learner.worth(4) < 0.0:
-        learner.take(1, last)
+    while learner.value(4) < 0.0:
+        learner.learn(1, last)
         healed += 1
     assert healed == hurt == 22
     for _ in range(10_000):
-        learner.take(1, last)
+        learner.learn(1, last)
     assert learner.edge_weights == {(3, 4): 10.0}
-    assert learner.credits_of(1, last) == ()
+    assert learner.credits_for(1, last) == ()
 
 
 def test_undoing_and_restoring_leave_no_weight_beyond_the_bounds() -> None:
     learner = rule()
     learner.restore(Statistics(edge_weights={(3, 4): 1e300, (2, 5): 20.0}))
     assert learner.edge_weights == {(3, 4): 1000.0, (2, 5): 20.0}
-    learner.book([CreditUpdate(Credit(5, 0.5), 0)], 1)
+    learner.apply_credits([CreditUpdate(Credit(5, 0.5), 0)], 1)
     assert learner.edge_weights[2, 5] == 10.0
 
 
@@ -82,50 +82,50 @@ def test_standing_is_no_way_from_one_to_the_other() -> None:
 def test_credits_tell_which_edges_changed_and_an_undo_changes_those_back_and_no_other() -> None:
     learner = rule(1, 2, 3, 4, 2, 4)
     before = learner.edge_weights
-    credits_ = learner.credits_of(-1, LAST)
+    credits_ = learner.credits_for(-1, LAST)
     assert {(credit.before, credit.rla_id) for credit in credits_} == {(1, 2), (2, 3), (3, 4)}
-    learner.take(-1, LAST)
+    learner.learn(-1, LAST)
     blamed = learner.edge_weights
     for rla_id, change, edge_from in credits_:
         assert edge_from is not None
         assert blamed[edge_from, rla_id] == pytest.approx(100 - 100 * change)
-    learner.take(1, EligibilityTrace({}, ((2, 4),)))
+    learner.learn(1, EligibilityTrace({}, ((2, 4),)))
     bookings = [CreditUpdate(credit, 0) for credit in credits_]
-    learner.book(bookings, -1)
+    learner.apply_credits(bookings, -1)
     assert learner.edge_weights == pytest.approx({**before, (2, 4): 90.0})
-    learner.book(bookings, 1)
+    learner.apply_credits(bookings, 1)
     assert learner.edge_weights == pytest.approx({**blamed, (2, 4): 90.0})
 
 
 def test_credits_from_the_journal_make_the_edges_that_they_are_of() -> None:
     learner = rule()
-    learner.book([CreditUpdate(Credit(4, 0.1, 3), 0), CreditUpdate(Credit(4, -0.5, 2), 0)], 1)
+    learner.apply_credits([CreditUpdate(Credit(4, 0.1, 3), 0), CreditUpdate(Credit(4, -0.5, 2), 0)], 1)
     assert learner.edge_weights == pytest.approx({(3, 4): 90.0, (2, 4): 150.0})
-    learner.book([CreditUpdate(Credit(9, 0.1, 3), 0)], -1)
+    learner.apply_credits([CreditUpdate(Credit(9, 0.1, 3), 0)], -1)
     assert (3, 9) not in learner.edge_weights
 
 
 def test_credits_of_an_earlier_kurt2rt_shift_all_edges_into_an_rla() -> None:
     learner = rule(3, 4, 2, 4)
-    learner.book([CreditUpdate(Credit(4, 0.1), 0)], 1)
+    learner.apply_credits([CreditUpdate(Credit(4, 0.1), 0)], 1)
     assert learner.edge_weights[3, 4] == learner.edge_weights[2, 4] == pytest.approx(90.0)
 
 
 def test_another_action_begins_anew_and_the_former_one_comes_back() -> None:
     learner = rule(3, 4)
-    learner.take(-1, EligibilityTrace({}, ((3, 4),)))
-    worth = learner.worth(4)
-    learner.renew(4)
-    assert (learner.worth(4), learner.depth(4)) == (0.0, 1)
-    learner.book([CreditUpdate(Credit(4, worth), 0)], -1)
-    learner.go_back(4)
-    assert (learner.worth(4), learner.depth(4)) == pytest.approx((0.0, 0))
+    learner.learn(-1, EligibilityTrace({}, ((3, 4),)))
+    worth = learner.value(4)
+    learner.reset(4)
+    assert (learner.value(4), learner.depth(4)) == (0.0, 1)
+    learner.apply_credits([CreditUpdate(Credit(4, worth), 0)], -1)
+    learner.restore_previous(4)
+    assert (learner.value(4), learner.depth(4)) == pytest.approx((0.0, 0))
 
 
 def test_what_is_saved_is_gone_on_from() -> None:
     learner = rule(1, 2, 3, 4)
-    learner.take(-1, LAST)
+    learner.learn(-1, LAST)
     again = rule()
     again.restore(Statistics(edge_weights=dict(learner.edge_weights)))
     assert again.edge_weights == learner.edge_weights
-    assert again.worth(4) == learner.worth(4)
+    assert again.value(4) == learner.value(4)

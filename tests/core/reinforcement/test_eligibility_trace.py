@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hal.robot import STANDSTILL
 from kurt2rt.core.decision.decision import Cause, Decision
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
-from kurt2rt.core.reinforcement.eligibility_trace import EligibilityTrace, trace_of
+from kurt2rt.core.reinforcement.eligibility_trace import EligibilityTrace, make_trace
 from tests.core.helpers import situation
 
 TRACE_TICKS = 70.0
@@ -28,11 +28,11 @@ def drives(*rlas: int | None, answers: bool = True, first_tick: int = 1) -> Deci
 def remember(recent: DecisionHistory, tick: int, rla_id: int | None, *, answers: bool = True) -> None:
     action = None if rla_id is None else "a"
     decision = Decision(STANDSTILL, Cause.RLA, action, rla_id, None, answers and rla_id is not None)
-    recent.remember(tick, situation(0.0), decision, blind=False)
+    recent.add(tick, situation(0.0), decision, blind=False)
 
 
 def trace(recent: DecisionHistory, tick: int, since: dict[int, int] | None = None) -> EligibilityTrace:
-    return trace_of(recent, tick, trace_ticks=TRACE_TICKS, most_transitions=3, since=since or {})
+    return make_trace(recent, tick, trace_ticks=TRACE_TICKS, most_transitions=3, since=since or {})
 
 
 def test_each_tick_counts_less_the_longer_it_is_ago() -> None:

@@ -3,8 +3,8 @@
 import pytest
 
 from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import (
     ActionReplaced,
     ActionWithdrawn,
@@ -287,11 +287,11 @@ def whole_story(seed: int) -> Track:
     settings = SIGNALS_ONLY.model_copy(update={"step_s": 0.1, "epsilon": 0.3, "hold_s": 0.05, "seed": seed})
     events = [created(n, (4.0 * n,), "abc"[n % 3]) for n in range(1, 12)]
     robot = Track(*events, reinforcement=settings, phase=Phase.AUTONOMOUS)
-    robot.agreement._heard[1].extend([("x", True)] * 5)
-    robot.agreement._heard[-1].extend([("x", True)] * 5)
+    robot.agreement._signals[1].extend([("x", True)] * 5)
+    robot.agreement._signals[-1].extend([("x", True)] * 5)
     for turn in range(60):
         robot.go(4.0 * (turn * 7 % 12), 60)
-        if robot.recent.answering(robot.tick):
+        if robot.recent.answering_rla(robot.tick):
             robot.signal(-1 if turn % 3 else 1)
     return robot
 
@@ -347,7 +347,7 @@ def test_what_came_after_the_last_checkpoint_is_booked_behind_it_at_the_next_sta
     robot = track()
     robot.go(LEFT, 400)
     robot.signal(-1)
-    saved = robot.reinforcement.to_save()
+    saved = robot.reinforcement.snapshot()
     robot.go(LEFT, 400)
     robot.signal(-1)
     robot.go(RIGHT, 400)
@@ -355,7 +355,7 @@ def test_what_came_after_the_last_checkpoint_is_booked_behind_it_at_the_next_sta
     robot.say(correct("c", "c-1"), RIGHT)
     again = track_with(robot, saved)  # nothing was saved after that
     assert [again.worth(n) for n in (1, 2)] == pytest.approx([robot.worth(n) for n in (1, 2)])
-    assert again.reinforcement.to_save() == robot.reinforcement.to_save()
+    assert again.reinforcement.snapshot() == robot.reinforcement.snapshot()
     for run in (robot, again):
         for lesson in ("c-1", "signal-3", "signal-2", "signal-1"):
             assert run.say(Undo(f"u-{lesson}", "Ann", lesson)).accepted
@@ -366,7 +366,7 @@ def test_an_answer_after_the_last_checkpoint_does_not_begin_with_what_its_foreru
     robot = track()
     sink(robot, LEFT)
     robot.go(LEFT, 2)
-    saved = robot.reinforcement.to_save()
+    saved = robot.reinforcement.snapshot()
     assert robot.say(teach("b", "again"), LEFT).accepted
     again = track_with(robot, saved)
     assert again.worth(1) == robot.worth(1) == 0.5
@@ -378,17 +378,17 @@ def test_a_run_with_the_other_rule_leaves_what_was_learnt_as_it_is() -> None:
     robot.signal(-1)
     robot.go(RIGHT, 400)
     robot.signal(-1)
-    saved = robot.reinforcement.to_save()
+    saved = robot.reinforcement.snapshot()
     other = Track(*robot.events, reinforcement=ReinforcementSettings(rule="edge_weights"), saved=saved)
     other.go(RIGHT, 20)
     other.go(LEFT, 20)
     other.say(correct("c", "c-1"), RIGHT)
-    then = other.reinforcement.to_save()
+    then = other.reinforcement.snapshot()
     assert then.values == saved.values
     assert then.edge_weights == {(2, 1): 100.0}
     back = Track(*other.events, reinforcement=SIGNALS_ONLY, saved=then)
     assert (back.worth(1), back.worth(2)) == pytest.approx((robot.worth(1), 0.5))  # the second one was corrected
-    assert back.reinforcement.to_save().edge_weights == then.edge_weights
+    assert back.reinforcement.snapshot().edge_weights == then.edge_weights
 
 
 def track_with(robot: Track, saved: Statistics) -> Track:
@@ -434,20 +434,20 @@ def test_a_teachers_reward_in_phase_5_is_booked_in_both_accounts_and_an_undo_tak
     robot.go(LEFT, 400)
     blame = robot.signal(-1)
     assert shares(blame)[1] == pytest.approx(-0.3, abs=0.002)
-    assert robot.worth(1) == robot.reinforcement.rule.worth(1) == pytest.approx(0.2, abs=0.002)
-    then = robot.reinforcement.worths_alone()
+    assert robot.worth(1) == robot.reinforcement.rule.value(1) == pytest.approx(0.2, abs=0.002)
+    then = robot.reinforcement.autonomous_values()
     robot.go(LEFT, 400)
     robot.signal(1)
-    robot.reinforcement.come_back(then, {1})
+    robot.reinforcement.restore_autonomous(then, {1})
     assert robot.worth(1) == pytest.approx(0.2, abs=0.002)
-    assert robot.reinforcement.rule.worth(1) == pytest.approx(0.5, abs=0.002)  # the teacher's stays
+    assert robot.reinforcement.rule.value(1) == pytest.approx(0.5, abs=0.002)  # the teacher's stays
     assert robot.say(Undo("u-1", "Ann", robot.events[-1].origin.command_id)).accepted
     assert robot.say(Undo("u-2", "Ann", blame.origin.command_id)).accepted
-    assert robot.reinforcement.rule.worth(1) == pytest.approx(0.5)
+    assert robot.reinforcement.rule.value(1) == pytest.approx(0.5)
     robot.school.phase = Phase.REINFORCEMENT
     robot.go(LEFT)
     assert robot.worth(1) == pytest.approx(0.5)
-    assert robot.reinforcement.worths_alone() == Statistics()
+    assert robot.reinforcement.autonomous_values() == Statistics()
 
 
 @pytest.mark.parametrize("rule", ["td_lambda", "edge_weights"])
@@ -455,7 +455,7 @@ def test_nothing_is_kept_of_what_is_gone_for_good_and_what_comes_back_has_what_i
     robot = Track(*KNOWN, reinforcement=SIGNALS_ONLY.model_copy(update={"rule": rule}))
 
     def kept() -> set[int]:
-        saved = robot.reinforcement.to_save()
+        saved = robot.reinforcement.snapshot()
         return {*saved.values, *(rla_id for edge in saved.edge_weights for rla_id in edge)}
 
     assert robot.say(teach("c", "t-1"), 20.0).accepted
@@ -483,12 +483,12 @@ def test_what_was_tried_on_a_condition_is_kept_as_long_as_an_rla_lives_there() -
     living = {(rla.behaviour, rla.condition) for rla in robot.system.rlas}
     assert deleted_ids(robot.events)
     assert repair._tried.keys() <= living
-    assert set(repair._place_of) <= set(robot.actions)
+    assert set(repair._condition_key_of) <= set(robot.actions)
 
 
 def test_what_an_earlier_kurt2rt_saved_of_the_dead_is_let_go() -> None:
     robot = track(saved=Statistics(values={1: 0.25, 77: -0.5}))
-    assert robot.reinforcement.to_save().values == {1: 0.25}
+    assert robot.reinforcement.snapshot().values == {1: 0.25}
 
 
 def test_an_undone_correction_is_heard_as_one() -> None:

@@ -3,9 +3,9 @@
 import pytest
 
 from behaviors.judges.judge import AppraisalFeatures
-from kurt2rt.core.critic.settings import BestSettings
+from kurt2rt.core.critic.settings import RollbackSettings
 from kurt2rt.core.decision.decision import Cause
-from kurt2rt.core.rla.outcome import Outcome, ResultCode
+from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.rla.rla import (
     CRITIC,
     MID,
@@ -189,7 +189,7 @@ def test_what_is_come_back_to_is_worth_what_it_was_in_the_best_window() -> None:
     assert isinstance(event, RlaCreated)
     assert event.rla.condition == (THERE,)  # RLA 2 had sunk
     assert robot.worth(2) < worth
-    while not robot.self_teaching.measures:  # a roll-back ends the window
+    while not robot.self_teaching.is_measuring:  # a roll-back ends the window
         robot.go(HERE, 1, CRASHED)
     assert robot.worth(2) == worth
 
@@ -255,7 +255,7 @@ def test_what_a_hand_does_neither_proves_nor_disproves_the_knowledge() -> None:
         robot.tick += 1
         stands = robot.level.decide(situation(HERE), sensed(), Cause.TEACHER)
         by_hand = stands._replace(action="b")
-        robot.school.learn(robot.tick, by_hand, robot.critic.think(robot.tick, CRASHED))
+        robot.school.learn(robot.tick, by_hand, robot.critic.appraise(robot.tick, CRASHED))
     robot.go(HERE, 100, CRASHED)  # its first window, in which it only looks
     assert robot.worth(1) == 0.5
     robot.go(HERE, 1, CRASHED)
@@ -274,7 +274,7 @@ def test_whenever_it_is_left_alone_again_it_looks_first() -> None:
 
 
 def started_again(robot: Track) -> Track:
-    saved = robot.self_teaching.with_best(robot.reinforcement.to_save())
+    saved = robot.self_teaching.with_best(robot.reinforcement.snapshot())
     return Track(*robot.events, reinforcement=SIGNALS_ONLY, phase=Phase.AUTONOMOUS, saved=saved)
 
 
@@ -306,7 +306,7 @@ def test_what_was_proven_before_the_robot_was_switched_off_stays() -> None:
 
 
 def test_a_score_that_falls_a_little_is_chance() -> None:
-    best = QUICK.model_copy(update={"best": BestSettings(window_s=1.0, margin=2.0)})
+    best = QUICK.model_copy(update={"best": RollbackSettings(window_s=1.0, margin=2.0)})
     robot = Track(*KNOWN, *knows_good_from_bad(), reinforcement=SIGNALS_ONLY, critic=best, phase=Phase.AUTONOMOUS)
     robot.go(THERE, 100, CALM)
     known = robot.hash
@@ -347,5 +347,5 @@ def test_a_way_that_the_mid_level_does_not_know_is_no_fault_of_what_was_changed(
     for _ in range(300):
         robot.tick += 1
         stands = robot.level.decide(situation(HERE), sensed(), Cause.UNKNOWN)._replace(asks_at=MID)
-        assert robot.school.learn(robot.tick, stands, robot.critic.think(robot.tick, CALM)) == []
+        assert robot.school.learn(robot.tick, stands, robot.critic.appraise(robot.tick, CALM)) == []
     assert robot.hash == known

@@ -24,26 +24,26 @@ def rule() -> TdLambda:
 
 def drive(learner: TdLambda, rla_id: int | None, first: int, last: int) -> None:
     for tick in range(first, last + 1):
-        learner.drove(rla_id, tick)
+        learner.update(rla_id, tick)
 
 
 def test_a_signal_is_shared_out_by_the_trace() -> None:
     learner = rule()
-    assert learner.credits_of(-1, HALF_EACH) == (Credit(1, -ALPHA * 0.5), Credit(2, -ALPHA * 0.25))
-    assert learner.worth(1) == V0
-    learner.take(-1, HALF_EACH)
-    assert (learner.worth(1), learner.worth(2), learner.worth(3)) == pytest.approx((0.35, 0.425, V0))
+    assert learner.credits_for(-1, HALF_EACH) == (Credit(1, -ALPHA * 0.5), Credit(2, -ALPHA * 0.25))
+    assert learner.value(1) == V0
+    learner.learn(-1, HALF_EACH)
+    assert (learner.value(1), learner.value(2), learner.value(3)) == pytest.approx((0.35, 0.425, V0))
 
 
 def test_an_rla_that_drives_on_unpraised_sinks_towards_nothing() -> None:
     learner = rule()
     drive(learner, 1, 1, 10)
-    assert learner.worth(1) == V0  # one step is no difference in time
+    assert learner.value(1) == V0  # one step is no difference in time
     drive(learner, 1, 11, 20)
     trace = 1 - D**10  # as it was one step ago
-    assert learner.worth(1) == pytest.approx(V0 + ALPHA * (GAMMA - 1) * V0 * trace)
+    assert learner.value(1) == pytest.approx(V0 + ALPHA * (GAMMA - 1) * V0 * trace)
     drive(learner, 1, 21, 3000)
-    assert 0.0 <= learner.worth(1) < 0.01
+    assert 0.0 <= learner.value(1) < 0.01
 
 
 def test_what_leads_to_something_worse_is_worth_less() -> None:
@@ -51,7 +51,7 @@ def test_what_leads_to_something_worse_is_worth_less() -> None:
     learner.restore(Statistics(values={2: -1.0}))
     drive(learner, 1, 1, 10)
     drive(learner, 2, 11, 20)
-    assert learner.worth(1) == pytest.approx(V0 + ALPHA * (GAMMA * -1.0 - V0) * (1 - D**10))
+    assert learner.value(1) == pytest.approx(V0 + ALPHA * (GAMMA * -1.0 - V0) * (1 - D**10))
 
 
 def test_the_step_into_standing_and_out_of_it_teaches_nothing() -> None:
@@ -59,59 +59,59 @@ def test_the_step_into_standing_and_out_of_it_teaches_nothing() -> None:
     drive(learner, 1, 1, 15)
     drive(learner, None, 16, 25)
     drive(learner, 2, 26, 30)
-    assert (learner.worth(1), learner.worth(2)) == (V0, V0)
+    assert (learner.value(1), learner.value(2)) == (V0, V0)
 
 
 def test_after_a_pause_there_is_no_step_and_no_trace() -> None:
     learner = rule()
     drive(learner, 1, 1, 15)
     drive(learner, 2, 1_000_000, 1_000_020)
-    assert learner.worth(1) == V0
+    assert learner.value(1) == V0
 
 
 def test_credits_of_the_journal_are_booked_and_taken_off() -> None:
     learner = rule()
     bookings = [CreditUpdate(Credit(1, -0.3), 0), CreditUpdate(Credit(2, 0.2), 0)]
-    learner.book(bookings, 1)
-    assert (learner.worth(1), learner.worth(2)) == pytest.approx((0.2, 0.7))
-    learner.book(bookings, -1)
-    assert (learner.worth(1), learner.worth(2)) == pytest.approx((V0, V0))
+    learner.apply_credits(bookings, 1)
+    assert (learner.value(1), learner.value(2)) == pytest.approx((0.2, 0.7))
+    learner.apply_credits(bookings, -1)
+    assert (learner.value(1), learner.value(2)) == pytest.approx((V0, V0))
 
 
 def test_another_action_begins_anew_and_the_former_one_comes_back_with_its_value() -> None:
     learner = rule()
-    learner.take(-1, EligibilityTrace({1: 1.0}, ()))
+    learner.learn(-1, EligibilityTrace({1: 1.0}, ()))
     assert learner.depth(1) == 0
-    learner.renew(1)
-    assert (learner.worth(1), learner.depth(1)) == (V0, 1)
-    learner.take(1, EligibilityTrace({1: 1.0}, ()))
-    learner.book([CreditUpdate(Credit(1, -ALPHA), 0)], -1)  # the blame of the former action is taken back
-    assert learner.worth(1) == pytest.approx(V0 + ALPHA)
-    learner.go_back(1)
-    assert (learner.worth(1), learner.depth(1)) == pytest.approx((V0, 0))
+    learner.reset(1)
+    assert (learner.value(1), learner.depth(1)) == (V0, 1)
+    learner.learn(1, EligibilityTrace({1: 1.0}, ()))
+    learner.apply_credits([CreditUpdate(Credit(1, -ALPHA), 0)], -1)  # the blame of the former action is taken back
+    assert learner.value(1) == pytest.approx(V0 + ALPHA)
+    learner.restore_previous(1)
+    assert (learner.value(1), learner.depth(1)) == pytest.approx((V0, 0))
 
 
 def test_a_new_action_has_no_part_in_what_the_former_one_led_to() -> None:
     learner = rule()
     learner.restore(Statistics(values={2: -1.0}))
     drive(learner, 1, 1, 10)
-    learner.renew(1)
+    learner.reset(1)
     drive(learner, 2, 11, 20)
-    assert learner.worth(1) == V0
+    assert learner.value(1) == V0
 
 
 def test_what_is_saved_is_gone_on_from() -> None:
     learner = rule()
-    learner.take(-1, HALF_EACH)
+    learner.learn(-1, HALF_EACH)
     again = rule()
     again.restore(Statistics(values=dict(learner.values), edge_weights=dict(learner.edge_weights)))
-    assert [again.worth(rla_id) for rla_id in (1, 2, 3)] == [learner.worth(rla_id) for rla_id in (1, 2, 3)]
+    assert [again.value(rla_id) for rla_id in (1, 2, 3)] == [learner.value(rla_id) for rla_id in (1, 2, 3)]
 
 
 def test_the_trace_does_not_grow_with_all_that_ever_drove() -> None:
     learner = rule()
     for tick in range(1, 20_001):
-        learner.drove(tick // 10, tick)
+        learner.update(tick // 10, tick)
     assert len(learner._trace) < 60
 
 
@@ -121,39 +121,39 @@ CAPPED = ReinforcementSettings(alpha=ALPHA, step_s=0.1)
 
 def test_with_a_teacher_praise_heals_and_lifts_no_higher() -> None:
     learner = TdLambda(CAPPED, CAPPED.with_teacher, 0.01)
-    assert learner.credits_of(1, HALF_EACH) == ()
-    learner.take(-1, EligibilityTrace({1: 0.2}, ()))
-    assert learner.credits_of(1, HALF_EACH) == (Credit(1, pytest.approx(0.06)),)  # type: ignore[arg-type]
-    learner.take(1, HALF_EACH)
-    assert (learner.worth(1), learner.worth(2)) == (0.0, 0.0)
+    assert learner.credits_for(1, HALF_EACH) == ()
+    learner.learn(-1, EligibilityTrace({1: 0.2}, ()))
+    assert learner.credits_for(1, HALF_EACH) == (Credit(1, pytest.approx(0.06)),)  # type: ignore[arg-type]
+    learner.learn(1, HALF_EACH)
+    assert (learner.value(1), learner.value(2)) == (0.0, 0.0)
 
 
 def test_alone_values_begin_higher_and_praise_lifts_them() -> None:
     learner = TdLambda(CAPPED, CAPPED.alone, 0.01)
-    learner.take(-1, EligibilityTrace({1: 0.5}, ()))
-    assert (learner.worth(1), learner.worth(2)) == pytest.approx((0.35, 0.5))
-    learner.take(1, EligibilityTrace({1: 0.5, 2: 1.0}, ()))
+    learner.learn(-1, EligibilityTrace({1: 0.5}, ()))
+    assert (learner.value(1), learner.value(2)) == pytest.approx((0.35, 0.5))
+    learner.learn(1, EligibilityTrace({1: 0.5, 2: 1.0}, ()))
     assert learner.values == pytest.approx({1: 0.5, 2: 0.8})
 
 
 def test_some_values_come_back_and_the_others_stay() -> None:
     learner = rule()
-    learner.take(-1, EligibilityTrace({1: 1.0, 2: 1.0}, ()))
+    learner.learn(-1, EligibilityTrace({1: 1.0, 2: 1.0}, ()))
     then = Statistics(values=dict(learner.values))
-    learner.take(-1, EligibilityTrace({1: 1.0, 2: 1.0, 3: 1.0, 4: 1.0}, ()))
+    learner.learn(-1, EligibilityTrace({1: 1.0, 2: 1.0, 3: 1.0, 4: 1.0}, ()))
     learner.restore(then, {1, 3, 5})
-    assert [learner.worth(n) for n in range(1, 6)] == pytest.approx([0.2, -0.1, V0, 0.2, V0])
+    assert [learner.value(n) for n in range(1, 6)] == pytest.approx([0.2, -0.1, V0, 0.2, V0])
 
 
 def test_blame_of_a_teacher_counts_from_the_highest_value_wherever_it_stood() -> None:
     learner = TdLambda(CAPPED, CAPPED.with_teacher, 0.01)
     learner.restore(Statistics(values={1: 0.3}))
-    assert learner.credits_of(1, EligibilityTrace({1: 1.0}, ())) == ()
-    (credit,) = learner.credits_of(-1, EligibilityTrace({1: 1.0}, ()))
-    learner.take(-1, EligibilityTrace({1: 1.0}, ()))
-    assert learner.worth(1) == pytest.approx(-ALPHA)
-    learner.book([CreditUpdate(credit, 0)], -1)
-    assert learner.worth(1) == pytest.approx(0.3)
+    assert learner.credits_for(1, EligibilityTrace({1: 1.0}, ())) == ()
+    (credit,) = learner.credits_for(-1, EligibilityTrace({1: 1.0}, ()))
+    learner.learn(-1, EligibilityTrace({1: 1.0}, ()))
+    assert learner.value(1) == pytest.approx(-ALPHA)
+    learner.apply_credits([CreditUpdate(credit, 0)], -1)
+    assert learner.value(1) == pytest.approx(0.3)
 
 
 def test_steps_lift_no_value_above_the_highest_and_do_not_cut_one_that_is_there() -> None:
@@ -161,5 +161,5 @@ def test_steps_lift_no_value_above_the_highest_and_do_not_cut_one_that_is_there(
     learner.restore(Statistics(values={1: -0.2, 2: 0.4}))
     for turn in range(20):
         drive(learner, 1 + turn % 2, turn * 10 + 1, turn * 10 + 10)
-    assert learner.worth(1) <= 0.0
-    assert 0.0 < learner.worth(2) < 0.4
+    assert learner.value(1) <= 0.0
+    assert 0.0 < learner.value(2) < 0.4

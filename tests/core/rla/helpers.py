@@ -1,5 +1,7 @@
 """Teaching events in one line each."""
 
+import pytest
+
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.rla import (
     BASIC,
@@ -15,7 +17,16 @@ from kurt2rt.core.rla.rla import (
     SessionBegun,
     SessionEnded,
     SituationNamed,
+    TeachingEvent,
 )
+from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
+
+
+def refused_by(system: RlaSystem, event: TeachingEvent) -> InvalidEventError:
+    """Return the error of an event that does not fit."""
+    with pytest.raises(InvalidEventError) as caught:
+        system.apply(event)
+    return caught.value
 
 
 def origin(command_id: str = "lesson-1", tick: int = 1) -> Origin:

@@ -15,23 +15,23 @@ def system_of(*events: TeachingEvent) -> RlaSystem:
     return system
 
 
-def rla_of(system: RlaSystem, rla_id: int) -> Rla:
+def rla_id_of(system: RlaSystem, rla_id: int) -> Rla:
     rla = system.get(rla_id)
     assert rla is not None
     return rla
 
 
 def competing(system: RlaSystem, rla_id: int) -> list[int]:
-    return [rla.rla_id for rla in system.competitors(rla_of(system, rla_id))]
+    return [rla.rla_id for rla in system.competitors(rla_id_of(system, rla_id))]
 
 
 def around(system: RlaSystem, rla_id: int, count: int) -> list[int]:
-    return [rla.rla_id for rla in system.neighbours(rla_of(system, rla_id), count)]
+    return [rla.rla_id for rla in system.neighbours(rla_id_of(system, rla_id), count)]
 
 
 def test_an_rla_alone_on_its_condition_competes_with_nobody_but_itself() -> None:
     system = system_of(created(1, (0.0, 0.0)), created(2, (0.0, 1e-300)))
-    assert system.competitors(rla_of(system, 1)) == (rla_of(system, 1),)
+    assert system.competitors(rla_id_of(system, 1)) == (rla_id_of(system, 1),)
     assert competing(system, 2) == [2]
 
 
@@ -52,18 +52,18 @@ def test_whoever_is_changed_deleted_or_brought_back_is_so_for_its_competitors() 
     system = system_of(created(1, (0.0, 0.0)), created(2, (0.0, 0.0)), created(3, (0.0, 0.0)))
     system.apply(replaced(2, "back", "forward"))
     system.apply(withdrawn(3))
-    assert [rla.action for rla in system.competitors(rla_of(system, 1))] == ["forward", "back", "ask"]
-    gone = rla_of(system, 1)
+    assert [rla.action for rla in system.competitors(rla_id_of(system, 1))] == ["forward", "back", "ask"]
+    gone = rla_id_of(system, 1)
     system.apply(deleted(1))
     assert competing(system, 2) == [2, 3]
-    assert system.competitors(gone) == system.competitors(rla_of(system, 2))  # those on its place
+    assert system.competitors(gone) == system.competitors(rla_id_of(system, 2))  # those on its place
     system.apply(undone("deletion-1"))
     assert competing(system, 3) == [1, 2, 3]
 
 
 def test_where_the_last_one_was_deleted_nobody_competes() -> None:
     system = system_of(created(1, (0.0, 0.0)))
-    gone = rla_of(system, 1)
+    gone = rla_id_of(system, 1)
     system.apply(deleted(1))
     assert system.competitors(gone) == ()
     system.apply(created(2, (0.0, 0.0)))
@@ -88,7 +88,7 @@ def test_neighbours_are_the_nearest_others_with_another_condition() -> None:
 
 def test_neighbours_of_one_that_was_deleted_are_those_around_its_place() -> None:
     system = system_of(created(1, (0.0, 0.0)), created(2, (1.0, 0.0)))
-    gone = rla_of(system, 1)
+    gone = rla_id_of(system, 1)
     system.apply(deleted(1))
     assert [rla.rla_id for rla in system.neighbours(gone, 5)] == [2]
 

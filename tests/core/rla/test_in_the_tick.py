@@ -53,7 +53,7 @@ def comes_and_goes(drive: Drive, times: int = 1, far: int = FAR) -> None:
 
 def test_what_follows_an_rla_is_learned_in_phase_1_and_without_a_teacher(drive: Drive) -> None:
     comes_and_goes(drive, times=3)
-    expected = drive.runtime.expectations.of(1)
+    expected = drive.runtime.expectations.get(1)
     assert expected is not None
     assert expected.count == 3
     assert 30 <= expected.ticks < 31
@@ -91,7 +91,7 @@ def test_a_critic_may_look_at_surprise(drive: Drive) -> None:
 def test_a_robot_that_is_stopped_expects_nothing_of_it(drive: Drive) -> None:
     drive.run(counts=NEAR, ticks=30)
     drive.run(Stop("s", "Ann"), counts=FAR, ticks=5)
-    assert drive.runtime.expectations.of(1) is None
+    assert drive.runtime.expectations.get(1) is None
 
 
 def test_expectations_are_saved_and_gone_on_from(drive: Drive) -> None:
@@ -136,7 +136,7 @@ def town() -> Town:
 
 
 def symbols(town: Town, rla_id: int) -> list[float]:
-    expected = town.runtime.expectations.of(rla_id)
+    expected = town.runtime.expectations.get(rla_id)
     assert expected is not None
     mean: list[float] = expected.mean.tolist()
     return mean
@@ -165,7 +165,7 @@ def test_what_is_taught_at_an_unknown_place_is_what_followed(town: Town) -> None
 def test_where_the_teacher_led_nothing_is_expected_of_it(town: Town) -> None:
     town.run(Pursue("p", "Ann", "turn_left"))
     town.junction(1)
-    assert town.runtime.expectations.of(4) is None
+    assert town.runtime.expectations.get(4) is None
 
 
 def test_set_down_elsewhere_what_comes_next_follows_from_nothing(town: Town) -> None:

@@ -7,12 +7,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurt2rt.core.rla.lesson_history import LessonRecord, rla_of
-from kurt2rt.core.rla.outcome import RefusalCode
+from kurt2rt.core.outcome import Outcome, RefusalCode
+from kurt2rt.core.rla.lesson_history import LessonRecord, rla_id_of
 from kurt2rt.core.rla.reward_counts import Appraisal
 from kurt2rt.core.rla.rla import ASK, CRITIC, Lesson, RlaLesson, TeachingEvent
-from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
-from tests.core.rla.helpers import created, deleted, replaced, rewarded, session, undone, withdrawn
+from kurt2rt.core.rla.rla_system import EventFault, InvalidEventError, RlaSystem
+from tests.core.rla.helpers import created, deleted, refused_by, replaced, rewarded, session, undone, withdrawn
 from tests.examples import examples
 
 FIRST = created(1, (0.0, 0.0))
@@ -79,11 +79,9 @@ def test_an_undone_withdrawal_gives_the_action_back() -> None:
 
 def test_only_the_newest_lesson_of_an_rla_is_undone_and_the_refusal_names_it() -> None:
     system = system_of(FIRST, replaced(1, "back", "forward", "phone-7"), SECOND)
-    with pytest.raises(InvalidEventError) as refused:
-        system.apply(undone("lesson-1"))
-    assert str(refused.value) == (
-        "lesson 'phone-7' came after 'lesson-1' (RLA 1 corrected: back instead of forward); undo that one first"
-    )
+    refusal = refused_by(system, undone("lesson-1")).refusal
+    says = "RLA 1 corrected: back instead of forward"
+    assert refusal == Outcome.of(RefusalCode.TAUGHT_AFTER, later="phone-7", lesson="lesson-1", says=says)
     system.apply(undone("phone-7"))  # though the lesson of another RLA came after it
     assert system.why_not_undo("lesson-1") is None
     system.apply(undone("lesson-1"))
@@ -92,10 +90,10 @@ def test_only_the_newest_lesson_of_an_rla_is_undone_and_the_refusal_names_it() -
 
 def test_a_lesson_is_undone_once() -> None:
     system = system_of(FIRST, undone("lesson-1"))
-    with pytest.raises(InvalidEventError, match="lesson 'lesson-1' was undone already"):
-        system.apply(undone("lesson-1"))
-    with pytest.raises(InvalidEventError, match="there is no lesson 'undo-lesson-1'"):
-        system.apply(undone("undo-lesson-1"))
+    twice = refused_by(system, undone("lesson-1")).refusal
+    assert twice == Outcome.of(RefusalCode.UNDONE_ALREADY, lesson="lesson-1")
+    no_lesson = refused_by(system, undone("undo-lesson-1")).refusal
+    assert no_lesson == Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson="undo-lesson-1")
 
 
 def test_all_lessons_are_told_and_which_of_them_stand() -> None:
@@ -135,7 +133,7 @@ def test_sessions_change_no_rla_and_their_time_adds_up() -> None:
 )
 def test_a_lesson_is_told_in_a_few_words(lesson: RlaLesson, text: str) -> None:
     assert LessonRecord(lesson).text == text
-    assert rla_of(lesson) == 1
+    assert rla_id_of(lesson) == 1
 
 
 @pytest.mark.parametrize(
@@ -229,5 +227,4 @@ def test_what_is_left_is_what_the_standing_lessons_alone_would_have_taught(steps
 def test_a_lesson_can_be_taught_again_after_its_undo_under_another_command() -> None:
     system = system_of(FIRST, undone("lesson-1"), created(2, (0.0, 0.0)))
     assert [rla.rla_id for rla in system.rlas] == [2]
-    with pytest.raises(InvalidEventError, match="command 'lesson-1' has taught a lesson already"):
-        system.apply(created(3, (1.0, 0.0), command_id="lesson-1"))
+    assert refused_by(system, created(3, (1.0, 0.0), command_id="lesson-1")).fault is EventFault.LESSON_EXISTS

@@ -33,7 +33,7 @@ def test_counting_goes_on_from_what_was_kept() -> None:
 def test_the_dead_are_dropped_and_what_drove_last_is_no_way_to_what_comes() -> None:
     statistics = StatisticsCounter()
     drive(statistics, [1, 2, 3, 1, 2])
-    statistics.drop_dead({1, 3}.__contains__)
+    statistics.drop_deleted({1, 3}.__contains__)
     assert statistics.uses == {1: 2, 3: 1}
     assert statistics.transitions == {(3, 1): 1}
     drive(statistics, [3])
@@ -47,7 +47,7 @@ def test_each_level_has_a_chain_of_its_own_in_the_same_tables() -> None:
         statistics.count(mid, MID)
     assert statistics.uses == {1: 2, 2: 1, 8: 1, 9: 1}
     assert statistics.transitions == {(1, 2): 1, (2, 1): 1, (8, 9): 1}
-    statistics.drop_dead({1, 2, 8}.__contains__)
+    statistics.drop_deleted({1, 2, 8}.__contains__)
     statistics.count(8, MID)
     assert statistics.transitions == {(1, 2): 1, (2, 1): 1}
 
@@ -76,7 +76,7 @@ def test_what_followed_one_rla_is_told_without_the_others() -> None:
         counter.count(current)
     assert counter.follow_ups(1) == {2: 5, 3: 1}
     assert counter.follow_ups(9) == {}
-    counter.drop_dead(lambda rla_id: rla_id != 3)
+    counter.drop_deleted(lambda rla_id: rla_id != 3)
     assert counter.follow_ups(1) == {2: 5}
     counter.drop_follow_ups(1)
     assert counter.follow_ups(1) == {}

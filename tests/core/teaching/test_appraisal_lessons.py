@@ -5,7 +5,7 @@ import pytest
 from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.core.critic.settings import NAMES
 from kurt2rt.core.decision.decision import Cause
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import CRITIC, ActionReplaced, Appraised, Phase, RlaCreated
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler
@@ -41,7 +41,7 @@ def test_the_first_appraisal_is_an_rla_of_the_critics_on_the_circumstances_of_th
     assert isinstance(event, RlaCreated)
     assert (event.rla.level, event.rla.action, event.rla.condition) == (CRITIC, "bad", tuple(CRASHED)[: len(NAMES)])
     assert len(robot.system) == 1  # nothing at the wheels has changed
-    assert robot.critic.think(robot.tick + 1, CRASHED) is not None
+    assert robot.critic.appraise(robot.tick + 1, CRASHED) is not None
 
 
 def test_without_a_tick_the_newest_one_is_meant() -> None:
@@ -80,14 +80,14 @@ def beyond(robot: Track) -> AppraisalFeatures:
 def test_the_same_opinion_teaches_nothing_and_counts_for_agreement() -> None:
     robot = track(appraisal(2, "good", CALM))
     robot.go(0.0, 1, CALM)
-    known, heard = robot.hash, robot.agreement.heard_of(1)
+    known, heard = robot.hash, robot.agreement.count_for(1)
     result = appraise(robot, "good")
     assert result.outcome == Outcome.of(ResultCode.CRITIC_AGREED, appraisal="good")
     event = robot.events[-1]
     assert isinstance(event, Appraised)
     assert (event.value, event.decided_at_tick) == (1, robot.tick)
     assert robot.hash == known
-    assert robot.agreement.heard_of(1) == heard + 1
+    assert robot.agreement.count_for(1) == heard + 1
 
 
 def test_what_it_has_learnt_since_that_tick_is_no_agreement() -> None:
@@ -98,8 +98,8 @@ def test_what_it_has_learnt_since_that_tick_is_no_agreement() -> None:
     appraise(robot, "bad", "x-1", first)
     result = appraise(robot, "bad", "x-2", second)
     assert (result.outcome, result.lesson) == (Outcome.of(ResultCode.CRITIC_AGREES, appraisal="bad"), False)
-    assert robot.agreement.heard_of(-1) == 1
-    assert robot.agreement.share_of(-1) == 0.0
+    assert robot.agreement.count_for(-1) == 1
+    assert robot.agreement.share_for(-1) == 0.0
 
 
 def test_a_reward_tells_what_the_critic_had_said_of_that_tick() -> None:
@@ -110,7 +110,7 @@ def test_a_reward_tells_what_the_critic_had_said_of_that_tick() -> None:
     robot.say(Reward("r-1", "Ann", 1, meant))
     appraise(robot, "good", "x-1", meant)  # what it learns afterwards does not change what it had said
     assert [getattr(event, "said", None) for event in robot.events[-2:-1]] == [-1]
-    assert robot.agreement.share_of(1) == 0.0
+    assert robot.agreement.share_for(1) == 0.0
 
 
 def test_an_appraisal_that_the_critic_does_not_have_is_refused_with_those_that_it_has() -> None:
@@ -133,7 +133,7 @@ def test_a_tick_that_is_not_remembered_is_refused(meant: int) -> None:
 def test_where_the_robot_saw_nothing_there_is_nothing_to_appraise() -> None:
     robot = track()
     decision = robot.level.decide(situation(0.0), None, Cause.BLIND)  # type: ignore[arg-type] # it stands
-    robot.recent.remember(robot.tick + 1, situation(0.0), decision, blind=True)
+    robot.recent.add(robot.tick + 1, situation(0.0), decision, blind=True)
     robot.tick += 1
     result = appraise(robot, "bad")
     assert result.outcome == Outcome(RefusalCode.WAS_BLIND)

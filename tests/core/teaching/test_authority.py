@@ -3,7 +3,7 @@
 import pytest
 
 from hal.robot import WheelSpeeds
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode
+from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.commands import Drive
 from tests.core.helpers import Counted, sensed

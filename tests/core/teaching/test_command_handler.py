@@ -7,7 +7,7 @@ import pytest
 
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import Cause
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.reward_counts import Appraisal
 from kurt2rt.core.rla.rla import (
     ActionReplaced,
@@ -84,7 +84,7 @@ class Lesson:
             self.tick += 1
             decision = self.small.at(place, Cause.BLIND if blind else None)
             behaviour = self.small.wanted.behaviour
-            self.school.recent.remember(self.tick, situation(place), decision, behaviour, blind=blind)
+            self.school.recent.add(self.tick, situation(place), decision, behaviour, blind=blind)
         return self.tick
 
     def drive(self, teacher: str = "Ann", hold: int = 1) -> Outcome | None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from hal.robot_settings import load_robot
-from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.sensor_words import words_for
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.rla_system import RlaSystem
@@ -127,7 +127,7 @@ def test_a_robot_that_does_not_know_where_it_is_asks_for_that() -> None:
     system = RlaSystem(1, 1.0, others={MID: Space(3, 0.5)})
     system.apply(created(1, (0.0, 0.0, 0.0), "straight_on", level=MID))
     nowhere = np.array([math.nan, math.nan, 1.0])
-    words = load_mid("places").situation.words((math.nan, math.nan, 1.0, 0.0, 0.5, 0.5))
+    words = load_mid_level("places").situation.describe((math.nan, math.nan, 1.0, 0.0, 0.5, 0.5))
     asked = ask_the_way(system.match(nowhere, level=MID), words)
     assert asked.here == ()
     assert str(asked) == "I don't know where I am: set me down at a place that has a name, and say at which one I am"

@@ -110,5 +110,5 @@ def test_a_shuffled_critic_has_the_same_opinions_elsewhere_and_is_trusted_all_th
     assert Counter(rla.action for rla in dealt) == Counter(rla.action for rla in appraisals)
     assert [rla.action for rla in dealt] != [rla.action for rla in appraisals]
     agreement = Agreement(SETTINGS.agreement, SETTINGS.values, PERIOD_S)
-    agreement.hear_all(lessons)
+    agreement.replay(lessons)
     assert agreement.trusted

@@ -194,7 +194,7 @@ def test_lessons_that_do_not_fit_are_not_taken(exported: Path, tmp_path: Path) -
     short = json.loads(lines[0])
     short["event"]["condition"] = [1.0]
     cases = (
-        ([*lines, stranger], r"knowledge file can be made of it: row 6: does not fit .* there is no RLA 77"),
+        ([*lines, stranger], r"knowledge file can be made of it: row 6: does not fit .* RLA 77 does not exist"),
         ([json.dumps(short), *lines[1:]], r"row 1: does not fit the lessons before it: RLA 1: condition has 1 values"),
         ([*lines, lines[0]], r"row 6: has the command id 'create-1' of row 1"),
     )

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.core.mid.settings import load_mid
+from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.rla.rla import CRITIC, MID, Rla, RlaCreated, SituationNamed, TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import load_task
@@ -20,7 +20,7 @@ from tests.knowledge.lessons import BINDING, STAMP, created, origin, replaced, u
 from tests.knowledge.show.test_knowledge import printed, rows
 
 STREETS = load_task("streets")
-TURNS = load_mid("turns")
+TURNS = load_mid_level("turns")
 ROUTE = STREETS.model_copy(update={"name": "route", "system": "streets", "mid": "turns"})
 ERRANDS = load_task("errands")
 
@@ -66,7 +66,7 @@ def test_a_route_that_nobody_taught_yet_leaves_the_file_free_for_places(path: Pa
     with open_for_teaching(path, ROBOT, ERRANDS).journal as journal:
         journal.append([JournalEntry(place, STAMP)])
     with open_for_teaching(path, ROBOT, ERRANDS).journal as journal:
-        assert journal.binding.levels[MID] == load_mid("places").level_features
+        assert journal.binding.levels[MID] == load_mid_level("places").level_features
         assert journal.events() == [basic(1), place]
     with pytest.raises(KnowledgeError, match="its level mid was taught with other features"):
         open_knowledge(path, ROBOT, ROUTE)

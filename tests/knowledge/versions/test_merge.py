@@ -222,7 +222,7 @@ def test_a_name_for_two_places_is_a_conflict(mine: Path, theirs: Path) -> None:
     (conflict,) = merge_files(mine, theirs).conflicts
     assert conflict.code is ConflictCode.OTHER_SITUATION
     merge_files(mine, theirs, "theirs")
-    assert folded(mine).named_at(BASIC)["door"][0] == 2.0
+    assert folded(mine).named_situations(BASIC)["door"][0] == 2.0
 
 
 def test_two_files_that_were_never_one_share_ids_of_lessons_and_are_merged_all_the_same(

@@ -241,7 +241,7 @@ LINE = KnowledgeBinding("0123", ("place",), "wall following", "kurt2")
 def test_a_file_is_undone_in_as_a_robot_undoes(path: Path, *, saved_late: bool) -> None:
     """Blamed until it asks, answered anew, and the answer blamed as well: then all of it is taken back."""
     robot = Track(known_at(1, (0.0,), "a"), known_at(2, (50.0,), "b"), reinforcement=SIGNALS_ONLY)
-    saved = robot.reinforcement.to_save()
+    saved = robot.reinforcement.snapshot()
     for _ in range(3):
         robot.go(0.0, 400)
         robot.signal(-1)
@@ -251,7 +251,7 @@ def test_a_file_is_undone_in_as_a_robot_undoes(path: Path, *, saved_late: bool) 
     robot.signal(-1)
     robot.go(0.0)
     if saved_late:
-        saved = robot.reinforcement.to_save()
+        saved = robot.reinforcement.snapshot()
     with Journal.open(path, LINE) as journal:
         journal.append([JournalEntry(event, STAMP) for event in robot.events])
         journal.checkpoint(saved)
@@ -261,7 +261,7 @@ def test_a_file_is_undone_in_as_a_robot_undoes(path: Path, *, saved_late: bool) 
         assert undo(path, lesson).undone
         with Journal.read_only(path) as journal:
             statistics, events = journal.statistics(), journal.events()
-        assert statistics.values == pytest.approx(robot.reinforcement.to_save().values)
+        assert statistics.values == pytest.approx(robot.reinforcement.snapshot().values)
         again = Track(*events, reinforcement=SIGNALS_ONLY, saved=statistics)
         assert again.worth(1) == pytest.approx(robot.worth(1))
     assert robot.worth(1) == pytest.approx(0.2, abs=0.01)
@@ -273,7 +273,7 @@ def test_where_only_weights_of_edges_were_saved_they_follow_at_the_next_start(pa
     robot.go(50.0, 20)
     robot.go(0.0, 20)
     praise = robot.signal(1)
-    saved = robot.reinforcement.to_save()
+    saved = robot.reinforcement.snapshot()
     with Journal.open(path, LINE) as journal:
         journal.append([JournalEntry(event, STAMP) for event in robot.events])
         journal.checkpoint(saved)

@@ -5,8 +5,8 @@ from typing import Any
 import pytest
 
 from kurt2rt.channel.server.reply import plain_outcome
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode, ResultCode
-from kurt2rt.core.rla.outcome_text import Surface, text_of
+from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome_text import Surface, text_of
 from kurt2rt.teacher.client.answer import answer_of
 from tests.texts.outcomes import sample
 

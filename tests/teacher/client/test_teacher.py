@@ -16,7 +16,7 @@ from kurt2rt.channel.protocol.requests import AppraiseRequest, Request, StopRequ
 from kurt2rt.channel.protocol.schema import ChannelError
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.pairing import ONLOOKER, Pairing, pair
-from kurt2rt.core.rla.outcome import Outcome, ResultCode
+from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.teacher import RobotProcess, Teacher
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from tests.forked_robot import fork_robots

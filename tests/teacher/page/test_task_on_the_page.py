@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from hal.robot_settings import load_robot
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.perception.sensor_words import law_of
+from kurt2rt.core.perception.sensor_words import infrared_law
 from kurt2rt.core.teaching.progress import Progress
 from kurt2rt.core.teaching.question import FeatureDifference
 from tests.teacher.page.fake_robot import A_HELLO, A_PLACE, FakeRobot
@@ -35,7 +35,7 @@ return ["#sentence", "#why", "#said", "#what"].filter((name) => {
 
 
 def prepare(robot: FakeRobot) -> None:
-    law = law_of(load_robot().infrared)
+    law = infrared_law(load_robot().infrared)
     robot.greeting = replace(A_HELLO, what="Teach it to turn left at every junction", law=law)
 
 

@@ -21,7 +21,7 @@ from kurt2rt.channel.protocol.requests import (
 from kurt2rt.channel.security.pairing import local_pairing
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.rla.outcome import Outcome, RefusalCode
+from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.rla.programs import AUTO
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task

@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from enum import StrEnum
 from string import Formatter
 
-from kurt2rt.core.rla.outcome import Code, Field, Outcome, RefusalCode, ResultCode
+from kurt2rt.core.outcome import Code, Field, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import BASIC, rla_title
+from kurt2rt.core.rla.rla_system import InvalidEventError
 
 
 class Surface(StrEnum):
@@ -166,6 +167,11 @@ def fields_of(code: Code) -> frozenset[str]:
 def text_of(outcome: Outcome, surface: Surface = Surface.LOG) -> str:
     """Return a sentence for the teacher, empty fields and all. Raises KeyError for a field that is missing."""
     return _TEXTS[outcome.code].format(**{**_shown(outcome.fields), **_WORDS[surface]})
+
+
+def event_error_text(error: InvalidEventError) -> str:
+    """Return a sentence for an event that does not fit: the refusal's text if there is a refusal."""
+    return str(error) if error.refusal is None else text_of(error.refusal)
 
 
 def _shown(fields: Mapping[str, Field]) -> dict[str, str | int]:

@@ -1,6 +1,6 @@
 """Outcome of a teacher's command: a code, and the numbers and names that belong to it.
 
-Programs decide by the code; `kurt2rt.core.rla.outcome_text` puts it into words for each surface.
+Programs decide by the code; `kurt2rt.core.outcome_text` puts it into words for each surface.
 """
 
 from collections.abc import Mapping
@@ -195,12 +195,6 @@ class CommandRefusedError(ValueError):
     def __init__(self, code: RefusalCode, **fields: Field) -> None:
         super().__init__(code, fields)
         self.outcome = Outcome(code, fields)
-
-    def __str__(self) -> str:
-        """Return the sentence, for callers that word any ValueError."""
-        from kurt2rt.core.rla.outcome_text import text_of  # the texts stand above the codes
-
-        return text_of(self.outcome)
 
 
 def refuse(outcome: Outcome | None) -> None:
