@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from kurt2rt.cli.recorded_run import RecordedRun, RunsFolder, RuntimeSettingsName
 from kurt2rt.runs.recording.recover import NothingRecoverableError, recover_segment
 from kurt2rt.runs.recording.run_folder import find_run, segments_in
 from kurt2rt.service.settings import load_service
@@ -12,14 +13,9 @@ from kurt2rt.service.settings import load_service
 
 def recover(
     folder: Annotated[Path, typer.Argument(help="Folder for the copies; it is made.")],
-    run: Annotated[
-        Path | None,
-        typer.Argument(help="A recorded run: its folder, a file in it, or its name in --runs. Default: the newest."),
-    ] = None,
-    runs: Annotated[Path | None, typer.Option(help="Folder of recorded runs. Default: as the settings say.")] = None,
-    settings: Annotated[
-        str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
-    ] = "default",
+    run: RecordedRun = None,
+    runs: RunsFolder = None,
+    settings: RuntimeSettingsName = "default",
 ) -> None:
     """Copy what is whole of a recorded run to files that Foxglove opens.
 

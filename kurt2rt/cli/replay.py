@@ -11,6 +11,7 @@ from rich.console import Console
 
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.progress import job_bars
+from kurt2rt.cli.recorded_run import RecordedRun, RunsFolder, RuntimeSettingsName
 from kurt2rt.cli.tables import console_of
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.platform.text_table import TextTable, print_whole
@@ -30,10 +31,7 @@ OnTick = Callable[[ReplayedTick], None]
 
 
 def replay(
-    run: Annotated[
-        Path | None,
-        typer.Argument(help="A recorded run: its folder, a file in it, or its name in --runs. Default: the newest."),
-    ] = None,
+    run: RecordedRun = None,
     knowledge: Annotated[
         Path | None,
         typer.Option(
@@ -42,14 +40,12 @@ def replay(
             help="Have this knowledge file look on: list where it would have decided otherwise.",
         ),
     ] = None,
-    runs: Annotated[Path | None, typer.Option(help="Folder of recorded runs. Default: as the settings say.")] = None,
+    runs: RunsFolder = None,
     limit: Annotated[
         int, typer.Option(metavar="N", min=1, help="With --with: list so many stretches, the longest.")
     ] = 30,
     as_json: AsJson = False,
-    settings: Annotated[
-        str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
-    ] = "default",
+    settings: RuntimeSettingsName = "default",
 ) -> None:
     """Replay a recorded run, and compare every decision and all that is known, bit for bit.
 

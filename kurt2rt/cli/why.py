@@ -13,6 +13,7 @@ from hal.robot_settings import RobotSettings, load_robot
 from hal.settings import SettingsError
 from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, ONLOOKER, Device, local_pairing, read_device
 from kurt2rt.cli.json_output import AsJson, print_json
+from kurt2rt.cli.recorded_run import RecordedRun, RunsFolder, RuntimeSettingsName
 from kurt2rt.cli.tables import console_of
 from kurt2rt.cli.why_live import ask_why
 from kurt2rt.core.perception.sensor_words import words_for
@@ -29,58 +30,57 @@ from kurt2rt.runs.replay.run import Run
 from kurt2rt.service.settings import ServiceSettings, load_service
 
 _FORMATS = (".png", ".svg", ".pdf")
-"""As kurt2rt.runs.explain.save_figure has them, which draws in matplotlib, an extra."""
+"""Suffixes of kurt2rt.runs.explain.save_figure, which cannot be imported here: matplotlib is an extra."""
 _STRETCHES = 40
 _REPORT_EVERY = 1000
 _DONE = TextColumn("{task.completed:.0f} s of the run")
 
 
+_At = Annotated[
+    float | None, typer.Option(metavar="SECONDS", min=0.0, help="Explain the decision at this second of the run.")
+]
+_From = Annotated[
+    float, typer.Option("--from", metavar="SECONDS", min=0.0, help="Without --at: the run from this second.")
+]
+_To = Annotated[float | None, typer.Option("--to", metavar="SECONDS", min=0.0, help="Without --at: up to this second.")]
+_Picture = Annotated[Path | None, typer.Option(help="Draw it, too: a file that ends with .png, .svg or .pdf.")]
+_Limit = Annotated[
+    int,
+    typer.Option(
+        metavar="N", min=1, help="Of a run with more stretches show those in which it did not drive by itself."
+    ),
+]
+_Live = Annotated[
+    bool, typer.Option("--live", help="Ask a robot that runs what it decides now, and why; of no recording.")
+]
+_As = Annotated[
+    str | None,
+    typer.Option("--as", help="With --live, ask as this paired device. Default: as an onlooker of this machine."),
+]
+_Robot = Annotated[
+    str | None, typer.Option(help="With --live, address of the robot. Default: as noted with the pairing.")
+]
+_Port = Annotated[
+    int | None,
+    typer.Option(
+        metavar="PORT", min=1, max=65535, help="With --live, UDP port of the robot. Default: as noted with the pairing."
+    ),
+]
+
+
 def why(
-    run: Annotated[
-        Path | None,
-        typer.Argument(help="A recorded run: its folder, a file in it, or its name in --runs. Default: the newest."),
-    ] = None,
-    at: Annotated[
-        float | None, typer.Option(metavar="SECONDS", min=0.0, help="Explain the decision at this second of the run.")
-    ] = None,
-    from_s: Annotated[
-        float, typer.Option("--from", metavar="SECONDS", min=0.0, help="Without --at: the run from this second.")
-    ] = 0.0,
-    to_s: Annotated[
-        float | None, typer.Option("--to", metavar="SECONDS", min=0.0, help="Without --at: up to this second.")
-    ] = None,
-    picture: Annotated[
-        Path | None, typer.Option(help="Draw it, too: a file that ends with .png, .svg or .pdf.")
-    ] = None,
-    runs: Annotated[Path | None, typer.Option(help="Folder of recorded runs. Default: as the settings say.")] = None,
-    limit: Annotated[
-        int,
-        typer.Option(
-            metavar="N", min=1, help="Of a run with more stretches show those in which it did not drive by itself."
-        ),
-    ] = _STRETCHES,
-    live: Annotated[
-        bool, typer.Option("--live", help="Ask a robot that runs what it decides now, and why; of no recording.")
-    ] = False,
-    name: Annotated[
-        str | None,
-        typer.Option("--as", help="With --live, ask as this paired device. Default: as an onlooker of this machine."),
-    ] = None,
-    robot: Annotated[
-        str | None, typer.Option(help="With --live, address of the robot. Default: as noted with the pairing.")
-    ] = None,
-    port: Annotated[
-        int | None,
-        typer.Option(
-            metavar="PORT",
-            min=1,
-            max=65535,
-            help="With --live, UDP port of the robot. Default: as noted with the pairing.",
-        ),
-    ] = None,
-    settings: Annotated[
-        str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
-    ] = "default",
+    run: RecordedRun = None,
+    at: _At = None,
+    from_s: _From = 0.0,
+    to_s: _To = None,
+    picture: _Picture = None,
+    runs: RunsFolder = None,
+    limit: _Limit = _STRETCHES,
+    live: _Live = False,
+    name: _As = None,
+    robot: _Robot = None,
+    port: _Port = None,
+    settings: RuntimeSettingsName = "default",
     as_json: AsJson = False,
 ) -> None:
     """Explain what the robot did, and why: at a moment of a run, in a whole run, or now.
@@ -99,10 +99,7 @@ def why(
     knew then.
     """
     _require_picture(picture)
-    if at is not None and (from_s or to_s is not None):
-        raise typer.BadParameter("give a moment, or a part of the run with --from and --to", param_hint="--at")
-    if to_s is not None and to_s <= from_s:
-        raise typer.BadParameter(f"{to_s:g} is not behind --from {from_s:g}", param_hint="--to")
+    _require_times(at, from_s, to_s)
     service = load_service(settings)
     if live:
         if run is not None or at is not None or from_s or to_s is not None:
@@ -120,6 +117,13 @@ def why(
         _show_decision(console, recorded, at, picture, as_json=as_json)
     if recorded.trouble and not as_json:
         console.print(f"The recording: {recorded.trouble}.", markup=False, highlight=False, soft_wrap=True)
+
+
+def _require_times(at_s: float | None, from_s: float, to_s: float | None) -> None:
+    if at_s is not None and (from_s or to_s is not None):
+        raise typer.BadParameter("give a moment, or a part of the run with --from and --to", param_hint="--at")
+    if to_s is not None and to_s <= from_s:
+        raise typer.BadParameter(f"{to_s:g} is not after --from {from_s:g}", param_hint="--to")
 
 
 def _require_picture(picture: Path | None) -> None:
@@ -144,7 +148,7 @@ def _show_timeline(
     else:
         print_whole(console, render_timeline(timeline, _of(run), limit))
     if picture is not None:
-        # Not at the top: matplotlib is an extra, and a robot does without it.
+        # Late import: matplotlib is an extra that a robot does not need.
         from kurt2rt.runs.explain.timeline_picture import draw_timeline
 
         draw_timeline(timeline, _of(run), picture)
@@ -152,7 +156,7 @@ def _show_timeline(
 
 
 def _counted(entries: Iterable[TickEntry], report: Callable[[float], None]) -> Iterator[TickEntry]:
-    """The same; `report` gets the seconds of the run that were read."""
+    """Yield the entries and report the seconds of the run that were read."""
     began_s = None
     for entry in entries:
         began_s = entry.now_s if began_s is None else began_s
@@ -236,7 +240,7 @@ def _draw(
     *,
     as_json: bool,
 ) -> None:
-    # Not at the top: matplotlib is an extra, and a robot does without it.
+    # Late import: matplotlib is an extra that a robot does not need.
     from kurt2rt.runs.explain.picture import draw_why
 
     draw_why(facts, found, robot, where, picture)

@@ -1,4 +1,4 @@
-"""What `kurt2rt why --live` asks a robot that runs."""
+"""Explanation of the newest decision of a running robot for `kurt2rt why --live`."""
 
 from typing import NamedTuple
 
@@ -19,22 +19,22 @@ _FIRST_TICK_S = 0.1
 
 
 class LiveQuestion(NamedTuple):
-    """What a robot said of its newest decision."""
+    """Explanation of a running robot's newest decision."""
 
     facts: DecisionFacts
     counterfactuals: tuple[SensorCounterfactual, ...]
-    """Of the RLAs that it told of, the nearest ones; none where its task is not known here."""
+    """Counterfactuals among the reported RLAs; empty for a task that is unknown here."""
 
 
 def ask_why(
     device: Device, host: str, port: int, robot: RobotSettings, *, patience_s: float = ANSWER_WITHIN_S
 ) -> LiveQuestion:
-    """Ask over the teacher's channel, as one who does not teach. Raises NoAnswerError, CredentialsError."""
+    """Ask over the teacher's channel as a client that does not teach. Raises NoAnswerError, CredentialsError."""
 
     async def ask() -> DecisionFacts:
         async with TeacherClient(device.folder, host, port, patience_s=patience_s) as client:
-            client.watching = False  # who asks does not look at it: it is not told that its teacher is there
-            while (facts := await client.why()) is None:  # noqa: ASYNC110 - the first tick tells nobody
+            client.watching = False  # a question alone does not report the teacher as present
+            while (facts := await client.why()) is None:  # noqa: ASYNC110 - no event announces the first tick
                 await anyio.sleep(_FIRST_TICK_S)
             return facts
 
@@ -42,14 +42,17 @@ def ask_why(
         facts = anyio.run(ask)
     except NoAnswerError as error:
         raise no_robot(host, port, device.name) from error
-    return LiveQuestion(facts, _tips_of(facts, robot))
+    return LiveQuestion(facts, _counterfactuals_of(facts, robot))
 
 
-def _tips_of(facts: DecisionFacts, robot: RobotSettings) -> tuple[SensorCounterfactual, ...]:
-    """Only those with which another RLA answers: whether the robot would ask, one farther off may decide."""
+def _counterfactuals_of(facts: DecisionFacts, robot: RobotSettings) -> tuple[SensorCounterfactual, ...]:
+    """Return the counterfactuals with another answering RLA.
+
+    Unless all RLAs were reported, an unreported one may answer instead of a question.
+    """
     try:
         definition = load_situation(load_task(facts.task).situation, robot.infrared.names)
-    except SettingsError:  # a task of the robot's own
+    except SettingsError:  # the task is unknown on this machine
         return ()
     if definition.names != facts.basic.names or len(facts.infrared_counts) != len(robot.infrared.sensors):
         return ()

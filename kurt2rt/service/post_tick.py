@@ -115,7 +115,7 @@ class PostTick:
         """Apply reloaded periods, and the reloaded budget for recordings."""
         self._set_periods(settings)
         if self._recorder is not None:
-            self._recorder.take(budget_of(settings.recordings_mb))
+            self._recorder.set_budget(budget_of(settings.recordings_mb))
 
     def on_acknowledged(self, acknowledgement: Acknowledgement) -> None:
         """Publish that a lesson is durable, or that it can never be."""

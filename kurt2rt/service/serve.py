@@ -290,4 +290,4 @@ def _recording(
         yield recorder
     finally:
         recorder.close(shutdown.remaining_s(_RECORDING_S))
-        recording.ended(recorder)
+        recording.report_end(recorder)

@@ -81,7 +81,7 @@ def test_a_moment_behind_the_end_is_refused(kurt2rt: CommandLine, tmp_path: Path
 def test_what_cannot_be_is_refused_before_anything_is_read(kurt2rt: CommandLine, tmp_path: Path) -> None:
     for words, said in (
         (("--at", "3", "--from", "2"), "give a moment, or a part of the run"),
-        (("--from", "3", "--to", "2"), "2 is not behind --from 3"),
+        (("--from", "3", "--to", "2"), "2 is not after --from 3"),
         (("--picture", "why.txt"), "give a file that ends with .png"),
     ):
         assert said in kurt2rt.misused("why", tmp_path / "none.mcap", *words)

@@ -1,4 +1,4 @@
-"""Which features made a distance what it is, and which spoke for one RLA against another."""
+"""Attribution of distances to features: shares of one distance, and the contrast of two RLAs."""
 
 from dataclasses import dataclass
 
@@ -10,30 +10,33 @@ from kurt2rt.runs.explain.facts import LevelFacts, RlaFacts
 
 @dataclass(frozen=True, slots=True)
 class FeatureShare:
-    """One feature beside that of a condition."""
+    """Share of one feature in the distance to a condition."""
 
     name: str
     here: float
     there: float
-    """In the condition."""
+    """Value in the condition."""
     share: float
-    """Of the squared distance, 0 to 1; of symbols, of the places that differ."""
+    """Share of the squared distance, 0 to 1; for symbols, of the places that differ."""
 
 
 @dataclass(frozen=True, slots=True)
 class FeatureContrast:
-    """What one feature says of two RLAs."""
+    """Contribution of one feature to the comparison of two RLAs."""
 
     name: str
     here: float
     in_first: float
     in_second: float
     pull: float
-    """For the first one where it is positive: its part of all that speaks for one or the other, -1 to 1."""
+    """Share of the summed absolute differences, -1 to 1; positive favours the first RLA."""
 
 
 def distance_attribution(level: LevelFacts, rla: RlaFacts) -> tuple[FeatureShare, ...]:
-    """All features that differ and count, most first; empty where the robot does not know where it is."""
+    """Return all features that contribute to the distance, largest share first.
+
+    Empty if the robot does not know its place.
+    """
     squares = _squares(level, rla)
     whole = float(squares.sum())
     if not whole > 0 or not np.isfinite(whole):
@@ -47,7 +50,7 @@ def distance_attribution(level: LevelFacts, rla: RlaFacts) -> tuple[FeatureShare
 
 
 def contrast_attribution(level: LevelFacts, first: RlaFacts, second: RlaFacts) -> tuple[FeatureContrast, ...]:
-    """All features that speak for one of the two, loudest first."""
+    """Return all features that favour one of two RLAs, strongest first."""
     difference = _squares(level, second) - _squares(level, first)
     whole = float(np.abs(difference).sum())
     if not whole > 0 or not np.isfinite(whole):
@@ -67,7 +70,10 @@ def contrast_attribution(level: LevelFacts, first: RlaFacts, second: RlaFacts) -
 
 
 def border_distance(level: LevelFacts, first: RlaFacts, second: RlaFacts) -> float | None:
-    """How far the situation lies from where both are equally near, weighted as a distance; None of symbols."""
+    """Return the signed weighted distance from the situation to the border between two RLAs.
+
+    The border is where both are equally near. None for symbols. Distances are dimensionless.
+    """
     if not level.euclidean:
         return None
     weights = np.array(level.weights)

@@ -1,4 +1,4 @@
-"""How near the RLAs are, what makes a distance, and which features speak for whom: as bars."""
+"""Bar charts of an explanation: distances of the RLAs, feature shares and feature contrast."""
 
 import math
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ _SMALLER = "#f0b27f"
 
 
 def draw_nearness(axes: Axes, level: LevelFacts, rla: RlaFacts | None, colours: Mapping[str, str]) -> None:
-    """All RLAs on one line: the nearer the farther left."""
+    """Draw all RLAs on one line, nearer ones further left."""
     _bare(axes)
     if level.nearest is None or rla is None or not math.isfinite(level.nearest.distance):
         axes.set_axis_off()
@@ -69,7 +69,7 @@ def draw_nearness(axes: Axes, level: LevelFacts, rla: RlaFacts | None, colours: 
 
 
 def draw_differences(axes: Axes, level: LevelFacts, rla: RlaFacts | None, rows: int, words: SensorWords) -> None:
-    """The features that made the distance what it is: their shares, and both values."""
+    """Draw the features with the largest shares of the distance, and both values of each."""
     _bare(axes)
     found = () if rla is None else distance_attribution(level, rla)[:rows]
     if rla is None or not found:
@@ -103,7 +103,7 @@ def draw_differences(axes: Axes, level: LevelFacts, rla: RlaFacts | None, rows: 
 def draw_contrast(
     axes: Axes, level: LevelFacts, rla: RlaFacts | None, colours: Mapping[str, str], rows: int, words: SensorWords
 ) -> None:
-    """Which features speak for the one, which for the other."""
+    """Draw the features that favour the RLA and those that favour its rival."""
     _bare(axes)
     other = None if rla is None else level.contrast_of(rla)
     found = () if rla is None or other is None else contrast_attribution(level, rla, other)[:rows]
@@ -140,7 +140,7 @@ def _dot(rla: RlaFacts, colours: Mapping[str, str]) -> str:
 
 
 def _name_row(axes: Axes, x: float, row: int, name: str, values: str, *, ha: str) -> None:
-    """A feature's name beside its bar, and its values below."""
+    """Write a feature's name next to its bar, and its values below."""
     axes.text(x, row - 0.12, name, ha=ha, va="center", fontsize=9.5, color=INK)
     axes.text(x, row + 0.26, values, ha=ha, va="center", fontsize=8, color=PALE_INK)
 

@@ -1,8 +1,9 @@
-"""From a runtime and the record of its newest tick to the facts of that decision."""
+"""Collection of a decision's facts from a runtime and the record of its newest tick."""
 
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,10 +19,10 @@ from kurt2rt.runs.explain.facts import DecisionFacts, LessonFact, LevelFacts, Rl
 from kurt2rt.runtime import Runtime
 
 _PASSED_OVER = 12
-"""RLAs whose action was withdrawn are not told of where nobody is asked: so many more are looked at."""
+"""Extra candidates read per level: withdrawn RLAs are left out if no teacher can be asked."""
 
 StampOf = Callable[[str], str]
-"""When the lesson of a command was written, UTC, ISO 8601; empty where that is not known."""
+"""Function from a command id to the UTC time (ISO 8601) at which its lesson was written; empty if unknown."""
 
 
 def collect_facts(
@@ -32,11 +33,10 @@ def collect_facts(
     most: int | None = None,
     uses_before: Mapping[int, int] | None = None,
 ) -> DecisionFacts:
-    """What the decision of `record`, the newest tick of `runtime`, rested on.
+    """Return the facts behind the decision of `record`, the newest tick of `runtime`.
 
-    `most`: how many RLAs behind the nearest are told of each level; None: all. With few it takes about a millisecond,
-    however many there are.
-    `uses_before`: of RLAs how often they had been used when they got the action that they have.
+    `most`: number of RLAs reported per level in addition to the nearest; None: all. A small number takes about 1 ms for
+    any number of RLAs. `uses_before`: by RLA id, its uses before it got its present action.
     """
     decision, school = record.decision, runtime.handler
     reader = _Reader(runtime, stamp_of, most, uses_before or {})
@@ -71,7 +71,7 @@ def collect_facts(
 
 
 def _blocking_causes(runtime: Runtime, record: TickRecord) -> tuple[str, ...]:
-    """In the order in which they count."""
+    """Return the causes that would stop the robot, highest priority first."""
     school, navigator, mid = runtime.handler, runtime.navigator, record.decision.mid
     found = []
     if not record.senses.infrared_age_s <= runtime.robot.guard.stale_infrared_s:
@@ -89,8 +89,19 @@ def _blocking_causes(runtime: Runtime, record: TickRecord) -> tuple[str, ...]:
     return tuple(cause.value for cause in found)
 
 
+class _LevelSituation(NamedTuple):
+    """Situation of one level."""
+
+    names: tuple[str, ...]
+    vector: NDArray[np.float64]
+    """Shape (d,)."""
+    weights: NDArray[np.float64]
+    """Shape (d,)."""
+    euclidean: bool = True
+
+
 class _Reader:
-    """Looks things up in one runtime."""
+    """Lookup of levels and RLAs in one runtime."""
 
     def __init__(self, runtime: Runtime, stamp_of: StampOf, most: int | None, uses_before: Mapping[int, int]) -> None:
         self._runtime = runtime
@@ -106,9 +117,8 @@ class _Reader:
         match = decision.match
         if decision.asks_at != BASIC:
             match = system.match(vector, record.behaviour, asking=asking)
-        return self._level(
-            BASIC, record.behaviour, self._runtime.definition.names, vector, system.weights, match, decision.rla_id
-        )
+        situation = _LevelSituation(self._runtime.definition.names, vector, system.weights)
+        return self._level(BASIC, record.behaviour, situation, match, decision.rla_id)
 
     def mid(self, decision: MidDecision) -> LevelFacts | None:
         mid = self._runtime.mid
@@ -116,27 +126,21 @@ class _Reader:
             return None
         space, vector = mid.settings.space, mid.vector
         weights = np.ones(space.dimensions) if space.weights is None else space.weights
-        symbols = space.metric != "euclidean"
-        facts = self._level(
-            MID, "", mid.settings.features, vector, weights, decision.match, decision.rla_id, symbols=symbols
-        )
+        situation = _LevelSituation(mid.settings.features, vector, weights, euclidean=space.metric == "euclidean")
+        facts = self._level(MID, "", situation, decision.match, decision.rla_id)
         words = mid.settings.situation.describe
         there = () if facts.nearest is None else words(facts.nearest.condition)
-        return _with_words(facts, words(vector), there)
+        return replace(facts, words=words(vector), nearest_words=there)
 
     def _level(
         self,
         level: str,
         behaviour: str,
-        names: tuple[str, ...],
-        vector: NDArray[np.float64],
-        weights: NDArray[np.float64],
+        situation: _LevelSituation,
         match: Match | None,
         driver_id: int | None,
-        *,
-        symbols: bool = False,
     ) -> LevelFacts:
-        ranking = self._ranking(level, behaviour, vector, driver_id)
+        ranking = self._ranking(level, behaviour, situation.vector, driver_id)
         distances: Mapping[int, float] = dict(ranking)
         nearest = None if match is None else self._rla_facts(match.rla, match.radius, match.distance)
         driver_rla = None if driver_id is None else self._system.get(driver_id)
@@ -158,10 +162,10 @@ class _Reader:
         return LevelFacts(
             level=level,
             behaviour=behaviour,
-            names=names,
-            vector=tuple(vector.tolist()),
-            weights=tuple(weights.tolist()),
-            euclidean=not symbols,
+            names=situation.names,
+            vector=tuple(situation.vector.tolist()),
+            weights=tuple(situation.weights.tolist()),
+            euclidean=situation.euclidean,
             nearest=nearest,
             driver=driver,
             others=tuple(others),
@@ -171,7 +175,7 @@ class _Reader:
     def _ranking(
         self, level: str, behaviour: str, vector: NDArray[np.float64], driver_id: int | None
     ) -> tuple[tuple[int, float], ...]:
-        """The nearest, as many as will be told and may be passed over; all where the driver is farther off."""
+        """Return the nearest RLAs; all of them if the driver is not among the nearest."""
         if self._most is not None:
             ranking = self._system.nearest_first(vector, behaviour, level, most=self._most + 1 + _PASSED_OVER)
             ids = {rla_id for rla_id, _ in ranking}
@@ -231,7 +235,3 @@ class _Reader:
             undone=record.undone,
             changes=not record.undone and not isinstance(record.event, RlaRewarded),
         )
-
-
-def _with_words(facts: LevelFacts, here: tuple[str, ...], there: tuple[str, ...]) -> LevelFacts:
-    return replace(facts, words=here, nearest_words=there)

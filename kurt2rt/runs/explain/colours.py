@@ -3,11 +3,11 @@
 from collections.abc import Iterable, Mapping
 
 ASKS = "#c2304b"
-"""Where the robot stands and asks."""
+"""Robot that stands and asks."""
 STANDS = "#b9bfc6"
-"""Where it stands for another reason."""
+"""Robot that stands for another reason."""
 TEACHER = "#7a4fa3"
-"""What a teacher's hand drives."""
+"""Robot that a teacher drives."""
 INK, PALE_INK, PAPER = "#20262d", "#68727d", "#ffffff"
 
 _FAMILIES: tuple[tuple[str, tuple[str, ...]], ...] = (
@@ -23,9 +23,9 @@ _SHARPNESS = ("bear", "curve", "sharp", "spin")
 
 
 def colours_of(actions: Iterable[str]) -> Mapping[str, str]:
-    """A colour for each action, the darker the sharper it turns, whatever the order they come in.
+    """Return a colour for each action, darker for sharper turns, in any order of the actions.
 
-    No two have the same, as long as there are colours.
+    Colours repeat only if there are more actions than colours.
     """
     colours: dict[str, str] = {}
     for action in sorted(set(actions), key=lambda each: (_sharpness(each), each)):
@@ -39,7 +39,7 @@ def colours_of(actions: Iterable[str]) -> Mapping[str, str]:
 
 
 def ink_on(colour: str) -> str:
-    """Black or white, whichever is read on it."""
+    """Return black or white, whichever has more contrast on the colour."""
     red, green, blue = (int(colour[place : place + 2], 16) for place in (1, 3, 5))
     return PAPER if 0.30 * red + 0.59 * green + 0.11 * blue < 140 else INK
 

@@ -1,4 +1,4 @@
-"""What would have had to be otherwise: the smallest change of one reading with which the robot does something else."""
+"""Sensor counterfactuals: the smallest change of one reading that changes the decision."""
 
 from dataclasses import dataclass
 
@@ -17,36 +17,35 @@ from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaFacts
 
 @dataclass(frozen=True, slots=True)
 class SensorCounterfactual:
-    """One sensor that alone would have changed the decision."""
+    """Change of one sensor's reading that alone would have changed the decision."""
 
     sensor: str
     label: str
     counts: int
-    """What it read."""
+    """Recorded reading."""
     needed_counts: int
-    """The nearest reading to that with which another one answers, or none does."""
+    """Reading nearest to `counts` at which another RLA answers, or none."""
     distance_m: float
-    """What it read, as the sensors' law has it."""
+    """Distance of `counts` by the sensor's calibration."""
     needed_m: float
     reads: str
-    """The sensor's reading in words."""
+    """Recorded reading in words."""
     needs: str
-    """The needed reading, in words."""
+    """Needed reading in words."""
     rla: RlaFacts | None
-    """Who answers then; None: the robot stands and asks."""
+    """RLA that answers at the needed reading; None if the robot asks there."""
     action: str | None
-    """What drives then: what that one says, or the action before it until its minimum time is over; None: it asks."""
+    """Action at the needed reading, the held action included; None if the robot asks."""
 
 
 def sensor_counterfactuals(
     facts: DecisionFacts, definition: SituationDefinition, law: InfraredSettings
 ) -> tuple[SensorCounterfactual, ...]:
-    """For each sensor that can do it alone the smallest change, the smallest of all first.
+    """Return the smallest decisive change of each sensor, the smallest of all first.
 
-    `facts`: with all RLAs that may answer. The features are computed anew from the changed reading, so extremes,
-    orientations and averages follow it. That another RLA says the same is no change, and while an action keeps its
-    minimum time another RLA is none either: only a question is. Empty where something else than the situation decided,
-    and where something was taught in that tick: with another reading something else had been.
+    `facts` must hold all RLAs that may answer. Features are computed from the changed reading, so extremes,
+    orientations and averages follow it. An RLA with the same action is no change. While an action is held only a
+    question is one. Empty unless the situation alone decided, and in a tick with a lesson.
     """
     level, counts = facts.basic, facts.infrared_counts
     rlas = () if level.nearest is None else (level.nearest, *level.others)
@@ -54,22 +53,13 @@ def sensor_counterfactuals(
         return ()
     competitors = _Competitors(level, rlas, level.driver if facts.cause == Cause.RLA else None)
     found = []
-    extract = FeatureExtractor(definition, law.names)
-    width = len(definition.features)
-    wheels = [place for place, feature in enumerate(definition.features) if isinstance(feature, WheelSpeed)]
-    of_average = 0.0 if facts.history_frozen else 1 / definition.history_steps
-    here = np.array(level.vector)
+    changed = _ChangedSituations(facts, definition, law)
     words = words_for(law)
     spread = 1 + 2 * law.gain_spread_share
     possible = set(range(round(law.floor_counts / spread), round(law.plateau_counts * spread) + 1))
     for place, sensor in enumerate(law.sensors):
         readings = sorted(possible - {counts[place]}, key=lambda each: _off(each, counts[place]))
-        vectors = np.tile(here, (len(readings), 1))
-        for row, reading in enumerate(readings):
-            vectors[row, :width] = extract((*counts[:place], reading, *counts[place + 1 :]), STANDSTILL)
-        vectors[:, wheels] = here[wheels]
-        vectors[:, width:] += of_average * (vectors[:, :width] - here[:width])
-        answers = competitors.answer(vectors)
+        answers = competitors.answer(changed.vectors(place, readings))
         first = next(
             (row for row, answer in enumerate(answers) if _resulting_action(answer, facts.kept) != facts.action), None
         )
@@ -77,23 +67,23 @@ def sensor_counterfactuals(
             needed, answer = readings[first], answers[first]
             found.append(
                 SensorCounterfactual(
-                    sensor.name,
-                    sensor.label,
-                    counts[place],
-                    needed,
-                    law.distance_m(counts[place]),
-                    law.distance_m(needed),
-                    words.reading(sensor.name, counts[place]),
-                    words.reading(sensor.name, needed),
-                    answer,
-                    _resulting_action(answer, facts.kept),
+                    sensor=sensor.name,
+                    label=sensor.label,
+                    counts=counts[place],
+                    needed_counts=needed,
+                    distance_m=law.distance_m(counts[place]),
+                    needed_m=law.distance_m(needed),
+                    reads=words.reading(sensor.name, counts[place]),
+                    needs=words.reading(sensor.name, needed),
+                    rla=answer,
+                    action=_resulting_action(answer, facts.kept),
                 )
             )
     return tuple(sorted(found, key=lambda tip: _off(tip.needed_counts, tip.counts)))
 
 
 def _situation_decides(facts: DecisionFacts) -> bool:
-    """Whether what the robot saw, and nothing else, had it drive or ask."""
+    """Return whether the situation alone made the robot drive or ask."""
     if (
         facts.taught_now
         or facts.latched
@@ -108,11 +98,34 @@ def _situation_decides(facts: DecisionFacts) -> bool:
     return not lost and not facts.hindrances
 
 
+class _ChangedSituations:
+    """Situations of a decision with one reading changed."""
+
+    def __init__(self, facts: DecisionFacts, definition: SituationDefinition, law: InfraredSettings) -> None:
+        self._counts = facts.infrared_counts
+        self._here = np.array(facts.basic.vector)
+        self._extract = FeatureExtractor(definition, law.names)
+        self._width = len(definition.features)
+        features = enumerate(definition.features)
+        self._wheels = [place for place, feature in features if isinstance(feature, WheelSpeed)]
+        self._average_gain = 0.0 if facts.history_frozen else 1 / definition.history_steps
+
+    def vectors(self, sensor: int, readings: list[int]) -> NDArray[np.float64]:
+        """Return the situation for each reading of the sensor, shape (n, d)."""
+        counts, width = self._counts, self._width
+        vectors = np.tile(self._here, (len(readings), 1))
+        for row, reading in enumerate(readings):
+            vectors[row, :width] = self._extract((*counts[:sensor], reading, *counts[sensor + 1 :]), STANDSTILL)
+        vectors[:, self._wheels] = self._here[self._wheels]
+        vectors[:, width:] += self._average_gain * (vectors[:, :width] - self._here[:width])
+        return vectors
+
+
 class _Competitors:
-    """All RLAs that may answer, and who does at many situations at once."""
+    """RLAs that may answer, evaluated for many situations at once."""
 
     def __init__(self, level: LevelFacts, rlas: tuple[RlaFacts, ...], driver: RlaFacts | None) -> None:
-        """`driver`: the one that answers now."""
+        """`driver`: the RLA that answers now."""
         groups: dict[tuple[float, ...], list[RlaFacts]] = {}
         for rla in sorted(rlas, key=lambda rla: rla.rla_id):
             groups.setdefault(rla.condition, []).append(rla)
@@ -123,7 +136,7 @@ class _Competitors:
         self._radii = np.array([rla.radius for rla in self._oldest])
 
     def answer(self, vectors: NDArray[np.float64]) -> list[RlaFacts | None]:
-        """Of each row (n, d) who answers; None where nobody does: none is near enough, or its action was withdrawn."""
+        """Return the RLA that answers each row of `vectors`, shape (n, d); None where the robot asks."""
         weighted = vectors * self._weights
         squares = (
             (weighted**2).sum(axis=1)[:, np.newaxis]
@@ -140,14 +153,14 @@ class _Competitors:
 
 
 def _leader(group: list[RlaFacts], driver: RlaFacts | None) -> RlaFacts:
-    """Of those on one condition the one that drives, or would."""
+    """Return the RLA that answers among those on one condition."""
     if driver is not None and driver.condition == group[0].condition:
         return driver
     return next((rla for rla in group if rla.leads), group[0])
 
 
 def _resulting_action(answer: RlaFacts | None, kept: str) -> str | None:
-    """What drives where that one answers; None: the robot asks."""
+    """Return the action that drives after `answer`; None if the robot asks."""
     return None if answer is None else kept or answer.action
 
 

@@ -1,4 +1,4 @@
-"""What is known of one decision: all that an explanation is made of, as plain values that can be sent elsewhere."""
+"""Facts of one decision as plain values that can be encoded and sent."""
 
 import math
 from dataclasses import dataclass
@@ -13,24 +13,24 @@ MOST_OTHERS = 12
 
 @dataclass(frozen=True, slots=True)
 class LessonFact:
-    """One lesson about an RLA, or its undoing."""
+    """One lesson about an RLA, undone or not."""
 
     text: str
-    """In words, such as: RLA 17 corrected: forward instead of spin_left."""
+    """Lesson in words, such as: RLA 17 corrected: forward instead of spin_left."""
     teacher: str
     phase: int
     tick: int
-    """Of the run in which it was taught."""
+    """Tick number in the run in which it was taught."""
     stamp: str
-    """When it was written, UTC, ISO 8601; empty where that is not known."""
+    """UTC time of writing, ISO 8601; empty if unknown."""
     undone: bool = False
     changes: bool = True
-    """Whether the action is what it is by this lesson or those before it: it stands, and is no praise or blame."""
+    """True if the lesson is part of the present action: not undone and no reward."""
 
 
 @dataclass(frozen=True, slots=True)
 class RlaFacts:
-    """One RLA: what it says, who taught it, when, instead of what, and how often it was used."""
+    """One RLA: its action, its lessons and its usage."""
 
     rla_id: int
     title: str
@@ -38,51 +38,51 @@ class RlaFacts:
     condition: tuple[float, ...]
     """Shape (d,)."""
     distance: float
-    """To the situation that was decided on, weighted; infinite where the robot did not know where it was."""
+    """Weighted distance to the situation of the decision; infinite if the robot did not know its place."""
     radius: float
     acts: tuple[LessonFact, ...]
     """Oldest first."""
     uses: int
-    """How often it became the one that drives, since it was first taught."""
+    """Number of times it started to drive since it was first taught."""
     uses_since: int | None
-    """Likewise since it got the action that it has; None where that is not known."""
+    """Number of times it started to drive with its present action; None if unknown."""
     rewards: int
     punishments: int
     value: float | None
-    """What rewards made it worth; None where nobody rewarded."""
+    """Value learnt from rewards; None without rewards."""
     asks: bool
-    """Whether its action was withdrawn."""
+    """True if its action was withdrawn."""
     leads: bool = True
-    """Whether, of those on its very condition, it is the one that answers."""
+    """True if it is the one that answers among the RLAs on its condition."""
 
 
 @dataclass(frozen=True, slots=True)
 class LevelFacts:
-    """One level of the robot in one tick."""
+    """Match of one level of the robot in one tick."""
 
     level: str
     behaviour: str
-    """The taught behaviour whose RLAs competed; empty where there is only one."""
+    """Taught behaviour whose RLAs competed; empty if there is only one."""
     names: tuple[str, ...]
-    """One per feature."""
+    """Feature names, shape (d,)."""
     vector: tuple[float, ...]
-    """The situation, shape (d,)."""
+    """Situation, shape (d,)."""
     weights: tuple[float, ...]
-    """What each feature counts in a distance, shape (d,)."""
+    """Weight of each feature in a distance, shape (d,)."""
     euclidean: bool
-    """False: of symbols, which are equal or not; a distance counts places."""
+    """False for symbols: a distance counts the places that differ."""
     nearest: RlaFacts | None
     """None before the first lesson."""
     driver: RlaFacts | None
-    """The one whose action was followed; None while none was."""
+    """RLA whose action was followed; None if there was none."""
     others: tuple[RlaFacts, ...]
-    """Those behind the nearest, the nearer first: the runner-up is the first."""
+    """RLAs after the nearest in order of distance; the first is the runner-up."""
     count: int
-    """How many competed."""
+    """Number of RLAs that competed."""
     words: tuple[str, ...] = ()
-    """The situation as people say it, where the level has words for it."""
+    """Situation in words; empty if the level has none."""
     nearest_words: tuple[str, ...] = ()
-    """The condition of the nearest, likewise."""
+    """Condition of the nearest RLA in words."""
 
     @property
     def runner_up(self) -> RlaFacts | None:
@@ -91,19 +91,19 @@ class LevelFacts:
 
     @property
     def otherwise(self) -> RlaFacts | None:
-        """The nearest that says something else than the nearest of all; None where none is known."""
+        """Return the nearest RLA with another action than the nearest of all; None if none is known."""
         if self.nearest is None:
             return None
         return next((other for other in self.others if other.action != self.nearest.action), None)
 
     @property
     def lost(self) -> bool:
-        """Whether the robot does not know where it is."""
+        """Return whether the robot does not know its place."""
         return any(math.isnan(value) for value in self.vector)
 
     @property
     def leader(self) -> RlaFacts | None:
-        """Of those on the condition of the nearest the one that answers."""
+        """Return the RLA that answers among those on the nearest condition."""
         nearest = self.nearest
         if nearest is None or nearest.leads:
             return nearest
@@ -111,7 +111,7 @@ class LevelFacts:
         return next(same, nearest)
 
     def contrast_of(self, rla: RlaFacts) -> RlaFacts | None:
-        """Whom to compare it with: the nearest; of the nearest itself the next that says something else."""
+        """Return the RLA to compare with: the nearest, or for the nearest its closest rival."""
         if self.nearest is not None and self.nearest.condition != rla.condition:
             return self.nearest
         return self.otherwise or self.runner_up
@@ -119,51 +119,51 @@ class LevelFacts:
 
 @dataclass(frozen=True, slots=True)
 class DecisionFacts:
-    """One tick's decision with all that it rested on."""
+    """Decision of one tick with the facts it rested on."""
 
     tick: int
     now_s: float
-    """On the runtime's clock."""
+    """Time of the runtime's clock."""
     robot: str
     task: str
     phase: int
     cause: str
     """A value of kurt2rt.core.decision.decision.Cause."""
     action: str | None
-    """What drove; None while the robot stood."""
+    """Action that drove; None if the robot stood."""
     asks_at: str
-    """The level that asked, where one did."""
+    """Level that asked, if one did."""
     decided: WheelSpeeds
     granted: WheelSpeeds
     reasons: tuple[str, ...]
-    """Why the guard changed what was decided."""
+    """Reasons of the guard for changing the decision."""
     latched: bool
-    """Whether the guard kept the robot stopped."""
+    """True if the guard kept the robot stopped."""
     stopped: ActiveStop | None
-    """The stop that held until Go; None where none did."""
+    """Stop that holds until a teacher resumes; None without one."""
     trouble: str
-    """Why lessons could not be saved; empty where they could."""
+    """Reason why lessons could not be saved; empty if they could."""
     teacher: str
-    """Who the teacher was; empty where nobody was."""
+    """Present teacher; empty without one."""
     infrared_counts: tuple[int, ...]
     infrared_age_s: float
     basic: LevelFacts
     mid: LevelFacts | None
-    """None where the task has no mid level."""
+    """None if the task has no mid level."""
     overridden: bool
-    """Whether a teacher commanded the behaviour, and not the mid level."""
+    """True if a teacher commanded the behaviour instead of the mid level."""
     plan_says: str
-    """How it stood with the goal; empty without one."""
+    """Status of the goal in words; empty without one."""
     kept: str = ""
-    """The action whose minimum time was not over: no other one could have taken the wheels. Empty where any could."""
+    """Action held for its minimum time, which no other action could replace; empty if none was."""
     history_frozen: bool = True
-    """Whether the averages of the situation stood still."""
+    """True if the averages of the situation were not updated."""
     taught_now: bool = False
-    """Whether something was taught in the very tick: of what was seen then, or of what was decided."""
+    """True if a lesson was applied in this tick."""
     hindrances: tuple[str, ...] = ()
-    """Why it would have stood whatever it knew, but for a stop and its teacher's hand: values of Cause."""
+    """Causes that would have stopped the robot without a stop or manual driving: values of Cause."""
 
     @property
     def stopped_because(self) -> str:
-        """Sentence of the stop, as older devices read it; empty without one."""
+        """Return the sentence of the stop for older devices; empty without one."""
         return stop_text(self.stopped)

@@ -1,4 +1,4 @@
-"""A decision of a recorded run: the run is replayed up to it, and what is known there is looked up."""
+"""Explanation of a recorded decision: the run is replayed up to it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -26,21 +26,21 @@ from kurt2rt.runs.replay.run import Run
 
 @dataclass(frozen=True, slots=True)
 class ExplainedMoment:
-    """A decision of a run, looked into."""
+    """Explained decision of a recorded run."""
 
     facts: DecisionFacts
     counterfactuals: tuple[SensorCounterfactual, ...]
-    """What would have changed it, one reading alone."""
+    """Changes of one reading that would have changed the decision."""
     at_s: float
-    """From the first tick of the run."""
+    """Time from the first tick of the run."""
     difference: TickDifference | None
-    """Where the replay first came to something else than was recorded; None where it never did."""
+    """First difference between replay and recording; None without one."""
 
 
 def explain_run(run: Run, at_s: float, report: Callable[[float], None] = lambda _s: None) -> ExplainedMoment:
-    """The last decision by `at_s` seconds from the first tick of the run. Raises RecordingError.
+    """Explain the last decision by `at_s` seconds from the first tick of the run. Raises RecordingError.
 
-    `report` gets the seconds of the run that are done, once for each.
+    `report` is called every second of the run with the seconds replayed so far.
     """
     replay = Replay(run)
     stamps = {lesson.event.origin.command_id: lesson.stamped_at for lesson in run.lessons}
@@ -77,7 +77,7 @@ def explain_run(run: Run, at_s: float, report: Callable[[float], None] = lambda 
 
 
 def _count_uses_before(event: TeachingEvent, uses: dict[int, int], before: dict[int, int], system: RlaSystem) -> None:
-    """How often an RLA had been used when it got the action that it has."""
+    """Note how often an RLA had been used before it got its present action."""
     match event:
         case RlaCreated() | ActionReplaced() | ActionWithdrawn() | RlaDeleted():
             before[rla_id_of(event)] = uses.get(rla_id_of(event), 0)
@@ -90,7 +90,7 @@ def _count_uses_before(event: TeachingEvent, uses: dict[int, int], before: dict[
 
 
 def _stamp(started_at: str, at_s: float) -> str:
-    """To the second: the program had started a moment before its first tick."""
+    """Return the estimated time of a tick to the second; the program started just before its first tick."""
     try:
         return (datetime.fromisoformat(started_at) + timedelta(seconds=at_s)).isoformat(timespec="seconds")
     except ValueError:

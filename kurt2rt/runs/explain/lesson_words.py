@@ -1,4 +1,4 @@
-"""Teaching events in a few words each, as they come: what is taken back is told by what it was."""
+"""Teaching events in words, with undone lessons named by their content."""
 
 from kurt2rt.core.rla.lesson_history import LessonRecord, rla_id_of
 from kurt2rt.core.rla.rla import (
@@ -16,7 +16,7 @@ from kurt2rt.core.rla.rla import (
 
 
 class LessonDescriber:
-    """Remembers what was taught, to say what a later event is about."""
+    """Description of teaching events that remembers earlier lessons, to name them in an undo or redo."""
 
     def __init__(self) -> None:
         self._texts: dict[str, str] = {}
@@ -24,7 +24,7 @@ class LessonDescriber:
         """Behaviour and level of each RLA."""
 
     def describe(self, event: TeachingEvent) -> str:
-        """In a few words, with who taught it."""
+        """Return the event in a few words, with its teacher."""
         by = event.origin.teacher
         match event:
             case LessonUndone(lesson):

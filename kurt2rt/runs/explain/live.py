@@ -7,10 +7,10 @@ from kurt2rt.runtime import Runtime
 
 
 class LiveExplainer:
-    """Keep the newest tick and collect its facts on request, at most once per tick."""
+    """Newest tick of a running robot, whose facts are collected at most once per tick."""
 
     def __init__(self, runtime: Runtime, stamp_of: StampOf) -> None:
-        """`stamp_of`: when the lesson of a command became durable."""
+        """`stamp_of`: time at which the lesson of a command became durable."""
         self._runtime = runtime
         self._stamp_of = stamp_of
         self._newest: TickRecord | None = None

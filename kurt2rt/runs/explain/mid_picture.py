@@ -1,4 +1,4 @@
-"""The mid level's situation as a picture: a map of the places it knows, or the last symbols, here and as taught."""
+"""Picture of the mid level's situation: a map of known places, or the last symbols here and as taught."""
 
 from collections.abc import Mapping, Sequence
 
@@ -17,7 +17,7 @@ _MOST_SYMBOLS = 12
 
 
 def draw_mid(axes: Axes, mid: LevelFacts, colours: Mapping[str, str]) -> None:
-    """One of both, whatever the situation is made of."""
+    """Draw a map or a row of symbols, depending on the situation's features."""
     axes.set_xticks([])
     axes.set_yticks([])
     for spine in axes.spines.values():
@@ -29,7 +29,7 @@ def draw_mid(axes: Axes, mid: LevelFacts, colours: Mapping[str, str]) -> None:
 
 
 def _draw_places(axes: Axes, mid: LevelFacts, colours: Mapping[str, str]) -> None:
-    """Each place with the heading in which it is come to, in the colour of what is done there."""
+    """Draw each place with its heading of arrival, in the colour of its action."""
     rlas = [rla for rla in (mid.nearest, *mid.others) if rla is not None]
     x_m, y_m, east, north = mid.vector[:4]
     lost = mid.lost
@@ -61,7 +61,7 @@ def _draw_places(axes: Axes, mid: LevelFacts, colours: Mapping[str, str]) -> Non
         text = f"star: here; nearest {mid.nearest.title} at {distance} m, R {radius} m"
         axes.set_xlabel(text, fontsize=9, color=PALE_INK)
     if lost:
-        axes.set_xlabel("it is lost: nobody has said where it was set down", fontsize=9, color=ASKS)
+        axes.set_xlabel("it is lost: no teacher has set its location", fontsize=9, color=ASKS)
 
 
 def _arrow(axes: Axes, at: tuple[float, float], along: tuple[float, float], colour: str, *, wide: float) -> None:
@@ -70,7 +70,7 @@ def _arrow(axes: Axes, at: tuple[float, float], along: tuple[float, float], colo
 
 
 def _draw_symbols(axes: Axes, mid: LevelFacts) -> None:
-    """Two rows, the newest on the left: what was done, and what the nearest RLA knows in those places."""
+    """Draw two rows of symbols, newest on the left: the situation and the nearest condition."""
     nearest = mid.nearest
     axes.set_title("What came last, the newest first", fontsize=11.5, loc="left", color=INK, pad=8)
     count = min(len(mid.vector), _MOST_SYMBOLS)
@@ -102,9 +102,9 @@ def _row(
     count: int,
     other: Sequence[float] | None = None,
 ) -> None:
-    beside = nearest.condition if nearest is not None else other
+    compared = nearest.condition if nearest is not None else other
     for place in range(count):
-        differs = beside is not None and values[place] != beside[place]
+        differs = compared is not None and values[place] != compared[place]
         axes.add_patch(
             FancyBboxPatch(
                 (place + 0.06, height - 0.3),

@@ -1,4 +1,4 @@
-"""A decision as a picture: the situation beside the one that was taught, how near all RLAs were, what differed."""
+"""Picture of a decision: situation next to the taught condition, distances of the RLAs, feature shares."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -21,7 +21,7 @@ from kurt2rt.runs.explain.facts import DecisionFacts, RlaFacts
 from kurt2rt.runs.explain.mid_picture import draw_mid
 from kurt2rt.runs.explain.reasons import format_reasons, headline
 from kurt2rt.runs.explain.save_figure import save_figure
-from kurt2rt.runs.explain.sensor_view import LEGEND, SensorMark, draw_sensor_view
+from kurt2rt.runs.explain.sensor_view import LEGEND, SensorMark, SensorView, draw_sensor_view
 from kurt2rt.runs.explain.sentences import (
     format_counterfactuals,
     format_guard,
@@ -34,14 +34,17 @@ _FEATURES, _FEATURES_BELOW_MID = 7, 4
 _POINTED_AT = 4
 _MARKS = 1
 _CAPTION = 76
-"""Characters in a line below a situation."""
+"""Characters per line below a situation."""
 _WORTH_POINTING = 0.03
 
 
 def draw_why(
     facts: DecisionFacts, found: tuple[SensorCounterfactual, ...], robot: RobotSettings, title: str, path: Path
 ) -> None:
-    """Write a picture as the file's name ends; `found`: what would have changed it. Raises OSError."""
+    """Write the picture in the format of the file's suffix. Raises OSError.
+
+    `found`: changes of one reading that would have changed the decision.
+    """
     level = facts.basic
     rla = level.driver or level.nearest
     known = (*([] if rla is None else [rla]), *level.others)
@@ -78,7 +81,7 @@ def _right_column(
     colours: Mapping[str, str],
     words: SensorWords,
 ) -> None:
-    """What mattered: at the level that decided, with the level above where there is one."""
+    """Draw the attribution of the deciding level, with the mid level's map if there is one."""
     level, mid = facts.basic, facts.mid
     if mid is not None and mid.lost and mid.nearest is None:
         mid = None  # neither where it is nor any place is there to be drawn; the text says so
@@ -104,7 +107,7 @@ def _heading(
     title: str,
     colours: Mapping[str, str],
 ) -> float:
-    """The decision in words; returns how high the rest may reach."""
+    """Write the decision in words and return the top of the remaining area, 0 to 1 of the figure."""
     colour = _colour_of(facts, colours)
     figure.text(0.02, 0.967, title, fontsize=10.5, color=PALE_INK, va="center")
     figure.text(
@@ -152,23 +155,16 @@ def _situations(
     decided, granted = facts.decided, facts.granted
     motion = granted if facts.latched else decided
     counts, averages = _halves(level.names, level.vector, sensors)
-    draw_sensor_view(
-        here,
-        robot,
-        counts,
-        averages,
-        differing=pointed_at,
-        marks=[_mark(tip, colours) for tip in found[:_MARKS]],
-        motion=motion,
-        colour=_colour_of(facts, colours),
-    )
+    marks = [_mark(each, colours) for each in found[:_MARKS]]
+    view = SensorView(counts, averages, pointed_at, marks, motion, _colour_of(facts, colours))
+    draw_sensor_view(here, robot, view)
     here.set_title(f"Now: tick {facts.tick}", fontsize=13, fontweight="bold", color=INK)
     if rla is None:
         there.set_axis_off()
         there.text(0.5, 0.5, "nothing was taught yet", ha="center", va="center", color=PALE_INK, fontsize=13)
         return
     counts, averages = _halves(level.names, rla.condition, sensors)
-    draw_sensor_view(there, robot, counts, averages, differing=pointed_at)
+    draw_sensor_view(there, robot, SensorView(counts, averages, pointed_at))
     says = "asks again" if rla.asks else rla.action
     there.set_title(f"As taught: {rla.title}, {says}", fontsize=13, fontweight="bold", color=INK)
     below = f"{fill(format_teaching(rla), _CAPTION)}\n{fill(format_usage(rla), _CAPTION)}"
@@ -188,7 +184,7 @@ def _mark(tip: SensorCounterfactual, colours: Mapping[str, str]) -> SensorMark:
 def _halves(
     names: tuple[str, ...], vector: tuple[float, ...], sensors: tuple[str, ...]
 ) -> tuple[dict[str, float], dict[str, float]]:
-    """Readings of each sensor, and their averages, as far as they are features."""
+    """Return the readings and the averages of the sensors that are features."""
     value = dict(zip(names, vector, strict=True))
     return (
         {name: value[name] for name in sensors if name in value},

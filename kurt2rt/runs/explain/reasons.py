@@ -1,4 +1,4 @@
-"""What a robot does, and why it does so: because of an RLA, a teacher, a question, or something in its way."""
+"""Reasons for the robot's behaviour in sentences: an RLA, a teacher, a question or an obstacle."""
 
 import math
 
@@ -20,11 +20,11 @@ _STANDS = {
 }
 
 _NOTHING_BESIDE = (Cause.BLIND, Cause.AT_GOAL, Cause.NO_WAY)
-"""There is no situation to tell of, or it is the robot itself that has it stand."""
+"""Causes without a hypothetical action: no situation, or a stand that the robot itself decided."""
 
 
 def headline(facts: DecisionFacts) -> str:
-    """What the robot does, in a few words."""
+    """Return the robot's behaviour in a few words."""
     standing = standing_of(facts)
     if standing.reason is not StandReason.DRIVES:
         return short_text(standing)
@@ -38,7 +38,7 @@ def headline(facts: DecisionFacts) -> str:
 
 
 def standing_of(facts: DecisionFacts) -> Standing:
-    """Return what the guard has the robot stand for, or what it touches; that it drives in any other case."""
+    """Return the guard's reason to stand, or the bumper contact; DRIVES in all other cases."""
     if facts.latched:
         return standing_latched(facts.reasons)
     if facts.cause == Cause.TOUCHES or facts.action is not None:
@@ -49,7 +49,7 @@ def standing_of(facts: DecisionFacts) -> Standing:
 
 
 def format_reasons(facts: DecisionFacts) -> list[str]:
-    """Why it does so, the main reason first."""
+    """Return the reasons for the behaviour, the main one first."""
     lines = []
     if facts.latched:
         lines.append(
@@ -144,14 +144,14 @@ def _asks(level: LevelFacts) -> list[str]:
 def _asks_the_way(level: LevelFacts) -> list[str]:
     nearest = level.nearest
     if level.lost:
-        return ["The robot is lost: nobody has said where it was set down, so it asks."]
+        return ["The robot is lost: no teacher has set its location, so it asks."]
     if nearest is None:
         return ["The mid level was taught nothing yet, so the robot asks which behaviour to follow."]
     return [f"The mid level does not know the way from here: {_format_nearest(nearest)}."]
 
 
 def _autonomous_action(facts: DecisionFacts) -> list[str]:
-    """What it would do if a stop, its teacher's hand, or whatever had it stand just then, did not."""
+    """Describe what the robot would do without the stop, the manual driving or the blocking cause."""
     if facts.cause in _NOTHING_BESIDE:
         return []
     others = [each for each in facts.hindrances if each != facts.cause]
@@ -163,7 +163,7 @@ def _autonomous_action(facts: DecisionFacts) -> list[str]:
     nearest, leader = facts.basic.nearest, facts.basic.leader
     known = nearest is not None and nearest.distance <= nearest.radius and not nearest.asks
     stands = next(iter(others), None)
-    if Cause.UNATTENDED in others:  # what it does not know it asks, whoever comes
+    if Cause.UNATTENDED in others:  # without a teacher it still asks about an unknown situation
         stands = Cause.UNATTENDED if known else None
     if stands is not None:
         return [f"By itself it would stand: {_STANDS[Cause(stands)]}."]
@@ -176,7 +176,7 @@ def _autonomous_action(facts: DecisionFacts) -> list[str]:
 
 def _why_the_way(mid: LevelFacts) -> str:
     if mid.lost:
-        return "it is lost, for nobody has said where it was set down"
+        return "it is lost, because no teacher has set its location"
     if mid.nearest is None:
         return "the mid level was taught nothing yet"
     return _format_nearest(mid.nearest)

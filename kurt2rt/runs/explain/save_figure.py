@@ -1,4 +1,4 @@
-"""A figure as a file."""
+"""Reproducible figure files."""
 
 from pathlib import Path
 
@@ -13,11 +13,14 @@ _NO_DATE: dict[str, dict[str, None]] = {
 }
 
 FORMATS = tuple(_NO_DATE)
-"""What a file's name may end with."""
+"""Suffixes of figure files."""
 
 
 def save_figure(figure: Figure, path: Path) -> None:
-    """As the file's name ends, with its folder; the bytes depend on nothing but what is drawn. Raises OSError."""
+    """Write the figure in the format of the suffix, and create its folder. Raises OSError.
+
+    The bytes depend on the drawing alone.
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
     # Text stays text: it can be searched, and the file is a third as large.
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "kurt2rt"}):

@@ -1,4 +1,4 @@
-"""What a robot's sensors tell of its surroundings, from above, the robot's front up."""
+"""Top view of the robot with the readings of its sensors, front up."""
 
 import math
 from collections.abc import Collection, Mapping, Sequence
@@ -14,7 +14,7 @@ from hal.robot_settings import InfraredSettings, RobotSettings, SensorSettings
 from kurt2rt.runs.explain.colours import INK
 
 DIFFERS = "#d9480f"
-"""Sensors that make the difference."""
+"""Sensors with the largest shares of the distance."""
 _BEAM, _NOTHING = "#a9c7de", "#edf1f4"
 _WALL = "#39424c"
 _AVERAGE = "#7a4fa3"
@@ -22,9 +22,9 @@ _BODY, _WHEEL = "#f7c948", "#2b2f36"
 _HALF_BEAM_RAD = 0.085
 _MARGIN_M = 0.10
 _ONE_WALL_M = 0.17
-"""Two readings of one side that end so near each other are one wall."""
+"""Largest gap between the ends of two readings on one side that are drawn as one wall."""
 _ARROW_S = 1.4
-"""How far ahead the arrow of motion looks."""
+"""Time span of the motion arrow."""
 
 LEGEND = (
     "fans: what each sensor sees, as far as a wall (bold); orange: where the two differ most; "
@@ -36,7 +36,7 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class SensorMark:
-    """Where the reading of one sensor would have to end for something else to happen."""
+    """Mark at the distance of one sensor's counterfactual reading."""
 
     sensor: str
     distance_m: float
@@ -44,21 +44,25 @@ class SensorMark:
     colour: str
 
 
-def draw_sensor_view(
-    axes: Axes,
-    robot: RobotSettings,
-    counts: Mapping[str, float],
-    averages: Mapping[str, float],
-    *,
-    differing: Collection[str] = (),
-    marks: Sequence[SensorMark] = (),
-    motion: WheelSpeeds | None = None,
-    colour: str = INK,
-) -> None:
-    """One situation. `counts` and `averages` (over the last seconds) by the sensors' names, either may lack some.
+@dataclass(frozen=True, slots=True)
+class SensorView:
+    """Situation to draw; readings by sensor names, of which any may be absent."""
 
-    `differing`: sensors to point at; `motion`: set points to show as an arrow in this `colour`.
-    """
+    counts: Mapping[str, float]
+    averages: Mapping[str, float]
+    """Readings averaged over the last seconds."""
+    differing: Collection[str] = ()
+    """Sensors to highlight."""
+    marks: Sequence[SensorMark] = ()
+    motion: WheelSpeeds | None = None
+    """Set points to draw as an arrow."""
+    colour: str = INK
+    """Colour of the arrow."""
+
+
+def draw_sensor_view(axes: Axes, robot: RobotSettings, view: SensorView) -> None:
+    """Draw one situation from above."""
+    counts, averages, differing = view.counts, view.averages, view.differing
     law = robot.infrared
     reach_m = law.far_m + _MARGIN_M
     half_length_m, half_width_m = robot.geometry.outline_length_m / 2, robot.geometry.outline_width_m / 2
@@ -88,19 +92,19 @@ def draw_sensor_view(
                 axes.plot(*zip(one, other, strict=True), color=_WALL, linewidth=3.2, solid_capstyle="round", zorder=5)
     _body(axes, robot)
     place = {sensor.name: sensor for sensor in law.sensors}
-    for mark in marks:
+    for mark in view.marks:
         _mark(axes, place[mark.sensor], mark, aside=mark.sensor in differing)
-    if motion is not None:
-        _arrow(axes, robot, motion, colour)
+    if view.motion is not None:
+        _arrow(axes, robot, view.motion, view.colour)
 
 
 def _is_detected(law: InfraredSettings, counts: float) -> bool:
-    """Whether there is anything: the last centimetres of a sensor's reach are lost in its noise."""
+    """Return whether a reading stands out from the noise at the end of the sensor's range."""
     return counts > law.floor_counts + 4 * law.noise_least_counts
 
 
 def to_picture(x_m: float, y_m: float) -> Point:
-    """From the robot's frame, x forward and y left, to the picture's."""
+    """Return picture coordinates of a point in the robot's frame (x forward, y left, m)."""
     return -y_m, x_m
 
 
@@ -121,7 +125,7 @@ def _wall(axes: Axes, sensor: SensorSettings, distance_m: float) -> None:
 
 
 def _label(axes: Axes, sensor: SensorSettings, distance_m: float, text: str, *, sees: bool) -> None:
-    """Behind the wall that it sees; where it sees none, on its fan."""
+    """Write the text outside the detected wall, or on the fan if there is no wall."""
     sideways = abs(math.sin(math.radians(sensor.heading_deg))) > 0.9
     x, y = _along(sensor, distance_m + (0.03 if sideways else 0.06) if sees else 0.75 * distance_m)
     aside = sees and (sideways or sensor.heading_deg % 180 == 0) and x != 0
@@ -142,7 +146,7 @@ def _label(axes: Axes, sensor: SensorSettings, distance_m: float, text: str, *, 
 
 
 def _mark(axes: Axes, sensor: SensorSettings, mark: SensorMark, *, aside: bool) -> None:
-    """`aside`: something else is written at its sensor."""
+    """Draw a counterfactual mark. `aside`: leave room for the sensor's own label."""
     rise = 34 if aside else 16
     across = [_along(sensor, mark.distance_m, part * 2.2 * _HALF_BEAM_RAD) for part in (-1.0, 0.0, 1.0)]
     axes.plot(*zip(*across, strict=True), color=mark.colour, linewidth=2.6, linestyle=(0, (1.2, 0.8)), zorder=6)
@@ -193,7 +197,7 @@ def _body(axes: Axes, robot: RobotSettings) -> None:
 
 
 def _arrow(axes: Axes, robot: RobotSettings, motion: WheelSpeeds, colour: str) -> None:
-    """The way of the robot's centre for the next moment; nothing where it stands."""
+    """Draw the predicted path of the robot's centre; nothing at standstill."""
     way = predicted_path(motion, robot.geometry.effective_track_m, _ARROW_S)
     if way is None:
         if motion.right_m_s == motion.left_m_s:
@@ -226,7 +230,7 @@ def _spin(*, turns_left: bool) -> list[Point]:
 
 
 def predicted_path(motion: WheelSpeeds, track_m: float, lasts_s: float) -> Sequence[Point] | None:
-    """Where the centre comes to with these set points, in the robot's frame; None where it turns on the spot."""
+    """Return the predicted path of the centre in the robot's frame; None for a turn on the spot."""
     speed_m_s = (motion.left_m_s + motion.right_m_s) / 2
     turn_rad_s = (motion.right_m_s - motion.left_m_s) / track_m
     if abs(speed_m_s) * lasts_s < 0.03:

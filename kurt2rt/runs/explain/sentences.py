@@ -1,4 +1,4 @@
-"""An explanation in sentences, for a terminal, a page or a picture's heading."""
+"""Sentences of an explanation for terminal, page and picture."""
 
 import math
 
@@ -10,7 +10,7 @@ from kurt2rt.runs.explain.facts import DecisionFacts, LessonFact, LevelFacts, Rl
 
 
 def format_runner_up(level: LevelFacts) -> list[str]:
-    """Who else was near, and how much was between them."""
+    """Return the runner-up and the nearest RLA with another action, with their margins."""
     nearest, runner_up, otherwise = level.nearest, level.runner_up, level.otherwise
     if nearest is None:
         return []
@@ -29,7 +29,7 @@ def format_runner_up(level: LevelFacts) -> list[str]:
 
 
 def format_counterfactuals(found: tuple[SensorCounterfactual, ...], most: int = 3) -> list[str]:
-    """What would have had to be otherwise for the robot to do something else, the smallest change first."""
+    """Return the changes of one reading that change the decision, smallest first."""
     return [
         f"{tip.label}{_readings(tip)} ({tip.sensor}: {tip.needed_counts} counts, not {tip.counts}): {_then(tip)}"
         for tip in found[:most]
@@ -37,7 +37,7 @@ def format_counterfactuals(found: tuple[SensorCounterfactual, ...], most: int = 
 
 
 def format_held(facts: DecisionFacts) -> str:
-    """Why no other action could have been taken just then; empty where one could."""
+    """Return the sentence about an action held for its minimum time; empty without one."""
     if not facts.kept or facts.cause != Cause.RLA or facts.latched:
         return ""
     return (
@@ -47,7 +47,7 @@ def format_held(facts: DecisionFacts) -> str:
 
 
 def format_guard(facts: DecisionFacts) -> str:
-    """What the guard made of the decision; empty where it let it through."""
+    """Return the guard's change of the decision; empty if it was applied unchanged."""
     if not facts.reasons or facts.latched or facts.cause == Cause.TOUCHES:  # said already
         return ""
     return (
@@ -57,7 +57,7 @@ def format_guard(facts: DecisionFacts) -> str:
 
 
 def format_teaching(rla: RlaFacts) -> str:
-    """Who taught the action that it has, when, and instead of what."""
+    """Return the teacher, time and content of the lesson that gave the RLA its action."""
     acts = standing_lessons(rla)
     if not acts:
         return f"Nothing is known of who taught {rla.title}."
@@ -66,12 +66,12 @@ def format_teaching(rla: RlaFacts) -> str:
 
 
 def standing_lessons(rla: RlaFacts) -> tuple[LessonFact, ...]:
-    """The lessons that stand and made its action, oldest first; praise and blame left out."""
+    """Return the lessons that made the present action, oldest first, without rewards."""
     return tuple(act for act in rla.acts if act.changes)
 
 
 def format_usage(rla: RlaFacts) -> str:
-    """How often, and what teachers thought of it."""
+    """Return the number of uses and the rewards."""
     count = rla.uses if rla.uses_since is None else rla.uses_since
     text = f"Used {format_count(count)}" if count else "Never used"
     if rla.uses_since is None:
@@ -88,7 +88,7 @@ def format_usage(rla: RlaFacts) -> str:
 
 
 def format_stamp(act: LessonFact) -> str:
-    """To the second, and the tick of its run."""
+    """Return the time to the second, and the tick of its run."""
     stamp = act.stamp[:19].replace("T", " ")
     return f"{stamp} UTC (tick {act.tick})" if stamp else f"tick {act.tick} of its run"
 
@@ -99,14 +99,14 @@ def format_nearness(rla: RlaFacts) -> str:
 
 
 def format_distance(distance: float) -> str:
-    """A distance for people to read."""
+    """Return a weighted distance (dimensionless) with three digits."""
     if math.isinf(distance):
         return "far off"
     return f"{distance:.0f}" if distance >= 10 else f"{distance:.3g}"
 
 
 def format_mid_level(facts: DecisionFacts) -> list[str]:
-    """What the level above commands, and why; empty where there is none."""
+    """Return the command of the mid level and its reason; empty without a mid level."""
     mid = facts.mid
     if mid is None:
         return []
@@ -120,18 +120,18 @@ def format_mid_level(facts: DecisionFacts) -> list[str]:
             format_teaching(rla),
         ]
     else:
-        lost = ", for it is lost: nobody has said where it was set down" if mid.lost else ""
+        lost = ", because it is lost: no teacher has set its location" if mid.lost else ""
         lines = [f"Mid level: it asks{lost}.{'' if mid.lost else came_by}"]
     return [*lines, *([f"Goal: {facts.plan_says}"] if facts.plan_says else [])]
 
 
 def format_count(count: int) -> str:
-    """How often."""
+    """Return never, once, twice or n times."""
     return ("never", "once", "twice")[count] if count < 3 else f"{count} times"
 
 
 def format_rla(rla: RlaFacts) -> str:
-    """An RLA with what it says."""
+    """Return the title of an RLA with its action."""
     return f"{rla.title} ({'asks again' if rla.action == ASK else rla.action})"
 
 

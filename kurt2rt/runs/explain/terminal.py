@@ -1,4 +1,4 @@
-"""An explanation, or the timeline of a run, for a terminal."""
+"""Terminal rendering of an explanation and of a run's timeline."""
 
 import math
 
@@ -35,7 +35,7 @@ def render_why(
 ) -> RenderableType:
     """Render one decision.
 
-    `found`: what would have changed it; `where`: of which run, and when; `words`: for the robot's sensors.
+    `found`: changes of one reading that would have changed it. `where`: run and time. `words`: for the robot's sensors.
     """
     parts: list[RenderableType] = [Text.assemble((where, "dim")), Text(headline(facts), style="bold")]
     parts += [plain(line) for line in format_reasons(facts)]
@@ -59,7 +59,7 @@ def render_why(
 
 
 def _of_level(level: LevelFacts, driver: RlaFacts | None, words: SensorWords) -> list[RenderableType]:
-    """The RLA it went by, those beside it, and the features."""
+    """Render the RLA that decided, its rivals and the features."""
     rla = driver or level.nearest
     if rla is None:
         return []
@@ -116,7 +116,10 @@ def _history(rla: RlaFacts) -> TextTable:
 
 
 def render_timeline(timeline: Timeline, where: str, most: int) -> RenderableType:
-    """What the robot did when. Of more than `most` stretches only those in which it did not drive by itself."""
+    """Render the stretches of a run.
+
+    If there are more than `most`, show only those in which the robot did not drive by itself.
+    """
     whole_s = max(timeline.to_s - timeline.from_s, 1e-9)
     parts: list[RenderableType] = [
         Text(where, style="dim"),
@@ -158,7 +161,7 @@ def render_timeline(timeline: Timeline, where: str, most: int) -> RenderableType
 
 
 def _shares(timeline: Timeline, whole_s: float) -> TextTable:
-    """Each thing that it did, the most first."""
+    """Return the activities with their total times, longest first."""
     lasts: dict[tuple[Kind, str], float] = {}
     times: dict[tuple[Kind, str], int] = {}
     for stretch in timeline.stretches:

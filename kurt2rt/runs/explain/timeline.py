@@ -1,4 +1,4 @@
-"""A run as stretches: what the robot did from when to when, by which rules, and where it stood or asked."""
+"""Timeline of a run: stretches of driving, being led, asking and standing."""
 
 import math
 from collections.abc import Iterable
@@ -15,79 +15,79 @@ from kurt2rt.runs.explain.sentences import format_count
 from kurt2rt.runs.recording.entries import DecisionEntry, TickEntry
 
 MOST_SAMPLES = 5000
-"""A picture is not as wide as twice that."""
+"""Samples kept of a run, up to twice as many: a picture is no wider."""
 
 
 class Kind(StrEnum):
-    """What a stretch is."""
+    """Kind of a stretch."""
 
     DRIVES = "drives"
-    """By its RLAs."""
+    """Driving by RLAs."""
     LED = "led"
-    """By a teacher."""
+    """Driven by a teacher."""
     ASKS = "asks"
     STANDS = "stands"
-    """For another reason."""
+    """Standing for another reason than a question."""
 
 
 @dataclass(slots=True)
 class Stretch:
-    """Ticks on end in which the robot did one thing. Grows while the run is read."""
+    """Consecutive ticks of one activity; it grows while the run is read."""
 
     kind: Kind
     what: str
-    """The action, or why the robot stood."""
+    """Action, or the cause of standing."""
     behaviour: str
-    """The taught behaviour that was wanted; empty where there is only one."""
+    """Active taught behaviour; empty if there is only one."""
     from_s: float
-    """From the first tick of the run."""
+    """Time from the first tick of the run."""
     to_s: float
     rlas: dict[int, int] = field(default_factory=dict)
-    """How many ticks each RLA drove; where the robot asked or stood, was nearest."""
+    """Ticks by RLA id: driving, or nearest while the robot asked or stood."""
     worst: float = 0.0
-    """Largest distance as a share of R; infinite where nothing was near."""
+    """Largest distance as a fraction of R; infinite if no RLA was near."""
     guarded: dict[str, int] = field(default_factory=dict)
-    """In how many ticks the guard changed what was decided, by its reasons; but for the slew limit."""
+    """Ticks in which the guard changed the decision, by reason; without the slew limit."""
 
     @property
     def lasts_s(self) -> float:
-        """How long."""
+        """Return the duration."""
         return self.to_s - self.from_s
 
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """Something that happened in one tick."""
+    """Event of one tick."""
 
     at_s: float
     kind: str
-    """lesson, saying (a session, an opinion, what was taken back), alarm."""
+    """lesson, saying (a session, an appraisal, an undo) or alarm."""
     text: str
 
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """One tick, for curves."""
+    """Values of one tick for curves."""
 
     at_s: float
     share: float
-    """Distance of the nearest RLA as a share of R; NaN where there is none."""
+    """Distance of the nearest RLA as a fraction of R; NaN without one."""
     rla_id: int | None
-    """The one that drives; None while none does."""
+    """Driving RLA; None without one."""
     action: str | None
     left_m_s: float
-    """As the guard let it through."""
+    """Speed after the guard."""
     right_m_s: float
     held_back: bool
-    """Whether the guard changed what was decided, for another reason than its slew limit."""
+    """True if the guard changed the decision for another reason than its slew limit."""
     x_m: float
-    """By the encoders, from where the first tick found it, looking along x."""
+    """Dead-reckoned position; the first tick is at the origin, heading along x."""
     y_m: float
 
 
 @dataclass(frozen=True, slots=True)
 class Timeline:
-    """A run, or a part of it."""
+    """Stretches, notes and samples of a run or a part of it."""
 
     stretches: tuple[Stretch, ...]
     notes: tuple[Note, ...]
@@ -96,16 +96,16 @@ class Timeline:
     missed: int
     """Ticks that were skipped."""
     unrecorded: int = 0
-    """Ticks that were not skipped, but are not in the recording."""
+    """Ticks that ran but are not in the recording."""
 
     @property
     def from_s(self) -> float:
-        """Of the first tick."""
+        """Return the time of the first tick."""
         return self.stretches[0].from_s if self.stretches else 0.0
 
     @property
     def to_s(self) -> float:
-        """Of the end of the last one."""
+        """Return the end of the last tick."""
         return self.stretches[-1].to_s if self.stretches else 0.0
 
 
@@ -118,10 +118,9 @@ def build_timeline(
     every: int = 5,
     known: Iterable[TeachingEvent] = (),
 ) -> Timeline:
-    """Read the entries of a run, oldest first; times in s from its first tick. Of `every` so many ticks a sample,
-    of a long run of fewer: at most twice MOST_SAMPLES.
+    """Build the timeline from the entries of a run, oldest first; times in s from its first tick.
 
-    `known`: what had been taught before.
+    Every `every`-th tick is sampled, fewer in a long run: at most 2 MOST_SAMPLES. `known`: lessons from before the run.
     """
     reader = _Reader(robot, from_s, to_s, every)
     for event in known:
@@ -133,7 +132,7 @@ def build_timeline(
 
 
 class _Reader:
-    """Goes through a run once."""
+    """Incremental builder of a timeline."""
 
     def __init__(self, robot: RobotSettings, from_s: float, to_s: float, every: int) -> None:
         self._period_s = robot.can.cycle_s
@@ -161,7 +160,7 @@ class _Reader:
         )
 
     def update(self, entry: TickEntry) -> bool:
-        """Take in one tick; False behind the end."""
+        """Add one tick; return False after the end of the requested time."""
         if self._began_s is None:
             self._began_s = entry.now_s
         at_s = entry.now_s - self._began_s
@@ -232,13 +231,13 @@ class _Reader:
 
 
 def kind_intervals(timeline: Timeline, kind: Kind) -> tuple[tuple[float, float], ...]:
-    """From when to when it did nothing but this, whatever the action or the question was."""
+    """Return the intervals (from, to) in s of one kind, adjoining stretches merged."""
     groups = [tuple(group) for each, group in groupby(timeline.stretches, lambda stretch: stretch.kind) if each is kind]
     return tuple((group[0].from_s, group[-1].to_s) for group in groups)
 
 
 def format_summary(timeline: Timeline) -> str:
-    """How much of the time the robot drove, asked and stood, in a line."""
+    """Return the shares of driving, asking and standing in one line."""
     whole_s = timeline.to_s - timeline.from_s
     if not whole_s > 0:
         return "Nothing was recorded in that time."
@@ -282,7 +281,7 @@ def _classified(entry: TickEntry) -> tuple[Kind, str]:
 
 
 def _notable_reasons(entry: TickEntry) -> tuple[str, ...]:
-    """Why the guard changed what was decided, but for the slew at each change of action."""
+    """Return the guard's reasons except the slew limit at each change of action."""
     return tuple(reason for reason in entry.grant.reasons if not reason.routine)
 
 

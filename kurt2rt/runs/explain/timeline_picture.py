@@ -1,4 +1,4 @@
-"""A run as a picture: where it went, what it did when, how well it knew where it was, and who drove."""
+"""Picture of a run: path, activities, distance of the nearest RLA, and driving RLA."""
 
 import math
 from bisect import bisect_left
@@ -22,13 +22,13 @@ _LEFT, _RIGHT, _HELD_BACK = "#2b7bba", "#c85a0a", "#efe3f5"
 _HIGHEST_SHARE = 1.6
 _MOST_NUMBERED = 24
 _MOST_STRETCHES = 400
-"""Of more nobody sees single ones."""
+"""Most stretches that are drawn one by one."""
 _INTERVALS = 200
-"""In which a long run is told."""
+"""Intervals into which a longer run is divided."""
 
 
 def draw_timeline(timeline: Timeline, title: str, path: Path) -> None:
-    """Write a picture as the file's name ends. Raises OSError."""
+    """Write the picture in the format of the file's suffix. Raises OSError."""
     colours = colours_of(stretch.what for stretch in timeline.stretches if stretch.kind is Kind.DRIVES)
     figure = Figure(figsize=(16.0, 8.6), facecolor="white")
     figure.text(0.02, 0.962, title, fontsize=15, fontweight="bold", color=INK, va="center")
@@ -64,7 +64,7 @@ def draw_timeline(timeline: Timeline, title: str, path: Path) -> None:
 
 
 def colour_of(stretch: Stretch, colours: Mapping[str, str]) -> str:
-    """As its kind has it, or its action."""
+    """Return the colour of the stretch's kind, or of its action."""
     match stretch.kind:
         case Kind.DRIVES:
             return colours[stretch.what]
@@ -76,7 +76,7 @@ def colour_of(stretch: Stretch, colours: Mapping[str, str]) -> str:
 
 
 def _path(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
-    """Where it went, by its encoders, in the colours of what it did."""
+    """Draw the dead-reckoned path in the colours of the activities."""
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_axis_off()
     samples = timeline.samples
@@ -120,7 +120,7 @@ def _path(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
 
 
 def _scale(axes: Axes, samples: Sequence[Sample]) -> None:
-    """A bar of a round length."""
+    """Draw a scale bar of a round length."""
     low_x, low_y = min(each.x_m for each in samples), min(each.y_m for each in samples)
     wide_m = max(max(each.x_m for each in samples) - low_x, max(each.y_m for each in samples) - low_y, 0.2)
     length_m = max((each for each in (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 50.0) if each <= wide_m / 2), default=0.1)
@@ -135,7 +135,7 @@ def _at(samples: Sequence[Sample], at_s: float) -> Sample:
 
 
 def _stretch_lane(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
-    """What it did when, with what was taught above."""
+    """Draw the activities over time, with lessons and alarms above."""
     if len(timeline.stretches) > _MOST_STRETCHES:
         _shares_over_time(axes, timeline, colours)
     else:
@@ -160,7 +160,7 @@ def _one_by_one(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> N
 
 
 def _shares_over_time(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
-    """Of a long run: how much of each while it did what."""
+    """Draw the share of each activity per interval of a long run."""
     low_s, high_s = timeline.from_s, timeline.to_s
     width_s = (high_s - low_s) / _INTERVALS
     lasts: dict[str, list[float]] = {}
@@ -194,7 +194,7 @@ def _notes(axes: Axes, notes: Sequence[Note], kind: str, marker: str, colour: st
 
 
 def _familiarity(axes: Axes, timeline: Timeline) -> None:
-    """How far the nearest RLA is, as a share of R."""
+    """Draw the distance of the nearest RLA as a fraction of R."""
     times = [sample.at_s for sample in timeline.samples]
     shown = [min(sample.share, _HIGHEST_SHARE) for sample in timeline.samples]
     axes.axhspan(0, 1, facecolor=_KNOWN, zorder=0)
@@ -210,7 +210,7 @@ def _familiarity(axes: Axes, timeline: Timeline) -> None:
 
 
 def _drivers(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None:
-    """Which RLA drives: the older the lower."""
+    """Draw the id of the driving RLA over time."""
     highest = 1
     lines: list[list[tuple[float, float]]] = []
     shades: list[str] = []
@@ -230,7 +230,7 @@ def _drivers(axes: Axes, timeline: Timeline, colours: Mapping[str, str]) -> None
 
 
 def _speeds(axes: Axes, timeline: Timeline) -> None:
-    """What the wheels were told; shaded where the guard held them back."""
+    """Draw the wheel set points, shaded where the guard reduced them."""
     times = [sample.at_s for sample in timeline.samples]
     left = [sample.left_m_s for sample in timeline.samples]
     right = [sample.right_m_s for sample in timeline.samples]

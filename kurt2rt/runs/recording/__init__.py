@@ -1,1 +1,1 @@
-"""What passed on the bus, kept in a file."""
+"""Recording of a run: CAN frames, ticks, lessons and health in files."""

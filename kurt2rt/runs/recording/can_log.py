@@ -1,4 +1,4 @@
-"""The CAN log: what the robot's program hears and sends, written beside it and never at its cost."""
+"""CAN log, written by its own thread so that it never delays the control loop."""
 
 import time
 from pathlib import Path
@@ -11,14 +11,14 @@ from kurt2rt.runs.recording.frame_writer import FrameWriter, LogFile
 from kurt2rt.runs.recording.writer_thread import WriterThread
 
 CAPACITY_FRAMES = 20_000
-"""That wait for the writer: some 25 s of a disk that does not answer, 5 MB."""
+"""Most frames that wait for the writer: about 25 s of a disk that does not answer, 5 MB."""
 _PATIENCE_S = 2.0
 _CHANNEL = "can0"
-"""Name of a bus in the file that is no interface of the kernel: a log of it can be played on one."""
+"""Channel name in the file for a bus that is no kernel interface, so that canplayer accepts the log."""
 
 
 class _Noted(NamedTuple):
-    """A frame on its way to the writer."""
+    """Frame on its way to the writer."""
 
     time_s: float
     is_rx: bool
@@ -26,17 +26,20 @@ class _Noted(NamedTuple):
 
 
 class CanLog:
-    """Looks on at a bus (hal.tap.Tap) and writes what passes in a thread of its own, ten times a second.
+    """Bus observer (hal.tap.Tap) that writes the traffic ten times a second in its own thread.
 
-    Noting a frame takes about a microsecond, never waits and never raises. Frames that the writer does not keep up
-    with, or fails to write, are lost and counted; it goes on with the next ones.
+    Noting a frame takes about 1 us, never waits and never raises. Frames that the writer cannot keep up with, or fails
+    to write, are lost and counted; later frames are written again.
     """
 
     def __init__(self, writer: FrameWriter, name: str, bus: str, capacity_frames: int = CAPACITY_FRAMES) -> None:
-        """Owns the writer from now on. `name`: of the file, for messages; `bus`: as hal.bus.open_bus takes it."""
+        """Take ownership of the writer.
+
+        `name`: of the file, for messages. `bus`: as for hal.bus.open_bus.
+        """
         self.name = name
         self.written = 0
-        """Frames so far."""
+        """Frames written so far."""
         self._writer = writer
         self._channel = _CHANNEL if ":" in bus or bus == "sim" else bus
         self._thread = WriterThread[_Noted]("CAN log", capacity_frames, self._run)
@@ -47,26 +50,29 @@ class CanLog:
 
     @property
     def lost(self) -> int:
-        """Frames that are not in the file: the writer was too slow, or failed."""
+        """Return the number of frames missing in the file: the writer was too slow or failed."""
         return self._thread.overruns + self._not_written
 
     @property
     def trouble(self) -> str:
-        """What is wrong with the log, in a line for the user; empty while every frame is kept."""
+        """Return the log's error in one line; empty while every frame is written."""
         wrong = [self._failure] if self._failure else []
         wrong += [f"{self.lost} frames lost"] if self.lost else []
         return f"CAN log {self.name}: {', '.join(wrong)}" if wrong else ""
 
     def on_rx(self, frame: can.Message, age_s: float) -> None:
-        """A frame that came in."""
+        """Note a received frame of age `age_s`."""
         self._thread.submit(_Noted(self._began_at_s + time.monotonic() - age_s, True, frame))
 
     def on_tx(self, frame: can.Message) -> None:
-        """A frame that went out."""
+        """Note a sent frame."""
         self._thread.submit(_Noted(self._began_at_s + time.monotonic(), False, frame))
 
     def write_waiting(self) -> None:
-        """Write all that waits; what the thread does again and again, and a run in simulated time by itself."""
+        """Write all waiting frames.
+
+        The thread calls it periodically; a run in simulated time calls it itself.
+        """
         noted = list(self._thread.pop_all())
         if not noted:
             return
@@ -80,11 +86,11 @@ class CanLog:
             self.written += len(noted)
 
     def start(self) -> None:
-        """Begin to write; once only."""
+        """Start the thread; call it once."""
         self._thread.start()
 
     def close(self, patience_s: float = _PATIENCE_S) -> None:
-        """Write the rest and close the file; gives a writer that hangs up after a while. `trouble` tells what came."""
+        """Write the rest and close the file; give up after `patience_s`. `trouble` holds the error."""
         if not self._thread.stop(patience_s):
             self._failure = "the disk does not answer; the end is missing"
 
@@ -109,7 +115,7 @@ class CanLog:
 
 
 def open_can_log(path: Path, bus: str) -> CanLog:
-    """A log in a new file; its ending says the format. Raises RecordingError, OSError."""
+    """Open a log in a new file, in the format of its suffix. Raises RecordingError, OSError."""
     file = LogFile(path)
     return CanLog(file, str(file.path), bus)
 

@@ -1,4 +1,4 @@
-"""The disk under a recording: the few calls that can fail, in one place, so that tests can have them fail."""
+"""Disk operations of a recording behind a protocol, so that tests can inject failures."""
 
 import contextlib
 import errno
@@ -10,49 +10,49 @@ from typing import Protocol
 from kurt2rt.platform.durable_files import free_bytes, fsync_folder, make_private_folder
 
 _NO_LOCKS = frozenset({errno.ENOLCK, errno.EOPNOTSUPP, errno.EBADF, errno.ENOSYS})
-"""What a disk answers that knows no locks: of a folder, NFS says EBADF."""
+"""Error numbers of file systems without locks; NFS returns EBADF for a folder."""
 
 
 class WritableFile(Protocol):
-    """A file that was made anew."""
+    """New file of a recording."""
 
     def write_at(self, offset: int, data: bytes | bytearray) -> None:
-        """Write all of `data` from `offset` bytes on. Raises OSError; some of it may be written then."""
+        """Write all of `data` at `offset` bytes. Raises OSError; part of it may be written then."""
         ...
 
     def sync(self) -> None:
-        """Wait until the disk has all of it. Raises OSError; nobody knows what it has then."""
+        """Wait until the data is durable. Raises OSError; the disk's content is undefined then."""
         ...
 
     def close(self) -> None:
-        """Give the file back. Raises OSError."""
+        """Close the file. Raises OSError."""
         ...
 
 
 class Disk(Protocol):
-    """Where recordings are kept. All of it may wait."""
+    """Disk that holds recordings. Every call may block."""
 
     def make_folder(self, path: Path) -> None:
-        """Make a folder, with those above it. Raises OSError; FileExistsError where it is there already."""
+        """Create a folder and its parents. Raises OSError; FileExistsError if it exists."""
         ...
 
     def create(self, path: Path) -> WritableFile:
-        """Make a file whose name outlives a power cut. Raises OSError; FileExistsError where it is there already."""
+        """Create a file whose name survives a power cut. Raises OSError; FileExistsError if it exists."""
         ...
 
     def free_bytes(self, path: Path) -> int:
-        """That may still be written where `path` is, or is going to be. Raises OSError."""
+        """Return the free bytes of the file system that holds, or will hold, `path`. Raises OSError."""
         ...
 
 
 class RealFile:
-    """A file on a real disk (WritableFile)."""
+    """File of a real disk (WritableFile)."""
 
     def __init__(self, path: Path) -> None:
         self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o644)
 
     def write_at(self, offset: int, data: bytes | bytearray) -> None:
-        """Write all of `data` from `offset` bytes on. Raises OSError."""
+        """Write all of `data` at `offset` bytes. Raises OSError."""
         rest = memoryview(bytes(data))
         while rest:
             written = os.pwrite(self._descriptor, rest, offset)
@@ -60,19 +60,19 @@ class RealFile:
             rest = rest[written:]
 
     def sync(self) -> None:
-        """Wait until the disk has all of it. Raises OSError."""
+        """Wait until the data is durable. Raises OSError."""
         os.fdatasync(self._descriptor)
 
     def close(self) -> None:
-        """Give the file back. Raises OSError."""
+        """Close the file. Raises OSError."""
         os.close(self._descriptor)
 
 
 class RealDisk:
-    """The disk of this machine (Disk)."""
+    """Disk of this machine (Disk)."""
 
     def make_folder(self, path: Path) -> None:
-        """Make a folder, with those above it. Raises OSError; then it is not there."""
+        """Create a folder and its parents. Raises OSError; the folder does not exist then."""
         make_private_folder(path.parent)
         path.mkdir()
         try:
@@ -83,7 +83,7 @@ class RealDisk:
             raise
 
     def create(self, path: Path) -> WritableFile:
-        """Make a file whose name outlives a power cut. Raises OSError."""
+        """Create a file whose name survives a power cut. Raises OSError."""
         file = RealFile(path)
         try:
             fsync_folder(path.parent)
@@ -93,18 +93,21 @@ class RealDisk:
         return file
 
     def free_bytes(self, path: Path) -> int:
-        """That may still be written where `path` is, or is going to be. Raises OSError."""
+        """Return the free bytes of the file system that holds, or will hold, `path`. Raises OSError."""
         return free_bytes(path)
 
 
 class LockedFolder:
-    """A run's folder, held as one's own, so that no other program deletes it to make room.
+    """Lock on a run's folder against deletion by another program.
 
-    The kernel lets it go when this program ends, however it ends. A disk that knows no locks does without.
+    The kernel releases the lock at the end of the program. File systems without locks are accepted.
     """
 
     def __init__(self, path: Path) -> None:
-        """Raises OSError, also where another program looks at this very moment whether it is held."""
+        """Lock the folder.
+
+        Raises OSError, also while another program tests the lock.
+        """
         self._descriptor = _open_folder(path)
         try:
             fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -114,12 +117,12 @@ class LockedFolder:
                 raise
 
     def close(self) -> None:
-        """Let it go."""
+        """Release the lock."""
         os.close(self._descriptor)
 
 
 def is_locked(folder: Path) -> bool:
-    """Whether some program records to this folder. Raises OSError."""
+    """Return whether some program records to this folder. Raises OSError."""
     descriptor = _open_folder(folder)
     try:
         fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)

@@ -1,4 +1,4 @@
-"""What the recorder writes of every tick, and what a replay reads: all that went into it, and what came of it."""
+"""Entry of each tick in a recording: the inputs of the tick and its results."""
 
 import zlib
 from typing import NamedTuple
@@ -18,7 +18,7 @@ from kurt2rt.core.tick import TickRecord
 
 
 class MatchEntry(NamedTuple):
-    """The nearest RLA and the one behind it, by their ids."""
+    """Nearest RLA and runner-up by their ids."""
 
     rla_id: int
     distance: float
@@ -29,7 +29,7 @@ class MatchEntry(NamedTuple):
 
 
 class MidEntry(NamedTuple):
-    """What the mid level commanded; fields as those of MidDecision."""
+    """Command of the mid level, with the fields of MidDecision."""
 
     behaviour: str
     rla_id: int | None
@@ -40,7 +40,7 @@ class MidEntry(NamedTuple):
 
 
 class DecisionEntry(NamedTuple):
-    """What was decided; fields as those of Decision."""
+    """Decision, with the fields of Decision."""
 
     wheel_speeds: WheelSpeeds
     cause: Cause
@@ -54,7 +54,7 @@ class DecisionEntry(NamedTuple):
 
 
 class OpinionEntry(NamedTuple):
-    """What the critic thought; fields as those of Opinion."""
+    """Appraisal of the critic, with the fields of Opinion."""
 
     value: int
     appraisal: str
@@ -66,33 +66,33 @@ class OpinionEntry(NamedTuple):
 
 
 class ResultEntry(NamedTuple):
-    """What became of a command."""
+    """Result of a command."""
 
     command_id: str
     accepted: bool
     text: str
-    """For readers only: a replay compares the code."""
+    """Sentence for readers; a replay compares the code."""
     lesson: bool
     code: str | None = None
-    """Code of the outcome; None in recordings of before 2026-11-22."""
+    """Code of the outcome; None in recordings from before 2026-11-22."""
 
 
 class TickEntry(NamedTuple):
-    """One tick: what a replay feeds in, and what has to come out again, bit for bit."""
+    """One tick: inputs of a replay, and the results it must reproduce bit for bit."""
 
     # What went in.
     number: int
-    """1, 2, 3 ... of the ticks that were run: where one is missing, it was not recorded."""
+    """Consecutive number of executed ticks from 1; a missing number was not recorded."""
     tick: int
     now_s: float
     senses: SensorReadings
     grant: GuardResult
     commands: tuple[Input, ...]
-    """Taken from the inbox in this tick, in order."""
+    """Messages taken from the inbox in this tick, in order."""
     trouble: str | None
-    """Why lessons could not be saved in this tick; None when they could."""
+    """Reason why lessons could not be saved in this tick; None if they could."""
     saved: bool
-    """Whether statistics were saved after it: those of RLAs that are no more were dropped then."""
+    """True if statistics were saved after the tick, which drops those of deleted RLAs."""
     # What came out.
     decision: DecisionEntry
     behaviour: str
@@ -100,68 +100,68 @@ class TickEntry(NamedTuple):
     surprise: Surprise | None
     results: tuple[ResultEntry, ...]
     events: tuple[TeachingEvent, ...]
-    """What was taught in this tick, by teachers and by the robot itself."""
+    """Lessons of this tick by teachers and by the robot itself."""
     situation_crc32: int
-    """CRC-32 of the bytes of the situation vector, little-endian float64."""
+    """CRC-32 of the situation vector as little-endian float64."""
     knowledge: str | None
-    """Hash of what is known after this tick (RlaSystem.knowledge_hash); None in the ticks that do not say."""
+    """Hash of the knowledge after this tick (RlaSystem.knowledge_hash); None in ticks without it."""
 
 
 def tick_entry(record: TickRecord, *, saved: bool, knowledge: str | None) -> TickEntry:
-    """The entry of a tick. `knowledge`: the hash of `record.knowledge` where that is there."""
+    """Return the entry of a tick. `knowledge`: hash of `record.knowledge`, if the record has it."""
     return TickEntry(
-        record.number,
-        record.tick,
-        record.now_s,
-        record.senses,
-        record.guard_result,
-        record.commands,
-        record.error,
-        saved,
-        decision_entry(record.decision),
-        record.behaviour,
-        None if record.opinion is None else _opinion_entry_of(record.opinion),
-        record.surprise,
-        tuple(_result_entry_of(each) for each in record.results),
-        record.events,
-        zlib.crc32(record.situation.vector.astype("<f8", copy=False).tobytes()),
-        knowledge,
+        number=record.number,
+        tick=record.tick,
+        now_s=record.now_s,
+        senses=record.senses,
+        grant=record.guard_result,
+        commands=record.commands,
+        trouble=record.error,
+        saved=saved,
+        decision=decision_entry(record.decision),
+        behaviour=record.behaviour,
+        opinion=None if record.opinion is None else _opinion_entry(record.opinion),
+        surprise=record.surprise,
+        results=tuple(_result_entry(each) for each in record.results),
+        events=record.events,
+        situation_crc32=zlib.crc32(record.situation.vector.astype("<f8", copy=False).tobytes()),
+        knowledge=knowledge,
     )
 
 
-def _result_entry_of(result: CommandResult) -> ResultEntry:
+def _result_entry(result: CommandResult) -> ResultEntry:
     text = text_of(result.outcome)
     return ResultEntry(result.command_id, result.accepted, text, result.lesson, result.code.value)
 
 
 def decision_entry(decision: Decision) -> DecisionEntry:
-    """A decision with ids in place of RLAs."""
+    """Return a decision with ids instead of RLAs."""
     return DecisionEntry(
-        decision.wheel_speeds,
-        decision.cause,
-        decision.action,
-        decision.rla_id,
-        match_entry(decision.match),
-        decision.answers,
-        decision.asks_at,
-        None if decision.mid is None else _mid_entry_of(decision.mid),
-        decision.plan,
+        wheel_speeds=decision.wheel_speeds,
+        cause=decision.cause,
+        action=decision.action,
+        rla_id=decision.rla_id,
+        match=match_entry(decision.match),
+        answers=decision.answers,
+        asks_at=decision.asks_at,
+        mid=None if decision.mid is None else _mid_entry(decision.mid),
+        plan=decision.plan,
     )
 
 
 def match_entry(match: Match | None) -> MatchEntry | None:
-    """A match with ids in place of RLAs."""
+    """Return a match with ids instead of RLAs."""
     if match is None:
         return None
     runner_up = None if match.runner_up is None else match.runner_up.rla_id
     return MatchEntry(match.rla.rla_id, match.distance, match.radius, match.known, runner_up, match.runner_up_distance)
 
 
-def _opinion_entry_of(opinion: Opinion) -> OpinionEntry:
+def _opinion_entry(opinion: Opinion) -> OpinionEntry:
     rla_id = None if opinion.rla is None else opinion.rla.rla_id
     value, appraisal, trace_s, _, distance, radius, known = opinion
     return OpinionEntry(value, appraisal, trace_s, rla_id, distance, radius, known)
 
 
-def _mid_entry_of(mid: MidDecision) -> MidEntry:
+def _mid_entry(mid: MidDecision) -> MidEntry:
     return MidEntry(mid.behaviour, mid.rla_id, match_entry(mid.match), mid.asks, mid.overridden, mid.event)

@@ -1,4 +1,4 @@
-"""What a recording shows without a word of the project's own: Foxglove's scan, pose, transform, scene and log."""
+"""Foxglove messages of a run: scan, pose, transforms, scene and log."""
 
 import math
 from collections.abc import Sequence
@@ -51,17 +51,17 @@ _TEXT_HEIGHT_M = 0.7
 
 
 def timestamp(time_ns: int) -> Timestamp:
-    """Nanoseconds since 1970 as Foxglove says it."""
+    """Return nanoseconds since 1970 as a Foxglove timestamp."""
     return Timestamp(time_ns // 1_000_000_000, time_ns % 1_000_000_000)
 
 
 def pose_in(frame: str, pose: PlanePose, time_ns: int) -> PoseInFrame:
-    """A pose on the floor."""
+    """Return a pose on the floor in a frame."""
     return PoseInFrame(timestamp=timestamp(time_ns), frame_id=frame, pose=_pose(pose))
 
 
 def transforms(moves: Sequence[tuple[str, str, PlanePose]], time_ns: int) -> FrameTransforms:
-    """For each (parent, child, pose): where the child frame's origin stands in the parent's."""
+    """Return the pose of each child frame in its parent, from (parent, child, pose)."""
     moved = [
         FrameTransform(
             timestamp=timestamp(time_ns),
@@ -76,7 +76,7 @@ def transforms(moves: Sequence[tuple[str, str, PlanePose]], time_ns: int) -> Fra
 
 
 class RobotScene:
-    """Scans and scenes of one robot."""
+    """Builder of scans and scenes for one robot."""
 
     def __init__(self, settings: RobotSettings) -> None:
         self._length_m = settings.geometry.outline_length_m
@@ -84,7 +84,7 @@ class RobotScene:
         self._rays = SensorRays(settings.infrared)
 
     def scan(self, counts: Sequence[int], time_ns: int) -> LaserScan:
-        """What the sensors see, as seen from the robot's centre."""
+        """Return the infra-red counts as a laser scan from the robot's centre."""
         return LaserScan(
             timestamp=timestamp(time_ns),
             frame_id=ROBOT,
@@ -95,7 +95,7 @@ class RobotScene:
         )
 
     def scene(self, counts: Sequence[int], decision: Decision, behaviour: str, time_ns: int) -> SceneUpdate:
-        """The robot's outline with an arrow ahead, the rays of its sensors, and what drives it as text."""
+        """Return the robot's outline with its heading, sensor rays and decision text."""
         points: list[Point3] = []
         colors: list[Color] = []
         for ray in self._rays.rays(counts):
@@ -145,7 +145,7 @@ class RobotScene:
 
 
 def world_scene(world: WorldPlan, time_ns: int) -> SceneUpdate:
-    """The simulated world: its walls, each a face under a line, and posts."""
+    """Return the walls and posts of the simulated world."""
     outlines = [corners for corners in (world.outline, *(wall.corners for wall in world.walls)) if corners]
     faces = TriangleListPrimitive(
         pose=_pose(PlanePose(0.0, 0.0, 0.0)),
@@ -185,7 +185,7 @@ def world_scene(world: WorldPlan, time_ns: int) -> SceneUpdate:
 
 
 def _faces_under(corners: Sequence[tuple[float, float]]) -> list[Point3]:
-    """Two triangles from the floor to the height of a wall for each side of a closed outline; x, y in metres."""
+    """Return two triangles per side of a closed outline, from floor to wall height; x, y in m."""
     points = []
     for (from_x, from_y), (to_x, to_y) in zip(corners, (*corners[1:], corners[0]), strict=True):
         low, high = Point3(x=from_x, y=from_y, z=0.0), Point3(x=from_x, y=from_y, z=_WALL_HEIGHT_M)
@@ -195,7 +195,7 @@ def _faces_under(corners: Sequence[tuple[float, float]]) -> list[Point3]:
 
 
 def describe_decision(decision: Decision, behaviour: str) -> str:
-    """What drives the wheels, in a few words."""
+    """Return the source of the wheel speeds in a few words."""
     if decision.action is not None and decision.rla_id is not None:
         return f"{decision.action} by {rla_title(decision.rla_id, behaviour)}"
     if decision.action is not None:

@@ -1,4 +1,4 @@
-"""Writes frames to a file that other CAN tools read."""
+"""Writer of CAN frames in the file formats of other tools."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,8 +10,10 @@ from kurt2rt.platform.yield_gil import yield_gil
 from kurt2rt.runs.recording.recording_error import RecordingError
 
 ENDINGS = (".log", ".asc", ".blf", ".csv", ".trc", ".mf4")
-"""File formats, by ending: candump, Vector ASC and BLF, table, PEAK trace, ASAM MF4. Not python-can's SQLite, whose
-own queue has no bound."""
+"""Suffixes of candump, Vector ASC and BLF, CSV, PEAK trace and ASAM MF4.
+
+python-can's SQLite is left out: its queue is unbounded.
+"""
 
 _ERROR_FLAG = 0x2000_0000
 """CAN_ERR_FLAG of linux/can.h."""
@@ -19,28 +21,28 @@ _MAX_SAME_NAME = 1000
 
 
 class FrameWriter(Protocol):
-    """Where a CAN log puts its frames. It may wait and raise what it likes: it runs beside the robot."""
+    """Destination of a CAN log. It may block and raise any error, because it runs in the log's thread."""
 
     def write(self, frames: Sequence[can.Message]) -> None:
-        """Frames with time stamps in s since 1970; afterwards they outlive this process, where the format can."""
+        """Write frames with time stamps in s since 1970, and flush if the format can."""
         ...
 
     def close(self) -> None:
-        """No more comes."""
+        """End the log."""
         ...
 
 
 class LogFile:
-    """A new file in one of python-can's formats (FrameWriter)."""
+    """New file in one of python-can's formats (FrameWriter)."""
 
     def __init__(self, path: Path) -> None:
-        """Make the file; one that exists is kept, and the new one numbered. Raises RecordingError, OSError."""
+        """Create the file, numbered if the name is taken. Raises RecordingError, OSError."""
         if path.suffix not in ENDINGS:
             raise RecordingError(
                 "no known kind of CAN log", where=path, do=f"give a name that ends in {', '.join(ENDINGS)}"
             )
         self.path = _create_numbered(path)
-        """The file that is written."""
+        """Path of the file."""
         try:
             self._writer = can.Logger(self.path)
         except NotImplementedError as error:
@@ -51,7 +53,7 @@ class LogFile:
         self._is_candump = path.suffix == ".log"
 
     def write(self, frames: Sequence[can.Message]) -> None:
-        """Frames in candump's, Vector's, ... words; see FrameWriter. Raises OSError."""
+        """Write frames in the file's format (FrameWriter). Raises OSError."""
         for frame in yield_gil(frames):
             self._writer.on_message_received(_with_error_flag(frame) if self._is_candump else frame)
         flush = getattr(getattr(self._writer, "file", None), "flush", None)
@@ -59,7 +61,7 @@ class LogFile:
             flush()
 
     def close(self) -> None:
-        """Make it whole: BLF and MF4 can be read only then. Raises OSError."""
+        """Complete the file: BLF and MF4 are readable only then. Raises OSError."""
         self._writer.stop()
 
 
@@ -76,7 +78,7 @@ def _create_numbered(path: Path) -> Path:
 
 
 def _with_error_flag(frame: can.Message) -> can.Message:
-    """An error frame keeps its class, which python-can's own line drops: 20000040# is a bus-off."""
+    """Return an error frame with its error class in the id, which python-can's line omits: 20000040# is bus-off."""
     if not frame.is_error_frame:
         return frame
     return can.Message(

@@ -1,4 +1,4 @@
-"""The live view: what is being recorded, for Foxglove over a WebSocket."""
+"""Live view of a recording for Foxglove over a WebSocket."""
 
 from collections.abc import Callable
 
@@ -9,12 +9,15 @@ LOOPBACK = "127.0.0.1"
 
 
 class LiveView:
-    """Shows all that is logged in a context to whoever connects. Others can look on and change nothing."""
+    """Read-only server of all that is logged in a context."""
 
     def __init__(
         self, context: Context, host: str, port: int, name: str, opened: Callable[["LiveView"], None] = lambda _: None
     ) -> None:
-        """Opens nothing yet. `port` 0: any; `name`: what Foxglove calls it; `opened` is called when it is open."""
+        """Store the address; nothing is opened yet.
+
+        `port` 0: any free port. `name`: title in Foxglove. `opened`: called once the server listens.
+        """
         self._opened = opened
         self._context = context
         self._host = host
@@ -22,25 +25,25 @@ class LiveView:
         self._name = name
         self._server: WebSocketServer | None = None
         self.trouble = ""
-        """Why it is not open, in a line; empty while it is."""
+        """Reason why the server is closed, in one line; empty while it listens."""
 
     @property
     def is_open(self) -> bool:
-        """Whether one can connect."""
+        """Return whether clients can connect."""
         return self._server is not None
 
     @property
     def port(self) -> int:
-        """The port it listens on; as it was asked for until it is open."""
+        """Return the port; the requested one until the server listens."""
         return self._port if self._server is None else self._server.port
 
     @property
     def address(self) -> str:
-        """What one gives to Foxglove."""
+        """Return the URL for Foxglove."""
         return f"ws://{self._host}:{self.port}"
 
     def poll(self) -> None:
-        """Open it, where it is not: the port may have become free."""
+        """Open the server unless it is open, because the port may have become free."""
         if self._server is not None:
             return
         try:
@@ -55,14 +58,14 @@ class LiveView:
             self._opened(self)
 
     def close(self) -> None:
-        """Everybody is disconnected."""
+        """Disconnect all clients and stop listening."""
         if self._server is not None:
             self._server.stop()
             self._server = None
 
 
 def parse_address(text: str) -> tuple[str, int]:
-    """Host and port of `PORT` or `HOST:PORT`; this machine alone unless a host is given. Raises ValueError."""
+    """Return host and port of `PORT` or `HOST:PORT`; loopback without a host. Raises ValueError."""
     host, colon, port = text.rpartition(":")
     if not port.isdecimal() or int(port) > 65535 or (colon and not host):
         raise ValueError(f"{text!r} is neither PORT nor HOST:PORT, with a port up to 65535")

@@ -1,4 +1,4 @@
-"""What is noted of a run beside the loop, and how it is logged."""
+"""Notes of a run on their way to the recording, and their logging."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -10,45 +10,45 @@ from kurt2rt.runs.recording.topics import Topics
 
 
 class TickNote(NamedTuple):
-    """A tick has been."""
+    """Record of one tick."""
 
     record: TickRecord
     time_ns: int
-    """Since 1970."""
+    """Time since 1970."""
     saved: bool
-    """Statistics were saved after it."""
+    """True if statistics were saved after the tick."""
     truth: SimulatedPlace | None
     world: WorldPlan | None
 
 
 class QuestionNote(NamedTuple):
-    """The robot begins to ask."""
+    """Question of the robot."""
 
     question: object
-    """`str` of it is the question."""
+    """Object whose `str` is the question."""
 
 
 class HealthNote(NamedTuple):
     """Health report of the program."""
 
     report: Mapping[str, Any]
-    """As plain values."""
+    """Report as plain values."""
 
 
 Note = TickNote | QuestionNote | HealthNote | Acknowledgement
 
 
 class NoteLog:
-    """Logs notes to the topics of one place, each at the time of the newest tick."""
+    """Logger of notes to the topics of one destination, at the time of the newest tick."""
 
     def __init__(self, topics: Topics, began_ns: int) -> None:
-        """`began_ns`: time since 1970 of what is noted before the first tick."""
+        """`began_ns`: time since 1970 of notes before the first tick."""
         self.topics = topics
         self._time_ns = began_ns
         self._world: WorldPlan | None = None
 
     def log(self, note: Note) -> None:
-        """One note. Raises RecordingError for one that cannot be written."""
+        """Log one note. Raises RecordingError for a note that cannot be encoded."""
         topics = self.topics
         match note:
             case TickNote(record, time_ns, saved, truth, world):

@@ -1,4 +1,4 @@
-"""A copy of a file that a power cut tore, or that is still being written, with the index that viewers ask for."""
+"""Recovery of a truncated or growing segment: a copy with the index that viewers require."""
 
 from pathlib import Path
 from typing import BinaryIO
@@ -10,18 +10,18 @@ from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.segment_reader import SegmentReader
 
 TRUNCATED_METADATA = "kurt2rt.torn"
-"""Metadata of a copy that does not hold all that was meant to be in the file: why, in a sentence."""
+"""Metadata record of an incomplete copy, with the reason in a sentence."""
 
 
 class NothingRecoverableError(RecordingError):
-    """A file is none of a run, or nothing of it was written: one that was begun when the power went."""
+    """File without a run's data: another kind of file, or one begun just before a power cut."""
 
 
 def recover_segment(source: Path, target: Path) -> str:
-    """Copy all that is whole of a run's file to a new one with an index; returns why that is not all, or nothing.
+    """Copy the readable part of a segment to a new file with an index; return why it is incomplete, or "".
 
-    Every message keeps its bytes and times. Raises RecordingError where `source` cannot be read or `target` is there,
-    NothingRecoverableError where there is nothing to copy, OSError where it cannot be written; then no file is left.
+    Every message keeps its bytes and times. Raises RecordingError if `source` cannot be read or `target` exists,
+    NothingRecoverableError if nothing can be copied, OSError if writing fails; no file is left then.
     """
     reader = SegmentReader(source)
     try:

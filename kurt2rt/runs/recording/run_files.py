@@ -1,8 +1,7 @@
-"""The files of the run that is being recorded, one after the other, within a budget, on a disk that may fail."""
+"""Segments of the current run, within a budget, on a disk that may fail."""
 
 import contextlib
 import zlib
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,91 +9,81 @@ from foxglove import Context
 
 from kurt2rt.knowledge.exchange.attachments import ROBOT, TASK
 from kurt2rt.runs.recording.disk import Disk, LockedFolder, RealDisk
+from kurt2rt.runs.recording.recorded_run import RecordedRun
 from kurt2rt.runs.recording.run_folder import make_room, next_run_name, segment_name, used_bytes
 from kurt2rt.runs.recording.segment import Segment
 
 _MEGA = 1_000_000
 _MAX_SAME_NAME = 1000
 _IN_EACH = (ROBOT, TASK)
-"""Attachments of every segment, so that one can be understood whose elders had to make room."""
+"""Attachments of every segment: a segment stays readable after older ones were deleted."""
 
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """How much of the disk recordings may take."""
+    """Disk space of recordings."""
 
     total_bytes: int
-    """Of all runs together."""
+    """Limit of all runs together."""
     segment_bytes: int
-    """A segment that has grown so far is the last but one."""
+    """Size at which the next segment is started."""
     reserve_bytes: int = 200 * _MEGA
-    """Left free for lessons: where less is free, recordings shrink, and in the end rest."""
+    """Free space kept for lessons: below it recordings are deleted, then suspended."""
 
 
 def budget_of(megabytes: int) -> Budget:
-    """A budget of so many MB for all runs."""
+    """Return a budget of `megabytes` for all runs."""
     return Budget(megabytes * _MEGA, min(32 * _MEGA, megabytes * _MEGA // 10))
 
 
 class RunFiles:
-    """Everything that is logged in a context goes to these files. All of it may wait for the disk; nothing raises.
+    """Files for all that is logged in a context. Calls may block on the disk and never raise.
 
-    Where the disk fails it is tried again at each `poll`: see Segment for what that costs.
+    After an error each `poll` tries again; Segment states the cost.
     """
 
     def __init__(
         self,
         context: Context,
         recordings: Path,
-        name: str,
+        run: RecordedRun,
         budget: Budget,
-        *,
-        describe: Callable[[int], Mapping[str, Mapping[str, str]]],
-        attachments: Mapping[str, bytes],
-        now_ns: Callable[[], int],
         disk: Disk | None = None,
     ) -> None:
-        """`name`: of the run's folder.
-
-        `describe`: metadata of the n-th segment; `attachments`: of the first one, the settings among them
-        of each.
-        """
         self._context = context
         self._recordings = recordings
-        self._name = name
+        self._run = run
         self._budget = budget
-        self._describe = describe
-        # What a run began with is needed once more where somebody deletes its folder: it waits for that in little room.
-        self._attachments = {name: zlib.compress(data) for name, data in attachments.items()}
-        self._now_ns = now_ns
+        # Kept compressed: the attachments are written again if a user deletes the run folder.
+        self._attachments = {name: zlib.compress(data) for name, data in run.attachments.items()}
         self._disk = disk or RealDisk()
         self._lock: LockedFolder | None = None
         self._segment: Segment | None = None
         self._number = 0
         self._attached = False
         self.run: Path | None = None
-        """The run's folder; None until it could be made."""
+        """Run folder; None until it was created."""
         self.trouble = ""
-        """Why nothing is kept at the moment, in a line; empty while all is."""
+        """Reason why nothing is recorded at the moment, in one line; empty otherwise."""
         self.folders = 0
-        """That were begun: more than one where somebody has deleted the run meanwhile."""
+        """Folders created so far: more than one if a user deleted the run meanwhile."""
         self.given_up = 0
-        """Segments whose last messages were lost, because the disk failed for too long, or somebody deleted them."""
+        """Segments whose last messages were lost: the disk failed too long, or a user deleted them."""
 
     @property
     def is_open(self) -> bool:
-        """Whether messages that are logged now come to a file."""
+        """Return whether messages logged now go to a file."""
         return self._segment is not None
 
-    def take(self, budget: Budget) -> None:
-        """Keep to this budget from the next `poll` on; from any thread."""
+    def set_budget(self, budget: Budget) -> None:
+        """Apply a budget at the next `poll`; thread-safe."""
         self._budget = budget
 
     def poll(self) -> bool:
-        """Once a second: have the disk keep what came, begin files and end them; whether all is kept now."""
+        """Sync, start and end segments; return whether everything is durable. Call it once a second."""
         try:
             if self._segment is not None and not self._segment.path.exists():
-                self._give_up()  # somebody has deleted it
+                self._give_up()  # a user deleted it
                 self._attached = False
             if self._segment is None:
                 return self._begin()
@@ -111,7 +100,7 @@ class RunFiles:
             return False
 
     def close(self) -> bool:
-        """End the last file; whether the disk has all of it."""
+        """Close the last segment; return whether all of it is durable."""
         try:
             self._end()
         except OSError as error:
@@ -126,7 +115,7 @@ class RunFiles:
         return True
 
     def _begin(self) -> bool:
-        if self.run is not None and not self.run.is_dir():  # somebody has deleted it
+        if self.run is not None and not self.run.is_dir():  # a user deleted it
             self._unlock()
             self.run, self._attached = None, False
         if not self._has_room():
@@ -137,7 +126,7 @@ class RunFiles:
         try:
             segment = Segment(path, self._context, self._disk)
         except FileExistsError:
-            self._number += 1  # whoever made it, it is kept
+            self._number += 1  # the file of another program is kept
             raise
         except OSError:
             with contextlib.suppress(OSError):  # told above; without its name it leaves no riddle
@@ -145,11 +134,11 @@ class RunFiles:
             raise
         self._number += 1
         self._segment = segment
-        for name, metadata in self._describe(self._number).items():
-            segment.describe(name, dict(metadata))
+        for name, metadata in self._run.metadata(self._number).items():
+            segment.describe(name, metadata)
         for attached, data in self._attachments.items():
             if not self._attached or attached in _IN_EACH:
-                segment.attach(attached, zlib.decompress(data), self._now_ns())
+                segment.attach(attached, zlib.decompress(data), self._run.now_ns())
         segment.save()
         self._attached = True
         self.trouble = ""
@@ -175,7 +164,7 @@ class RunFiles:
         return False
 
     def _has_room(self) -> bool:
-        """Make room, before a segment is begun for all that will come; `trouble` says why there is none."""
+        """Delete older runs for the next segment; return whether it fits, else set `trouble`."""
         budget, coming = self._budget, self._budget.segment_bytes if self._segment is None else 0
         spare = self._disk.free_bytes(self._recordings) - budget.reserve_bytes
         make_room(
@@ -198,7 +187,7 @@ class RunFiles:
             lock.close()
 
     def _make_folder(self) -> Path:
-        name = next_run_name(self._name, self._recordings)
+        name = next_run_name(self._run.name, self._recordings)
         for number in range(1, _MAX_SAME_NAME):
             path = self._recordings / (name if number == 1 else f"{name}-{number}")
             try:

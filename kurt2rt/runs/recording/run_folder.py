@@ -1,4 +1,4 @@
-"""Folders of recorded runs: what they are called, which is the newest, and which go when there is no more room."""
+"""Folders of recorded runs: names, order and deletion of the oldest."""
 
 import contextlib
 import re
@@ -17,14 +17,14 @@ _SEGMENT_NAME = re.compile(r"\d{4,}\.mcap")
 
 
 def run_name(started: datetime, task: str) -> str:
-    """Name of a run's folder: runs of one folder are in the order of their names. `started`: with its time zone."""
+    """Return the folder name of a run, which sorts by time. `started`: with time zone."""
     return f"{started.astimezone(UTC):{_STAMP}}-{task}"
 
 
 def next_run_name(name: str, recordings: Path) -> str:
-    """The same name of a run's folder, or one a second after the newest run's, where the wall clock was set back.
+    """Return the name, or one a second after the newest run's if the wall clock was set back.
 
-    Runs stay in the order of recording: the newest is the one to replay, and the last to go. Raises OSError.
+    Runs thus sort in the order of recording: the newest is replayed by default and deleted last. Raises OSError.
     """
     runs = runs_in(recordings)
     newest = runs[-1].name[:_STAMP_LETTERS] if runs else ""
@@ -32,37 +32,37 @@ def next_run_name(name: str, recordings: Path) -> str:
         return name
     try:
         later = datetime.strptime(newest, _STAMP).replace(tzinfo=UTC) + timedelta(seconds=1)
-    except (ValueError, OverflowError):  # a folder that somebody else named
+    except (ValueError, OverflowError):  # a folder with another name pattern
         return name
     return f"{later:{_STAMP}}{name[_STAMP_LETTERS:]}"
 
 
 def segment_name(number: int) -> str:
-    """Name of a run's n-th file, from 1."""
+    """Return the file name of a run's n-th segment, from 1."""
     return f"{number:04d}{SEGMENT_ENDING}"
 
 
 def runs_in(folder: Path) -> list[Path]:
-    """Run folders in a folder of recordings, the oldest first; none where there is no such folder. Raises OSError."""
+    """Return the run folders in a folder of recordings, oldest first; empty if it is missing. Raises OSError."""
     if not folder.is_dir():
         return []
     return sorted(each for each in folder.iterdir() if _RUN_NAME.fullmatch(each.name) and each.is_dir())
 
 
 def segments_in(run: Path) -> list[Path]:
-    """Files of a run, the oldest first. Raises OSError."""
+    """Return the segments of a run, oldest first. Raises OSError."""
     return sorted((each for each in run.iterdir() if _SEGMENT_NAME.fullmatch(each.name)), key=segment_number)
 
 
 def segment_number(segment: Path) -> int:
-    """The n of a run's n-th file."""
+    """Return the number in a segment's name."""
     return int(segment.stem)
 
 
 def find_run(given: Path | None, recordings: Path) -> Path:
-    """The run folder or segment that a command line means: `given`, by path or by its name in `recordings`.
+    """Return the run folder or segment named on a command line, by path or by name in `recordings`.
 
-    None: the newest run of `recordings` in which there was a tick. Raises RecordingError in a sentence.
+    None: the newest run of `recordings` with a tick. Raises RecordingError.
     """
     if given is None:
         newest = next((each for each in reversed(runs_in(recordings)) if _has_ticks(each)), None)
@@ -84,16 +84,15 @@ def _has_ticks(run: Path) -> bool:
 
 
 def used_bytes(recordings: Path) -> int:
-    """That all runs take together; not what is elsewhere, and only has a link here. Raises OSError."""
+    """Return the size of all runs together, without targets of links. Raises OSError."""
     return sum(_size(segment) for run in _own_runs_in(recordings) for segment in segments_in(run))
 
 
 def make_room(recordings: Path, current: Path | None, budget_bytes: int) -> int:
-    """Delete the oldest runs, then the oldest segments of `current`, until all together fit in the budget.
+    """Delete the oldest runs, then the oldest segments of `current`, until all fit in the budget.
 
-    The newest segment of `current` stays, whatever it takes, and so do a run that another program records, what cannot
-    be deleted, and what a link leads to. Folders of runs that hold nothing go. Returns the bytes that are left in use.
-    Raises OSError.
+    The newest segment of `current` is kept, and so are runs locked by another program, files that cannot be deleted and
+    targets of links. Empty run folders are removed. Returns the bytes still in use. Raises OSError.
     """
     used = used_bytes(recordings)
     others = [run for run in _own_runs_in(recordings) if run != current and not is_locked(run)]
@@ -104,11 +103,11 @@ def make_room(recordings: Path, current: Path | None, budget_bytes: int) -> int:
         if used <= budget_bytes:
             break
         size = _size(segment)
-        with contextlib.suppress(OSError):  # somebody else's: the next one goes in its place
+        with contextlib.suppress(OSError):  # not ours to delete: the next one is tried
             segment.unlink()
             used -= size
     for run in others:
-        with contextlib.suppress(OSError):  # it holds something, if only a note that somebody put there
+        with contextlib.suppress(OSError):  # not empty
             run.rmdir()
     return used
 

@@ -1,4 +1,4 @@
-"""What a run is, for the one who reads its recording: it stands in every segment's metadata."""
+"""Head of a run: its circumstances, in the metadata of every segment."""
 
 import json
 from dataclasses import asdict, dataclass, fields
@@ -7,61 +7,63 @@ from typing import Any
 from kurt2rt.runs.recording.recording_error import RecordingError
 
 RUN_VERSION = 2
-"""Raise it when head, entries or attachments change so that an older program would misread them.
+"""Version of head, entries and attachments; raise it if an older program would misread them.
 
 2: a robot that touches something asks.
 """
 
 _BEFORE: dict[str, Any] = {"tolerates_stalls": False, "asks_when_held": False}
-"""Fields added by later versions, with the values that hold for older recordings."""
+"""Values of later fields that hold for older recordings."""
 
 RUN_METADATA = "run"
-"""Name of the metadata record that holds the head, in each segment."""
+"""Metadata record with the head, in each segment."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunHead:
-    """The circumstances of one run."""
+    """Circumstances of one run."""
 
     kurt2rt: str
     """Version of the program."""
     boot: str
-    """Names this start of the program, hexadecimal."""
+    """Identifier of this start of the program, hexadecimal."""
     started_at: str
-    """UTC, ISO 8601."""
+    """Start in UTC, ISO 8601."""
     task: str
     robot: str
     """Name of the robot's settings."""
     bus: str
-    """sim, or the bus that the robot was on."""
+    """sim, or the robot's bus."""
     knowledge: str
-    """File that it taught into, from the root on; empty where there was none. Up to 2026-11-22 it was kept as it was
-    given: from the folder that the program was started in."""
+    """Absolute path of the knowledge file; empty without one.
+
+    Up to 2026-11-22 the path is relative to the working folder of the program.
+    """
     attended: bool
-    """Whether in phases 1 to 4 the robot drove by its RLAs only while a teacher was there."""
+    """True if the robot drove in phases 1 to 4 only while a teacher was present."""
     asked: bool
-    """Whether somebody was there who could be asked."""
+    """True if the robot could ask a teacher."""
     stopped: str
-    """Why the robot stood at the start until it was told to resume; empty where it did not."""
+    """Reason of the initial stop; empty without one."""
     behaviour: str
-    """The taught behaviour that was wanted at the start."""
+    """Active taught behaviour at the start."""
     fingerprints: dict[str, str]
-    """SHA-256 of each attachment, by its name."""
+    """SHA-256 of each attachment by name."""
     version: int = RUN_VERSION
     tolerates_stalls: bool = False
-    """Whether ticks that were missed counted against no lease of the teacher."""
+    """True if missed ticks were not counted against the teacher's leases."""
     asks_when_held: bool = True
-    """Whether the robot asked when it touched something and was to drive on toward it."""
+    """True if the robot asked when a bumper blocked its action."""
 
 
 def encode_head(head: RunHead) -> dict[str, str]:
-    """As the metadata of an MCAP file: texts by names."""
+    """Return the head as MCAP metadata: texts by name."""
     content = asdict(head)
     return {key: value if isinstance(value, str) else json.dumps(value) for key, value in content.items()}
 
 
 def decode_head(metadata: dict[str, str]) -> RunHead:
-    """The head that `encode_head` wrote. Raises RecordingError, also for a run of a newer program."""
+    """Decode the metadata of `encode_head`. Raises RecordingError, also for a run of a newer program."""
     try:
         version = json.loads(metadata["version"])
         if version > RUN_VERSION:

@@ -1,4 +1,4 @@
-"""JSON schemas of the project's own topics: what Foxglove offers when one plots them."""
+"""JSON schemas of the project's own topics, for plots in Foxglove."""
 
 from typing import Any
 
@@ -61,18 +61,18 @@ TICK_SCHEMA: JsonSchema = {
         knowledge=_TEXT,
     ),
 }
-"""Every tick: kurt2rt.runs.recording.entries reads it."""
+"""Schema of every tick; kurt2rt.runs.recording.entries reads it."""
 
 LESSON_SCHEMA: JsonSchema = {
     "title": "kurt2rt.Lesson",
     **_map(event=_EVENT, acknowledged=_TEXT, sequence=_COUNT, error=_TEXT, stamped_at=_TEXT),
 }
-"""A teaching event as the journal keeps it, or what became of one."""
+"""Schema of a teaching event in journal form, or of its acknowledgement."""
 
 HEALTH_SCHEMA: JsonSchema = {"title": "kurt2rt.Health", "type": "object"}
-"""Once a second: kurt2rt.channel.protocol.health."""
+"""Schema of the health report, once a second: kurt2rt.channel.protocol.health."""
 
 
 def situation_schema(features: tuple[str, ...]) -> JsonSchema:
-    """A situation: a number for each of its features."""
+    """Return the schema of a situation: one number per feature."""
     return {"title": "kurt2rt.Situation", "type": "object", "properties": dict.fromkeys(features, _NUMBER)}

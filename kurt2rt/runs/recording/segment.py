@@ -1,4 +1,4 @@
-"""One file of a run's recording: MCAP, written so that a power cut leaves every whole chunk readable."""
+"""Segment of a recording: an MCAP file whose complete chunks survive a power cut."""
 
 import os
 from pathlib import Path
@@ -10,48 +10,48 @@ from kurt2rt.runs.recording.disk import Disk, WritableFile
 
 PROFILE = "kurt2rt"
 KEPT_BYTES = 4_000_000
-"""That wait for a disk which fails, some minutes of a run; then the segment is given up."""
+"""Most bytes that wait for a failing disk, some minutes of a run; then the segment is given up."""
 _MEDIA_TYPES = {".json": "application/json", ".jsonl": "application/jsonl", ".yaml": "application/yaml"}
 
 
 class MemoryFile:
-    """What the SDK writes to: bytes in memory, appended only. Never fails, so a failing disk cannot confuse the SDK."""
+    """Append-only file in memory for the SDK. It never fails, so the SDK sees no disk errors."""
 
     def __init__(self) -> None:
         self._bytes = bytearray()
         self._length = 0
 
     def write(self, data: bytes | bytearray) -> int:
-        """Append."""
+        """Append the data; return its length in bytes."""
         self._bytes += data
         self._length += len(data)
         return len(data)
 
     def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        """Where the end is; the SDK is told not to go elsewhere."""
+        """Return the end position. Raises OSError for any other one."""
         here = offset if whence == os.SEEK_SET else self._length + offset
         if here != self._length:
             raise OSError(f"a recording is only appended to, not written at {here} of {self._length}")
         return here
 
     def flush(self) -> None:
-        """Nothing: the segment writes when it wants to."""
+        """Do nothing: the segment decides when it writes."""
 
     def pop_all(self) -> bytearray:
-        """What came since the last call."""
+        """Return the bytes since the last call."""
         taken, self._bytes = self._bytes, bytearray()
         return taken
 
 
 class Segment:
-    """Records all that is logged in a context, from now on, to a new file.
+    """New file for all that is logged in a context from now on.
 
-    What came since the last `save` that succeeded is kept in memory and written anew by the next one: a failed write,
-    or a failed fsync after which nobody knows what the disk has, costs nothing but time.
+    Data since the last successful `save` stays in memory and is written again by the next one. A failed write or fsync,
+    which leaves the disk's content undefined, thus loses nothing.
     """
 
     def __init__(self, path: Path, context: Context, disk: Disk) -> None:
-        """Make the file. Raises OSError; FileExistsError where it is there already."""
+        """Create the file. Raises OSError; FileExistsError if it exists."""
         self.path = path
         self._file: WritableFile = disk.create(path)
         self._buffer = MemoryFile()
@@ -63,7 +63,7 @@ class Segment:
                 context=context,
                 writer_options=MCAPWriteOptions(
                     compression=MCAPCompression.Zstd,
-                    # A chunk ends when it is saved; no thread pool of zstd's beside a robot.
+                    # `save` ends each chunk; zstd's thread pool would compete with the control loop.
                     chunk_size=None,
                     compression_threads=0,
                     disable_seeking=True,
@@ -76,30 +76,30 @@ class Segment:
 
     @property
     def size_bytes(self) -> int:
-        """Of the file, with what waits to be written."""
+        """Return the size of the file including unwritten data."""
         return self._saved_bytes + len(self._unsaved)
 
     @property
     def is_over_limit(self) -> bool:
-        """Whether more waits for a failing disk than is kept."""
+        """Return whether more than KEPT_BYTES wait for a failing disk."""
         return len(self._unsaved) > KEPT_BYTES
 
     def describe(self, name: str, metadata: dict[str, str]) -> None:
-        """Put a metadata record in."""
+        """Add a metadata record."""
         self._writer.write_metadata(name, metadata)
 
     def attach(self, name: str, data: bytes, time_ns: int) -> None:
-        """Put a file in."""
+        """Add an attachment."""
         media_type = _MEDIA_TYPES.get(Path(name).suffix, "application/octet-stream")
         self._writer.attach(log_time=time_ns, create_time=time_ns, name=name, media_type=media_type, data=data)
 
     def save(self) -> None:
-        """End the chunk, and have the disk keep all that came so far. Raises OSError: nothing is lost, try again."""
+        """End the chunk and sync. Raises OSError; nothing is lost, try again."""
         self._writer.flush()
         self._write_out()
 
     def close(self) -> None:
-        """Write the index, have the disk keep it, and close. Raises OSError; the file is readable without, too."""
+        """Write the index, sync and close. Raises OSError; the file is readable without the index."""
         self._writer.close()
         try:
             self._write_out()
@@ -107,7 +107,7 @@ class Segment:
             self._file.close()
 
     def give_up(self) -> None:
-        """Close without another word to the disk; what it has kept stays readable. Raises OSError."""
+        """Close without writing; synced data stays readable. Raises OSError."""
         self._writer.close()
         self._buffer.pop_all()
         self._file.close()

@@ -1,4 +1,4 @@
-"""Reads one file of a recorded run, also one that a power cut tore: up to its last whole chunk."""
+"""Reader of one segment of a run; a truncated file is read up to its last complete chunk."""
 
 import struct
 from collections.abc import Collection, Iterator
@@ -16,23 +16,23 @@ from kurt2rt.runs.recording.recording_error import RecordingError
 TICK_TOPIC = "/tick"
 """Topic of the ticks, of which a run is made."""
 
-# What mcap raises over bytes that are none of its own, beside its own errors; a wrong checksum is a ValueError.
+# Errors that mcap raises on foreign bytes in addition to its own; a wrong checksum is a ValueError.
 _TRUNCATION_ERRORS = (McapError, struct.error, ValueError, zstandard.ZstdError, OverflowError, MemoryError)
 
 
 LARGEST_CHUNK_BYTES = 16_000_000
-"""Largest chunk that is unpacked. kurt2rt ends a chunk each second; the largest stored run has 4 MB in one."""
+"""Largest chunk that is decompressed; kurt2rt ends one each second, at most 4 MB in stored runs."""
 _ALWAYS_UNPACKED_BYTES, _MOST_TIMES = 1_000_000, 1000
 """A larger chunk than the first unpacks to at most so many times its size; runs of a robot reach 15."""
 _COMPRESSIONS = ("", "zstd")
 
 
 class LoggedMessage(NamedTuple):
-    """One message of a recording."""
+    """Message of a recording."""
 
     topic: str
     time_ns: int
-    """Since 1970, by the recording's own even clock."""
+    """Time since 1970 by the recording's monotonic clock."""
     data: bytes
     schema: str
     """Name of its schema."""
@@ -40,22 +40,22 @@ class LoggedMessage(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class SegmentHead:
-    """What stands before the first message of a file."""
+    """Metadata and attachments before the first message."""
 
     metadata: dict[str, dict[str, str]] = field(default_factory=dict)
     attachments: dict[str, bytes] = field(default_factory=dict)
 
 
 class SegmentReader:
-    """Reads one file; each call reads it anew from its beginning."""
+    """Reader of one file; each call starts at its beginning."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.truncated = ""
-        """Where and how the file ends too early, in a sentence; empty while nobody has come to a torn place."""
+        """Place and reason of a premature end, in a sentence; empty until one was reached."""
 
     def head(self) -> SegmentHead:
-        """Metadata and attachments before the first chunk, as far as they are there. Raises RecordingError."""
+        """Return metadata and attachments before the first chunk, as far as present. Raises RecordingError."""
         head = SegmentHead()
         for record in self.records():
             match record:
@@ -68,9 +68,9 @@ class SegmentReader:
         return head
 
     def messages(self, topics: Collection[str] | None = None) -> Iterator[LoggedMessage]:
-        """Messages of these topics, of all where None, in the order of writing. Raises RecordingError.
+        """Yield messages of these topics, or of all, in the order of writing. Raises RecordingError.
 
-        Of a chunk all messages are read, or none. Afterwards `truncated` tells whether the file ended as it should.
+        All messages of a chunk are read, or none. Afterwards `truncated` tells whether the end is missing.
         """
         schemas: dict[int, str] = {0: ""}
         channels: dict[int, Channel] = {}
@@ -86,7 +86,10 @@ class SegmentReader:
                         yield LoggedMessage(channel.topic, record.log_time, record.data, schemas[channel.schema_id])
 
     def records(self) -> Iterator[McapRecord]:
-        """All that is whole, from the header on, chunks taken apart; raises and sets `truncated` as `messages` does."""
+        """Yield all complete records from the header on, with chunks unpacked.
+
+        Sets `truncated`. Raises RecordingError.
+        """
         self.truncated = ""
         try:
             size = self.path.stat().st_size
@@ -112,7 +115,7 @@ class SegmentReader:
 
 
 def _whole_records(reader: StreamReader, path: Path) -> Iterator[list[McapRecord]]:
-    """Yield one record after the other; those of a chunk together, once it has been found whole.
+    """Yield one record at a time; the records of a chunk together after its CRC matched.
 
     Raises RecordingError for a chunk that would fill the memory.
     """

@@ -1,4 +1,4 @@
-"""Where the rays of the distance sensors end, seen from the robot's centre."""
+"""Rays of the distance sensors in the robot's frame."""
 
 import math
 from collections.abc import Sequence
@@ -11,18 +11,18 @@ SCAN_RAYS = 360 // SCAN_STEP_DEG
 
 
 class Ray(NamedTuple):
-    """One sensor's line of sight; x forward, y left, in metres."""
+    """Line of sight of one sensor; x forward, y left, in m."""
 
     from_x_m: float
     from_y_m: float
     to_x_m: float
     to_y_m: float
     seen: bool
-    """Whether something is at its end; else it ends where the sensor sees nothing any more."""
+    """True if it ends at an obstacle; otherwise it ends at the sensor's range."""
 
 
 class SensorRays:
-    """Turns counts into rays, and into a scan with rays at even angles."""
+    """Conversion of infra-red counts to rays, and to a scan with equal angles."""
 
     def __init__(self, infrared: InfraredSettings) -> None:
         self._infrared = infrared
@@ -33,7 +33,7 @@ class SensorRays:
         ]
 
     def rays(self, counts: Sequence[int]) -> list[Ray]:
-        """The ray of each sensor, in the order of `counts`."""
+        """Return the ray of each sensor in the order of `counts`."""
         infrared = self._infrared
         rays = []
         for (x_m, y_m, dx, dy), count in zip(self._places, counts, strict=True):
@@ -42,9 +42,9 @@ class SensorRays:
         return rays
 
     def scan_m(self, counts: Sequence[int]) -> list[float]:
-        """Distances from the centre, counter-clockwise from x every SCAN_STEP_DEG; infinite where nothing is seen.
+        """Return distances from the centre, counter-clockwise from x every SCAN_STEP_DEG; infinite without obstacle.
 
-        Each sensor's hit stands in the ray next to it: at most half a step aside.
+        A sensor's hit is entered in the nearest ray, at most half a step off.
         """
         ranges = [math.inf] * SCAN_RAYS
         for ray in self.rays(counts):

@@ -1,9 +1,10 @@
-"""A tick's entry as JSON, exact to the last bit of every float64, and back."""
+"""JSON codec of tick entries, exact to the last bit of every float64."""
 
 import json
 import math
-from collections.abc import Callable, Iterable, Mapping
-from typing import Any, TypeVar
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any, TypeVar, get_args, get_type_hints
 
 from hal.guard_reason import guard_reason
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
@@ -22,7 +23,7 @@ _Value = TypeVar("_Value")
 
 
 def encode_tick(entry: TickEntry) -> bytes:
-    """JSON of an entry, in UTF-8; what is not there is left out, infinity and NaN are texts.
+    """Return the entry as UTF-8 JSON without absent fields; infinity and NaN become texts.
 
     Raises RecordingError for an event that cannot be written.
     """
@@ -33,7 +34,7 @@ def encode_tick(entry: TickEntry) -> bytes:
 
 
 def decode_tick(data: bytes) -> TickEntry:
-    """The entry that `encode_tick` wrote, equal to the last bit. Raises RecordingError."""
+    """Return the entry of `encode_tick`, equal to the last bit. Raises RecordingError."""
     try:
         return _entry(json.loads(data))
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError, KnowledgeError) as error:
@@ -86,7 +87,7 @@ def _wheels(speeds: WheelSpeeds) -> dict[str, Any]:
 
 
 def _tuple(value: Any) -> dict[str, Any]:
-    """A named tuple of plain values; floats that are not finite are texts."""
+    """Return a named tuple as a mapping; floats that are not finite become texts."""
     fields: dict[str, Any] = value._asdict()
     return _present({key: _number(each) if isinstance(each, float) else each for key, each in fields.items()})
 
@@ -119,120 +120,75 @@ def _decision(decision: DecisionEntry) -> dict[str, Any]:
 def _entry(content: dict[str, Any]) -> TickEntry:
     senses, grant = content["senses"], content["grant"]
     opinion, surprise = content.get("opinion"), content.get("surprise")
-    return TickEntry(
-        content["number"],
-        content["tick"],
-        float(content["now_s"]),
-        SensorReadings(
-            float(senses.get("time_s", content["now_s"])),
-            tuple(senses["infrared_counts"]),
-            float(senses["infrared_age_s"]),
-            senses["encoder_left_ticks"],
-            senses["encoder_right_ticks"],
-            float(senses["encoder_age_s"]),
-            senses["bumpers"],
-            float(senses["bumper_age_s"]),
+    return _decoded(
+        TickEntry,
+        content,
+        senses=_decoded(
+            SensorReadings,
+            senses,
+            time_s=float(senses.get("time_s", content["now_s"])),
+            infrared_counts=tuple(senses["infrared_counts"]),
         ),
-        GuardResult(_speeds_of(grant["wheels"]), tuple(map(guard_reason, grant["reasons"])), grant["latched"]),
-        _all(decode_command, content.get("commands", ())),
-        content.get("trouble"),
-        content.get("saved", False),
-        _decision_of(content["decision"]),
-        content["behaviour"],
-        None
-        if opinion is None
-        else OpinionEntry(
-            opinion["value"],
-            opinion["appraisal"],
-            float(opinion["trace_s"]),
-            opinion.get("rla_id"),
-            float(opinion["distance"]),
-            float(opinion["radius"]),
-            opinion["known"],
+        grant=GuardResult(
+            _decoded(WheelSpeeds, grant["wheels"]), tuple(map(guard_reason, grant["reasons"])), grant["latched"]
         ),
-        None if surprise is None else _surprise_of(surprise),
-        tuple(ResultEntry(**each) for each in content.get("results", ())),
-        _all(lambda each: decode_event(json.dumps(each), f"tick {content['tick']}"), content.get("events", ())),
-        content["situation_crc32"],
-        content.get("knowledge"),
-    )
-
-
-def _all(decode: Callable[[Any], _Value], items: Iterable[Any]) -> tuple[_Value, ...]:
-    return tuple(decode(each) for each in items)
-
-
-def _speeds_of(wheels: dict[str, Any]) -> WheelSpeeds:
-    return WheelSpeeds(float(wheels["left_m_s"]), float(wheels["right_m_s"]))
-
-
-def _surprise_of(surprise: dict[str, Any]) -> Surprise:
-    return Surprise(
-        surprise["level"],
-        surprise["rla_id"],
-        surprise["follow_up"],
-        float(surprise["distance"]),
-        float(surprise["usual"]),
-        surprise["ends"],
-        surprise["seen"],
-        surprise["surprising"],
-    )
-
-
-def _match_of(match: dict[str, Any] | None) -> MatchEntry | None:
-    if match is None:
-        return None
-    return MatchEntry(
-        match["rla_id"],
-        float(match["distance"]),
-        float(match["radius"]),
-        match["known"],
-        match.get("runner_up"),
-        float(match["runner_up_distance"]),
+        commands=tuple(decode_command(each) for each in content.get("commands", ())),
+        saved=content.get("saved", False),
+        decision=_decision_of(content["decision"]),
+        opinion=None if opinion is None else _decoded(OpinionEntry, opinion),
+        surprise=None if surprise is None else _decoded(Surprise, surprise),
+        results=tuple(ResultEntry(**each) for each in content.get("results", ())),
+        events=tuple(decode_event(json.dumps(each), f"tick {content['tick']}") for each in content.get("events", ())),
     )
 
 
 def _decision_of(decision: dict[str, Any]) -> DecisionEntry:
     mid, plan = decision.get("mid"), decision.get("plan")
-    return DecisionEntry(
-        _speeds_of(decision["wheels"]),
-        Cause(decision["cause"]),
-        decision.get("action"),
-        decision.get("rla_id"),
-        _match_of(decision.get("match")),
-        decision["answers"],
-        decision.get("asks_at", BASIC),
-        None if mid is None else _mid_of(mid),
-        None if plan is None else _plan_of(plan),
+    return _decoded(
+        DecisionEntry,
+        decision,
+        wheel_speeds=_decoded(WheelSpeeds, decision["wheels"]),
+        cause=Cause(decision["cause"]),
+        match=_match_of(decision.get("match")),
+        asks_at=decision.get("asks_at", BASIC),
+        mid=None if mid is None else _mid_of(mid),
+        plan=None if plan is None else _plan_of(plan),
     )
+
+
+def _match_of(match: dict[str, Any] | None) -> MatchEntry | None:
+    return None if match is None else _decoded(MatchEntry, match)
 
 
 def _mid_of(mid: dict[str, Any]) -> MidEntry:
     event = mid.get("event")
-    return MidEntry(
-        mid["behaviour"],
-        mid.get("rla_id"),
-        _match_of(mid.get("match")),
-        mid["asks"],
-        mid["overridden"],
-        None
-        if event is None
-        else JunctionEvent(
-            event["quarters"],
-            event["left_open"],
-            event["right_open"],
-            float(event["turn_rad"]),
-            float(event["way_m"]),
-        ),
+    return _decoded(
+        MidEntry,
+        mid,
+        match=_match_of(mid.get("match")),
+        event=None if event is None else _decoded(JunctionEvent, event),
     )
 
 
 def _plan_of(plan: dict[str, Any]) -> PlanStep:
-    return PlanStep(
-        plan["goal"],
-        GoalStatus(plan["course"]),
-        tuple(plan["behaviours"]),
-        plan.get("rla_id"),
-        plan["says"],
-        plan["surprises"],
-    )
+    return _decoded(PlanStep, plan, course=GoalStatus(plan["course"]), behaviours=tuple(plan["behaviours"]))
+
+
+def _decoded(kind: Callable[..., _Value], content: Mapping[str, Any], **decoded: Any) -> _Value:
+    """Return the named tuple of a JSON object; `decoded`: values of fields that are no plain numbers or texts.
+
+    Raises KeyError for an absent field, unless it may be None.
+    """
+    fields = dict(decoded)
+    for name, is_float, is_optional in _fields_of(kind):
+        if name not in fields:
+            value: Any = content.get(name) if is_optional else content[name]
+            fields[name] = float(value) if is_float else value
+    return kind(**fields)
+
+
+@cache
+def _fields_of(kind: type) -> tuple[tuple[str, bool, bool], ...]:
+    """Return the name of each field of a named tuple, whether it is a float, and whether it may be None."""
+    hints = get_type_hints(kind)
+    return tuple((name, hint is float, type(None) in get_args(hint)) for name, hint in hints.items())

@@ -1,4 +1,4 @@
-"""The topics of a recorded run: the project's own, and pictures that Foxglove shows by itself."""
+"""Topics of a recorded run: the project's own and those that Foxglove displays by itself."""
 
 import json
 import math
@@ -51,7 +51,7 @@ _GROUND_EVERY_S = 5
 
 
 class Topics:
-    """Logs what a run is made of in a context, whoever takes it there: a file, a live view. Times in ns since 1970."""
+    """Logger of a run to the topics of a context, for a file or a live view. Times in ns since 1970."""
 
     def __init__(self, context: Context, settings: RobotSettings, features: tuple[str, ...]) -> None:
         """`features`: names of the situation's values."""
@@ -82,7 +82,7 @@ class Topics:
         self._log = LogChannel(LOG, context=context)
 
     def tick(self, record: TickRecord, *, saved: bool, truth: SimulatedPlace | None, time_ns: int) -> None:
-        """One tick. Raises RecordingError for one that cannot be written."""
+        """Log one tick. Raises RecordingError for a tick that cannot be encoded."""
         senses = record.senses
         motion = self._odometry.motion(senses.encoder_left_ticks, senses.encoder_right_ticks)
         pose = self._reckoned.moved(motion.forward_m, motion.turn_rad)
@@ -107,7 +107,7 @@ class Topics:
             self._log_scene(record, time_ns)
 
     def on_acknowledged(self, acknowledgement: Acknowledgement, time_ns: int) -> None:
-        """A lesson is durable, or never will be."""
+        """Log that a lesson is durable or failed."""
         content = {
             "acknowledged": acknowledgement.command_id,
             "sequence": acknowledgement.sequence,
@@ -119,7 +119,7 @@ class Topics:
             self.log_text(f"not saved: {acknowledgement.command_id}: {acknowledgement.error}", LogLevel.Error, time_ns)
 
     def on_question(self, question: str, time_ns: int) -> None:
-        """The robot begins to ask."""
+        """Log a question of the robot."""
         self.log_text(question, LogLevel.Warning, time_ns)
 
     def on_health(self, report: Mapping[str, Any], time_ns: int) -> None:
@@ -127,24 +127,24 @@ class Topics:
         self._health.log(_json(report), log_time=time_ns)
 
     def log_world(self, world: WorldPlan, tick: int, time_ns: int) -> None:
-        """The simulated world."""
+        """Log the simulated world every 5 s."""
         if tick >= self._next_ground:
             self._next_ground = tick + self._ground_ticks
             self._ground.log(world_scene(world, time_ns), log_time=time_ns)
 
     def repeat_periodic(self) -> None:
-        """Whoever takes it from now on knows nothing yet: what is told seldom is told again."""
+        """Repeat the periodic messages at the next tick, for a new receiver."""
         self._next_scan = self._next_scene = self._next_ground = 0
 
     def log_text(self, text: str, level: LogLevel, time_ns: int) -> None:
-        """A line for the log."""
+        """Log a line of text."""
         self._log.log(Log(timestamp=timestamp(time_ns), level=level, message=text, name="kurt2rt"), log_time=time_ns)
 
     def _log_event(self, event: TeachingEvent, time_ns: int) -> None:
         self._lesson.log(b'{"event":%s}' % encode_event(event).encode(), log_time=time_ns)
 
     def _log_changes(self, record: TickRecord, time_ns: int) -> None:
-        """What a reader of the log wants to know of a tick, where it is new."""
+        """Log results, and changes of activity, guard reasons and trouble."""
         for result in record.results:
             level = LogLevel.Info if result.accepted else LogLevel.Warning
             self.log_text(f"{result.command_id}: {text_of(result.outcome)}", level, time_ns)
@@ -193,8 +193,8 @@ class Topics:
 
 def _channel(topic: str, schema: dict[str, Any], context: Context) -> Channel:
     channel = Channel(topic, schema=schema, context=context)
-    # The SDK keeps each that was ever made, by its id, which is for those who look one up: here nobody does, and a
-    # process that records run after run would grow by 8 kB with each.
+    # The SDK keeps every channel by its id for lookups. No code here looks one up, and each recorded run would
+    # add 8 kB to the process.
     getattr(sdk_channel, "_channels_by_id", {}).pop(channel.id(), None)
     return channel
 

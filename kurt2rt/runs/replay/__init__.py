@@ -1,1 +1,1 @@
-"""A recorded run again: the same senses and commands through the same tick, with the same or with other knowledge."""
+"""Replay of a recorded run: the recorded inputs through the same tick, with the same or other knowledge."""

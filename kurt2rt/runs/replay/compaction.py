@@ -1,4 +1,4 @@
-"""Deletes the RLAs that no recorded decision needs, once a replay has proved that not one decision changes by it."""
+"""Deletion of RLAs that no recorded decision needs, after a replay proved that no decision changes."""
 
 import math
 from collections.abc import Sequence
@@ -16,48 +16,48 @@ from kurt2rt.runs.replay.run import Run
 from kurt2rt.runs.replay.trial import Report, TrialKnowledge, compatible_runs, format_answers, replay_answers
 
 TEACHER = "compact"
-"""Whose lessons the deletions are: all of them can be undone together."""
+"""Teacher of the deletions, so that all of them can be undone together."""
 
 
 @dataclass(frozen=True, slots=True)
 class Compaction:
-    """What was deleted, or would be."""
+    """Deletions, done or planned, and their evidence."""
 
     deleted: tuple[Rla, ...]
     kept: int
     """RLAs of the basic level that stay."""
     runs: int
-    """In which something drove."""
+    """Runs in which the robot drove."""
     ticks: int
-    """Of these runs."""
+    """Ticks of these runs."""
     driven_ticks: int
-    """Of these: an action turned the wheels. What stands sees one place, and proves nothing of others."""
+    """Ticks in which an action turned the wheels; a standing robot is evidence of one place only."""
     notes: tuple[str, ...]
-    """Which runs, or parts of one, could not be tried, and why."""
+    """Runs, or parts of one, that could not be replayed, with the reason."""
     other_behaviours: tuple[str, ...]
-    """Taught behaviours by which nothing drove in any run: their RLAs stay, for nothing is known of them."""
+    """Taught behaviours that drove in no run; their RLAs stay for lack of evidence."""
 
 
 @dataclass(slots=True)
 class _Coverage:
-    """What was seen in the runs."""
+    """RLAs and behaviours used in the runs."""
 
     needed: set[int] = field(default_factory=set)
-    """Ids of all RLAs that were ever nearest, also while the robot stood."""
+    """Ids of all RLAs that were nearest in some tick, also while the robot stood."""
     behaviours: set[str] = field(default_factory=set)
-    """By which something drove."""
+    """Behaviours that drove."""
     runs: int = 0
     ticks: int = 0
     driven_ticks: int = 0
     standing: list[str] = field(default_factory=list)
-    """Names of runs in which nothing drove."""
+    """Names of runs without a driven tick."""
 
 
 def compact(path: Path, recordings: Path, *, stamp: str, dry_run: bool, report: Report) -> Compaction:
-    """Delete what no decision of the recorded runs needs, as lessons that can be undone; durable on return.
+    """Delete the basic-level RLAs that no recorded decision needs, as durable lessons that can be undone.
 
-    Only RLAs of the basic level. Raises KnowledgeError, and changes nothing, where a robot runs on the file, there are
-    no runs of such knowledge in which anything drove, or any decision of them would change.
+    Raises KnowledgeError, and changes nothing, if a robot runs on the file, if no compatible run has a driven tick, or
+    if any of their decisions would change.
     """
     if dry_run:
         with Journal.read_only(path) as journal:
@@ -117,7 +117,7 @@ def _replay_runs(system: RlaSystem, runs: Sequence[Run], now: TrialKnowledge, re
 
 
 def _require_unchanged(runs: Sequence[Run], before: TrialKnowledge, after: TrialKnowledge, report: Report) -> None:
-    """Raises KnowledgeError where anything is said otherwise: which RLA, at what distance, or that it asks."""
+    """Raise KnowledgeError if an answer differs in its RLA, its distance or in asking."""
     for run in runs:
         for record, (old, new) in replay_answers(run, (before, after), report):
             if old != new:

@@ -1,4 +1,4 @@
-"""Compares a tick as it was recorded with the same tick replayed, bit for bit."""
+"""Bitwise comparison of a recorded tick with its replay."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -9,17 +9,17 @@ from kurt2rt.runs.recording.entries import TickEntry, tick_entry
 
 
 class TickDifference(NamedTuple):
-    """Something that came out differently."""
+    """Field with different values."""
 
     tick: int
     field: str
-    """Dots between its levels."""
+    """Path of the field, with dots between its levels."""
     recorded: object
     replayed: object
 
     @property
     def text(self) -> str:
-        """What was, and what is."""
+        """Return the recorded and the replayed value in words."""
         return f"{self.field} was {_short_repr(self.recorded)}, and is {_short_repr(self.replayed)} now"
 
     def __str__(self) -> str:
@@ -27,7 +27,7 @@ class TickDifference(NamedTuple):
 
 
 def compare(entry: TickEntry, record: TickRecord) -> list[TickDifference]:
-    """All that a replayed tick has otherwise than the recorded one; empty where all is the same to the last bit."""
+    """Return the differences of a replayed tick from the recorded one; empty if it is equal to the last bit."""
     knowledge = None
     if entry.knowledge is not None and record.knowledge is not None:
         knowledge = knowledge_hash_of(sorted(record.knowledge, key=lambda rla: rla.rla_id))

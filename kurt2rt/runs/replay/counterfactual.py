@@ -1,4 +1,4 @@
-"""Which decisions of a run would have differed under other knowledge."""
+"""Decisions of a run that would have differed under other knowledge."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -18,51 +18,51 @@ from kurt2rt.runs.replay.run import Run
 from kurt2rt.runtime import Runtime
 
 _DECIDES = frozenset({Cause.RLA, Cause.HELD, Cause.UNKNOWN})
-"""Where knowledge has a say; elsewhere the robot stands for another reason, or its teacher drives."""
+"""Causes in which knowledge decides; otherwise the robot stands for another reason, or a teacher drives."""
 
 AnswerSource = Callable[[TickRecord, Runtime], PolicyAnswers]
-"""What some knowledge says of a replayed tick."""
+"""Function that returns the answers of some knowledge to a replayed tick."""
 
 
 class DifferingStretch(NamedTuple):
-    """Ticks in a row in which the same was decided, and the same other thing would have been."""
+    """Consecutive ticks with the same recorded answer and the same different one."""
 
     level: str
     from_s: float
-    """At the first tick, since the first tick of the run."""
+    """Time of the first tick since the first tick of the run."""
     to_s: float
-    """At the last one."""
+    """Time of the last tick."""
     ticks: int
     was: PolicyAnswer
-    """Of the first tick."""
+    """Recorded answer at the first tick."""
     would_be: PolicyAnswer
-    """Of the first tick."""
+    """Other answer at the first tick."""
 
 
 @dataclass(frozen=True, slots=True)
 class Counterfactual:
-    """What would have been otherwise."""
+    """Decisions that would have differed."""
 
     ticks: int
-    """Of the run, which were compared."""
+    """Compared ticks."""
     decided: int
-    """Ticks in which knowledge had a say: no teacher drove, and nothing else had the robot stand."""
+    """Ticks in which knowledge decided: no teacher drove, and nothing else made the robot stand."""
     other_action: int
-    """Of those: another action would have been taken."""
+    """Decided ticks with another action."""
     would_ask: int
-    """Of those: it would have asked where it drove."""
+    """Decided ticks with a question instead of an action."""
     would_drive: int
-    """Of those: it would have driven where it asked."""
+    """Decided ticks with an action instead of a question."""
     mid_otherwise: int
-    """Ticks in which the mid level would have commanded otherwise, or asked; 0 where there is none."""
+    """Ticks in which the mid level would have commanded otherwise, or asked; 0 without one."""
     stretches: tuple[DifferingStretch, ...]
-    """In the order of time."""
+    """Differences in order of time."""
     trouble: str
-    """Why not the whole run was looked at, in a sentence; empty where it was."""
+    """Reason why part of the run was not compared, in a sentence; empty if all of it was."""
 
     @property
     def same(self) -> bool:
-        """Whether not one decision would have differed."""
+        """Return whether no decision would have differed."""
         return not self.stretches
 
 
@@ -73,10 +73,10 @@ def counterfactual(
     on_tick: Callable[[ReplayedTick], None] | None = None,
     from_s: float = 0.0,
 ) -> Counterfactual:
-    """Replay a run and compare what two sets of knowledge say of each situation.
+    """Replay a run and compare the answers of two policies to each situation.
 
-    `was`: None: what the robot knew then. `on_tick` is called for each tick, to show how far it is. `from_s`: ticks
-    that began earlier, since the first one, are replayed and not compared. Raises RecordingError.
+    `was`: None: the run's own knowledge. `on_tick`: called for each tick, for progress. `from_s`: earlier ticks, in s
+    since the first one, are replayed and not compared. Raises RecordingError.
     """
     replay = Replay(run)
     before: AnswerSource = recorded_answers if was is None else was.answers
@@ -94,7 +94,7 @@ def counterfactual(
 
 
 class _DifferenceCounter:
-    """Counts, and folds ticks into stretches."""
+    """Counter of differing ticks, which joins them to stretches."""
 
     def __init__(self) -> None:
         self._ticks = self._decided = self._other_action = self._would_ask = self._would_drive = self._mid = 0
@@ -102,7 +102,7 @@ class _DifferenceCounter:
         self._stretches: list[DifferingStretch] = []
 
     def update(self, at_s: float, record: TickRecord, was: PolicyAnswers, would_be: PolicyAnswers) -> None:
-        """One tick, `at_s` since the first one."""
+        """Compare the answers of one tick, `at_s` since the first one."""
         self._ticks += 1
         decides = record.decision.cause in _DECIDES
         self._decided += decides
@@ -112,17 +112,17 @@ class _DifferenceCounter:
             self._update_level(MID, at_s, was.mid, would_be.mid, decides=decides)
 
     def result(self, trouble: str) -> Counterfactual:
-        """All that was counted."""
+        """Return all counts."""
         stretches = sorted([*self._stretches, *self._open.values()], key=lambda each: (each.from_s, each.level))
         return Counterfactual(
-            self._ticks,
-            self._decided,
-            self._other_action,
-            self._would_ask,
-            self._would_drive,
-            self._mid,
-            tuple(stretches),
-            trouble,
+            ticks=self._ticks,
+            decided=self._decided,
+            other_action=self._other_action,
+            would_ask=self._would_ask,
+            would_drive=self._would_drive,
+            mid_otherwise=self._mid,
+            stretches=tuple(stretches),
+            trouble=trouble,
         )
 
     def _update_level(

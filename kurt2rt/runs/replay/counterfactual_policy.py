@@ -1,4 +1,4 @@
-"""Another knowledge that looks on at a replayed run: what it would have decided in the very same situations."""
+"""Policy of other knowledge on the situations of a replayed run."""
 
 import math
 from collections.abc import Iterable
@@ -29,43 +29,44 @@ from kurt2rt.runtime import Runtime, empty_system
 
 
 class PolicyAnswer(NamedTuple):
-    """What knowledge says to a situation, before it is held to a minimum time and before any guard."""
+    """Answer to a situation, before minimum times and the guard."""
 
     rla: Rla | None
-    """The RLA that answers; None where none is near enough."""
+    """RLA that answers; None if none is near enough."""
     nearest: Rla | None
-    """The nearest; None where nothing was taught."""
+    """Nearest RLA; None without knowledge."""
     distance: float
-    """To the nearest; infinite where there is none."""
+    """Distance to the nearest RLA; infinite without one."""
     radius: float
-    """Of the nearest; 0 where there is none."""
+    """Radius of the nearest RLA; 0 without one."""
 
     @property
     def action(self) -> str | None:
-        """What would be done; None: it asks."""
+        """Return the action; None for a question."""
         return None if self.rla is None else self.rla.action
 
     @property
     def share_of_radius(self) -> float:
-        """How far off the nearest condition is, as a share of R."""
+        """Return the distance to the nearest condition as a fraction of R."""
         return self.distance / self.radius if self.radius else math.inf
 
 
 class PolicyAnswers(NamedTuple):
-    """What knowledge says in one tick."""
+    """Answers of all levels in one tick."""
 
     basic: PolicyAnswer
     mid: PolicyAnswer | None
-    """None where the task has no mid level."""
+    """None if the task has no mid level."""
 
 
 class CounterfactualPolicy:
-    """Knowledge that decides on the situations of a run, and does nothing. Nothing is learnt meanwhile."""
+    """Knowledge that decides on the situations of a run, without acting or learning."""
 
     def __init__(self, run: Run, events: Iterable[TeachingEvent], statistics: Statistics | None = None) -> None:
-        """`events`: what was taught; `statistics`: what the RLAs are worth, where several stand on one condition.
+        """Build the policy with the run's own settings.
 
-        It matches as the run's own settings say. Raises RecordingError for knowledge that does not fit them.
+        `events`: lessons. `statistics`: values of RLAs that share a condition. Raises RecordingError for knowledge that
+        does not fit the settings.
         """
         try:
             with run.settings():
@@ -80,15 +81,15 @@ class CounterfactualPolicy:
             raise RecordingError(f"this knowledge cannot decide there: {error}", where=run.name) from error
 
     def answer(self, situation: NDArray[np.float64], behaviour: str, level: str = BASIC) -> PolicyAnswer:
-        """What it says to a situation vector (d,) of a level, where that behaviour is wanted."""
+        """Return the answer to a situation vector, shape (d,), of a level for the active behaviour."""
         match = self._system.match(situation, behaviour, level)
         return _answer(match, self._system, self._worths.choice) if level == BASIC else _mid_answer(match)
 
     def answers(self, record: TickRecord, runtime: Runtime) -> PolicyAnswers:
-        """What it says to the situations of a tick that was just replayed in `runtime`.
+        """Return the answers to a tick that was just replayed in `runtime`.
 
-        The basic level answers for the behaviour that was wanted then, and passes over RLAs whose action was withdrawn
-        where the robot did: nobody was there to be asked.
+        The basic level answers for the behaviour of that tick. Withdrawn RLAs are left out if no teacher could be
+        asked.
         """
         system, choice = self._system, self._worths.choice
         asking = not runtime.level.skip_withdrawn
@@ -100,17 +101,20 @@ class CounterfactualPolicy:
 
 
 def load_policy(run: Run, knowledge: Path) -> CounterfactualPolicy:
-    """The knowledge in a file, which may be that of a robot that runs. Raises RecordingError, KnowledgeError."""
+    """Return the policy of a knowledge file, which may be in use by a robot.
+
+    Raises RecordingError, KnowledgeError.
+    """
     with run.settings():
         events, statistics = read_knowledge(knowledge, run.robot, run.task)
     return CounterfactualPolicy(run, events, statistics)
 
 
 def recorded_answers(record: TickRecord, runtime: Runtime) -> PolicyAnswers:
-    """What the run's own knowledge said in a tick that was just replayed in `runtime`.
+    """Return the answers of the run's own knowledge in a tick that was just replayed in `runtime`.
 
-    It is what was decided: by now the robot may have been taught otherwise, by itself in that very tick. Where the mid
-    level asked, the basic level was not heard, and is not here.
+    They come from the decision: the robot may have learnt since, even in that tick. If the mid level asked, the basic
+    level did not decide and has no answer.
     """
     decision = record.decision
     mid = None if decision.mid is None else _mid_answer(decision.mid.match)
@@ -125,17 +129,17 @@ def recorded_answers(record: TickRecord, runtime: Runtime) -> PolicyAnswers:
 
 
 def _answer(match: Match | None, system: RlaSystem, choice: EpsilonGreedy) -> PolicyAnswer:
-    """Of the basic level: of competitors the one of most worth drives."""
+    """Return the basic level's answer: the best RLA among those on one condition."""
     if match is None or not match.known:
         return _mid_answer(match)
     group = system.competitors(match.rla)
-    # One that was deleted since, or told something else, has nobody to be compared with.
+    # An RLA that was deleted or changed since has no competitors.
     rla = choice.best(group) if len(group) > 1 and match.rla in group else match.rla
     return PolicyAnswer(rla, match.rla, match.distance, match.radius)
 
 
 def _mid_answer(match: Match | None) -> PolicyAnswer:
-    """Of ways from one place a plan chooses, or the oldest leads."""
+    """Return the mid level's answer: on one condition the oldest RLA, unless a plan chooses."""
     if match is None:
         return PolicyAnswer(None, None, math.inf, 0.0)
     return PolicyAnswer(match.rla if match.known else None, match.rla, match.distance, match.radius)

@@ -1,4 +1,4 @@
-"""What stands round a tick that is replayed: robot, clock and journal say what the recorded ones said."""
+"""Environment of a replayed tick: robot, clock and event store with recorded values."""
 
 from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
@@ -7,43 +7,43 @@ from kurt2rt.runs.recording.entries import TickEntry
 
 
 class ReplayEnvironment:
-    """A Robot, a Clock and a LessonKeeper in one: they share the tick that is on. Nothing moves, nothing is kept."""
+    """Robot, Clock and LessonKeeper in one object, because they share the current tick."""
 
     def __init__(self) -> None:
         self.entry: TickEntry | None = None
-        """The tick that is on."""
+        """Current tick."""
 
     @property
     def error(self) -> str | None:
-        """As it was in this tick (LessonKeeper)."""
+        """Return the recorded error of the journal (LessonKeeper)."""
         return self._entry.trouble
 
     def submit(self, event: TeachingEvent) -> None:
-        """The record has it; the journal is left alone (LessonKeeper)."""
+        """Discard the event: the record has it (LessonKeeper)."""
 
     def now_s(self) -> float:
-        """As it was in this tick (Clock)."""
+        """Return the recorded time (Clock)."""
         return self._entry.now_s
 
     async def wait_until(self, deadline_s: float) -> None:
-        """A replay does not wait (Clock)."""
+        """Return at once (Clock)."""
 
     def sense(self, now_s: float) -> SensorReadings:  # noqa: ARG002 - what was sensed then
-        """What was sensed (Robot)."""
+        """Return the recorded readings (Robot)."""
         return self._entry.senses
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:  # noqa: ARG002 - as applied then
-        """What the guard let through then, whatever is wanted now: the robot is where it was (Robot)."""
+        """Return the recorded result of the guard for any wanted speeds (Robot)."""
         return self._entry.grant
 
     def emergency_stop(self, reason: GuardReason) -> None:
-        """The recorded grants tell whether it stopped (Robot)."""
+        """Do nothing: the recorded guard results contain the stop (Robot)."""
 
     def release(self) -> None:
-        """As above (Robot)."""
+        """Do nothing: the recorded guard results contain the release (Robot)."""
 
     def close(self) -> None:
-        """There is nothing to give back (Robot)."""
+        """Do nothing (Robot)."""
 
     @property
     def _entry(self) -> TickEntry:

@@ -1,4 +1,4 @@
-"""Reads a recorded run from its files."""
+"""Reader of a recorded run from its segments."""
 
 import json
 from collections import deque
@@ -11,15 +11,15 @@ from kurt2rt.runs.recording.run_folder import segments_in
 from kurt2rt.runs.recording.run_head import RUN_METADATA, decode_head
 from kurt2rt.runs.recording.segment_reader import TICK_TOPIC, SegmentHead, SegmentReader
 from kurt2rt.runs.recording.tick_json import decode_tick
-from kurt2rt.runs.replay.run import Run
+from kurt2rt.runs.replay.run import Run, RunSource
 
 _LESSON_TOPIC = "/lesson"
 
 
 def read_run(path: Path, *, partial: bool = False) -> Run:
-    """The run in a folder, or of which `path` is a segment. Raises RecordingError in a sentence.
+    """Return the run in a folder, or the run of a segment. Raises RecordingError.
 
-    `partial`: to look at what there is; a run whose beginning is gone will do, which cannot be replayed.
+    `partial`: accept a run whose beginning was deleted; it cannot be replayed.
     """
     try:
         segments = segments_in(path) if path.is_dir() else _segments_of_run(path)
@@ -31,27 +31,18 @@ def read_run(path: Path, *, partial: bool = False) -> Run:
     head = files.head(partial=partial)
     if RUN_METADATA not in head.metadata:
         raise RecordingError("says of no run of kurt2rt, or is torn at its very beginning", where=segments[0])
-    return Run(
-        str(path),
-        decode_head(head.metadata[RUN_METADATA]),
-        head.attachments,
-        files.ticks,
-        files.truncated,
-        files.ends_s,
-        files.without_gap,
-        partial=partial,
-        stamps=files.stamps,
-    )
+    source = RunSource(files.ticks, files.truncated, files.ends_s, files.without_gap, files.stamps)
+    return Run(str(path), decode_head(head.metadata[RUN_METADATA]), head.attachments, source, partial=partial)
 
 
 class _Files:
-    """Segments of one run, one after the other."""
+    """Segments of one run in order."""
 
     def __init__(self, readers: Sequence[SegmentReader]) -> None:
         self.readers = readers
 
     def head(self, *, partial: bool) -> SegmentHead:
-        """That of the first segment; `partial`: of the first one that has kept it."""
+        """Return the head of the first segment; with `partial`, the first head that was kept."""
         heads = (reader.head() for reader in self.readers)
         first = next(heads)
         if partial and RUN_METADATA not in first.metadata:
@@ -64,7 +55,7 @@ class _Files:
                 yield decode_tick(message.data)
 
     def stamps(self) -> Iterator[tuple[str, str]]:
-        """Command ids of lessons that became durable, and when. Leaves alone what `truncated` says of the ticks."""
+        """Yield the command ids of durable lessons with their times. Leaves `truncated` unchanged."""
         for reader in self.readers:
             for message in SegmentReader(reader.path).messages({_LESSON_TOPIC}):
                 try:
@@ -77,7 +68,7 @@ class _Files:
                     ) from error
 
     def ends_s(self) -> float:
-        """Time of the last tick that can be read; 0 where there is none."""
+        """Return the time of the last readable tick; 0 without one."""
         for reader in reversed(self.readers):
             newest = deque(reader.messages({TICK_TOPIC}), maxlen=1)
             if newest:
@@ -85,17 +76,17 @@ class _Files:
         return 0.0
 
     def without_gap(self) -> bool:
-        """Whether as many ticks are there as the last of them has for a number; looks into no other."""
+        """Return whether the number of ticks equals the number of the last; decodes only that tick."""
         messages = (message for reader in self.readers for message in reader.messages({TICK_TOPIC}))
         newest = deque(enumerate(messages, start=1), maxlen=1)
         return any(decode_tick(message.data).number == count for count, message in newest)
 
     def truncated(self) -> str:
-        """What the last that was torn says; a tick that went missing between two is told as a gap."""
+        """Return the sentence of the last truncated segment; ticks missing between two show as a gap."""
         return next((reader.truncated for reader in reversed(self.readers) if reader.truncated), "")
 
 
 def _segments_of_run(segment: Path) -> list[Path]:
-    """All segments of the run that this one belongs to; a file of another name stands alone."""
+    """Return all segments of the run of this segment; a file of another name stands alone."""
     siblings = segments_in(segment.parent)
     return siblings if segment in siblings else [segment]

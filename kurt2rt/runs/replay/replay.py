@@ -1,4 +1,4 @@
-"""Replays a run: what was recorded goes through the same tick again."""
+"""Replay of a run: the recorded inputs through the same tick."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -21,24 +21,27 @@ from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 
 
 class ReplayedTick(NamedTuple):
-    """A tick twice: as it was recorded, and as it came out again."""
+    """Recorded tick and its replay."""
 
     entry: TickEntry
     record: TickRecord
 
 
 class Replay:
-    """A runtime as it was at the start of a run, and its ticks, one after the other."""
+    """Runtime in the initial state of a run, and the iteration over its ticks."""
 
     def __init__(self, run: Run) -> None:
-        """Raises RecordingError where that is gone, or this program cannot build it."""
+        """Build the runtime.
+
+        Raises RecordingError if the initial state is missing or this program cannot build it.
+        """
         run.require_beginning()
         self.run = run
         self._replayed = ReplayEnvironment()
         self.runtime = self._build()
 
     def step(self, entry: TickEntry) -> TickRecord:
-        """The next tick, with all that went into it."""
+        """Replay the next tick with its recorded inputs."""
         runtime = self.runtime
         self._replayed.entry = entry
         runtime.inbox.replace_pending(entry.commands)
@@ -50,7 +53,7 @@ class Replay:
         return record
 
     def __iter__(self) -> Iterator[ReplayedTick]:
-        """All ticks, once. Raises RecordingError."""
+        """Replay all ticks, once. Raises RecordingError."""
         for entry in self.run.entries():
             yield ReplayedTick(entry, self.step(entry))
 
@@ -91,11 +94,10 @@ class Replay:
 
 
 def replay_until(run: Run, now_s: float) -> tuple[Runtime, ReplayedTick]:
-    """The runtime as it was after the last tick that began by `now_s` of the runtime's clock, and that tick.
+    """Return the runtime after the last tick that began by `now_s` of the runtime's clock, and that tick.
 
-    `Run.began_s` is that of the first tick.
-
-    Of a time before the first tick, the first. Raises RecordingError, also for a run without ticks.
+    `Run.began_s` is the time of the first tick, which is also returned for an earlier time. Raises RecordingError, also
+    for a run without ticks.
     """
     replay = Replay(run)
     last = None
@@ -109,7 +111,7 @@ def replay_until(run: Run, now_s: float) -> tuple[Runtime, ReplayedTick]:
 
 
 def empty_run_error(run: Run) -> RecordingError:
-    """What there is to say of a run without ticks, once they were looked for."""
+    """Return the error for a run without ticks, after they were searched."""
     return RecordingError(
         "holds no tick", where=run.name, do=f"{run.trouble or 'the program ended before the first one'}"
     )

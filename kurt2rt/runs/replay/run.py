@@ -1,7 +1,8 @@
-"""A recorded run, as it is read."""
+"""Recorded run: its initial state and its ticks."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeVar
 
@@ -29,62 +30,62 @@ from kurt2rt.runs.recording.run_head import RunHead
 DecodedT = TypeVar("DecodedT")
 
 
+@dataclass(frozen=True, slots=True)
+class RunSource:
+    """Access to the ticks of a recorded run; each call reads again from its beginning."""
+
+    ticks: Callable[[], Iterator[TickEntry]]
+    truncated: Callable[[], str] = str
+    """Reason why the last reading ended early, in a sentence; empty if it did not."""
+    ends_s: Callable[[], float] = float
+    """Time of the last tick."""
+    without_gap: Callable[[], bool] = bool
+    """True if no tick is missing before the last, found without decoding all of them."""
+    stamps: Callable[[], Iterator[tuple[str, str]]] = lambda: iter(())
+    """Command ids of durable lessons with their times."""
+
+
 class Run:
-    """One start of the robot program until its end: what stood at its beginning, and its ticks."""
+    """Program run from start to end: its initial state and its ticks."""
 
     def __init__(
-        self,
-        name: str,
-        head: RunHead,
-        attachments: Mapping[str, bytes],
-        read: Callable[[], Iterator[TickEntry]],
-        truncated: Callable[[], str] = str,
-        ends_s: Callable[[], float] = float,
-        without_gap: Callable[[], bool] = bool,
-        *,
-        partial: bool = False,
-        stamps: Callable[[], Iterator[tuple[str, str]]] = lambda: iter(()),
+        self, name: str, head: RunHead, attachments: Mapping[str, bytes], source: RunSource, *, partial: bool = False
     ) -> None:
-        """`read`: reads the ticks anew from the first one. `truncated`: where that came to an early end, in a sentence.
+        """Check the initial state. `partial`: accept a run whose beginning was deleted; it cannot be replayed.
 
-        `ends_s`: time of the last tick, for those who tell how far they are. `without_gap`: whether no tick is missing
-        before it, found out quicker than by reading them. `partial`: to look at what there is; one whose beginning is
-        gone will do, which cannot be replayed. `stamps`: reads the command ids of the lessons that became durable, and
-        when.
-
-        Raises RecordingError where what a replay needs is missing or damaged.
+        Raises RecordingError if settings or knowledge of the run are missing or damaged.
         """
         self.name = name
         self.head = head
         self._attachments = attachments
-        self._read = read
-        self._torn = truncated
-        self._ends_s = ends_s
-        self._without_gap = without_gap
+        self._source = source
         self._partial = partial
-        self._stamps = stamps
         self._gap = ""
         self.began_s: float | None = None
-        """Time of the runtime's clock at the first tick; None until that was read."""
+        """Runtime clock at the first tick; None until that tick was read."""
         self._check()
 
     @property
     def trouble(self) -> str:
-        """Why `entries` ended before the run did, in a sentence; empty where it did not, as far as it has come."""
-        return self._gap or self._torn()
+        """Return why `entries` ended early, in a sentence; empty if it did not so far."""
+        return self._gap or self._source.truncated()
 
     @property
     def duration_s(self) -> float:
-        """From the first tick to the last, by the runtime's clock; 0 where nobody knows. Reads the last segment."""
+        """Return the runtime clock's time from the first tick to the last; 0 if unknown.
+
+        Reads the last segment.
+        """
         first = next(self.entries(), None)
-        return 0.0 if first is None else max(self._ends_s() - first.now_s, 0.0)
+        return 0.0 if first is None else max(self._source.ends_s() - first.now_s, 0.0)
 
     @property
     def duration_without_gap_s(self) -> float:
-        """The same up to the last tick before the first that is missing: what can be replayed. Goes through all of
-        that, and reads it where one is.
+        """Return the time from the first tick to the last that can be replayed, before any gap.
+
+        Reads all those ticks if there is a gap.
         """
-        if self._without_gap():
+        if self._source.without_gap():
             return self.duration_s
         newest = 0.0
         for entry in self.entries():
@@ -92,38 +93,38 @@ class Run:
         return newest
 
     def elapsed_s(self, entry: TickEntry) -> float:
-        """How long after the first tick one began that was read."""
+        """Return the time from the first tick to the entry's; the first tick must have been read."""
         return 0.0 if self.began_s is None else entry.now_s - self.began_s
 
     @property
     def whole(self) -> bool:
-        """Whether no tick was missing between those that were read: the end alone may be."""
+        """Return whether the ticks read so far had no gap; the end may be missing."""
         return not self._gap
 
     @cached_property
     def robot(self) -> RobotSettings:
-        """Settings of the robot, as they were in force."""
+        """Return the robot's settings of the run."""
         return RobotSettings.model_validate_json(self._attachments[ROBOT])
 
     @cached_property
     def task(self) -> TaskSettings:
-        """Settings of the task, as they were in force."""
+        """Return the task's settings of the run."""
         return TaskSettings.model_validate_json(self._attachments[TASK])
 
     @cached_property
     def lessons(self) -> tuple[KnownLesson, ...]:
-        """What had been taught before the run; nothing where its beginning is gone."""
+        """Return the lessons from before the run; empty if its beginning was deleted."""
         data = self._attachments.get(KNOWLEDGE)
         return () if data is None else tuple(_decoded(decode_lessons, data))
 
     def stamps(self, command_ids: Collection[str]) -> dict[str, str]:
-        """When these lessons of the run became durable, as the journal has it, UTC; those that never did are left out.
+        """Return the UTC times at which these lessons became durable, by command id; others are left out.
 
         Reads until all are found. Raises RecordingError.
         """
         found: dict[str, str] = {}
         if command_ids:
-            for command_id, stamp in self._stamps():
+            for command_id, stamp in self._source.stamps():
                 if command_id in command_ids:
                     found[command_id] = stamp
                     if len(found) == len(command_ids):
@@ -132,13 +133,13 @@ class Run:
 
     @cached_property
     def saved(self) -> Statistics:
-        """What had been counted before the run."""
+        """Return the statistics from before the run."""
         data = self._attachments.get(STATISTICS)
         return Statistics() if data is None else _decoded(decode_statistics, data)
 
     @contextmanager
     def settings(self) -> Iterator[None]:
-        """While it lasts all settings are those that were kept with the run. Raises RecordingError."""
+        """Put the run's own settings in force inside the context. Raises RecordingError."""
         kept = {name: data for name, data in self._attachments.items() if name.startswith(SETTINGS)}
         with ExitStack() as stack:
             try:
@@ -152,8 +153,8 @@ class Run:
             yield
 
     def require_beginning(self) -> None:
-        """Raises RecordingError where what was known at the start is not there, so that nothing can be replayed."""
-        first = None if KNOWLEDGE in self._attachments else next(self._read(), None)
+        """Raise RecordingError if the initial knowledge is missing, so that nothing can be replayed."""
+        first = None if KNOWLEDGE in self._attachments else next(self._source.ticks(), None)
         if first is None or first.number == 1:
             self._require(KNOWLEDGE)
             return
@@ -167,9 +168,9 @@ class Run:
         )
 
     def entries(self) -> Iterator[TickEntry]:
-        """The ticks from the first one, up to the end or to the first that is missing. Raises RecordingError."""
+        """Yield the ticks from the first to the end or to the first gap. Raises RecordingError."""
         self._gap = ""
-        for number, entry in enumerate(self._read(), start=1):
+        for number, entry in enumerate(self._source.ticks(), start=1):
             if number == 1:
                 self.began_s = entry.now_s
             if entry.number != number:
@@ -182,10 +183,10 @@ class Run:
             yield entry
 
     def partial_entries(self) -> Iterator[TickEntry]:
-        """All ticks that are there, also behind a gap; `trouble` tells of those that are not. Raises RecordingError."""
+        """Yield all ticks, also after gaps; `trouble` names the gaps. Raises RecordingError."""
         self._gap = ""
         newest = missing = gaps = 0
-        for entry in self._read():
+        for entry in self._source.ticks():
             if newest == 0:
                 self.began_s = entry.now_s
             if entry.number > newest + 1 and newest == 0 and KNOWLEDGE not in self._attachments:

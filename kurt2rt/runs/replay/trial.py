@@ -1,4 +1,4 @@
-"""A change of knowledge tried on recorded runs: what the robot would have done with it, and without."""
+"""Replay of recorded runs under changed and unchanged knowledge."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -20,15 +20,15 @@ from kurt2rt.runs.replay.replay import Replay, ReplayedTick
 from kurt2rt.runs.replay.run import Run
 
 Report = Callable[[str, float, float], None]
-"""Called now and then with a run's name, how many seconds of it were tried, and how many there are."""
+"""Callback with a run's name, the seconds replayed and the run's seconds."""
 
 _REPORT_EVERY_TICKS = 500
 _NEWEST = 20
-"""So many runs are looked through for one that suits."""
+"""Most recent runs that are searched for a compatible one."""
 
 
 class TrialKnowledge(NamedTuple):
-    """All that a robot begins with."""
+    """Initial knowledge of a robot."""
 
     events: tuple[TeachingEvent, ...]
     statistics: Statistics
@@ -36,23 +36,23 @@ class TrialKnowledge(NamedTuple):
 
 @dataclass(frozen=True)
 class RecentRuns:
-    """Recorded runs that a change is tried on."""
+    """Recorded runs for a trial."""
 
     runs: tuple[Run, ...]
     left_out: tuple[str, ...]
-    """Why others cannot be, a sentence each."""
+    """Reasons why other runs are left out, a sentence each."""
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was not tried, and why; of a run with a gap that is known once it was replayed."""
+        """Return what was not replayed, with reasons; a gap is known after the replay."""
         gaps = (f"{run.name}: {run.trouble}" for run in self.runs if not run.whole)
         return (*self.left_out, *gaps)
 
 
 def compatible_runs(folder: Path, binding: KnowledgeBinding) -> RecentRuns:
-    """The runs in a folder of recordings, or the one that `folder` is, that this knowledge could have been used in.
+    """Return the runs of `folder`, or the run `folder` itself, that this knowledge fits.
 
-    Raises KnowledgeError where there is none.
+    Raises KnowledgeError if there is none.
     """
     paths = _recorded_in(folder) or [folder]
     if not folder.exists() or (folder.is_dir() and paths == [folder] and not segments_in(folder)):
@@ -76,10 +76,9 @@ def compatible_runs(folder: Path, binding: KnowledgeBinding) -> RecentRuns:
 
 
 def newest_compatible_run(recordings: Path, binding: KnowledgeBinding, knowledge: Path) -> RecentRuns:
-    """The newest of the last recorded runs that taught into the file `knowledge`, else the newest that this knowledge
-    could have been used in; none where there is none. Its notes say which newer ones cannot be read.
+    """Return the newest recent run that taught into the file `knowledge`, else the newest compatible one.
 
-    All that was known at a run's start is read with it: of the others none is kept in memory.
+    Empty without one. Its notes name newer runs that cannot be read. Only one run is kept in memory.
     """
     newest, left_out = None, list[str]()
     for path in _recorded_in(recordings)[: -_NEWEST - 1 : -1]:
@@ -100,7 +99,7 @@ def newest_compatible_run(recordings: Path, binding: KnowledgeBinding, knowledge
 def replay_answers(
     run: Run, knowledge: Sequence[TrialKnowledge], report: Report
 ) -> Iterator[tuple[TickRecord, list[PolicyAnswers]]]:
-    """What each of these says to the situations of each tick of a run, as they were, and that tick."""
+    """Yield each tick of a run with the answers of each knowledge to its situations."""
     replay = Replay(run)
     policies = [CounterfactualPolicy(run, each.events, each.statistics) for each in knowledge]
     tell = progress_reporter(run, report)
@@ -110,7 +109,7 @@ def replay_answers(
 
 
 def progress_reporter(run: Run, report: Report) -> Callable[[ReplayedTick], None]:
-    """To be called with each replayed tick of a run; it reports now and then."""
+    """Return a callback for each replayed tick of a run that reports every 500 ticks."""
     whole_s = run.duration_s
 
     def tell(tick: ReplayedTick) -> None:
@@ -121,25 +120,25 @@ def progress_reporter(run: Run, report: Report) -> Callable[[ReplayedTick], None
 
 
 def format_answers(both: PolicyAnswers) -> str:
-    """What they say in a few words: the mid level first, where there is one."""
+    """Return the answers in a few words, the mid level first."""
     return ", ".join(format_answer(each) for each in (both.mid, both.basic) if each is not None)
 
 
 def format_answer(answer: PolicyAnswer) -> str:
-    """What one level answers."""
+    """Return the answer of one level in a few words."""
     return "asks" if answer.rla is None else f"{answer.rla.action} by {answer.rla.title}"
 
 
 def _recorded_in(folder: Path) -> list[Path]:
-    """The oldest first."""
+    """Return the runs with segments, oldest first."""
     return [each for each in runs_in(folder) if segments_in(each)]
 
 
 def _taught_into(run: Run, path: Path, knowledge: Path) -> bool:
-    """Whether a run, recorded at `path`, taught into that file.
+    """Return whether a run, recorded at `path`, taught into that file.
 
-    An earlier kurt2rt told of the file as it was given: from the folder that it was started in, which nobody knows,
-    but as a rule the recordings lie below it, wherever we are started.
+    Up to 2026-11-22 the head has a path relative to the unknown working folder. The recordings usually lie below that
+    folder, so each parent of `path` is tried.
     """
     if not run.head.knowledge:
         return False
@@ -150,7 +149,7 @@ def _taught_into(run: Run, path: Path, knowledge: Path) -> bool:
 
 
 def _incompatibility(run: Run, binding: KnowledgeBinding) -> str | None:
-    """Why this knowledge could not have been used in a run. Raises RecordingError for one of another kurt2rt."""
+    """Return why this knowledge does not fit a run, or None. Raises RecordingError for unusable settings."""
     try:
         with run.settings():
             require_compatible(binding, binding_for(run.robot, run.task), Path(run.name), lambda _: False)

@@ -1,4 +1,4 @@
-"""What an undo or a redo would change in recorded runs."""
+"""Preview of an undo or redo on recorded runs."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,36 +20,36 @@ from kurt2rt.runs.replay.trial import (
 )
 
 LAST_S: Final = 600.0
-"""So much of the newest run is compared where nobody named one: what came before is replayed, in half the time."""
+"""End of the newest run that is compared by default; the part before it is replayed only, in half the time."""
 
 LONGEST_S: Final = 3600.0
-"""A longer run is not tried unless it is named: to replay an hour takes half a minute."""
+"""Longest run that is replayed without being named: one hour takes half a minute."""
 
 
 @dataclass(frozen=True, slots=True)
 class TrialResult:
-    """What a change would have changed in one run."""
+    """Effect of a change on one run."""
 
     run: str
     from_s: float
-    """Where the comparison began, since the first tick of the run."""
+    """Start of the comparison since the first tick of the run."""
     found: Counterfactual
 
 
 @dataclass(frozen=True)
 class UndoPreview:
-    """A change that was tried."""
+    """Effects of a change on recorded runs."""
 
     runs: tuple[TrialResult, ...]
-    """Empty where there was none to try it on."""
+    """Empty without a run to replay."""
     notes: tuple[str, ...]
-    """Which runs, or parts of one, could not be tried, and why."""
+    """Runs, or parts of one, that could not be replayed, with the reason."""
 
 
 def preview(planned: UndoPlan, runs: Path, report: Report) -> UndoPreview:
-    """Try it on all recorded runs in a folder, or on the one that `runs` is; changes nothing.
+    """Replay all runs of a folder, or the run `runs` itself, with and without the change; change nothing.
 
-    Raises KnowledgeError where none of them can be tried.
+    Raises KnowledgeError if none can be replayed.
     """
     return _try_on(planned, compatible_runs(runs, planned.binding), report, last_s=float("inf"))
 
@@ -57,9 +57,9 @@ def preview(planned: UndoPlan, runs: Path, report: Report) -> UndoPreview:
 def preview_on_newest(
     planned: UndoPlan, recordings: Path, report: Report, *, last_s: float = LAST_S, longest_s: float = LONGEST_S
 ) -> UndoPreview:
-    """Try it on the end of the newest recorded run of this knowledge, where there is one; changes nothing.
+    """Replay the end of the newest recorded run of this knowledge, if there is one; change nothing.
 
-    The end of a run with a gap is the last before that: its notes say what comes after it was not tried.
+    `last_s`: length of the compared end. The end of a run with a gap is the part before the gap; its notes say so.
     """
     newest = newest_compatible_run(recordings, planned.binding, planned.path)
     too_long = [run for run in newest.runs if run.duration_s > longest_s]

@@ -1,4 +1,4 @@
-"""Whether a run comes out again as it was."""
+"""Verification that a run replays bit for bit."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,31 +10,31 @@ from kurt2rt.runs.replay.run import Run
 
 @dataclass(frozen=True, slots=True)
 class ReplayVerdict:
-    """What a replay found."""
+    """Result of a verification."""
 
     ticks: int
-    """That came out as they were, from the first on."""
+    """Equal ticks from the first on."""
     lasted_s: float
-    """Of the runtime's clock, from the first of them to the last."""
+    """Runtime clock's time from the first of them to the last."""
     knowledge: int
-    """How often the hash of all that is known was compared."""
+    """Number of compared knowledge hashes."""
     differences: tuple[TickDifference, ...]
-    """Of the first tick that came out otherwise; after it all else may follow from it."""
+    """Differences of the first unequal tick; later ticks may differ as a consequence."""
     trouble: str
-    """Why not the whole run was replayed, in a sentence; empty where it was."""
+    """Reason why part of the run was not replayed, in a sentence; empty if all of it was."""
     whole: bool
-    """Whether no tick is missing but at the end."""
+    """True if the ticks have no gap before the end."""
 
     @property
     def same(self) -> bool:
-        """Whether everything came out as it was, as far as the run can be replayed."""
+        """Return whether every replayed tick was equal."""
         return not self.differences
 
 
 def verify(run: Run, on_tick: Callable[[ReplayedTick], None] | None = None) -> ReplayVerdict:
-    """Replay a run up to the first difference. `on_tick` is called for each tick.
+    """Replay a run up to the first difference. `on_tick` is called for each equal tick.
 
-    Raises RecordingError, also for a run without ticks: nothing is the same there.
+    Raises RecordingError, also for a run without ticks.
     """
     ticks = knowledge = 0
     lasted_s = 0.0

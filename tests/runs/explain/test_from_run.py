@@ -7,6 +7,7 @@ import pytest
 
 from kurt2rt.knowledge.journal.writer import Acknowledgement
 from kurt2rt.runs.explain.from_run import explain_run
+from kurt2rt.runs.recording.recorded_run import RecordedRun
 from kurt2rt.runs.recording.recorder import open_run_recorder
 from kurt2rt.runs.recording.run_files import budget_of
 from kurt2rt.runs.recording.run_folder import segments_in
@@ -24,7 +25,7 @@ def taught_run(folder: Path, *, acknowledged: bool) -> Path:
     lesson, command = Lesson(), teach("forward")
     names = lesson.runtime.definition.names
     head = replace(HEAD, attended=False)
-    recorder = open_run_recorder(folder, head, ATTACHMENTS, budget_of(100), ROBOT, names, name=NAME)
+    recorder = open_run_recorder(folder, RecordedRun(NAME, head, ATTACHMENTS, ROBOT, names), budget_of(100))
     recorder.poll()
     lesson.go_on(20)
     lesson.go_on(80, command)

@@ -59,7 +59,7 @@ def test_a_robot_that_is_lost_is_not_on_the_map(now: Now, tmp_path: Path) -> Non
     near = titled(12, (0.0, 0.0, 1.0, 0.0, 0.0, 1.0), "turn_left", math.inf, 0.85)
     mid = replace(level((math.nan, math.nan, 1.0, 0.0, 0.5, 0.5), near), names=PLACES, level=MID, driver=None)
     text = drawn(now, mid, tmp_path / "lost.svg", asks=True)
-    assert "nobody has said where it was set down" in text
+    assert "no teacher has set its location" in text
     assert "The places it knows" in text
 
 
@@ -68,7 +68,7 @@ def test_a_lost_robot_that_knows_no_place_is_told_of_in_words_and_the_room_is_fo
 ) -> None:
     mid = replace(level((math.nan, math.nan, 1.0, 0.0, 0.5, 0.5)), names=PLACES, level=MID)
     text = drawn(now, mid, tmp_path / "lost.svg", asks=True)
-    assert "nobody has said where it was set down" in text
+    assert "no teacher has set its location" in text
     assert "places it knows" not in text
     assert "What makes the distance to RLA 1" in text
 

@@ -147,7 +147,7 @@ def test_a_robot_that_is_led_where_it_knows_no_way_would_ask_the_way_and_not_dri
         (level((1.0,), place), "nearest is mid-level RLA 12 (turn_left), at 3 of R 1"),
         (
             level((math.nan,), replace(place, distance=math.inf)),
-            "it is lost, for nobody has said where it was set down",
+            "it is lost, because no teacher has set its location",
         ),
     ):
         led = replace(with_mid(facts(KNOWN, Cause.TEACHER.value, "by hand"), replace(mid, driver=None)), asks_at=MID)

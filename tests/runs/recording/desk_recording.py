@@ -8,6 +8,7 @@ from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.exchange.attachments import collect_attachments, hash_attachments
 from kurt2rt.runs.recording.disk import Disk
 from kurt2rt.runs.recording.live_view import LiveView
+from kurt2rt.runs.recording.recorded_run import RecordedRun
 from kurt2rt.runs.recording.recorder import RunRecorder, open_run_recorder
 from kurt2rt.runs.recording.run_files import Budget, budget_of
 from kurt2rt.runs.recording.run_head import RunHead
@@ -41,7 +42,7 @@ class RecordedDesk:
         *,
         disk: Disk | None = None,
         budget: Budget | None = None,
-        ground: SimulatedWorld | None = None,
+        world: SimulatedWorld | None = None,
         capacity: int = 3000,
         name: str = NAME,
         live: tuple[str, int] | None = None,
@@ -51,16 +52,12 @@ class RecordedDesk:
         self.desk = Desk()
         self.recorder: RunRecorder = open_run_recorder(
             recordings,
-            HEAD,
-            ATTACHMENTS,
+            RecordedRun(
+                name, HEAD, ATTACHMENTS, ROBOT, self.desk.runtime.definition.names, world, began_at_ns=began_at_ns
+            ),
             budget or budget_of(100),
-            ROBOT,
-            self.desk.runtime.definition.names,
-            name=name,
             live=live,
             opened=opened,
-            ground=ground,
-            began_at_ns=began_at_ns,
             disk=disk,
             capacity=capacity,
         )

@@ -23,7 +23,7 @@ PANELS: dict[str, dict[str, Any]] = LAYOUT["configById"]
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[LoggedMessage]:
     """A simulated robot that learned two lessons."""
     folder: Path = tmp_path_factory.mktemp("runs")
-    desk = RecordedDesk(folder, ground=Elsewhere())
+    desk = RecordedDesk(folder, world=Elsewhere())
     desk.recorder.poll()
     inbox = desk.desk.runtime.inbox
     desk.second(counts=200)

@@ -136,7 +136,7 @@ def test_another_budget_is_kept_to_from_then_on(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path)
     desk.recorder.poll()
     desk.second()
-    desk.recorder.take(Budget(75_000, segment_bytes=20_000))
+    desk.recorder.set_budget(Budget(75_000, segment_bytes=20_000))
     for second in range(15):
         desk.second(counts=200 + second)
     desk.recorder.close()
@@ -448,7 +448,7 @@ class Elsewhere:
 
 
 def test_of_a_simulated_robot_its_true_place_and_its_world_are_kept(tmp_path: Path) -> None:
-    desk = RecordedDesk(tmp_path, ground=Elsewhere())
+    desk = RecordedDesk(tmp_path, world=Elsewhere())
     desk.recorder.poll()
     for _ in range(6):
         desk.second()
@@ -481,7 +481,7 @@ def test_the_log_warns_of_what_the_guard_changed_but_not_of_the_slew_limit_where
 
 
 def test_each_transform_message_holds_the_whole_tree_of_frames_as_a_viewer_seeks_to_one(tmp_path: Path) -> None:
-    desk = RecordedDesk(tmp_path, ground=Elsewhere())
+    desk = RecordedDesk(tmp_path, world=Elsewhere())
     desk.recorder.poll()
     desk.second()
     desk.recorder.close()

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.replay.reader import read_run
-from kurt2rt.runs.replay.run import Run
+from kurt2rt.runs.replay.run import Run, RunSource
 
 STORED = Path(__file__).parent / "runs"
 NAMES = ("walls", "errand")
@@ -17,9 +17,11 @@ def stored(name: str, seconds: float = math.inf) -> Run:
     """A stored run, or what stood in so many seconds of it from its beginning; its file is decoded once."""
     whole = read_run(STORED / f"{name}.mcap")
     if math.isinf(seconds):
-        return Run(whole.name, whole.head, whole._attachments, lambda: iter(_entries(name)))
+        return Run(whole.name, whole.head, whole._attachments, RunSource(lambda: iter(_entries(name))))
     ticks = round(seconds * 100)
-    return Run(f"the beginning of {name}", whole.head, whole._attachments, lambda: islice(_entries(name), ticks))
+    return Run(
+        f"the beginning of {name}", whole.head, whole._attachments, RunSource(lambda: islice(_entries(name), ticks))
+    )
 
 
 @cache

@@ -42,6 +42,7 @@ from kurt2rt.experiments.navigation.guided_tour import navigation_settings
 from kurt2rt.experiments.navigation.tour_guide import HOME, TourGuide
 from kurt2rt.knowledge.exchange.attachments import collect_attachments, hash_attachments
 from kurt2rt.platform.clock import LockstepClock
+from kurt2rt.runs.recording.recorded_run import RecordedRun
 from kurt2rt.runs.recording.recorder import RunRecorder, open_run_recorder
 from kurt2rt.runs.recording.run_files import budget_of
 from kurt2rt.runs.recording.run_head import RUN_METADATA, RunHead
@@ -214,16 +215,9 @@ def record_story(
     teacher = build_teacher(task, settings, tuple(runtime.level.repertoire), seed=3, session=name)
     scene = Scene(simulation, runtime, notebook, teacher)
     story: Story = other or (walls if name == "walls" else Errand(scene, task))
-    recorder = open_run_recorder(
-        recordings,
-        head,
-        attachments,
-        budget_of(1000),
-        settings,
-        runtime.definition.names,
-        name=f"story-{name}",
-        began_at_ns=_STARTED_NS,
-    )
+    names = runtime.definition.names
+    run = RecordedRun(f"story-{name}", head, attachments, settings, names, began_at_ns=_STARTED_NS)
+    recorder = open_run_recorder(recordings, run, budget_of(1000))
     _go(scene, story, recorder, round((seconds or told.seconds) * 100))
     assert recorder.run is not None
     assert not recorder.trouble

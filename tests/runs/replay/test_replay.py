@@ -22,7 +22,7 @@ from kurt2rt.runs.recording.run_head import RunHead
 from kurt2rt.runs.replay.comparison import compare
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay, replay_until
-from kurt2rt.runs.replay.run import Run
+from kurt2rt.runs.replay.run import Run, RunSource
 from tests.core.basic.helpers import keep, with_repertoire
 from tests.runs.replay.stored_runs import NAMES, STORED, stored
 from tests.runs.replay.stories import NAME, STORIES, Scene, record_story
@@ -154,7 +154,7 @@ def without(entries: Iterator[TickEntry], lost: range) -> Iterator[TickEntry]:
 
 
 def part_of(run: Run, lost: range) -> Run:
-    return Run("a run with a gap", run.head, run._attachments, lambda: without(run._read(), lost))
+    return Run("a run with a gap", run.head, run._attachments, RunSource(lambda: without(run._source.ticks(), lost)))
 
 
 def test_what_came_after_a_gap_is_not_replayed_and_that_is_said() -> None:
@@ -168,28 +168,28 @@ def test_a_run_whose_beginning_is_gone_says_so() -> None:
     run = stored("walls")
     kept = {name: data for name, data in run._attachments.items() if name != "knowledge.jsonl"}
     with pytest.raises(RecordingError, match=r"knowledge\.jsonl is missing, with which the run began"):
-        Run("late", run.head, kept, run._read)
+        Run("late", run.head, kept, run._source)
 
 
 def test_damaged_settings_are_refused() -> None:
     run = stored("walls")
     kept = {**run._attachments, "settings/robot.json": b"{}"}
     with pytest.raises(RecordingError, match=r"settings/robot\.json is damaged"):
-        Run("worn", run.head, kept, run._read)
+        Run("worn", run.head, kept, run._source)
 
 
 def test_settings_of_another_version_are_refused_with_its_name() -> None:
     run = stored("walls")
     head = RunHead(**{**{name: getattr(run.head, name) for name in RunHead.__slots__}, "fingerprints": {}})
     with pytest.raises(RecordingError, match="recorded by kurt2rt story, whose settings this one cannot use"):
-        Run("old", head, {**run._attachments, "settings/robot.json": b"{}"}, run._read)
+        Run("old", head, {**run._attachments, "settings/robot.json": b"{}"}, run._source)
 
 
 @pytest.mark.parametrize("name", ["settings/../../escaped", "/escaped", "settings/task.json/escaped"])
 def test_a_run_that_would_write_elsewhere_is_refused(name: str) -> None:
     run = stored("walls")
     with pytest.raises(RecordingError, match=r"evil: holds .*escaped|evil: holds 'settings/task\.json' as a file and"):
-        Run("evil", run.head, {**run._attachments, name: b"!"}, run._read)
+        Run("evil", run.head, {**run._attachments, name: b"!"}, run._source)
 
 
 def test_what_is_no_run_is_refused_in_a_sentence(tmp_path: Path) -> None:

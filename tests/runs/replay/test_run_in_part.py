@@ -11,7 +11,7 @@ from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_folder import segments_in
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay, replay_until
-from kurt2rt.runs.replay.run import Run
+from kurt2rt.runs.replay.run import Run, RunSource
 from kurt2rt.runs.replay.verify import verify
 from tests.channel.desk import ROBOT, TASK
 from tests.runs.recording.desk_recording import empty_run, late_run
@@ -45,9 +45,9 @@ def test_what_is_left_of_it_is_read_with_the_settings_that_were_in_force(late: P
 
 def with_gaps(run: Run, *lost: range) -> Run:
     def read() -> Iterator[TickEntry]:
-        return (entry for entry in run._read() if not any(entry.number in each for each in lost))
+        return (entry for entry in run._source.ticks() if not any(entry.number in each for each in lost))
 
-    return Run("a run with gaps", run.head, run._attachments, read)
+    return Run("a run with gaps", run.head, run._attachments, RunSource(read))
 
 
 def test_a_timeline_goes_on_behind_a_gap_and_does_not_call_it_missed_ticks() -> None:
