@@ -60,7 +60,7 @@ def test_settings_of_today_change_nothing(
 def test_what_comes_out_otherwise_is_named_and_ends_with_one(
     kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, short: Path
 ) -> None:
-    monkeypatch.setattr("kurt2rt.core.teaching.lesson_builder.LessonBuilder.event_of", _teaches_nothing)
+    monkeypatch.setattr("kurt2rt.core.teaching.lesson_builder.LessonBuilder.build", _teaches_nothing)
     said = kurt2rt("replay", short)
     assert said.exit_code == 1
     assert "not the same: " in said.out
