@@ -15,7 +15,7 @@ To add a table of texts:
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-from tests.texts import complaints, doctor, health, merging, outcomes, shutdown, standing, verdicts
+from tests.texts import complaints, doctor, health, merging, outcomes, page, shutdown, standing, verdicts
 
 COMMAND = "python -m tests.golden_texts"
 FOLDER = Path(__file__).parent / "golden"
@@ -28,6 +28,7 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
         "standing": standing.on_page,
         "stops": standing.stops,
         "troubles": health.troubles,
+        "notices of the page's server": page.notices,
     },
     "terminal": {
         "outcomes of commands": outcomes.in_terminal,

@@ -1,6 +1,7 @@
 """`kurt2rt teach` without --terminal or --auto: the page of one device, or with --phone those of all."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import anyio
@@ -9,58 +10,71 @@ from rich.console import Console
 from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, Device, local_pairing
 from kurt2rt.cli.live_screen import PAIR_A_PHONE
 from kurt2rt.cli.qr_code import qr_code
-from kurt2rt.cli.teach_shutdown import end_of_teaching, told_to_end
+from kurt2rt.cli.teach_shutdown import until_ended, until_teaching_ends
 from kurt2rt.service.settings import ServiceSettings
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.page.access import Access
-from kurt2rt.teacher.page.device_server import Pairings, page_link, run_device_pages
+from kurt2rt.teacher.page.device_pages import PageSite
+from kurt2rt.teacher.page.device_server import Pairings, run_device_pages
 from kurt2rt.teacher.page.host_names import own_address, own_names
 from kurt2rt.teacher.page.public_address import PageError
-from kurt2rt.teacher.page.public_address import public_address as read_public_address
-from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages, to_line
+from kurt2rt.teacher.page.public_address import public_address as parse_public_address
+from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages, page_link, to_line
 from kurt2rt.teacher.page.server import listen, run_page
 
-FURTHER_PORTS = 9
+SPARE_PORTS = 9
 """Number of ports above that of the settings to try if another page has it."""
 ROBOT_HERE = "127.0.0.1"
 
 
-def serve_page(
-    device: Device,
-    host: str,
-    port: int,
-    page_port: int,
-    host_names: tuple[str, ...],
-    *,
-    further: int,
-    while_stdin: bool,
-    public_address: str | None = None,
-    as_json: bool = False,
-) -> None:
-    """Serve the page of a device until it is told to end; `host` and `port` are the robot's.
+@dataclass(frozen=True, slots=True)
+class PageOptions:
+    """Options of `kurt2rt teach` for serving pages."""
 
-    `further`: as `kurt2rt.teacher.page.server.listen` has it.
-    `public_address` is where a TLS proxy serves it, such as https://robot.example.
-    `as_json`: tell the address in a line of JSON, for `kurt2rt run`. Raises PageError.
+    port: int
+    """TCP port; 0: any."""
+    spare_ports: int
+    """Number of ports above to try, as for `kurt2rt.teacher.page.server.listen`."""
+    host_names: tuple[str, ...]
+    while_stdin: bool
+    as_json: bool
+    """Report the served pages in lines of JSON, for `kurt2rt run`."""
+
+    @property
+    def names(self) -> frozenset[str]:
+        """Names of this machine, in lower case."""
+        return own_names() | {each.lower() for each in self.host_names}
+
+
+def serve_page(device: Device, host: str, port: int, options: PageOptions, public_address: str | None = None) -> None:
+    """Serve the page of a device until told to end. Raises PageError.
+
+    Args:
+        device: paired device.
+        host: address of the robot.
+        port: UDP port of the robot.
+        options: of the page.
+        public_address: address of a TLS proxy in front of the page, such as https://robot.example.
     """
-    public = None if public_address is None else read_public_address(public_address)
+    public = None if public_address is None else parse_public_address(public_address)
     everywhere = device.name not in OF_THIS_MACHINE
-    listener = listen(page_port, everywhere=everywhere, further=further)
+    listener = listen(options.port, everywhere=everywhere, spare_ports=options.spare_ports)
     served_port: int = listener.getsockname()[1]
     if public is None:
         link = page_link(device, own_address() if everywhere else ROBOT_HERE, served_port)
     else:
         link = f"{public.origin}/pair?token={device.token}"
-    access = Access(device.name, device.token, own_names() | {each.lower() for each in host_names}, public)
-    if as_json:
-        _tell_json(ServedPages((PageAddress(device.name, link),), network=everywhere, trouble=""))
+    access = Access(device.name, device.token, options.names, public)
+    if options.as_json:
+        _print_json(ServedPages((PageAddress(device.name, link),), network=everywhere, trouble=""))
     else:
-        _tell_link(link, device.name, f"{host}:{port}", (page_port, served_port), code=everywhere or public is not None)
-    because = ""
+        ports = (options.port, served_port)
+        _print_link(link, device.name, f"{host}:{port}", ports, code=everywhere or public is not None)
+    reason = ""
 
     async def end() -> None:
-        nonlocal because
-        because = await end_of_teaching(device, while_stdin=while_stdin)
+        nonlocal reason
+        reason = await until_teaching_ends(device, while_stdin=options.while_stdin)
 
     async def serve() -> None:
         async with TeacherClient(device.folder, host, port) as client:
@@ -68,45 +82,35 @@ def serve_page(
 
     with listener:
         anyio.run(serve)
-    if because:
-        raise PageError(because)
+    if reason:
+        raise PageError(reason)
 
 
-def serve_pages(
-    service: ServiceSettings,
-    port: int,
-    page_port: int,
-    host_names: tuple[str, ...],
-    *,
-    further: int,
-    while_stdin: bool,
-    as_json: bool,
-) -> None:
+def serve_pages(service: ServiceSettings, port: int, options: PageOptions) -> None:
     """Serve this machine and, while a device is paired, the network, until told to end. Raises PageError.
 
-    `port` is the robot's, on this machine; `further` as `kurt2rt.teacher.page.server.listen` has it.
-    `as_json`: tell what is served in lines of JSON, for `kurt2rt run`.
+    `port` is the UDP port of the robot, which is this machine.
     """
     pairings = Pairings(Path(service.teachers), Path(service.devices))
     local_pairing(pairings.teachers, pairings.devices, port=service.port)
-    names = own_names() | {each.lower() for each in host_names}
+    site = PageSite(
+        lambda device: TeacherClient(device.folder, ROBOT_HERE, port), f"{ROBOT_HERE}:{port}", options.names
+    )
 
     async def serve() -> None:
         await run_device_pages(
             pairings,
-            lambda device: TeacherClient(device.folder, ROBOT_HERE, port),
-            f"{ROBOT_HERE}:{port}",
-            names,
-            page_port,
-            _tell_json if as_json else _telling(Console()),
-            lambda: told_to_end(while_stdin=while_stdin),
-            further=further,
+            site,
+            options.port,
+            _print_json if options.as_json else _printer(Console()),
+            lambda: until_ended(while_stdin=options.while_stdin),
+            spare_ports=options.spare_ports,
         )
 
     anyio.run(serve)
 
 
-def _tell_link(link: str, device: str, robot_place: str, ports: tuple[int, int], *, code: bool) -> None:
+def _print_link(link: str, device: str, robot_place: str, ports: tuple[int, int], *, code: bool) -> None:
     console, (wanted, served) = Console(), ports
     taken = f"; port {wanted} is in use, so it is at {served}" if wanted not in (0, served) else ""
     _print(console, f"page for {device}, robot at {robot_place}{taken}; Ctrl-C ends", link)
@@ -114,12 +118,12 @@ def _tell_link(link: str, device: str, robot_place: str, ports: tuple[int, int],
         console.print(qr_code(link), soft_wrap=True)
 
 
-def _tell_json(served: ServedPages) -> None:
+def _print_json(served: ServedPages) -> None:
     print(to_line(served), flush=True)
 
 
-def _telling(console: Console) -> Callable[[ServedPages], None]:
-    def tell(served: ServedPages) -> None:
+def _printer(console: Console) -> Callable[[ServedPages], None]:
+    def print_pages(served: ServedPages) -> None:
         for each in served.addresses:
             _print(console, f"page for {each.device}:", each.link)
         phones = [each for each in served.addresses if each.device not in OF_THIS_MACHINE]
@@ -127,7 +131,7 @@ def _telling(console: Console) -> Callable[[ServedPages], None]:
             console.print(qr_code(phones[0].link), soft_wrap=True)
         _print(console, *([] if phones else [PAIR_A_PHONE]), *([served.trouble] if served.trouble else []))
 
-    return tell
+    return print_pages
 
 
 def _print(console: Console, *lines: str) -> None:

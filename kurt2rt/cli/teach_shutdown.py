@@ -1,4 +1,4 @@
-"""When a teacher's program ends: told to by a signal, its input is over, or its pairing is no more."""
+"""End of a teacher's program: a signal, the end of its standard input, or the end of its pairing."""
 
 import asyncio
 import signal
@@ -11,31 +11,31 @@ import anyio.to_thread
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.pairing import Device, read_device
 
-_LOOK_AT_PAIRING_S = 1.0
+_POLL_PAIRING_S = 1.0
 
 
-async def end_of_teaching(device: Device, *, while_stdin: bool) -> str:
-    """Wait for it. Returns why, in a line for the user; empty where he wanted it so."""
-    because = ""
+async def until_teaching_ends(device: Device, *, while_stdin: bool) -> str:
+    """Wait for the end; return its reason in a line for the user, empty if the user asked for it."""
+    reason = ""
     async with anyio.create_task_group() as tasks:
 
         async def pairing_ends() -> None:
-            nonlocal because
-            because = await _end_of_pairing(device)
+            nonlocal reason
+            reason = await _until_pairing_ends(device)
             tasks.cancel_scope.cancel()
 
         tasks.start_soon(pairing_ends)
-        await told_to_end(while_stdin=while_stdin)
+        await until_ended(while_stdin=while_stdin)
         tasks.cancel_scope.cancel()
-    return because
+    return reason
 
 
-async def told_to_end(*, while_stdin: bool) -> None:
+async def until_ended(*, while_stdin: bool) -> None:
     """Wait for a signal that ends the program, or with `while_stdin` for the end of its input."""
     async with anyio.create_task_group() as tasks:
 
         async def input_ends() -> None:
-            await _end_of_input()
+            await _until_input_ends()
             tasks.cancel_scope.cancel()
 
         if while_stdin:
@@ -45,19 +45,19 @@ async def told_to_end(*, while_stdin: bool) -> None:
                 tasks.cancel_scope.cancel()
 
 
-async def _end_of_pairing(device: Device) -> str:
-    """Wait until the pairing is renewed or revoked; what to tell then."""
+async def _until_pairing_ends(device: Device) -> str:
+    """Wait until the pairing is renewed or revoked; return the reason in a line for the user."""
     while True:
-        await anyio.sleep(_LOOK_AT_PAIRING_S)
+        await anyio.sleep(_POLL_PAIRING_S)
         try:
             now = await anyio.to_thread.run_sync(read_device, device.folder)
         except CredentialsError:
             return f"{device.name}: its pairing was revoked; pair it again: kurt2rt pair {device.name}"
         if now.token != device.token:
-            return f"{device.name}: its pairing was renewed; start kurt2rt teach anew"
+            return f"{device.name}: its pairing was renewed; start kurt2rt teach again"
 
 
-async def _end_of_input() -> None:
+async def _until_input_ends() -> None:
     ended = asyncio.Event()
     loop = asyncio.get_running_loop()
 
@@ -69,6 +69,6 @@ async def _end_of_input() -> None:
         except RuntimeError:
             return  # the loop has ended before the input did
 
-    # Daemon: reading cannot be interrupted, and must not keep the process alive.
+    # Daemon thread: a read cannot be interrupted, and must not keep the process alive.
     threading.Thread(target=read, name="standard input", daemon=True).start()
     await ended.wait()

@@ -1,15 +1,14 @@
-import io
 from pathlib import Path
 
 import pytest
-import segno
 import yaml
 
 from config import CONFIG_DIR
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.security.pairing import Device, local_pairing, read_device
-from kurt2rt.cli.pair import page_address
+from kurt2rt.cli.qr_code import qr_code
 from kurt2rt.teacher.page.host_names import own_address
+from kurt2rt.teacher.page.served_pages import page_link
 from tests.cli.helpers import CommandLine
 
 TEACHERS, DEVICES = Path("var/teachers"), Path("var/devices")
@@ -19,18 +18,12 @@ def device_of(name: str) -> Device:
     return read_device(DEVICES / name)
 
 
-def code_of(address: str) -> str:
-    drawn = io.StringIO()
-    segno.make(address).terminal(drawn, compact=True)
-    return drawn.getvalue()
-
-
 def test_a_paired_device_is_told_where_its_page_is_as_text_and_as_a_code(kurt2rt: CommandLine) -> None:
     said = kurt2rt("pair", "anna-phone", "--host", "10.0.0.7")
     assert said.exit_code == 0, said.err
     address = f"http://10.0.0.7:8642/pair?token={device_of('anna-phone').token}"
     assert address in said.out
-    assert code_of(address) in said.out
+    assert qr_code(address).plain in said.out
     assert str(TEACHERS / "anna-phone") in said.out
     assert str(DEVICES / "anna-phone") in said.out
     assert "kurt2rt run --phone" in said.out
@@ -51,7 +44,7 @@ def test_without_a_host_the_address_is_this_machines(kurt2rt: CommandLine) -> No
 
 def test_an_address_of_the_newer_kind_is_put_in_brackets(tmp_path: Path) -> None:
     pairing = local_pairing(tmp_path / "teachers", tmp_path / "devices")
-    assert page_address(pairing, "fe80::7", 80).startswith("http://[fe80::7]:80/pair?token=")
+    assert page_link(pairing.device, "fe80::7", 80).startswith("http://[fe80::7]:80/pair?token=")
 
 
 def test_folders_and_ports_are_those_of_the_settings(kurt2rt: CommandLine, tmp_path: Path) -> None:
@@ -86,7 +79,7 @@ def test_a_revoked_device_is_listed_no_longer(kurt2rt: CommandLine) -> None:
 
 
 def test_the_list_tells_who_is_paired_and_where_the_device_is(kurt2rt: CommandLine) -> None:
-    assert "Nobody is paired" in kurt2rt("pair", "--list").out
+    assert "No device is paired" in kurt2rt("pair", "--list").out
     kurt2rt("pair", "phone")
     kurt2rt("pair", "tablet")
     (DEVICES / "tablet").rename("tablet")

@@ -24,11 +24,11 @@ async def main(folder: Path, port: int) -> None:
             """Where the page is, and the cookie that opens it."""
             return {"port": page_port, "cookie": f"{access.cookie_name}={access.cookie}"}
 
-        async def told_to_end() -> None:
+        async def until_ended() -> None:
             await do_jobs({"place": place})
 
         async with TeacherClient(folder, port=port) as robot:
-            await run_page(robot, access, f"127.0.0.1:{port}", listener, told_to_end)
+            await run_page(robot, access, f"127.0.0.1:{port}", listener, until_ended)
 
 
 if __name__ == "__main__":

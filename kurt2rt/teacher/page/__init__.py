@@ -1,1 +1,1 @@
-"""The teacher's page: a small web server beside the teacher, itself a client of the robot over CoAP and OSCORE."""
+"""The page's server, on the robot's machine or on any other that reaches the robot."""

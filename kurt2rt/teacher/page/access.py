@@ -1,4 +1,4 @@
-"""Who may see the page: whoever brought the token of the pairing once, from a page of ours."""
+"""Access to a device's page: pairing token, cookie, host and origin of a request."""
 
 import hashlib
 import hmac
@@ -7,12 +7,12 @@ from collections.abc import Collection, Mapping
 from typing import Self
 
 from kurt2rt.channel.security.pairing import LOCAL
-from kurt2rt.teacher.page.host_names import is_ours
+from kurt2rt.teacher.page.host_names import is_own_host
 from kurt2rt.teacher.page.public_address import PublicAddress
 
 
 class Access:
-    """The rules of the door. The cookie is derived from the token, so a renewed or revoked pairing ends it."""
+    """Access rules of one device. The cookie is derived from the token, so a renewed or revoked pairing ends it."""
 
     def __init__(
         self,
@@ -21,46 +21,51 @@ class Access:
         names: Collection[str],
         public: PublicAddress | None = None,
         *,
-        shown_by: str | None = None,
+        address_command: str | None = None,
     ) -> None:
-        """`names`: what this machine may be called in an address; `public`: where a TLS proxy serves the page.
+        """Create the rules of a paired device.
 
-        `shown_by`: the command that shows the address; None: kurt2rt teach for this device.
+        Args:
+            device: name of the device.
+            token: secret of its pairing.
+            names: of this machine, as a browser may write them in an address.
+            public: address at which a TLS proxy serves the page, if any.
+            address_command: command that shows the page's address. Default: kurt2rt teach for this device.
         """
         self.device = device
         teach = "kurt2rt teach" if device == LOCAL else f"kurt2rt teach --as {device}"
-        self.shown_by = teach if shown_by is None else shown_by
+        self.address_command = teach if address_command is None else address_command
         self.public = public
         self._token = token.encode()
         self._names = frozenset(name.lower() for name in names)
-        # Cookies know no ports: two devices' pages on one machine need two names.
+        # A cookie holds for all ports: the pages of two devices on one machine need two names.
         self.cookie_name = f"kurt2rt-{device}"
         self.cookie = hmac.new(self._token, b"kurt2rt page", hashlib.sha256).hexdigest()
 
     @classmethod
     def without_device(cls, names: Collection[str]) -> Self:
         """Return rules that refuse all visitors; `names` as for a device."""
-        return cls("", secrets.token_urlsafe(), names, shown_by="kurt2rt run --phone")
+        return cls("", secrets.token_urlsafe(), names, address_command="kurt2rt run --phone")
 
-    def opens(self, token: str) -> bool:
-        """Whether this is the token; takes the same time whatever is wrong with it."""
+    def accepts_token(self, token: str) -> bool:
+        """Return whether this is the token, in constant time."""
         return hmac.compare_digest(token.encode("utf-8", "surrogatepass"), self._token)
 
-    def knows(self, cookies: Mapping[str, str]) -> bool:
-        """Whether a browser brought our cookie."""
-        brought = cookies.get(self.cookie_name, "")
-        return hmac.compare_digest(brought.encode("utf-8", "surrogatepass"), self.cookie.encode())
+    def accepts_cookies(self, cookies: Mapping[str, str]) -> bool:
+        """Return whether a browser's cookies hold this device's cookie, in constant time."""
+        sent = cookies.get(self.cookie_name, "")
+        return hmac.compare_digest(sent.encode("utf-8", "surrogatepass"), self.cookie.encode())
 
-    def is_for_us(self, headers: Mapping[str, str], local_address: str) -> bool:
-        """Whether the request names this machine as its host; anything else may be DNS rebinding."""
-        return self.is_public(headers) or is_ours(headers.get("host", ""), local_address, self._names)
+    def is_own_host(self, headers: Mapping[str, str], local_address: str) -> bool:
+        """Return whether the Host header names this machine; another name may be DNS rebinding."""
+        return self.is_public(headers) or is_own_host(headers.get("host", ""), local_address, self._names)
 
     def is_public(self, headers: Mapping[str, str]) -> bool:
-        """Whether the request came for the TLS proxy's address, which hands on the Host that it was asked for."""
+        """Return whether the request came through the TLS proxy, which passes on the Host header of the browser."""
         return self.public is not None and headers.get("host", "").lower() == self.public.place
 
-    def comes_from_us(self, headers: Mapping[str, str]) -> bool:
-        """Whether a WebSocket was opened by a page of this very server."""
+    def is_own_origin(self, headers: Mapping[str, str]) -> bool:
+        """Return whether a page of this server sent the request."""
         host = headers.get("host", "")
         origin = headers.get("origin", "").lower()
         if self.public is not None and origin == self.public.origin:

@@ -1,4 +1,4 @@
-"""The page's web application: static files, and a WebSocket between the page and the bridge."""
+"""Web application of the page: static files, and a WebSocket between the page and the bridge."""
 
 import mimetypes
 import time
@@ -12,16 +12,16 @@ from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from kurt2rt.channel.protocol.schema import WireError
+from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.page.access import Access
 from kurt2rt.teacher.page.auth_middleware import AuthMiddleware
 from kurt2rt.teacher.page.bridge import Bridge
 from kurt2rt.teacher.page.downloads import Downloads
 from kurt2rt.teacher.page.messages import parse
 from kurt2rt.teacher.page.page_connection import PageConnection
-from kurt2rt.teacher.page.robot_link import RobotLink
 from kurt2rt.teacher.page.uploads import Uploads
 
-# Python's table of types does not know it, and a browser ignores a manifest of another type.
+# Python 3.11 lacks this type, and browsers ignore a manifest with another type.
 mimetypes.add_type("application/manifest+json", ".webmanifest")
 
 STATIC = Path(__file__).parent / "static"
@@ -30,15 +30,15 @@ _POLICY_VIOLATION = 1008
 _TRY_AGAIN_LATER = 1013
 
 
-def build_app(bridge: Bridge, access: Access, robot: RobotLink) -> Starlette:
-    """The application for a bridge that runs, and the robot whose files it hands on."""
+def build_app(bridge: Bridge, access: Access, robot: TeacherClient) -> Starlette:
+    """Build the application of a running bridge; `robot` is the source of downloads."""
 
-    async def pictures_and_orders(websocket: WebSocket) -> None:
+    async def serve_websocket(websocket: WebSocket) -> None:
         await _serve_page(websocket, bridge)
 
     return Starlette(
         routes=[
-            WebSocketRoute("/robot", pictures_and_orders),
+            WebSocketRoute("/robot", serve_websocket),
             Route("/files/{name}", Downloads(robot), methods=["GET"]),
             Route("/upload", Uploads(robot, access), methods=["POST"]),
             Mount("/", StaticFiles(directory=STATIC, html=True)),
@@ -49,46 +49,45 @@ def build_app(bridge: Bridge, access: Access, robot: RobotLink) -> Starlette:
 
 async def _serve_page(websocket: WebSocket, bridge: Bridge) -> None:
     await websocket.accept()
-    visitor = bridge.arrive()
+    connection = bridge.connect()
     try:
         async with anyio.create_task_group() as tasks:
-            tasks.start_soon(_send, websocket, visitor, tasks.cancel_scope)
-            await _receive(websocket, bridge, visitor)
+            tasks.start_soon(_send, websocket, connection, tasks.cancel_scope)
+            await _receive(websocket, bridge, connection)
             tasks.cancel_scope.cancel()
     finally:
-        bridge.leave(visitor)
+        bridge.disconnect(connection)
 
 
-async def _receive(websocket: WebSocket, bridge: Bridge, visitor: PageConnection) -> None:
+async def _receive(websocket: WebSocket, bridge: Bridge, connection: PageConnection) -> None:
     try:
         while True:
-            bridge.hear(visitor, parse(await _text_of(websocket)))
+            bridge.on_message(connection, parse(await _receive_text(websocket)))
     except WebSocketDisconnect:
         return
     except WireError as error:
-        # A page of ours never says such a thing: it is another version of it, or somebody who tries things out.
+        # This page never sends such a message: the browser has another version of it, or is not a browser.
         await _close(websocket, _POLICY_VIOLATION, str(error))
 
 
-async def _text_of(websocket: WebSocket) -> str:
+async def _receive_text(websocket: WebSocket) -> str:
     """Return the next message. Raises WebSocketDisconnect; WireError for a binary one."""
     message = await websocket.receive()
     if message["type"] == "websocket.disconnect":
         raise WebSocketDisconnect(message["code"], message.get("reason"))
-    text = message.get("text")
+    text: str | None = message.get("text")
     if text is None:
-        raise WireError("this is no message of the page: it is binary")
-    told: str = text
-    return told
+        raise WireError("a message of the page has to be text (got binary)")
+    return text
 
 
-async def _send(websocket: WebSocket, visitor: PageConnection, scope: anyio.CancelScope) -> None:
+async def _send(websocket: WebSocket, connection: PageConnection, scope: anyio.CancelScope) -> None:
     try:
         while True:
-            await visitor.next()
-            while (text := visitor.take(time.monotonic())) is not None:
+            await connection.wait()
+            while (text := connection.pop(time.monotonic())) is not None:
                 await websocket.send_text(text)
-            if visitor.lost:
+            if connection.lost:
                 await _close(websocket, _TRY_AGAIN_LATER, "too far behind")
                 scope.cancel()
     except WebSocketDisconnect:
@@ -99,4 +98,4 @@ async def _close(websocket: WebSocket, code: int, reason: str) -> None:
     try:
         await websocket.close(code, reason[:100])
     except (WebSocketDisconnect, RuntimeError):
-        return  # it was closed from the other side at the same time
+        return  # the browser closed it at the same time

@@ -1,4 +1,4 @@
-"""The door of the page's server: what comes through without the cookie, and what every answer says about itself."""
+"""Middleware that checks each request's host, pairing and origin, and sets the security headers of each answer."""
 
 import time
 from collections.abc import Callable
@@ -9,9 +9,10 @@ from starlette.responses import HTMLResponse, PlainTextResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from kurt2rt.teacher.page.access import Access
-from kurt2rt.teacher.page.http_timeouts import shown_cookie
 from kurt2rt.teacher.page.login_throttle import LoginThrottle
 from kurt2rt.teacher.page.public_address import PublicAddress
+from kurt2rt.teacher.page.texts import PageNotice, text_of
+from kurt2rt.teacher.page.uvicorn_protocols import mark_authenticated
 
 _LONGEST_COOKIE_S = 90 * 24 * 3600
 
@@ -22,7 +23,7 @@ _SCAN_AGAIN = """<!doctype html>
 <p>This browser is not paired with the robot, or no longer.</p>
 <p>Open the address that <code>{command}</code> shows, or scan its code.</p></body></html>
 """
-# Not a redirect: a browser that came by a link from elsewhere would follow it without the new SameSite cookie.
+# A page, not a redirect: a browser that followed a link of another site would come without the SameSite cookie.
 _WELCOME = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><meta http-equiv="refresh" content="0;url=/">
 <link rel="icon" href="/icon.svg" type="image/svg+xml">
@@ -32,32 +33,32 @@ _WELCOME = """<!doctype html>
 
 
 class AuthMiddleware:
-    """In front of everything else. Checks the host, then the pairing, then where a WebSocket comes from."""
+    """ASGI middleware of one device: it checks the host, then the pairing, then the origin of a WebSocket."""
 
     def __init__(self, app: ASGIApp, access: Access, *, now: Callable[[], float] = time.monotonic) -> None:
         self._app = app
         self._access = access
-        self._attempts = LoginThrottle()
+        self._throttle = LoginThrottle()
         self._now = now
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """ASGI."""
+        """Serve one ASGI request."""
         if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
         headers = Headers(scope=scope)
         send = _with_security_headers(send, headers.get("host", ""), self._access.public)
         local_address = (scope.get("server") or ("", None))[0]
-        if not self._access.is_for_us(headers, local_address):
-            refusal: Response = PlainTextResponse("this address does not belong to this machine (see --host-name)", 421)
+        if not self._access.is_own_host(headers, local_address):
+            refusal: Response = PlainTextResponse(text_of(PageNotice.FOREIGN_HOST), 421)
         elif scope["type"] == "http" and scope["path"] == "/pair":
             refusal = self._pair(HTTPConnection(scope))
-        elif not self._access.knows(HTTPConnection(scope).cookies):
+        elif not self._access.accepts_cookies(HTTPConnection(scope).cookies):
             refusal = self._scan_again(403)
-        elif scope["type"] == "websocket" and not self._access.comes_from_us(headers):
-            refusal = PlainTextResponse("opened by a page from elsewhere", 403)
+        elif scope["type"] == "websocket" and not self._access.is_own_origin(headers):
+            refusal = PlainTextResponse(text_of(PageNotice.FOREIGN_PAGE), 403)
         else:
-            shown_cookie(scope)
+            mark_authenticated(scope)
             await self._app(scope, receive, send)
             return
         if scope["type"] == "websocket":
@@ -67,12 +68,12 @@ class AuthMiddleware:
 
     def _pair(self, request: HTTPConnection) -> Response:
         address = request.client.host if request.client else ""
-        # Before the tries are counted: others at this address, such as a proxy's, must not lock out the teacher. A
-        # token has 192 random bits, so it cannot be guessed however often a stranger tries.
-        if not self._access.opens(request.query_params.get("token", "")):
-            if not self._attempts.allowed(address, self._now()):
-                return PlainTextResponse("too many wrong tokens from this address; the right one is taken", 429)
-            self._attempts.failed(address, self._now())
+        # The right token is checked before the throttle: other users of this address, such as a proxy's, must not lock
+        # out the teacher. A token has 192 random bits, so it cannot be guessed.
+        if not self._access.accepts_token(request.query_params.get("token", "")):
+            if not self._throttle.is_allowed(address, self._now()):
+                return PlainTextResponse(text_of(PageNotice.TOO_MANY_TOKENS), 429)
+            self._throttle.on_failure(address, self._now())
             return self._scan_again(403)
         response = HTMLResponse(_WELCOME)
         response.set_cookie(
@@ -86,7 +87,7 @@ class AuthMiddleware:
         return response
 
     def _scan_again(self, status: int) -> Response:
-        return HTMLResponse(_SCAN_AGAIN.format(command=self._access.shown_by), status)
+        return HTMLResponse(_SCAN_AGAIN.format(command=self._access.address_command), status)
 
 
 def _with_security_headers(send: Send, host: str, public: PublicAddress | None) -> Send:

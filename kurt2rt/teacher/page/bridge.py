@@ -1,8 +1,8 @@
-"""Between the open pages and the robot: pictures one way, orders and the teacher's hand the other."""
+"""Bridge between the open pages and the robot: states to the pages, commands and presses to the robot."""
 
 import contextlib
 import time
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from functools import partial
 from typing import Any
 
@@ -11,294 +11,280 @@ import anyio.abc
 
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.outcome import Outcome, RefusalCode
-from kurt2rt.core.outcome_text import Surface, text_of
+from kurt2rt.core.outcome_text import Surface
+from kurt2rt.core.outcome_text import text_of as outcome_text_of
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
-from kurt2rt.teacher.page.commands import carry_out, ends_run, lets_drive, oldest_picture_s
+from kurt2rt.teacher.client.client import TeacherClient
+from kurt2rt.teacher.page.commands import COMMANDS, PageCommand, is_resumption, max_state_age_s
 from kurt2rt.teacher.page.control_lease import ControlLease
-from kurt2rt.teacher.page.messages import Hidden, PageHeartbeat, PageMessage, PageOrder, Press, Release, StopNow, Why
+from kurt2rt.teacher.page.messages import Hidden, PageHeartbeat, PageMessage, Press, Release, StopNow, Why
 from kurt2rt.teacher.page.operator_presence import OperatorPresence
 from kurt2rt.teacher.page.page_connection import PageConnection
-from kurt2rt.teacher.page.robot_link import RobotLink
 from kurt2rt.teacher.page.sent_states import SentState
 from kurt2rt.teacher.page.slow_state import SlowState
+from kurt2rt.teacher.page.texts import PageNotice, text_of
 from kurt2rt.teacher.page.views import answer_view, refusal_view, state_view
 from kurt2rt.teacher.page.why_view import why_view
 
-_LOOK_EACH_S = 0.01
-"""How late a silent page is noticed at most."""
+_POLL_S = 0.01
+"""Longest delay until a silent page is noticed."""
 _SILENT_S = 0.5
-"""A robot not heard of for so long is said to be silent, and so often."""
-_MOST_ORDERS = 8
-"""That one page may have under way."""
-
-_NOT_YOURS = "another page has the pad; press Take to have it here"
-_NO_PICTURE = "the page showed no picture of the robot as it runs now; look, and press again"
-_OLD_PICTURE = text_of(Outcome(RefusalCode.OLD_PICTURE), Surface.PAGE)
-_STOPPED_MEANWHILE = text_of(Outcome(RefusalCode.STOPPED_SINCE), Surface.PAGE)
-_BUSY = "the robot has not answered the last ones yet; wait"
-_NOBODY_LOOKED = "nobody saw the robot on this page: it was stopped; GO lets it drive on"
+"""A robot without a state for so long is reported as silent, and again after each such time."""
+_MAX_PENDING = 8
+"""Largest number of commands of one page without an answer."""
 
 
 class Bridge:
-    """Serves all open pages of one device.
+    """Bridge of all open pages of one device.
 
-    One page has the pad. Its heartbeats are what tells the robot that the teacher looks; its presses drive for as long
-    as they come. Every page may stop the robot.
+    One page has control: its heartbeats tell the robot that the teacher is present, and its presses drive. Every page
+    may stop the robot.
     """
 
     def __init__(
-        self, robot: RobotLink, device: str, robot_place: str, *, now: Callable[[], float] = time.monotonic
+        self, robot: TeacherClient, device: str, robot_place: str, *, now: Callable[[], float] = time.monotonic
     ) -> None:
-        """`robot_place` is where the robot should be, for the page; `now` a clock in s that only grows."""
+        """`robot_place` is the robot's address, for texts; `now` is a monotonic clock in s."""
         self._robot = robot
         self._device = device
         self._robot_place = robot_place
         self._now = now
-        self._seat = ControlLease()
-        self._attention = OperatorPresence()
-        self._visitors: dict[int, PageConnection] = {}
+        self._lease = ControlLease()
+        self._presence = OperatorPresence()
+        self._connections: dict[int, PageConnection] = {}
         self._opened = 0
-        self._carried_out = 0
+        self._answered = 0
         self._newest: State | None = None
         self._stopped_s = float("-inf")
         self._unseen_stop_due = False
         self._ended_boot: bytes | None = None
-        """Start of the robot that ended because a page wanted the next run: it is silent, and stands."""
-        self._ending = 0
-        self._said_silent_s = float("-inf")
+        """Start of the robot that a page has ended for the next run: it is silent, and stands."""
+        self._ending_presses = 0
+        self._reported_silent_s = float("-inf")
         self._tasks: anyio.abc.TaskGroup | None = None
-        self._rarely = SlowState(robot, self._tell_all, lambda: self._carried_out)
+        self._slow = SlowState(robot, self._send_to_all, lambda: self._answered)
 
     async def run(self, *, task_status: anyio.abc.TaskStatus[None] = anyio.TASK_STATUS_IGNORED) -> None:
-        """Serve until cancelled; the wheels are let go at the end."""
+        """Serve until cancelled."""
         async with anyio.create_task_group() as tasks:
             self._tasks = tasks
-            self._rarely.start(tasks)
-            for task in (self._follow_pictures, self._keep_watch):
+            self._slow.start(tasks)
+            for task in (self._follow_states, self._poll_forever):
                 tasks.start_soon(task)
             task_status.started()
 
     async def end(self) -> None:
-        """Let go of the robot before the program ends; it stands if it was driven by hand. Raises NoAnswerError."""
+        """End all presses before the program ends. Raises NoAnswerError."""
         self._robot.watching = False
-        held = [each for each in self._visitors.values() if each.grip.held]
-        for visitor in held:
-            visitor.grip.release()
+        held = [each for each in self._connections.values() if each.deadman.held]
+        for connection in held:
+            connection.deadman.release()
         if held:
             await self._robot.let_go()
 
     # Pages
 
     @property
-    def visitors(self) -> int:
+    def page_count(self) -> int:
         """Number of open pages."""
-        return len(self._visitors)
+        return len(self._connections)
 
-    def dismiss(self) -> None:
-        """Close every page's connection; it may come again, and shows its cookie then."""
-        for visitor in self._visitors.values():
-            visitor.lost = True
-            visitor.look()
+    def close_all(self) -> None:
+        """Close the connections of all pages; a page that connects again has to show its cookie."""
+        for connection in self._connections.values():
+            connection.lost = True
+            connection.wake()
 
-    def arrive(self) -> PageConnection:
-        """A page was opened."""
+    def connect(self) -> PageConnection:
+        """Add a page that was opened."""
         self._opened += 1
-        visitor = PageConnection(self._opened)
-        before = self._seat.holder
-        self._visitors[visitor.number] = visitor
-        self._seat.arrive(visitor.number, self._now())
-        self._seat_changed(before)
-        for about, copy in self._rarely.copies():
-            visitor.tell(copy, about=about)
-        return visitor
+        connection = PageConnection(self._opened)
+        before = self._lease.holder
+        self._connections[connection.number] = connection
+        self._lease.connect(connection.number, self._now())
+        self._on_lease_change(before)
+        for topic, message in self._slow.messages():
+            connection.send(message, topic=topic)
+        return connection
 
-    def leave(self, visitor: PageConnection) -> None:
-        """A page was closed, or lost."""
-        before = self._seat.holder
-        self._seat.leave(visitor.number)
-        self._seat_changed(before)
-        self._let_go(visitor)
-        del self._visitors[visitor.number]
+    def disconnect(self, connection: PageConnection) -> None:
+        """Remove a page that was closed or lost."""
+        before = self._lease.holder
+        self._lease.disconnect(connection.number)
+        self._on_lease_change(before)
+        self._release(connection)
+        del self._connections[connection.number]
 
-    def hear(self, visitor: PageConnection, message: PageMessage) -> None:
-        """Do what a page says."""
+    def on_message(self, connection: PageConnection, message: PageMessage) -> None:
+        """Handle a message of a page."""
         match message:
             case PageHeartbeat():
-                self._heartbeat(visitor, message)
+                self._on_heartbeat(connection, message)
             case Hidden():
-                visitor.visible = False
-                self._seat.hide(visitor.number)
-                if self._has_pad(visitor):
-                    self._attention.lose()
-                    self._look()
-                self._let_go(visitor)
+                connection.visible = False
+                self._lease.hide(connection.number)
+                if self._has_control(connection):
+                    self._presence.end()
+                    self._update_presence()
+                self._release(connection)
             case Press():
-                self._press(visitor, message)
+                self._on_press(connection, message)
             case Release():
-                self._let_go(visitor)
+                self._release(connection)
             case StopNow():
                 self._stopped_s = self._now()
-                for each in self._visitors.values():
-                    each.grip.release()
-                self._spawn(self._answer, visitor, message.number, self._robot.stop)
+                for each in self._connections.values():
+                    each.deadman.release()
+                self._spawn(self._answer, connection, message.number, self._robot.stop)
             case Why():
-                if visitor.orders >= _MOST_ORDERS:
-                    visitor.tell(refusal_view(message.number, "busy", _BUSY))
-                else:
-                    self._spawn(self._explain, visitor, message.number)
-            case PageOrder():
-                self._order(visitor, message)
+                self._start(connection, message.number, self._explain)
+            case PageCommand():
+                self._on_command(connection, message)
 
-    def _has_pad(self, visitor: PageConnection) -> bool:
-        return self._seat.holder == visitor.number
+    def _has_control(self, connection: PageConnection) -> bool:
+        return self._lease.holder == connection.number
 
-    def _heartbeat(self, visitor: PageConnection, beat: PageHeartbeat) -> None:
+    def _on_heartbeat(self, connection: PageConnection, heartbeat: PageHeartbeat) -> None:
         now_s = self._now()
-        visitor.visible = True
-        visitor.beat = (beat.at_ms, now_s)
-        self._seat.hear(visitor.number, now_s)
-        if beat.picture is not None:
-            visitor.pictures.see(beat.picture)
-        if self._has_pad(visitor):
-            self._attention.beat(visitor.pictures.age_s(beat.picture, now_s), now_s)
-            self._look()
-        visitor.look()
+        connection.visible = True
+        connection.heartbeat = (heartbeat.at_ms, now_s)
+        self._lease.renew(connection.number, now_s)
+        if heartbeat.picture is not None:
+            connection.states.acknowledge(heartbeat.picture)
+        if self._has_control(connection):
+            self._presence.renew(connection.states.age_s(heartbeat.picture, now_s), now_s)
+            self._update_presence()
+        connection.wake()
 
-    def _press(self, visitor: PageConnection, press: Press) -> None:
-        if self._ending:
-            return  # the press before is on until its end was begun; the next message of this one comes in 50 ms
-        if not self._has_pad(visitor):
-            visitor.tell({"kind": "let_go", "text": _NOT_YOURS}, about="let_go")
+    def _on_press(self, connection: PageConnection, press: Press) -> None:
+        if self._ending_presses:
+            return  # the last press has not ended yet; the next message of this press comes in 50 ms
+        if not self._has_control(connection):
+            _end_press_of(connection, text_of(PageNotice.NOT_IN_CONTROL))
             return
         now_s = self._now()
-        age_s = visitor.pictures.age_s(press.picture, now_s)
-        if visitor.grip.is_on(press.hold) and not self._robot.pressing:
-            # The robot refused it, or was stopped: going on would be a new press that nobody made.
-            visitor.grip.release()
-            visitor.tell({"kind": "let_go", "text": self._why_refused()}, about="let_go")
-        elif visitor.grip.press(press.hold, age_s, now_s):
+        age_s = connection.states.age_s(press.picture, now_s)
+        if connection.deadman.is_held_by(press.press_id) and not self._robot.pressing:
+            # The robot refused the press or was stopped: to go on would be a new press that the teacher did not make.
+            connection.deadman.release()
+            _end_press_of(connection, self._press_refusal())
+        elif connection.deadman.press(press.press_id, age_s, now_s):
             self._robot.press(press.left_m_s, press.right_m_s)
 
-    def _order(self, visitor: PageConnection, order: PageOrder) -> None:
-        if order.name != "take" and not self._has_pad(visitor):
-            visitor.tell(refusal_view(order.number, "watching", _NOT_YOURS))
+    def _on_command(self, connection: PageConnection, command: PageCommand) -> None:
+        number = command.number
+        if command.name != "take" and not self._has_control(connection):
+            connection.send(refusal_view(number, "watching", text_of(PageNotice.NOT_IN_CONTROL)))
             return
-        picture = visitor.pictures.get(order.picture)
-        if picture is None or self._newest is None or picture.boot != self._newest.boot:
-            visitor.tell(refusal_view(order.number, "stale", _NO_PICTURE))
-        elif self._now() - picture.sent_s > oldest_picture_s(order):
-            # The robot is told of our newest picture, not of the page's: only here the order's age is known.
-            visitor.tell(refusal_view(order.number, "stale", _OLD_PICTURE))
-        elif lets_drive(order) and picture.sent_s < self._stopped_s:
-            visitor.tell(refusal_view(order.number, "stopped", _STOPPED_MEANWHILE))
-        elif order.name == "take" and self._take_pad(visitor):
-            visitor.tell({**refusal_view(order.number, "", "this page has the pad"), "accepted": True})
+        shown = connection.states.get(command.picture)
+        if shown is None or self._newest is None or shown.boot != self._newest.boot:
+            connection.send(refusal_view(number, "stale", text_of(PageNotice.NO_STATE)))
+        elif self._now() - shown.sent_s > max_state_age_s(command):
+            # The robot learns the tick of this server's newest state, so it cannot check the page's.
+            connection.send(refusal_view(number, "stale", _page_text(RefusalCode.OLD_PICTURE)))
+        elif is_resumption(command) and shown.sent_s < self._stopped_s:
+            connection.send(refusal_view(number, "stopped", _page_text(RefusalCode.STOPPED_SINCE)))
+        elif command.name == "take" and self._claim_control(connection):
+            connection.send({**refusal_view(number, "", text_of(PageNotice.CONTROL_TAKEN)), "accepted": True})
         else:
-            self._start(visitor, order.number, partial(self._carry_out, order, picture))
+            self._start(connection, number, self._answer, partial(self._send, command, shown))
 
-    async def _carry_out(self, order: PageOrder, picture: SentState) -> Answer:
-        answer = await carry_out(order, self._robot, picture.tick)
-        if answer.accepted and ends_run(order):
-            self._ended_boot = picture.boot
+    async def _send(self, command: PageCommand, shown: SentState) -> Answer:
+        kind = COMMANDS[command.name]
+        answer = await kind.send(self._robot, command.arguments, shown.tick)
+        if answer.accepted and kind.ends_run:
+            self._ended_boot = shown.boot
         return answer
 
-    def _take_pad(self, visitor: PageConnection) -> bool:
-        """Give a page the pad; whether this device is the robot's teacher already."""
-        before = self._seat.holder
-        self._seat.take(visitor.number, self._now())
-        self._seat_changed(before)
+    def _claim_control(self, connection: PageConnection) -> bool:
+        """Give a page control; return whether this device is the robot's teacher already."""
+        before = self._lease.holder
+        self._lease.claim(connection.number, self._now())
+        self._on_lease_change(before)
         return self._newest is not None and self._newest.teacher == self._device
 
-    def _start(self, visitor: PageConnection, number: int, command: Callable[[], Any]) -> None:
-        if visitor.orders >= _MOST_ORDERS:
-            visitor.tell(refusal_view(number, "busy", _BUSY))
-            return
-        self._spawn(self._answer, visitor, number, command)
+    def _start(self, connection: PageConnection, number: int, task: Callable[..., Any], *arguments: object) -> None:
+        if connection.pending >= _MAX_PENDING:
+            connection.send(refusal_view(number, "busy", text_of(PageNotice.BUSY)))
+        else:
+            self._spawn(task, connection, number, *arguments)
 
-    async def _answer(self, visitor: PageConnection, number: int, command: Callable[[], Any]) -> None:
-        visitor.orders += 1
-        try:
-            view = answer_view(number, await command())
-        except NoAnswerError as error:
-            view = refusal_view(number, "unknown", str(error))
-        finally:
-            visitor.orders -= 1
-        self._carried_out += 1
-        # A list of lessons that is fetched from now on, `after` this one, has in it what the order has changed.
-        visitor.tell({**view, "done": self._carried_out})
+    async def _answer(self, connection: PageConnection, number: int, command: Callable[[], Awaitable[Answer]]) -> None:
+        async def ask() -> dict[str, Any]:
+            return answer_view(number, await command())
+
+        view = await _await_view(connection, number, ask)
+        self._answered += 1
+        # A list of lessons with an `after` of at least this number shows the command's lesson.
+        connection.send({**view, "done": self._answered})
         if self._newest is not None:
-            self._rarely.see_lessons(self._newest)
+            self._slow.update_lessons(self._newest)
 
-    async def _explain(self, visitor: PageConnection, number: int) -> None:
-        visitor.orders += 1
-        try:
-            view = why_view(number, await self._robot.why(), self._rarely.words)
-        except NoAnswerError as error:
-            view = refusal_view(number, "unknown", str(error))
-        finally:
-            visitor.orders -= 1
-        visitor.tell(view)
+    async def _explain(self, connection: PageConnection, number: int) -> None:
+        async def ask() -> dict[str, Any]:
+            return why_view(number, await self._robot.why(), self._slow.words)
 
-    # The teacher's hand and eyes
+        connection.send(await _await_view(connection, number, ask))
 
-    def _seat_changed(self, before: int | None) -> None:
-        if self._seat.holder != before:
-            if self._seat.holder is None:
-                self._attention.lose()  # else who took the pad looks; the first heartbeat is under way
-                self._look()
-            if before in self._visitors:
-                self._let_go(self._visitors[before])
-        for visitor in self._visitors.values():
-            here = self._has_pad(visitor)
-            seat = "here" if here else "free" if self._seat.holder is None else "elsewhere"
+    # Presses and presence
+
+    def _on_lease_change(self, before: int | None) -> None:
+        if self._lease.holder != before:
+            if self._lease.holder is None:
+                self._presence.end()  # otherwise the first heartbeat of the new holder is on its way
+                self._update_presence()
+            if before in self._connections:
+                self._release(self._connections[before])
+        for connection in self._connections.values():
+            here = self._has_control(connection)
+            seat = "here" if here else "free" if self._lease.holder is None else "elsewhere"
             page = {"kind": "page", "device": self._device, "robot": self._robot_place, "seat": seat}
-            visitor.tell(page, about="page")
+            connection.send(page, topic="page")
 
-    def _let_go(self, visitor: PageConnection) -> None:
-        if visitor.grip.held:
-            visitor.grip.release()
-            self._ending += 1
+    def _release(self, connection: PageConnection) -> None:
+        if connection.deadman.held:
+            connection.deadman.release()
+            self._ending_presses += 1
             self._spawn(self._end_press)
 
-    def _why_refused(self) -> str:
+    def _press_refusal(self) -> str:
         refusal = self._robot.refusal
         return "" if refusal is None else refusal.text_on(Surface.PAGE) or refusal.why
 
     async def _end_press(self) -> None:
-        self._ending -= 1
+        self._ending_presses -= 1
         try:
-            # Ends the press before it waits for anything.
+            # It ends the press before its first await.
             await self._robot.let_go()
         except NoAnswerError:
-            # It stops by itself when it does not hear us; that it is silent is said with every picture that is missing.
-            self._tell_all({"kind": "let_go", "text": "the robot did not answer the stop at the end"}, about="let_go")
+            # The robot stops by itself when its teacher is silent.
+            self._end_press_of_all(PageNotice.STOP_UNANSWERED)
 
-    async def _keep_watch(self) -> None:
+    async def _poll_forever(self) -> None:
         while True:
-            await anyio.sleep(_LOOK_EACH_S)
-            self.look()
+            await anyio.sleep(_POLL_S)
+            self.poll()
 
-    def look(self) -> None:
-        """Once in a while: silent pages lose the wheel, and nobody looks through them; a silent robot is said to be."""
+    def poll(self) -> None:
+        """End the presses of silent pages, update the teacher's presence, report a silent robot."""
         now_s = self._now()
-        for visitor in self._visitors.values():
-            if visitor.grip.expired(now_s):
-                self._let_go(visitor)
-                text = "this page was not heard of for 250 ms: the robot was stopped; press anew"
-                visitor.tell({"kind": "let_go", "text": text}, about="let_go")
-        self._look()
-        if self._robot.state_age_s > _SILENT_S and now_s - self._said_silent_s >= _SILENT_S:
-            self._said_silent_s = now_s
-            self._tell_all({"kind": "silent", "text": self._why_silent()}, about="silent")
+        for connection in self._connections.values():
+            if connection.deadman.expired(now_s):
+                self._release(connection)
+                _end_press_of(connection, text_of(PageNotice.PRESS_LOST))
+        self._update_presence()
+        if self._robot.state_age_s > _SILENT_S and now_s - self._reported_silent_s >= _SILENT_S:
+            self._reported_silent_s = now_s
+            self._send_to_all({"kind": "silent", "text": self._silence_text()}, topic="silent")
 
-    def _look(self) -> None:
-        there = self._attention.there(self._now())
-        self._robot.watching = there
-        if there:
+    def _update_presence(self) -> None:
+        present = self._presence.is_present(self._now())
+        self._robot.watching = present
+        if present:
             self._unseen_stop_due = True
         elif self._unseen_stop_due and self._drives_for_its_teacher():
-            # The robot's own patience begins only with the last word it has heard: together they would be too long.
+            # The robot's own limit starts only with the last message: both times together would be too long.
             self._unseen_stop_due = False
             self._spawn(self._stop_unseen)
 
@@ -310,38 +296,62 @@ class Bridge:
             and state.teacher == self._device
             and state.phase < Phase.AUTONOMOUS
             and state.action is not None
-            and not state.by_hand  # a press ends by its own stop
+            and not state.by_hand  # the end of a press stops the robot
         )
 
     async def _stop_unseen(self) -> None:
-        self._tell_all({"kind": "let_go", "text": _NOBODY_LOOKED}, about="let_go")
-        # One that does not answer hears nothing of a teacher either, and stops by itself.
+        self._end_press_of_all(PageNotice.UNSEEN_STOP)
+        # A robot that does not answer hears no teacher either, and stops by itself.
         with contextlib.suppress(NoAnswerError):
             await self._robot.stop()
 
-    def _why_silent(self) -> str:
-        why = f" ({self._robot.trouble})" if self._robot.trouble else ""
-        if self._newest is None:
-            return f"no robot at {self._robot_place}; is kurt2rt run running?{why}"
-        return f"nothing heard of the robot at {self._robot_place}{why}"
+    def _silence_text(self) -> str:
+        cause = f" ({self._robot.trouble})" if self._robot.trouble else ""
+        notice = PageNotice.ROBOT_ABSENT if self._newest is None else PageNotice.ROBOT_SILENT
+        return text_of(notice, place=self._robot_place) + cause
 
     def _spawn(self, task: Callable[..., Any], *arguments: object) -> None:
         assert self._tasks is not None, "the bridge runs before a page is served"
         self._tasks.start_soon(task, *arguments)
 
-    # What comes from the robot
+    # The robot
 
-    async def _follow_pictures(self) -> None:
+    async def _follow_states(self) -> None:
         async for state in self._robot.states():
             if state.stopped is not None and (self._newest is None or state.stopped != self._newest.stopped):
                 self._stopped_s = self._now()
             self._newest = state
-            self._look()
-            self._rarely.see(state, watched=bool(self._visitors))
-            view = state_view(state, self._robot.link, self._robot.state_age_s, self._why_refused(), self._rarely.words)
-            for visitor in self._visitors.values():
-                visitor.show(state.boot, view)
+            self._update_presence()
+            self._slow.update(state, watched=bool(self._connections))
+            view = state_view(state, self._robot.link, self._robot.state_age_s, self._press_refusal(), self._slow.words)
+            for connection in self._connections.values():
+                connection.set_state(state.boot, view)
 
-    def _tell_all(self, message: dict[str, Any], about: str) -> None:
-        for visitor in self._visitors.values():
-            visitor.tell(message, about=about)
+    def _send_to_all(self, message: dict[str, Any], topic: str) -> None:
+        for connection in self._connections.values():
+            connection.send(message, topic=topic)
+
+    def _end_press_of_all(self, notice: PageNotice) -> None:
+        for connection in self._connections.values():
+            _end_press_of(connection, text_of(notice))
+
+
+def _end_press_of(connection: PageConnection, text: str) -> None:
+    connection.send({"kind": "let_go", "text": text}, topic="let_go")
+
+
+def _page_text(code: RefusalCode) -> str:
+    return outcome_text_of(Outcome(code), Surface.PAGE)
+
+
+async def _await_view(
+    connection: PageConnection, number: int, ask: Callable[[], Awaitable[dict[str, Any]]]
+) -> dict[str, Any]:
+    """Return a reply of the robot as a view, or the refusal of a robot that does not answer."""
+    connection.pending += 1
+    try:
+        return await ask()
+    except NoAnswerError as error:
+        return refusal_view(number, "unknown", str(error))
+    finally:
+        connection.pending -= 1

@@ -1,4 +1,4 @@
-"""A copy of something that the robot has, fetched anew when it has changed there."""
+"""Copy of a resource of the robot, fetched again when it has changed there."""
 
 from collections.abc import Awaitable, Callable
 from typing import Any
@@ -9,37 +9,37 @@ from kurt2rt.teacher.client.answer import NoAnswerError
 
 
 class CachedResource:
-    """What the robot says rarely: what robot it is, its world, its lessons."""
+    """Copy of one resource, with the version that it was fetched for."""
 
     def __init__(
         self,
         fetch: Callable[[], Awaitable[dict[str, Any]]],
-        tell: Callable[[dict[str, Any]], None],
-        rest_s: float = 0.3,
+        publish: Callable[[dict[str, Any]], None],
+        pause_s: float = 0.3,
     ) -> None:
-        """`fetch` asks the robot and may raise NoAnswerError; `tell` takes each new copy; `rest_s` lies between two."""
+        """`fetch` asks the robot and may raise NoAnswerError; `publish` gets each copy; `pause_s` between requests."""
         self._fetch = fetch
-        self._tell = tell
-        self._rest_s = rest_s
-        self._mark: object = None
-        self._wanted = anyio.Event()
-        self.copy: dict[str, Any] | None = None
+        self._publish = publish
+        self._pause_s = pause_s
+        self._version: object = None
+        self._due = anyio.Event()
+        self.value: dict[str, Any] | None = None
 
-    def want(self, mark: object) -> None:
-        """Fetch anew unless the copy has this mark."""
-        if mark != self._mark:
-            self._mark = mark
-            self._wanted.set()
+    def refresh(self, version: object) -> None:
+        """Fetch the resource unless the copy has this version."""
+        if version != self._version:
+            self._version = version
+            self._due.set()
 
     async def run(self) -> None:
-        """Keep the copy new, for ever."""
+        """Keep the copy up to date until cancelled."""
         while True:
-            await self._wanted.wait()
-            self._wanted = anyio.Event()
+            await self._due.wait()
+            self._due = anyio.Event()
             try:
-                self.copy = await self._fetch()
+                self.value = await self._fetch()
             except NoAnswerError:
-                self._wanted.set()  # the robot is silent or lossy: ask again
+                self._due.set()  # ask again after the pause
             else:
-                self._tell(self.copy)
-            await anyio.sleep(self._rest_s)
+                self._publish(self.value)
+            await anyio.sleep(self._pause_s)

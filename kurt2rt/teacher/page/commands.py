@@ -1,83 +1,123 @@
-"""An order of a page becomes a command to the robot."""
+"""Commands of the page: fields of each, the call of the robot, and the oldest state that it may be given on."""
 
-from kurt2rt.channel.protocol.requests import PACKAGE
-from kurt2rt.core.rla.rla import Phase
+from collections.abc import Awaitable, Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from kurt2rt.channel.protocol.requests import FASTEST, PACKAGE, SHA256_BYTES, UPLOAD_ID_BYTES
+from kurt2rt.channel.protocol.schema import Bytes, Check, Flag, Float, Int, OneOf, OneWord, OrNone, Text, WireError
+from kurt2rt.core.rla.rla import BASIC, MID, Phase
 from kurt2rt.teacher.client.answer import Answer
-from kurt2rt.teacher.page.messages import PageOrder
-from kurt2rt.teacher.page.robot_link import RobotLink
+from kurt2rt.teacher.client.client import TeacherClient
 
-_MOVING = ("take", "place", "put_back", "pursue", "seek", "stop_seeking")
-_MOVING_S = 1.0
-_OTHERS_S = 3.0
+_NAME = Text(64, least=1)
+_LEVEL = OneWord((BASIC, MID))
+_PLACE_M = Float(100.0, "m")
+_MOTION_S = 1.0
+_OTHER_S = 3.0
 
-
-def oldest_picture_s(order: PageOrder) -> float:
-    """How long ago the page's picture may have been sent, in s: the robot's own borders, for the page's own link."""
-    return _MOVING_S if lets_drive(order) or order.name in _MOVING else _OTHERS_S
-
-
-def lets_drive(order: PageOrder) -> bool:
-    """Whether a robot that stands may drive by it: never one that was stopped after the picture."""
-    return order.name == "resume" or (order.name == "phase" and order.arguments["phase"] == Phase.AUTONOMOUS)
+_Arguments = Mapping[str, Any]
+_Send = Callable[[TeacherClient, _Arguments, int | None], Awaitable[Answer]]
+"""Robot, checked arguments, tick of the state that the page showed; raises NoAnswerError."""
 
 
-def ends_run(order: PageOrder) -> bool:
-    """Whether the robot's run ends by it: no more pictures come of that one, and its wheels stand."""
-    return order.name in ("next_run", "load")
+@dataclass(frozen=True, slots=True)
+class PageCommand:
+    """Command that is answered, as a page sent it."""
+
+    number: int
+    name: str
+    """Key of COMMANDS."""
+    arguments: _Arguments
+    picture: int | None
+    """Number of the state on the page's screen."""
 
 
-async def carry_out(order: PageOrder, robot: RobotLink, of: int | None) -> Answer:
-    """Tell the robot, `of` being the tick of the picture that the page showed. Raises NoAnswerError."""
-    given = order.arguments
-    match order.name:
-        case "answer":
-            return await robot.answer(given["action"], of=of, level=given["level"], alternative=given["beside"])
-        case "correct":
-            return await robot.correct(given["action"], of=of, level=given["level"])
-        case "reward":
-            return await robot.reward(given["value"], of=of)
-        case "appraise":
-            return await robot.appraise(given["appraisal"], of=of)
-        case "undo":
-            return await robot.undo(given["lesson"])
-        case "phase":
-            return await robot.set_phase(given["phase"])
-        case "pursue":
-            return await robot.pursue(given["behaviour"])
-        case "name":
-            return await robot.name_situation(given["name"], of=of)
-        case "seek":
-            return await robot.seek(given["name"])
-        case "stop_seeking":
-            return await robot.stop_seeking()
-        case "be_at":
-            return await robot.set_location(given["name"])
-        case "begin_session":
-            return await robot.begin_session(given["name"])
-        case "end_session":
-            return await robot.end_session()
-        case "resume":
-            return await robot.resume()
-        case "take":
-            return await robot.take()
-        case "hand_over":
-            return await robot.hand_over(given["to"])
-        case "save":
-            return await robot.save(given["label"])
-        case "export":
-            return await robot.export(PACKAGE)
-        case "examine":
-            return await robot.examine()
-        case "move":
-            return await robot.move_wall(given["name"], given["dx_m"], given["dy_m"])
-        case "put_back":
-            return await robot.put_back()
-        case "speed":
-            return await robot.set_speed(given["times"])
-        case "load":
-            return await robot.load_upload(given["upload"], given["sha256"])
-        case "next_run":
-            return await robot.next_run(given["world"], given["task"], fresh=given["fresh"])
-        case "place":
-            return await robot.place(given["x_m"], given["y_m"], given["heading_rad"])
-    raise AssertionError(order.name)
+@dataclass(frozen=True, slots=True)
+class CommandKind:
+    """One kind of command."""
+
+    send: _Send
+    fields: Mapping[str, Check]
+    moves: bool = False
+    """It may set the robot in motion, so the state must not be older than 1 s; otherwise 3 s."""
+    ends_run: bool = False
+    """The robot's run ends: its wheels stand, and no more states of this run come."""
+
+
+def _hexadecimal(length: int) -> Check:
+    def check(what: str, value: object) -> bytes:
+        try:
+            return Bytes(length)(what, bytes.fromhex(value) if isinstance(value, str) else None)
+        except ValueError as error:
+            raise WireError(f"{what} has to be {2 * length} hexadecimal digits") from error
+
+    return check
+
+
+COMMANDS: Mapping[str, CommandKind] = {
+    "answer": CommandKind(
+        lambda robot, given, tick: robot.answer(
+            given["action"], of=tick, level=given["level"], alternative=given["beside"]
+        ),
+        {"action": _NAME, "level": _LEVEL, "beside": Flag()},
+    ),
+    "correct": CommandKind(
+        lambda robot, given, tick: robot.correct(given["action"], of=tick, level=given["level"]),
+        {"action": _NAME, "level": _LEVEL},
+    ),
+    "reward": CommandKind(lambda robot, given, tick: robot.reward(given["value"], of=tick), {"value": OneOf((1, -1))}),
+    "appraise": CommandKind(
+        lambda robot, given, tick: robot.appraise(given["appraisal"], of=tick), {"appraisal": _NAME}
+    ),
+    # By id: "the last lesson" would be another one if a second teacher taught meanwhile.
+    "undo": CommandKind(lambda robot, given, _: robot.undo(given["lesson"]), {"lesson": Text(128, least=1)}),
+    "phase": CommandKind(
+        lambda robot, given, _: robot.set_phase(given["phase"]),
+        {"phase": OneOf(tuple(each.value for each in Phase), Phase)},
+    ),
+    "pursue": CommandKind(lambda robot, given, _: robot.pursue(given["behaviour"]), {"behaviour": _NAME}, moves=True),
+    "name": CommandKind(lambda robot, given, tick: robot.name_situation(given["name"], of=tick), {"name": _NAME}),
+    "seek": CommandKind(lambda robot, given, _: robot.seek(given["name"]), {"name": _NAME}, moves=True),
+    "stop_seeking": CommandKind(lambda robot, *_: robot.stop_seeking(), {}, moves=True),
+    "be_at": CommandKind(lambda robot, given, _: robot.set_location(given["name"]), {"name": _NAME}),
+    "begin_session": CommandKind(lambda robot, given, _: robot.begin_session(given["name"]), {"name": _NAME}),
+    "end_session": CommandKind(lambda robot, *_: robot.end_session(), {}),
+    "resume": CommandKind(lambda robot, *_: robot.resume(), {}, moves=True),
+    "take": CommandKind(lambda robot, *_: robot.take(), {}, moves=True),
+    "hand_over": CommandKind(lambda robot, given, _: robot.hand_over(given["to"]), {"to": OrNone(_NAME)}),
+    "save": CommandKind(lambda robot, given, _: robot.save(given["label"]), {"label": Text(64)}),
+    "export": CommandKind(lambda robot, *_: robot.export(PACKAGE), {}),
+    "examine": CommandKind(lambda robot, *_: robot.examine(), {}),
+    "move": CommandKind(
+        lambda robot, given, _: robot.move_wall(given["name"], given["dx_m"], given["dy_m"]),
+        {"name": _NAME, "dx_m": _PLACE_M, "dy_m": _PLACE_M},
+    ),
+    "put_back": CommandKind(lambda robot, *_: robot.put_back(), {}, moves=True),
+    "speed": CommandKind(lambda robot, given, _: robot.set_speed(given["times"]), {"times": Int(1, FASTEST)}),
+    "load": CommandKind(
+        lambda robot, given, _: robot.load_upload(given["upload"], given["sha256"]),
+        {"upload": _hexadecimal(UPLOAD_ID_BYTES), "sha256": _hexadecimal(SHA256_BYTES)},
+        ends_run=True,
+    ),
+    "next_run": CommandKind(
+        lambda robot, given, _: robot.next_run(given["world"], given["task"], fresh=given["fresh"]),
+        {"world": OrNone(_NAME), "task": OrNone(_NAME), "fresh": Flag()},
+        ends_run=True,
+    ),
+    "place": CommandKind(
+        lambda robot, given, _: robot.place(given["x_m"], given["y_m"], given["heading_rad"]),
+        {"x_m": _PLACE_M, "y_m": _PLACE_M, "heading_rad": Float(7.0, "rad")},
+        moves=True,
+    ),
+}
+
+
+def max_state_age_s(command: PageCommand) -> float:
+    """Return the oldest state that a command may be given on, in s: the robot's limits, for the page's own link."""
+    return _MOTION_S if COMMANDS[command.name].moves or is_resumption(command) else _OTHER_S
+
+
+def is_resumption(command: PageCommand) -> bool:
+    """Return whether a standing robot may drive after a command; it is refused if a stop came after the state."""
+    return command.name == "resume" or (command.name == "phase" and command.arguments["phase"] == Phase.AUTONOMOUS)

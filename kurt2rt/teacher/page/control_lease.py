@@ -1,42 +1,36 @@
-"""Which of the open pages has the pad."""
+"""Control lease: at most one of the open pages may command the robot."""
 
 
 class ControlLease:
-    """One page drives, the others watch. Times are seconds of any clock that only grows."""
+    """Holder of the lease. Times are seconds of a monotonic clock."""
 
     def __init__(self, silent_s: float = 1.0) -> None:
-        """A page not heard of for `silent_s` keeps its place only until another one wants it."""
+        """Create a free lease; a holder that is silent for `silent_s` loses it to the next page that is opened."""
         self._silent_s = silent_s
-        self._heard_s = 0.0
+        self._renewed_s = 0.0
         self.holder: int | None = None
 
-    def arrive(self, page: int, now_s: float) -> None:
-        """A page was opened: the seat is its own where nobody sits."""
-        if self._is_free(now_s):
-            self._sit(page, now_s)
+    def connect(self, page: int, now_s: float) -> None:
+        """Give a new page the lease if it is free."""
+        if self.holder is None or now_s - self._renewed_s > self._silent_s:
+            self.claim(page, now_s)
 
-    def take(self, page: int, now_s: float) -> None:
-        """The newest page that asks for the seat has it."""
-        self._sit(page, now_s)
+    def claim(self, page: int, now_s: float) -> None:
+        """Give a page the lease, from any holder."""
+        self.holder = page
+        self._renewed_s = now_s
 
-    def hear(self, page: int, now_s: float) -> None:
-        """The page lives."""
+    def renew(self, page: int, now_s: float) -> None:
+        """Renew the lease if this page holds it."""
         if page == self.holder:
-            self._heard_s = now_s
+            self._renewed_s = now_s
 
     def hide(self, page: int) -> None:
-        """Nobody sees the page: the next one that is opened has its seat."""
+        """Let the next page that is opened have the lease of a hidden page."""
         if page == self.holder:
-            self._heard_s = float("-inf")
+            self._renewed_s = float("-inf")
 
-    def leave(self, page: int) -> None:
-        """The page was closed. Nobody moves up unasked: another page may lie in a pocket."""
+    def disconnect(self, page: int) -> None:
+        """Free the lease of a closed page. It is not passed on: another open page may be unattended."""
         if page == self.holder:
             self.holder = None
-
-    def _is_free(self, now_s: float) -> bool:
-        return self.holder is None or now_s - self._heard_s > self._silent_s
-
-    def _sit(self, page: int, now_s: float) -> None:
-        self.holder = page
-        self._heard_s = now_s

@@ -1,4 +1,4 @@
-"""Serves the pages of this machine and of every device that is paired, also of one that is paired meanwhile."""
+"""Server of the pages of this machine and of all paired devices, which follows changes of the pairings."""
 
 from collections.abc import Awaitable, Callable, Collection
 from dataclasses import dataclass
@@ -9,31 +9,31 @@ import anyio.to_thread
 
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.pairing import LOCAL, OF_THIS_MACHINE, Device, pairing_names, read_device
-from kurt2rt.teacher.page.device_pages import DevicePages, OpenLink
+from kurt2rt.teacher.page.device_pages import DevicePages, PageSite
 from kurt2rt.teacher.page.host_names import own_address
 from kurt2rt.teacher.page.public_address import PageError
-from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages
-from kurt2rt.teacher.page.server import Doorway
+from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages, page_link
+from kurt2rt.teacher.page.server import PagePort
 
-_LOOK_AT_PAIRINGS_S = 1.0
+_POLL_PAIRINGS_S = 1.0
 
 
 @dataclass(frozen=True, slots=True)
 class Pairings:
-    """The folders of both sides of all pairings."""
+    """Folders of both sides of all pairings."""
 
     teachers: Path
     devices: Path
 
 
-def devices_here(pairings: Pairings) -> tuple[tuple[Device, ...], str]:
-    """Return the devices whose pages can be served from this machine, and what is wrong with others, in a line.
+def local_devices(pairings: Pairings) -> tuple[tuple[Device, ...], str]:
+    """Return the devices whose pages this machine can serve, and the faults of others in a line.
 
-    First this machine's own, then those that were paired and whose side was not moved away, the newest first.
-    Raises CredentialsError when the folder of pairings cannot be read.
+    This machine's own comes first, then those that were paired and whose folder was not moved away, the newest first.
+    Raises CredentialsError if the folder of pairings cannot be read.
     """
     found: list[tuple[float, Device]] = []
-    troubles = []
+    faults = []
     for name in pairing_names(pairings.teachers):
         folder = pairings.devices / name
         if name != LOCAL and (name in OF_THIS_MACHINE or not folder.is_dir()):
@@ -42,68 +42,71 @@ def devices_here(pairings: Pairings) -> tuple[tuple[Device, ...], str]:
             paired_s = float("inf") if name == LOCAL else folder.stat().st_ctime
             found.append((paired_s, read_device(folder)))
         except (CredentialsError, OSError) as error:
-            troubles.append(str(error))
+            faults.append(str(error))
     found.sort(key=lambda each: each[0], reverse=True)
-    return tuple(device for _, device in found), "; ".join(troubles)
+    return tuple(device for _, device in found), "; ".join(faults)
 
 
 async def run_device_pages(
     pairings: Pairings,
-    open_link: OpenLink,
-    robot_place: str,
-    names: Collection[str],
+    site: PageSite,
     port: int,
-    tell: Callable[[ServedPages], None],
-    told_to_end: Callable[[], Awaitable[None]],
+    publish: Callable[[ServedPages], None],
+    until_ended: Callable[[], Awaitable[None]],
     *,
-    further: int = 0,
-    look_s: float = _LOOK_AT_PAIRINGS_S,
+    spare_ports: int = 0,
+    poll_s: float = _POLL_PAIRINGS_S,
 ) -> None:
-    """Serve until `told_to_end` returns; the network only while a device is paired. Raises PageError, CredentialsError.
+    """Serve until `until_ended` returns; the network only while a device is paired. Raises PageError, CredentialsError.
 
-    `names` are this machine's in an address; `tell` is called with what is served, at first and after each change.
-    `look_s`: between two looks who is paired. `port` and `further` as `kurt2rt.teacher.page.server.listen` has them.
+    Args:
+        pairings: folders to follow.
+        site: settings of the pages.
+        port: TCP port, 0: any.
+        publish: gets the served pages, at first and after each change.
+        until_ended: returns when the program has to end.
+        spare_ports: as for `kurt2rt.teacher.page.server.listen`.
+        poll_s: time between two reads of the pairings.
     """
     async with anyio.create_task_group() as links:
-        pages = DevicePages(links, open_link, robot_place, names)
+        pages = DevicePages(links, site)
         async with anyio.create_task_group() as serving:
-            doorway = Doorway(pages, serving, port, further=further)
-            found = (await anyio.to_thread.run_sync(devices_here, pairings))[0]
-            await doorway.open(everywhere=_needs_network(found))
-            async with anyio.create_task_group() as following:
-                following.start_soon(_follow, pairings, pages, doorway, tell, look_s)
-                await told_to_end()
-                following.cancel_scope.cancel()
+            page_port = PagePort(pages, serving, port, spare_ports=spare_ports)
+            found = (await anyio.to_thread.run_sync(local_devices, pairings))[0]
+            await page_port.open(everywhere=_needs_network(found))
+            async with anyio.create_task_group() as polling:
+                polling.start_soon(_follow_pairings, pairings, pages, page_port, publish, poll_s)
+                await until_ended()
+                polling.cancel_scope.cancel()
             await pages.end()
-            doorway.end()
+            page_port.end()
         links.cancel_scope.cancel()
 
 
-async def _follow(
-    pairings: Pairings, pages: DevicePages, doorway: Doorway, tell: Callable[[ServedPages], None], look_s: float
+async def _follow_pairings(
+    pairings: Pairings, pages: DevicePages, page_port: PagePort, publish: Callable[[ServedPages], None], poll_s: float
 ) -> None:
-    """Serve who is paired, and the network or not; tell of every change."""
     found: tuple[Device, ...] = ()
-    told = None
+    published = None
     while True:
         try:
-            found, trouble = await anyio.to_thread.run_sync(devices_here, pairings)
+            found, fault = await anyio.to_thread.run_sync(local_devices, pairings)
         except CredentialsError as error:
-            trouble = str(error)  # a disk that fails is no reason to lose the teacher
+            fault = str(error)  # the devices found before stay served: a faulty disk must not end teaching
         pages.serve(found)
         try:
-            await doorway.open(everywhere=_needs_network(found))
+            await page_port.open(everywhere=_needs_network(found))
         except PageError as error:
-            trouble = f"{trouble}; {error}".strip("; ")
+            fault = f"{fault}; {error}".strip("; ")
         served = ServedPages(
-            tuple(PageAddress(each.name, _link(each, doorway.port)) for each in found),
-            doorway.everywhere is True,
-            trouble,
+            tuple(PageAddress(each.name, _link(each, page_port.port)) for each in found),
+            page_port.everywhere is True,
+            fault,
         )
-        if served != told:
-            tell(served)
-            told = served
-        await anyio.sleep(look_s)
+        if served != published:
+            publish(served)
+            published = served
+        await anyio.sleep(poll_s)
 
 
 def _needs_network(devices: Collection[Device]) -> bool:
@@ -112,9 +115,3 @@ def _needs_network(devices: Collection[Device]) -> bool:
 
 def _link(device: Device, port: int) -> str:
     return page_link(device, "127.0.0.1" if device.name in OF_THIS_MACHINE else own_address(), port)
-
-
-def page_link(device: Device, host: str, port: int) -> str:
-    """Return what a browser opens to be let in to a device's page."""
-    shown = f"[{host}]" if ":" in host else host
-    return f"http://{shown}:{port}/pair?token={device.token}"

@@ -1,4 +1,4 @@
-"""Downloads of files that the robot made: fetched from it part by part, handed to the browser whole."""
+"""Downloads of files that the robot wrote: fetched part by part, sent to the browser whole."""
 
 from urllib.parse import quote
 
@@ -7,23 +7,24 @@ from starlette.responses import PlainTextResponse, Response
 from starlette.types import Receive, Scope, Send
 
 from kurt2rt.teacher.client.answer import NoAnswerError, RefusedError
-from kurt2rt.teacher.page.robot_link import RobotLink
+from kurt2rt.teacher.client.client import TeacherClient
+from kurt2rt.teacher.page.texts import PageNotice, text_of
 
-MOST_BYTES = 64_000_000
-"""Of a file that is handed on: it is in memory meanwhile. A day of 24 hours has 4 MB of lessons."""
+MAX_BYTES = 64_000_000
+"""Limit on a file, which is in memory meanwhile. A day of 24 hours has 4 MB of lessons."""
 _MEDIA_TYPES = {".zip": "application/zip", ".csv": "text/csv", ".png": "image/png"}
-_SHOWN = ".png"
-"""Shown by a browser; files with any other ending are stored."""
+_DISPLAYED = ".png"
+"""Ending of files that a browser displays; it saves all others."""
 
 
 class Downloads:
     """ASGI application for `/files/{name}`: 200 with the file, 404 with the robot's reason, 504 without an answer."""
 
-    def __init__(self, robot: RobotLink) -> None:
+    def __init__(self, robot: TeacherClient) -> None:
         self._robot = robot
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """ASGI."""
+        """Serve one ASGI request."""
         name = Request(scope).path_params["name"]
         try:
             response = _file(name, await self._fetch(name))
@@ -36,8 +37,9 @@ class Downloads:
     async def _fetch(self, name: str) -> bytes:
         content = bytearray()
         async for part in self._robot.file_parts(name):
-            if part.size_bytes > MOST_BYTES:
-                raise RefusedError(f"{name}: {part.size_bytes} bytes are too many (at most {MOST_BYTES})")
+            if part.size_bytes > MAX_BYTES:
+                fields = {"name": name, "size": part.size_bytes, "most": MAX_BYTES}
+                raise RefusedError(text_of(PageNotice.DOWNLOAD_TOO_LARGE, **fields))
             content += part.content
         return bytes(content)
 
@@ -45,6 +47,6 @@ class Downloads:
 def _file(name: str, content: bytes) -> Response:
     ending = name[name.rfind(".") :]
     headers = {}
-    if ending != _SHOWN:
+    if ending != _DISPLAYED:
         headers["Content-Disposition"] = f"attachment; filename*=UTF-8''{quote(name, safe='')}"
     return Response(content, headers=headers, media_type=_MEDIA_TYPES.get(ending, "application/octet-stream"))

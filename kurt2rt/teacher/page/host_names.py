@@ -1,4 +1,4 @@
-"""Which names of this machine a browser may have used: a page that came under another name is somebody else's."""
+"""Names and addresses of this machine in the Host header of a browser."""
 
 import ipaddress
 import socket
@@ -6,7 +6,7 @@ from collections.abc import Collection
 
 
 def host_name(host: str) -> str:
-    """The name or address in a Host header, lower case, without port and brackets; empty for a header that is none."""
+    """Return name or address of a Host header, in lower case, without port and brackets; empty if there is none."""
     host = host.strip().lower()
     if host.startswith("["):
         return host[1:].partition("]")[0]
@@ -14,45 +14,51 @@ def host_name(host: str) -> str:
 
 
 def own_names() -> frozenset[str]:
-    """Names that this machine has without an address."""
+    """Return this machine's names, addresses left out."""
     name = socket.gethostname().lower()
     short = name.partition(".")[0]
     return frozenset({name, short, f"{short}.local"})
 
 
-def is_ours(host: str, local_address: str, names: Collection[str]) -> bool:
-    """Whether a Host header means this machine: the address that the connection came to, or one of `names`.
+def is_own_host(host: str, local_address: str, names: Collection[str]) -> bool:
+    """Return whether a Host header means this machine: the local address of the connection, or one of `names`.
 
-    This is what stops DNS rebinding: a foreign name that was made to lead here is neither.
+    A foreign name that resolves to this machine (DNS rebinding) is neither.
     """
     name = host_name(host)
-    here = _address(local_address)
+    here = _parse_address(local_address)
     if here is None:
         return False
     if name == "localhost":
         return here.is_loopback
-    address = _address(name)
+    address = _parse_address(name)
     if address is not None:
         return address == here
     return name in names
 
 
-def _address(text: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address | None:
+def is_loopback(address: str) -> bool:
+    """Return whether an IP address is one of the loopback interface."""
+    parsed = _parse_address(address)
+    return parsed is not None and parsed.is_loopback
+
+
+def _parse_address(text: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address | None:
     try:
         address = ipaddress.ip_address(text)
     except ValueError:
         return None
-    # A socket for both kinds of addresses calls an IPv4 one ::ffff:a.b.c.d.
+    # A dual-stack socket reports an IPv4 address as ::ffff:a.b.c.d.
     if isinstance(address, ipaddress.IPv6Address) and address.ipv4_mapped is not None:
         return address.ipv4_mapped
     return address
 
 
 def own_address() -> str:
-    """Address under which the machines around can reach this one; that of loopback where there is no network."""
+    """Return this machine's address in its network; 127.0.0.1 without a network."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
-            # Chooses the interface of the default route; a datagram socket sends nothing when it connects.
+            # Selects the interface of the default route; a UDP connect sends nothing.
             probe.connect(("192.0.2.1", 9))
         except OSError:
             return "127.0.0.1"

@@ -4,26 +4,26 @@ from collections import OrderedDict
 
 
 class LoginThrottle:
-    """A bucket of tries per address that fills up again. Times are seconds of any clock that only grows."""
+    """Token bucket of tries per address. Times are seconds of a monotonic clock."""
 
     def __init__(self, most: int = 5, per_s: float = 0.2, addresses: int = 256) -> None:
-        """`most` tries at once, then `per_s`; only the last `addresses` are remembered, so a flood costs no memory."""
+        """Allow `most` tries at once, then `per_s`; store only the last `addresses`, which bounds the memory."""
         self._most = most
         self._per_s = per_s
         self._addresses = addresses
         self._left: OrderedDict[str, tuple[float, float]] = OrderedDict()
 
-    def allowed(self, address: str, now_s: float) -> bool:
-        """Whether this address may try now; does not count as a try."""
-        return self._at(address, now_s) >= 1.0
+    def is_allowed(self, address: str, now_s: float) -> bool:
+        """Return whether an address may try now; this does not count as a try."""
+        return self._tries_left(address, now_s) >= 1.0
 
-    def failed(self, address: str, now_s: float) -> None:
-        """A try went wrong."""
-        self._left[address] = (self._at(address, now_s) - 1.0, now_s)
+    def on_failure(self, address: str, now_s: float) -> None:
+        """Count a wrong token."""
+        self._left[address] = (self._tries_left(address, now_s) - 1.0, now_s)
         self._left.move_to_end(address)
         if len(self._left) > self._addresses:
             self._left.popitem(last=False)
 
-    def _at(self, address: str, now_s: float) -> float:
-        left, when_s = self._left.get(address, (float(self._most), now_s))
-        return min(float(self._most), left + (now_s - when_s) * self._per_s)
+    def _tries_left(self, address: str, now_s: float) -> float:
+        left, counted_s = self._left.get(address, (float(self._most), now_s))
+        return min(float(self._most), left + (now_s - counted_s) * self._per_s)

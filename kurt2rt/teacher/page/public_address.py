@@ -1,4 +1,4 @@
-"""Where a TLS proxy serves the page."""
+"""Address at which a TLS proxy serves the page."""
 
 from dataclasses import dataclass
 from urllib.parse import urlsplit
@@ -14,19 +14,19 @@ class PageError(UserError):
 
 @dataclass(frozen=True, slots=True)
 class PublicAddress:
-    """Address of a proxy that speaks TLS and hands on to this server, in a folder of no name."""
+    """Address of a proxy that speaks TLS and forwards to this server, without a path."""
 
     place: str
-    """Host, and port unless it is the usual one, as browsers write them into Host."""
+    """Host, and port unless it is 443, as browsers write them into the Host header."""
 
     @property
     def origin(self) -> str:
-        """As browsers write it into Origin."""
+        """Value of a browser's Origin header."""
         return f"https://{self.place}"
 
 
 def public_address(text: str) -> PublicAddress:
-    """Read an address such as https://robot.example. Raises PageError."""
+    """Parse an address such as https://robot.example. Raises PageError."""
     wrong = PageError(f"--public-address {text!r}: give https:// and a name, with a port if need be, and nothing more")
     try:
         parts = urlsplit(text.strip().lower())

@@ -1,4 +1,4 @@
-"""The pictures that one page was sent."""
+"""States that were sent to one page, by number."""
 
 from collections import OrderedDict
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class SentState:
-    """What a page shows: one state of the robot."""
+    """One state of the robot, as it was sent to a page."""
 
     boot: bytes
     tick: int
@@ -14,42 +14,42 @@ class SentState:
 
 
 class SentStates:
-    """Numbers them, so that what a page says can name the picture it was said on.
+    """Numbered states, so that a message of the page can name the state on its screen.
 
-    A page that does not answer for its pictures gets no more of them: they would wait in TCP's buffers and be old.
+    A page that does not acknowledge its states gets no more: they would age in TCP's buffers.
     """
 
-    def __init__(self, window: int = 8, kept: int = 128) -> None:
-        """At most `window` unanswered ones are on their way; the last `kept` can still be named."""
+    def __init__(self, window: int = 8, history: int = 128) -> None:
+        """Allow `window` states without acknowledgement; the last `history` states can be named."""
         self._window = window
-        self._kept = kept
+        self._history = history
         self._sent: OrderedDict[int, SentState] = OrderedDict()
         self._newest = 0
-        self._seen = 0
+        self._acknowledged = 0
 
     @property
     def may_send(self) -> bool:
-        """Whether the page keeps up."""
-        return self._newest - self._seen < self._window
+        """True while the page keeps up."""
+        return self._newest - self._acknowledged < self._window
 
-    def send(self, boot: bytes, tick: int, now_s: float) -> int:
-        """Note a picture as sent; its number."""
+    def add(self, boot: bytes, tick: int, now_s: float) -> int:
+        """Add a state that is sent now; return its number."""
         self._newest += 1
         self._sent[self._newest] = SentState(boot, tick, now_s)
-        if len(self._sent) > self._kept:
+        if len(self._sent) > self._history:
             self._sent.popitem(last=False)
         return self._newest
 
-    def see(self, number: int) -> None:
-        """The page has this one on its screen."""
-        if self._seen < number <= self._newest:
-            self._seen = number
+    def acknowledge(self, number: int) -> None:
+        """Note that the page shows a state."""
+        if self._acknowledged < number <= self._newest:
+            self._acknowledged = number
 
     def get(self, number: int | None) -> SentState | None:
-        """A picture by its number; None for one that was never sent, or too long ago."""
+        """Return a state by its number; None if it was never sent, or too long ago."""
         return None if number is None else self._sent.get(number)
 
     def age_s(self, number: int | None, now_s: float) -> float:
-        """How long ago a picture was sent; infinite for one that cannot be named."""
-        picture = self.get(number)
-        return float("inf") if picture is None else now_s - picture.sent_s
+        """Return the time since a state was sent, in s; infinite for a state that `get` does not know."""
+        state = self.get(number)
+        return float("inf") if state is None else now_s - state.sent_s

@@ -1,7 +1,9 @@
-"""Addresses of the pages that a program serves, as it tells them to the program that started it."""
+"""Addresses of the pages that a program serves, as it reports them to the program that started it."""
 
 import json
 from dataclasses import asdict, dataclass
+
+from kurt2rt.channel.security.pairing import Device
 
 
 @dataclass(frozen=True, slots=True)
@@ -10,7 +12,7 @@ class PageAddress:
 
     device: str
     link: str
-    """Carries the token: who opens it is that device."""
+    """It carries the token: a browser that opens it is that device."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,9 +20,9 @@ class ServedPages:
     """Pages served at present."""
 
     addresses: tuple[PageAddress, ...]
-    """This machine's own first, then the others, the one that was paired last before them."""
+    """This machine's own first, then the others, the newest pairing first."""
     network: bool
-    """Whether the port is open to the network."""
+    """The port is open to the network."""
     trouble: str
     """Fault of pairings or port, in a line; empty without a fault."""
 
@@ -28,16 +30,22 @@ class ServedPages:
 NO_PAGES = ServedPages((), network=False, trouble="")
 
 
+def page_link(device: Device, host: str, port: int) -> str:
+    """Return the link that opens a device's page and pairs the browser."""
+    shown = f"[{host}]" if ":" in host else host
+    return f"http://{shown}:{port}/pair?token={device.token}"
+
+
 def to_line(served: ServedPages) -> str:
-    """Return it as a line of JSON."""
+    """Return the pages as a line of JSON."""
     return json.dumps(asdict(served))
 
 
 def from_line(line: str) -> ServedPages | None:
-    """Return what `to_line` made a line of; None for any other line."""
+    """Parse a line of `to_line`; None for any other line."""
     try:
-        told = json.loads(line)
-        addresses = tuple(PageAddress(str(each["device"]), str(each["link"])) for each in told["addresses"])
-        return ServedPages(addresses, bool(told["network"]), str(told["trouble"]))
+        fields = json.loads(line)
+        addresses = tuple(PageAddress(str(each["device"]), str(each["link"])) for each in fields["addresses"])
+        return ServedPages(addresses, bool(fields["network"]), str(fields["trouble"]))
     except (ValueError, KeyError, TypeError):
         return None

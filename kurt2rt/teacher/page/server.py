@@ -1,4 +1,4 @@
-"""Serves the page until it is told to end."""
+"""Server of the page, until it is told to end."""
 
 import contextlib
 import errno
@@ -12,49 +12,48 @@ import uvicorn
 from starlette.types import ASGIApp
 
 from kurt2rt.teacher.client.answer import NoAnswerError
+from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.page.access import Access
 from kurt2rt.teacher.page.app import build_app
 from kurt2rt.teacher.page.bridge import Bridge
 from kurt2rt.teacher.page.connection_limiter import ConnectionLimiter
-from kurt2rt.teacher.page.http_timeouts import REQUEST_WITHIN_S, guarded_http
 from kurt2rt.teacher.page.public_address import PageError
-from kurt2rt.teacher.page.robot_link import RobotLink
-from kurt2rt.teacher.page.websocket_timeouts import GuardedWebSocket
+from kurt2rt.teacher.page.uvicorn_protocols import REQUEST_WITHIN_S, TolerantWebSocket, limited_http
 
-_ENDING_S = 1.0
-_MOST_CONNECTIONS = 96
-"""Strangers take only a third of them."""
+_END_S = 1.0
+_MAX_CONNECTIONS = 96
+"""Limit on all connections; ConnectionLimiter allows a third of them without a cookie."""
 
 
-def listen(port: int, *, everywhere: bool, further: int = 0) -> socket.socket:
-    """Return a listening TCP socket: on this machine alone, or on all its addresses. Raises PageError.
+def listen(port: int, *, everywhere: bool, spare_ports: int = 0) -> socket.socket:
+    """Return a listening TCP socket, on this machine alone or on all its addresses. Raises PageError.
 
-    `further`: how many ports above are tried in turn where another program has `port`.
+    If another program has `port`, the next `spare_ports` ports are tried in turn.
     """
-    for tried in range(port, min(port + further, 65535) + 1):
+    for tried in range(port, min(port + spare_ports, 65535) + 1):
         try:
             if everywhere and socket.has_dualstack_ipv6():
                 return socket.create_server(("::", tried), family=socket.AF_INET6, dualstack_ipv6=True)
             return socket.create_server(("" if everywhere else "127.0.0.1", tried))
         except OSError as error:
-            why = os.strerror(error.errno or 0)  # without what create_server adds to it
+            reason = os.strerror(error.errno or 0)  # without the address, which create_server adds
             if error.errno != errno.EADDRINUSE:
                 break
-    raise PageError(f"port {port}: cannot listen ({why})", do="give another one with --page-port")
+    raise PageError(f"port {port}: cannot listen ({reason})", do="give another one with --page-port")
 
 
 async def run_page(
-    robot: RobotLink,
+    robot: TeacherClient,
     access: Access,
     robot_place: str,
     listener: socket.socket,
-    told_to_end: Callable[[], Awaitable[None]],
+    until_ended: Callable[[], Awaitable[None]],
     *,
     request_within_s: float = REQUEST_WITHIN_S,
 ) -> None:
-    """Serve the page of a device until `told_to_end` returns. A robot that is driven by hand then stands first.
+    """Serve the page of a device until `until_ended` returns; a robot that is driven by hand is stopped first.
 
-    A connection that brings no request within `request_within_s` is closed.
+    A connection without a whole request in `request_within_s` is closed.
     """
     robot.watching = False
     bridge = Bridge(robot, access.device, robot_place)
@@ -63,20 +62,16 @@ async def run_page(
         async with anyio.create_task_group() as serving:
             app = build_app(bridge, access, robot)
             server: uvicorn.Server = await serving.start(_serve, app, listener, request_within_s)
-            await told_to_end()
-            # The robot lets go by itself when it hears nothing, so one that does not answer is not waited for.
-            with anyio.move_on_after(_ENDING_S), contextlib.suppress(NoAnswerError):
+            await until_ended()
+            # A robot that does not answer stops by itself when its teacher is silent.
+            with anyio.move_on_after(_END_S), contextlib.suppress(NoAnswerError):
                 await bridge.end()
             server.should_exit = True
         tasks.cancel_scope.cancel()
 
 
-class Doorway:
-    """The one port of an application: on this machine alone, or on the network, which may change while it is served.
-
-    Connections that are open outlast a change; between the old listening socket and the new one none is refused for
-    longer than the kernel takes to open it.
-    """
+class PagePort:
+    """Port of an application, open to this machine alone or to the network; a change keeps open connections."""
 
     def __init__(
         self,
@@ -84,33 +79,33 @@ class Doorway:
         tasks: anyio.abc.TaskGroup,
         port: int,
         *,
-        further: int = 0,
+        spare_ports: int = 0,
         request_within_s: float = REQUEST_WITHIN_S,
     ) -> None:
-        """`port`, 0: any; `further` as `listen` has it, for the first socket."""
+        """`port`, 0: any; `spare_ports` as for `listen`, for the first socket only."""
         self._app = app
         self._tasks = tasks
-        self._further = further
+        self._spare_ports = spare_ports
         self._request_within_s = request_within_s
         self._servers: list[_Server] = []
         self.port = port
         self.everywhere: bool | None = None
-        """Whether the network is listened to; None before the first socket."""
+        """The port is open to the network; None: it is closed."""
 
     async def open(self, *, everywhere: bool) -> None:
-        """Listen there, and no longer elsewhere. Raises PageError; then nothing is listened to until the next try."""
+        """Listen on this machine alone, or on all its addresses. Raises PageError; the port is closed then."""
         if everywhere == self.everywhere:
             return
         for server in self._servers:
             for each in server.servers:
                 each.close()
         self.everywhere = None
-        listener = listen(self.port, everywhere=everywhere, further=self._further)
-        self.port, self._further = listener.getsockname()[1], 0
-        # Of a server before, which only waits for its last connections, nothing is left to be ended but these.
-        begun: _Server = await self._tasks.start(_serve, self._app, listener, self._request_within_s)
-        self._servers.append(begun)
-        await begun.listening.wait()
+        listener = listen(self.port, everywhere=everywhere, spare_ports=self._spare_ports)
+        self.port, self._spare_ports = listener.getsockname()[1], 0
+        # The servers before stay in the list until `end`, for their open connections.
+        server = await self._tasks.start(_serve, self._app, listener, self._request_within_s)
+        self._servers.append(server)
+        await server.listening.wait()
         self.everywhere = everywhere
 
     def end(self) -> None:
@@ -130,7 +125,7 @@ class _Server(uvicorn.Server):
 
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:
-        """Signals are the command's: it lets go of the robot before the server ends."""
+        """Leave the signals to the command, which stops the robot before it ends the server."""
         yield
 
 
@@ -143,20 +138,20 @@ async def _serve(
 ) -> None:
     config = uvicorn.Config(
         app,
-        http=guarded_http(ConnectionLimiter(), request_within_s),
-        ws=GuardedWebSocket,
+        http=limited_http(ConnectionLimiter(), request_within_s),
+        ws=TolerantWebSocket,
         ws_max_size=4096,
         ws_per_message_deflate=False,
         ws_ping_interval=5.0,
         ws_ping_timeout=5.0,
         lifespan="off",
         log_config=None,
-        # Junk of strangers is a warning for each: a journal would fill with it.
+        # uvicorn warns of each invalid request: strangers could fill a journal.
         log_level="error",
         access_log=False,
         proxy_headers=False,
         server_header=False,
-        limit_concurrency=_MOST_CONNECTIONS,
+        limit_concurrency=_MAX_CONNECTIONS,
         timeout_graceful_shutdown=1,
     )
     server = _Server(config)

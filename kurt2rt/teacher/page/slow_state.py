@@ -1,4 +1,4 @@
-"""What the robot says rarely, for all pages: what robot it is, its world, its lessons, its places, how it is."""
+"""Slowly changing state of the robot, for all pages: introduction, world, lessons, situations, health, exam."""
 
 from collections.abc import Callable
 from functools import partial
@@ -9,8 +9,8 @@ import anyio.abc
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.perception.sensor_words import NO_WORDS
 from kurt2rt.teacher.client.answer import NoAnswerError
+from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.page.cached_resource import CachedResource
-from kurt2rt.teacher.page.robot_link import RobotLink
 from kurt2rt.teacher.page.views import (
     exam_view,
     health_view,
@@ -23,25 +23,25 @@ from kurt2rt.teacher.page.views import (
 
 _LESSONS = 10
 _EXAM_TICKS = 50
-"""Between two looks at an exam that runs."""
+"""Ticks between two requests for the progress of an exam."""
 _HEALTH_TICKS = 100
-"""The robot makes a report of its health each second."""
+"""Ticks between two reports of the robot's health."""
 
-Tell = Callable[[dict[str, Any], str], None]
-"""Takes a message for all pages, and what it is about."""
+Publish = Callable[[dict[str, Any], str], None]
+"""Sends a message of a topic to all pages."""
 
 
 class SlowState:
-    """Copies of it, each fetched anew when a picture shows that it has changed."""
+    """Copies of the robot's resources, each fetched again when a state shows that it has changed."""
 
-    def __init__(self, robot: RobotLink, tell: Tell, carried_out: Callable[[], int]) -> None:
-        """`carried_out`: number of the newest order that the robot has answered."""
+    def __init__(self, robot: TeacherClient, publish: Publish, answered: Callable[[], int]) -> None:
+        """`answered` returns the number of the newest command that the robot has answered."""
         self._robot = robot
-        self._carried_out = carried_out
+        self._answered = answered
         self._seeks = False
         self._exam_runs = False
         self.words = NO_WORDS
-        """For the robot's sensors."""
+        """Words for the robot's sensors."""
         fetches = {
             "hello": self._fetch_hello,
             "world": self._fetch_world,
@@ -51,39 +51,43 @@ class SlowState:
             "exam": self._fetch_exam,
             "simulation": self._fetch_simulation,
         }
-        self._mirrors = {about: CachedResource(fetch, partial(_tell, tell, about)) for about, fetch in fetches.items()}
+        self._resources = {
+            topic: CachedResource(fetch, partial(_publish, publish, topic)) for topic, fetch in fetches.items()
+        }
 
     def start(self, tasks: anyio.abc.TaskGroup) -> None:
-        """Begin to ask, for as long as the task group lives."""
-        for mirror in self._mirrors.values():
-            tasks.start_soon(mirror.run)
-        self._mirrors["hello"].want(b"")
+        """Start to fetch, for as long as the task group lives."""
+        for resource in self._resources.values():
+            tasks.start_soon(resource.run)
+        self._resources["hello"].refresh(b"")
 
-    def see(self, state: State, *, watched: bool) -> None:
-        """A picture came; `watched`: somebody has a page open."""
-        self._mirrors["hello"].want(state.boot)
+    def update(self, state: State, *, watched: bool) -> None:
+        """Refresh what a new state shows as changed; health and speed only while a page is open (`watched`)."""
+        self._resources["hello"].refresh(state.boot)
         if state.place is not None:
             measured = state.tick // _HEALTH_TICKS if watched else 0
-            self._mirrors["simulation"].want((state.boot, self._carried_out(), measured))
-            looks = state.tick // _EXAM_TICKS if self._exam_runs else 0
-            self._mirrors["exam"].want((state.boot, self._carried_out(), looks))
-            self._mirrors["world"].want((state.boot, state.place.world_version))
+            self._resources["simulation"].refresh((state.boot, self._answered(), measured))
+            progress = state.tick // _EXAM_TICKS if self._exam_runs else 0
+            self._resources["exam"].refresh((state.boot, self._answered(), progress))
+            self._resources["world"].refresh((state.boot, state.place.world_version))
         if watched:
-            self._mirrors["health"].want((state.boot, state.tick // _HEALTH_TICKS))
-        self.see_lessons(state)
+            self._resources["health"].refresh((state.boot, state.tick // _HEALTH_TICKS))
+        self.update_lessons(state)
 
-    def see_lessons(self, state: State) -> None:
-        """The same of the lessons alone: an order was answered, and may have taught."""
-        mark = (state.boot, state.lessons, state.unsaved, self._carried_out())
-        self._mirrors["lessons"].want(mark)
+    def update_lessons(self, state: State) -> None:
+        """Refresh lessons and situations after a new state or an answered command."""
+        version = (state.boot, state.lessons, state.unsaved, self._answered())
+        self._resources["lessons"].refresh(version)
         if self._seeks:
-            self._mirrors["situations"].want(mark)
+            self._resources["situations"].refresh(version)
 
-    def copies(self) -> list[tuple[str, dict[str, Any]]]:
-        """What is there already, by what it is about, for a page that was just opened."""
-        # Not health: while no page was open nobody asked for it, and within a second it comes anew.
-        lasting = ((about, mirror.copy) for about, mirror in self._mirrors.items() if about != "health")
-        return [(about, copy) for about, copy in lasting if copy is not None]
+    def messages(self) -> list[tuple[str, dict[str, Any]]]:
+        """Return (topic, message) of each copy, for a page that was just opened.
+
+        Health is left out: it is old if no page was open, and the next report comes within a second.
+        """
+        found = ((topic, resource.value) for topic, resource in self._resources.items() if topic != "health")
+        return [(topic, value) for topic, value in found if value is not None]
 
     async def _fetch_hello(self) -> dict[str, Any]:
         hello = await self._robot.hello()
@@ -94,32 +98,32 @@ class SlowState:
     async def _fetch_world(self) -> dict[str, Any]:
         world = await self._robot.world()
         if world is None:
-            raise NoAnswerError("the robot says where it is in a world, and has none")
+            raise NoAnswerError("the robot has a place in a world, and no world")
         return world_view(world)
 
     async def _fetch_lessons(self) -> dict[str, Any]:
-        after = self._carried_out()
+        after = self._answered()
         return {**lessons_view(await self._robot.lessons(_LESSONS)), "after": after}
 
     async def _fetch_situations(self) -> dict[str, Any]:
         return situations_view(await self._robot.situations())
 
     async def _fetch_exam(self) -> dict[str, Any]:
-        standing = await self._robot.exam()
-        if standing is None:
-            raise NoAnswerError("the robot says where it is in a world, and cannot be examined")
-        self._exam_runs = standing.running
-        return exam_view(standing)
+        status = await self._robot.exam()
+        if status is None:
+            raise NoAnswerError("the robot has a place in a world, and no exam")
+        self._exam_runs = status.running
+        return exam_view(status)
 
     async def _fetch_simulation(self) -> dict[str, Any]:
         simulation = await self._robot.simulation()
         if simulation is None:
-            raise NoAnswerError("the robot says where it is in a world, and its simulation is elsewhere")
+            raise NoAnswerError("the robot has a place in a world, and its simulation is another process")
         return simulation_view(simulation)
 
     async def _fetch_health(self) -> dict[str, Any]:
         return health_view(await self._robot.health())
 
 
-def _tell(tell: Tell, about: str, message: dict[str, Any]) -> None:
-    tell(message, about)
+def _publish(publish: Publish, topic: str, message: dict[str, Any]) -> None:
+    publish(message, topic)

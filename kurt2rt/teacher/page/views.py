@@ -1,4 +1,4 @@
-"""What pages are told, as plain values for JSON."""
+"""Messages to the pages, as plain values for JSON."""
 
 import math
 from collections.abc import Mapping
@@ -21,71 +21,48 @@ from kurt2rt.core.teaching.question import FeatureDifference
 from kurt2rt.teacher.client.answer import Answer
 from kurt2rt.teacher.client.link_quality import LinkQuality
 
-_EACH_CHANGE_OF_SPEED = (GuardReason.SLEW_LIMIT, GuardReason.SPEED_LIMIT)
+_SPEED_CHANGES = (GuardReason.SLEW_LIMIT, GuardReason.SPEED_LIMIT)
 """Limits that every change of speed meets; the page leaves them out."""
+_COPIED = (
+    *("tick", "phase", "bumpers", "left_m_s", "right_m_s", "cause", "action", "rla", "nearest", "nearest_action"),
+    *("taught_by", "taught_at", "teacher", "by_hand", "rlas", "lessons", "unsaved", "session", "clock_s", "trouble"),
+    *("missed_ticks", "behaviour", "value", "nearest_value", "opinion", "opinion_of", "agreement", "trusted", "role"),
+    *("bad_share", "signals_missing", "asks_at", "goal", "plan", "plan_says"),
+)
+"""Fields of State that the page gets as they are."""
+_FINITE = ("infrared_age_s", "distance", "radius", "late_p99_ms")
+"""Fields of State that may be infinite, which the page gets as null."""
 
 
 def state_view(
     state: State, link: LinkQuality, age_s: float, refused: str, words: SensorWords = NO_WORDS
 ) -> dict[str, Any]:
-    """Return one picture of the robot.
+    """Return the message for one state.
 
-    `age_s` is how long ago it came here, `refused` why hold-to-drive does nothing; `words` are for its sensors.
+    Args:
+        state: of the robot.
+        link: quality of the link to the robot.
+        age_s: time since the state came.
+        refused: reason why the last press does not drive, if any.
+        words: for the robot's sensors.
     """
     place, stands = state.place, state.stands
     return {
         "kind": "state",
-        "tick": state.tick,
-        "phase": state.phase,
+        **{name: getattr(state, name) for name in _COPIED},
+        **{name: _finite(getattr(state, name)) for name in _FINITE},
         "infrared": state.infrared_counts,
-        "infrared_age_s": _finite(state.infrared_age_s),
-        "bumpers": state.bumpers,
-        "left_m_s": state.left_m_s,
-        "right_m_s": state.right_m_s,
-        "cause": state.cause,
         "stands": {
             "reason": stands.reason,
             "needs_go": stands.needs_resume,
             "asks": stands.asks,
             "text": standing_headline(stands, GO_ON_PAGE),
         },
-        "action": state.action,
-        "rla": state.rla,
-        "nearest": state.nearest,
-        "nearest_action": state.nearest_action,
-        "distance": _finite(state.distance),
-        "radius": _finite(state.radius),
-        "taught_by": state.taught_by,
-        "taught_at": state.taught_at,
         "question": [_difference(each, words) for each in state.question],
-        "teacher": state.teacher,
-        "by_hand": state.by_hand,
         "stopped": None if state.stopped is None else state.stopped.reason,
-        "rlas": state.rlas,
-        "lessons": state.lessons,
-        "unsaved": state.unsaved,
-        "session": state.session,
-        "clock_s": state.clock_s,
-        "guard": [reason for reason in state.guard if reason not in _EACH_CHANGE_OF_SPEED],
-        "trouble": state.trouble,
-        "late_p99_ms": _finite(state.late_p99_ms),
-        "missed_ticks": state.missed_ticks,
-        "behaviour": state.behaviour,
-        "value": state.value,
-        "nearest_value": state.nearest_value,
-        "opinion": state.opinion,
-        "opinion_of": state.opinion_of,
-        "agreement": state.agreement,
-        "trusted": state.trusted,
-        "role": state.role,
-        "bad_share": state.bad_share,
-        "signals_missing": state.signals_missing,
-        "asks_at": state.asks_at,
+        "guard": [reason for reason in state.guard if reason not in _SPEED_CHANGES],
         "mid": plain(state.mid),
         "surprise": plain(state.surprise),
-        "goal": state.goal,
-        "plan": state.plan,
-        "plan_says": state.plan_says,
         "place": None if place is None else asdict(place),
         "progress": asdict(state.progress),
         "link": {
@@ -98,13 +75,13 @@ def state_view(
 
 
 def _difference(each: FeatureDifference, words: SensorWords) -> list[Any]:
-    """Return name, value here and as taught, and the same three in words."""
+    """Return [name, value here, value as taught], and the same three in words."""
     name, here, there = each.name, each.here, each.in_condition
     return [name, here, there, words.place(name), words.reading(name, here), words.reading(name, there)]
 
 
 def answer_view(number: int, answer: Answer) -> dict[str, Any]:
-    """What became of an order."""
+    """Return the message for the robot's answer to a command."""
     return {
         "kind": "answer",
         "number": number,
@@ -117,32 +94,32 @@ def answer_view(number: int, answer: Answer) -> dict[str, Any]:
 
 
 def refusal_view(number: int, why: str, text: str) -> dict[str, Any]:
-    """An order that never reached the robot, or of which it is not known whether it did."""
+    """Return the message for a command that was not sent, or that the robot did not answer."""
     return {"kind": "answer", "number": number, "accepted": False, "why": why, "text": text, "tick": -1, "extra": {}}
 
 
 def hello_view(hello: Hello) -> dict[str, Any]:
-    """What robot this is."""
+    """Return the message with the robot's introduction."""
     return {"kind": "hello", **plain(hello)}
 
 
 def world_view(world: WorldView) -> dict[str, Any]:
-    """The simulated world."""
+    """Return the message with the simulated world."""
     return {"kind": "world", **plain(world)}
 
 
 def lessons_view(lessons: tuple[LessonLine, ...]) -> dict[str, Any]:
-    """The newest lessons."""
+    """Return the message with the newest lessons."""
     return {"kind": "lessons", "lessons": [each._asdict() for each in lessons]}
 
 
 def situations_view(names: tuple[str, ...]) -> dict[str, Any]:
-    """The situations that have a name."""
+    """Return the message with the names of situations."""
     return {"kind": "situations", "situations": names}
 
 
 def health_view(report: HealthReport | None) -> dict[str, Any]:
-    """How the robot's program is, in words: nothing in its first second."""
+    """Return the message with the health report in words; empty in the robot's first second."""
     if report is None:
         return {"kind": "health", "tick": None, "says": "", "rows": [], "troubles": []}
     troubles = [
@@ -158,18 +135,18 @@ def health_view(report: HealthReport | None) -> dict[str, Any]:
     }
 
 
-def exam_view(standing: ExamStatus) -> dict[str, Any]:
-    """Return the exam's status for the page."""
-    return {"kind": "exam", **EXAM.plain_of(standing)}
+def exam_view(status: ExamStatus) -> dict[str, Any]:
+    """Return the message with the exam's status."""
+    return {"kind": "exam", **EXAM.plain_of(status)}
 
 
 def simulation_view(simulation: SimulationView) -> dict[str, Any]:
-    """Return the simulated world and task, and those to choose from, for the page."""
+    """Return the message with the simulated world and task, and those to choose from."""
     return {"kind": "simulation", **SIMULATION.plain_of(simulation)}
 
 
 def plain(value: Any) -> Any:
-    """Dataclasses, tuples and bytes as JSON knows them; no infinite numbers."""
+    """Return a value as JSON has it: dataclasses as objects, bytes in hexadecimal, infinite numbers as null."""
     if is_dataclass(value) and not isinstance(value, type):
         return plain(asdict(value))
     if isinstance(value, Mapping):

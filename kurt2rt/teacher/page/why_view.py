@@ -1,4 +1,4 @@
-"""Why the robot does what it does, in words for a page."""
+"""Explanation of a decision, as a message for a page."""
 
 from typing import Any
 
@@ -15,38 +15,39 @@ from kurt2rt.runs.explain.sentences import (
     format_teaching,
     format_usage,
 )
+from kurt2rt.teacher.page.texts import PageNotice, text_of
 
 _FEATURES = 6
 
 
 def why_view(number: int, facts: DecisionFacts | None, words: SensorWords = NO_WORDS) -> dict[str, Any]:
-    """Return the answer to a page that asked why; there is nothing to explain before the first tick."""
-    view = {"kind": "answer", "number": number, "accepted": True, "text": "nothing was decided yet"}
+    """Return the answer to question `number`; `facts` are None before the first tick."""
+    view = {"kind": "answer", "number": number, "accepted": True, "text": text_of(PageNotice.NOTHING_DECIDED)}
     if facts is None:
         return {**view, "lines": [], "features": []}
-    level, story = _leading(facts)
+    level, rla = _leading(facts)
     lines = [*format_reasons(facts), format_guard(facts)]
-    if story is not None:
-        lines += [*format_runner_up(level), format_teaching(story), format_usage(story)]
+    if rla is not None:
+        lines += [*format_runner_up(level), format_teaching(rla), format_usage(rla)]
     return {
         **view,
         "text": headline(facts),
         "tick": facts.tick,
         "lines": [line for line in (*lines, *format_mid_level(facts)) if line],
-        "rla": "" if story is None else story.title,
-        "features": [] if story is None else _features(level, story, words),
+        "rla": "" if rla is None else rla.title,
+        "features": [] if rla is None else _features(level, rla, words),
     }
 
 
 def _leading(facts: DecisionFacts) -> tuple[LevelFacts, RlaFacts | None]:
-    """The level that it went by, and the RLA there that drives, or is nearest."""
+    """Return the level that decided, and its RLA that drives or is nearest."""
     if facts.asks_at == MID and facts.mid is not None:
         return facts.mid, facts.mid.nearest
     driver = facts.basic.driver if facts.cause == Cause.RLA else None
     return facts.basic, driver or facts.basic.nearest
 
 
-def _features(level: LevelFacts, story: RlaFacts, words: SensorWords) -> list[dict[str, Any]]:
+def _features(level: LevelFacts, rla: RlaFacts, words: SensorWords) -> list[dict[str, Any]]:
     return [
         {
             "name": words.place(each.name),
@@ -54,5 +55,5 @@ def _features(level: LevelFacts, story: RlaFacts, words: SensorWords) -> list[di
             "there": words.reading(each.name, each.there),
             "share": round(each.share, 3),
         }
-        for each in distance_attribution(level, story)[:_FEATURES]
+        for each in distance_attribution(level, rla)[:_FEATURES]
     ]

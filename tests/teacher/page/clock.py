@@ -1,4 +1,4 @@
-"""A clock that stands still until it is told to go on."""
+"""Clock that a test advances."""
 
 
 class Clock:
@@ -8,5 +8,5 @@ class Clock:
     def __call__(self) -> float:
         return self.now_s
 
-    def go_on(self, seconds: float) -> None:
+    def advance(self, seconds: float) -> None:
         self.now_s += seconds

@@ -1,4 +1,4 @@
-"""A robot at the other end of the bridge that does as the test says and notes what it is told."""
+"""Client of a robot that answers as the test says and notes its calls."""
 
 import math
 from collections.abc import AsyncIterator
@@ -22,6 +22,7 @@ from kurt2rt.core.rla.rla import BASIC, Phase
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError, RefusedError
+from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.client.link_quality import LinkQuality
 
 A_STATE = State(
@@ -85,12 +86,13 @@ A_SIMULATION = SimulationView(
     ("a", "b", "c", "manhattan"),
     (TaskName("eight", "Teach it to drive an eight round the two columns"), TaskName("wall_following", "Teach it so")),
 )
+A_LINK = LinkQuality(4.0, 1.0, 20.0)
 A_LESSON = LessonLine("phone-0a", "RLA 1: forward", "phone", 1, 90, "2026-11-21T12:04:00Z", False)
 
 
 @dataclass
-class FakeRobot:
-    """Implements kurt2rt.teacher.page.robot_link.RobotLink."""
+class FakeRobot(TeacherClient):
+    """TeacherClient without a network: each call is noted in `told`."""
 
     told: list[tuple[Any, ...]] = field(default_factory=list)
     silent: bool = False
@@ -107,16 +109,16 @@ class FakeRobot:
     examined: ExamStatus = NO_EXAM
     files: dict[str, bytes] = field(default_factory=dict)
     answers_with: dict[str, object] = field(default_factory=dict)
-    """What else its answers hold."""
+    """Extra fields of its answers."""
     report: HealthReport | None = None
     decided: DecisionFacts | None = None
     newest_lessons: tuple[LessonLine, ...] = (A_LESSON,)
-    link: LinkQuality = field(default_factory=lambda: LinkQuality(4.0, 1.0, 20.0))
+    link: LinkQuality = A_LINK
     _news: anyio.Event = field(default_factory=anyio.Event, init=False)
     _heard: anyio.Event = field(default_factory=anyio.Event, init=False)
 
     def show(self, **changes: Any) -> State:
-        """A new picture, changed from the last one, two ticks later unless told otherwise."""
+        """Send a new state, changed from the last one, two ticks later by default."""
         last = self.state or A_STATE
         self.state = replace(last, **{"tick": last.tick + 2, **changes})
         self.state_age_s = 0.0
@@ -124,19 +126,19 @@ class FakeRobot:
         self._news = anyio.Event()
         return self.state
 
-    def begin_anew(self) -> None:
-        """As one that was told nothing yet and has shown nothing."""
+    def reset(self) -> None:
+        """Forget all calls and states."""
         for each in fields(self):
-            if each.init and each.name != "link":
+            if each.init:
                 new = each.default if each.default_factory is MISSING else each.default_factory()
                 setattr(self, each.name, new)
 
     def told_of(self, name: str) -> list[tuple[Any, ...]]:
-        """What it was told of one kind."""
+        """Return its calls of one name."""
         return [each for each in self.told if each[0] == name]
 
     async def is_told(self, name: str) -> None:
-        """Wait until it is."""
+        """Wait for a call of this name."""
         while not any(each[0] == name for each in self.told):
             await self._heard.wait()
 

@@ -37,7 +37,7 @@ class Lesson:
         """
         self._begun += 1
         boot, name = f"boot {self._begun}".encode(), f"robot {self._begun}"
-        self._portal.call(self.robot.begin_anew)
+        self._portal.call(self.robot.reset)
         prepare(self.robot)
         self.robot.greeting = replace(self.robot.greeting, boot=boot, robot=name)
         self.show(**{"boot": boot, "teacher": "local", "place": A_PLACE, **shown})

@@ -9,27 +9,27 @@ def access(token: str = TOKEN, device: str = "phone") -> Access:
     return Access(device, token, ["desk"])
 
 
-def test_the_token_opens_and_nothing_else_does() -> None:
-    assert access().opens(TOKEN)
+def test_accepts_token_only_the_token() -> None:
+    assert access().accepts_token(TOKEN)
     for wrong in ("", TOKEN[:-1], TOKEN + "x", TOKEN.upper(), "\udcff", "ä"):
-        assert not access().opens(wrong)
+        assert not access().accepts_token(wrong)
 
 
-def test_the_cookie_is_known_again_but_not_under_another_token_or_device() -> None:
-    door = access()
-    assert door.knows({door.cookie_name: door.cookie})
+def test_accepts_cookies_only_of_this_token_and_device() -> None:
+    rules = access()
+    assert rules.accepts_cookies({rules.cookie_name: rules.cookie})
     renewed = access(token=TOKEN[::-1])
-    assert not renewed.knows({door.cookie_name: door.cookie})
+    assert not renewed.accepts_cookies({rules.cookie_name: rules.cookie})
     other = access(device="tablet")
-    assert not other.knows({door.cookie_name: door.cookie})
+    assert not other.accepts_cookies({rules.cookie_name: rules.cookie})
 
 
 @pytest.mark.parametrize("cookies", [{}, {"kurt2rt-phone": ""}, {"kurt2rt-phone": TOKEN}, {"kurt2rt-phone": "\udcff"}])
-def test_no_other_cookie_is(cookies: dict[str, str]) -> None:
-    assert not access().knows(cookies)
+def test_accepts_cookies_other_content_is_refused(cookies: dict[str, str]) -> None:
+    assert not access().accepts_cookies(cookies)
 
 
-def test_the_cookie_does_not_tell_the_token() -> None:
+def test_cookie_does_not_contain_the_token() -> None:
     assert TOKEN not in access().cookie
 
 
@@ -45,9 +45,9 @@ def test_the_cookie_does_not_tell_the_token() -> None:
         ("", False),
     ],
 )
-def test_a_websocket_has_to_come_from_a_page_of_ours(origin: str, *, ours: bool) -> None:
-    assert access().comes_from_us({"host": "desk:8642", "origin": origin}) is ours
+def test_is_own_origin_only_this_host_and_port(origin: str, *, ours: bool) -> None:
+    assert access().is_own_origin({"host": "desk:8642", "origin": origin}) is ours
 
 
-def test_a_websocket_without_an_origin_is_no_browser_s() -> None:
-    assert not access().comes_from_us({"host": "desk:8642"})
+def test_is_own_origin_without_an_origin_is_false() -> None:
+    assert not access().is_own_origin({"host": "desk:8642"})

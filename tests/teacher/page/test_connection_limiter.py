@@ -1,30 +1,30 @@
 from kurt2rt.teacher.page.connection_limiter import ConnectionLimiter
 
 
-def test_the_oldest_gives_way() -> None:
+def test_add_at_the_limit_closes_the_oldest() -> None:
     gone: list[int] = []
-    crowd = ConnectionLimiter(most=3, per_address=2)
+    limiter = ConnectionLimiter(most=3, per_address=2)
     for number, address in enumerate(["a", "b", "c", "d", "e"]):
-        crowd.enter(number, address, lambda number=number: gone.append(number))  # type: ignore[misc]
+        limiter.add(number, address, lambda number=number: gone.append(number))  # type: ignore[misc]
     assert gone == [0, 1]
-    assert len(crowd) == 3
+    assert len(limiter) == 3
 
 
-def test_who_opens_many_pushes_out_his_own() -> None:
+def test_add_at_the_limit_of_an_address_closes_its_oldest() -> None:
     gone: list[int] = []
-    crowd = ConnectionLimiter(most=10, per_address=2)
-    crowd.enter(-1, "teacher", lambda: gone.append(-1))
+    limiter = ConnectionLimiter(most=10, per_address=2)
+    limiter.add(-1, "teacher", lambda: gone.append(-1))
     for number in range(5):
-        crowd.enter(number, "flood", lambda number=number: gone.append(number))  # type: ignore[misc]
+        limiter.add(number, "flood", lambda number=number: gone.append(number))  # type: ignore[misc]
     assert gone == [0, 1, 2]
 
 
-def test_who_has_shown_the_cookie_is_not_counted() -> None:
+def test_remove_ends_the_count() -> None:
     gone: list[int] = []
-    crowd = ConnectionLimiter(most=2, per_address=2)
+    limiter = ConnectionLimiter(most=2, per_address=2)
     for number in range(5):
-        crowd.enter(number, "phone", lambda number=number: gone.append(number))  # type: ignore[misc]
-        crowd.leave(number)
-    crowd.leave("never came")
+        limiter.add(number, "phone", lambda number=number: gone.append(number))  # type: ignore[misc]
+        limiter.remove(number)
+    limiter.remove("never came")
     assert gone == []
-    assert len(crowd) == 0
+    assert len(limiter) == 0

@@ -18,9 +18,8 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.pairing import LOCAL, TERMINAL, Device, local_pairing, pair, renew, revoke
-from kurt2rt.teacher.page.device_pages import DevicePages, is_within_this_machine
-from kurt2rt.teacher.page.device_server import Pairings, devices_here, run_device_pages
-from kurt2rt.teacher.page.robot_link import RobotLink
+from kurt2rt.teacher.page.device_pages import DevicePages, PageSite, is_within_this_machine
+from kurt2rt.teacher.page.device_server import Pairings, local_devices, run_device_pages
 from kurt2rt.teacher.page.served_pages import ServedPages
 from kurt2rt.teacher.page.server import listen
 from tests.teacher.page.fake_robot import FakeRobot
@@ -47,7 +46,7 @@ class Links:
                 await anyio.sleep(0.01)
 
     @asynccontextmanager
-    async def __call__(self, device: Device) -> AsyncIterator[RobotLink]:
+    async def __call__(self, device: Device) -> AsyncIterator[FakeRobot]:
         assert device.name not in self.open
         if device.name in self.taken:
             raise CredentialsError(f"{device.name}: another program uses this pairing")
@@ -88,11 +87,11 @@ class Server:
 async def server(folder: Path) -> AsyncIterator[Server]:
     pairings, links, end = Pairings(folder / "teachers", folder / "devices"), Links(), anyio.Event()
     told: list[ServedPages] = []
-    serve = partial(run_device_pages, look_s=0.02)
+    serve = partial(run_device_pages, poll_s=0.02)
     local_pairing(pairings.teachers, pairings.devices)
     local_pairing(pairings.teachers, pairings.devices, TERMINAL)
     async with anyio.create_task_group() as tasks:
-        tasks.start_soon(serve, pairings, links, "a robot", ["desk"], 0, told.append, end.wait)
+        tasks.start_soon(serve, pairings, PageSite(links, "a robot", ["desk"]), 0, told.append, end.wait)
         opened = Server(pairings, links, told)
         await opened.tells(lambda _: True)
         yield opened
@@ -242,7 +241,7 @@ async def test_page_that_nobody_shows_for_long_lets_go_of_its_pairing(tmp_path: 
         "client": ("127.0.0.1", 9),
     }
     async with anyio.create_task_group() as tasks:
-        pages = DevicePages(tasks, links, "a robot", [], idle_s=0.01)
+        pages = DevicePages(tasks, PageSite(links, "a robot", [], idle_s=0.01))
         pages.serve([device])
         for times in (1, 2):
             await pages(scope, ask, answer)
@@ -292,7 +291,7 @@ async def test_this_machines_own_page_is_not_served_to_the_network(tmp_path: Pat
         "client": ("192.168.0.9", 50000),
     }
     async with anyio.create_task_group() as tasks:
-        pages = DevicePages(tasks, links, "a robot", [])
+        pages = DevicePages(tasks, PageSite(links, "a robot", []))
         pages.serve([device])
         await pages(scope, ask, answer)
         await pages.end()
@@ -300,7 +299,7 @@ async def test_this_machines_own_page_is_not_served_to_the_network(tmp_path: Pat
     assert links.opened == []
 
 
-def test_devices_here_are_this_machines_own_then_the_newest_and_none_that_moved_away(tmp_path: Path) -> None:
+def test_local_devices_are_this_machines_own_then_the_newest_and_none_that_moved_away(tmp_path: Path) -> None:
     pairings = Pairings(tmp_path / "teachers", tmp_path / "devices")
     for name in (LOCAL, TERMINAL):
         local_pairing(pairings.teachers, pairings.devices, name)
@@ -308,7 +307,7 @@ def test_devices_here_are_this_machines_own_then_the_newest_and_none_that_moved_
         pair(pairings.teachers, pairings.devices, name)
     (pairings.devices / "tablet").rename(tmp_path / "moved")
     (pairings.devices / "broken" / "device.json").write_text("{", encoding="utf-8")
-    found, trouble = devices_here(pairings)
+    found, trouble = local_devices(pairings)
     assert [each.name for each in found] == [LOCAL, "phone", "old-phone"]
     assert trouble.endswith("pair the device anew: kurt2rt pair broken --renew")
 
@@ -316,5 +315,5 @@ def test_devices_here_are_this_machines_own_then_the_newest_and_none_that_moved_
 def test_a_port_in_use_is_passed_over_where_that_is_allowed() -> None:
     with listen(0, everywhere=False) as taken:
         port = taken.getsockname()[1]
-        with listen(port, everywhere=True, further=9) as other:
+        with listen(port, everywhere=True, spare_ports=9) as other:
             assert port < other.getsockname()[1] <= port + 9

@@ -1,6 +1,6 @@
 import pytest
 
-from kurt2rt.teacher.page.host_names import host_name, is_ours, own_address, own_names
+from kurt2rt.teacher.page.host_names import host_name, is_own_host, own_address, own_names
 
 NAMES = {"robot-desk", "robot-desk.local"}
 
@@ -17,7 +17,7 @@ NAMES = {"robot-desk", "robot-desk.local"}
         ("[", ""),
     ],
 )
-def test_a_host_header_holds_a_name_or_an_address(host: str, name: str) -> None:
+def test_host_name_returns_name_or_address(host: str, name: str) -> None:
     assert host_name(host) == name
 
 
@@ -34,8 +34,8 @@ def test_a_host_header_holds_a_name_or_an_address(host: str, name: str) -> None:
         ("ROBOT-DESK.local:8642", "192.168.1.7"),
     ],
 )
-def test_the_address_that_the_connection_came_to_is_ours_and_so_are_our_names(host: str, local_address: str) -> None:
-    assert is_ours(host, local_address, NAMES)
+def test_is_own_host_local_address_and_names_are_own(host: str, local_address: str) -> None:
+    assert is_own_host(host, local_address, NAMES)
 
 
 @pytest.mark.parametrize(
@@ -51,10 +51,10 @@ def test_the_address_that_the_connection_came_to_is_ours_and_so_are_our_names(ho
         ("localhost", ""),
     ],
 )
-def test_a_foreign_name_that_was_made_to_lead_here_is_not_ours(host: str, local_address: str) -> None:
-    assert not is_ours(host, local_address, NAMES)
+def test_is_own_host_foreign_name_is_not_own(host: str, local_address: str) -> None:
+    assert not is_own_host(host, local_address, NAMES)
 
 
-def test_this_machine_has_names_and_an_address() -> None:
+def test_own_names_and_own_address_are_own() -> None:
     assert all(name == name.lower() for name in own_names())
-    assert is_ours(own_address(), own_address(), own_names())
+    assert is_own_host(own_address(), own_address(), own_names())

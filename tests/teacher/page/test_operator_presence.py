@@ -1,27 +1,27 @@
 from kurt2rt.teacher.page.operator_presence import OperatorPresence
 
 
-def test_somebody_looks_from_heartbeat_to_heartbeat() -> None:
-    attention = OperatorPresence(lease_s=0.3)
-    assert not attention.there(now_s=0.0)
-    attention.beat(0.05, now_s=0.0)
-    assert attention.there(now_s=0.29)
-    assert not attention.there(now_s=0.3)
+def test_renew_holds_for_the_lease() -> None:
+    presence = OperatorPresence(lease_s=0.3)
+    assert not presence.is_present(now_s=0.0)
+    presence.renew(0.05, now_s=0.0)
+    assert presence.is_present(now_s=0.29)
+    assert not presence.is_present(now_s=0.3)
 
 
-def test_who_has_an_old_picture_does_not_look_at_the_robot() -> None:
-    attention = OperatorPresence(oldest_picture_s=0.5)
-    attention.beat(0.5, now_s=0.0)
-    assert not attention.there(now_s=0.0)
-    attention.beat(0.4, now_s=0.0)
-    assert attention.there(now_s=0.09)
-    assert not attention.there(now_s=0.11)
-    attention.beat(float("inf"), now_s=1.0)
-    assert not attention.there(now_s=1.0)
+def test_renew_on_an_old_state_holds_for_less() -> None:
+    presence = OperatorPresence(max_state_age_s=0.5)
+    presence.renew(0.5, now_s=0.0)
+    assert not presence.is_present(now_s=0.0)
+    presence.renew(0.4, now_s=0.0)
+    assert presence.is_present(now_s=0.09)
+    assert not presence.is_present(now_s=0.11)
+    presence.renew(float("inf"), now_s=1.0)
+    assert not presence.is_present(now_s=1.0)
 
 
-def test_who_turns_away_does_not_look() -> None:
-    attention = OperatorPresence()
-    attention.beat(0.0, now_s=0.0)
-    attention.lose()
-    assert not attention.there(now_s=0.0)
+def test_end_ends_the_presence() -> None:
+    presence = OperatorPresence()
+    presence.renew(0.0, now_s=0.0)
+    presence.end()
+    assert not presence.is_present(now_s=0.0)

@@ -4,65 +4,65 @@ from typing import Any
 from kurt2rt.teacher.page.page_connection import PageConnection
 
 
-def taken(visitor: PageConnection, now_s: float = 0.0) -> list[dict[str, Any]]:
+def sent_by(connection: PageConnection, now_s: float = 0.0) -> list[dict[str, Any]]:
     found = []
-    while (text := visitor.take(now_s)) is not None:
+    while (text := connection.pop(now_s)) is not None:
         found.append(json.loads(text))
     return found
 
 
 def visible() -> PageConnection:
-    visitor = PageConnection(1)
-    visitor.visible = True
-    return visitor
+    connection = PageConnection(1)
+    connection.visible = True
+    return connection
 
 
-def test_of_the_robot_s_state_only_the_newest_waits() -> None:
-    visitor = visible()
+def test_set_state_replaces_the_state_that_waits() -> None:
+    connection = visible()
     for tick in range(10):
-        visitor.show(b"boot", {"kind": "state", "tick": tick})
-    assert [each["tick"] for each in taken(visitor)] == [9]
+        connection.set_state(b"boot", {"kind": "state", "tick": tick})
+    assert [each["tick"] for each in sent_by(connection)] == [9]
 
 
-def test_a_page_that_nobody_sees_gets_no_pictures_but_hears_the_rest() -> None:
-    visitor = PageConnection(1)
-    visitor.show(b"boot", {"kind": "state", "tick": 1})
-    visitor.tell({"kind": "hello"})
-    assert [each["kind"] for each in taken(visitor)] == ["hello"]
-    visitor.visible = True
-    assert [each["kind"] for each in taken(visitor)] == ["state"]
+def test_pop_hidden_page_gets_messages_and_no_states() -> None:
+    connection = PageConnection(1)
+    connection.set_state(b"boot", {"kind": "state", "tick": 1})
+    connection.send({"kind": "hello"})
+    assert [each["kind"] for each in sent_by(connection)] == ["hello"]
+    connection.visible = True
+    assert [each["kind"] for each in sent_by(connection)] == ["state"]
 
 
-def test_a_slow_page_is_sent_nothing_old_when_it_wakes_up() -> None:
-    visitor = visible()
+def test_pop_slow_page_gets_the_newest_state_next() -> None:
+    connection = visible()
     sent: list[dict[str, Any]] = []
     for tick in range(100):
-        visitor.show(b"boot", {"kind": "state", "tick": tick})
-        sent += taken(visitor)
+        connection.set_state(b"boot", {"kind": "state", "tick": tick})
+        sent += sent_by(connection)
     assert len(sent) == 8
-    visitor.pictures.see(sent[-1]["picture"])
-    assert [each["tick"] for each in taken(visitor)] == [99]
+    connection.states.acknowledge(sent[-1]["picture"])
+    assert [each["tick"] for each in sent_by(connection)] == [99]
 
 
-def test_of_what_is_about_the_same_thing_the_last_word_counts() -> None:
-    visitor = PageConnection(1)
+def test_send_of_one_topic_replaces_the_message_that_waits() -> None:
+    connection = PageConnection(1)
     for number in range(1000):
-        visitor.tell({"kind": "lessons", "number": number}, about="lessons")
-    visitor.tell({"kind": "answer"})
-    assert [each.get("number") for each in taken(visitor)] == [999, None]
-    assert not visitor.lost
+        connection.send({"kind": "lessons", "number": number}, topic="lessons")
+    connection.send({"kind": "answer"})
+    assert [each.get("number") for each in sent_by(connection)] == [999, None]
+    assert not connection.lost
 
 
-def test_a_page_that_takes_no_answers_is_lost() -> None:
-    visitor = PageConnection(1)
+def test_send_to_a_full_queue_loses_the_page() -> None:
+    connection = PageConnection(1)
     for number in range(1000):
-        visitor.tell({"kind": "answer", "number": number})
-    assert visitor.lost
-    assert len(taken(visitor)) == 64
+        connection.send({"kind": "answer", "number": number})
+    assert connection.lost
+    assert len(sent_by(connection)) == 64
 
 
-def test_a_heartbeat_is_sent_back_for_the_round_trip() -> None:
-    visitor = visible()
-    visitor.beat = (5000.0, 10.0)
-    visitor.show(b"boot", {"kind": "state", "tick": 1})
-    assert taken(visitor, now_s=10.02)[0]["echo"] == [5000.0, 20.0]
+def test_pop_state_echoes_the_heartbeat() -> None:
+    connection = visible()
+    connection.heartbeat = (5000.0, 10.0)
+    connection.set_state(b"boot", {"kind": "state", "tick": 1})
+    assert sent_by(connection, now_s=10.02)[0]["echo"] == [5000.0, 20.0]

@@ -1,0 +1,16 @@
+"""Listing of the texts of `kurt2rt.teacher.page.texts`."""
+
+from collections.abc import Iterator
+from string import Formatter
+
+from kurt2rt.teacher.page import texts
+from kurt2rt.teacher.page.texts import PageNotice
+
+SAMPLES = {"place": "127.0.0.1:5683", "most_mb": 64, "name": "a.zip", "size": 70_000_000, "most": 64_000_000}
+
+
+def notices() -> Iterator[tuple[str, str]]:
+    """Yield the text of each notice of the page's server."""
+    for notice in PageNotice:
+        fields = [name for _, name, _, _ in Formatter().parse(texts._TEXTS[notice]) if name]
+        yield notice, texts.text_of(notice, **{name: SAMPLES[name] for name in fields})
