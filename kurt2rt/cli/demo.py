@@ -1,11 +1,13 @@
 """`kurt2rt demo`."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import anyio
 
 from hal.robot_settings import load_robot
+from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import Changes, OutFolder, Plain, RobotName, Seed, WireName, changes_of, task_option
 from kurt2rt.cli.progress import job_bars
@@ -18,16 +20,22 @@ from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.platform.text_table import print_whole
 
 
-def demo(
-    task: Annotated[str, task_option("Default: wall_following.")] = "wall_following",
-    plain: Plain = False,
-    changes: Changes = None,
-    seed: Seed = 1,
-    out: OutFolder = Path("results/demo"),
-    robot_settings: RobotName = "kurt2",
-    wire: WireName = "none",
-    as_json: AsJson = False,
-) -> None:
+@dataclass(frozen=True, slots=True)
+class _Options:
+    """Options of `kurt2rt demo`."""
+
+    task: Annotated[str, task_option("Default: wall_following.")] = "wall_following"
+    plain: Plain = False
+    changes: Changes = None
+    seed: Seed = 1
+    out: OutFolder = Path("results/demo")
+    robot_settings: RobotName = "kurt2"
+    wire: WireName = "none"
+    as_json: AsJson = False
+
+
+@takes_options(_Options)
+def demo(options: _Options) -> None:
     """Teach a simulated robot from nothing, examine it without its teacher, draw the drives.
 
     A scripted teacher teaches over the same commands that a person uses, in
@@ -48,25 +56,26 @@ def demo(
     from kurt2rt.experiments.lockstep.drawing import draw_curriculum
     from simbridge.simulation import Kurt2SimulationFactory
 
-    settings = load_robot(robot_settings)
-    taught = load_task(task, plain=plain, changes=changes_of(changes))
-    stage = Kurt2SimulationFactory(settings, wire)
+    settings = load_robot(options.robot_settings)
+    taught = load_task(options.task, plain=options.plain, changes=changes_of(options.changes))
+    stage = Kurt2SimulationFactory(settings, options.wire)
     worlds = (taught.teaching.world, *taught.exam.worlds)
     stage.require_worlds(*worlds)
     require_course(stage, taught, worlds)
-    out.mkdir(parents=True, exist_ok=True)
-    knowledge, picture = out / f"{taught.name}-{seed}.knowledge", out / f"{taught.name}-{seed}.png"
+    options.out.mkdir(parents=True, exist_ok=True)
+    stem = options.out / f"{taught.name}-{options.seed}"
+    knowledge, picture = Path(f"{stem}.knowledge"), Path(f"{stem}.png")
     archive_existing(knowledge)
 
     async def run(report: Report) -> CurriculumResult:
-        lesson, events = await run_lesson(stage, settings, taught, knowledge, seed=seed, report=report)
-        exams = await run_exams(stage, settings, taught, events, taught.exam.worlds, seed=seed, report=report)
+        lesson, events = await run_lesson(stage, settings, taught, knowledge, seed=options.seed, report=report)
+        exams = await run_exams(stage, settings, taught, events, taught.exam.worlds, seed=options.seed, report=report)
         return CurriculumResult(lesson, exams)
 
     with job_bars() as report:
         result = anyio.run(run, report)
     draw_curriculum(result, taught, stage, picture)
-    if as_json:
+    if options.as_json:
         print_json({**curriculum_as_data(result, taught), "picture": picture, "knowledge": knowledge})
         return
     files = (f"picture    {picture}", f"knowledge  {knowledge}")

@@ -1,5 +1,6 @@
 """`kurt2rt exam`."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -8,6 +9,7 @@ import typer
 
 from behaviors.metrics.route import RouteSettings
 from hal.robot_settings import load_robot
+from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.options import Changes, Plain, RobotName, Seed, TaskOfTheFile, WireName, changes_of, world_option
 from kurt2rt.cli.progress import job_bars
@@ -22,20 +24,26 @@ from kurt2rt.knowledge.journal.loading import read_lessons
 from kurt2rt.platform.text_table import print_whole
 
 
-def exam(
-    knowledge: Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt lesson or kurt2rt run leaves it.")],
-    task: TaskOfTheFile = None,
-    plain: Plain = False,
-    changes: Changes = None,
-    seed: Seed = 1,
+@dataclass(frozen=True, slots=True)
+class _Options:
+    """Arguments and options of `kurt2rt exam`."""
+
+    knowledge: Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt lesson or kurt2rt run leaves it.")]
+    task: TaskOfTheFile = None
+    plain: Plain = False
+    changes: Changes = None
+    seed: Seed = 1
     world: Annotated[
         list[str] | None,
         world_option("Repeat for several. Default: the worlds of the task."),
-    ] = None,
-    robot_settings: RobotName = "kurt2",
-    wire: WireName = "none",
-    as_json: AsJson = False,
-) -> None:
+    ] = None
+    robot_settings: RobotName = "kurt2"
+    wire: WireName = "none"
+    as_json: AsJson = False
+
+
+@takes_options(_Options)
+def exam(options: _Options) -> None:
     """Examine knowledge: the simulated robot drives without its teacher, who drives for comparison.
 
     Where the robot does not know a situation it stands, as it would in
@@ -52,25 +60,25 @@ def exam(
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from simbridge.simulation import Kurt2SimulationFactory
 
-    settings = load_robot(robot_settings)
-    other = changes_of(changes)
-    taught = load_task(task or task_of_file(knowledge), plain=plain, changes=other)
-    if task is not None:
-        task_of_file(knowledge, task)
+    settings = load_robot(options.robot_settings)
+    other = changes_of(options.changes)
+    taught = load_task(options.task or task_of_file(options.knowledge), plain=options.plain, changes=other)
+    if options.task is not None:
+        task_of_file(options.knowledge, options.task)
     if isinstance(taught.course, RouteSettings) and taught.course.seed is None:
-        taught = with_route(taught, seed)
-    worlds = tuple(world) if world else taught.exam.worlds
-    stage = Kurt2SimulationFactory(settings, wire)
+        taught = with_route(taught, options.seed)
+    worlds = tuple(options.world) if options.world else taught.exam.worlds
+    stage = Kurt2SimulationFactory(settings, options.wire)
     stage.require_worlds(*worlds)
     require_course(stage, taught, worlds)
-    events = read_lessons(knowledge, settings, taught)
+    events = read_lessons(options.knowledge, settings, taught)
 
     async def run(report: Report) -> tuple[WorldResult, ...]:
-        return await run_exams(stage, settings, taught, events, worlds, seed=seed, report=report)
+        return await run_exams(stage, settings, taught, events, worlds, seed=options.seed, report=report)
 
     with job_bars() as report:
         results = anyio.run(run, report)
-    if as_json:
-        print_json({"knowledge": knowledge, "seed": seed, **exams_as_data(results, taught)})
+    if options.as_json:
+        print_json({"knowledge": options.knowledge, "seed": options.seed, **exams_as_data(results, taught)})
     else:
         print_whole(console_of(), render_exams(results, taught))

@@ -1,11 +1,13 @@
 """`kurt2rt paper`."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from hal.robot_settings import load_robot
+from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.lesson import parse_seeds
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, results_option, seeds_option, task_option
@@ -19,22 +21,28 @@ _SEEDS, _QUICK_SEEDS = "100-119", "100-101"
 _FOLDER, _QUICK_FOLDER = Path("results/paper"), Path("results/paper-quick")
 
 
-def paper(
+@dataclass(frozen=True, slots=True)
+class _Options:
+    """Options of `kurt2rt paper`."""
+
     quick: Annotated[
         bool, typer.Option("--quick", help="A small part in under a minute: fewer tasks and seeds, short lessons.")
-    ] = False,
-    seeds: Annotated[str | None, seeds_option(_SEEDS, _QUICK_SEEDS)] = None,
+    ] = False
+    seeds: Annotated[str | None, seeds_option(_SEEDS, _QUICK_SEEDS)] = None
     task: Annotated[
         list[str] | None,
         task_option("Repeat for several. Default: all tasks of config/paper."),
-    ] = None,
-    jobs: Jobs = ALL_PROCESSORS,
-    out: Annotated[Path | None, results_option(f"{_FOLDER}, with --quick {_QUICK_FOLDER}")] = None,
+    ] = None
+    jobs: Jobs = ALL_PROCESSORS
+    out: Annotated[Path | None, results_option(f"{_FOLDER}, with --quick {_QUICK_FOLDER}")] = None
     plain: Annotated[
         bool, typer.Option("--plain/--no-plain", help="Also do all of it in the plain reading of the paper.")
-    ] = True,
-    as_json: AsJson = False,
-) -> None:
+    ] = True
+    as_json: AsJson = False
+
+
+@takes_options(_Options)
+def paper(options: _Options) -> None:
     """Teach and examine every basic task of the paper, and compare with its results.
 
     Leaves report.html, which holds everything, the figures as PNG, and each
@@ -68,12 +76,12 @@ def paper(
     from kurt2rt.experiments.study.results import Results
     from simbridge.simulation import Kurt2SimulationFactory
 
-    typed_seeds = seeds or (_QUICK_SEEDS if quick else _SEEDS)
+    typed_seeds = options.seeds or (_QUICK_SEEDS if options.quick else _SEEDS)
     robot = load_robot()
     stage = Kurt2SimulationFactory(robot)
-    results = Results(out or (_QUICK_FOLDER if quick else _FOLDER))
-    readings: tuple[Reading, ...] = ("shipped", "plain") if plain else ("shipped",)
-    extent = QUICK if quick else WHOLE
+    results = Results(options.out or (_QUICK_FOLDER if options.quick else _FOLDER))
+    readings: tuple[Reading, ...] = ("shipped", "plain") if options.plain else ("shipped",)
+    extent = QUICK if options.quick else WHOLE
     programme = plan(
         load_paper(stage=stage),
         extent,
@@ -82,19 +90,19 @@ def paper(
         stage,
         robot,
         results,
-        tasks=task or (),
+        tasks=options.task or (),
     )
-    command = _command(quick=quick, seeds=typed_seeds, tasks=task or [], plain=plain)
+    command = _command(quick=options.quick, seeds=typed_seeds, tasks=options.task or [], plain=options.plain)
     with results.held():
         missing = results.missing(programme.jobs)
         with one_bar(sum(programme.jobs[place].robot_time_s for place in missing)) as bar:
-            conduct(programme, missing, jobs, bar.look)
+            conduct(programme, missing, options.jobs, bar.look)
             bar.say("figures and report")
             study = read_study(programme, results)
             pictures = list(draw_pictures(study, stage, results.folder))
             report = results.folder / "report.html"
             write_report(study, pictures, command, report)
-    print_study(sheets(study), reasons_not_to_judge(programme), report, as_json=as_json)
+    print_study(sheets(study), reasons_not_to_judge(programme), report, as_json=options.as_json)
 
 
 def _command(*, quick: bool, seeds: str, tasks: list[str], plain: bool) -> str:

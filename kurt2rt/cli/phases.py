@@ -1,11 +1,13 @@
 """`kurt2rt phases`."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from hal.robot_settings import load_robot
+from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.lesson import parse_seeds
 from kurt2rt.cli.options import ALL_PROCESSORS, Changes, Jobs, changes_of, results_option, seeds_option, task_option
@@ -16,17 +18,23 @@ _SEEDS, _QUICK_SEEDS = "100-119", "0-1"
 _FOLDER = Path("results/phases")
 
 
-def phases(
-    task: Annotated[str, task_option("It needs a section `phases`. Default: wall_following.")] = "wall_following",
-    changes: Changes = None,
+@dataclass(frozen=True, slots=True)
+class _Options:
+    """Options of `kurt2rt phases`."""
+
+    task: Annotated[str, task_option("It needs a section `phases`. Default: wall_following.")] = "wall_following"
+    changes: Changes = None
     quick: Annotated[
         bool, typer.Option("--quick", help="All steps with two robots in under a minute, each for seconds only.")
-    ] = False,
-    seeds: Annotated[str | None, seeds_option(_SEEDS, _QUICK_SEEDS)] = None,
-    jobs: Jobs = ALL_PROCESSORS,
-    out: Annotated[Path | None, results_option(f"{_FOLDER}/ and the task's name, with -quick behind it")] = None,
-    as_json: AsJson = False,
-) -> None:
+    ] = False
+    seeds: Annotated[str | None, seeds_option(_SEEDS, _QUICK_SEEDS)] = None
+    jobs: Jobs = ALL_PROCESSORS
+    out: Annotated[Path | None, results_option(f"{_FOLDER}/ and the task's name, with -quick behind it")] = None
+    as_json: AsJson = False
+
+
+@takes_options(_Options)
+def phases(options: _Options) -> None:
     """Train robots through all phases, 1 to 5, with a scripted teacher, and compare with controls.
 
     The path: untaught, answers (1), corrections (2), rewards (3), a critic is
@@ -58,23 +66,25 @@ def phases(
     from kurt2rt.experiments.study.results import Results
     from simbridge.simulation import Kurt2SimulationFactory
 
-    typed_seeds = seeds or (_QUICK_SEEDS if quick else _SEEDS)
-    robot, settings = load_robot(), load_task(task, changes=changes_of(changes))
-    results = Results(out or _FOLDER / (settings.name + ("-quick" if quick else "")))
-    programme = plan(settings, parse_seeds(typed_seeds), Kurt2SimulationFactory(robot), robot, results, quick=quick)
+    typed_seeds = options.seeds or (_QUICK_SEEDS if options.quick else _SEEDS)
+    robot, settings = load_robot(), load_task(options.task, changes=changes_of(options.changes))
+    results = Results(options.out or _FOLDER / (settings.name + ("-quick" if options.quick else "")))
+    programme = plan(
+        settings, parse_seeds(typed_seeds), Kurt2SimulationFactory(robot), robot, results, quick=options.quick
+    )
     with results.held():
         todo = programme.jobs
         missing = results.missing(todo)
         with one_bar(sum(todo[place].robot_time_s for place in missing)) as bar:
-            conduct(programme, results, jobs, bar.look)
+            conduct(programme, results, options.jobs, bar.look)
             bar.say("figures and report")
             study = read_study(programme, results)
             pictures = list(draw_pictures(study, results.folder))
             report = results.folder / "report.html"
-            command = _command(quick=quick, seeds=typed_seeds, task=task, changes=changes or [])
+            command = _command(quick=options.quick, seeds=typed_seeds, task=options.task, changes=options.changes or [])
             write_report(study, pictures, command, report)
     reasons = list(reasons_not_to_judge(programme))
-    print_study(sheets(study, reasons), reasons, report, as_json=as_json)
+    print_study(sheets(study, reasons), reasons, report, as_json=options.as_json)
 
 
 def _command(*, quick: bool, seeds: str, task: str, changes: list[str]) -> str:

@@ -1,47 +1,56 @@
 """`kurt2rt run`. The robot's packages are imported by the command, not by its help."""
 
 import math
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.interrupt import end_at_interrupt
 from kurt2rt.cli.options import WireName, task_option, world_option
 from kurt2rt.service.bus_names import NO_WIRE, SIMULATED
 
 if TYPE_CHECKING:
+    from kurt2rt.core.task_settings import TaskSettings
+    from kurt2rt.service.program import RobotProgram
     from kurt2rt.service.settings import ServiceSettings
 
 
-def run(
+@dataclass(frozen=True, slots=True)
+class _Options:
+    """Options of `kurt2rt run`."""
+
     robot: Annotated[
         str,
         typer.Option(
             help="sim: a simulated robot in this program; else the bus that the robot is on, a SocketCAN interface "
             "such as can0, or shared:NAME, where kurt2rt sim is one."
         ),
-    ] = "sim",
+    ] = "sim"
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
-    ] = "default",
+    ] = "default"
     task: Annotated[
         str | None,
         task_option(
-            "It comes with a knowledge file of its own beside that of the settings, and in its own world, unless these "
+            "It brings a knowledge file of its own, next to that of the settings, and its own world, unless these "
             "are given. Default: the task of the file in --knowledge, else the task of the settings."
         ),
-    ] = None,
+    ] = None
     knowledge: Annotated[
         Path | None, typer.Option(help="Knowledge file; made when absent. Default: as the settings say.")
-    ] = None,
+    ] = None
     world: Annotated[
         str | None, world_option("Of the simulated robot. Default: the world of the task or of the settings.")
-    ] = None,
+    ] = None
     teacher: Annotated[
         Literal["channel", "none"],
-        typer.Option(help="channel: teachers come over UDP; none: nobody, the robot drives where it knows the way."),
-    ] = "channel",
+        typer.Option(
+            help="channel: teachers come over UDP; none: the robot drives without a teacher where it knows the way."
+        ),
+    ] = "channel"
     behaviour: Annotated[
         str | None,
         typer.Option(
@@ -49,10 +58,10 @@ def run(
             help="Taught behaviour that is wanted at the start, where the task has several; a teacher may say another "
             "one later, and with --auto the others follow in turn. Default: the task's first.",
         ),
-    ] = None,
-    page: Annotated[
-        bool, typer.Option("--page", help="Start the teacher's page as well and print its address.")
-    ] = False,
+    ] = None
+    page: Annotated[bool, typer.Option("--page", help="Start the teacher's page as well and print its address.")] = (
+        False
+    )
     phone: Annotated[
         bool,
         typer.Option(
@@ -60,10 +69,10 @@ def run(
             help="Like --page, and for paired devices as well: the page is open to the network while one is paired "
             "(kurt2rt pair phone), and the code to scan stays on screen.",
         ),
-    ] = False,
+    ] = False
     no_open: Annotated[
         bool, typer.Option("--no-open", help="Leave the browser alone; on a desktop the page is opened in it else.")
-    ] = False,
+    ] = False
     auto: Annotated[
         bool,
         typer.Option(
@@ -71,34 +80,34 @@ def run(
             help="Let the scripted teacher of the task teach, over the channel; simulated robot only. Without "
             "--knowledge into a file of its own, TASK.auto.knowledge, never into that of a person.",
         ),
-    ] = False,
+    ] = False
     port: Annotated[
         int | None,
         typer.Option(
             metavar="PORT", min=0, max=65535, help="UDP port of the channel; 0: any. Default: as the settings say."
         ),
-    ] = None,
+    ] = None
     page_port: Annotated[
         int | None,
         typer.Option(
             metavar="PORT", min=0, max=65535, help="TCP port of the page; 0: any. Default: as the settings say."
         ),
-    ] = None,
+    ] = None
     can_log: Annotated[
         Path | None,
         typer.Option(
             help="Keep every frame that is heard and sent, with its time, in a new file: .log (candump's), .asc, .blf, "
             ".csv, .trc or .mf4. 140 MB an hour as .log.",
         ),
-    ] = None,
+    ] = None
     record: Annotated[
         Path | None,
         typer.Option(
             help="Folder that gets a folder for this run: all that it sees, decides and is taught, for kurt2rt replay "
             "and for Foxglove; some 70 MB an hour. Default: as the settings say."
         ),
-    ] = None,
-    no_record: Annotated[bool, typer.Option("--no-record", help="Record nothing.")] = False,
+    ] = None
+    no_record: Annotated[bool, typer.Option("--no-record", help="Record nothing.")] = False
     live_view: Annotated[
         str | None,
         typer.Option(
@@ -106,7 +115,7 @@ def run(
             help="Show the same live to Foxglove, over a WebSocket on this port, 0: any; to this machine alone unless "
             "a host is given: there is no password.",
         ),
-    ] = None,
+    ] = None
     service: Annotated[
         bool,
         typer.Option(
@@ -114,13 +123,16 @@ def run(
             help="As a unit runs it (kurt2rt service): wait for bus, disk and network as long as it takes, stand until "
             "Go, and read the settings anew at SIGHUP.",
         ),
-    ] = False,
+    ] = False
     seconds: Annotated[
         float | None, typer.Option(metavar="SECONDS", min=0.1, help="End after so long; default: run until Ctrl-C.")
-    ] = None,
-    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Decides the simulated robot's start and noise.")] = 1,
-    wire: WireName = NO_WIRE,
-) -> None:
+    ] = None
+    seed: Annotated[int, typer.Option(metavar="N", min=0, help="Decides the simulated robot's start and noise.")] = 1
+    wire: WireName = NO_WIRE
+
+
+@takes_options(_Options)
+def run(options: _Options) -> None:
     """Run the robot in real time, 100 ticks a second, until Ctrl-C or SIGTERM.
 
     The robot drives by the nearest rule that it was taught. If that one is
@@ -156,86 +168,125 @@ def run(
     The run is recorded: kurt2rt replay decides it again, kurt2rt why explains
     it, and Foxglove shows it.
 
-    With --teacher none nobody can say resume: any robot drives at once where
+    With --teacher none no teacher can say resume: any robot drives at once where
     it knows the situation, and once stopped by the guard it stands until the
-    program is started anew. Of several taught behaviours it follows one:
+    program is started again. Of several taught behaviours it follows one:
 
         kurt2rt run --teacher none --task streets --behaviour turn_left
     """
     with end_at_interrupt():
-        from rich.console import Console
+        import kurt2rt.service.program
+        import kurt2rt.teacher.scripted.channel_teacher  # noqa: F401  # loads all that the program needs
+    _require_consistent(options)
+    _program(options).run()
 
-        from hal.robot_settings import load_robot
-        from kurt2rt.cli.scripted_file import own_file, require_agreement
-        from kurt2rt.cli.terminal_screen import TerminalScreen
-        from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-        from kurt2rt.core.outcome import CommandRefusedError
-        from kurt2rt.core.outcome_text import text_of
-        from kurt2rt.core.task_settings import load_task
-        from kurt2rt.runs.recording.live_view import parse_address
-        from kurt2rt.service.program import RobotProgram, RunOptions
-        from kurt2rt.service.settings import load_service
-        from kurt2rt.teacher.scripted.channel_teacher import mid_level_refusal
 
-    if seconds is not None and not math.isfinite(seconds):
-        raise typer.BadParameter("a number of seconds has an end", param_hint="--seconds")
-    if auto and robot != SIMULATED:
-        raise typer.BadParameter("a scripted teacher teaches the simulated robot only", param_hint="--auto")
-    if wire != NO_WIRE and robot != SIMULATED:
-        raise typer.BadParameter("only the simulated robot in this program has a simulated wire", param_hint="--wire")
-    if (page or phone or auto) and teacher == "none":
-        raise typer.BadParameter("a page and a scripted teacher come over the channel", param_hint="--teacher")
-    if no_record and record is not None:
-        raise typer.BadParameter("either a folder to record to, or nothing is recorded", param_hint="--no-record")
+def _require_consistent(options: _Options) -> None:
+    """Raise typer.BadParameter for options that exclude each other."""
+    simulated = options.robot == SIMULATED
+    for refused, text, hint in (
+        (
+            options.seconds is not None and not math.isfinite(options.seconds),
+            "must be a finite number of seconds",
+            "--seconds",
+        ),
+        (options.auto and not simulated, "a scripted teacher teaches the simulated robot only", "--auto"),
+        (
+            options.wire != NO_WIRE and not simulated,
+            "only the simulated robot in this program has a simulated wire",
+            "--wire",
+        ),
+        (
+            (options.page or options.phone or options.auto) and options.teacher == "none",
+            "a page and a scripted teacher come over the channel",
+            "--teacher",
+        ),
+        (
+            options.no_record and options.record is not None,
+            "either a folder to record to, or nothing is recorded",
+            "--no-record",
+        ),
+        (
+            options.service and (options.auto or options.teacher == "none"),
+            "after each start it waits for a person who says Go",
+            "--service",
+        ),
+    ):
+        if refused:
+            raise typer.BadParameter(text, param_hint=hint)
+
+
+def _program(options: _Options) -> "RobotProgram":
+    from rich.console import Console
+
+    from hal.robot_settings import load_robot
+    from kurt2rt.cli.scripted_file import require_agreement
+    from kurt2rt.cli.terminal_screen import TerminalScreen
+    from kurt2rt.core.task_settings import load_task
+    from kurt2rt.service.program import RobotProgram, RunOptions
+    from kurt2rt.service.settings import load_service
+    from kurt2rt.teacher.scripted.channel_teacher import mid_level_refusal
+
+    live_view = _live_view(options.live_view)
+    task = options.task
+    # A service may wait for a disk that is not there yet.
+    if options.knowledge is not None and not options.service and options.knowledge.exists():
+        task = _task_of(options.knowledge, task, load_service(options.settings).task)
+    if options.auto and options.knowledge is not None:
+        require_agreement(options.knowledge)
+    settings = _changed(options, task)
+    taught = load_task(settings.task)
+    if options.auto and taught.mid is not None:
+        raise typer.BadParameter(mid_level_refusal(taught), param_hint="--auto")
+    _require_behaviour(taught, options.behaviour)
+    simulated, attended = options.robot == SIMULATED, options.teacher == "channel"
+    run_options = RunOptions(
+        bus=options.robot,
+        settings=options.settings,
+        as_service=options.service,
+        attended=attended,
+        stopped=options.service or (attended and not simulated),
+        behaviour=options.behaviour or "",
+        page=options.page or options.phone,
+        phones=options.phone,
+        scripted_teacher=options.auto,
+        page_port=options.page_port,
+        can_log=options.can_log,
+        record=not options.no_record,
+        live_view=live_view,
+        seconds=options.seconds,
+        seed=options.seed,
+        wire=options.wire,
+    )
+    screen = TerminalScreen(
+        Console(),
+        Path(settings.devices),
+        as_service=options.service,
+        phones=options.phone,
+        browser=not options.no_open,
+    )
+    return RobotProgram(run_options, lambda: _changed(options, task), load_robot(settings.robot), taught, screen)
+
+
+def _live_view(address: str | None) -> tuple[str, int] | None:
+    from kurt2rt.runs.recording.live_view import parse_address
+
     try:
-        live = None if live_view is None else parse_address(live_view)
+        return None if address is None else parse_address(address)
     except ValueError as error:
         raise typer.BadParameter(str(error), param_hint="--live-view") from error
-    if service and (auto or teacher == "none"):
-        raise typer.BadParameter("after each start it waits for a person who says Go", param_hint="--service")
 
-    # Not as a service, which waits for a disk that is not there yet.
-    if knowledge is not None and not service and knowledge.exists():
-        task = _task_of(knowledge, task, load_service(settings).task)
 
-    if auto and knowledge is not None:
-        require_agreement(knowledge)
+def _require_behaviour(task: "TaskSettings", behaviour: str | None) -> None:
+    from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
+    from kurt2rt.core.outcome import CommandRefusedError
+    from kurt2rt.core.outcome_text import text_of
 
-    def read() -> "ServiceSettings":
-        changed = _changed(load_service(settings), task, knowledge, world, port, record)
-        if auto and knowledge is None:
-            changed = changed.model_copy(update={"knowledge": str(own_file(Path(changed.knowledge)))})
-        return changed
-
-    loaded = read()
-    robot_settings, taught = load_robot(loaded.robot), load_task(loaded.task)
-    if auto and taught.mid is not None:
-        raise typer.BadParameter(mid_level_refusal(taught), param_hint="--auto")
     if behaviour is not None:
         try:
-            ActiveBehaviour(taught.behaviours).select(behaviour)
+            ActiveBehaviour(task.behaviours).select(behaviour)
         except CommandRefusedError as error:
             raise typer.BadParameter(text_of(error.outcome), param_hint="--behaviour") from error
-    orders = RunOptions(
-        bus=robot,
-        settings=settings,
-        as_service=service,
-        attended=teacher == "channel",
-        stopped=service or (robot != SIMULATED and teacher == "channel"),
-        behaviour=behaviour or "",
-        page=page or phone,
-        phones=phone,
-        scripted_teacher=auto,
-        page_port=page_port,
-        can_log=can_log,
-        record=not no_record,
-        live_view=live,
-        seconds=seconds,
-        seed=seed,
-        wire=wire,
-    )
-    screen = TerminalScreen(Console(), Path(loaded.devices), as_service=service, phones=phone, browser=not no_open)
-    RobotProgram(orders, read, robot_settings, taught, screen).run()
 
 
 def _task_of(knowledge: Path, given: str | None, usual: str) -> str | None:
@@ -248,20 +299,20 @@ def _task_of(knowledge: Path, given: str | None, usual: str) -> str | None:
     return task_of_file(knowledge, given)
 
 
-def _changed(
-    service: "ServiceSettings",
-    task: str | None,
-    knowledge: Path | None,
-    world: str | None,
-    port: int | None,
-    record: Path | None,
-) -> "ServiceSettings":
+def _changed(options: _Options, task: str | None) -> "ServiceSettings":
+    """Read the runtime settings and apply the command line to them. Raises SettingsError."""
+    from kurt2rt.cli.scripted_file import own_file
     from kurt2rt.core.task_settings import load_task
+    from kurt2rt.service.settings import load_service
 
+    settings = load_service(options.settings)
     if task is not None:
         taught = load_task(task)
-        beside = str(Path(service.knowledge).with_name(f"{taught.name}.knowledge"))
-        service = service.model_copy(update={"task": task, "world": taught.teaching.world, "knowledge": beside})
-    files = {"knowledge": knowledge, "recordings": record}
-    given = {key: None if path is None else str(path) for key, path in files.items()} | {"world": world, "port": port}
-    return service.model_copy(update={key: value for key, value in given.items() if value is not None})
+        knowledge = str(Path(settings.knowledge).with_name(f"{taught.name}.knowledge"))
+        settings = settings.model_copy(update={"task": task, "world": taught.teaching.world, "knowledge": knowledge})
+    if options.auto and options.knowledge is None:
+        settings = settings.model_copy(update={"knowledge": str(own_file(Path(settings.knowledge)))})
+    files = {"knowledge": options.knowledge, "recordings": options.record}
+    given: dict[str, object] = {key: None if path is None else str(path) for key, path in files.items()}
+    given |= {"world": options.world, "port": options.port}
+    return settings.model_copy(update={key: value for key, value in given.items() if value is not None})

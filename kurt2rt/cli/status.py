@@ -3,6 +3,7 @@
 import json as json_lines
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -17,6 +18,7 @@ from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.health_codec import plain_of
 from kurt2rt.channel.protocol.health_text import URGENT, WARNS, headline, rows_of, trouble_in
 from kurt2rt.channel.security.pairing import Device, read_device
+from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import task_option
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.platform.text_table import TextTable, print_whole
@@ -29,26 +31,29 @@ _PATIENCE_S = 5.0
 _STYLES = {WARNS: "yellow", URGENT: "bold red"}
 
 
-def status(
+@dataclass(frozen=True, slots=True)
+class _Options:
+    """Arguments and options of `kurt2rt status`."""
+
     knowledge: Annotated[
         Path | None,
         typer.Argument(help="Knowledge file that the robot program teaches on in. Default: as the settings say."),
-    ] = None,
-    task: Annotated[str | None, task_option("As the robot program was started with, if no file is given.")] = None,
+    ] = None
+    task: Annotated[str | None, task_option("As the robot program was started with, if no file is given.")] = None
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
-    ] = "default",
-    watch: Annotated[bool, typer.Option("--watch", help="Go on, once a second, until Ctrl-C.")] = False,
+    ] = "default"
+    watch: Annotated[bool, typer.Option("--watch", help="Go on, once a second, until Ctrl-C.")] = False
     json: Annotated[
         bool, typer.Option("--json", help="Print the report as JSON, for programs; with --watch a line each second.")
-    ] = False,
+    ] = False
     name: Annotated[
         str | None,
         typer.Option("--as", help="Ask over the teacher's channel instead, as this paired device; from any machine."),
-    ] = None,
+    ] = None
     robot: Annotated[
         str | None, typer.Option(help="With --as, address of the robot. Default: as noted with the pairing.")
-    ] = None,
+    ] = None
     port: Annotated[
         int | None,
         typer.Option(
@@ -57,8 +62,11 @@ def status(
             max=65535,
             help="With --as, UDP port of the robot. Default: as noted with the pairing.",
         ),
-    ] = None,
-) -> None:
+    ] = None
+
+
+@takes_options(_Options)
+def status(options: _Options) -> None:
     """Tell how a running robot program is: from another terminal, or another machine.
 
     How late its ticks begin, what it missed, how old what it senses is, its bus,
@@ -74,18 +82,18 @@ def status(
     something urgent is wrong: the robot stands because of it, or lessons are at
     risk; with 2 where no robot program runs.
     """
-    if name is None and (robot is not None or port is not None):
+    if options.name is None and (options.robot is not None or options.port is not None):
         raise typer.BadParameter("only the teacher's channel has an address; give --as", param_hint="--robot, --port")
-    service = load_service(settings)
-    if name is not None:
-        reports = _over_the_channel(read_device(Path(service.devices) / name), robot, port)
+    service = load_service(options.settings)
+    if options.name is not None:
+        reports = _over_the_channel(read_device(Path(service.devices) / options.name), options.robot, options.port)
     else:
         beside = Path(service.knowledge)
-        if task is not None:
-            beside = beside.with_name(f"{load_task(task).name}.knowledge")
-        _require_name(knowledge)
-        reports = read_reports(status_socket_path(knowledge or beside), _PATIENCE_S)
-    newest = _show(reports, watch=watch, json=json)
+        if options.task is not None:
+            beside = beside.with_name(f"{load_task(options.task).name}.knowledge")
+        _require_name(options.knowledge)
+        reports = read_reports(status_socket_path(options.knowledge or beside), _PATIENCE_S)
+    newest = _show(reports, watch=options.watch, json=options.json)
     if newest.urgent:
         raise typer.Exit(1)
 

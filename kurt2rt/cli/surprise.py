@@ -1,5 +1,6 @@
 """`kurt2rt surprise`."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -8,6 +9,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from hal.robot_settings import load_robot
+from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.lesson import parse_seeds
 from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, RobotName, task_option
@@ -19,24 +21,30 @@ from kurt2rt.experiments.surprise.jobs import DIFFERENT_S, LEARNS_S, SurpriseJob
 from kurt2rt.platform.text_table import print_whole
 
 
-def surprise(
+@dataclass(frozen=True, slots=True)
+class _Options:
+    """Arguments and options of `kurt2rt surprise`."""
+
     taught: Annotated[
         Path, typer.Argument(help="Folder with knowledge files, as kurt2rt lesson --task streets --seeds leaves them.")
-    ],
-    task: Annotated[str, task_option("Default: streets.")] = "streets",
-    seeds: Annotated[str, typer.Option(help="Robots by their seeds, e.g. 0-9.")] = "0-9",
+    ]
+    task: Annotated[str, task_option("Default: streets.")] = "streets"
+    seeds: Annotated[str, typer.Option(help="Robots by their seeds, e.g. 0-9.")] = "0-9"
     learns_s: Annotated[
         float,
         typer.Option("--learns", metavar="SECONDS", min=1.0, help="Seconds that a robot gets to know what to expect."),
-    ] = LEARNS_S,
+    ] = LEARNS_S
     different_s: Annotated[
         float,
         typer.Option("--different", metavar="SECONDS", min=1.0, help="Seconds that it drives with each difference."),
-    ] = DIFFERENT_S,
-    jobs: Jobs = ALL_PROCESSORS,
-    robot_settings: RobotName = "kurt2",
-    as_json: AsJson = False,
-) -> None:
+    ] = DIFFERENT_S
+    jobs: Jobs = ALL_PROCESSORS
+    robot_settings: RobotName = "kurt2"
+    as_json: AsJson = False
+
+
+@takes_options(_Options)
+def surprise(options: _Options) -> None:
     """Measure how surprised taught robots are: on known ground, and after something changed.
 
     The folder holds one knowledge file per robot; each learns to expect what
@@ -50,18 +58,26 @@ def surprise(
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from simbridge.simulation import Kurt2SimulationFactory
 
-    settings = load_robot(robot_settings)
-    what = load_task(task)
+    settings = load_robot(options.robot_settings)
+    what = load_task(options.task)
     stage = Kurt2SimulationFactory(settings)
     work = [
-        SurpriseJob(stage, settings, what, taught / f"{what.name}-{seed}.knowledge", seed, learns_s, different_s)
-        for seed in parse_seeds(seeds)
+        SurpriseJob(
+            stage,
+            settings,
+            what,
+            options.taught / f"{what.name}-{seed}.knowledge",
+            seed,
+            options.learns_s,
+            options.different_s,
+        )
+        for seed in parse_seeds(options.seeds)
     ]
     columns = (TextColumn("robots"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True)) as progress:
         bar = progress.add_task("robots", total=len(work))
-        results = run_jobs(work, jobs, on_done=lambda _place: progress.advance(bar))
-    if as_json:
+        results = run_jobs(work, options.jobs, on_done=lambda _place: progress.advance(bar))
+    if options.as_json:
         print_json({"tables": tables_of([sheet_of(results)])})
     else:
         print_whole(console_of(), as_rich(sheet_of(results)))

@@ -76,7 +76,7 @@ def test_a_robot_that_nobody_told_to_drive_stands(tmp_path: Path, place: LongRun
 def test_one_that_drives_though_it_was_only_started_is_seen(
     tmp_path: Path, place: LongRunRig, witness: SoakObserver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(tick, "standing", lambda decision, _: decision)
+    monkeypatch.setattr(tick, "stopped", lambda decision, _: decision)
     life = started(tmp_path, place, witness, away=AWAY)
     assert life.level.behind is not None
     life.level.behind = Careless(life.level.behind)

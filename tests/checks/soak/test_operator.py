@@ -45,7 +45,7 @@ def seen(grant: GuardResult, *commands: Resume) -> TickRecord:
     """A tick in which an RLA would drive, and in which these were carried out."""
     results = tuple(CommandResult(each.command_id, Outcome(ResultCode.RESUMED)) for each in commands)
     decision = SimpleNamespace(cause=Cause.RLA)
-    return cast(TickRecord, SimpleNamespace(grant=grant, decision=decision, commands=commands, results=results))
+    return cast(TickRecord, SimpleNamespace(guard_result=grant, decision=decision, commands=commands, results=results))
 
 
 def test_a_robot_that_makes_its_way_is_left_alone(place: LongRunRig) -> None:
