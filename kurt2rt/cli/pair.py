@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.text import Text
 
 from kurt2rt.channel.security import pairing
-from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, Pairing, paired
+from kurt2rt.channel.security.pairing import OF_THIS_MACHINE, Pairing, list_pairings
 from kurt2rt.cli.json_output import plain, print_json
 from kurt2rt.cli.qr_code import qr_code
 from kurt2rt.cli.tables import console_of
@@ -97,7 +97,7 @@ class _Folders(NamedTuple):
 
 def _list(pairings: _Folders, *, as_json: bool) -> None:
     if as_json:
-        rows = paired(pairings.teachers)
+        rows = list_pairings(pairings.teachers)
         print_json({"paired": [{**plain(row), "device": _where(row.name, pairings.devices)} for row in rows]})
     else:
         print_whole(console_of(), _table(*pairings))
@@ -117,7 +117,7 @@ def _show(name: str, changed: Pairing, link: str) -> None:
 
 
 def _table(teachers: Path, devices: Path) -> TextTable | Text:
-    rows = paired(teachers)
+    rows = list_pairings(teachers)
     if not rows:
         return Text("No device is paired. Pair one: kurt2rt pair NAME")
     table = TextTable("name", "made (UTC)", "last used (UTC)", "device's side")

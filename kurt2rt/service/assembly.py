@@ -13,8 +13,8 @@ import anyio.to_thread
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
 from kurt2rt.channel.security.paired_devices import Teachers
-from kurt2rt.channel.server.channel import Channel, ChannelDependencies, open_channel
-from kurt2rt.channel.server.state_builder import JournalStatus
+from kurt2rt.channel.server.channel import Channel, open_channel
+from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStatus
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.level import Level
 from kurt2rt.core.task_settings import TaskSettings

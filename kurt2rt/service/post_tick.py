@@ -122,7 +122,7 @@ class PostTick:
         if acknowledgement.stamped_at:
             self._stamps[acknowledgement.command_id] = acknowledgement.stamped_at
         if self._channel is not None:
-            self._channel.settled(acknowledgement)
+            self._channel.on_acknowledged(acknowledgement)
         if self._recorder is not None:
             self._recorder.on_acknowledged(acknowledgement)
         self._console.acknowledged(acknowledgement)

@@ -15,7 +15,7 @@ from hal.simulation import SimulatedWorld
 from kurt2rt.channel.protocol.health_codec import plain_of
 from kurt2rt.channel.protocol.requests import BOOT_BYTES, FASTEST
 from kurt2rt.channel.server.channel import Channel
-from kurt2rt.channel.server.simulation import RunControl
+from kurt2rt.channel.server.dependencies import RunControl
 from kurt2rt.core.decision.active_stop import NEXT_RUN, STARTED
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.tick import TickRecord
@@ -244,17 +244,17 @@ class _Run:
         dependencies = replace(
             self._service.channel_dependencies(None if exam is None else exam.begin),
             bus_trouble=options.bus_trouble,
-            ground=options.simulated_world,
+            world=options.simulated_world,
             boot=bytes.fromhex(self._run.boot),
             health=lambda: health.newest,
             exam=None if exam is None else lambda: exam.status,
-            simulation=options.run_control,
+            run_control=options.run_control,
             speed=speed,
-            measure=options.measure,
+            progress=options.measure,
         )
         async with open_service_channel(self._service, dependencies, partial(shutdown.remaining_s, _KEYS_S)) as channel:
             health.include(
-                drops={"pictures for teachers": lambda: channel.pictures_skipped},
+                drops={"pictures for teachers": lambda: channel.states_skipped},
                 errors={"channel": lambda: channel.trouble},
             )
             options.on_open(channel)

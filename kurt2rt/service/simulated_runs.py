@@ -12,7 +12,7 @@ import anyio.to_thread
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError, shipped_names
 from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
-from kurt2rt.channel.server.simulation import TeacherNow
+from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
@@ -69,7 +69,7 @@ class SimulatedRun:
 
 
 class SimulatedRuns:
-    """The present run, and the next one once a teacher wants one (kurt2rt.channel.server.simulation.RunControl)."""
+    """The present run, and the next one once a teacher wants one (kurt2rt.channel.server.dependencies.RunControl)."""
 
     def __init__(
         self,

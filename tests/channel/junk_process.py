@@ -9,7 +9,7 @@ import socket
 import sys
 import time
 
-from tests.channel.mischief import Mischief
+from tests.channel.hostile_datagrams import HostileDatagrams
 
 _BURSTS_PER_S = 100
 _KINDS = 4_000
@@ -26,9 +26,9 @@ def forged(chance: random.Random, kid: bytes) -> bytes:
 def junk_of(port: int, chance: random.Random, kid: str) -> list[bytes]:
     if kid:
         return [forged(chance, bytes.fromhex(kid)) for _ in range(_KINDS)]
-    mischief = Mischief(port, lambda: (b"boot", 0))
+    hostile = HostileDatagrams(port, lambda: (b"boot", 0))
     sealed = [forged(chance, bytes.fromhex(_UNKNOWN)) for _ in range(_KINDS // 4)]
-    return sealed + [mischief.datagram(sealed) for _ in range(_KINDS)]
+    return sealed + [hostile.datagram(sealed) for _ in range(_KINDS)]
 
 
 def flood(port: int, per_s: int, kid: str) -> None:

@@ -73,7 +73,7 @@ class RobotAtWork:
 
     @property
     def runtime(self) -> Runtime:
-        runtime: Runtime = self.channel._reception._runtime
+        runtime: Runtime = self.channel.handler._runtime
         return runtime
 
     @property

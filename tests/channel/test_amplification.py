@@ -9,8 +9,8 @@ from typing import Any
 import aiocoap
 import pytest
 
+from tests.channel.hostile_datagrams import HostileDatagrams
 from tests.channel.jumping_loop import run_jumping
-from tests.channel.mischief import Mischief
 from tests.channel.protocol.test_fuzz import _AllMayPass
 from tests.channel.robot_at_work import RobotAtWork, robot_at_work
 
@@ -29,7 +29,7 @@ def discovery(kind: Any, token: bytes, number: int, **block: Any) -> bytes:
 
 async def answered(at_work: RobotAtWork, datagrams: list[bytes]) -> list[int]:
     """Bytes that came back for each, which the address did not confirm."""
-    gate: Any = at_work.channel.endpoint._gate
+    gate: Any = at_work.channel.endpoint._filter
     gate._strangers = _AllMayPass()
     senders = []
     for datagram in datagrams:
@@ -70,11 +70,11 @@ def test_discovery_answers_at_most_three_times_the_bytes(tmp_path: Path, kind: A
 def test_whatever_strangers_send_they_get_at_most_three_times_the_bytes(tmp_path: Path) -> None:
     async def story() -> None:
         async with robot_at_work(tmp_path) as at_work:
-            chance, mischief = random.Random(2004), Mischief(2004, lambda: (b"boot", 0))
+            chance, hostile = random.Random(2004), HostileDatagrams(2004, lambda: (b"boot", 0))
             captured = [discovery(aiocoap.CON, chance.randbytes(4), number) for number in range(20)]
             datagrams = [bytes((0x40, 0, 1, 2))]  # a ping
-            datagrams += [mischief.datagram(captured) for _ in range(150)]
-            datagrams += [mischief.mutated(chance.choice(captured)) for _ in range(150)]
+            datagrams += [hostile.datagram(captured) for _ in range(150)]
+            datagrams += [hostile.mutated(chance.choice(captured)) for _ in range(150)]
             datagrams = [each for each in datagrams if each]
             came = await answered(at_work, datagrams)
             assert sum(back > 0 for back in came) > 50

@@ -11,7 +11,7 @@ import pytest
 from hal.robot import STANDSTILL
 from hal.robot_settings import load_robot
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.channel.server.simulation import TeacherNow
+from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.core.decision.active_stop import NEXT_RUN
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import load_task
@@ -23,7 +23,7 @@ from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.service.simulated_runs import SimulatedRun, SimulatedRuns
 from kurt2rt.teacher import TeacherClient
 from simbridge.simulation import Kurt2SimulationFactory
-from tests.channel.desk import Desk
+from tests.channel.channel_fixture import ChannelFixture
 from tests.cli.helpers import Running, running
 from tests.knowledge.lessons import created
 
@@ -62,7 +62,7 @@ async def test_a_run_that_begins_in_phase_5_with_a_session_stands_until_go(tmp_p
     runs = runs_in(tmp_path)
     await runs.prepare("b", None, False, TeacherNow("ann", 5, "noon"))
     runs.advance()
-    desk = Desk()
+    desk = ChannelFixture()
     school = desk.runtime.handler
     school.stop(NEXT_RUN)
     for command in runs.present.first_commands:

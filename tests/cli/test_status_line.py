@@ -11,7 +11,7 @@ from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.teaching.commands import Teach
 from kurt2rt.service.post_tick import ProgramStatus
 from kurt2rt.service.status_line import status_line
-from tests.channel.desk import Desk
+from tests.channel.channel_fixture import ChannelFixture
 
 WELL = Health(
     frames=700,
@@ -32,7 +32,7 @@ LOST = replace(WELL, bus_trouble="bus can0: receiving failed", latched=GuardReas
 
 @pytest.fixture(scope="module")
 def status() -> ProgramStatus:
-    desk = Desk()
+    desk = ChannelFixture()
     return ProgramStatus(desk.record, desk.runtime, 0, None, "")
 
 
@@ -42,14 +42,14 @@ def test_a_robot_that_is_well_has_nothing_to_say(status: ProgramStatus) -> None:
 
 
 def test_a_robot_that_was_stopped_says_what_it_waits_for() -> None:
-    desk = Desk()
+    desk = ChannelFixture()
     desk.runtime.handler.stop(STARTED)
     line = status_line(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), WELL)
     assert "stands until Go: the robot program was started" in line
 
 
 def test_the_rule_that_drives_is_named_with_the_behaviour_that_is_wanted() -> None:
-    desk = Desk(behaviours=("straight_on", "turn_left"))
+    desk = ChannelFixture(behaviours=("straight_on", "turn_left"))
     desk.runtime.active_behaviour.select("turn_left")
     assert "stands and asks about turn_left " in status_line(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), WELL)
     desk.runtime.handler.authority.attended = False
@@ -60,7 +60,7 @@ def test_the_rule_that_drives_is_named_with_the_behaviour_that_is_wanted() -> No
 
 
 def test_what_the_robot_could_not_learn_is_told() -> None:
-    desk = Desk()
+    desk = ChannelFixture()
     desk.runtime.handler.updater.error = "1 change was skipped"
     assert status_line(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), WELL).endswith(" | 1 change was skipped")
 

@@ -11,7 +11,7 @@ from kurt2rt.cli.terminal_screen import TerminalScreen
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.service.post_tick import ProgramStatus
 from kurt2rt.teacher.page.served_pages import PageAddress, ServedPages, to_line
-from tests.channel.desk import Desk
+from tests.channel.channel_fixture import ChannelFixture
 from tests.cli.test_status_line import PASSIVE, WELL
 
 LOCAL = PageAddress("local", "http://127.0.0.1:8642/pair?token=" + 32 * "a")
@@ -35,7 +35,7 @@ class Shown:
 
 @pytest.fixture(scope="module")
 def status() -> ProgramStatus:
-    desk = Desk()
+    desk = ChannelFixture()
     return ProgramStatus(desk.record, desk.runtime, 0, None, "")
 
 
@@ -89,7 +89,7 @@ def test_tell_in_the_journal_marks_the_level(monkeypatch: pytest.MonkeyPatch) ->
 
 def test_show_in_the_journal_tells_a_stop_without_level(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("JOURNAL_STREAM", "8:1")
-    desk = Desk()
+    desk = ChannelFixture()
     desk.runtime.handler.stop(STARTED)
     shown = Shown(as_service=True)
     shown.screen.show_status(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), PASSIVE, "")

@@ -6,9 +6,9 @@ from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.core.progress_meter import ProgressMeter
 from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
 from kurt2rt.core.tick import TickRecord
-from tests.channel.desk import Desk
+from tests.channel.channel_fixture import ChannelFixture
 
-DESK = Desk()
+DESK = ChannelFixture()
 RECORD: TickRecord = DESK.run()
 DRIVES = RECORD._replace(decision=RECORD.decision._replace(action="forward", rla_id=1), standing=Standing())
 ASKS = RECORD._replace(standing=Standing(StandReason.ASKS, asks=True))

@@ -7,10 +7,10 @@ import pytest
 from hal.settings import SettingsError, find_config
 from kurt2rt.channel.protocol.codec import decode_answer, encode_answer
 from kurt2rt.channel.protocol.hello import hello_of
-from kurt2rt.channel.server.channel import describe
+from kurt2rt.channel.server.channel import describe_robot
 from kurt2rt.core.perception.sensor_words import infrared_law
 from kurt2rt.core.task_settings import load_task
-from tests.channel.desk import BOOT, ROBOT, TASK, Desk
+from tests.channel.channel_fixture import BOOT, ROBOT, TASK, ChannelFixture
 
 SHIPPED = sorted(path.stem for path in find_config("tasks", "circle").parent.glob("*.yaml"))
 
@@ -39,7 +39,7 @@ def test_sentence_of_two_lines_is_refused(tmp_path: Path) -> None:
 
 
 def test_hello_tells_the_sentence_and_the_law_over_the_wire() -> None:
-    told = encode_answer({"tick": 0, **describe(Desk().runtime, BOOT, simulated=True)})
+    told = encode_answer({"tick": 0, **describe_robot(ChannelFixture().runtime, BOOT, simulated=True)})
     hello = hello_of(decode_answer(told))
     assert hello.what == TASK.what
     assert hello.law == infrared_law(ROBOT.infrared)

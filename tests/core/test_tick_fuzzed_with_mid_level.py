@@ -37,7 +37,7 @@ from kurt2rt.core.teaching.commands import (
 from kurt2rt.core.tick import InMemoryEventStore
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import RuntimeOptions, build_runtime
-from tests.channel.desk import ROBOT
+from tests.channel.channel_fixture import ROBOT
 from tests.core.test_tick_seeking import PLACES
 from tests.core.test_tick_with_mid_level import (
     BEHAVIOURS,

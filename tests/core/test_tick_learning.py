@@ -24,7 +24,7 @@ from kurt2rt.core.teaching.commands import Appraise, Command, Correct, Reward, S
 from kurt2rt.core.tick import InMemoryEventStore, TickRecord
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import RuntimeOptions, build_runtime
-from tests.channel.desk import ROBOT, WideRobot
+from tests.channel.channel_fixture import ROBOT, WideRobot
 from tests.core.rla.helpers import created, withdrawn
 
 NEAR, FAR = 400, 50

@@ -27,7 +27,7 @@ from kurt2rt.core.teaching.commands import (
 from kurt2rt.core.tick import InMemoryEventStore, TickRecord
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.runtime import build_runtime
-from tests.channel.desk import ROBOT
+from tests.channel.channel_fixture import ROBOT
 from tests.core.test_tick_with_mid_level import OPEN, STREETS, WALL, StreetRobot, Town, basic_knowledge, told
 
 PLACES = STREETS.model_copy(update={"mid": "places"})

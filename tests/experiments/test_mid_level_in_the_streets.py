@@ -24,7 +24,7 @@ from kurt2rt.service.post_tick import PostTick, ProgramConsole, ProgramStatus
 from kurt2rt.service.settings import load_service
 from kurt2rt.service.status_line import status_line
 from simbridge.simulation import Kurt2Simulation
-from tests.channel.desk import STAMP
+from tests.channel.channel_fixture import STAMP
 from tests.experiments.helpers import ROBOT
 
 STREETS = load_task("streets")

@@ -21,7 +21,7 @@ from kurt2rt.runtime import RuntimeOptions, build_runtime
 from kurt2rt.service.assembly import RobotService
 from kurt2rt.service.post_tick import PostTick, ProgramConsole, ProgramStatus
 from kurt2rt.service.settings import load_service
-from tests.channel.desk import ROBOT, STAMP, TASK, Desk, WideRobot, reply_of, turns
+from tests.channel.channel_fixture import ROBOT, STAMP, TASK, ChannelFixture, WideRobot, reply_of, turns
 from tests.core.rla.helpers import created, origin
 
 CHECKPOINT, STATUS, SECOND = 50, 200, 100
@@ -34,7 +34,7 @@ class Shift:
     def __init__(self, path: Path, *, with_channel: bool = False) -> None:
         self.path = path
         self.writer = JournalWriter(open_for_teaching(path, ROBOT, TASK).journal, lambda: STAMP)
-        self.desk = Desk(keeper=self.writer)
+        self.desk = ChannelFixture(keeper=self.writer)
         self.stamps: dict[str, str] = {}
         self.statuses: list[ProgramStatus] = []
         self.questions: list[Question | MidQuestion] = []
@@ -217,7 +217,7 @@ async def test_a_lesson_over_the_channel_is_answered_in_the_round_after_it_becam
     assert not task.done()
     shift.run()
     reply = await reply_of(task)
-    assert (reply.verdict, reply.body["row"], reply.body["code"]) == (ReplyStatus.DONE, 1, ResultCode.RLA_TAUGHT)
+    assert (reply.status, reply.body["row"], reply.body["code"]) == (ReplyStatus.DONE, 1, ResultCode.RLA_TAUGHT)
     assert desk.tick == shift.seen[-1].tick
 
     task = await desk.send(desk.command(CorrectRequest, "back", None))

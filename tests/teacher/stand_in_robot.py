@@ -55,7 +55,7 @@ class StandInRobot:
     def show(self, **changes: Any) -> State:
         """The next picture, changed from the last one."""
         self.state = replace(self.state, tick=self.state.tick + _TICKS, **changes)
-        self.site.show(encode_state(self.state))
+        self.site.publish(encode_state(self.state))
         return self.state
 
     def all_of(self, kind: type[_Kind]) -> list[_Kind]:
@@ -92,7 +92,7 @@ async def stand_in_robot(
     teachers = Teachers(folder)
     robot = StandInRobot(teachers, boot, showing=showing)
     endpoint = await open_endpoint(robot.site, "127.0.0.1", port)
-    robot.site.doorkeeper = endpoint
+    robot.site.senders = endpoint
     robot.port = endpoint.port
     try:
         async with anyio.create_task_group() as tasks:

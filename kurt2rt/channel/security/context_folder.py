@@ -1,4 +1,4 @@
-"""The folder of one OSCORE context, held open: nobody else uses it, and nobody can put another one in its place."""
+"""Folder of one OSCORE context, locked and held by its descriptor."""
 
 import fcntl
 import json
@@ -8,7 +8,7 @@ from pathlib import Path
 from hal.errors import UserError
 
 UNKNOWN = "unknown"
-"""Replay window as it is stored: the other side has to prove that it is fresh (RFC 8613, B.1.2)."""
+"""Stored replay window, by which the other side has to prove freshness (RFC 8613, B.1.2)."""
 
 SETTINGS = "settings.json"
 PAIRED_AT = "paired-at"
@@ -16,7 +16,7 @@ PAIRED_AT = "paired-at"
 SEQUENCE = "sequence.json"
 SECRET = "secret.json"
 _LOCK = "lock"
-_UNBORN = ".sequence.unborn"
+_UNFINISHED = ".sequence.unborn"
 
 
 class CredentialsError(UserError):
@@ -24,14 +24,17 @@ class CredentialsError(UserError):
 
 
 class ContextFolder:
-    """A folder that is locked until `release`, or until the process is gone.
+    """Folder that is locked until `close`, or until the process ends.
 
-    It is held by its file descriptor, not by its name: where a pairing was renewed meanwhile, what the old one still
-    writes must not get into the new one, whose key it would break.
+    It is held by its file descriptor: after a renewal, late writes of the old pairing must not reach the new one, whose
+    key they would break.
     """
 
     def __init__(self, path: Path) -> None:
-        """Take the lock, the same as aiocoap takes, so that its own tools respect it. Raises CredentialsError."""
+        """Take the lock of aiocoap, so that its own tools respect it.
+
+        Raises CredentialsError if the folder is missing, cannot be locked, or is in use; BlockingIOError never leaves.
+        """
         self.path = path
         name = path.name
         try:
@@ -49,17 +52,17 @@ class ContextFolder:
             ) from error
         try:
             fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            # aiocoap's own tools unlink the file when they are done: a lock on what is gone keeps nobody out.
+            # aiocoap's tools unlink the file at their end: a lock on an unlinked file excludes no one.
             if not os.path.samestat(os.fstat(self._lock), os.stat(_LOCK, dir_fd=self._folder)):
                 raise BlockingIOError
         except OSError as error:
-            self.release()
+            self.close()
             raise CredentialsError(
                 "another program uses this pairing", where=path, do="end that one, or make another: kurt2rt pair NAME"
             ) from error
 
     def still_there(self) -> bool:
-        """Whether the folder still stands where it stood when it was opened."""
+        """Return whether the path still names the folder that was opened."""
         try:
             return os.path.samestat(self.path.stat(), os.fstat(self._folder))
         except OSError:
@@ -69,15 +72,15 @@ class ContextFolder:
         """Store the next sequence number; durable when this returns. Raises OSError."""
         image = json.dumps({"next-to-send": next_to_send, "received": UNKNOWN}).encode()
         flags = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_CLOEXEC
-        with open(os.open(_UNBORN, flags, 0o600, dir_fd=self._folder), "wb") as file:  # noqa: PTH123 - a descriptor
+        with open(os.open(_UNFINISHED, flags, 0o600, dir_fd=self._folder), "wb") as file:  # noqa: PTH123 - a descriptor
             file.write(image)
             file.flush()
             os.fsync(file.fileno())
-        os.replace(_UNBORN, SEQUENCE, src_dir_fd=self._folder, dst_dir_fd=self._folder)
-        # Without this a power cut may bring the old file back, and numbers would be used a second time.
+        os.replace(_UNFINISHED, SEQUENCE, src_dir_fd=self._folder, dst_dir_fd=self._folder)
+        # Without this a power cut may restore the old file, and numbers would be used twice.
         os.fsync(self._folder)
 
-    def release(self) -> None:
-        """Let go of folder and lock."""
+    def close(self) -> None:
+        """Close the folder and release the lock."""
         os.close(self._lock)
         os.close(self._folder)

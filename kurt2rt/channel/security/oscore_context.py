@@ -1,8 +1,8 @@
 """One side of a pairing in use: keys, sequence numbers, replay window. The event loop does not wait for a disk.
 
-A folder may be an old copy: restored from a backup it knows neither which numbers were used since, nor which requests
-came. So a start takes no number below one per millisecond since the pairing, five times what a device uses at most; and
-each start begins with an unknown replay window, so that the other side has to prove that it is fresh (RFC 8613, B.1.2).
+A folder may be restored from a backup, which knows neither the numbers used since nor the requests that came. So a
+start takes no number below one per millisecond since the pairing, five times the most that a device uses. It begins
+with an unknown replay window, so that the other side has to prove freshness (RFC 8613, B.1.2).
 """
 
 import json
@@ -18,27 +18,27 @@ from aiocoap import oscore
 from kurt2rt.channel.security.context_folder import PAIRED_AT, SEQUENCE, SETTINGS, ContextFolder, CredentialsError
 
 CHUNK = 10_000
-"""Sequence numbers reserved at once: three minutes of pictures and drive commands. A crash wastes at most two chunks of
+"""Sequence numbers reserved at once: three minutes of states and drive commands. A crash wastes at most two chunks of
 the 2^40 that a pairing has."""
 FIRST_CHUNK = 1000
-"""Those of the start, doubled each time up to CHUNK: a program that crashes once a second stays behind its clock."""
+"""First chunk, doubled each time up to CHUNK: a program that crashes once a second stays behind its clock."""
 NUMBERS_PER_S = 1000
 LAST_FLOOR = 2**39
-"""Numbers that time alone may take, 17 years of them: a clock that is decades ahead leaves half of all numbers."""
+"""Highest number that time alone sets, 17 years: a clock decades ahead leaves half of all numbers."""
 _FIRST_PAIRING_S = 1_767_225_600
-"""2026-01-01: pairings without a time of their own are not older."""
+"""2026-01-01 in seconds since 1970: the earliest pairing without a time of its own."""
 
 
 class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # Any
-    """A security context in a folder, as aiocoap's own, with four differences.
+    """Security context in a folder, like aiocoap's, with four differences.
 
     Each start jumps ahead by the time since the pairing, and trusts no replay window. Numbers are reserved ahead in a
-    thread, so `protect` stores in place only when the disk took longer than half a chunk lasts. What is stored is
-    written through a descriptor of the folder, so a renewed pairing in its place stays untouched. It ends with `close`,
-    not when the last reference goes.
+    thread, so `protect` stores in place only if the disk took longer than half a chunk lasts. Writes go through a
+    descriptor of the folder, so a renewed pairing in its place stays untouched. It ends with `close`, not with the last
+    reference.
 
-    The thread is a plain one, started once per chunk: `protect` is called from code that cannot await and that has no
-    task group at hand. Everything else is called from one thread at a time.
+    The thread is a plain one, started once per chunk, because the callers of `protect` cannot await. Call all methods
+    from one thread at a time.
     """
 
     sender_sequence_number: int
@@ -47,13 +47,17 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
     def __init__(
         self, folder: Path, name: str | None = None, *, chunk: int = CHUNK, now: Callable[[], float] = time.time
     ) -> None:
-        """Take the lock, load, and reserve the first chunk: this waits for the disk.
+        """Take the lock, load, and reserve the first chunk; this waits for the disk.
 
-        `name` is the teacher who is authenticated by this context; without it the folder's name. `now` is the wall
-        clock in seconds since 1970; set back it costs nothing, for the stored number counts as well. Raises
-        CredentialsError when the folder is missing, damaged, or in use by another program.
+        Raises CredentialsError if the folder is missing, damaged, or in use by another program.
+
+        Args:
+            folder: One side of a pairing.
+            name: Teacher that this context authenticates. None: the folder's name.
+            chunk: Most sequence numbers to reserve at once.
+            now: Wall clock in seconds since 1970; it may be set back, because the stored number counts too.
         """
-        # Not the library's: its lock is bound to the thread that took it, and it stores in the event loop.
+        # aiocoap's own constructor is not called: its lock is bound to a thread, and it stores in the event loop.
         self.folder = ContextFolder(folder)
         self.basedir = str(folder)
         self.lockfile = None
@@ -74,34 +78,37 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
             self.replay_window_persisted = False
             self._reserve()
         except OSError as error:
-            self.folder.release()
+            self.folder.close()
             raise CredentialsError(
                 f"cannot be read and written ({error})", where=folder, do="give permission for it, and room on its disk"
             ) from error
         except CredentialsError:
-            self.folder.release()
+            self.folder.close()
             raise
 
     @property
     def closed(self) -> bool:
-        """Whether `close` or `abandon` was called; nothing is sent with it any more."""
+        """Whether `close` or `abandon` was called; it protects no messages then."""
         return self._closed
 
     @property
     def seen(self) -> tuple[int | None, int | None]:
-        """Changes with each request that was authenticated; the same while the other side is silent."""
+        """Replay window, which changes with each authenticated request."""
         window: Any = self.recipient_replay_window
         return window._index, window._bitfield
 
     def new_sequence_number(self) -> int:
-        """A number that was never used before. Raises aiocoap.oscore.ContextUnavailable when there is none."""
+        """Return an unused sequence number. Raises aiocoap.oscore.ContextUnavailable if there is none."""
         if self._closed:
             raise oscore.ContextUnavailable(f"{self.folder.path}: this pairing is closed or revoked")
         number: int = super().new_sequence_number()
         return number
 
     def post_seqnoincrease(self) -> None:
-        """Called by aiocoap for each number that is taken, before it is used."""
+        """Reserve further numbers; aiocoap calls this for each number before its use.
+
+        Raises aiocoap.oscore.ContextUnavailable if the disk takes no reservation.
+        """
         if self.sender_sequence_number > self.sequence_number_persisted:
             try:
                 self._reserve()
@@ -112,14 +119,14 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
         elif self.sequence_number_persisted - self.sender_sequence_number < self._reserve_below and (
             self._reserver is None or not self._reserver.is_alive()
         ):
-            # A daemon: a disk that hangs must not keep the program from ending; a half-written file is never renamed.
-            self._reserver = threading.Thread(target=self._reserve_aside, name=f"oscore {self.name}", daemon=True)
+            # A daemon, because a hanging disk must not keep the program alive; a half-written file is never renamed.
+            self._reserver = threading.Thread(target=self._reserve_in_thread, name=f"oscore {self.name}", daemon=True)
             self._reserver.start()
 
     def close(self) -> None:
-        """Store the exact number and release the lock; waits for the disk. Raises CredentialsError if that fails.
+        """Store the exact number and release the lock; this waits for the disk.
 
-        Then the reservation stands, as after a crash: numbers are wasted, none is used twice.
+        Raises CredentialsError if that fails; the reservation stands then, which wastes numbers but uses none twice.
         """
         if self._closed:
             return
@@ -136,7 +143,7 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
                 do="the pairing goes on with other numbers, but look at its disk",
             ) from error
         finally:
-            self.folder.release()
+            self.folder.close()
 
     def abandon(self) -> None:
         """Release the lock and store nothing: the pairing was revoked or renewed."""
@@ -145,14 +152,14 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
         self._closed = True
         if self._reserver is not None:
             self._reserver.join()
-        self.folder.release()
+        self.folder.close()
 
     def __del__(self) -> None:
-        """Nothing: the library's would store. The lock of a context that nobody closed goes with its process."""
+        """Do nothing, because aiocoap's method would store. The lock of an unclosed context ends with the process."""
 
     def _load_checked(self) -> None:
-        what_to_do = f"pair the device anew: kurt2rt pair {self.name} --renew"
-        # The library would begin at 0 again, and a number used twice gives the key away.
+        what_to_do = f"pair the device again: kurt2rt pair {self.name} --renew"
+        # aiocoap would begin at 0 again, and a number used twice gives the key away.
         if not (self.folder.path / SEQUENCE).exists():
             raise CredentialsError(f"{SEQUENCE} is missing", where=self.folder.path, do=what_to_do)
         try:
@@ -178,7 +185,7 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
         return float(settings.get(PAIRED_AT, _FIRST_PAIRING_S))
 
     def _reserve(self) -> None:
-        # Whoever comes second finds that it is done: the thread, or the event loop that could not wait for it.
+        # The thread and the event loop may both come here; the second one finds the work done.
         with self._storing:
             if self.sender_sequence_number + self._chunk // 2 <= self.sequence_number_persisted:
                 return
@@ -186,11 +193,11 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
             self.folder.write_sequence(up_to)
             self.sequence_number_persisted = up_to
 
-    def _reserve_aside(self) -> None:
+    def _reserve_in_thread(self) -> None:
         try:
             self._reserve()
         except OSError as error:
-            # Once more when half of the rest is gone; for the very last number the caller is told.
+            # Tried again when half of the rest is used; without numbers the caller gets an error.
             self._reserve_below //= 2
             self.trouble = f"{self.folder.path}: no sequence numbers can be reserved ({error}); look at its disk"
         else:

@@ -1,4 +1,4 @@
-"""The robot's side of all pairings while the robot runs."""
+"""Robot's side of all pairings while the robot runs."""
 
 import time
 from collections.abc import Callable, Mapping
@@ -19,10 +19,10 @@ _Identity = tuple[int, ...]
 
 @dataclass(frozen=True, slots=True)
 class PairingChange:
-    """What `Teachers.refresh` found, by name; a renewed pairing is in both."""
+    """Result of `Teachers.refresh`, by name; a renewed pairing is in both."""
 
-    came: tuple[str, ...]
-    gone: tuple[str, ...]
+    added: tuple[str, ...]
+    removed: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,69 +31,68 @@ class _Held:
     context: OscoreContext
     seen: tuple[int | None, int | None]
     used_s: float
-    """When the time of last use was noted."""
+    """Time when the last use was noted on the disk, of the monotonic clock in seconds."""
 
 
 @dataclass(frozen=True, slots=True)
-class _Look:
+class _Scan:
     held: dict[str, _Held]
-    gone: dict[str, OscoreContext]
-    came: tuple[str, ...]
+    removed: dict[str, OscoreContext]
+    added: tuple[str, ...]
     trouble: tuple[str, ...]
 
 
 class Teachers:
     """All contexts of one `teachers` folder, locked until `close`.
 
-    A pairing that cannot be opened does not keep the others out; `trouble` tells of it. Used from one thread.
+    A pairing that cannot be opened is skipped and reported by `trouble`. Use it from one thread.
     """
 
     def __init__(self, folder: Path, *, now: Callable[[], float] = time.monotonic) -> None:
-        """Open every pairing; this waits for the disk. Raises CredentialsError when the folder cannot be read."""
+        """Open every pairing; this waits for the disk. Raises CredentialsError if the folder cannot be read."""
         self._folder = folder
         self._now = now
         self._held: Mapping[str, _Held] = {}
         self._by_id: dict[bytes, OscoreContext] = {}
         self._trouble: tuple[str, ...] = ()
-        pairing_names(folder)  # afterwards a folder that cannot be read is told of; now it is an error
-        self._take(self._look({}))
+        pairing_names(folder)  # an unreadable folder is an error here; later it is reported by `trouble`
+        self._apply(self._scan({}))
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Whose requests are accepted."""
+        """Names of the devices whose requests are accepted."""
         return tuple(sorted(self._held))
 
     @property
     def only_local(self) -> bool:
-        """Whether nobody was paired, so that nothing beyond this machine needs to be listened to."""
+        """Whether all pairings are this machine's own, so that loopback suffices."""
         return OF_THIS_MACHINE.issuperset(self._held)
 
     @property
     def trouble(self) -> tuple[str, ...]:
-        """A line for each pairing that could not be opened, or whose state cannot be stored."""
+        """Lines on the pairings that could not be opened, or whose state cannot be stored."""
         return (*self._trouble, *(held.context.trouble for held in self._held.values() if held.context.trouble))
 
     def find(self, unprotected: Mapping[int, bytes]) -> OscoreContext:
-        """The context for aiocoap's OSCORE header of a request. Raises KeyError when nobody has that id."""
+        """Return the context for aiocoap's OSCORE header of a request. Raises KeyError for an unknown id."""
         context = self._by_id[unprotected[oscore.COSE_KID]]
         if unprotected.get(oscore.COSE_KID_CONTEXT) != context.id_context:
             raise KeyError(oscore.COSE_KID_CONTEXT)
         return context
 
     async def refresh(self) -> PairingChange:
-        """Look who was paired, renewed or revoked since; once a second is meant, one call at a time.
+        """Apply new, renewed and revoked pairings of the folder. Call it once a second, one call at a time.
 
-        All that waits for the disk is done in a thread. A context that is gone sends nothing more. Never raises for the
-        state of the folder: `trouble` tells.
+        A thread waits for the disk. A removed context sends nothing more. Faults of the folder go to `trouble`.
         """
-        look = await anyio.to_thread.run_sync(self._look, dict(self._held))
-        self._take(look)
-        if look.gone:
-            await anyio.to_thread.run_sync(_abandon, look.gone)
-        return PairingChange(look.came, tuple(look.gone))
+        scan = await anyio.to_thread.run_sync(self._scan, dict(self._held))
+        self._apply(scan)
+        if scan.removed:
+            await anyio.to_thread.run_sync(_abandon, scan.removed)
+        return PairingChange(scan.added, tuple(scan.removed))
 
     def close(self) -> None:
-        """Store all states and release the locks; waits for the disk. Raises the first CredentialsError, after all."""
+        """Store all states and release the locks; this waits for the disk. Raises the first CredentialsError last."""
         errors = []
         for held in self._held.values():
             try:
@@ -104,17 +103,17 @@ class Teachers:
         if errors:
             raise errors[0]
 
-    def _take(self, look: _Look) -> None:
-        self._held, self._trouble = look.held, look.trouble
-        self._by_id = {held.context.recipient_id: held.context for held in look.held.values()}
+    def _apply(self, scan: _Scan) -> None:
+        self._held, self._trouble = scan.held, scan.trouble
+        self._by_id = {held.context.recipient_id: held.context for held in scan.held.values()}
 
-    def _look(self, held: dict[str, _Held]) -> _Look:
+    def _scan(self, held: dict[str, _Held]) -> _Scan:
         trouble: list[str] = []
         try:
             names = pairing_names(self._folder)
         except CredentialsError as error:
-            return _Look(held, {}, (), (str(error),))
-        came: list[str] = []
+            return _Scan(held, {}, (), (str(error),))
+        added: list[str] = []
         still: dict[str, _Held] = {}
         for name in names:
             if name in RESERVED:
@@ -127,26 +126,26 @@ class Teachers:
             try:
                 identity = _identity(self._folder / name)
                 if mine is not None and identity == mine.identity:
-                    still[name] = self._noted(name, mine)
+                    still[name] = self._note_use(name, mine)
                 elif identity is not None:
                     context = OscoreContext(self._folder / name)
                     still[name] = _Held(identity, context, context.seen, float("-inf"))
-                    came.append(name)
+                    added.append(name)
             except CredentialsError as error:
                 trouble.append(str(error))
             except OSError as error:
-                # A disk that fails is no reason to lose the teacher, who may want to say stop.
+                # A failing disk must not disconnect the teacher, who may want to stop the robot.
                 trouble.append(f"{self._folder / name}: cannot be looked at ({error}); look at its disk")
                 if mine is not None:
                     still[name] = mine
-        gone = {
+        removed = {
             name: mine.context
             for name, mine in held.items()
             if name not in still or still[name].context is not mine.context
         }
-        return _Look(still, gone, tuple(came), tuple(trouble))
+        return _Scan(still, removed, tuple(added), tuple(trouble))
 
-    def _noted(self, name: str, held: _Held) -> _Held:
+    def _note_use(self, name: str, held: _Held) -> _Held:
         seen, now = held.context.seen, self._now()
         if seen == held.seen or now - held.used_s < _USED_EVERY_S:
             return held
@@ -155,7 +154,7 @@ class Teachers:
 
 
 def _identity(folder: Path) -> _Identity | None:
-    """What changes when a pairing is renewed or put back; None: it is no pairing any more. Raises OSError."""
+    """Return a value that changes when a pairing is renewed or restored; None if it is gone. Raises OSError."""
     try:
         of_folder, of_secret = folder.stat(), (folder / SECRET).stat()
     except (FileNotFoundError, NotADirectoryError):

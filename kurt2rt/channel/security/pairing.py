@@ -24,25 +24,25 @@ from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.platform.durable_files import fsync_folder, make_private_folder
 
 LOCAL = "local"
-"""Name of whoever teaches at the robot's own machine, with the page or a program of his own."""
+"""Teacher at the robot's own machine, with the page or a program."""
 TERMINAL = "terminal"
-"""Name of whoever teaches from a terminal of the robot's own machine, so that the page can be open beside it."""
+"""Teacher at a terminal of the robot's own machine, so that the page can be open at the same time."""
 ONLOOKER = "onlooker"
-"""Name of whoever only asks, at the robot's own machine, while others teach."""
+"""Program at the robot's own machine that only queries while others teach."""
 OF_THIS_MACHINE = frozenset({LOCAL, AUTO, TERMINAL, ONLOOKER})
-"""Made on demand, by programs that can read both folders; nobody paired them."""
+"""Pairings made on demand, by programs that can read both folders, without `kurt2rt pair`."""
 RESERVED = frozenset({CRITIC})
-"""In the journal these are no people; whoever had such a name would pass for the robot itself."""
+"""Names of the robot's own programs in the journal; a device of that name would pass for the robot."""
 
 USED = "used"
-"""File on the robot's side; its time says when the device was last heard."""
+"""File on the robot's side whose time is that of the device's last message."""
 
 PORT = 5683
 
 _NAME = re.compile(r"[a-z0-9-]{1,24}")
 _DEVICE = "device.json"
 _LOCK = ".lock"
-_UNBORN = ".unborn-"
+_UNFINISHED = ".unborn-"
 _REVOKED = ".revoked-"
 _SECRET_BYTES = 16
 _SALT_BYTES = 8
@@ -52,15 +52,15 @@ _TOKEN_BYTES = 24  # 32 characters
 
 @dataclass(frozen=True, slots=True)
 class Device:
-    """The device's side of a pairing."""
+    """Device's side of a pairing."""
 
     folder: Path
     name: str
     host: str
-    """Where the robot is, for the program that holds this folder."""
+    """Address of the robot, for the program that holds this folder."""
     port: int
     token: str
-    """32 characters that open the device's web page."""
+    """Login token of the device's web page, 32 characters."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,24 +73,24 @@ class Pairing:
 
     @property
     def name(self) -> str:
-        """Of the device, and of the teacher who uses it."""
+        """Name of the device, and of the teacher who uses it."""
         return self.device.name
 
 
 @dataclass(frozen=True, slots=True)
 class PairingInfo:
-    """A pairing as the robot's side knows it."""
+    """Pairing as the robot's side knows it."""
 
     name: str
     made_at: datetime
     used_at: datetime | None
-    """When the device was last heard, to the minute; None: never."""
+    """Time of the device's last message, to the minute; None: never."""
 
 
 def pair(teachers: Path, devices: Path, name: str, *, host: str = "127.0.0.1", port: int = PORT) -> Pairing:
-    """Make a new pairing; a running robot takes it up within a second.
+    """Make a new pairing; a running robot accepts it within a second.
 
-    Raises CredentialsError for a name that is taken, reserved, or no name.
+    Raises CredentialsError for a name that is taken, reserved, or invalid.
     """
     _require_free_name(name)
     if name in OF_THIS_MACHINE:
@@ -107,7 +107,7 @@ def pair(teachers: Path, devices: Path, name: str, *, host: str = "127.0.0.1", p
 def renew(teachers: Path, devices: Path, name: str, *, host: str = "127.0.0.1", port: int = PORT) -> Pairing:
     """Give a pairing new secrets, ids and token; the old ones are refused from now on.
 
-    Raises CredentialsError when neither side of it is there, or for a name that is reserved.
+    Raises CredentialsError if neither side exists, or for a reserved name.
     """
     _require_free_name(name)
     with _changing(teachers, devices):
@@ -116,17 +116,17 @@ def renew(teachers: Path, devices: Path, name: str, *, host: str = "127.0.0.1", 
 
 
 def revoke(teachers: Path, devices: Path, name: str) -> None:
-    """Delete both sides where they are there, the robot's first; a running robot refuses the device within a second.
+    """Delete both sides, the robot's first; a running robot refuses the device within a second.
 
-    Raises CredentialsError when neither side is there.
+    Raises CredentialsError if neither side exists.
     """
     _require_name(name)
     with _changing(teachers, devices):
         _remove(teachers, devices, name)
 
 
-def paired(teachers: Path) -> tuple[PairingInfo, ...]:
-    """Every pairing of the robot by name, those of this machine included. Raises CredentialsError."""
+def list_pairings(teachers: Path) -> tuple[PairingInfo, ...]:
+    """Return all pairings of the robot by name, those of this machine included. Raises CredentialsError."""
     found = []
     for name in pairing_names(teachers):
         made, used = _changed_at(teachers / name / SECRET), _changed_at(teachers / name / USED)
@@ -136,9 +136,15 @@ def paired(teachers: Path) -> tuple[PairingInfo, ...]:
 
 
 def local_pairing(teachers: Path, devices: Path, name: str = LOCAL, *, port: int = PORT) -> Pairing:
-    """The pairing of one of this machine's own teachers; made when absent, or when its sides do not fit.
+    """Return the pairing of one of this machine's own teachers; make it if absent, or if its sides do not fit.
 
-    It is told to look for the robot at `port` of this machine. Raises CredentialsError.
+    Raises CredentialsError; ValueError for another name.
+
+    Args:
+        teachers: Folder of the robot's sides.
+        devices: Folder of the devices' sides.
+        name: One of OF_THIS_MACHINE.
+        port: UDP port of the robot at this machine.
     """
     if name not in OF_THIS_MACHINE:
         raise ValueError(f"{name} is none of {', '.join(sorted(OF_THIS_MACHINE))}")
@@ -152,7 +158,7 @@ def local_pairing(teachers: Path, devices: Path, name: str = LOCAL, *, port: int
 
 
 def read_device(folder: Path) -> Device:
-    """The device's side in a folder. Raises CredentialsError when it is missing or damaged."""
+    """Return the device's side in a folder. Raises CredentialsError if it is missing or damaged."""
     try:
         read = _read(folder / _DEVICE)
         name, host, port, token = (read[key] for key in ("name", "host", "port", "token"))
@@ -166,19 +172,19 @@ def read_device(folder: Path) -> Device:
         raise CredentialsError(
             f"is damaged ({error!r})",
             where=folder / _DEVICE,
-            do=f"pair the device anew: kurt2rt pair {folder.name} --renew",
+            do=f"pair the device again: kurt2rt pair {folder.name} --renew",
         ) from error
     if not (isinstance(name, str) and isinstance(host, str) and isinstance(port, int) and isinstance(token, str)):
         raise CredentialsError(
             "is damaged (wrong types)",
             where=folder / _DEVICE,
-            do=f"pair the device anew: kurt2rt pair {folder.name} --renew",
+            do=f"pair the device again: kurt2rt pair {folder.name} --renew",
         )
     return Device(folder, name, host, port, token)
 
 
 def pairing_names(teachers: Path) -> tuple[str, ...]:
-    """Names of the folders that stand for pairings; none when `teachers` is absent. Raises CredentialsError."""
+    """Return the names of all pairings; none if `teachers` is absent. Raises CredentialsError."""
     try:
         return tuple(sorted(path.name for path in teachers.iterdir() if _NAME.fullmatch(path.name) and path.is_dir()))
     except FileNotFoundError:
@@ -202,7 +208,7 @@ def _require_free_name(name: str) -> None:
 
 @contextmanager
 def _changing(teachers: Path, devices: Path) -> Iterator[None]:
-    """One change at a time; what a killed one left half done is cleared away first."""
+    """Lock both folders for one change, after deleting the unfinished work of killed programs."""
     try:
         with ExitStack() as locks:
             for folder in (teachers, devices):
@@ -214,7 +220,7 @@ def _changing(teachers: Path, devices: Path) -> Iterator[None]:
             for folder in (teachers, devices):
                 lock = locks.enter_context((folder / _LOCK).open("ab"))
                 fcntl.flock(lock, fcntl.LOCK_EX)
-                for left in (*folder.glob(f"{_UNBORN}*"), *folder.glob(f"{_REVOKED}*")):
+                for left in (*folder.glob(f"{_UNFINISHED}*"), *folder.glob(f"{_REVOKED}*")):
                     shutil.rmtree(left)
             yield
     except OSError as error:
@@ -232,7 +238,7 @@ def _make(teachers: Path, devices: Path, name: str, host: str, port: int) -> Pai
         "salt_hex": secrets.token_hex(_SALT_BYTES),
     }
     paired_s = int(time.time())
-    # There from the beginning: a context without it is taken for damaged, not for a new one.
+    # Written at once, because a context without it counts as damaged, not as new.
     sequence: dict[str, Any] = {"next-to-send": 0, "received": UNKNOWN}
     device = Device(devices / name, name, host, port, secrets.token_urlsafe(_TOKEN_BYTES))
     of_device = {
@@ -246,7 +252,7 @@ def _make(teachers: Path, devices: Path, name: str, host: str, port: int) -> Pai
         SECRET: secret,
         SEQUENCE: sequence,
     }
-    # The robot's side is put into place last: what a crash leaves before is a device that nobody accepts.
+    # The robot's side is put into place last: a crash before leaves a device that the robot refuses.
     aside = [_write_aside(devices, name, of_device), _write_aside(teachers, name, of_robot)]
     for unborn, folder in zip(aside, (devices, teachers), strict=True):
         unborn.rename(folder / name)
@@ -255,7 +261,7 @@ def _make(teachers: Path, devices: Path, name: str, host: str, port: int) -> Pai
 
 
 def _write_aside(folder: Path, name: str, files: dict[str, dict[str, Any]]) -> Path:
-    unborn = folder / f"{_UNBORN}{name}"
+    unborn = folder / f"{_UNFINISHED}{name}"
     unborn.mkdir(mode=0o700)
     for file_name, content in files.items():
         descriptor = os.open(unborn / file_name, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
@@ -273,7 +279,7 @@ def _remove(teachers: Path, devices: Path, name: str) -> None:
         known = ", ".join(pairing_names(teachers)) or "nothing"
         raise CredentialsError("there is no such pairing", where=teachers / name, do=f"paired is: {known}")
     for side in sides:
-        # Away in one step, whatever happens while its files are deleted.
+        # Renamed in one step, so that a crash while deleting leaves no half pairing.
         revoked = side / f"{_REVOKED}{name}"
         (side / name).rename(revoked)
         fsync_folder(side)
@@ -281,7 +287,7 @@ def _remove(teachers: Path, devices: Path, name: str) -> None:
 
 
 def _fit(teacher: Path, device: Path) -> bool:
-    """Whether two folders are the sides of one pairing."""
+    """Return whether two folders are the sides of one pairing."""
     try:
         settings, other_settings = _read(teacher / SETTINGS), _read(device / SETTINGS)
         return (
@@ -300,7 +306,7 @@ def _ids_taken(teachers: Path) -> set[str]:
         try:
             settings = _read(teachers / name / SETTINGS)
         except (OSError, ValueError):
-            continue  # its damage is told when it is opened; it takes no id
+            continue  # opening it reports the damage; it takes no id
         taken.update(settings[key] for key in ("sender-id_hex", "recipient-id_hex") if key in settings)
     return taken
 

@@ -1,4 +1,4 @@
-"""From a request on the wire to the command that the tick takes."""
+"""Conversion of requests to the commands of the tick."""
 
 from kurt2rt.channel.protocol.requests import (
     AnswerRequest,
@@ -48,7 +48,7 @@ from kurt2rt.core.teaching.commands import (
 
 
 def command_of(device: str, command_id: str, request: CommandRequest) -> Command:
-    """The command that a request asks for."""
+    """Return the command of a request. Raises AssertionError for a request that is not for the tick."""
     match request:
         case BehaviourRequest(action=action, ticks=ticks):
             return RunBehaviour(command_id, device, action, ticks, request.seen)

@@ -1,9 +1,9 @@
-"""Filter in front of aiocoap: a flood must end here, in microseconds, and leave nothing in memory.
+"""Filter in front of aiocoap: it drops a flood in microseconds and keeps nothing of it in memory.
 
-A sender can forge its address and copy a key id, so neither buys work:
+A sender can forge its address and copy a key id, so neither gets it work done:
 
-- An OSCORE request is dropped if no key of ours has its key id, or if that key did not make its tag. Checking a tag
-  costs some 20 µs and has a rate of its own.
+- An OSCORE request is dropped if no key has its key id, or if that key did not make its tag. Checking a tag costs some
+  20 µs and has a rate of its own.
 - A request with the highest sequence number of its key is no copy. It has the key's rate, from any address. So
   strangers who flood do not keep out a device that has just opened its socket.
 - Any other datagram has the rate of its address if a key holder proved that address, otherwise the strangers' rate:
@@ -16,11 +16,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from kurt2rt.channel.server.rate_limit import TokenBucket
 from kurt2rt.channel.server.sealed_request import SealedRequest
-from kurt2rt.channel.server.token_bucket import TokenBucket
 
 LONGEST_DATAGRAM = 1500
-"""Bytes; the longest of ours has some 400."""
+"""Longest datagram in bytes; a device's longest has some 400."""
 
 SocketAddress = tuple[str, int, int, int]
 """Address, port, flow label and scope, as an IPv6 socket gives them."""
@@ -35,12 +35,12 @@ _Sender = tuple[str, int, int]
 
 @dataclass(slots=True)
 class Counters:
-    """Datagrams counted since the endpoint was opened; the last four counters are part of those received."""
+    """Counters of datagrams since the endpoint was opened; the last four are part of those received."""
 
     received: int = 0
     dropped_by_bucket: int = 0
     forged: int = 0
-    """OSCORE requests that no key of ours made; dropped."""
+    """OSCORE requests without a valid tag; dropped."""
     junk: int = 0
     failed: int = 0
     """Errors while a datagram was handled or sent; none of them left the endpoint."""
@@ -48,27 +48,27 @@ class Counters:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """How many datagrams are let in at once, and for good."""
+    """Rates of datagrams, at once and in the long run."""
 
     strangers_at_once: float = 40
     strangers_per_s: float = 40
-    """All together: who forges addresses gets no more."""
+    """Rate of all strangers together, so forged addresses get no more."""
     proven_at_once: float = 200
     proven_per_s: float = 200
-    """Each sender who proved that he holds a key."""
+    """Rate of each sender that proved to hold a key."""
     proven_senders: int = 64
-    """Who was not heard for longest is a stranger again."""
+    """Most proven senders; beyond, the one silent for longest becomes a stranger again."""
     tags_at_once: float = 500
     tags_per_s: float = 5_000
-    """Tags checked, all keys together: at most a tenth of a core."""
+    """Rate of tag checks, all keys together: at most a tenth of a core."""
     key_at_once: float = 200
     key_per_s: float = 200
-    """New requests of each key, from all addresses together."""
+    """Rate of new requests of each key, from all addresses together."""
 
 
 @dataclass(slots=True)
 class _Key:
-    """Requests of one key that were certainly made with it."""
+    """Authentic requests of one key."""
 
     bucket: TokenBucket
     newest: int
@@ -76,7 +76,7 @@ class _Key:
 
 
 class DatagramFilter:
-    """Accepts what may be a request and comes at a bearable rate."""
+    """Filter that accepts possible requests at a bearable rate."""
 
     def __init__(
         self,
@@ -102,11 +102,11 @@ class DatagramFilter:
 
     @property
     def proven_senders(self) -> int:
-        """How many senders have a rate of their own."""
+        """Number of senders with a rate of their own."""
         return len(self._proven)
 
-    def admits(self, data: bytes, address: SocketAddress) -> bool:
-        """Whether to decode a datagram; counts it."""
+    def accepts(self, data: bytes, address: SocketAddress) -> bool:
+        """Count a datagram; return whether to decode it."""
         self._counters.received += 1
         if not may_be_request(data):
             self.count_junk()
@@ -114,23 +114,23 @@ class DatagramFilter:
         sealed = None if self._key_of is None else SealedRequest.parse(data)
         if self._key_of is not None and sealed is not None:
             key = self._key_of(sealed)
-            if key is not None and not self._tags.take():
-                return self._counted(admitted=False)
+            if key is not None and not self._tags.acquire():
+                return self._counted(accepted=False)
             if key is None or not sealed.fits(key):
                 self._counters.forged += 1
                 return False
             if self._is_newest(sealed):
-                return self._counted(self._keys[sealed.kid].bucket.take())
+                return self._counted(self._keys[sealed.kid].bucket.acquire())
         sender = (address[0], address[1], address[3])
         bucket = self._proven.get(sender)
         if bucket is None:
             bucket = self._strangers
         else:
             self._proven.move_to_end(sender)
-        return self._counted(bucket.take())
+        return self._counted(bucket.acquire())
 
     def _is_newest(self, sealed: SealedRequest) -> bool:
-        """Note an authentic request; whether its number is higher than all before it."""
+        """Note an authentic request; return whether its number is the highest of its key."""
         key = self._keys.get(sealed.kid)
         if key is None:
             limits = self._limits
@@ -144,16 +144,16 @@ class DatagramFilter:
         key.newest = sealed.number
         return True
 
-    def _counted(self, admitted: bool) -> bool:
-        self._counters.dropped_by_bucket += not admitted
-        return admitted
+    def _counted(self, accepted: bool) -> bool:
+        self._counters.dropped_by_bucket += not accepted
+        return accepted
 
     def count_junk(self) -> None:
-        """A datagram that is none of CoAP's; also called for what only its decoding showed."""
+        """Count a datagram that is no CoAP message, as found here or by decoding."""
         self._counters.junk += 1
 
-    def proved(self, address: SocketAddress) -> None:
-        """This sender has just sent what only the holder of a key can make."""
+    def mark_proven(self, address: SocketAddress) -> None:
+        """Give a sender that holds a key a rate of its own."""
         sender = (address[0], address[1], address[3])
         if sender in self._proven:
             return
@@ -164,9 +164,9 @@ class DatagramFilter:
 
 
 def may_be_request(data: bytes) -> bool:
-    """Whether the first four bytes are those of a CoAP request, of a ping, or of an empty ACK or RST.
+    """Return whether the first four bytes are those of a CoAP request, a ping, or an empty ACK or RST.
 
-    A robot asks for nothing, so it gets no other answers than ACK and RST to its notifications.
+    The robot sends no requests, so it gets no answers but ACK and RST to its notifications.
     """
     if not _HEADER_BYTES <= len(data) <= LONGEST_DATAGRAM:
         return False

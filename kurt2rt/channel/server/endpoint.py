@@ -1,4 +1,4 @@
-"""The robot's UDP socket under aiocoap: one port, no matter what arrives there."""
+"""UDP socket of the robot under aiocoap; no datagram makes it fail."""
 
 import asyncio
 import logging
@@ -19,7 +19,7 @@ from kurt2rt.channel.server.udp_port import bound_socket
 
 
 class Site(Protocol):
-    """Answers requests."""
+    """Answerer of requests."""
 
     async def render_to_pipe(self, pipe: Any) -> None:
         """Answer one request; called by aiocoap in a task of its own."""
@@ -27,7 +27,7 @@ class Site(Protocol):
 
 
 class _Answered:
-    """The robot's site, with an end for each request: aiocoap keeps one that is never answered, 7 kB, for ever."""
+    """Robot's site that ends each request, because aiocoap keeps 7 kB for each one without an answer."""
 
     def __init__(self, site: Site) -> None:
         self._site = site
@@ -38,13 +38,13 @@ class _Answered:
         await self._site.render_to_pipe(pipe)
         key = (pipe.request.token, pipe.request.remote)
         kept, lose_interest = self.tokens.incoming_requests.get(key, (None, None))
-        # Under the same token the sender may have asked anew meanwhile.
+        # The sender may have sent another request under this token meanwhile.
         if kept is not None and kept.request is pipe.request:
             lose_interest()
 
 
 class _Brief(TransportTuning):  # type: ignore[misc]  # Any
-    """Each message is remembered as a possible duplicate for so long; OSCORE refuses duplicates for ever anyway."""
+    """Tuning that remembers a message as a possible duplicate for 10 s; OSCORE refuses duplicates without limit."""
 
     EXCHANGE_LIFETIME = 10.0
 
@@ -53,7 +53,7 @@ _BRIEF = _Brief()
 
 
 class _Failures(logging.Handler):
-    """Counts what goes wrong and keeps the newest as text. It writes nowhere: a terminal may block, the loop not."""
+    """Counter of errors that keeps the newest as text. It writes nowhere, because a terminal may block the loop."""
 
     def __init__(self, counters: Counters) -> None:
         super().__init__(logging.ERROR)
@@ -61,16 +61,16 @@ class _Failures(logging.Handler):
         self.newest = ""
 
     def emit(self, record: logging.LogRecord) -> None:
-        """What aiocoap would log."""
+        """Count an error that aiocoap logs."""
         self._counters.failed += 1
         self.newest = record.getMessage()
 
 
 class _Socket(MessageInterfaceUDP6):  # type: ignore[misc]  # Any
-    """aiocoap's UDP interface behind a gate. Nothing that arrives makes it raise."""
+    """UDP interface of aiocoap behind the datagram filter. No datagram makes it raise."""
 
-    gate: DatagramFilter | None = None
-    """None until aiocoap's layers above are put together; what comes earlier is as good as lost."""
+    filter: DatagramFilter | None = None
+    """None until aiocoap's upper layers are built; earlier datagrams are dropped."""
 
     def datagram_msg_received(
         self,
@@ -79,10 +79,10 @@ class _Socket(MessageInterfaceUDP6):  # type: ignore[misc]  # Any
         flags: int,  # noqa: ARG002 - aiocoap's signature
         address: SocketAddress,
     ) -> None:
-        if self.gate is None:
+        if self.filter is None:
             return
         try:
-            if not self.gate.admits(data, address):
+            if not self.filter.accepts(data, address):
                 return
             packet_info = None
             for level, kind, content in ancdata:
@@ -90,13 +90,13 @@ class _Socket(MessageInterfaceUDP6):  # type: ignore[misc]  # Any
                     packet_info = content
             try:
                 message = aiocoap.Message.decode(data, UDP6EndpointAddress(address, self, pktinfo=packet_info))
-            except Exception:  # noqa: BLE001 - its own error, but also Unicode's and others for strange options
-                self.gate.count_junk()
+            except Exception:  # noqa: BLE001 - aiocoap's own error, but also UnicodeError and others for strange options
+                self.filter.count_junk()
                 return
             message.direction = Direction.INCOMING
             message.transport_tuning = _BRIEF
             self._ctx.dispatch_message(message)
-        except Exception as error:  # noqa: BLE001 - whatever a datagram does, the next one is read
+        except Exception as error:  # noqa: BLE001 - the next datagram is read after any error
             self.log.error("a datagram of %d bytes: %r", len(data), error)  # noqa: TRY400 - one line
 
     def datagram_errqueue_received(
@@ -113,13 +113,13 @@ class _Socket(MessageInterfaceUDP6):  # type: ignore[misc]  # Any
             super().send(message)
 
     def error_received(self, exc: OSError) -> None:
-        # Not now: this comes out of the sending of a response, and would end the very exchange that is sending it.
+        # Later: this is called while a response is sent, and would end the exchange that sends it.
         remote = self._remote_being_sent_to.get()
         if remote is not None:
             self.loop.call_soon(self._give_up, exc, remote)
 
     def _give_up(self, failure: OSError, remote: UDP6EndpointAddress) -> None:
-        """Nobody listens there any more: end what is under way for him."""
+        """End the exchanges with a sender whose port is closed."""
         if self._shutting_down is not None:
             return
         try:
@@ -129,47 +129,47 @@ class _Socket(MessageInterfaceUDP6):  # type: ignore[misc]  # Any
 
 
 class Endpoint:
-    """An open port. Keep it: when it is collected, the port closes."""
+    """Open port; it closes when this object is collected."""
 
     def __init__(
         self,
         context: aiocoap.Context,
         opened: _Socket,
         port: int,
-        gate: DatagramFilter,
+        datagram_filter: DatagramFilter,
         counters: Counters,
         failures: _Failures,
     ) -> None:
         self._context = context
         self._socket = opened
-        self._gate = gate
+        self._filter = datagram_filter
         self._failures = failures
         self.counters = counters
         self.port = port
 
     @property
     def newest_failure(self) -> str:
-        """What went wrong last; empty while nothing did."""
+        """Newest error as text; empty if there was none."""
         return self._failures.newest
 
     @property
     def proven_senders(self) -> int:
-        """How many senders have a rate of their own."""
-        return self._gate.proven_senders
+        """Number of senders with a rate of their own."""
+        return self._filter.proven_senders
 
-    def proved(self, remote: Any) -> None:
-        """The sender of a request (its `remote`) holds a key: it no longer shares the strangers' rate."""
-        self._gate.proved(remote.sockaddr)
+    def mark_proven(self, remote: Any) -> None:
+        """Give the sender of a request (its `remote`), which holds a key, a rate of its own."""
+        self._filter.mark_proven(remote.sockaddr)
 
     async def close(self) -> None:
-        """Close the port and end what is being answered."""
-        self._socket.gate = None
-        # Answers that have not begun begin now: one that is ended before leaves a complaint of Python on the screen.
+        """Close the port and end the requests under way."""
+        self._socket.filter = None
+        # Tasks that have not started start now: cancelled before, they leave a RuntimeWarning on the screen.
         await asyncio.sleep(0)
         await self._context.shutdown()
 
 
-def _nobody(_: Any) -> bool:
+def _never(_: Any) -> bool:
     return False
 
 
@@ -179,21 +179,28 @@ async def open_endpoint(
     port: int,
     *,
     limits: Limits | None = None,
-    hears: Callable[[Any], bool] = _nobody,
+    is_reachable: Callable[[Any], bool] = _never,
     key_of: Callable[[SealedRequest], Any] | None = None,
     now: Callable[[], float] = time.monotonic,
 ) -> Endpoint:
-    """Listen on an address of this machine, "::" for all; port 0 takes a free one.
+    """Listen on a UDP port.
 
-    `hears`: whether a sender (a request's `remote`) is there for certain, though it confirmed nothing. `key_of`: the
-    security context that an OSCORE request names, or None.
-    Raises ChannelError when the address is none of ours, or another program has the port.
+    Raises ChannelError if the address is not of this machine, or another program has the port.
+
+    Args:
+        site: Answerer of the requests.
+        host: Address of this machine, "::" for all.
+        port: UDP port; 0 for a free one.
+        limits: Rates of the datagram filter; None for the usual ones.
+        is_reachable: Whether a sender (a request's `remote`) is certainly there, though it confirmed nothing.
+        key_of: Security context that an OSCORE request names, or None.
+        now: Monotonic clock in seconds.
     """
     loop = asyncio.get_running_loop()
     counters = Counters()
-    gate = DatagramFilter(limits or Limits(), counters, now, key_of)
+    datagram_filter = DatagramFilter(limits or Limits(), counters, now, key_of)
     failures = _Failures(counters)
-    # Not registered anywhere: aiocoap's lines about single messages are neither formatted nor passed on.
+    # Unregistered logger: aiocoap's lines about single messages are neither formatted nor passed on.
     log = logging.Logger("kurt2rt.channel.coap", logging.ERROR)
     log.addHandler(failures)
     answered = _Answered(site)
@@ -207,13 +214,13 @@ async def open_endpoint(
     (tokens,) = context.request_interfaces
     answered.tokens = tokens
     opened: _Socket = tokens.token_interface.message_interface
-    opened.gate = gate
+    opened.filter = datagram_filter
     end_all = tokens.dispatch_error
 
     def dispatch_error(error: Exception, remote: Any) -> None:
-        # aiocoap ends all that somebody observes for one message that he did not confirm in time.
-        if not (isinstance(error, ConRetransmitsExceeded) and hears(remote)):
+        # aiocoap ends all observations of a device for one message that it did not confirm in time.
+        if not (isinstance(error, ConRetransmitsExceeded) and is_reachable(remote)):
             end_all(error, remote)
 
     tokens.dispatch_error = dispatch_error
-    return Endpoint(context, opened, bound.getsockname()[1], gate, counters, failures)
+    return Endpoint(context, opened, bound.getsockname()[1], datagram_filter, counters, failures)

@@ -1,4 +1,4 @@
-"""The mid level's part in the picture of the robot."""
+"""Mid level and surprise in the state of the robot."""
 
 import math
 from collections.abc import Callable
@@ -10,7 +10,7 @@ from kurt2rt.core.tick import TickRecord
 
 
 def mid_state(mid: MidLevel, decided: MidDecision, stamp_of: Callable[[str], str]) -> MidState:
-    """What the mid level commands and why; `stamp_of`: when the lesson of a command became durable."""
+    """Return the mid level's command and its reason; `stamp_of`: the time when a command's lesson became durable."""
     settings, match = mid.settings, decided.match
     nearest = None if match is None else match.rla
     words = settings.situation.describe
@@ -31,7 +31,7 @@ def mid_state(mid: MidLevel, decided: MidDecision, stamp_of: Callable[[str], str
 
 
 def surprise_state(record: TickRecord) -> SurpriseState | None:
-    """What surprised the robot in a tick; None where nothing did."""
+    """Return the surprise of a tick; None if there is none."""
     surprise = record.surprise
     if surprise is None or not surprise.surprising:
         return None

@@ -1,4 +1,4 @@
-"""What became of each command, so that the same one sent again is answered and not carried out again."""
+"""Idempotency cache: the reply to each command id, so that a copy is answered and not carried out again."""
 
 import asyncio
 from collections import OrderedDict
@@ -7,7 +7,7 @@ from kurt2rt.channel.server.reply import Reply
 
 
 class PendingCommands:
-    """Replies by command id, those that are still to come among them; the oldest settled ones are forgotten."""
+    """Replies by command id, pending ones included; the oldest settled replies are dropped."""
 
     def __init__(self, capacity: int = 1024) -> None:
         self._capacity = capacity
@@ -17,24 +17,24 @@ class PendingCommands:
         return len(self._replies)
 
     def get(self, command_id: str) -> asyncio.Future[Reply] | None:
-        """The reply to a command that came before, perhaps still to come."""
+        """Return the reply to an earlier command, perhaps pending; None for a new command."""
         return self._replies.get(command_id)
 
     def begin(self, command_id: str) -> asyncio.Future[Reply]:
-        """A command that came for the first time."""
-        self._forget()
+        """Add a new command and return its pending reply."""
+        self._drop_oldest()
         reply = self._replies[command_id] = asyncio.get_running_loop().create_future()
         return reply
 
     def settle(self, command_id: str, reply: Reply) -> None:
-        """What became of a command; nothing where it did not come over the network."""
+        """Resolve a pending reply; commands that did not come over the network are left out."""
         waiting = self._replies.get(command_id)
         if waiting is not None and not waiting.done():
             waiting.set_result(reply)
 
-    def _forget(self) -> None:
+    def _drop_oldest(self) -> None:
         while len(self._replies) >= self._capacity:
-            # What is under way must not be taken for new when it comes again.
+            # A pending command must not be mistaken for a new one when its copy comes.
             oldest = next((command_id for command_id, reply in self._replies.items() if reply.done()), None)
             if oldest is None:
                 return

@@ -1,4 +1,4 @@
-"""What a request comes to."""
+"""Replies of the robot to requests."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,38 +10,43 @@ from kurt2rt.core.outcome_text import text_of
 
 
 class ReplyStatus(Enum):
-    """How a request ended; each is one CoAP code."""
+    """End of a request; each member is one CoAP code."""
 
     DONE = "done"
     MALFORMED = "malformed"
     NOT_HERE = "not here"
     CONFLICT = "conflict"
-    """Understood, and not done: `why` and `text` say the reason."""
+    """Understood, but refused: `why`, `code` and `text` of the body tell the reason."""
     UNSAVED = "unsaved"
-    """Cannot be made durable just now."""
+    """It cannot be made durable now."""
 
 
 @dataclass(frozen=True, slots=True)
 class Reply:
-    """The answer to a request."""
+    """Reply to a request."""
 
-    verdict: ReplyStatus
+    status: ReplyStatus
     body: Mapping[str, Any] = field(default_factory=dict)
 
 
 def refusal(why: str, outcome: Outcome, tick: int) -> Reply:
-    """Return the reply to a request that is understood and not done; `why` is a kind of the wire contract."""
+    """Return the reply to a request that is understood and refused; `why` is a word of the wire contract."""
     return Reply(ReplyStatus.CONFLICT, {"t": tick, "why": why, **plain_outcome(outcome)})
 
 
 def restarted(tick: int) -> Reply:
-    """Refuse a request that was made for an earlier start of the robot program."""
+    """Return the refusal of a request for an earlier start of the robot program."""
     return refusal("boot", Outcome(RefusalCode.RESTARTED), tick)
 
 
 def malformed(text: str) -> Reply:
-    """Not understood."""
+    """Return the reply to a request that breaks the wire contract; `text` tells how."""
     return Reply(ReplyStatus.MALFORMED, {"why": "malformed", "text": text})
+
+
+def not_simulated() -> Reply:
+    """Return the refusal of a request that only a simulated robot carries out."""
+    return Reply(ReplyStatus.NOT_HERE, {"why": "refused", **plain_outcome(Outcome(RefusalCode.NOT_SIMULATED))})
 
 
 def unsaved(outcome: Outcome, tick: int) -> Reply:
@@ -51,11 +56,11 @@ def unsaved(outcome: Outcome, tick: int) -> Reply:
 
 def done(tick: int, outcome: Outcome | None = None, **more: Any) -> Reply:
     """Return the reply to a request that was carried out, and is durable if it has to be."""
-    told = {"text": ""} if outcome is None else plain_outcome(outcome)
-    return Reply(ReplyStatus.DONE, {"t": tick, "ok": True, **told, **more})
+    shown = {"text": ""} if outcome is None else plain_outcome(outcome)
+    return Reply(ReplyStatus.DONE, {"t": tick, "ok": True, **shown, **more})
 
 
 def plain_outcome(outcome: Outcome) -> dict[str, Any]:
-    """Return an outcome as the keys of a reply: a sentence for devices that know no codes, code and fields."""
+    """Return an outcome as keys of a reply: code, fields, and a sentence for devices that know no codes."""
     fields = {key: list(each) if isinstance(each, tuple) else each for key, each in outcome.fields.items()}
     return {"text": text_of(outcome), "code": outcome.code.value, "fields": fields}

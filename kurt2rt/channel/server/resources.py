@@ -1,4 +1,4 @@
-"""The robot's resources: everything but discovery is for teachers whose device has a key."""
+"""Resources of the robot; all but discovery need the key of a paired device."""
 
 import asyncio
 from typing import Any, Protocol
@@ -31,15 +31,15 @@ _OBSERVE_MASK = 0xFFFFFF
 
 
 class _Loose(TransportTuning):  # type: ignore[misc]  # aiocoap has no types
-    """A picture: the next one is better than this one again."""
+    """Tuning of states: sent once, because the next state replaces a lost one."""
 
     reliability = False
 
 
 class _Confirmed(TransportTuning):  # type: ignore[misc]
-    """After a second without another sign of an observer, so that one who is gone is noticed.
+    """Tuning of the state after a silent second of its observer, to notice an observer that is gone.
 
-    Not while there are signs: at 30 % loss each way one in fifteen is given up, and the pictures with it.
+    Others are not confirmable: at 30 % loss each way aiocoap would give up one in fifteen, and end the observation.
     """
 
     reliability = True
@@ -48,79 +48,79 @@ class _Confirmed(TransportTuning):  # type: ignore[misc]
 
 
 class Keys(Protocol):
-    """The robot's side of all pairings."""
+    """Robot's side of all pairings."""
 
     def find(self, unprotected: Any) -> Any:
-        """The security context that a message names. Raises KeyError."""
+        """Return the security context that a message names. Raises KeyError."""
         ...
 
 
 class SenderRegistry(Protocol):
-    """Is told which senders are no strangers."""
+    """Registry of the senders that proved to hold a key."""
 
-    def proved(self, remote: Any) -> None:
-        """This sender has just sent something that only a key holder can make."""
+    def mark_proven(self, remote: Any) -> None:
+        """Note that a sender has sent a message that only a key holder can make."""
         ...
 
 
 class _Observer:
-    """One who gets every picture; a slow one misses the older ones."""
+    """Observer of the states; a slow one misses older states."""
 
     def __init__(self, remote: Any, device: str, now_s: float) -> None:
         self.remote = remote
         self.device = device
         self.heard_s = now_s
-        """When something came that only he can have sent; of the loop's time."""
+        """Time of the last authenticated message from it, in the loop's time."""
         self.asked_s = float("-inf")
-        """When he was last asked whether he is there."""
+        """Time of the last state that it was asked to confirm."""
         self.over = False
         self.skipped = 0
-        """Pictures that came before the one before them was taken."""
+        """Number of states that replaced a state before it was sent."""
         self._newest = b""
         self._is_new = asyncio.Event()
 
-    def show(self, picture: bytes) -> None:
+    def publish(self, state: bytes) -> None:
         self.skipped += self._is_new.is_set()
-        self._newest = picture
+        self._newest = state
         self._is_new.set()
 
     def end(self) -> None:
-        """No more pictures for this one."""
+        """End the observation."""
         self.over = True
         self._is_new.set()
 
-    async def picture(self) -> bytes:
+    async def state(self) -> bytes:
         await self._is_new.wait()
         self._is_new.clear()
         return self._newest
 
 
 class RobotSite:
-    """Answers requests (what aiocoap calls a site). One place checks the key, for every path."""
+    """Answers of the robot (aiocoap's site). One place checks the key, for every path."""
 
-    def __init__(self, keys: Keys, reception: RequestHandler) -> None:
+    def __init__(self, keys: Keys, handler: RequestHandler) -> None:
         self._keys = keys
-        self._reception = reception
+        self._handler = handler
         self._observers: set[_Observer] = set()
-        self._picture = b""
+        self._state = b""
         self._skipped = 0
-        self.doorkeeper: SenderRegistry | None = None
-        """To be set once the endpoint is open; before that nothing arrives."""
+        self.senders: SenderRegistry | None = None
+        """Registry of proven senders; `open_channel` sets it before the first request."""
         self.failures = 0
-        """Requests that ended in an error of ours; none should."""
+        """Number of requests that ended in an error of the program; none should."""
 
     @property
     def observers(self) -> int:
-        """How many get the pictures."""
+        """Number of devices that get the states."""
         return len(self._observers)
 
     @property
-    def pictures_skipped(self) -> int:
-        """Pictures that observers did not get, because the one before was still on its way to them."""
+    def states_skipped(self) -> int:
+        """Number of states that observers missed because the one before was still on its way."""
         return self._skipped + sum(each.skipped for each in self._observers)
 
-    def hears(self, remote: Any) -> bool:
-        """Whether an observer there has just said something, so that he is not gone."""
+    def is_reachable(self, remote: Any) -> bool:
+        """Return whether an observer at `remote` sent an authenticated message in the last second."""
         now_s = asyncio.get_running_loop().time()
         return any(each.remote == remote and now_s - each.heard_s < _CONFIRMED_EVERY_S for each in self._observers)
 
@@ -134,21 +134,21 @@ class RobotSite:
         except KeyError:
             return None
 
-    def show(self, picture: bytes) -> None:
-        """A new encoded picture for everyone who looks."""
-        self._picture = picture
+    def publish(self, state: bytes) -> None:
+        """Send an encoded state to all observers."""
+        self._state = state
         for observer in self._observers:
-            observer.show(picture)
+            observer.publish(state)
 
     async def render_to_pipe(self, pipe: Any) -> None:
         """Answer one request; called by aiocoap in a task of its own."""
         try:
             unprotected = oscore.verify_start(pipe.request)
         except oscore.NotAProtectedMessage:
-            pipe.add_response(_to_a_stranger(pipe.request), is_last=True)
+            pipe.add_response(_answer_stranger(pipe.request), is_last=True)
             return
         except Exception:  # noqa: BLE001 - forged options make the library raise many things
-            return  # the endpoint ends what is left without an answer
+            return  # the endpoint ends an exchange without an answer
         try:
             keys = self._keys.find(unprotected)
             request, request_id = keys.unprotect(pipe.request)
@@ -156,10 +156,10 @@ class RobotSite:
             pipe.add_response(error.to_message(), is_last=True)
             return
         except Exception:  # noqa: BLE001 - no key, or not made with it; for forged bytes also as above
-            # Silence, also to a confirmable message: a stranger learns nothing, and nothing is to be amplified.
+            # Silence, also to a confirmable message: strangers learn nothing, and nothing is amplified.
             return
-        if self.doorkeeper is not None:
-            self.doorkeeper.proved(pipe.request.remote)
+        if self.senders is not None:
+            self.senders.mark_proven(pipe.request.remote)
         now_s = asyncio.get_running_loop().time()
         for observer in self._observers:
             if observer.remote == pipe.request.remote:
@@ -167,12 +167,12 @@ class RobotSite:
         sender = Sender(keys.authenticated_claims[0], keys.recipient_id, int.from_bytes(request_id.partial_iv, "big"))
         try:
             if (request.code, path_of(request)) == (aiocoap.GET, _STATE):
-                await self._show_state(pipe, request, keys, request_id, sender.device)
+                await self._send_states(pipe, request, keys, request_id, sender.device)
                 return
             response = await self._respond(request, sender)
             pipe.add_response(_protected(keys, response, request_id), is_last=True)
         except oscore.ContextUnavailable:
-            # Revoked or renewed meanwhile: silence, as to any key that no device has. A disk that fails is a failure.
+            # Revoked or renewed meanwhile: silence, as for unknown keys. A failing disk is an error.
             if not keys.closed:
                 raise
 
@@ -189,27 +189,27 @@ class RobotSite:
         except WireError as error:
             return _message(malformed(str(error)))
         try:
-            return _message(await self._reception.answer(sender, wanted))
-        except Exception:  # noqa: BLE001 - whatever a key holder sends, the loop goes on; counted and shown
+            return _message(await self._handler.answer(sender, wanted))
+        except Exception:  # noqa: BLE001 - the loop goes on after any request of a key holder; counted and shown
             self.failures += 1
             return aiocoap.Message(code=aiocoap.INTERNAL_SERVER_ERROR)
 
-    async def _show_state(self, pipe: Any, request: Any, keys: Any, request_id: Any, device: str) -> None:
+    async def _send_states(self, pipe: Any, request: Any, keys: Any, request_id: Any, device: str) -> None:
         loop = asyncio.get_running_loop()
         observer = _Observer(pipe.request.remote, device, loop.time())
         if request.opt.observe == 0:
-            # A device looks once: when it asks anew it has given up the one before, and does not always say so.
+            # A device has one observation: a new registration ends the one before, which may have been lost.
             for other in self._observers:
                 if other.device == device:
                     other.end()
         self._observers.add(observer)
         try:
-            picture = self._picture or await observer.picture()
+            state = self._state or await observer.state()
             if request.opt.observe != 0:
-                pipe.add_response(_protected(keys, _state(picture), request_id), is_last=True)
+                pipe.add_response(_protected(keys, _state_message(state), request_id), is_last=True)
                 return
             while not observer.over:
-                message = _state(picture)
+                message = _state_message(state)
                 message.opt.observe = 0
                 message.transport_tuning = _Loose()
                 if loop.time() - max(observer.heard_s, observer.asked_s) >= _CONFIRMED_EVERY_S:
@@ -218,18 +218,18 @@ class RobotSite:
                 outer = _protected(keys, message, request_id)
                 outer.opt.observe = keys.sender_sequence_number & _OBSERVE_MASK
                 pipe.add_response(outer, is_last=False)
-                picture = await observer.picture()
-        finally:  # aiocoap cancels this task when the other side is gone
+                state = await observer.state()
+        finally:  # aiocoap cancels this task when the device is gone
             self._observers.discard(observer)
             self._skipped += observer.skipped
 
 
 def path_of(request: Any) -> str:
-    """The path that a request names."""
+    """Return the path of a request."""
     return "/" + "/".join(request.opt.uri_path)
 
 
-def _to_a_stranger(request: Any) -> aiocoap.Message:
+def _answer_stranger(request: Any) -> aiocoap.Message:
     if (str(request.code), path_of(request)) == _DISCOVERY:
         return _part_of_discovery(request.opt.block2)
     return aiocoap.Message(code=aiocoap.UNAUTHORIZED)
@@ -262,12 +262,12 @@ def _links() -> bytes:
     return ",".join(links).encode()
 
 
-def _state(picture: bytes) -> aiocoap.Message:
-    return aiocoap.Message(code=aiocoap.CONTENT, payload=picture, content_format=CONTENT_FORMAT)
+def _state_message(state: bytes) -> aiocoap.Message:
+    return aiocoap.Message(code=aiocoap.CONTENT, payload=state, content_format=CONTENT_FORMAT)
 
 
 def _message(reply: Reply) -> aiocoap.Message:
-    return aiocoap.Message(code=_CODES[reply.verdict], payload=encode_answer(reply.body), content_format=CONTENT_FORMAT)
+    return aiocoap.Message(code=_CODES[reply.status], payload=encode_answer(reply.body), content_format=CONTENT_FORMAT)
 
 
 def _protected(keys: Any, message: aiocoap.Message, request_id: Any) -> aiocoap.Message:

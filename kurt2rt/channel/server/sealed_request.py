@@ -1,4 +1,4 @@
-"""OSCORE request as it lies in a datagram, and the check of its tag before aiocoap decodes anything (RFC 8613)."""
+"""OSCORE request in a datagram, and the check of its tag before aiocoap decodes anything (RFC 8613)."""
 
 from dataclasses import dataclass
 from typing import Any, Self
@@ -10,7 +10,7 @@ _TOKEN_MASK = 0b1111
 _PAYLOAD_MARKER = 0xFF
 _OSCORE_OPTION = 9
 _POST, _FETCH = 2, 5
-"""Method of an OSCORE request as it shows; FETCH if it observes (RFC 8613, 4.2)."""
+"""Outer method of an OSCORE request; FETCH if it observes (RFC 8613, 4.2)."""
 _MOST_OPTIONS = 16
 """A request of a device has one or two outside its protected part."""
 _EXTENDED = {13: (1, 13), 14: (2, 269)}
@@ -33,7 +33,7 @@ class SealedRequest:
     partial_iv: bytes
     """Sequence number as it stands in the datagram, 1 to 5 bytes."""
     ciphertext: bytes
-    """With its tag."""
+    """Encrypted part, with its tag."""
 
     @property
     def number(self) -> int:

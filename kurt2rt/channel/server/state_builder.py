@@ -1,12 +1,8 @@
-"""Makes the picture of the robot that its teachers get."""
+"""State of the robot that its teachers get."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-
-from hal.simulation import SimulatedWorld
-from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
+from kurt2rt.channel.server.dependencies import ChannelDependencies
 from kurt2rt.channel.server.mid_state import mid_state, surprise_state
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import Cause
@@ -17,64 +13,42 @@ from kurt2rt.runtime import Runtime
 
 _SENSORS = (TroubleCode.SENSORS_UNHEARD, TroubleCode.SENSORS_SILENT)
 _LATENESS_EVERY = 20
-"""Pictures; percentiles cost more than a picture."""
-
-
-@dataclass(frozen=True, slots=True)
-class JournalStatus:
-    """How lessons fare on the disk."""
-
-    unsaved: Callable[[], int]
-    trouble: Callable[[], str | None]
-    stamp_of: Callable[[str], str]
-    """When the lesson of a command became durable; empty before it is."""
+"""Number of states between two percentiles, which cost more than a state."""
 
 
 class StateBuilder:
-    """Turns the record of a tick into the picture that teachers see."""
+    """Builder of the robot's state for its teachers, from the record of a tick."""
 
-    def __init__(
-        self,
-        runtime: Runtime,
-        boot: bytes,
-        safekeeping: JournalStatus,
-        bus_trouble: Callable[[], str],
-        ground: SimulatedWorld | None,
-        health: Callable[[], HealthReport | None] = lambda: None,
-    ) -> None:
-        """`health`: the newest report, which spares the loop the percentiles; None where nobody makes one."""
+    def __init__(self, runtime: Runtime, parts: ChannelDependencies) -> None:
         self._runtime = runtime
-        self._boot = boot
-        self._safekeeping = safekeeping
-        self._bus_trouble = bus_trouble
-        self._ground = ground
-        self._health = health
-        self._pictures = 0
+        self._parts = parts
+        self._count = 0
         self._late_p99_ms = 0.0
         self._surprise: SurpriseState | None = None
 
-    def follow(self, record: TickRecord) -> None:
-        """Every tick, also of those that become no picture: a surprise is over in one."""
+    def on_tick(self, record: TickRecord) -> None:
+        """Keep the surprise of a tick, which lasts one tick; call it for each tick."""
         self._surprise = surprise_state(record) or self._surprise
 
-    def picture(self, record: TickRecord) -> State:
-        """The robot after a tick."""
-        runtime, decision, match = self._runtime, record.decision, record.decision.match
-        school, system = runtime.handler, runtime.level.system
-        if self._pictures % _LATENESS_EVERY == 0:
+    def build(self, record: TickRecord) -> State:
+        """Return the state of the robot after a tick."""
+        runtime, parts = self._runtime, self._parts
+        decision, match = record.decision, record.decision.match
+        commands, system = runtime.handler, runtime.level.system
+        if self._count % _LATENESS_EVERY == 0:
             self._late_p99_ms = self._late()
-        self._pictures += 1
+        self._count += 1
         question: tuple[FeatureDifference, ...] = ()
         if decision.cause is Cause.UNKNOWN and match is not None and decision.asks_at == BASIC:
             question = ask(match, record.situation.vector, system.weights, runtime.definition.names).differing
         nearest = None if match is None else match.rla
         plan = decision.plan
-        opinion, agreement = record.opinion, school.agreement
+        opinion, agreement = record.opinion, commands.agreement
         of = None if opinion is None or not opinion.known else opinion.rla
         return State(
-            boot=self._boot,
+            boot=parts.boot,
             tick=record.tick,
-            phase=int(school.phase),
+            phase=int(commands.phase),
             infrared_counts=record.senses.infrared_counts,
             infrared_age_s=record.senses.infrared_age_s,
             bumpers=record.senses.bumpers,
@@ -88,29 +62,29 @@ class StateBuilder:
             distance=float("inf") if match is None else match.distance,
             radius=self._radius(decision.asks_at) if match is None else match.radius,
             taught_by="" if nearest is None else nearest.origin.teacher,
-            taught_at="" if nearest is None else self._safekeeping.stamp_of(nearest.origin.command_id),
+            taught_at="" if nearest is None else parts.journal.stamp_of(nearest.origin.command_id),
             question=question,
-            teacher=school.authority.teacher,
-            by_hand=school.authority.is_manual(record.tick),
-            stopped=school.active_stop or _latched(record),
+            teacher=commands.authority.teacher,
+            by_hand=commands.authority.is_manual(record.tick),
+            stopped=commands.active_stop or _latched(record),
             rlas=len(system),
             lessons=system.standing_lessons,
-            unsaved=self._safekeeping.unsaved(),
-            session=school.session,
-            clock_s=school.teaching_ticks(record.tick) * runtime.robot.can.cycle_s,
+            unsaved=parts.journal.unsaved(),
+            session=commands.session,
+            clock_s=commands.teaching_ticks(record.tick) * runtime.robot.can.cycle_s,
             guard=record.guard_result.reasons,
-            trouble=self._safekeeping.trouble() or self._bus_trouble() or school.updater.error or self._urgent(),
+            trouble=parts.journal.trouble() or parts.bus_trouble() or commands.updater.error or self._urgent(),
             late_p99_ms=self._late_p99_ms,
             missed_ticks=runtime.timer.missed_ticks,
-            place=None if self._ground is None else self._ground.place(),
+            place=None if parts.world is None else parts.world.place(),
             behaviour=record.behaviour,
             value=None if decision.rla_id is None else float(runtime.reinforcement.value(decision.rla_id)),
             opinion=None if opinion is None else opinion.said,
             opinion_of=None if of is None else of.rla_id,
             agreement=None if agreement is None else agreement.share,
             trusted=agreement is not None and agreement.trusted,
-            role=school.updater.critic_state.value,
-            bad_share=school.updater.bad_share,
+            role=commands.updater.critic_state.value,
+            bad_share=commands.updater.bad_share,
             signals_missing=self._signals_missing(),
             asks_at=decision.asks_at,
             mid=self._mid(record),
@@ -129,13 +103,13 @@ class StateBuilder:
         return float(self._runtime.reinforcement.value(nearest.rla_id))
 
     def _late(self) -> float:
-        health = self._health()
+        health = self._parts.health()
         return self._runtime.timer.lateness().p99_us / 1000.0 if health is None else health.punctuality.p99_ms
 
     def _urgent(self) -> str:
-        """What else the teacher should know at once, such as a disk without room; it may be a second old."""
-        health = self._health()
-        # Sensors that are silent are told by the cause, without delay.
+        """Return the most urgent trouble of the health report, such as a full disk; it may be 1 s old."""
+        health = self._parts.health()
+        # Silent sensors are in the decision's cause, without that delay.
         troubles = () if health is None else health.troubles
         urgent = (each for each in troubles if each.urgent and each.code not in _SENSORS)
         return next((f"{each.what}; {each.to_do}" for each in urgent), "")
@@ -146,7 +120,7 @@ class StateBuilder:
 
     def _mid(self, record: TickRecord) -> MidState | None:
         mid, decided = self._runtime.mid, record.mid
-        return None if mid is None or decided is None else mid_state(mid, decided, self._safekeeping.stamp_of)
+        return None if mid is None or decided is None else mid_state(mid, decided, self._parts.journal.stamp_of)
 
     def _signals_missing(self) -> tuple[int, int]:
         critic, agreement = self._runtime.handler.critic, self._runtime.handler.agreement
@@ -157,5 +131,5 @@ class StateBuilder:
 
 
 def _latched(record: TickRecord) -> ActiveStop | None:
-    """Return the guard's stop, for the teacher who has to resume; None while the guard lets the robot drive."""
+    """Return the guard's stop, which a teacher has to resume; None while the guard lets the robot drive."""
     return ActiveStop(StopReason.GUARD, ", ".join(record.guard_result.reasons)) if record.guard_result.latched else None

@@ -1,4 +1,4 @@
-"""The UDP port that the robot listens on."""
+"""UDP port of the robot."""
 
 import errno
 import ipaddress
@@ -8,12 +8,15 @@ from kurt2rt.channel.protocol.schema import ChannelError
 
 
 def require_port(host: str, port: int) -> None:
-    """See whether the port can be had, and leave it. Raises ChannelError that says why not."""
+    """Check that the port can be opened. Raises ChannelError with the reason."""
     bound_socket(host, port).close()
 
 
 def bound_socket(host: str, port: int) -> socket.socket:
-    """A socket for an address of this machine, "::" for all; port 0 takes a free one. Raises ChannelError."""
+    """Return a UDP socket bound to an address of this machine, "::" for all; port 0 binds a free port.
+
+    Raises ChannelError.
+    """
     try:
         address = ipaddress.ip_address(host)
     except ValueError as error:
@@ -28,7 +31,7 @@ def bound_socket(host: str, port: int) -> socket.socket:
         ) from error
     try:
         opened.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 0)
-        # No SO_REUSEPORT: two robot programs would each get a share of the teacher's messages.
+        # No SO_REUSEPORT: two robot programs would each get part of the teacher's messages.
         opened.bind((text, port))
     except (OSError, OverflowError) as error:
         opened.close()

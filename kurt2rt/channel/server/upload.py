@@ -7,7 +7,7 @@ from kurt2rt.core.outcome import CommandRefusedError, RefusalCode
 
 
 class Upload:
-    """The one file that is being uploaded; a newer one takes its place."""
+    """File that is being uploaded; a newer upload replaces it."""
 
     def __init__(self, most_bytes: int = MOST_UPLOAD_BYTES) -> None:
         self._most_bytes = most_bytes
@@ -15,9 +15,9 @@ class Upload:
         self._content = bytearray()
 
     def add(self, device: str, upload: bytes, offset: int, part: bytes) -> int:
-        """Add a part that begins where the parts so far end; return how many bytes are there.
+        """Append a part and return the size so far in bytes; a repeated part changes nothing.
 
-        A part that is there already, as a copy of a request brings it, changes nothing. Raises CommandRefusedError.
+        Raises CommandRefusedError for a gap, too many bytes, or a repeated part that differs.
         """
         if self._of != (device, upload):
             if offset != 0:
@@ -32,8 +32,8 @@ class Upload:
         self._content[offset : offset + len(part)] = part
         return len(self._content)
 
-    def take(self, device: str, upload: bytes, sha256: bytes) -> bytes:
-        """Return the whole file and forget it. Raises CommandRefusedError if it is not this one, or not whole."""
+    def pop(self, device: str, upload: bytes, sha256: bytes) -> bytes:
+        """Return the whole file and drop it. Raises CommandRefusedError if it is another upload, or not whole."""
         if self._of != (device, upload) or hashlib.sha256(self._content).digest() != sha256:
             raise CommandRefusedError(RefusalCode.UPLOAD_INCOMPLETE)
         content = bytes(self._content)

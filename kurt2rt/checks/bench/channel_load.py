@@ -7,7 +7,7 @@ from enum import StrEnum
 from pathlib import Path
 from statistics import fmean
 
-from kurt2rt.channel.server.channel import PICTURES_PER_S
+from kurt2rt.channel.server.channel import STATES_PER_S
 from kurt2rt.checks.bench.helper_process import partner
 from kurt2rt.checks.bench.open_robot import OpenRobot, open_robot
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
@@ -129,7 +129,7 @@ def load_results(stays: dict[Load, LoadPhases], *, period_s: float, driving_shar
     late = Reference("alone, p99", nobody.lateness.p99_us, teacher.lateness.p99_us)
     channel = _more(nobody.each, teacher.each, [1.0] * len(teacher.each))
     alone_us = percentiles_of([round(stay.work_us * 1e3) for stay in nobody.each]).median_us
-    picture = _more(nobody.each, onlooker.each, [PICTURES_PER_S] * len(onlooker.each))
+    picture = _more(nobody.each, onlooker.each, [STATES_PER_S] * len(onlooker.each))
     more_messages = [
         taught.messages_per_s - looked.messages_per_s
         for looked, taught in zip(onlooker.each, teacher.each, strict=True)
@@ -142,7 +142,7 @@ def load_results(stays: dict[Load, LoadPhases], *, period_s: float, driving_shar
             teacher.lateness,
             late,
             (BenchGoal("missed", teacher.missed_ticks, 0),),
-            f"{PICTURES_PER_S} pictures out, {fmean(more_messages):.0f} messages in per second; without "
+            f"{STATES_PER_S} pictures out, {fmean(more_messages):.0f} messages in per second; without "
             f"anybody {nobody.missed_ticks} ticks missed; driving in {driving_share:.0%} of the ticks",
         ),
         BenchResult(

@@ -6,6 +6,7 @@ from typing import Any
 
 from kurt2rt.channel.protocol.codec import WireError, decode_request, encode_request
 from kurt2rt.channel.protocol.requests import BOOT_BYTES, HIGHEST_SPEED_M_S, DriveRequest
+from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStatus
 from kurt2rt.channel.server.reply import Reply, ReplyStatus
 from kurt2rt.channel.server.request_handler import RequestHandler, Sender
 from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
@@ -38,7 +39,9 @@ class HandLink:
         self._time = time
         self._disturbance = disturbance
         self._chance = chance
-        self._reception = RequestHandler(runtime, _BOOT, {}, lambda _: "", _NoCopies(), None)
+        journal = JournalStatus(unsaved=int, trouble=lambda: None, stamp_of=lambda _: "")
+        dependencies = ChannelDependencies(journal, _NoCopies(), str, None, boot=_BOOT)
+        self._handler = RequestHandler(runtime, dependencies, {})
         self._number = self._hold = 0
         self._newest = (0, b"")
         self._passed_at_s = disturbance.begin_s
@@ -49,7 +52,7 @@ class HandLink:
 
     def see(self, tick: int) -> None:
         """The newest picture of the robot is of this tick, and the teacher sees it at once."""
-        self._reception.tick = tick
+        self._handler.tick = tick
 
     def beat(self) -> None:
         """Send what is due; call it every BEAT_S."""
@@ -85,7 +88,7 @@ class HandLink:
         self._time.every(BEAT_S, self._time.now_s(), self.beat)
 
     def _message(self, left_m_s: float, right_m_s: float) -> bytes:
-        return encode_request(DriveRequest(_BOOT, self._reception.tick, self._hold, left_m_s, right_m_s))
+        return encode_request(DriveRequest(_BOOT, self._handler.tick, self._hold, left_m_s, right_m_s))
 
     def _arrive(self, number: int, payload: bytes) -> None:
         try:
@@ -93,13 +96,13 @@ class HandLink:
         except WireError:
             self.refused += 1
             return
-        reply = _at_once(self._reception.answer(Sender(TEACHER, b"", number), request))
-        if reply.verdict is not ReplyStatus.DONE:
+        reply = _at_once(self._handler.answer(Sender(TEACHER, b"", number), request))
+        if reply.status is not ReplyStatus.DONE:
             self.refused += 1
 
 
 class _NoCopies:
-    """No request asks for a copy here (kurt2rt.channel.server.off_tick_requests.Copies)."""
+    """No request asks for a copy here (kurt2rt.channel.server.dependencies.Copies)."""
 
     def save(self, label: str) -> Awaitable[SavedCopy]:
         """Never asked."""

@@ -53,7 +53,7 @@ from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.rla.rla import BASIC, MID, Phase
 from kurt2rt.core.teaching.progress import Progress
 from kurt2rt.core.teaching.question import FeatureDifference
-from tests.channel.mischief import Mischief
+from tests.channel.hostile_datagrams import HostileDatagrams
 from tests.channel.states import COMMANDS, SURPRISED, state
 
 BOOT = b"boot"
@@ -386,5 +386,5 @@ def test_rows_and_lists_count_what_they_hold() -> None:
 
 @pytest.mark.parametrize("kind", PATHS.values(), ids=lambda kind: kind.path)
 def test_mischief_knows_the_fields_of_every_request(kind: type[Request]) -> None:
-    request = Mischief(1, lambda: (b"boot", 0)).valid(kind)
+    request = HostileDatagrams(1, lambda: (b"boot", 0)).valid(kind)
     assert decode_request(kind.path, encode_request(request)) == request

@@ -27,8 +27,8 @@ from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.server.datagram_filter import LONGEST_DATAGRAM, SocketAddress
 from kurt2rt.core.decision.active_stop import ActiveStop
 from kurt2rt.teacher import TeacherClient
+from tests.channel.hostile_datagrams import HostileDatagrams
 from tests.channel.jumping_loop import run_jumping
-from tests.channel.mischief import Mischief
 from tests.channel.robot_at_work import PERIOD_S, RobotAtWork, journal_of, robot_at_work
 from tests.channel.sides import answer_challenge, header_of
 
@@ -52,7 +52,7 @@ _PER_TICK = 200
 class _AllMayPass:
     """In place of the bucket that lets few strangers in."""
 
-    def take(self) -> bool:
+    def acquire(self) -> bool:
         return True
 
 
@@ -90,11 +90,11 @@ class Target:
     def __init__(self, at_work: RobotAtWork, device: OscoreContext, seed: int) -> None:
         self.at_work = at_work
         self.device = device
-        reception: Any = at_work.channel._reception
-        self.mischief = Mischief(seed, lambda: (reception._boot, reception.tick))
+        reception: Any = at_work.channel.handler
+        self.hostile = HostileDatagrams(seed, lambda: (reception._parts.boot, reception.tick))
         self.errors: list[str] = []
         self._endpoint: Any = at_work.channel.endpoint
-        keys: Any = at_work.channel._site._keys
+        keys: Any = at_work.channel.site._keys
         answer_challenge(device, keys.find(header_of(device)))
         (tokens,) = self._endpoint._context.request_interfaces
         self._socket = tokens.token_interface.message_interface
@@ -127,7 +127,7 @@ class Target:
 
     @contextmanager
     def strangers_without_limit(self) -> Iterator[None]:
-        gate = self._endpoint._gate
+        gate = self._endpoint._filter
         limited, gate._strangers = gate._strangers, _AllMayPass()
         try:
             yield
@@ -139,9 +139,9 @@ class Target:
         captured = []
         kinds = (HelloRequest, TakeRequest, AnswerRequest, DriveRequest, StopRequest, ResumeRequest, LessonsRequest)
         for kind in kinds:
-            request = aiocoap.Message(code=aiocoap.POST, payload=encode_request(self.mischief.valid(kind)))
+            request = aiocoap.Message(code=aiocoap.POST, payload=encode_request(self.hostile.valid(kind)))
             request.opt.uri_path = tuple(kind.path.strip("/").split("/"))
-            captured.append(self.mischief.protected(self.device, request))
+            captured.append(self.hostile.protected(self.device, request))
             self.feed(captured[-1], self.sender)
             await asyncio.sleep(2 * PERIOD_S)
         await asyncio.sleep(_SETTLED_S)
@@ -174,9 +174,9 @@ def _drained(outside: socket.socket) -> int:
 
 
 async def _fire(target: Target, captured: Sequence[bytes], count: int, *, from_outside: bool = False) -> None:
-    mischief, before, tick = target.mischief, effects(target.at_work), target.at_work.tick
+    hostile, before, tick = target.hostile, effects(target.at_work), target.at_work.tick
     for number in range(count):
-        datagram = mischief.datagram(captured)
+        datagram = hostile.datagram(captured)
         if from_outside:
             target.send(datagram, stranger=True)
         else:
@@ -231,7 +231,7 @@ def _gone_mad(folder: Path, count: int, *, seed: int) -> None:
             before, tick, expected, answered = effects(at_work), at_work.tick, 0, 0
             target.answers()
             for number in range(count):
-                datagram = target.mischief.protected(target.device, target.mischief.request())
+                datagram = target.hostile.protected(target.device, target.hostile.request())
                 if number % 2:
                     target.feed(datagram, target.sender)
                 else:

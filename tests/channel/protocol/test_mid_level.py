@@ -26,7 +26,7 @@ from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import BASIC, MID
-from tests.channel.desk import STAMP, Desk, outcome_of, why
+from tests.channel.channel_fixture import STAMP, ChannelFixture, outcome_of, why
 from tests.channel.grounds import Yard
 
 TURNS = ("straight_on", "turn_left", "turn_right")
@@ -34,31 +34,31 @@ NOTHING_YET = ("",) * 12
 
 
 @pytest.fixture
-def desk() -> Desk:
-    return Desk(behaviours=TURNS, mid="turns", ground=Yard())
+def desk() -> ChannelFixture:
+    return ChannelFixture(behaviours=TURNS, mid="turns", ground=Yard())
 
 
-def picture(desk: Desk) -> State:
+def picture(desk: ChannelFixture) -> State:
     """The picture of the newest tick; what comes out of the wire is the same."""
-    told = desk.telling.picture(desk.record)
+    told = desk.channel._states.build(desk.record)
     assert decode_state(encode_state(told)) == told
     return told
 
 
-async def teach(desk: Desk, way: str, *, beside: bool = False) -> Outcome | None:
+async def teach(desk: ChannelFixture, way: str, *, beside: bool = False) -> Outcome | None:
     """Give a lesson of the mid level; return what becomes of it."""
     return outcome_of(await desk.ask(desk.command(AnswerRequest, way, None, MID, beside)))
 
 
-async def test_the_robot_introduces_its_mid_level(desk: Desk) -> None:
+async def test_the_robot_introduces_its_mid_level(desk: ChannelFixture) -> None:
     hello = (await desk.ask(HelloRequest())).body
     assert hello["mid"] == ["history", 12, 6.0]
     assert hello["seeks"] is True
-    without = (await Desk(behaviours=TURNS).ask(HelloRequest())).body
+    without = (await ChannelFixture(behaviours=TURNS).ask(HelloRequest())).body
     assert (without["mid"], without["seeks"]) == (None, False)
 
 
-async def test_it_asks_which_way_is_answered_and_says_why_it_goes_there(desk: Desk) -> None:
+async def test_it_asks_which_way_is_answered_and_says_why_it_goes_there(desk: ChannelFixture) -> None:
     told = picture(desk)
     assert (told.cause, told.asks_at, told.question) == ("unknown", MID, ())
     assert (told.nearest, told.radius, told.distance) == (None, 6.0, math.inf)
@@ -89,7 +89,7 @@ async def test_it_asks_which_way_is_answered_and_says_why_it_goes_there(desk: De
     assert lessons[0][1] == "mid-level RLA 1 taught: turn_left"
 
 
-async def test_a_device_that_knows_no_levels_teaches_the_basic_one_only(desk: Desk) -> None:
+async def test_a_device_that_knows_no_levels_teaches_the_basic_one_only(desk: ChannelFixture) -> None:
     reply = await desk.ask(desk.answer("forward"))
     assert outcome_of(reply) == Outcome.of(ResultCode.RLA_TAUGHT, rla=1, behaviour="straight_on", action="forward")
     told = picture(desk)
@@ -97,7 +97,7 @@ async def test_a_device_that_knows_no_levels_teaches_the_basic_one_only(desk: De
     assert told.mid.asks
 
 
-async def test_the_mid_level_is_corrected_and_what_else_is_possible_stands_beside(desk: Desk) -> None:
+async def test_the_mid_level_is_corrected_and_what_else_is_possible_stands_beside(desk: ChannelFixture) -> None:
     await teach(desk, "turn_left")
     reply = await desk.ask(desk.command(CorrectRequest, "straight_on", None, MID))
     assert outcome_of(reply) == Outcome.of(
@@ -114,7 +114,7 @@ async def test_the_mid_level_is_corrected_and_what_else_is_possible_stands_besid
     assert added == Outcome.of(ResultCode.RLA_ADDED, rla=3, level=MID, action="turn_right", next_to=1)
 
 
-async def test_a_teacher_overrides_it_until_the_behaviour_has_finished(desk: Desk) -> None:
+async def test_a_teacher_overrides_it_until_the_behaviour_has_finished(desk: ChannelFixture) -> None:
     await teach(desk, "turn_left")
     reply = await desk.ask(desk.command(PursueRequest, "turn_right"))
     assert outcome_of(reply) == Outcome.of(ResultCode.BEHAVIOUR_WANTED_TO_JUNCTION, behaviour="turn_right")
@@ -128,7 +128,9 @@ async def test_a_teacher_overrides_it_until_the_behaviour_has_finished(desk: Des
     )
 
 
-async def test_lessons_of_a_level_that_is_not_there_or_of_a_way_that_is_not_taught_are_refused(desk: Desk) -> None:
+async def test_lessons_of_a_level_that_is_not_there_or_of_a_way_that_is_not_taught_are_refused(
+    desk: ChannelFixture,
+) -> None:
     refused = await desk.ask(desk.command(AnswerRequest, "forward", None, MID, False))
     assert (why(refused), outcome_of(refused)) == (
         "refused",
@@ -136,7 +138,7 @@ async def test_lessons_of_a_level_that_is_not_there_or_of_a_way_that_is_not_taug
     )
     refused = await desk.ask(desk.command(AnswerRequest, "forward", None, BASIC, True))
     assert why(refused) == "refused"
-    plain = Desk()
+    plain = ChannelFixture()
     for request in (
         plain.command(AnswerRequest, "turn_left", None, MID, False),
         plain.command(CorrectRequest, "turn_left", None, MID),
@@ -146,19 +148,19 @@ async def test_lessons_of_a_level_that_is_not_there_or_of_a_way_that_is_not_taug
         plain.command(SetLocationRequest, "door"),
     ):
         refused = await plain.ask(request)
-        assert (why(refused), refused.verdict) == ("refused", ReplyStatus.CONFLICT)
+        assert (why(refused), refused.status) == ("refused", ReplyStatus.CONFLICT)
         assert outcome_of(refused) == Outcome(RefusalCode.NO_MID_LEVEL)
     assert picture(plain).mid is None
 
 
-async def test_situations_get_names_that_are_listed_sought_and_taken_back(desk: Desk) -> None:
+async def test_situations_get_names_that_are_listed_sought_and_taken_back(desk: ChannelFixture) -> None:
     await teach(desk, "turn_left")
     assert (await desk.ask(SituationsRequest())).body == {"situations": []}
     reply = await desk.ask(desk.command(NameRequest, "door", None))
     assert outcome_of(reply) == Outcome.of(ResultCode.SITUATION_NAMED, name="door")
     assert (await desk.ask(SituationsRequest())).body == {"situations": ["door"]}
     await desk.ask(desk.answer("forward"))
-    assert (await desk.ask(desk.command(SeekRequest, "door"))).verdict is ReplyStatus.DONE
+    assert (await desk.ask(desk.command(SeekRequest, "door"))).status is ReplyStatus.DONE
     await desk.stream(desk.watch())
     desk.run()
     told = picture(desk)
@@ -166,12 +168,12 @@ async def test_situations_get_names_that_are_listed_sought_and_taken_back(desk: 
     assert told.plan_says == "on the way to door: the plan begins behind the next junction"
     step = PlanStep("door", GoalStatus.UNDER_WAY, ("turn_left", "straight_on"), 1, "on the way to door: 2 ways left", 0)
     under_way = desk.record._replace(decision=desk.record.decision._replace(plan=step))
-    told = desk.telling.picture(under_way)
+    told = desk.channel._states.build(under_way)
     assert (told.goal, told.plan, told.plan_says) == ("door", step.behaviours, step.says)
     assert outcome_of(await desk.ask(desk.command(SeekRequest, None))) == Outcome(ResultCode.GOAL_DROPPED)
     desk.run()
     assert (picture(desk).goal, picture(desk).plan_says) == ("", "")
-    assert (await desk.ask(desk.command(SeekRlaRequest, 1))).verdict is ReplyStatus.DONE
+    assert (await desk.ask(desk.command(SeekRlaRequest, 1))).status is ReplyStatus.DONE
     assert "1" in picture(desk).goal
     for request in (
         desk.command(SeekRequest, "window"),
@@ -185,17 +187,17 @@ async def test_situations_get_names_that_are_listed_sought_and_taken_back(desk: 
     assert (await desk.ask(SituationsRequest())).body == {"situations": []}
 
 
-async def test_the_latest_surprise_is_told_whichever_picture_it_falls_between(desk: Desk) -> None:
+async def test_the_latest_surprise_is_told_whichever_picture_it_falls_between(desk: ChannelFixture) -> None:
     assert picture(desk).surprise is None
     usual = Surprise(MID, 1, 2, 1.0, 1.0, 9, 4, False)
     far = Surprise(MID, 1, 3, 6.0, 2.0, 9, 0, True)
-    desk.telling.follow(desk.record._replace(surprise=far))
+    desk.channel._states.on_tick(desk.record._replace(surprise=far))
     desk.run(3)
-    desk.telling.follow(desk.record._replace(surprise=usual))
+    desk.channel._states.on_tick(desk.record._replace(surprise=usual))
     assert picture(desk).surprise == SurpriseState(desk.tick - 3, MID, 1, 3, 3.0, True)
 
 
-async def test_a_hand_that_puts_the_robot_elsewhere_has_it_forget_how_it_came_there(desk: Desk) -> None:
+async def test_a_hand_that_puts_the_robot_elsewhere_has_it_forget_how_it_came_there(desk: ChannelFixture) -> None:
     mid = desk.runtime.mid
     assert mid is not None
     mid.situation.vector[0] = 2.0  # as if it had turned left somewhere
@@ -208,7 +210,7 @@ async def test_a_hand_that_puts_the_robot_elsewhere_has_it_forget_how_it_came_th
 
 
 async def test_a_robot_that_does_not_know_where_it_is_still_shows_itself() -> None:
-    desk = Desk(behaviours=TURNS, mid="places", ground=Yard())
+    desk = ChannelFixture(behaviours=TURNS, mid="places", ground=Yard())
     for way in TURNS[:2]:
         await teach(desk, way, beside=True)
     desk.runtime.reposition()

@@ -9,7 +9,7 @@ from aiocoap import oscore
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.security.paired_devices import PairingChange, Teachers
-from kurt2rt.channel.security.pairing import local_pairing, pair, paired, renew, revoke
+from kurt2rt.channel.security.pairing import list_pairings, local_pairing, pair, renew, revoke
 from tests.channel.clock import Clock
 from tests.channel.sides import answer_challenge, ask, ask_until_fresh, header_of
 
@@ -85,10 +85,10 @@ async def test_a_device_that_is_paired_while_the_robot_runs_is_taken_up(house: H
     teachers = house.start()
     assert teachers.names == ()
     house.pair("phone")
-    assert await teachers.refresh() == PairingChange(came=("phone",), gone=())
+    assert await teachers.refresh() == PairingChange(added=("phone",), removed=())
     device = house.device("phone")
     assert ask_until_fresh(device, teachers.find(header_of(device)), "forward") == "forward"
-    assert await teachers.refresh() == PairingChange(came=(), gone=())
+    assert await teachers.refresh() == PairingChange(added=(), removed=())
 
 
 async def test_a_device_that_is_revoked_while_the_robot_runs_is_refused(house: House) -> None:
@@ -98,7 +98,7 @@ async def test_a_device_that_is_revoked_while_the_robot_runs_is_refused(house: H
     header = header_of(house.device("phone"))
     context = teachers.find(header)
     revoke(house.teachers, house.devices, "phone")
-    assert await teachers.refresh() == PairingChange(came=(), gone=("phone",))
+    assert await teachers.refresh() == PairingChange(added=(), removed=("phone",))
     assert teachers.names == ("tablet",)
     with pytest.raises(KeyError):
         teachers.find(header)
@@ -111,7 +111,7 @@ async def test_a_renewed_device_is_known_by_its_new_keys_alone(house: House) -> 
     teachers = house.start()
     old = header_of(house.device("phone"))
     renew(house.teachers, house.devices, "phone")
-    assert await teachers.refresh() == PairingChange(came=("phone",), gone=("phone",))
+    assert await teachers.refresh() == PairingChange(added=("phone",), removed=("phone",))
     with pytest.raises(KeyError):
         teachers.find(old)
     device = house.device("phone")
@@ -123,7 +123,7 @@ async def test_renewed_and_revoked_between_two_looks_it_is_gone(house: House) ->
     teachers = house.start()
     renew(house.teachers, house.devices, "phone")
     revoke(house.teachers, house.devices, "phone")
-    assert await teachers.refresh() == PairingChange(came=(), gone=("phone",))
+    assert await teachers.refresh() == PairingChange(added=(), removed=("phone",))
 
 
 async def test_a_damaged_pairing_keeps_nobody_else_out_and_is_told(house: House) -> None:
@@ -135,7 +135,7 @@ async def test_a_damaged_pairing_keeps_nobody_else_out_and_is_told(house: House)
     (line,) = teachers.trouble
     assert "kurt2rt pair tablet --renew" in line
     renew(house.teachers, house.devices, "tablet")
-    assert (await teachers.refresh()).came == ("tablet",)
+    assert (await teachers.refresh()).added == ("tablet",)
     assert teachers.trouble == ()
 
 
@@ -151,7 +151,7 @@ async def test_a_teachers_folder_that_is_deleted_lets_nobody_in(house: House, tm
     house.pair("phone")
     teachers = house.start()
     house.teachers.rename(tmp_path / "away")
-    assert (await teachers.refresh()).gone == ("phone",)
+    assert (await teachers.refresh()).removed == ("phone",)
 
 
 async def test_a_disk_that_cannot_be_read_costs_nobody_his_teacher(
@@ -165,7 +165,7 @@ async def test_a_disk_that_cannot_be_read_costs_nobody_his_teacher(
 
     with monkeypatch.context() as patch:
         patch.setattr(Path, "stat", broken)
-        assert await teachers.refresh() == PairingChange(came=(), gone=())
+        assert await teachers.refresh() == PairingChange(added=(), removed=())
         assert teachers.names == ("phone",)
         assert "Input/output error" in teachers.trouble[0]
     await teachers.refresh()
@@ -177,19 +177,19 @@ async def test_the_list_tells_to_the_minute_when_a_device_was_last_heard(house: 
     teachers = house.start()
     device = house.device("phone")
     await teachers.refresh()
-    assert paired(house.teachers)[0].used_at is None
+    assert list_pairings(house.teachers)[0].used_at is None
     ask_until_fresh(device, teachers.find(header_of(device)), "forward")
     await teachers.refresh()
-    used_at = paired(house.teachers)[0].used_at
+    used_at = list_pairings(house.teachers)[0].used_at
     assert used_at is not None
-    assert used_at >= paired(house.teachers)[0].made_at
+    assert used_at >= list_pairings(house.teachers)[0].made_at
     used = house.teachers / "phone" / "used"
     for passed_s, noted in ((59.0, False), (2.0, True)):
         os.utime(used, (1e9, 1e9))
         ask_until_fresh(device, teachers.find(header_of(device)), "forward")
         house.clock.now_s += passed_s
         await teachers.refresh()
-        noted_at = paired(house.teachers)[0].used_at
+        noted_at = list_pairings(house.teachers)[0].used_at
         assert (noted_at != datetime.fromtimestamp(1e9, UTC)) is noted
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.oscore_context import OscoreContext
-from kurt2rt.channel.security.pairing import Device, local_pairing, pair, paired, read_device, renew, revoke
+from kurt2rt.channel.security.pairing import Device, list_pairings, local_pairing, pair, read_device, renew, revoke
 from kurt2rt.core.rla.programs import AUTO
 from tests.channel.sides import ask, ask_until_fresh
 
@@ -151,7 +151,7 @@ def test_revoked_both_sides_are_gone_whoever_uses_them(teachers: Path, devices: 
     pairing = pair(teachers, devices, "phone")
     robot = OscoreContext(pairing.teacher)
     revoke(teachers, devices, "phone")
-    assert paired(teachers) == ()
+    assert list_pairings(teachers) == ()
     assert list(teachers.glob("*phone*")) == []
     assert list(devices.glob("*phone*")) == []
     robot.close()
@@ -161,7 +161,7 @@ def test_revoked_both_sides_are_gone_whoever_uses_them(teachers: Path, devices: 
 def test_revoke_takes_the_one_side_that_is_there(teachers: Path, devices: Path, tmp_path: Path) -> None:
     pair(teachers, devices, "phone").device.folder.rename(tmp_path / "phone")
     revoke(teachers, devices, "phone")
-    assert paired(teachers) == ()
+    assert list_pairings(teachers) == ()
     with pytest.raises(CredentialsError, match="no such pairing; paired is: nothing"):
         revoke(teachers, devices, "phone")
     with pytest.raises(CredentialsError, match="no such pairing"):
@@ -204,7 +204,7 @@ def test_killed_at_any_step_a_pairing_is_whole_or_not_accepted(tmp_path: Path, m
         teachers, devices = tmp_path / f"{steps}" / "teachers", tmp_path / f"{steps}" / "devices"
         pair(teachers, devices, "tablet")
         killed = change_until_killed(teachers, devices, steps, monkeypatch)
-        for each in paired(teachers):
+        for each in list_pairings(teachers):
             assert understood(teachers / each.name, devices / each.name)
         for name in ("tablet", "phone"):
             there = any(os.path.lexists(side / name) for side in (teachers, devices))
@@ -217,11 +217,11 @@ def test_killed_at_any_step_a_pairing_is_whole_or_not_accepted(tmp_path: Path, m
 
 
 def test_the_list_tells_names_and_when_they_were_made(teachers: Path, devices: Path) -> None:
-    assert paired(teachers) == ()
+    assert list_pairings(teachers) == ()
     pair(teachers, devices, "phone")
     local_pairing(teachers, devices)
     os.utime(teachers / "phone" / "secret.json", (1e9, 1e9))
-    local, phone = paired(teachers)
+    local, phone = list_pairings(teachers)
     assert (local.name, phone.name) == ("local", "phone")
     assert phone.made_at.isoformat() == "2001-09-09T01:46:40+00:00"
     assert phone.used_at is None

@@ -22,7 +22,7 @@ class Door:
         self.gate = DatagramFilter(limits, self.counters, self.clock)
 
     def let_in(self, number: int, tries: int, data: bytes = REQUEST) -> int:
-        return sum(self.gate.admits(data, sender(number)) for _ in range(tries))
+        return sum(self.gate.accepts(data, sender(number)) for _ in range(tries))
 
 
 def test_strangers_share_one_rate_however_many_addresses_they_forge() -> None:
@@ -35,16 +35,16 @@ def test_strangers_share_one_rate_however_many_addresses_they_forge() -> None:
 
 def test_who_proved_himself_is_let_in_while_strangers_flood() -> None:
     door = Door(Limits(strangers_at_once=40, proven_at_once=200))
-    door.gate.proved(sender(1))
+    door.gate.mark_proven(sender(1))
     door.let_in(2, tries=1000)
     assert door.let_in(1, tries=150) == 150
 
 
 def test_who_proved_himself_may_not_flood_either() -> None:
     door = Door(Limits(proven_at_once=200, proven_per_s=200))
-    door.gate.proved(sender(1))
+    door.gate.mark_proven(sender(1))
     assert door.let_in(1, tries=1000) == 200
-    door.gate.proved(sender(1))  # proving it again fills nothing
+    door.gate.mark_proven(sender(1))  # proving it again fills nothing
     assert door.let_in(1, tries=1000) == 0
     door.clock.now_s += 0.5
     assert door.let_in(1, tries=1000) == 100
@@ -53,9 +53,9 @@ def test_who_proved_himself_may_not_flood_either() -> None:
 def test_of_too_many_the_one_not_heard_for_longest_is_a_stranger_again() -> None:
     door = Door(Limits(strangers_at_once=0, strangers_per_s=0, proven_senders=3))
     for number in (1, 2, 3):
-        door.gate.proved(sender(number))
+        door.gate.mark_proven(sender(number))
     assert door.let_in(1, tries=1) == 1
-    door.gate.proved(sender(4))
+    door.gate.mark_proven(sender(4))
     assert door.gate.proven_senders == 3
     assert [door.let_in(number, tries=1) for number in (1, 2, 3, 4)] == [1, 0, 1, 1]
 

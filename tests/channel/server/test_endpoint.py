@@ -28,7 +28,7 @@ class Site:
     """Answers each request with what it was asked; /silence it does not answer, at /fault it fails."""
 
     def __init__(self) -> None:
-        self.proved: Callable[[Any], None] | None = None
+        self.mark_proven: Callable[[Any], None] | None = None
         self.asked = asyncio.Event()
         self.may_answer = asyncio.Event()
         self.may_answer.set()
@@ -42,8 +42,8 @@ class Site:
             raise ZeroDivisionError("the site is wrong")
         if path == "silence":
             return
-        if path == "key" and self.proved is not None:
-            self.proved(pipe.request.remote)
+        if path == "key" and self.mark_proven is not None:
+            self.mark_proven(pipe.request.remote)
         await self.may_answer.wait()
         pipe.add_response(aiocoap.Message(code=aiocoap.CHANGED, payload=pipe.request.payload), is_last=True)
 
@@ -118,7 +118,7 @@ class Robot:
 async def robot_at(host: str = "127.0.0.1", **options: Any) -> AsyncIterator[Robot]:
     site = Site()
     robot = Robot(site, await open_endpoint(site, host, 0, **options))
-    site.proved = robot.endpoint.proved
+    site.mark_proven = robot.endpoint.mark_proven
     try:
         yield robot
     finally:

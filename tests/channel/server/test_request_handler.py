@@ -55,15 +55,15 @@ from kurt2rt.channel.protocol.requests import (
     WorldRequest,
 )
 from kurt2rt.channel.protocol.simulation import SIMULATION
+from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
 from kurt2rt.channel.server.request_handler import COMMAND_TICKS, MOVING_TICKS, STREAM_TICKS
-from kurt2rt.channel.server.simulation import TeacherNow
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import CRITIC, Phase
 from kurt2rt.core.teaching.commands import Stop, Watch
-from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, outcome_of, reply_of, turns, why
+from tests.channel.channel_fixture import BOOT, ROBOT, STAMP, ChannelFixture, outcome_of, reply_of, turns, why
 from tests.channel.grounds import Yard
 from tests.service.health.reports import ILL
 
@@ -116,8 +116,8 @@ READING = {
 
 
 @pytest.fixture
-def desk() -> Desk:
-    return Desk()
+def desk() -> ChannelFixture:
+    return ChannelFixture()
 
 
 def test_every_path_has_a_rule_here() -> None:
@@ -128,13 +128,13 @@ def test_every_path_has_a_rule_here() -> None:
 # Streams.
 
 
-async def test_a_press_reaches_the_wheels_in_the_next_tick_and_is_answered_at_once(desk: Desk) -> None:
+async def test_a_press_reaches_the_wheels_in_the_next_tick_and_is_answered_at_once(desk: ChannelFixture) -> None:
     reply = await desk.stream(desk.press())
     assert reply == Reply(ReplyStatus.DONE, {"t": desk.tick})
     assert desk.run().decision.cause is Cause.TEACHER
 
 
-async def test_watching_makes_the_teacher_be_there(desk: Desk) -> None:
+async def test_watching_makes_the_teacher_be_there(desk: ChannelFixture) -> None:
     await desk.ask(desk.answer())
     assert desk.record.decision.cause is Cause.UNATTENDED
     await desk.stream(desk.watch())
@@ -144,47 +144,47 @@ async def test_watching_makes_the_teacher_be_there(desk: Desk) -> None:
 @pytest.mark.parametrize("kind", ["watch", "press"])
 @pytest.mark.parametrize(("age", "answer"), [(0, ""), (STREAM_TICKS, ""), (STREAM_TICKS + 1, "stale"), (-1, "stale")])
 async def test_a_stream_is_good_for_forty_ticks_and_not_for_the_future(
-    desk: Desk, kind: str, age: int, answer: str
+    desk: ChannelFixture, kind: str, age: int, answer: str
 ) -> None:
     assert why(await desk.stream(desk.watch(age=age) if kind == "watch" else desk.press(age=age))) == answer
 
 
-async def test_an_old_picture_does_not_move_the_robot_though_it_is_accepted(desk: Desk) -> None:
+async def test_an_old_picture_does_not_move_the_robot_though_it_is_accepted(desk: ChannelFixture) -> None:
     """Accepted up to 40 ticks, good for 35: what comes between counts as an answered message and no more."""
     assert why(await desk.stream(desk.press(age=STREAM_TICKS))) == ""
     assert desk.run().decision.cause is not Cause.TEACHER
 
 
-async def test_a_message_for_another_start_of_the_program_is_refused(desk: Desk) -> None:
+async def test_a_message_for_another_start_of_the_program_is_refused(desk: ChannelFixture) -> None:
     for request in (desk.watch(boot=LAST_START), desk.press(boot=LAST_START)):
         assert why(await desk.stream(request)) == "boot"
     assert desk.run().decision.cause is Cause.UNKNOWN
 
 
-async def test_only_the_newest_message_of_a_device_counts(desk: Desk) -> None:
+async def test_only_the_newest_message_of_a_device_counts(desk: ChannelFixture) -> None:
     assert why(await desk.stream(desk.press(), number=7)) == ""
     assert why(await desk.stream(desk.press(), number=7)) == "old"
     assert why(await desk.stream(desk.watch(), number=6)) == "old"
     assert why(await desk.stream(desk.press(), number=8)) == ""
 
 
-async def test_each_device_counts_for_itself(desk: Desk) -> None:
+async def test_each_device_counts_for_itself(desk: ChannelFixture) -> None:
     await desk.stream(desk.watch(), "ann", number=1000)
     assert why(await desk.stream(desk.watch(), "ben", number=1)) == ""
 
 
-async def test_a_renewed_pairing_begins_to_count_anew(desk: Desk) -> None:
+async def test_a_renewed_pairing_begins_to_count_anew(desk: ChannelFixture) -> None:
     await desk.stream(desk.watch(), number=1000)
     assert why(await desk.stream(desk.watch(), number=1, pairing=b"renewed")) == ""
     assert why(await desk.stream(desk.watch(), number=1, pairing=b"renewed")) == "old"
 
 
-async def test_a_message_that_was_refused_as_stale_says_nothing_about_the_next_one(desk: Desk) -> None:
+async def test_a_message_that_was_refused_as_stale_says_nothing_about_the_next_one(desk: ChannelFixture) -> None:
     assert why(await desk.stream(desk.watch(age=STREAM_TICKS + 1), number=7)) == "stale"
     assert why(await desk.stream(desk.watch(), number=6)) == ""
 
 
-async def test_a_copy_of_a_stop_that_comes_late_is_not_taken_for_the_newest_message(desk: Desk) -> None:
+async def test_a_copy_of_a_stop_that_comes_late_is_not_taken_for_the_newest_message(desk: ChannelFixture) -> None:
     await desk.stream(desk.watch(), number=20)
     stop = await desk.send(desk.stop(), number=12)
     desk.run()
@@ -193,7 +193,7 @@ async def test_a_copy_of_a_stop_that_comes_late_is_not_taken_for_the_newest_mess
     assert why(await desk.stream(desk.watch(), number=21)) == ""
 
 
-async def test_what_was_sent_before_a_stop_and_comes_after_it_does_not_drive(desk: Desk) -> None:
+async def test_what_was_sent_before_a_stop_and_comes_after_it_does_not_drive(desk: ChannelFixture) -> None:
     """The first message of a press may be overtaken by the stop that ended it."""
     stop = await desk.send(desk.stop(), number=12)
     assert why(await desk.stream(desk.press(hold=1), number=11)) == "old"
@@ -202,7 +202,7 @@ async def test_what_was_sent_before_a_stop_and_comes_after_it_does_not_drive(des
     assert why(await desk.stream(desk.press(hold=2), number=13)) == ""
 
 
-async def test_a_press_that_a_stop_ended_is_told_so_and_a_new_one_drives(desk: Desk) -> None:
+async def test_a_press_that_a_stop_ended_is_told_so_and_a_new_one_drives(desk: ChannelFixture) -> None:
     await desk.stream(desk.press(hold=1))
     desk.run()
     await desk.ask(desk.stop())
@@ -211,7 +211,7 @@ async def test_a_press_that_a_stop_ended_is_told_so_and_a_new_one_drives(desk: D
     assert why(await desk.stream(desk.press(hold=2))) == ""
 
 
-async def test_after_another_ones_stop_the_driver_has_to_say_resume(desk: Desk) -> None:
+async def test_after_another_ones_stop_the_driver_has_to_say_resume(desk: ChannelFixture) -> None:
     await desk.stream(desk.press(hold=1))
     desk.run()
     await desk.ask(desk.stop(), "ben")
@@ -221,16 +221,16 @@ async def test_after_another_ones_stop_the_driver_has_to_say_resume(desk: Desk) 
     assert why(await desk.stream(desk.press(hold=2))) == ""
 
 
-async def test_who_is_not_the_teacher_is_told_who_is(desk: Desk) -> None:
+async def test_who_is_not_the_teacher_is_told_who_is(desk: ChannelFixture) -> None:
     await desk.stream(desk.press(), "ann")
     desk.run()
     for request in (desk.press(), desk.watch()):
         refused = await desk.stream(request, "ben")
-        assert (why(refused), refused.verdict) == ("held", ReplyStatus.CONFLICT)
+        assert (why(refused), refused.status) == ("held", ReplyStatus.CONFLICT)
         assert outcome_of(refused) == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="ann")
 
 
-async def test_a_full_inbox_refuses_what_comes_and_forgets_nothing_of_what_waits(desk: Desk) -> None:
+async def test_a_full_inbox_refuses_what_comes_and_forgets_nothing_of_what_waits(desk: ChannelFixture) -> None:
     waiting = 0
     while why(await desk.stream(desk.watch())) == "":
         waiting += 1
@@ -246,7 +246,9 @@ async def test_a_full_inbox_refuses_what_comes_and_forgets_nothing_of_what_waits
 
 
 @pytest.mark.parametrize("kind", COMMANDS)
-async def test_a_command_for_another_start_of_the_program_is_refused(desk: Desk, kind: type[CommandRequest]) -> None:
+async def test_a_command_for_another_start_of_the_program_is_refused(
+    desk: ChannelFixture, kind: type[CommandRequest]
+) -> None:
     refused = await desk.ask(desk.command(kind, *COMMANDS[kind], boot=LAST_START))
     assert (why(refused), refused.body["t"]) == ("boot", desk.tick)
     assert desk.record.results == ()
@@ -254,7 +256,7 @@ async def test_a_command_for_another_start_of_the_program_is_refused(desk: Desk,
 
 @pytest.mark.parametrize("kind", COMMANDS)
 async def test_how_old_the_picture_of_a_command_may_be(kind: type[CommandRequest]) -> None:
-    desk = Desk(ground=Yard())
+    desk = ChannelFixture(ground=Yard())
     longest = MOVING_TICKS if kind in MOVING else COMMAND_TICKS
     for age in (longest + 1, -1):
         assert why(await desk.ask(desk.command(kind, *COMMANDS[kind], age=age))) == "stale"
@@ -264,7 +266,7 @@ async def test_how_old_the_picture_of_a_command_may_be(kind: type[CommandRequest
 
 @pytest.mark.parametrize("kind", [kind for kind in COMMANDS if kind is not TakeRequest])
 async def test_a_command_of_one_who_is_not_the_teacher_is_refused(kind: type[CommandRequest]) -> None:
-    desk = Desk(ground=Yard())
+    desk = ChannelFixture(ground=Yard())
     await desk.ask(desk.command(TakeRequest), "ann")
     refused = await desk.ask(desk.command(kind, *COMMANDS[kind]), "ben")
     assert why(refused) == "held"
@@ -272,7 +274,7 @@ async def test_a_command_of_one_who_is_not_the_teacher_is_refused(kind: type[Com
     assert desk.shelf.labels == []
 
 
-async def test_a_command_is_done_in_the_next_tick_and_answered_with_it(desk: Desk) -> None:
+async def test_a_command_is_done_in_the_next_tick_and_answered_with_it(desk: ChannelFixture) -> None:
     task = await desk.send(desk.command(PhaseRequest, Phase.CORRECTIONS))
     assert not task.done()
     tick = desk.run().tick
@@ -280,14 +282,14 @@ async def test_a_command_is_done_in_the_next_tick_and_answered_with_it(desk: Des
     assert await reply_of(task) == done(tick, phase_set)
 
 
-async def test_the_name_of_a_command_in_the_journal_is_device_and_id(desk: Desk) -> None:
+async def test_the_name_of_a_command_in_the_journal_is_device_and_id(desk: ChannelFixture) -> None:
     request = AnswerRequest(BOOT, bytes.fromhex("00ff00ff00ff00ff"), desk.tick, "forward", None)
     await desk.ask(request, "ann-phone")
     assert [event.origin.command_id for event in desk.notebook.events] == ["ann-phone-00ff00ff00ff00ff"]
     assert desk.notebook.events[0].origin.teacher == "ann-phone"
 
 
-async def test_a_lesson_is_answered_only_when_it_is_durable(desk: Desk) -> None:
+async def test_a_lesson_is_answered_only_when_it_is_durable(desk: ChannelFixture) -> None:
     task = await desk.send(desk.answer())
     desk.run(50)
     await turns()
@@ -298,13 +300,13 @@ async def test_a_lesson_is_answered_only_when_it_is_durable(desk: Desk) -> None:
     assert reply == done(desk.tick, Outcome.of(ResultCode.RLA_TAUGHT, rla=1, action="forward"), row=1)
 
 
-async def test_what_changes_nothing_needs_no_disk(desk: Desk) -> None:
+async def test_what_changes_nothing_needs_no_disk(desk: ChannelFixture) -> None:
     await desk.ask(desk.answer())
     reply = await desk.ask(desk.answer(), write=False)
     assert outcome_of(reply) == Outcome.of(ResultCode.RLA_AGREES, rla=1, action="forward")
 
 
-async def test_sent_again_while_it_is_under_way_it_gets_the_one_reply_and_counts_once(desk: Desk) -> None:
+async def test_sent_again_while_it_is_under_way_it_gets_the_one_reply_and_counts_once(desk: ChannelFixture) -> None:
     request = desk.answer()
     first = await desk.send(request)
     again = await desk.send(request)
@@ -314,33 +316,35 @@ async def test_sent_again_while_it_is_under_way_it_gets_the_one_reply_and_counts
     assert not any(task.done() for task in (first, again, late))
     desk.write()
     replies = [await reply_of(task) for task in (first, again, late)]
-    assert replies[0].verdict is ReplyStatus.DONE
+    assert replies[0].status is ReplyStatus.DONE
     assert replies[1:] == [replies[0]] * 2
     assert await reply_of(await desk.send(request)) == replies[0]
     assert len(desk.notebook.events) == 1
 
 
-async def test_a_copy_that_comes_when_its_picture_is_old_gets_the_reply_as_well(desk: Desk) -> None:
+async def test_a_copy_that_comes_when_its_picture_is_old_gets_the_reply_as_well(desk: ChannelFixture) -> None:
     request = desk.answer()
     first = await desk.ask(request)
     desk.run(COMMAND_TICKS + 100)
     assert await reply_of(await desk.send(request)) == first
 
 
-async def test_a_command_of_an_earlier_start_that_counted_is_told_so_and_not_that_it_was_refused(desk: Desk) -> None:
+async def test_a_command_of_an_earlier_start_that_counted_is_told_so_and_not_that_it_was_refused(
+    desk: ChannelFixture,
+) -> None:
     request = desk.command(AnswerRequest, "forward", None, boot=LAST_START)
     desk.runtime.handler.updater.handled_ids.add(f"ann-{request.command_id.hex()}")
     reply = await desk.ask(request)
-    assert (reply.verdict, outcome_of(reply)) == (ReplyStatus.DONE, Outcome(ResultCode.REPEATED))
+    assert (reply.status, outcome_of(reply)) == (ReplyStatus.DONE, Outcome(ResultCode.REPEATED))
 
 
-async def test_the_same_id_of_two_devices_is_two_commands(desk: Desk) -> None:
+async def test_the_same_id_of_two_devices_is_two_commands(desk: ChannelFixture) -> None:
     request = desk.command(PhaseRequest, Phase.CORRECTIONS)
-    assert (await desk.ask(request, "ann")).verdict is ReplyStatus.DONE
+    assert (await desk.ask(request, "ann")).status is ReplyStatus.DONE
     assert why(await desk.ask(request, "ben")) == "held"
 
 
-async def test_a_refusal_of_the_robot_is_told_in_its_words_and_stays_the_reply(desk: Desk) -> None:
+async def test_a_refusal_of_the_robot_is_told_in_its_words_and_stays_the_reply(desk: ChannelFixture) -> None:
     request = desk.command(DeleteRequest, 1)
     refused = await desk.ask(request)
     assert (why(refused), outcome_of(refused)) == ("refused", Outcome.of(RefusalCode.NO_RLA, rla=1))
@@ -349,19 +353,19 @@ async def test_a_refusal_of_the_robot_is_told_in_its_words_and_stays_the_reply(d
     assert len(desk.runtime.level.system) == 1
 
 
-async def test_a_lesson_that_can_never_be_written_is_told_as_unsaved(desk: Desk) -> None:
+async def test_a_lesson_that_can_never_be_written_is_told_as_unsaved(desk: ChannelFixture) -> None:
     task = await desk.send(desk.answer())
     desk.run()
     desk.write(error="the disk is full")
     reply = await reply_of(task)
-    assert (reply.verdict, why(reply), reply.body["text"]) == (ReplyStatus.UNSAVED, "unsaved", "the disk is full")
+    assert (reply.status, why(reply), reply.body["text"]) == (ReplyStatus.UNSAVED, "unsaved", "the disk is full")
 
 
 async def test_a_lesson_that_is_not_durable_in_time_is_told_as_unsaved_and_counts_when_it_is() -> None:
-    desk = Desk(longest_wait_s=0.0)
+    desk = ChannelFixture(longest_wait_s=0.0)
     request = desk.answer()
     reply = await desk.ask(request, write=False)
-    assert (reply.verdict, why(reply)) == (ReplyStatus.UNSAVED, "unsaved")
+    assert (reply.status, why(reply)) == (ReplyStatus.UNSAVED, "unsaved")
     assert outcome_of(reply) == Outcome(RefusalCode.NOT_SAVED_YET)
     desk.run()
     desk.write()
@@ -370,7 +374,7 @@ async def test_a_lesson_that_is_not_durable_in_time_is_told_as_unsaved_and_count
     )
 
 
-async def test_one_who_hangs_up_does_not_cost_the_next_copy_its_reply(desk: Desk) -> None:
+async def test_one_who_hangs_up_does_not_cost_the_next_copy_its_reply(desk: ChannelFixture) -> None:
     for request in (desk.answer(), desk.stop()):
         first = await desk.send(request)
         again = await desk.send(request)
@@ -378,10 +382,10 @@ async def test_one_who_hangs_up_does_not_cost_the_next_copy_its_reply(desk: Desk
         await turns()
         desk.run()
         desk.write()
-        assert (await reply_of(again)).verdict is ReplyStatus.DONE
+        assert (await reply_of(again)).status is ReplyStatus.DONE
 
 
-async def test_a_take_is_refused_while_the_other_one_drives_and_not_after(desk: Desk) -> None:
+async def test_a_take_is_refused_while_the_other_one_drives_and_not_after(desk: ChannelFixture) -> None:
     await desk.stream(desk.press(), "ann")
     desk.run()
     refused = await desk.ask(desk.command(TakeRequest), "ben")
@@ -390,7 +394,7 @@ async def test_a_take_is_refused_while_the_other_one_drives_and_not_after(desk: 
     assert outcome_of(await desk.ask(desk.command(TakeRequest), "ben")) == Outcome.of(ResultCode.TAKEN, teacher="ben")
 
 
-async def test_a_reward_and_a_correction_mean_the_decision_of_the_picture(desk: Desk) -> None:
+async def test_a_reward_and_a_correction_mean_the_decision_of_the_picture(desk: ChannelFixture) -> None:
     await desk.ask(desk.answer("forward"))
     await desk.stream(desk.watch())
     meant = desk.run(counts=100).tick
@@ -420,7 +424,7 @@ async def test_a_reward_and_a_correction_mean_the_decision_of_the_picture(desk: 
     ],
 )
 async def test_each_request_becomes_its_command(
-    desk: Desk, make: Callable[[Desk], CommandRequest], outcome: Outcome
+    desk: ChannelFixture, make: Callable[[ChannelFixture], CommandRequest], outcome: Outcome
 ) -> None:
     assert outcome_of(await desk.ask(make(desk))) == outcome
 
@@ -428,14 +432,14 @@ async def test_each_request_becomes_its_command(
 # Stop.
 
 
-async def test_a_stop_needs_neither_start_nor_picture_nor_to_be_the_teacher(desk: Desk) -> None:
+async def test_a_stop_needs_neither_start_nor_picture_nor_to_be_the_teacher(desk: ChannelFixture) -> None:
     await desk.ask(desk.command(TakeRequest), "ann")
     reply = await desk.ask(desk.stop(), "ben")
     assert outcome_of(reply) == Outcome(ResultCode.STOPPED)
     assert desk.run().decision.cause is Cause.STOPPED
 
 
-async def test_each_copy_of_a_stop_stops_again(desk: Desk) -> None:
+async def test_each_copy_of_a_stop_stops_again(desk: ChannelFixture) -> None:
     stop = desk.stop()
     first = await desk.ask(stop, "ben")
     await desk.ask(desk.command(ResumeRequest), "ann")
@@ -444,7 +448,7 @@ async def test_each_copy_of_a_stop_stops_again(desk: Desk) -> None:
     assert desk.run().decision.cause is Cause.STOPPED
 
 
-async def test_a_stop_among_much_else_is_handed_to_the_next_tick(desk: Desk) -> None:
+async def test_a_stop_among_much_else_is_handed_to_the_next_tick(desk: ChannelFixture) -> None:
     for _ in range(100):
         await desk.stream(desk.watch())
     task = await desk.send(desk.stop())
@@ -453,13 +457,13 @@ async def test_a_stop_among_much_else_is_handed_to_the_next_tick(desk: Desk) -> 
     for command in waiting:
         desk.runtime.inbox.put(command)
     desk.run()
-    assert (await reply_of(task)).verdict is ReplyStatus.DONE
+    assert (await reply_of(task)).status is ReplyStatus.DONE
 
 
 # Copies of the knowledge.
 
 
-async def test_a_copy_is_made_once_and_answered_with_its_name_and_fingerprint(desk: Desk) -> None:
+async def test_a_copy_is_made_once_and_answered_with_its_name_and_fingerprint(desk: ChannelFixture) -> None:
     request = desk.command(SaveRequest, "before lunch")
     desk.shelf.may_finish.clear()
     first, again = await desk.send(request), await desk.send(request)
@@ -481,17 +485,17 @@ async def test_a_copy_is_made_once_and_answered_with_its_name_and_fingerprint(de
     assert desk.shelf.labels == ["before lunch"]
 
 
-async def test_an_export_likewise(desk: Desk) -> None:
+async def test_an_export_likewise(desk: ChannelFixture) -> None:
     reply = await desk.ask(desk.command(ExportRequest))
-    assert (reply.verdict, reply.body["name"]) == (ReplyStatus.DONE, "lessons.csv")
+    assert (reply.status, reply.body["name"]) == (ReplyStatus.DONE, "lessons.csv")
 
 
-async def test_an_export_as_package_makes_the_archive(desk: Desk) -> None:
+async def test_an_export_as_package_makes_the_archive(desk: ChannelFixture) -> None:
     reply = await desk.ask(desk.command(ExportRequest, PACKAGE))
-    assert (reply.verdict, reply.body["name"]) == (ReplyStatus.DONE, "lessons.zip")
+    assert (reply.status, reply.body["name"]) == (ReplyStatus.DONE, "lessons.zip")
 
 
-async def test_a_file_is_read_in_parts_and_an_unknown_one_is_refused(desk: Desk) -> None:
+async def test_a_file_is_read_in_parts_and_an_unknown_one_is_refused(desk: ChannelFixture) -> None:
     content = bytes(range(256)) * 80
     desk.shelf.files["lessons.zip"] = content
     parts = [await desk.ask(FileRequest("lessons.zip", offset)) for offset in (0, PART_BYTES, 2 * PART_BYTES)]
@@ -502,15 +506,15 @@ async def test_a_file_is_read_in_parts_and_an_unknown_one_is_refused(desk: Desk)
 
 @pytest.mark.parametrize("kind", [SaveRequest, ExportRequest])
 async def test_a_copy_that_the_disk_does_not_take_is_told_with_the_reason(
-    desk: Desk, kind: type[CommandRequest]
+    desk: ChannelFixture, kind: type[CommandRequest]
 ) -> None:
     desk.shelf.problem = "saved: nothing can be saved there; give a folder that has room"
     reply = await desk.ask(desk.command(kind, *COMMANDS[kind]))
-    assert (reply.verdict, reply.body["text"]) == (ReplyStatus.UNSAVED, desk.shelf.problem)
+    assert (reply.status, reply.body["text"]) == (ReplyStatus.UNSAVED, desk.shelf.problem)
 
 
 async def test_a_copy_that_takes_long_goes_on_and_is_told_to_whoever_asks_again() -> None:
-    desk = Desk(longest_wait_s=0.0)
+    desk = ChannelFixture(longest_wait_s=0.0)
     desk.shelf.may_finish.clear()
     request = desk.command(SaveRequest, "")
     assert why(await desk.ask(request)) == "unsaved"
@@ -524,13 +528,13 @@ async def test_a_copy_that_takes_long_goes_on_and_is_told_to_whoever_asks_again(
 
 
 async def test_an_exam_is_begun_by_the_teacher_alone_and_once() -> None:
-    desk = Desk(ground=Yard())
+    desk = ChannelFixture(ground=Yard())
     assert why(await desk.ask(desk.command(ExamRequest))) == "held"
     await desk.ask(desk.command(TakeRequest), "bob")
     assert why(await desk.ask(desk.command(ExamRequest))) == "held"
     request = desk.command(ExamRequest)
     first = await desk.ask(request, "bob")
-    assert (first.verdict, await desk.ask(request, "bob")) == (ReplyStatus.DONE, first)
+    assert (first.status, await desk.ask(request, "bob")) == (ReplyStatus.DONE, first)
     assert desk.shelf.examined == 1
     desk.exam = ExamStatus(True, 0.25, "exam without teacher, world a")
     assert why(await desk.ask(desk.command(ExamRequest), "bob")) == "refused"
@@ -538,10 +542,10 @@ async def test_an_exam_is_begun_by_the_teacher_alone_and_once() -> None:
     assert EXAM.read(decode_answer(encode_answer(told))) == desk.exam
 
 
-async def test_a_real_robot_is_not_examined(desk: Desk) -> None:
+async def test_a_real_robot_is_not_examined(desk: ChannelFixture) -> None:
     await desk.ask(desk.command(TakeRequest))
     for request in (desk.command(ExamRequest), ExamStatusRequest()):
-        assert (await desk.ask(request)).verdict is ReplyStatus.NOT_HERE
+        assert (await desk.ask(request)).status is ReplyStatus.NOT_HERE
     assert desk.shelf.examined == 0
 
 
@@ -550,7 +554,7 @@ async def test_a_real_robot_is_not_examined(desk: Desk) -> None:
 
 async def test_the_next_run_is_its_teachers_to_begin_and_ends_this_one(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("kurt2rt.channel.server.off_tick_requests.LAST_ANSWER_S", 0.0)
-    desk = Desk(ground=Yard())
+    desk = ChannelFixture(ground=Yard())
     ended: list[bool] = []
     monkeypatch.setattr(desk.runtime.scheduler, "end", lambda: ended.append(True))
     assert why(await desk.ask(desk.command(NextRunRequest, "b", None, False))) == "held"
@@ -560,7 +564,7 @@ async def test_the_next_run_is_its_teachers_to_begin_and_ends_this_one(monkeypat
     assert not ended
     request = desk.command(NextRunRequest, "b", "eight", True)
     reply = await desk.ask(request)
-    assert (reply.verdict, await desk.ask(request)) == (ReplyStatus.DONE, reply)
+    assert (reply.status, await desk.ask(request)) == (ReplyStatus.DONE, reply)
     assert desk.simulation.prepared == [("b", "eight", True, TeacherNow("ann", 1, "noon"))]
     assert ended == [True]
     assert why(await desk.ask(desk.command(NextRunRequest, "c", None, False))) == "refused"
@@ -569,7 +573,7 @@ async def test_the_next_run_is_its_teachers_to_begin_and_ends_this_one(monkeypat
 
 
 async def test_no_next_run_begins_while_lessons_cannot_be_saved(monkeypatch: pytest.MonkeyPatch) -> None:
-    desk = Desk(ground=Yard())
+    desk = ChannelFixture(ground=Yard())
     monkeypatch.setattr(desk.runtime.scheduler, "end", lambda: pytest.fail("lessons that wait end with their run"))
     await desk.ask(desk.command(TakeRequest))
     desk.shelf.problem = "var/a.knowledge: the disk is full"
@@ -579,11 +583,11 @@ async def test_no_next_run_begins_while_lessons_cannot_be_saved(monkeypatch: pyt
 
 
 async def test_at_another_speed_the_teachers_leases_are_as_many_times_longer_in_robot_time() -> None:
-    desk = Desk(ground=Yard())
+    desk = ChannelFixture(ground=Yard())
     assert why(await desk.ask(desk.command(SpeedRequest, 4))) == "held"
     await desk.ask(desk.command(TakeRequest))
     assert why(await desk.stream(desk.watch(age=STREAM_TICKS + 1))) == "stale"
-    assert (await desk.ask(desk.command(SpeedRequest, 4))).verdict is ReplyStatus.DONE
+    assert (await desk.ask(desk.command(SpeedRequest, 4))).status is ReplyStatus.DONE
     desk.run()
     assert desk.speed.wanted == 4
     assert why(await desk.stream(desk.watch(age=4 * STREAM_TICKS))) == ""
@@ -599,9 +603,9 @@ async def test_at_another_speed_the_teachers_leases_are_as_many_times_longer_in_
 
 async def test_back_to_the_start_is_refused_after_a_stop_as_any_place_is() -> None:
     yard = Yard()
-    desk = Desk(ground=yard)
+    desk = ChannelFixture(ground=yard)
     await desk.ask(desk.command(TakeRequest))
-    assert (await desk.ask(desk.command(BackToStartRequest))).verdict is ReplyStatus.DONE
+    assert (await desk.ask(desk.command(BackToStartRequest))).status is ReplyStatus.DONE
     request = desk.command(BackToStartRequest)
     await desk.ask(desk.stop())
     assert why(await desk.ask(request)) == "refused"
@@ -610,7 +614,7 @@ async def test_back_to_the_start_is_refused_after_a_stop_as_any_place_is() -> No
 
 async def test_a_file_is_uploaded_by_the_teacher_in_parts_and_loaded_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("kurt2rt.channel.server.off_tick_requests.LAST_ANSWER_S", 0.0)
-    desk, content, upload = Desk(ground=Yard()), b"PK" + bytes(1000), b"12345678"
+    desk, content, upload = ChannelFixture(ground=Yard()), b"PK" + bytes(1000), b"12345678"
     monkeypatch.setattr(desk.runtime.scheduler, "end", lambda: None)
     parts = [UploadRequest(BOOT, upload, at, content[at : at + 896]) for at in (0, 896)]
     assert why(await desk.ask(parts[0])) == "held"
@@ -620,11 +624,11 @@ async def test_a_file_is_uploaded_by_the_teacher_in_parts_and_loaded_once(monkey
     assert why(await desk.ask(UploadRequest(LAST_START, upload, 0, b"PK"))) == "boot"
     fingerprint = hashlib.sha256(content).digest()
     assert why(await desk.ask(desk.command(LoadRequest, upload, bytes(32)))) == "refused"
-    assert (await desk.ask(desk.command(LoadRequest, upload, fingerprint))).verdict is ReplyStatus.DONE
+    assert (await desk.ask(desk.command(LoadRequest, upload, fingerprint))).status is ReplyStatus.DONE
     assert desk.simulation.prepared == [(content, TeacherNow("ann", 1, None))]
 
 
-async def test_a_real_robot_has_no_next_run(desk: Desk) -> None:
+async def test_a_real_robot_has_no_next_run(desk: ChannelFixture) -> None:
     await desk.ask(desk.command(TakeRequest))
     requests = (
         desk.command(NextRunRequest, None, None, True),
@@ -635,13 +639,13 @@ async def test_a_real_robot_has_no_next_run(desk: Desk) -> None:
         SimulationRequest(),
     )
     for request in requests:
-        assert (await desk.ask(request)).verdict is ReplyStatus.NOT_HERE
+        assert (await desk.ask(request)).status is ReplyStatus.NOT_HERE
 
 
 # Looking.
 
 
-async def test_hello_tells_what_robot_this_is_and_survives_the_wire(desk: Desk) -> None:
+async def test_hello_tells_what_robot_this_is_and_survives_the_wire(desk: ChannelFixture) -> None:
     reply = await desk.ask(HelloRequest())
     told = decode_answer(encode_answer(reply.body))
     assert told["boot"] == BOOT
@@ -652,7 +656,7 @@ async def test_hello_tells_what_robot_this_is_and_survives_the_wire(desk: Desk) 
     assert told["period_s"] == 0.01
 
 
-async def test_health_is_the_report_of_the_last_second_and_anybody_with_a_key_may_ask(desk: Desk) -> None:
+async def test_health_is_the_report_of_the_last_second_and_anybody_with_a_key_may_ask(desk: ChannelFixture) -> None:
     assert (await desk.ask(HealthRequest())).body == {"health": None}
     desk.health = ILL
     for device in ("ann", "bob"):
@@ -660,21 +664,21 @@ async def test_health_is_the_report_of_the_last_second_and_anybody_with_a_key_ma
         assert report_of(told["health"]) == ILL
 
 
-async def test_who_asks_why_all_the_time_is_told_ten_times_a_second(desk: Desk) -> None:
+async def test_who_asks_why_all_the_time_is_told_ten_times_a_second(desk: ChannelFixture) -> None:
     """An answer takes a millisecond of the loop, so nobody may have as many as he likes."""
     desk.run(1)
-    at_once = [(await desk.ask(WhyRequest(), "bob")).verdict for _ in range(20)]
+    at_once = [(await desk.ask(WhyRequest(), "bob")).status for _ in range(20)]
     assert at_once.count(ReplyStatus.DONE) == 5
     assert set(at_once[5:]) == {ReplyStatus.CONFLICT}
-    assert (await desk.ask(WhyRequest(), "ann")).verdict is ReplyStatus.DONE
+    assert (await desk.ask(WhyRequest(), "ann")).status is ReplyStatus.DONE
     answered = 0
     for _ in range(100):
         desk.run(1)
-        answered += (await desk.ask(WhyRequest(), "bob")).verdict is ReplyStatus.DONE
+        answered += (await desk.ask(WhyRequest(), "bob")).status is ReplyStatus.DONE
     assert answered == 10
 
 
-async def test_anybody_with_a_key_may_ask_why_the_robot_does_what_it_does(desk: Desk) -> None:
+async def test_anybody_with_a_key_may_ask_why_the_robot_does_what_it_does(desk: ChannelFixture) -> None:
     await desk.ask(desk.answer("forward"))
     told = decode_answer(encode_answer((await desk.ask(WhyRequest(), "bob")).body))
     facts = facts_of_plain(told["why"])
@@ -684,7 +688,7 @@ async def test_anybody_with_a_key_may_ask_why_the_robot_does_what_it_does(desk: 
     assert (taught.text, taught.teacher, taught.stamp) == ("RLA 1 taught: forward", "ann", STAMP)
 
 
-async def test_the_newest_lessons_come_first_with_who_when_and_whether_they_stand(desk: Desk) -> None:
+async def test_the_newest_lessons_come_first_with_who_when_and_whether_they_stand(desk: ChannelFixture) -> None:
     assert (await desk.ask(LessonsRequest(20))).body == {"lessons": []}
     await desk.ask(desk.answer("forward"))
     taught_at = desk.tick
@@ -706,15 +710,15 @@ async def test_the_newest_lessons_come_first_with_who_when_and_whether_they_stan
     await reply_of(task)
 
 
-async def test_a_real_robot_has_no_world_to_tell_of(desk: Desk) -> None:
+async def test_a_real_robot_has_no_world_to_tell_of(desk: ChannelFixture) -> None:
     for request in (WorldRequest(), *(desk.command(kind, *COMMANDS[kind]) for kind in (MoveWallRequest, PlaceRequest))):
         reply = await desk.ask(request)
-        assert (reply.verdict, outcome_of(reply)) == (ReplyStatus.NOT_HERE, Outcome(RefusalCode.NOT_SIMULATED))
+        assert (reply.status, outcome_of(reply)) == (ReplyStatus.NOT_HERE, Outcome(RefusalCode.NOT_SIMULATED))
 
 
 async def test_a_simulated_world_is_told_and_changed() -> None:
     yard = Yard()
-    desk = Desk(ground=yard)
+    desk = ChannelFixture(ground=yard)
     world = (await desk.ask(WorldRequest())).body
     assert decode_answer(encode_answer(world)) == {
         "version": 0,
@@ -726,14 +730,14 @@ async def test_a_simulated_world_is_told_and_changed() -> None:
     }
     move = desk.command(MoveWallRequest, "box", 0.5, -0.25)
     reply = await desk.ask(move)
-    assert (reply.verdict, outcome_of(reply)) == (ReplyStatus.DONE, Outcome.of(ResultCode.WALL_MOVED, name="box"))
+    assert (reply.status, outcome_of(reply)) == (ReplyStatus.DONE, Outcome.of(ResultCode.WALL_MOVED, name="box"))
     assert await desk.ask(move) == reply  # sent again: it moves once
     assert outcome_of(await desk.ask(desk.command(PlaceRequest, 1.0, 2.0, 0.5))) == Outcome(ResultCode.ROBOT_PLACED)
     assert yard.changes == [("box", 0.5, -0.25), (1.0, 2.0, 0.5)]
 
 
 async def test_a_change_of_the_world_that_cannot_be_is_refused_in_the_worlds_words() -> None:
-    desk = Desk(ground=Yard())
+    desk = ChannelFixture(ground=Yard())
     for request in (
         desk.command(MoveWallRequest, "tree", 0.5, 0.0),
         desk.command(PlaceRequest, 50.0, 0.0, 0.0),
@@ -745,13 +749,13 @@ async def test_a_change_of_the_world_that_cannot_be_is_refused_in_the_worlds_wor
 # The critic.
 
 
-async def test_the_robot_tells_what_its_critic_can_be_taught(desk: Desk) -> None:
+async def test_the_robot_tells_what_its_critic_can_be_taught(desk: ChannelFixture) -> None:
     hello = (await desk.ask(HelloRequest())).body
     assert hello["appraisals"] == [["bad", -1], ["neutral", 0], ["good", 1]]
     assert hello["trusted_from"] == load_critic().agreement.bound
 
 
-async def test_an_appraisal_is_about_the_picture_and_counts_once(desk: Desk) -> None:
+async def test_an_appraisal_is_about_the_picture_and_counts_once(desk: ChannelFixture) -> None:
     meant = desk.run(400, counts=100).tick
     desk.run(400, counts=700)
     blame = desk.command(AppraiseRequest, "bad", meant)
@@ -760,7 +764,7 @@ async def test_an_appraisal_is_about_the_picture_and_counts_once(desk: Desk) -> 
     assert opinion_at(desk, 700) is None
     assert opinion_at(desk, 100) == -1
     again = await desk.ask(desk.command(AppraiseRequest, "bad", desk.tick))
-    assert (again.verdict, outcome_of(again)) == (
+    assert (again.status, outcome_of(again)) == (
         ReplyStatus.DONE,
         Outcome.of(ResultCode.CRITIC_AGREED, appraisal="bad"),
     )
@@ -768,7 +772,7 @@ async def test_an_appraisal_is_about_the_picture_and_counts_once(desk: Desk) -> 
     assert [text for _, text, *_ in lessons] == ["appraisal RLA 1 taught: bad"]  # that it agreed is no lesson
 
 
-async def test_an_appraisal_that_the_critic_has_no_word_for_is_refused(desk: Desk) -> None:
+async def test_an_appraisal_that_the_critic_has_no_word_for_is_refused(desk: ChannelFixture) -> None:
     refused = await desk.ask(desk.command(AppraiseRequest, "lovely", None))
     assert (why(refused), refused.body["text"]) == (
         "refused",
@@ -776,19 +780,19 @@ async def test_an_appraisal_that_the_critic_has_no_word_for_is_refused(desk: Des
     )
 
 
-def opinion_at(desk: Desk, counts: int) -> int | None:
+def opinion_at(desk: ChannelFixture, counts: int) -> int | None:
     """What the critic thinks where the sensors have shown the same for a while."""
-    return desk.telling.picture(desk.run(400, counts=counts)).opinion
+    return desk.channel._states.build(desk.run(400, counts=counts)).opinion
 
 
 # Several taught behaviours.
 
 
 async def test_the_robot_tells_what_it_can_follow_and_follows_what_it_is_told() -> None:
-    desk = Desk(behaviours=("straight_on", "turn_left"))
+    desk = ChannelFixture(behaviours=("straight_on", "turn_left"))
     assert (await desk.ask(HelloRequest())).body["behaviours"] == ["straight_on", "turn_left"]
     reply = await desk.ask(desk.command(PursueRequest, "turn_left"))
-    assert (reply.verdict, outcome_of(reply)) == (
+    assert (reply.status, outcome_of(reply)) == (
         ReplyStatus.DONE,
         Outcome.of(ResultCode.BEHAVIOUR_WANTED, behaviour="turn_left"),
     )
@@ -801,7 +805,7 @@ async def test_the_robot_tells_what_it_can_follow_and_follows_what_it_is_told() 
 
 
 async def test_what_was_asked_for_before_a_stop_or_before_another_behaviour_and_comes_late_is_refused() -> None:
-    desk = Desk(behaviours=("straight_on", "turn_left"))
+    desk = ChannelFixture(behaviours=("straight_on", "turn_left"))
     older = desk.command(PursueRequest, "straight_on")
     desk.run(5)
     await desk.ask(desk.command(PursueRequest, "turn_left"))
@@ -816,7 +820,7 @@ async def test_what_was_asked_for_before_a_stop_or_before_another_behaviour_and_
 
 
 async def test_a_lesson_on_an_old_picture_is_listed_under_what_was_wanted_then() -> None:
-    desk = Desk(behaviours=("straight_on", "turn_left"))
+    desk = ChannelFixture(behaviours=("straight_on", "turn_left"))
     seen = desk.tick
     await desk.ask(desk.command(PursueRequest, "turn_left"))
     await desk.ask(desk.answer("forward", of=seen))
@@ -829,7 +833,7 @@ async def test_a_lesson_on_an_old_picture_is_listed_under_what_was_wanted_then()
 
 
 async def test_a_copy_of_a_stop_on_its_way_when_go_is_said_lets_the_robot_drive_all_the_same() -> None:
-    desk = Desk()
+    desk = ChannelFixture()
     stop = desk.stop()
     answered = await desk.ask(stop, "ann")
     go = desk.command(ResumeRequest)
@@ -841,7 +845,7 @@ async def test_a_copy_of_a_stop_on_its_way_when_go_is_said_lets_the_robot_drive_
 
 async def test_a_robot_that_was_stopped_is_set_down_by_nothing_that_was_said_before() -> None:
     yard = Yard()
-    desk = Desk(ground=yard)
+    desk = ChannelFixture(ground=yard)
     before = desk.command(PlaceRequest, 1.0, 2.0, 0.5)
     desk.run(5)
     await desk.ask(desk.stop(), "ben")

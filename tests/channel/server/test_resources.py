@@ -34,13 +34,13 @@ from kurt2rt.channel.protocol.requests import (
 from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.security.pairing import local_pairing, pair, revoke
-from kurt2rt.channel.server.channel import Channel, ChannelDependencies, open_channel
+from kurt2rt.channel.server.channel import Channel, open_channel
+from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStatus
 from kurt2rt.channel.server.resources import RobotSite
-from kurt2rt.channel.server.state_builder import JournalStatus
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.outcome import RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import Phase
-from tests.channel.desk import BOOT, ROBOT, Desk, turns
+from tests.channel.channel_fixture import BOOT, ROBOT, ChannelFixture, turns
 from tests.channel.sides import answer_challenge, carried, header_of
 from tests.channel.states import state
 
@@ -82,7 +82,7 @@ class School:
         self.folder = folder
         self.pairings = {name: pair(folder / "teachers", folder / "devices", name) for name in ("ann", "ben")}
         self.teachers = Teachers(folder / "teachers")
-        self.desk = Desk(keys=self.teachers)
+        self.desk = ChannelFixture(keys=self.teachers)
         self.site = self.desk.site
         self._phones: list[OscoreContext] = []
 
@@ -247,7 +247,7 @@ async def test_a_device_teaches_under_its_own_name(school: School) -> None:
     school.desk.run()
     answer = await call
     assert decode_answer(answer.payload)["code"] == ResultCode.PHASE_SET
-    assert school.desk.telling.picture(school.desk.record).teacher == "ben"
+    assert school.desk.channel._states.build(school.desk.record).teacher == "ben"
 
 
 @pytest.mark.parametrize("code", [code for code in CODES if code != aiocoap.POST], ids=str)
@@ -298,7 +298,7 @@ async def test_a_fault_of_ours_is_counted_and_answered_and_the_next_request_is_f
 
     phone = school.phone()
     with monkeypatch.context() as patch:
-        patch.setattr(school.desk.reception, "_lessons", fail)
+        patch.setattr(school.desk.handler, "_lessons", fail)
         answer = await phone.post(LessonsRequest(3))
     assert (answer.code, school.site.failures) == (aiocoap.INTERNAL_SERVER_ERROR, 1)
     assert (await phone.post(LessonsRequest(3))).code == aiocoap.CHANGED
@@ -308,14 +308,14 @@ async def test_who_proves_his_key_is_told_to_the_doorkeeper_and_nobody_else(scho
     class Doorkeeper:
         proofs = 0
 
-        def proved(self, remote: Any) -> None:  # noqa: ARG002
+        def mark_proven(self, remote: Any) -> None:  # noqa: ARG002
             self.proofs += 1
 
-    school.site.doorkeeper = doorkeeper = Doorkeeper()
+    school.site.senders = senders = Doorkeeper()
     await answers(school.site, carried(plain("/hello")))
-    assert doorkeeper.proofs == 0
+    assert senders.proofs == 0
     await school.phone().post(HelloRequest())
-    assert doorkeeper.proofs == 1
+    assert senders.proofs == 1
 
 
 # Pictures.
@@ -339,7 +339,7 @@ class Observer:
         answers = [self.keys.unprotect(carried(event.message), self._request_id)[0] for event in events]
         return [decode_state(answer.payload).tick for answer in answers]
 
-    async def gone(self) -> None:
+    async def removed(self) -> None:
         """What aiocoap does when the other side is gone."""
         self._task.cancel()
         await asyncio.wait([self._task])
@@ -353,7 +353,7 @@ def look(*, observe: int | None = 0) -> Any:
 
 
 def show(school: School, tick: int) -> None:
-    school.site.show(encode_state(state(tick=tick)))
+    school.site.publish(encode_state(state(tick=tick)))
 
 
 async def test_an_observer_gets_the_present_picture_and_each_one_that_follows(school: School) -> None:
@@ -364,7 +364,7 @@ async def test_an_observer_gets_the_present_picture_and_each_one_that_follows(sc
         show(school, tick)
         assert await observer.ticks() == [tick]
     assert school.site.observers == 1
-    await observer.gone()
+    await observer.removed()
     assert school.site.observers == 0
 
 
@@ -373,7 +373,7 @@ async def test_an_observer_who_is_early_waits_for_the_first_picture(school: Scho
     assert await observer.ticks() == []
     show(school, 5)
     assert await observer.ticks() == [5]
-    await observer.gone()
+    await observer.removed()
 
 
 async def test_an_observer_who_is_slow_gets_the_newest_one_and_no_older_one_after_it(school: School) -> None:
@@ -383,10 +383,10 @@ async def test_an_observer_who_is_slow_gets_the_newest_one_and_no_older_one_afte
     for tick in (10, 15, 20):
         show(school, tick)
     assert await observer.ticks() == [20]
-    skipped = school.site.pictures_skipped
+    skipped = school.site.states_skipped
     assert skipped > 0
-    await observer.gone()
-    assert school.site.pictures_skipped == skipped  # also of those who are gone
+    await observer.removed()
+    assert school.site.states_skipped == skipped  # also of those who are gone
 
 
 async def test_a_picture_that_comes_just_as_the_one_before_is_taken_is_not_lost(school: School) -> None:
@@ -396,7 +396,7 @@ async def test_a_picture_that_comes_just_as_the_one_before_is_taken_is_not_lost(
     show(school, 10)
     asyncio.get_running_loop().call_soon(show, school, 15)
     assert (await observer.ticks())[-1] == 15
-    await observer.gone()
+    await observer.removed()
 
 
 async def test_everyone_who_looks_gets_it(school: School) -> None:
@@ -406,7 +406,7 @@ async def test_everyone_who_looks_gets_it(school: School) -> None:
     show(school, 10)
     for observer in observers:
         assert await observer.ticks() == [5, 10]
-        await observer.gone()
+        await observer.removed()
 
 
 @pytest.mark.parametrize("observe", [None, 1])
@@ -439,7 +439,7 @@ async def test_numbers_of_pictures_differ_and_stay_within_24_bits(school: School
     numbers = [event.message.opt.observe for event in observer.events]
     assert len(set(numbers)) == 5
     assert all(0 <= number < 2**24 for number in numbers)
-    await observer.gone()
+    await observer.removed()
 
 
 async def test_an_observer_who_is_silent_for_a_second_is_asked_whether_he_is_there(
@@ -467,7 +467,7 @@ async def test_an_observer_who_is_silent_for_a_second_is_asked_whether_he_is_the
     later_s += 1.0
     await phone.post(HelloRequest())  # he is there
     assert not await is_asked()
-    await observer.gone()
+    await observer.removed()
 
 
 async def test_a_device_that_is_revoked_gets_no_picture_any_more_and_is_no_observer(school: School) -> None:
@@ -475,12 +475,12 @@ async def test_a_device_that_is_revoked_gets_no_picture_any_more_and_is_no_obser
     observer = Observer(school.phone(), look())
     assert await observer.ticks() == [5]
     revoke(school.folder / "teachers", school.folder / "devices", "ann")
-    assert (await school.teachers.refresh()).gone == ("ann",)
+    assert (await school.teachers.refresh()).removed == ("ann",)
     show(school, 10)
     await turns()
     assert school.site.observers == 0
     assert observer.events == []
-    await observer.gone()
+    await observer.removed()
 
 
 # Over a real socket.
@@ -528,7 +528,7 @@ class Line:
 class OnLine:
     """A robot that listens on loopback, and a paired device that talks to it."""
 
-    def __init__(self, desk: Desk, channel: Channel, line: Line) -> None:
+    def __init__(self, desk: ChannelFixture, channel: Channel, line: Line) -> None:
         self.desk = desk
         self.channel = channel
         self.line = line
@@ -562,7 +562,7 @@ async def on_line(folder: Path) -> AsyncIterator[OnLine]:
     teachers = Teachers(folder / "teachers")
     keys = OscoreContext(pairing.device.folder)
     answer_challenge(keys, teachers.find(header_of(keys)))
-    desk = Desk()
+    desk = ChannelFixture()
     safekeeping = JournalStatus(lambda: desk.unwritten, lambda: None, lambda _: "")
     coap = await aiocoap.Context.create_client_context(transports=["udp6"])
     surroundings = ChannelDependencies(safekeeping, desk.shelf, lambda: "", None)
@@ -615,7 +615,7 @@ async def test_a_channel_with_a_paired_device_listens_to_more_than_this_machine(
 async def test_with_nobody_paired_it_listens_on_this_machine_alone(tmp_path: Path) -> None:
     local_pairing(tmp_path / "teachers", tmp_path / "devices")
     teachers = Teachers(tmp_path / "teachers")
-    desk = Desk()
+    desk = ChannelFixture()
     safekeeping = JournalStatus(lambda: 0, lambda: None, lambda _: "")
     async with open_channel(
         desk.runtime, teachers, 0, ChannelDependencies(safekeeping, desk.shelf, str, None)
@@ -630,7 +630,7 @@ async def test_a_damaged_pairing_keeps_nobody_else_out_and_is_told(tmp_path: Pat
     local_pairing(tmp_path / "teachers", tmp_path / "devices")
     damaged = pair(tmp_path / "teachers", tmp_path / "devices", "bob").teacher / "secret.json"
     damaged.write_text("{}", encoding="utf-8")
-    desk = Desk()
+    desk = ChannelFixture()
     teachers = Teachers(tmp_path / "teachers")
     safekeeping = JournalStatus(int, lambda: None, str)
     async with open_channel(

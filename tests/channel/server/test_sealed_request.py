@@ -15,7 +15,7 @@ from kurt2rt.channel.security.oscore_context import OscoreContext
 from kurt2rt.channel.security.pairing import pair
 from kurt2rt.channel.server.datagram_filter import may_be_request
 from kurt2rt.channel.server.sealed_request import SealedRequest
-from tests.channel.mischief import Mischief
+from tests.channel.hostile_datagrams import HostileDatagrams
 
 _ALLOWED = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 
@@ -87,12 +87,12 @@ def test_what_a_device_protects_fits_its_key(
 
 @pytest.mark.parametrize("draws", [3000, pytest.param(300_000, marks=pytest.mark.deep)])
 def test_changed_datagrams_pass_only_with_a_whole_seal(sides: Sides, draws: int) -> None:
-    chance, mischief = random.Random(2004), Mischief(2004, lambda: (b"boot", 0))
+    chance, hostile = random.Random(2004), HostileDatagrams(2004, lambda: (b"boot", 0))
     captured = [sides.datagram(stop()) for _ in range(5)]
     seals = {SealedRequest.parse(data) for data in captured}
     passed = refused = 0
     for _ in range(draws):
-        data = mischief.mutated(chance.choice(captured))
+        data = hostile.mutated(chance.choice(captured))
         if not may_be_request(data):
             continue
         sealed, known = SealedRequest.parse(data), aiocoap_takes(sides.robot, data)

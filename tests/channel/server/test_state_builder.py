@@ -26,7 +26,7 @@ from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import ASK, CRITIC, Phase
-from tests.channel.desk import BOOT, ROBOT, STAMP, Desk, outcome_of, reply_of
+from tests.channel.channel_fixture import BOOT, ROBOT, STAMP, ChannelFixture, outcome_of, reply_of
 from tests.channel.grounds import Yard
 from tests.service.health.reports import ILL, WELL
 
@@ -36,18 +36,18 @@ COUNT = len(ROBOT.infrared.sensors)
 
 
 @pytest.fixture
-def desk() -> Desk:
-    return Desk()
+def desk() -> ChannelFixture:
+    return ChannelFixture()
 
 
-def picture(desk: Desk) -> State:
+def picture(desk: ChannelFixture) -> State:
     """The picture of the newest tick; what comes out of the wire is the same."""
-    told = desk.telling.picture(desk.record)
+    told = desk.channel._states.build(desk.record)
     assert decode_state(encode_state(told)) == told
     return told
 
 
-def test_lateness_is_the_health_reports_which_spares_the_loop_its_percentiles(desk: Desk) -> None:
+def test_lateness_is_the_health_reports_which_spares_the_loop_its_percentiles(desk: ChannelFixture) -> None:
     assert picture(desk).late_p99_ms == 0.0
     desk.health = WELL
     assert [picture(desk).late_p99_ms for _ in range(9)] == [0.0] * 9  # looked up once a second, with 20 pictures
@@ -55,7 +55,7 @@ def test_lateness_is_the_health_reports_which_spares_the_loop_its_percentiles(de
     assert later[-1] == WELL.punctuality.p99_ms
 
 
-def test_what_is_urgent_in_the_health_report_is_told_as_trouble_unless_there_is_worse(desk: Desk) -> None:
+def test_what_is_urgent_in_the_health_report_is_told_as_trouble_unless_there_is_worse(desk: ChannelFixture) -> None:
     full = Trouble(TroubleCode.LITTLE_ROOM, 3.0, True, "knowledge", (20.0,))
     desk.health = replace(ILL, troubles=(*ILL.troubles, full))
     assert picture(desk).trouble == f"{full.what}; {full.to_do}"
@@ -65,7 +65,7 @@ def test_what_is_urgent_in_the_health_report_is_told_as_trouble_unless_there_is_
     assert picture(desk).trouble == ""
 
 
-def test_a_robot_that_knows_nothing(desk: Desk) -> None:
+def test_a_robot_that_knows_nothing(desk: ChannelFixture) -> None:
     desk.run(counts=120)
     assert picture(desk) == State(
         boot=BOOT,
@@ -104,7 +104,7 @@ def test_a_robot_that_knows_nothing(desk: Desk) -> None:
     )
 
 
-async def test_a_robot_that_drives_by_what_it_was_taught(desk: Desk) -> None:
+async def test_a_robot_that_drives_by_what_it_was_taught(desk: ChannelFixture) -> None:
     await desk.ask(desk.answer("forward"))
     await desk.stream(desk.watch())
     desk.run()
@@ -117,7 +117,7 @@ async def test_a_robot_that_drives_by_what_it_was_taught(desk: Desk) -> None:
     assert (told.rlas, told.lessons, told.unsaved, told.by_hand) == (1, 1, 0, False)
 
 
-async def test_a_lesson_has_no_time_and_counts_as_unsaved_until_it_is_durable(desk: Desk) -> None:
+async def test_a_lesson_has_no_time_and_counts_as_unsaved_until_it_is_durable(desk: ChannelFixture) -> None:
     task = await desk.send(desk.answer())
     desk.run()
     assert (picture(desk).taught_at, picture(desk).unsaved) == ("", 1)
@@ -126,7 +126,7 @@ async def test_a_lesson_has_no_time_and_counts_as_unsaved_until_it_is_durable(de
     await reply_of(task)
 
 
-async def test_a_question_names_the_features_that_differ_most(desk: Desk) -> None:
+async def test_a_question_names_the_features_that_differ_most(desk: ChannelFixture) -> None:
     await desk.ask(desk.answer())
     desk.run(counts=900)
     told = picture(desk)
@@ -138,7 +138,7 @@ async def test_a_question_names_the_features_that_differ_most(desk: Desk) -> Non
     assert picture(desk).question == ()
 
 
-async def test_a_hand_on_the_wheels_and_the_stop_after_it(desk: Desk) -> None:
+async def test_a_hand_on_the_wheels_and_the_stop_after_it(desk: ChannelFixture) -> None:
     await desk.stream(desk.press())
     desk.run()
     told = picture(desk)
@@ -150,7 +150,7 @@ async def test_a_hand_on_the_wheels_and_the_stop_after_it(desk: Desk) -> None:
     assert (told.left_m_s, told.right_m_s) == (0.0, 0.0)
 
 
-async def test_a_behaviour_counts_as_the_hand(desk: Desk) -> None:
+async def test_a_behaviour_counts_as_the_hand(desk: ChannelFixture) -> None:
     reply = await desk.ask(desk.command(BehaviourRequest, "back", 5))
     assert outcome_of(reply) == Outcome(RefusalCode.TEACHER_ABSENT)
     await desk.ask(desk.command(TakeRequest))
@@ -161,7 +161,7 @@ async def test_a_behaviour_counts_as_the_hand(desk: Desk) -> None:
     assert (told.action, told.by_hand) == ("back", True)
 
 
-async def test_phase_session_and_clock(desk: Desk) -> None:
+async def test_phase_session_and_clock(desk: ChannelFixture) -> None:
     await desk.ask(desk.command(PhaseRequest, Phase.CORRECTIONS))
     await desk.ask(desk.command(SessionRequest, "morning"))
     desk.run(250)
@@ -178,19 +178,19 @@ async def test_phase_session_and_clock(desk: Desk) -> None:
     assert picture(desk).stopped is None
 
 
-def test_trouble_with_the_disk_goes_before_trouble_with_the_bus(desk: Desk) -> None:
+def test_trouble_with_the_disk_goes_before_trouble_with_the_bus(desk: ChannelFixture) -> None:
     desk.bus_trouble = "the bus is off"
     assert picture(desk).trouble == "the bus is off"
     desk.notebook.error = "the disk is full"
     assert picture(desk).trouble == "the disk is full"
 
 
-def test_what_the_robot_could_not_learn_is_told(desk: Desk) -> None:
+def test_what_the_robot_could_not_learn_is_told(desk: ChannelFixture) -> None:
     desk.runtime.handler.updater.error = "1 change was skipped"
     assert picture(desk).trouble == "1 change was skipped"
 
 
-def test_blind_bumped_and_held_by_the_guard(desk: Desk) -> None:
+def test_blind_bumped_and_held_by_the_guard(desk: ChannelFixture) -> None:
     desk.robot.infrared_age_s = math.inf
     desk.robot.bumpers = 5
     desk.robot.refuses = (GuardReason.INFRARED_STALE, GuardReason.FRONT_BUMPER)
@@ -201,10 +201,10 @@ def test_blind_bumped_and_held_by_the_guard(desk: Desk) -> None:
 
 
 def test_where_a_simulated_robot_is() -> None:
-    assert picture(Desk(ground=Yard())).place == SimulatedPlace(1.0, 2.0, 0.5, 0.25, 3, 0)
+    assert picture(ChannelFixture(ground=Yard())).place == SimulatedPlace(1.0, 2.0, 0.5, 0.25, 3, 0)
 
 
-def test_lateness_is_looked_at_once_a_second_and_missed_ticks_always(desk: Desk) -> None:
+def test_lateness_is_looked_at_once_a_second_and_missed_ticks_always(desk: ChannelFixture) -> None:
     first = picture(desk)
     ledger = desk.runtime.timer
     for _ in range(200):
@@ -217,7 +217,7 @@ def test_lateness_is_looked_at_once_a_second_and_missed_ticks_always(desk: Desk)
 
 
 async def test_it_tells_which_behaviour_is_wanted_and_what_the_robot_knows_of_it() -> None:
-    desk = Desk(behaviours=("straight_on", "turn_left"))
+    desk = ChannelFixture(behaviours=("straight_on", "turn_left"))
     await desk.ask(desk.answer("forward"))
     told = picture(desk)
     assert (told.behaviour, told.nearest, told.cause) == ("straight_on", 1, "unattended")
@@ -226,7 +226,7 @@ async def test_it_tells_which_behaviour_is_wanted_and_what_the_robot_knows_of_it
     assert (told.behaviour, told.nearest, told.cause) == ("turn_left", None, "unknown")
 
 
-async def drives(desk: Desk) -> None:
+async def drives(desk: ChannelFixture) -> None:
     """The robot drives by what it was taught, and its teacher looks."""
     await desk.ask(desk.answer("forward"))
     await desk.stream(desk.watch())
@@ -234,7 +234,7 @@ async def drives(desk: Desk) -> None:
     assert picture(desk).cause == "rla"
 
 
-async def test_it_tells_what_the_critic_thinks_and_how_many_signals_are_missing(desk: Desk) -> None:
+async def test_it_tells_what_the_critic_thinks_and_how_many_signals_are_missing(desk: ChannelFixture) -> None:
     await drives(desk)
     assert (picture(desk).opinion, picture(desk).opinion_of) == (None, None)
     reply = await desk.ask(desk.command(AppraiseRequest, "bad", None))
@@ -245,7 +245,7 @@ async def test_it_tells_what_the_critic_thinks_and_how_many_signals_are_missing(
     assert (told.signals_missing, told.agreement, told.trusted) == ((LEAST - 1, LEAST), None, False)
 
 
-async def test_it_tells_how_well_the_critic_agrees_with_its_teacher(desk: Desk) -> None:
+async def test_it_tells_how_well_the_critic_agrees_with_its_teacher(desk: ChannelFixture) -> None:
     await drives(desk)
     await desk.ask(desk.command(AppraiseRequest, "bad", None))
     for each in ("bad",) * (LEAST - 1) + ("good",) * LEAST:
@@ -261,7 +261,7 @@ async def test_it_tells_how_well_the_critic_agrees_with_its_teacher(desk: Desk) 
     assert (told.role, told.bad_share) == ("measures", 0.0)
 
 
-async def test_blame_shows_in_what_the_rla_that_drives_is_worth(desk: Desk) -> None:
+async def test_blame_shows_in_what_the_rla_that_drives_is_worth(desk: ChannelFixture) -> None:
     assert picture(desk).value is None
     await drives(desk)
     before = picture(desk).value
@@ -272,7 +272,7 @@ async def test_blame_shows_in_what_the_rla_that_drives_is_worth(desk: Desk) -> N
     assert after < before
 
 
-async def test_worth_of_an_rla_whose_action_was_withdrawn_is_told(desk: Desk) -> None:
+async def test_worth_of_an_rla_whose_action_was_withdrawn_is_told(desk: ChannelFixture) -> None:
     await drives(desk)
     assert picture(desk).nearest_value is None
     while picture(desk).nearest_action != ASK:
@@ -286,7 +286,7 @@ async def test_worth_of_an_rla_whose_action_was_withdrawn_is_told(desk: Desk) ->
     assert told.nearest_value < 0
 
 
-async def test_where_an_action_was_withdrawn_it_asks_again(desk: Desk) -> None:
+async def test_where_an_action_was_withdrawn_it_asks_again(desk: ChannelFixture) -> None:
     await drives(desk)
     while picture(desk).cause == "rla":
         for _ in range(10):

@@ -22,9 +22,9 @@ def add(upload: Upload, offset: int, part: bytes, device: str = "phone") -> Outc
 def test_parts_in_order_make_the_file_and_copies_change_nothing() -> None:
     upload = Upload()
     assert [upload.add("phone", b"1", at, part) for at, part in ((0, b"ab"), (0, b"ab"), (2, b"c"))] == [2, 2, 3]
-    assert upload.take("phone", b"1", ABC) == b"abc"
+    assert upload.pop("phone", b"1", ABC) == b"abc"
     with pytest.raises(CommandRefusedError) as refused:
-        upload.take("phone", b"1", ABC)
+        upload.pop("phone", b"1", ABC)
     assert refused.value.outcome == Outcome(RefusalCode.UPLOAD_INCOMPLETE)
 
 
@@ -36,7 +36,7 @@ def test_what_does_not_fit_is_refused_with_the_reason() -> None:
     assert add(upload, 0, b"xb") == Outcome.of(RefusalCode.UPLOAD_DIFFERS, offset=0)
     assert add(upload, 2, b"cde") == Outcome.of(RefusalCode.UPLOAD_TOO_LARGE, most_bytes=4)
     with pytest.raises(CommandRefusedError) as refused:
-        upload.take("phone", b"1", ABC)
+        upload.pop("phone", b"1", ABC)
     assert refused.value.outcome == Outcome(RefusalCode.UPLOAD_INCOMPLETE)
 
 

@@ -38,7 +38,7 @@ from kurt2rt.teacher.client.link_quality import LinkQuality
 from kurt2rt.teacher.page.views import state_view
 from kurt2rt.teacher.scripted.channel_teacher import view_of_state
 from kurt2rt.teacher.terminal.terminal_text import build_question, expects_answer, format_state
-from tests.channel.desk import Desk
+from tests.channel.channel_fixture import ChannelFixture
 from tests.channel.states import state
 
 FORWARD = WheelSpeeds(0.3, 0.3)
@@ -49,7 +49,7 @@ ASKS = Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
 UNNAMED = (StopReason.STARTED, StopReason.NEXT_RUN)
 
 
-class LatchingDesk(Desk):
+class LatchingDesk(ChannelFixture):
     """A robot that drives forward by its first RLA, until the guard has a word for it to stand."""
 
     def __init__(self) -> None:
@@ -74,7 +74,7 @@ class LatchingDesk(Desk):
 
     @property
     def picture(self) -> State:
-        return decode_state(encode_state(self.telling.picture(self.record)))
+        return decode_state(encode_state(self.channel._states.build(self.record)))
 
 
 def page_of(picture: State) -> str:

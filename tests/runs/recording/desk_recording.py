@@ -12,7 +12,7 @@ from kurt2rt.runs.recording.recorded_run import RecordedRun
 from kurt2rt.runs.recording.recorder import RunRecorder, open_run_recorder
 from kurt2rt.runs.recording.run_files import Budget, budget_of
 from kurt2rt.runs.recording.run_head import RunHead
-from tests.channel.desk import ROBOT, TASK, Desk
+from tests.channel.channel_fixture import ROBOT, TASK, ChannelFixture
 
 BEGAN_AT_NS = 1_795_318_200_000_000_000
 NAME = "20261122T031005Z-wall_following"
@@ -49,7 +49,7 @@ class RecordedDesk:
         opened: Callable[[LiveView], None] = lambda _: None,
         began_at_ns: int | None = BEGAN_AT_NS,
     ) -> None:
-        self.desk = Desk()
+        self.desk = ChannelFixture()
         self.recorder: RunRecorder = open_run_recorder(
             recordings,
             RecordedRun(

@@ -13,7 +13,7 @@ from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay, replay_until
 from kurt2rt.runs.replay.run import Run, RunSource
 from kurt2rt.runs.replay.verify import verify
-from tests.channel.desk import ROBOT, TASK
+from tests.channel.channel_fixture import ROBOT, TASK
 from tests.runs.recording.desk_recording import empty_run, late_run
 from tests.runs.replay.stored_runs import STORED
 

@@ -10,7 +10,7 @@ from kurt2rt.service.health.disk_monitor import DiskMonitor
 from kurt2rt.service.health.machine import MachineMonitor, battery_of
 from kurt2rt.service.health.monitor import HealthMonitor
 from kurt2rt.service.health.probes import Probes
-from tests.channel.desk import Desk
+from tests.channel.channel_fixture import ChannelFixture
 
 PATIENCE_S = 10.0
 
@@ -27,7 +27,7 @@ class Robot:
     """A robot, and the watch on it."""
 
     def __init__(self, folder: Path) -> None:
-        self.desk = Desk()
+        self.desk = ChannelFixture()
         self.keeping = Keeping()
         self.now_s = 1000.0
         self.dropped = 0

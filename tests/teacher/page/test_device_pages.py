@@ -309,7 +309,7 @@ def test_local_devices_are_this_machines_own_then_the_newest_and_none_that_moved
     (pairings.devices / "broken" / "device.json").write_text("{", encoding="utf-8")
     found, trouble = local_devices(pairings)
     assert [each.name for each in found] == [LOCAL, "phone", "old-phone"]
-    assert trouble.endswith("pair the device anew: kurt2rt pair broken --renew")
+    assert trouble.endswith("pair the device again: kurt2rt pair broken --renew")
 
 
 def test_a_port_in_use_is_passed_over_where_that_is_allowed() -> None:

@@ -48,7 +48,7 @@ class Door:
         return bytes((0x50, 2, 0, 1, 0x90 | len(option))) + option + b"\xff" + bytes(30)
 
     def admitted(self, data: bytes, senders: int = 1, first: int = 0) -> int:
-        return sum(self.gate.admits(data, stranger(first + number)) for number in range(senders))
+        return sum(self.gate.accepts(data, stranger(first + number)) for number in range(senders))
 
 
 @pytest.fixture
@@ -62,7 +62,7 @@ def door(tmp_path: Path) -> Iterator[Door]:
 def test_a_fresh_socket_is_let_in_while_strangers_flood(door: Door) -> None:
     request = bytes([0x50, aiocoap.POST, 0, 1])
     assert door.admitted(request, senders=2000) == 40
-    assert door.gate.admits(door.stop(), stranger(9000))
+    assert door.gate.accepts(door.stop(), stranger(9000))
 
 
 def test_a_key_that_nobody_has_takes_no_strangers_turn(door: Door) -> None:
@@ -75,45 +75,45 @@ def test_a_copied_key_id_buys_nothing(door: Door) -> None:
     kid = door.robot.recipient_id
     assert sum(door.admitted(door.forged(kid, number), first=number) for number in range(400)) == 0
     assert door.counters == Counters(received=400, forged=400)
-    assert door.gate.admits(door.stop(), stranger(9000))
+    assert door.gate.accepts(door.stop(), stranger(9000))
 
 
 def test_a_copied_datagram_has_the_strangers_rate_and_not_the_keys(door: Door) -> None:
     captured = door.stop()
-    assert door.gate.admits(captured, HOME)
+    assert door.gate.accepts(captured, HOME)
     assert door.admitted(captured, senders=300) == 40
-    assert all(door.gate.admits(door.stop(), stranger(9000 + number)) for number in range(150))
+    assert all(door.gate.accepts(door.stop(), stranger(9000 + number)) for number in range(150))
 
 
 def test_the_devices_own_address_forged_does_not_keep_the_device_out(door: Door) -> None:
-    door.gate.proved(HOME)
+    door.gate.mark_proven(HOME)
     captured = door.stop()
     flood = [captured, door.forged(door.robot.recipient_id, 2**31), bytes([0x50, aiocoap.POST, 0, 1]), ACK]
-    assert [door.gate.admits(data, HOME) for data in (captured, door.stop())] == [True, True]
+    assert [door.gate.accepts(data, HOME) for data in (captured, door.stop())] == [True, True]
     for data in flood * 100:
-        door.gate.admits(data, HOME)
-    assert not door.gate.admits(ACK, HOME)  # the address has nothing left
-    assert all(door.gate.admits(door.stop(), HOME) for _ in range(150))
+        door.gate.accepts(data, HOME)
+    assert not door.gate.accepts(ACK, HOME)  # the address has nothing left
+    assert all(door.gate.accepts(door.stop(), HOME) for _ in range(150))
 
 
 def test_copied_key_ids_and_seals_cost_an_address_nothing(door: Door) -> None:
-    door.gate.proved(HOME)
+    door.gate.mark_proven(HOME)
     for number in range(400):
-        door.gate.admits(door.forged(door.robot.recipient_id, number), HOME)
-    assert sum(door.gate.admits(ACK, HOME) for _ in range(250)) == 200
+        door.gate.accepts(door.forged(door.robot.recipient_id, number), HOME)
+    assert sum(door.gate.accepts(ACK, HOME) for _ in range(250)) == 200
 
 
 def test_who_holds_the_key_may_not_flood_either(door: Door) -> None:
-    assert sum(door.gate.admits(door.stop(), stranger(number)) for number in range(300)) == 200
+    assert sum(door.gate.accepts(door.stop(), stranger(number)) for number in range(300)) == 200
     door.clock.now_s += 0.1
-    assert sum(door.gate.admits(door.stop(), stranger(number)) for number in range(50)) == 20
+    assert sum(door.gate.accepts(door.stop(), stranger(number)) for number in range(50)) == 20
 
 
 def test_an_overtaken_request_has_the_rate_of_its_address(door: Door) -> None:
     older, newer = door.stop(), door.stop()
-    door.gate.proved(HOME)
-    assert door.gate.admits(newer, HOME)
-    assert door.gate.admits(older, HOME)
+    door.gate.mark_proven(HOME)
+    assert door.gate.accepts(newer, HOME)
+    assert door.gate.accepts(older, HOME)
 
 
 def test_no_more_tags_are_checked_than_the_limit_says(door: Door, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -154,10 +154,10 @@ def test_a_stop_is_let_in_within_half_a_second_of_a_flood_with_its_key_id(door: 
         said_s = door.clock.now_s = door.clock.now_s + chance.random()
         door.admitted(forged, senders=600)  # the flood has used up what was saved
         for copy in range(1, 36):
-            if door.gate.admits(door.stop(), stranger(70_000 + stop)):
+            if door.gate.accepts(door.stop(), stranger(70_000 + stop)):
                 break
             while door.clock.now_s < said_s + copy * _RESEND_S:
                 door.clock.now_s += chance.expovariate(per_s)
-                assert not door.gate.admits(forged, stranger(chance.randrange(60_000)))
+                assert not door.gate.accepts(forged, stranger(chance.randrange(60_000)))
         waits_s.append(door.clock.now_s - said_s)
     assert max(waits_s) < 0.5

@@ -1,4 +1,4 @@
-"""The robot's mind with its reception, on ticks that the test makes; no socket, no keys, no clock."""
+"""The robot's mind behind its request handler, on ticks that the test makes; no socket, no keys, no clock."""
 
 import asyncio
 from collections.abc import Mapping
@@ -21,14 +21,11 @@ from kurt2rt.channel.protocol.requests import (
     WatchRequest,
 )
 from kurt2rt.channel.protocol.simulation import SimulationView, TaskName
-from kurt2rt.channel.server.channel import Channel, describe
-from kurt2rt.channel.server.endpoint import Endpoint
-from kurt2rt.channel.server.off_tick_requests import Copies
+from kurt2rt.channel.server.channel import Channel
+from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStatus, TeacherNow
 from kurt2rt.channel.server.reply import Reply
-from kurt2rt.channel.server.request_handler import LONGEST_WAIT_S, RequestHandler, Sender
-from kurt2rt.channel.server.resources import Keys, RobotSite
-from kurt2rt.channel.server.simulation import TeacherNow
-from kurt2rt.channel.server.state_builder import JournalStatus, StateBuilder
+from kurt2rt.channel.server.request_handler import LONGEST_WAIT_S, Sender
+from kurt2rt.channel.server.resources import Keys
 from kurt2rt.core.outcome import Outcome, outcome_in
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.tick import EventStore, InMemoryEventStore, TickRecord
@@ -38,7 +35,6 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.platform.simulated_clock import HeldWorld, SimulatedClock
-from kurt2rt.runs.explain.live import LiveExplainer
 from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 from tests.core.test_tick import CorridorRobot
 
@@ -66,7 +62,7 @@ class WideRobot(CorridorRobot):
 
 
 class Shelf:
-    """Copies of the knowledge that are made when the test says so (kurt2rt.channel.server.off_tick_requests.Copies)."""
+    """Copies of the knowledge that are made when the test says so (kurt2rt.channel.server.dependencies.Copies)."""
 
     def __init__(self) -> None:
         self.labels: list[str | None] = []
@@ -110,7 +106,7 @@ class Shelf:
 
 
 class Runs:
-    """Runs of a simulated robot that are only noted (kurt2rt.channel.server.simulation.RunControl)."""
+    """Runs of a simulated robot that are only noted (kurt2rt.channel.server.dependencies.RunControl)."""
 
     def __init__(self) -> None:
         self.prepared: list[tuple[object, ...]] = []
@@ -129,7 +125,7 @@ class Runs:
         return "loaded"
 
 
-class Desk:
+class ChannelFixture:
     """One robot that needs a teacher, and everything of the channel behind the keys."""
 
     def __init__(
@@ -157,33 +153,22 @@ class Desk:
         self.runtime: Runtime = build_runtime(
             self.robot, ROBOT, task, (), keeper or self.notebook, clock, RuntimeOptions(attended=True)
         )
-        stamp_of = lambda command_id: self.stamps.get(command_id, "")  # noqa: E731
-        hello = describe(self.runtime, BOOT, simulated=ground is not None)
-        copies: Copies = self.shelf
-        explaining = LiveExplainer(self.runtime, stamp_of)
-        self.reception = RequestHandler(
-            self.runtime,
-            BOOT,
-            hello,
-            stamp_of,
-            copies,
+        self.parts = ChannelDependencies(
+            JournalStatus(
+                lambda: self.unwritten, lambda: self.notebook.error, lambda command_id: self.stamps.get(command_id, "")
+            ),
+            self.shelf,
+            lambda: self.bus_trouble,
             ground,
-            longest_wait_s=longest_wait_s,
+            boot=BOOT,
             health=lambda: self.health,
-            why=explaining.facts,
-            simulation=None if ground is None else self.simulation,
-            speed=None if ground is None else self.speed,
             exam=None if ground is None else lambda: self.exam,
-        )
-        safekeeping = JournalStatus(lambda: self.unwritten, lambda: self.notebook.error, stamp_of)
-        self.telling = StateBuilder(
-            self.runtime, BOOT, safekeeping, lambda: self.bus_trouble, ground, lambda: self.health
+            run_control=None if ground is None else self.simulation,
+            speed=None if ground is None else self.speed,
         )
         # Without a socket: nothing here is sent, and the keys are those of the tests of the site.
-        self.site = RobotSite(cast(Keys, keys), self.reception)
-        self.channel = Channel(
-            self.runtime, self.reception, self.site, self.telling, cast(Endpoint, None), tuple, explaining
-        )
+        self.channel = Channel(self.runtime, cast(Keys, keys), self.parts, longest_wait_s=longest_wait_s)
+        self.handler, self.site = self.channel.handler, self.channel.site
         self.record: TickRecord
         self.written = 0
         self._number = 0
@@ -198,7 +183,7 @@ class Desk:
     @property
     def tick(self) -> int:
         """Of the newest picture."""
-        return self.reception.tick
+        return self.handler.tick
 
     def run(self, ticks: int = 1, counts: int | None = None) -> TickRecord:
         """So many ticks, in which the sensors show `counts`; what they teach stays unwritten."""
@@ -219,9 +204,9 @@ class Desk:
             command_id = event.origin.command_id
             if error is None:
                 self.stamps[command_id] = STAMP
-                self.channel.settled(Acknowledgement(command_id, self.written, None, STAMP))
+                self.channel.on_acknowledged(Acknowledgement(command_id, self.written, None, STAMP))
             else:
-                self.channel.settled(Acknowledgement(command_id, None, error, ""))
+                self.channel.on_acknowledged(Acknowledgement(command_id, None, error, ""))
 
     def new_id(self) -> bytes:
         self._ids += 1
@@ -236,7 +221,7 @@ class Desk:
         """
         self._number += 1
         sender = Sender(device, pairing, self._number if number is None else number)
-        answer = self.reception.answer(sender, request)
+        answer = self.handler.answer(sender, request)
         task = asyncio.get_running_loop().create_task(answer)
         await turns()
         return task

@@ -1,9 +1,9 @@
-from kurt2rt.channel.server.token_bucket import TokenBucket
+from kurt2rt.channel.server.rate_limit import TokenBucket
 from tests.channel.clock import Clock
 
 
 def taken(bucket: TokenBucket, tries: int) -> int:
-    return sum(bucket.take() for _ in range(tries))
+    return sum(bucket.acquire() for _ in range(tries))
 
 
 def test_at_first_as_many_pass_as_it_holds() -> None:
@@ -21,11 +21,11 @@ def test_new_tokens_come_at_its_rate() -> None:
 def test_they_come_as_well_while_it_is_asked_all_the_time() -> None:
     clock = Clock()
     bucket = TokenBucket(1, 8, clock)
-    assert bucket.take()
+    assert bucket.acquire()
     passed = 0
     for _ in range(1024):
         clock.now_s += 1 / 1024
-        passed += bucket.take()
+        passed += bucket.acquire()
     assert passed == 8
 
 

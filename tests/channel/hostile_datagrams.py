@@ -57,7 +57,7 @@ _RAW = (
 )
 
 
-class Mischief:
+class HostileDatagrams:
     """Draws datagrams and requests; `now` tells the boot id and the tick of a robot, for what looks almost right."""
 
     def __init__(self, seed: int, now: Callable[[], tuple[bytes, int]]) -> None:

@@ -1,0 +1,131 @@
+"""Parts of the service that the channel needs, with what a robot lacks as None."""
+
+import secrets
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass, field
+from typing import NamedTuple, Protocol
+
+from hal.simulation import SimulatedWorld
+from kurt2rt.channel.protocol.exam_status import ExamStatus
+from kurt2rt.channel.protocol.health import HealthReport
+from kurt2rt.channel.protocol.requests import BOOT_BYTES
+from kurt2rt.channel.protocol.simulation import SimulationView
+from kurt2rt.knowledge.files.atomic_write import SavedCopy
+from kurt2rt.platform.file_part import FilePart
+from kurt2rt.platform.simulated_clock import Speed
+
+
+@dataclass(frozen=True, slots=True)
+class JournalStatus:
+    """Queries of the journal on the disk."""
+
+    unsaved: Callable[[], int]
+    """Number of lessons that are not durable yet."""
+    trouble: Callable[[], str | None]
+    stamp_of: Callable[[str], str]
+    """Time when the lesson of a command became durable; empty before."""
+
+
+class Copies(Protocol):
+    """Maker of copies of the knowledge on the robot, outside the loop. Each method raises KnowledgeError."""
+
+    def save(self, label: str) -> Awaitable[SavedCopy]:
+        """Copy the knowledge file."""
+        ...
+
+    def export(self) -> Awaitable[SavedCopy]:
+        """Write the RLAs as a table."""
+        ...
+
+    def package(self) -> Awaitable[SavedCopy]:
+        """Write all knowledge as one file to give away."""
+        ...
+
+    def examine(self) -> Awaitable[None]:
+        """Begin an exam of a copy of the knowledge."""
+        ...
+
+    def settle(self) -> Awaitable[None]:
+        """Wait until all lessons are durable."""
+        ...
+
+    def read(self, name: str, offset: int, most_bytes: int) -> Awaitable[FilePart]:
+        """Return part of a copy that was made in this run, at most `most_bytes` bytes."""
+        ...
+
+
+class TeacherNow(NamedTuple):
+    """Present teacher with phase and session; the next run begins with them."""
+
+    device: str
+    phase: int
+    session: str | None
+
+
+class TaskProgress(Protocol):
+    """Progress of a simulated robot with its task."""
+
+    @property
+    def progress(self) -> float:  # unit: `unit`
+        """Progress since the run began, in `unit`."""
+        ...
+
+    @property
+    def unit(self) -> str:
+        """Unit of `progress`."""
+        ...
+
+
+class RunControl(Protocol):
+    """Runs of a robot that is simulated in its own program; each has one world, one task, one knowledge file."""
+
+    async def view(self) -> SimulationView:
+        """Return the simulated world and task, and those to choose from."""
+        ...
+
+    async def prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> str:
+        """Check the next run and keep it until the present one ends; return the line for the teacher.
+
+        Raises ValueError in one line.
+
+        Args:
+            world: World by name. None: the present one.
+            task: Task by name. None: the present one.
+            fresh: Begin with an empty knowledge file and archive the present one.
+            teacher: Teacher of the next run.
+        """
+        ...
+
+    async def load(self, content: bytes, teacher: TeacherNow) -> str:
+        """Check knowledge for the next run and keep it until the present one ends; return the line for the teacher.
+
+        Raises ValueError in one line.
+
+        Args:
+            content: Archive of an export, or a knowledge file; the present knowledge is archived then.
+            teacher: Teacher of the next run.
+        """
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelDependencies:
+    """Parts of the service that the channel needs."""
+
+    journal: JournalStatus
+    copies: Copies
+    bus_trouble: Callable[[], str]
+    world: SimulatedWorld | None
+    """None for a real robot."""
+    boot: bytes = field(default_factory=lambda: secrets.token_bytes(BOOT_BYTES))
+    """Random bytes of this start."""
+    health: Callable[[], HealthReport | None] = lambda: None
+    """Newest report; None before the first."""
+    exam: Callable[[], ExamStatus] | None = None
+    """Status of the exam; None if the robot is not examined."""
+    run_control: RunControl | None = None
+    """None if the simulator is not in this program."""
+    speed: Speed | None = None
+    """None if robot time is real time."""
+    progress: TaskProgress | None = None
+    """None if progress is not measured."""
