@@ -1,4 +1,4 @@
-"""What a person types to the mid level: which way is right, what places are called, where the robot is to go."""
+"""Typed commands of the mid level: behaviours at junctions, names of places, goals."""
 
 from collections.abc import Awaitable, Sequence
 
@@ -15,20 +15,20 @@ _MOST_DIGITS = 15
 def mid_command(
     robot: TeacherClient, hello: Hello, words: Sequence[str], state: State | None
 ) -> Awaitable[Answer] | None:
-    """The command that a line is; None where it is none to the mid level. `state`: the picture it was typed at."""
-    given = None if hello.mid is None else _lesson(robot, hello, words, state)
-    return _goal(robot, words, state) if given is None and hello.seeks else given
+    """Return the command of the mid level in a line, if it is one; `state` is the newest one when it was typed."""
+    command = None if hello.mid is None else _lesson(robot, hello, words, state)
+    return _goal(robot, words, state) if command is None and hello.seeks else command
 
 
 def _lesson(robot: TeacherClient, hello: Hello, words: Sequence[str], state: State | None) -> Awaitable[Answer] | None:
-    judged = None if state is None else state.tick
+    tick = None if state is None else state.tick
     match words:
-        case [way] if _means_way(way, hello, state):
+        case [behaviour] if _means_behaviour(behaviour, hello, state):
             if state is None or state.mid is None or expects_mid_answer(state.mid):
-                return robot.answer(way, of=judged, level=MID)
-            return robot.correct(way, of=judged, level=MID)
-        case ["also", way]:
-            return robot.answer(way, of=judged, level=MID, alternative=True)
+                return robot.answer(behaviour, of=tick, level=MID)
+            return robot.correct(behaviour, of=tick, level=MID)
+        case ["also", behaviour]:
+            return robot.answer(behaviour, of=tick, level=MID, alternative=True)
     return None
 
 
@@ -48,15 +48,15 @@ def _goal(robot: TeacherClient, words: Sequence[str], state: State | None) -> Aw
     return None
 
 
-def _means_way(name: str, hello: Hello, state: State | None) -> bool:
-    """Whether a name means the taught behaviour; where an action has the same one, only while the mid level asks."""
+def _means_behaviour(name: str, hello: Hello, state: State | None) -> bool:
+    """Return whether a name means the behaviour; an action of the same name goes first unless the mid level asks."""
     if name not in hello.behaviours:
         return False
     return name not in hello.actions or (state is not None and state.asks_at == MID)
 
 
 def _features_in(words: Sequence[str]) -> tuple[dict[str, float], float] | None:
-    """Features and tolerance of a goal: x_m=1.8 wall_left=1 within 0.2; None for anything else."""
+    """Parse features and tolerance of a goal, such as x_m=1.8 wall_left=1 within 0.2; None for anything else."""
     tolerance = None
     if len(words) > 2 and words[-2] == "within":
         words, tolerance = words[:-2], _number_in(words[-1])

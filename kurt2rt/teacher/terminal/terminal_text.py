@@ -1,4 +1,4 @@
-"""What the terminal tells its teacher, in words."""
+"""Texts of the teacher's terminal."""
 
 import math
 from collections.abc import Sequence
@@ -15,40 +15,40 @@ from kurt2rt.core.teaching.question import FeatureDifference, MidQuestion, Quest
 
 HISTORY = "history"
 LOUD_FROM = 4.0
-"""Times the usual distance; the page's mark is loud from there on."""
+"""Ratio of a surprise to the usual distance from which on it is printed; the page emphasises it from there on."""
 
 _HELP = """\
 an action                answers the robot's question, or corrects what it does
-(just Enter), stop       the robot stands until you type go; at once, whatever waits for its answer
+(just Enter), stop       the robot stands until you type go; it overtakes all other commands
 go                       the robot drives where it knows the way
 step ACTION [SECONDS]    one action for half a second, or as long as you say; teaches nothing
-+, -                     reward or punish what the robot does
++, -                     reward or punish the action that drives
 undo [LESSON], lessons   take the last lesson back, or the one of that id; show the last ten
 replace N ACTION, delete N     change or end RLA N
 phase 1 to 5             supervised, corrections, reinforcement, critic, autonomous
 begin [NAME], end        a session of teaching, with its clock
 save [LABEL], export     a copy of the knowledge, or a table of it, on the robot
-health                   how late its ticks are, its sensors, bus and disk, what is wrong and what to do
-take, release            be the teacher, or let another one be it
+health                   late ticks, sensors, bus, disk; faults and their cures
+take, release            become the teacher; hand over to another one
 help, quit"""
 _PURSUE_HELP = "pursue NAME              follow another taught behaviour; lessons are about the one that is followed"
 _CRITIC_HELP = """\
-an appraisal             teaches the critic what this situation is worth (phase 4)
-critic                   what the critic thinks, how well it agrees with you, what it changed last"""
+an appraisal             teaches the critic the value of this situation (phase 4)
+critic                   its opinion, its agreement with you, its last change"""
 
 _MID_HELP = """\
 a behaviour              answers which way is right here, or corrects the mid level
 also NAME                this behaviour is possible here, too
 pursue NAME              only this once, until it has finished; teaches nothing
-way                      what the mid level wants, why, and what it has come by"""
+way                      the choice of the mid level, its reason, and the last junctions"""
 _GOAL_HELP = """\
 name NAME, places        give the mid level's situation a name; show those that have one
 seek NAME, seek rla N    go there, by what was taught; seek FEATURE=VALUE ... [within T] for any such place
-seek, here NAME          seek nothing any more; the robot was set down there"""
+seek, here NAME          end the search; tell the robot that it is there"""
 
 
 def help_lines(hello: Hello) -> tuple[str, ...]:
-    """What can be typed."""
+    """Return the help for the commands of this robot."""
     more = [_CRITIC_HELP] if hello.appraisals else []
     if hello.mid is not None:
         more.append(_MID_HELP)
@@ -59,7 +59,7 @@ def help_lines(hello: Hello) -> tuple[str, ...]:
 
 
 def name_lines(hello: Hello) -> tuple[str, ...]:
-    """Names that this robot knows."""
+    """Return the names of the robot's actions, appraisals and behaviours."""
     lines = [f"actions: {', '.join(hello.actions)}"]
     if hello.appraisals:
         lines.append(f"appraisals: {', '.join(each.name for each in hello.appraisals)}")
@@ -69,39 +69,41 @@ def name_lines(hello: Hello) -> tuple[str, ...]:
 
 
 def build_question(state: State, words: SensorWords = NO_WORDS) -> Question | MidQuestion:
-    """Return the question that a picture shows, in the robot's `words` for its sensors."""
+    """Return the question of a state, in the robot's `words` for its sensors."""
     if state.asks_at == MID and state.mid is not None:
         mid = state.mid
         came_by = tuple(word for word in mid.here if word)
         return MidQuestion(mid.nearest, mid.nearest_behaviour, mid.distance, mid.radius, came_by)
     differing = tuple(FeatureDifference(each.name, each.here, each.in_condition) for each in state.question)
     return Question(
-        state.nearest,
-        state.nearest_action,
-        state.distance,
-        state.radius,
-        differing,
-        state.behaviour,
-        words,
-        state.nearest_value,
-        question_text(state.stands),
+        nearest_rla=state.nearest,
+        action=state.nearest_action,
+        distance=state.distance,
+        radius=state.radius,
+        differing=differing,
+        behaviour=state.behaviour,
+        words=words,
+        worth=state.nearest_value,
+        touches=question_text(state.stands),
     )
 
 
-def expects_answer(state: State) -> bool:
-    """Whether an action that is typed at this picture is an answer: there is nothing near that it could correct."""
+def expects_answer(state: State | None) -> bool:
+    """Return whether a typed action answers; otherwise it corrects the nearest RLA of the basic level."""
+    if state is None:
+        return True
     if state.asks_at == MID:
-        return False  # nearest is of the mid level; a correction is right however near the basic one's are
+        return False  # the nearest RLA of the state is the mid level's
     return state.nearest is None or state.nearest_action == ASK or state.distance > state.radius
 
 
 def expects_mid_answer(mid: MidState) -> bool:
-    """Whether a behaviour that is typed at this picture is an answer to the mid level, and no correction."""
+    """Return whether a typed behaviour answers the mid level; otherwise it corrects the nearest RLA."""
     return mid.nearest is None or mid.nearest_behaviour == ASK or mid.distance > mid.radius
 
 
 def format_mid_command(state: State, introduced: MidIntroduction) -> str:
-    """What the mid level wants, and why; empty while it asks, or where there is none."""
+    """Return the choice of the mid level and its reason; empty while it asks, or without a mid level."""
     mid = state.mid
     if mid is None or mid.asks:
         return ""
@@ -118,7 +120,7 @@ def format_mid_command(state: State, introduced: MidIntroduction) -> str:
 
 
 def format_mid_situation(mid: MidState, introduced: MidIntroduction) -> str:
-    """What the mid level has come by, the newest first, or where it is; and what the nearest RLA knows beside it."""
+    """Return the situation of the mid level, symbols newest first, and the condition of the nearest RLA."""
     is_at = "came by" if introduced.kind == HISTORY else "is at"
     here = ", ".join(word for word in mid.here if word) or "nothing yet"
     if mid.nearest is None:
@@ -128,19 +130,19 @@ def format_mid_situation(mid: MidState, introduced: MidIntroduction) -> str:
 
 
 def format_surprise(surprise: SurpriseState) -> str:
-    """What surprised the robot."""
+    """Return a surprise in words."""
     after, came = (rla_title(each, "", surprise.level) for each in (surprise.rla, surprise.follow_up))
     new = ", which had never followed it" if surprise.new else ""
     return f"surprise: {surprise.times:.1f} times as far off as usual after {after}; {came} took over{new}"
 
 
 def is_notable(surprise: SurpriseState) -> bool:
-    """Of the basic level, whose RLAs end many times a second, only what is far off."""
+    """Return whether to print a surprise: the basic level has many, so only those from LOUD_FROM on."""
     return surprise.level == MID or surprise.times >= LOUD_FROM
 
 
 def format_state(state: State) -> str:
-    """What the robot does and why, without what changes all the time."""
+    """Return the robot's action and its reason, without numbers that change all the time."""
     stands = state.stands
     if stands.reason is not StandReason.DRIVES:
         return standing_headline(stands, GO_IN_TERMINAL) + (f"; {state.trouble}" if state.trouble else "")
@@ -152,14 +154,14 @@ def format_state(state: State) -> str:
 
 
 def format_opinion(state: State, appraisals: Sequence[AppraisalName]) -> str:
-    """What the critic thinks of a picture, and whether it may be believed."""
+    """Return the critic's appraisal of a state, and its agreement with the teacher."""
     name = next((each.name for each in appraisals if each.value == state.opinion), None)
     thinks = "does not know this situation" if name is None else f"thinks {name}"
     return f"critic: {thinks} · {format_trust(state)}"
 
 
 def format_trust(state: State) -> str:
-    """How well the critic agrees with its teacher."""
+    """Return the agreement of the critic with its teacher, a ratio, and whether it is trusted."""
     if state.agreement is None:
         bad, good = state.signals_missing
         missing = " and ".join(f"{count} {of}" for count, of in ((bad, "bad"), (good, "good")) if count)
@@ -170,7 +172,7 @@ def format_trust(state: State) -> str:
 
 
 def format_role(state: State) -> str:
-    """What a critic does that is alone with the robot; empty while it only listens."""
+    """Return the activity of the critic in phase 5; empty while it only listens."""
     match state.role:
         case CriticState.LISTENS:
             return ""
@@ -184,7 +186,7 @@ def format_role(state: State) -> str:
 
 
 def format_critic_change(lesson: LessonLine | None) -> str:
-    """What the critic changed last."""
+    """Return the last change of the critic."""
     if lesson is None:
         return "critic: changed nothing lately"
     return f"critic: changed last: {lesson.text}{', undone' if lesson.undone else ''}"

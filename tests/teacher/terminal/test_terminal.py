@@ -1,4 +1,4 @@
-"""The terminal with a real client, a robot whose mind is the test's, and a person at the keyboard."""
+"""TerminalTeacher with a real client, a robot whose answers are the test's, and typed lines."""
 
 import os
 import socket
@@ -58,8 +58,8 @@ from tests.teacher.stand_in_robot import StandInRobot, in_a_task_of_its_own, sta
 
 
 @dataclass
-class Desk:
-    """A keyboard and a screen."""
+class Console:
+    """Keyboard and screen of a teacher."""
 
     client: TeacherClient
     keyboard: int
@@ -76,7 +76,7 @@ class Desk:
         self._news = anyio.Event()
 
     async def reads(self, text: str) -> str:
-        """Wait until the screen shows a text; the line that does."""
+        """Wait until the screen shows a text; return its line."""
         with anyio.fail_after(10.0):
             while True:
                 for line in self.said:
@@ -85,8 +85,8 @@ class Desk:
                 await self._news.wait()
 
 
-class Mind:
-    """Introduces itself and does what it is told, but for some requests that it answers when it is let."""
+class RobotStub:
+    """Robot that answers each request; requests of type `slow` wait for `may_answer`."""
 
     def __init__(self, *slow: type[Request]) -> None:
         self.slow = slow
@@ -107,7 +107,7 @@ class Mind:
 
 
 @asynccontextmanager
-async def desk_at(pairing: Pairing, port: int, *, patience_s: float = 3.5) -> AsyncIterator[Desk]:
+async def console_at(pairing: Pairing, port: int, *, patience_s: float = 3.5) -> AsyncIterator[Console]:
     reading, writing = os.pipe()
     clock = Clock()
     with os.fdopen(reading) as lines:
@@ -116,10 +116,10 @@ async def desk_at(pairing: Pairing, port: int, *, patience_s: float = 3.5) -> As
                 TeacherClient(pairing.device.folder, port=port, patience_s=patience_s, now=clock) as client,
                 anyio.create_task_group() as tasks,
             ):
-                desk = Desk(client, writing, clock)
-                tasks.start_soon(TerminalTeacher(client, lines, desk.say, f"127.0.0.1:{port}").teach)
-                yield desk
-                desk.type("quit")
+                console = Console(client, writing, clock)
+                tasks.start_soon(TerminalTeacher(client, lines, console.say, f"127.0.0.1:{port}").teach)
+                yield console
+                console.type("quit")
                 tasks.cancel_scope.deadline = anyio.current_time() + 2.0
         finally:
             os.close(writing)
@@ -133,78 +133,72 @@ def pairing(tmp_path: Path) -> Pairing:
 @pytest.fixture
 async def robot(pairing: Pairing) -> AsyncIterator[StandInRobot]:
     async with in_a_task_of_its_own(stand_in_robot(pairing.teacher.parent)) as robot:
-        robot.mind = Mind()
+        robot.mind = RobotStub()
         robot.show(teacher="phone")  # so that who takes it sees at once that he teaches
         yield robot
 
 
-async def looked_at(desk: Desk, robot: StandInRobot, **changes: object) -> int:
-    """Show one more picture; its tick, when it is on the screen."""
+async def looked_at(console: Console, robot: StandInRobot, **changes: object) -> int:
+    """Send one more state; return its tick when the client has it."""
     robot.showing = False
     picture = robot.show(**changes)
-    await seen(desk.client, lambda: desk.client.state == picture)
+    await seen(console.client, lambda: console.client.state == picture)
     return picture.tick
 
 
-async def test_health_shows_how_the_robots_program_is_and_what_to_do_about_it(
-    pairing: Pairing, robot: StandInRobot
-) -> None:
-    async with desk_at(pairing, robot.port) as desk:
-        await desk.reads("/take is done")
-        desk.type("health")
-        await desk.reads("sensors silent (urgent), ticks missed; late 2.90 ms (p99), missed 7")
-        await desk.reads("disk      knowledge: 412 MB free, recordings: no answer")
-        await desk.reads("!! the infra-red sensors are silent, the newest is 2.5 s old (for 2 s): look whether")
-        await desk.reads("! 3 ticks missed in the last minute")
+async def test_health_prints_the_report_and_cures(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("/take is done")
+        console.type("health")
+        await console.reads("sensors silent (urgent), ticks missed; late 2.90 ms (p99), missed 7")
+        await console.reads("disk      knowledge: 412 MB free, recordings: no answer")
+        await console.reads("!! the infra-red sensors are silent, the newest is 2.5 s old (for 2 s): look whether")
+        await console.reads("! 3 ticks missed in the last minute")
 
 
-async def test_enter_alone_stops_at_once_and_ends_what_waits_for_its_answer(
-    pairing: Pairing, robot: StandInRobot
-) -> None:
-    async with desk_at(pairing, robot.port) as desk:
-        await desk.reads("/take is done")
-        robot.mind = Mind(ResumeRequest)
-        desk.type("go")
+async def test_enter_stops_at_once_and_ends_pending_commands(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("/take is done")
+        robot.mind = RobotStub(ResumeRequest)
+        console.type("go")
         await robot.hears(ResumeRequest)
-        desk.type("")
-        await desk.reads("refused: go was stopped meanwhile")
-        await desk.reads("/stop is done")
+        console.type("")
+        await console.reads("refused: go was stopped meanwhile")
+        await console.reads("/stop is done")
         assert robot.all_of(StopRequest)[0].press_id is None
 
 
-async def test_what_was_typed_before_a_stop_does_not_move_the_robot_after_it(
-    pairing: Pairing, robot: StandInRobot
-) -> None:
-    async with desk_at(pairing, robot.port) as desk:
-        await desk.reads("/take is done")
-        robot.mind = mind = Mind(LessonsRequest)
+async def test_motion_typed_before_a_stop_is_not_sent_after_it(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("/take is done")
+        robot.mind = mind = RobotStub(LessonsRequest)
         for line in ("lessons", "go", "step forward", "phase 5", "phase 2", "stop"):
-            desk.type(line)
-        await desk.reads("/stop is done")
+            console.type(line)
+        await console.reads("/stop is done")
         mind.may_answer.set()
-        await desk.reads("/phase is done")
+        await console.reads("/phase is done")
         for line in ("go", "step forward", "phase 5"):
-            assert f"not done, you stopped the robot after you typed it: {line}" in desk.said
+            assert f"not done, you stopped the robot after you typed it: {line}" in console.said
         assert robot.all_of(ResumeRequest) == []
         assert [each.phase for each in robot.all_of(PhaseRequest)] == [Phase.CORRECTIONS]
 
 
-async def test_go_that_is_typed_after_a_stop_is_said_after_it(pairing: Pairing, robot: StandInRobot) -> None:
-    async with desk_at(pairing, robot.port) as desk:
-        await desk.reads("/take is done")
-        robot.mind = mind = Mind(StopRequest)
-        desk.type("stop")
-        desk.type("go")
+async def test_go_typed_after_a_stop_is_sent_after_it(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("/take is done")
+        robot.mind = mind = RobotStub(StopRequest)
+        console.type("stop")
+        console.type("go")
         await robot.hears(StopRequest, 3)
         assert robot.all_of(ResumeRequest) == []
         mind.may_answer.set()
-        await desk.reads("/resume is done")
+        await console.reads("/resume is done")
 
 
-async def test_a_judgement_is_about_what_was_seen_when_it_was_typed(pairing: Pairing, robot: StandInRobot) -> None:
-    async with desk_at(pairing, robot.port) as desk:
-        await desk.reads("/take is done")
-        robot.mind = mind = Mind(LessonsRequest)
+async def test_reward_has_the_tick_of_its_typing(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("/take is done")
+        robot.mind = mind = RobotStub(LessonsRequest)
         ticks = []
         for line, changes in (
             ("lessons", {}),
@@ -213,13 +207,13 @@ async def test_a_judgement_is_about_what_was_seen_when_it_was_typed(pairing: Pai
             ("forward", {"distance": 812.5, "radius": 600.0}),
             ("spin_left", {"distance": 10.0}),
         ):
-            ticks.append(await looked_at(desk, robot, **changes))
-            desk.type(line)
+            ticks.append(await looked_at(console, robot, **changes))
+            console.type(line)
             # A stop does not wait for its turn, so it tells that what stands before it has been read.
             stops = len(robot.all_of(StopRequest))
-            desk.type("stop")
+            console.type("stop")
             await robot.hears(StopRequest, stops + 1)
-        await looked_at(desk, robot, nearest=None)
+        await looked_at(console, robot, nearest=None)
         mind.may_answer.set()
         (correction,) = await robot.hears(CorrectRequest)
         assert [(each.value, each.decision_tick) for each in robot.all_of(RewardRequest)] == [
@@ -230,9 +224,9 @@ async def test_a_judgement_is_about_what_was_seen_when_it_was_typed(pairing: Pai
         assert (correction.action, correction.decision_tick) == ("spin_left", ticks[4])
 
 
-async def test_nothing_that_is_typed_ends_the_teaching(pairing: Pairing, robot: StandInRobot) -> None:
-    async with desk_at(pairing, robot.port, patience_s=0.3) as desk:
-        await desk.reads("/take is done")
+async def test_invalid_line_does_not_end_teaching(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port, patience_s=0.3) as console:
+        await console.reads("/take is done")
         nines = "9" * 5000
         for line in (
             "phase 12",
@@ -243,92 +237,88 @@ async def test_nothing_that_is_typed_ends_the_teaching(pairing: Pairing, robot: 
             "delete ²",
             "step forward 1e9",
         ):
-            shown = sum("help, quit" in each for each in desk.said)
-            desk.type(line)
+            shown = sum("help, quit" in each for each in console.said)
+            console.type(line)
             with anyio.fail_after(5.0):
-                while sum("help, quit" in each for each in desk.said) == shown:
-                    await desk._news.wait()
-        desk.type("step forward 999999999")
-        await desk.reads("refused: ticks has to be a whole number")
-        robot.mind = Mind(LessonsRequest)
-        desk.type("lessons")
-        await desk.reads("no answer for 0.3 s")
-        desk.type("phase 2")
-        await desk.reads("/phase is done")
+                while sum("help, quit" in each for each in console.said) == shown:
+                    await console._news.wait()
+        console.type("step forward 999999999")
+        await console.reads("refused: ticks has to be a whole number")
+        robot.mind = RobotStub(LessonsRequest)
+        console.type("lessons")
+        await console.reads("no answer for 0.3 s")
+        console.type("phase 2")
+        await console.reads("/phase is done")
 
 
-async def test_a_robot_that_is_not_there_yet_is_waited_for(pairing: Pairing) -> None:
+async def test_teach_waits_for_a_robot_that_is_not_there(pairing: Pairing) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("127.0.0.1", 0))
         port = taken.getsockname()[1]
     async with AsyncExitStack() as stack:
-        desk = await stack.enter_async_context(in_a_task_of_its_own(desk_at(pairing, port, patience_s=0.3)))
-        await desk.reads(f"no robot at 127.0.0.1:{port} yet")
-        desk.type("forward")
-        await desk.reads(f"not done, there is no robot at 127.0.0.1:{port} yet: forward")
+        console = await stack.enter_async_context(in_a_task_of_its_own(console_at(pairing, port, patience_s=0.3)))
+        await console.reads(f"no robot at 127.0.0.1:{port} yet")
+        console.type("forward")
+        await console.reads(f"not done, there is no robot at 127.0.0.1:{port} yet: forward")
         async with stand_in_robot(pairing.teacher.parent, port=port) as robot:
-            robot.mind = Mind()
+            robot.mind = RobotStub()
             robot.show(teacher="phone")
-            await desk.reads("actions: forward, spin_left")
-            await desk.reads("/take is done")
+            await console.reads("actions: forward, spin_left")
+            await console.reads("/take is done")
             assert robot.all_of(AnswerRequest) == []
-            await looked_at(desk, robot, nearest=None)
-            desk.type("forward")
+            await looked_at(console, robot, nearest=None)
+            console.type("forward")
             await robot.hears(AnswerRequest)
             await stack.aclose()
 
 
-async def test_who_leaves_where_no_robot_ever_was_does_not_wait_for_one(pairing: Pairing) -> None:
+async def test_quit_without_a_robot_ends_at_once(pairing: Pairing) -> None:
     with anyio.fail_after(5.0):
-        async with desk_at(pairing, 9, patience_s=0.2) as desk:
-            desk.type("quit")
-    assert [each.split(" yet")[0] for each in desk.said] == ["no robot at 127.0.0.1:9"]
+        async with console_at(pairing, 9, patience_s=0.2) as console:
+            console.type("quit")
+    assert [each.split(" yet")[0] for each in console.said] == ["no robot at 127.0.0.1:9"]
 
 
 @pytest.mark.parametrize("teacher", [None, "anna"])
-async def test_after_a_restart_of_the_robot_it_is_taken_only_when_nobody_else_teaches(
-    pairing: Pairing, teacher: str | None
-) -> None:
+async def test_restarted_robot_is_taken_unless_it_has_a_teacher(pairing: Pairing, teacher: str | None) -> None:
     teachers = pairing.teacher.parent
     async with AsyncExitStack() as first_start, AsyncExitStack() as stack:
         robot = await first_start.enter_async_context(in_a_task_of_its_own(stand_in_robot(teachers)))
-        robot.mind = Mind()
+        robot.mind = RobotStub()
         robot.show(teacher="phone")
-        desk = await stack.enter_async_context(in_a_task_of_its_own(desk_at(pairing, robot.port)))
-        await desk.reads("/take is done")
-        await seen(desk.client, lambda: True)
+        console = await stack.enter_async_context(in_a_task_of_its_own(console_at(pairing, robot.port)))
+        await console.reads("/take is done")
+        await seen(console.client, lambda: True)
         await first_start.aclose()
-        desk.clock.ahead_s += 2.0
-        await desk.reads("no picture of the robot comes any more")
+        console.clock.ahead_s += 2.0
+        await console.reads("the robot is silent")
         async with stand_in_robot(teachers, port=robot.port, boot=b"anew", showing=False) as robot:
-            robot.mind = Mind()
+            robot.mind = RobotStub()
             robot.show(teacher=teacher)
             robot.showing = True
-            await desk.reads("the robot program was started anew")
-            await desk.reads("the robot is seen again")
+            await console.reads("the robot program was restarted")
+            await console.reads("the robot is back")
             if teacher is None:
                 await robot.hears(TakeRequest)
             else:
-                await desk.reads("anna teaches now; type take to teach yourself")
+                await console.reads("anna teaches now; type take to teach yourself")
                 assert robot.all_of(TakeRequest) == []
             await stack.aclose()
 
 
-async def test_where_several_behaviours_are_taught_the_terminal_says_which_to_follow(
-    pairing: Pairing, robot: StandInRobot
-) -> None:
-    async with desk_at(pairing, robot.port) as desk:
-        await desk.reads("taught behaviours: straight_on, turn_left")
-        await desk.reads("/take is done")
-        desk.type("pursue turn_left")
-        await desk.reads("/pursue is done")
+async def test_pursue_selects_one_of_several_behaviours(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("taught behaviours: straight_on, turn_left")
+        await console.reads("/take is done")
+        console.type("pursue turn_left")
+        await console.reads("/pursue is done")
         assert [each.behaviour for each in robot.all_of(PursueRequest)] == ["turn_left"]
-        desk.type("pursue")
-        await desk.reads("pursue NAME ")
+        console.type("pursue")
+        await console.reads("pursue NAME ")
 
 
-async def test_terminal_says_the_task_and_asks_by_place_and_centimetres(pairing: Pairing, robot: StandInRobot) -> None:
-    mind = Mind()
+async def test_question_names_places_and_centimetres(pairing: Pairing, robot: StandInRobot) -> None:
+    mind = RobotStub()
 
     async def tells_more(request: Request) -> Reply:
         if not isinstance(request, HelloRequest):
@@ -342,65 +332,63 @@ async def test_terminal_says_the_task_and_asks_by_place_and_centimetres(pairing:
         return Reply(ReplyStatus.DONE, HELLO | told)
 
     robot.mind = tells_more
-    async with desk_at(pairing, robot.port) as desk:
-        await desk.reads("Teach it to follow the wall")
-        await looked_at(desk, robot, cause="unknown", question=(FeatureDifference("s9", 441.0, 108.0),))
-        await desk.reads("; front left: 13 cm, was 46 cm")
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("Teach it to follow the wall")
+        await looked_at(console, robot, cause="unknown", question=(FeatureDifference("s9", 441.0, 108.0),))
+        await console.reads("; front left: 13 cm, was 46 cm")
 
 
-def test_a_question_is_about_the_behaviour_that_is_wanted() -> None:
+def test_build_question_has_the_selected_behaviour() -> None:
     told = str(build_question(state(nearest=None, behaviour="turn_left")))
     assert told == "I know nothing of turn_left yet, teach me"
 
 
-def test_what_drives_is_told_with_the_behaviour_that_it_belongs_to() -> None:
+def test_format_state_names_the_behaviour_of_the_rla() -> None:
     assert format_state(state(action="forward", rla=3)) == "forward by RLA 3"
     assert format_state(state(action="forward", rla=3, behaviour="turn_left")) == "forward by RLA 3 of turn_left"
 
 
-async def test_the_critic_is_taught_by_the_names_of_its_appraisals(pairing: Pairing, robot: StandInRobot) -> None:
-    async with desk_at(pairing, robot.port) as desk:
-        await desk.reads("appraisals: bad, neutral, good")
-        await desk.reads("/take is done")
-        tick = await looked_at(desk, robot, phase=4)
-        desk.type("bad")
+async def test_appraisal_by_name_teaches_the_critic(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("appraisals: bad, neutral, good")
+        await console.reads("/take is done")
+        tick = await looked_at(console, robot, phase=4)
+        console.type("bad")
         (taught,) = await robot.hears(AppraiseRequest)
         assert (taught.appraisal, taught.decision_tick) == ("bad", tick)
-        desk.type("help")
-        await desk.reads("an appraisal ")
+        console.type("help")
+        await console.reads("an appraisal ")
 
 
-async def test_the_teacher_is_told_when_the_critic_is_trusted_and_may_ask_what_it_thinks(
-    pairing: Pairing, robot: StandInRobot
-) -> None:
-    async with desk_at(pairing, robot.port) as desk:
-        await desk.reads("/take is done")
-        await looked_at(desk, robot, phase=4, signals_missing=(6, 2))
-        await desk.reads("critic: needs 6 bad and 2 good signals more of yours (not trusted)")
-        await looked_at(desk, robot, agreement=0.87, trusted=True, signals_missing=(0, 0), opinion=1, opinion_of=40)
-        await desk.reads("critic: agrees with you 0.87 (trusted)")
-        desk.type("critic")
-        await desk.reads("critic: thinks good · agrees with you 0.87 (trusted)")
-        await desk.reads("critic: changed nothing lately")
-        await looked_at(desk, robot, phase=5, role="measures", bad_share=0.0)
-        await desk.reads("critic: agrees with you 0.87 (trusted; measures how well it goes)")
-        await looked_at(desk, robot, role="not needed", bad_share=0.019)
-        await desk.reads("critic: agrees with you 0.87 (trusted; not needed: 1 % of the driving was bad)")
-        await looked_at(desk, robot, role="acts")
-        await desk.reads("critic: agrees with you 0.87 (trusted; acts)")
+async def test_critic_prints_trust_and_opinion(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("/take is done")
+        await looked_at(console, robot, phase=4, signals_missing=(6, 2))
+        await console.reads("critic: needs 6 bad and 2 good signals more of yours (not trusted)")
+        await looked_at(console, robot, agreement=0.87, trusted=True, signals_missing=(0, 0), opinion=1, opinion_of=40)
+        await console.reads("critic: agrees with you 0.87 (trusted)")
+        console.type("critic")
+        await console.reads("critic: thinks good · agrees with you 0.87 (trusted)")
+        await console.reads("critic: changed nothing lately")
+        await looked_at(console, robot, phase=5, role="measures", bad_share=0.0)
+        await console.reads("critic: agrees with you 0.87 (trusted; measures how well it goes)")
+        await looked_at(console, robot, role="not needed", bad_share=0.019)
+        await console.reads("critic: agrees with you 0.87 (trusted; not needed: 1 % of the driving was bad)")
+        await looked_at(console, robot, role="acts")
+        await console.reads("critic: agrees with you 0.87 (trusted; acts)")
 
 
-async def test_what_is_typed_where_an_action_was_withdrawn_is_an_answer(pairing: Pairing, robot: StandInRobot) -> None:
-    async with desk_at(pairing, robot.port) as desk:
-        await desk.reads("/take is done")
-        tick = await looked_at(desk, robot, nearest=17, nearest_action="ask", distance=12.0)
-        desk.type("forward")
+async def test_action_at_a_withdrawn_rla_is_an_answer(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("/take is done")
+        tick = await looked_at(console, robot, nearest=17, nearest_action="ask", distance=12.0)
+        console.type("forward")
         (answer,) = await robot.hears(AnswerRequest)
         assert (answer.action, answer.decision_tick) == ("forward", tick)
         assert robot.all_of(CorrectRequest) == []
 
 
-def test_what_the_critic_thinks_and_changed_is_told_in_a_line() -> None:
+def test_format_opinion_and_change_are_one_line_each() -> None:
     appraisals = (AppraisalName("bad", -1), AppraisalName("neutral", 0), AppraisalName("good", 1))
     assert format_opinion(state(agreement=0.799), appraisals) == (
         "critic: does not know this situation · agrees with you 0.79 (not trusted)"
@@ -410,36 +398,38 @@ def test_what_the_critic_thinks_and_changed_is_told_in_a_line() -> None:
     assert format_critic_change(changed._replace(undone=True)).endswith("stand, undone")
 
 
-async def test_the_mid_level_is_taught_by_the_names_of_behaviours(pairing: Pairing, robot: StandInRobot) -> None:
-    async with desk_at(pairing, robot.port) as desk:
-        await desk.reads("/take is done")
+async def test_behaviour_by_name_teaches_the_mid_level(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("/take is done")
         robot.show(cause="unknown", asks_at="mid", mid=replace(COMMANDS, rla=None, distance=7.0, asks=True))
-        await desk.reads("teach me which behaviour to follow: nearest is mid-level RLA 12 (turn_left) at 7 of 6")
-        desk.type("turn_left")
-        await desk.reads("/answer is done")
+        await console.reads("teach me which behaviour to follow: nearest is mid-level RLA 12 (turn_left) at 7 of 6")
+        console.type("turn_left")
+        await console.reads("/answer is done")
         (answer,) = robot.all_of(AnswerRequest)
         assert (answer.action, answer.level, answer.alternative) == ("turn_left", "mid", False)
         robot.show(cause="rla", action="forward", rla=3, asks_at="basic", mid=COMMANDS)
-        await desk.reads("turn_left because mid-level RLA 12: 2 of 12 differ, R 6")
-        desk.type("straight_on")
-        await desk.reads("/correct is done")
+        await console.reads("turn_left because mid-level RLA 12: 2 of 12 differ, R 6")
+        console.type("straight_on")
+        await console.reads("/correct is done")
         assert [(each.action, each.level) for each in robot.all_of(CorrectRequest)] == [("straight_on", "mid")]
-        desk.type("also straight_on")
+        console.type("also straight_on")
         await robot.hears(AnswerRequest, 2)
         assert robot.all_of(AnswerRequest)[-1].alternative
-        desk.type("pursue straight_on")
-        await desk.reads("/pursue is done")
+        console.type("pursue straight_on")
+        await console.reads("/pursue is done")
         robot.show(mid=replace(COMMANDS, behaviour="straight_on", rla=None, overridden=True))
-        await desk.reads("straight_on, because a teacher said so, until it has finished")
-        desk.type("way")
-        assert "came by left, straight, right" in await desk.reads("; mid-level RLA 12 knows left, straight, left")
+        await console.reads("straight_on, because a teacher said so, until it has finished")
+        console.type("way")
+        assert "came by left, straight, right" in await console.reads("; mid-level RLA 12 knows left, straight, left")
         robot.show(surprise=replace(SURPRISED, tick=robot.state.tick, new=True))
-        assert "took over, which had never followed it" in await desk.reads("surprise: 3.5 times as far off as usual")
+        assert "took over, which had never followed it" in await console.reads(
+            "surprise: 3.5 times as far off as usual"
+        )
 
 
-async def test_places_are_named_and_sought_by_typing(pairing: Pairing, robot: StandInRobot) -> None:
-    async with desk_at(pairing, robot.port) as desk:
-        await desk.reads("/take is done")
+async def test_places_are_named_and_sought(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("/take is done")
         for line, path in (
             ("name the door", "/name"),
             ("seek the door", "/seek"),
@@ -447,39 +437,39 @@ async def test_places_are_named_and_sought_by_typing(pairing: Pairing, robot: St
             ("seek x_m=1.8 y_m=-3 within 0.25", "/seek/like"),
             ("here the door", "/here"),
         ):
-            desk.type(line)
-            await desk.reads(f"{path} is done")
+            console.type(line)
+            await console.reads(f"{path} is done")
         assert [each.name for each in robot.all_of(NameRequest)] == ["the door"]
         assert [each.name for each in robot.all_of(SeekRequest)] == ["the door"]
         assert [each.rla_id for each in robot.all_of(SeekRlaRequest)] == [12]
         (like,) = robot.all_of(SeekLikeRequest)
         assert (like.features, like.tolerance) == ((("x_m", 1.8), ("y_m", -3.0)), 0.25)
         assert [each.name for each in robot.all_of(SetLocationRequest)] == ["the door"]
-        desk.type("seek")
+        console.type("seek")
         await robot.hears(SeekRequest, 2)
         assert robot.all_of(SeekRequest)[-1].name is None
-        desk.type("places")
-        await desk.reads("named: the door, the window")
+        console.type("places")
+        await console.reads("named: the door, the window")
         robot.show(cause="no way", action=None, rla=None, goal="door", plan_says="no way from here to door")
-        await desk.reads("Stands: no way from here to door")
-        desk.type("seek x_m=high")  # no number: the name of a place, then
+        await console.reads("Stands: no way from here to door")
+        console.type("seek x_m=high")  # no number: the name of a place, then
         await robot.hears(SeekRequest, 3)
         assert robot.all_of(SeekRequest)[-1].name == "x_m=high"
-        desk.type("help")
-        await desk.reads("seek FEATURE=VALUE")
+        console.type("help")
+        await console.reads("seek FEATURE=VALUE")
 
 
-def test_of_surprises_of_the_basic_level_only_the_great_ones_are_told() -> None:
+def test_is_notable_small_surprise_of_the_basic_level_is_not() -> None:
     assert is_notable(SURPRISED)
     assert not is_notable(replace(SURPRISED, level="basic"))
     assert is_notable(replace(SURPRISED, level="basic", times=5.0))
 
 
-async def test_a_robot_that_stands_tells_why_also_where_it_would_ask(pairing: Pairing, robot: StandInRobot) -> None:
-    async with desk_at(pairing, robot.port) as desk:
-        await desk.reads("/take is done")
+async def test_standing_robot_prints_its_reason_instead_of_asking(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("/take is done")
         robot.show(cause="unknown", standing=Standing(StandReason.COMPUTER_TOO_SLOW, True, asks=True, stall_s=0.12))
-        await desk.reads("Stands: the computer was too slow for 0.1 s. Type go to let it drive on")
+        await console.reads("Stands: the computer was too slow for 0.1 s. Type go to let it drive on")
         touches = {"cause": "touches", "nearest": 3, "nearest_action": "forward", "distance": 90.0, "radius": 600.0}
         robot.show(standing=Standing(StandReason.REAR_BUMPER, asks=True), **touches)
-        await desk.reads("I touch something behind me; what now? RLA 3 says forward")
+        await console.reads("I touch something behind me; what now? RLA 3 says forward")
