@@ -35,8 +35,8 @@ from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_lesson
-from kurt2rt.experiments.lockstep.many_seeds import SeedJob, run_seeds
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum, render_seeds
+from kurt2rt.experiments.study.seeds import SeedJob, run_seeds
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.knowledge.files.task_of_file import task_of_file
 from kurt2rt.platform.text_table import print_whole

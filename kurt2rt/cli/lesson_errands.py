@@ -11,9 +11,10 @@ from kurt2rt.cli.progress import one_bar
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.navigation.guided_tour import navigation_settings
-from kurt2rt.experiments.navigation.plan import conduct, plan, read_outcomes, robot_time_s
-from kurt2rt.experiments.navigation.tables import sheets
+from kurt2rt.experiments.navigation.plan import make_plan, read_outcomes
+from kurt2rt.experiments.navigation.tables import all_tables
 from kurt2rt.experiments.route.plan import basic_task_of
+from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.platform.text_table import print_whole
@@ -28,7 +29,7 @@ def runs_errands(task: TaskSettings) -> bool:
 
 
 def errands(
-    stage: SimulationFactory,
+    factory: SimulationFactory,
     robot: RobotSettings,
     task: TaskSettings,
     *,
@@ -44,17 +45,17 @@ def errands(
     from kurt2rt.experiments.navigation.figures import draw_errands
 
     results = Results(out)
-    programme = plan(task, basic_task_of(task), seeds, stage, robot, results, basic_folder=basic, controls=controls)
-    with results.held(), one_bar(robot_time_s(programme, results)) as bar:
-        conduct(programme, results, jobs, bar.look)
+    plan = make_plan(task, basic_task_of(task), seeds, factory, robot, results, basic_folder=basic, controls=controls)
+    with results.held(), one_bar(missing_time_s(plan, results)) as bar:
+        run_missing(plan, results, jobs, bar.look)
         bar.say("pictures")
-        outcomes = read_outcomes(programme, results)
+        outcomes = read_outcomes(plan, results)
         pictures = []
         for outcome in outcomes:
             pictures.append(out / f"{task.name}-{outcome.seed}.png")
-            draw_errands(stage, task.exam.worlds[0], outcome, pictures[-1])
+            draw_errands(factory, task.exam.worlds[0], outcome, pictures[-1])
     if as_json:
-        print_json({"tables": tables_of(sheets(outcomes, navigation_settings(task))), "pictures": pictures})
+        print_json({"tables": tables_of(all_tables(outcomes, navigation_settings(task))), "pictures": pictures})
         return
     pictures_told = f"pictures  {pictures[0]}{' ...' if len(pictures) > 1 else ''}"
-    print_whole(console_of(), *map(as_rich, sheets(outcomes, navigation_settings(task))), pictures_told)
+    print_whole(console_of(), *map(as_rich, all_tables(outcomes, navigation_settings(task))), pictures_told)

@@ -17,11 +17,12 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
 from kurt2rt.experiments.route.lesson import TaughtRoute, copy_knowledge, teach_route, with_route
-from kurt2rt.experiments.route.plan import basic_file, basic_task_of, decisions_of, plan
-from kurt2rt.experiments.route.summary import conduct, read_study, robot_time_s
-from kurt2rt.experiments.route.tables import robot_sheet, sheets
+from kurt2rt.experiments.route.plan import basic_file, basic_task_of, decisions_of, make_plan
+from kurt2rt.experiments.route.summary import read_study
+from kurt2rt.experiments.route.tables import all_tables, robot_table
 from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT
-from kurt2rt.experiments.study.eligibility import reasons_of_robots
+from kurt2rt.experiments.study.eligibility import reasons_against_judging
+from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.knowledge.files.archive_existing import archive_existing
@@ -56,7 +57,7 @@ def require_no_route_options(task: TaskSettings, options: RouteOptions) -> None:
 
 
 def one_route(
-    stage: SimulationFactory,
+    factory: SimulationFactory,
     robot: RobotSettings,
     task: TaskSettings,
     options: RouteOptions,
@@ -74,8 +75,8 @@ def one_route(
         raise typer.BadParameter("one robot is taught one route; give --seeds, too", param_hint="--decisions")
     task = with_route(task, seed, *options.decisions)
     worlds = (task.teaching.world, *task.exam.worlds[:1])
-    stage.require_worlds(*worlds)
-    require_course(stage, task, worlds)
+    factory.require_worlds(*worlds)
+    require_course(factory, task, worlds)
     (decisions,) = decisions_of(task, options.decisions)
     basic = basic_task_of(task)
     given = None if options.basic is None else basic_file(options.basic, basic, seed)
@@ -90,23 +91,23 @@ def one_route(
             streets = given or out / f"{basic.name}-{seed}.knowledge"
             if given is None:
                 archive_existing(streets)
-                await run_lesson(stage, robot, basic, streets, seed=seed, report=report)
+                await run_lesson(factory, robot, basic, streets, seed=seed, report=report)
             copy_knowledge(streets, file)
-        return await teach_route(stage, robot, task, TAUGHT, file, seed=seed, report=report)
+        return await teach_route(factory, robot, task, TAUGHT, file, seed=seed, report=report)
 
     with job_bars() as report:
         outcome = anyio.run(run, report).outcome()
     picture = out / f"{stem}.png"
-    draw_route(stage, task.exam.worlds[0], outcome, picture)
+    draw_route(factory, task.exam.worlds[0], outcome, picture)
     if as_json:
-        print_json({"tables": tables_of([robot_sheet(outcome, task)]), "knowledge": file, "picture": picture})
+        print_json({"tables": tables_of([robot_table(outcome, task)]), "knowledge": file, "picture": picture})
         return
     files = (f"{what}  {path}" for what, path in (("knowledge", file), ("picture", picture)))
-    print_whole(console_of(), as_rich(robot_sheet(outcome, task)), *files)
+    print_whole(console_of(), as_rich(robot_table(outcome, task)), *files)
 
 
 def many_routes(
-    stage: SimulationFactory,
+    factory: SimulationFactory,
     robot: RobotSettings,
     task: TaskSettings,
     options: RouteOptions,
@@ -118,25 +119,26 @@ def many_routes(
     as_json: bool,
 ) -> None:
     """Teach and examine many robots; what is done already is kept. Prints tables and writes a report."""
-    from kurt2rt.experiments.route.report import draw_pictures, write_report
+    from kurt2rt.experiments.route.figures import draw_figures
+    from kurt2rt.experiments.route.report import write_report
 
     results = Results(out)
-    programme = plan(
+    plan = make_plan(
         task,
         basic_task_of(task),
         seeds,
         decisions_of(task, options.decisions),
         (TAUGHT, *(CONTROLS if options.controls else ())),
-        stage,
+        factory,
         robot,
         results,
         basic_folder=options.basic,
     )
-    with results.held(), one_bar(robot_time_s(programme, results)) as bar:
-        conduct(programme, results, jobs, bar.look)
+    with results.held(), one_bar(missing_time_s(plan, results)) as bar:
+        run_missing(plan, results, jobs, bar.look)
         bar.say("pictures and report")
-        study = read_study(programme, results)
-        pictures = list(draw_pictures(study, stage, results.folder))
+        study = read_study(plan, results)
+        pictures = list(draw_figures(study, factory, results.folder))
         report = results.folder / "report.html"
         write_report(study, pictures, command, report)
-    print_study(sheets(study), reasons_of_robots(programme.seeds), report, as_json=as_json)
+    print_study(all_tables(study), reasons_against_judging(plan.seeds), report, as_json=as_json)

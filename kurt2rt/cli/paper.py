@@ -65,14 +65,15 @@ def paper(options: _Options) -> None:
         kurt2rt paper --task circle --task eight
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
+    from kurt2rt.experiments.paper.eligibility import reasons_not_to_judge
     from kurt2rt.experiments.paper.extent import QUICK, WHOLE
-    from kurt2rt.experiments.paper.figure_files import draw_pictures
-    from kurt2rt.experiments.paper.judging import reasons_not_to_judge
-    from kurt2rt.experiments.paper.plan import plan
+    from kurt2rt.experiments.paper.figures import draw_figures
+    from kurt2rt.experiments.paper.plan import make_plan
     from kurt2rt.experiments.paper.report import write_report
     from kurt2rt.experiments.paper.settings import load_paper
-    from kurt2rt.experiments.paper.study import conduct, read_study
-    from kurt2rt.experiments.paper.tables import sheets
+    from kurt2rt.experiments.paper.summary import read_study
+    from kurt2rt.experiments.paper.tables import all_tables
+    from kurt2rt.experiments.study.plan import missing_time_s, run_missing
     from kurt2rt.experiments.study.results import Results
     from simbridge.simulation import Kurt2SimulationFactory
 
@@ -82,8 +83,8 @@ def paper(options: _Options) -> None:
     results = Results(options.out or (_QUICK_FOLDER if options.quick else _FOLDER))
     readings: tuple[Reading, ...] = ("shipped", "plain") if options.plain else ("shipped",)
     extent = QUICK if options.quick else WHOLE
-    programme = plan(
-        load_paper(stage=stage),
+    plan = make_plan(
+        load_paper(factory=stage),
         extent,
         parse_seeds(typed_seeds),
         readings,
@@ -93,16 +94,14 @@ def paper(options: _Options) -> None:
         tasks=options.task or (),
     )
     command = _command(quick=options.quick, seeds=typed_seeds, tasks=options.task or [], plain=options.plain)
-    with results.held():
-        missing = results.missing(programme.jobs)
-        with one_bar(sum(programme.jobs[place].robot_time_s for place in missing)) as bar:
-            conduct(programme, missing, options.jobs, bar.look)
-            bar.say("figures and report")
-            study = read_study(programme, results)
-            pictures = list(draw_pictures(study, stage, results.folder))
-            report = results.folder / "report.html"
-            write_report(study, pictures, command, report)
-    print_study(sheets(study), reasons_not_to_judge(programme), report, as_json=options.as_json)
+    with results.held(), one_bar(missing_time_s(plan, results)) as bar:
+        run_missing(plan, results, options.jobs, bar.look)
+        bar.say("figures and report")
+        study = read_study(plan, results)
+        pictures = list(draw_figures(study, stage, results.folder))
+        report = results.folder / "report.html"
+        write_report(study, pictures, command, report)
+    print_study(all_tables(study), reasons_not_to_judge(plan), report, as_json=options.as_json)
 
 
 def _command(*, quick: bool, seeds: str, tasks: list[str], plain: bool) -> str:

@@ -58,33 +58,31 @@ def phases(options: _Options) -> None:
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.core.task_settings import load_task
-    from kurt2rt.experiments.phases.figures import draw_pictures
-    from kurt2rt.experiments.phases.plan import plan
+    from kurt2rt.experiments.phases.figures import draw_figures
+    from kurt2rt.experiments.phases.plan import make_plan
     from kurt2rt.experiments.phases.report import reasons_not_to_judge, write_report
-    from kurt2rt.experiments.phases.study import conduct, read_study
-    from kurt2rt.experiments.phases.table_rows import sheets
+    from kurt2rt.experiments.phases.summary import read_study
+    from kurt2rt.experiments.phases.tables import all_tables
+    from kurt2rt.experiments.study.plan import missing_time_s, run_missing
     from kurt2rt.experiments.study.results import Results
     from simbridge.simulation import Kurt2SimulationFactory
 
     typed_seeds = options.seeds or (_QUICK_SEEDS if options.quick else _SEEDS)
     robot, settings = load_robot(), load_task(options.task, changes=changes_of(options.changes))
     results = Results(options.out or _FOLDER / (settings.name + ("-quick" if options.quick else "")))
-    programme = plan(
+    plan = make_plan(
         settings, parse_seeds(typed_seeds), Kurt2SimulationFactory(robot), robot, results, quick=options.quick
     )
-    with results.held():
-        todo = programme.jobs
-        missing = results.missing(todo)
-        with one_bar(sum(todo[place].robot_time_s for place in missing)) as bar:
-            conduct(programme, results, options.jobs, bar.look)
-            bar.say("figures and report")
-            study = read_study(programme, results)
-            pictures = list(draw_pictures(study, results.folder))
-            report = results.folder / "report.html"
-            command = _command(quick=options.quick, seeds=typed_seeds, task=options.task, changes=options.changes or [])
-            write_report(study, pictures, command, report)
-    reasons = list(reasons_not_to_judge(programme))
-    print_study(sheets(study, reasons), reasons, report, as_json=options.as_json)
+    with results.held(), one_bar(missing_time_s(plan, results)) as bar:
+        run_missing(plan, results, options.jobs, bar.look)
+        bar.say("figures and report")
+        study = read_study(plan, results)
+        pictures = list(draw_figures(study, results.folder))
+        report = results.folder / "report.html"
+        command = _command(quick=options.quick, seeds=typed_seeds, task=options.task, changes=options.changes or [])
+        write_report(study, pictures, command, report)
+    reasons = list(reasons_not_to_judge(plan))
+    print_study(all_tables(study, reasons), reasons, report, as_json=options.as_json)
 
 
 def _command(*, quick: bool, seeds: str, task: str, changes: list[str]) -> str:

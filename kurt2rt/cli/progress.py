@@ -15,7 +15,7 @@ from rich.progress import (
 )
 
 from kurt2rt.experiments.lockstep.curriculum import Report
-from kurt2rt.experiments.study.pool import Standing
+from kurt2rt.experiments.study.pool import PoolProgress
 
 
 @contextmanager
@@ -46,12 +46,12 @@ class OneBar:
         self._progress = progress
         self._id = progress.add_task("", total=whole_s)
 
-    def look(self, standing: Standing) -> None:
+    def look(self, progress: PoolProgress) -> None:
         """How far the jobs are."""
-        first, *others = standing.running or ("",)
+        first, *others = progress.running or ("",)
         # One name and a number, so that the times beside it have room.
         doing = f"{first} and {len(others)} more" if others else first
-        self._progress.update(self._id, completed=standing.done_s, description=doing)
+        self._progress.update(self._id, completed=progress.done_s, description=doing)
 
     def say(self, what: str) -> None:
         """What is done after them."""

@@ -17,7 +17,7 @@ from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.study.pool import run_jobs
 from kurt2rt.experiments.study.table import as_rich
-from kurt2rt.experiments.surprise.jobs import DIFFERENT_S, LEARNS_S, SurpriseJob, sheet_of
+from kurt2rt.experiments.surprise.jobs import DIFFERENT_S, LEARNS_S, SurpriseJob, surprise_table
 from kurt2rt.platform.text_table import print_whole
 
 
@@ -78,6 +78,6 @@ def surprise(options: _Options) -> None:
         bar = progress.add_task("robots", total=len(work))
         results = run_jobs(work, options.jobs, on_done=lambda _place: progress.advance(bar))
     if options.as_json:
-        print_json({"tables": tables_of([sheet_of(results)])})
+        print_json({"tables": tables_of([surprise_table(results)])})
     else:
-        print_whole(console_of(), as_rich(sheet_of(results)))
+        print_whole(console_of(), as_rich(surprise_table(results)))

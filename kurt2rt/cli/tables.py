@@ -26,20 +26,20 @@ def console_of() -> Console:
 
 
 def print_study(
-    sheets: "Iterable[Table]", reasons_not_to_judge: Iterable[str], report: Path, *, as_json: bool = False
+    tables: "Iterable[Table]", reasons_not_to_judge: Iterable[str], report: Path, *, as_json: bool = False
 ) -> None:
     """Its tables, why some of it was not judged, and where the report is."""
     if as_json:
-        print_json({"tables": tables_of(sheets), "not_judged": list(reasons_not_to_judge), "report": report})
+        print_json({"tables": tables_of(tables), "not_judged": list(reasons_not_to_judge), "report": report})
         return
     # Not at the top: the simulator is an extra, and this module is imported without it.
     from kurt2rt.experiments.study.table import as_rich
 
     console = console_of()
-    print_whole(console, *map(as_rich, sheets), *(f"Not judged: {reason}" for reason in reasons_not_to_judge))
+    print_whole(console, *map(as_rich, tables), *(f"Not judged: {reason}" for reason in reasons_not_to_judge))
     print_whole(console, f"report  {report}")
 
 
-def tables_of(sheets: "Iterable[Table]") -> list[dict[str, Any]]:
+def tables_of(tables: "Iterable[Table]") -> list[dict[str, Any]]:
     """Return tables for JSON: cells are texts, as they are printed."""
-    return [{"title": each.title, "columns": each.columns, "rows": each.rows, "note": each.note} for each in sheets]
+    return [{"title": each.title, "columns": each.columns, "rows": each.rows, "note": each.note} for each in tables]

@@ -17,12 +17,12 @@ from kurt2rt.checks.doctor.report import print_report as print_doctor
 from kurt2rt.checks.soak.report import print_report as print_soak
 from kurt2rt.cli.status import as_rich as health_as_rich
 from kurt2rt.experiments.lockstep.report import render_curriculum, render_seeds
-from kurt2rt.experiments.navigation.tables import sheets as errand_sheets
-from kurt2rt.experiments.paper.tables import asked_sheet, drive_sheet, exam_sheet, knowledge_sheet
-from kurt2rt.experiments.phases.table_rows import sheets as phases_sheets
-from kurt2rt.experiments.route.tables import sheets as route_sheets
+from kurt2rt.experiments.navigation.tables import all_tables as navigation_tables
+from kurt2rt.experiments.paper.tables import drive_table, exam_table, knowledge_table, paper_targets_table
+from kurt2rt.experiments.phases.tables import all_tables as phases_tables
+from kurt2rt.experiments.route.tables import all_tables as route_tables
 from kurt2rt.experiments.study.table import as_rich
-from kurt2rt.experiments.surprise.jobs import sheet_of
+from kurt2rt.experiments.surprise.jobs import surprise_table
 from kurt2rt.platform.text_table import print_whole
 from tests.checks.bench.test_report import MACHINE, RESULTS
 from tests.checks.soak.test_checks import RESULT as SOAKED
@@ -67,16 +67,16 @@ REPORTS: dict[str, Print] = {
     "lesson --seeds": printing(
         render_seeds([curriculum_result(100, 80, exam_result("a"), exam_result("manhattan"))], short_task())
     ),
-    "lesson errands": printing(*map(as_rich, errand_sheets([errands_robot(100, GOOD)], settings()))),
+    "lesson errands": printing(*map(as_rich, navigation_tables([errands_robot(100, GOOD)], settings()))),
     "lesson route": printing(
-        *map(as_rich, route_sheets(route_study([route_outcome(100, route_drive()), route_outcome(101, route_drive())])))
+        *map(as_rich, route_tables(route_study([route_outcome(100, route_drive()), route_outcome(101, route_drive())])))
     ),
-    "phases": printing(*map(as_rich, phases_sheets(phases_study(), ["Too few."]))),
-    "surprise": printing(as_rich(sheet_of([[QUIET]]))),
+    "phases": printing(*map(as_rich, phases_tables(phases_study(), ["Too few."]))),
+    "surprise": printing(as_rich(surprise_table([[QUIET]]))),
     "paper": printing(
         *(
             as_rich(of([paper.summary_of("streets", DRIVES)], "streets"))
-            for of in (asked_sheet, knowledge_sheet, exam_sheet, drive_sheet)
+            for of in (paper_targets_table, knowledge_table, exam_table, drive_table)
         )
     ),
 }

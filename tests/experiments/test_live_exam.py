@@ -50,17 +50,17 @@ def test_a_verdict_comes_with_the_picture_and_the_copy_is_deleted(copy: Path, tm
 def test_an_exam_is_over_only_with_its_picture(copy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     drawn = "open(sys.argv[1], 'wb').close()"
     exam = saying(json.dumps(EXAM.plain_of(OVER)), "a last word", after=drawn)
-    standings: list[ExamStatus] = []
+    progress: list[ExamStatus] = []
 
     def note(each: LiveExam, name: str, value: object) -> None:
         object.__setattr__(each, name, value)
         if isinstance(value, ExamStatus):
-            standings.append(value)
+            progress.append(value)
 
     monkeypatch.setattr(LiveExam, "__setattr__", note)
     exam.begin(copy, tmp_path / "exam.png")
     ended(exam)
-    assert [(each.running, each.picture) for each in standings] == [(True, ""), (False, "exam.png")]
+    assert [(each.running, each.picture) for each in progress] == [(True, ""), (False, "exam.png")]
 
 
 def test_a_process_that_dies_is_told_as_trouble(copy: Path, tmp_path: Path) -> None:
@@ -89,11 +89,11 @@ def test_its_process_draws_and_judges(tmp_path: Path, capsys: pytest.CaptureFixt
     knowledge = tmp_path / "nothing.knowledge"
     open_knowledge(knowledge, load_robot(), load_task(str(task))).close()
     exam_process._examine(knowledge, picture, "kurt2", str(task), 1)
-    standings = [EXAM.read(json.loads(line)) for line in capsys.readouterr().out.splitlines()]
-    shares = [each.share for each in standings]
+    progress = [EXAM.read(json.loads(line)) for line in capsys.readouterr().out.splitlines()]
+    shares = [each.share for each in progress]
     assert shares == sorted(shares)
-    (verdict,) = standings[-1].verdicts
-    assert (standings[-1].text, verdict.passed, verdict.world) == ("Passed in 0 of 1 worlds.", False, "A")
+    (verdict,) = progress[-1].verdicts
+    assert (progress[-1].text, verdict.passed, verdict.world) == ("Passed in 0 of 1 worlds.", False, "A")
     assert "of the teacher's" in verdict.text
     assert verdict.judged
     assert picture.read_bytes().startswith(b"\x89PNG")
@@ -114,9 +114,9 @@ def test_exam_process_with_a_policy_that_gets_nowhere_does_not_judge(
     knowledge = tmp_path / "nothing.knowledge"
     open_knowledge(knowledge, load_robot(), load_task(str(task))).close()
     exam_process._examine(knowledge, tmp_path / "exam.png", "kurt2", str(task), 1)
-    standing = EXAM.read(json.loads(capsys.readouterr().out.splitlines()[-1]))
-    (verdict,) = standing.verdicts
-    assert standing.text == "Passed in 0 of 0 worlds; 1 not judged."
+    progress = EXAM.read(json.loads(capsys.readouterr().out.splitlines()[-1]))
+    (verdict,) = progress.verdicts
+    assert progress.text == "Passed in 0 of 0 worlds; 1 not judged."
     assert (verdict.passed, verdict.judged) == (False, False)
     assert verdict.text.startswith("not judged: the policy itself gets nowhere here")
 

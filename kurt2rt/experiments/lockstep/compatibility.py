@@ -8,14 +8,14 @@ from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 
 
-def require_course(stage: SimulationFactory, task: TaskSettings, worlds: Iterable[str]) -> None:
+def require_course(factory: SimulationFactory, task: TaskSettings, worlds: Iterable[str]) -> None:
     """Look, before anything is taught, whether each of these worlds has what the task's course needs.
 
     Raises hal.settings.SettingsError that names task, course and world.
     """
     for world in dict.fromkeys(worlds):
         try:
-            task.course.require(stage.plan_of(world), task.behaviours)
+            task.course.require(factory.plan_of(world), task.behaviours)
         except SettingsError as error:
             raise SettingsError(str(error), where=f"task {task.name}") from error
 

@@ -44,7 +44,7 @@ class CurriculumResult:
 
 
 async def run_lesson(
-    stage: SimulationFactory,
+    factory: SimulationFactory,
     settings: RobotSettings,
     task: TaskSettings,
     knowledge: Path,
@@ -62,7 +62,7 @@ async def run_lesson(
     plan = plan or plan_of(task)
     world, whole_s = task.teaching.world, plan.duration_s
     with lessons_kept(knowledge, settings, task, on_saved) as keeping:
-        with closing(stage.open(world, seed, plan.purpose)) as simulation:
+        with closing(factory.open(world, seed, plan.purpose)) as simulation:
             lesson = await teach(
                 simulation,
                 settings,
@@ -78,7 +78,7 @@ async def run_lesson(
 
 
 async def run_exams(
-    stage: SimulationFactory,
+    factory: SimulationFactory,
     settings: RobotSettings,
     task: TaskSettings,
     events: Sequence[TeachingEvent],
@@ -91,7 +91,7 @@ async def run_exams(
 
     async def drive(world: str, *, teacher_policy: bool) -> ExamResult:
         drive_name = "the teacher's own drive" if teacher_policy else "exam without teacher"
-        with closing(stage.open(world, seed, "exam")) as simulation:
+        with closing(factory.open(world, seed, "exam")) as simulation:
             return await examine(
                 simulation,
                 settings,

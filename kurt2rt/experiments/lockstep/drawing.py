@@ -18,7 +18,7 @@ _CARRIED_M = 0.2
 """Between two points of a trail, 0.1 s apart, it does not drive so far."""
 
 
-def draw_curriculum(result: CurriculumResult, task: TaskSettings, stage: SimulationFactory, path: Path) -> None:
+def draw_curriculum(result: CurriculumResult, task: TaskSettings, factory: SimulationFactory, path: Path) -> None:
     """Write a PNG: the lesson, each exam over the teacher's own drive, and the number of RLAs against time."""
     panels = 2 + len(result.exams)
     columns = (panels + 1) // 2
@@ -26,29 +26,29 @@ def draw_curriculum(result: CurriculumResult, task: TaskSettings, stage: Simulat
     axes = figure.subplots(2, columns).flatten().tolist()
     lesson = result.lesson
     asks = _places("the robot asked", len(lesson.ask_positions))
-    _draw_drive(axes[0], stage, lesson.world, lesson.trail, lesson.ask_positions, asks)
+    _draw_drive(axes[0], factory, lesson.world, lesson.trail, lesson.ask_positions, asks)
     axes[0].set_title(f"Lesson in world {label_of(lesson.world)}: {lesson.teaching_s:.0f} s, {len(lesson.rlas)} RLAs")
     _draw_growth(axes[1], lesson.growth, task)
     for panel, each in zip(axes[2:], result.exams, strict=False):
-        _draw_exam(panel, each, stage)
+        _draw_exam(panel, each, factory)
     for panel in axes[panels:]:
         panel.set_axis_off()
     figure.savefig(path, dpi=110)
 
 
-def draw_exams(exams: Sequence[WorldResult], stage: SimulationFactory, path: Path) -> None:
+def draw_exams(exams: Sequence[WorldResult], factory: SimulationFactory, path: Path) -> None:
     """Write a PNG: the panels of the exams that `draw_curriculum` draws, one below the other as a phone shows them."""
     figure = Figure(figsize=(5.2, 5.2 * len(exams)), layout="constrained")
     for panel, each in zip(figure.subplots(len(exams), 1, squeeze=False).flatten(), exams, strict=True):
-        _draw_exam(panel, each, stage)
+        _draw_exam(panel, each, factory)
     figure.savefig(path, dpi=110, format="png")
 
 
-def _draw_exam(panel: Axes, result: WorldResult, stage: SimulationFactory) -> None:
+def _draw_exam(panel: Axes, result: WorldResult, factory: SimulationFactory) -> None:
     exam, teachers = result.learned, result.teacher.trail
     draw_trail(panel, teachers, "teacher's own drive", carried_m=_CARRIED_M, colour=_TEACHER, width=3.0, zorder=2)
     unknown = _places("situation unknown", len(exam.unknown_positions))
-    _draw_drive(panel, stage, exam.world, exam.trail, exam.unknown_positions, unknown)
+    _draw_drive(panel, factory, exam.world, exam.trail, exam.unknown_positions, unknown)
     verdict = "success" if result.succeeded else EXAM_VERDICT_TEXTS[result.verdict]
     panel.set_title(
         f"Exam in world {label_of(exam.world)}: {exam.progress:.1f} {exam.unit}, {exam.collisions} collisions, "
@@ -57,9 +57,9 @@ def _draw_exam(panel: Axes, result: WorldResult, stage: SimulationFactory) -> No
 
 
 def _draw_drive(
-    axes: Axes, stage: SimulationFactory, world: str, trail: Sequence[Position], marks: Sequence[Position], label: str
+    axes: Axes, factory: SimulationFactory, world: str, trail: Sequence[Position], marks: Sequence[Position], label: str
 ) -> None:
-    stage.draw(axes, world)
+    factory.draw(axes, world)
     draw_trail(axes, trail, "the robot", carried_m=_CARRIED_M)
     if marks:
         axes.plot(*columns(marks), "o", color=ASKED, markersize=5, zorder=4, label=label)

@@ -7,7 +7,7 @@ from hal.simulation import Position
 
 
 class StuckDetector:
-    """Tells a robot that stays about where it is, standing or going round in circles, from one that travels."""
+    """Tells a robot that stays about where it is, progress or going round in circles, from one that travels."""
 
     def __init__(self, window_s: float, period_s: float, *, least_m: float = 1.0) -> None:
         self._stride = round(0.5 / period_s)

@@ -19,7 +19,7 @@ from kurt2rt.experiments.lockstep.command_checks import require_carried_out
 from kurt2rt.experiments.lockstep.episode import Episode
 from kurt2rt.experiments.navigation.goals import GoalChosen
 from kurt2rt.experiments.navigation.guided_tour import TRAIL_STRIDE, rounded_places
-from kurt2rt.experiments.navigation.outcome import ErrandDone, ErrandsRun, How
+from kurt2rt.experiments.navigation.outcome import ErrandDone, ErrandsRun, Strategy
 from kurt2rt.experiments.navigation.tour_guide import HOME
 from kurt2rt.runtime import Runtime
 
@@ -57,7 +57,7 @@ class GoalsRun(Episode):
         runtime: Runtime,
         goals: Sequence[GoalChosen],
         *,
-        how: How,
+        how: Strategy,
         seed: int,
         on_goal: Callable[[float], None],
     ) -> None:

@@ -14,11 +14,11 @@ _LED = "#b0b0b0"
 _BOX = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": _LED, "linewidth": 0.6}
 
 
-def draw_errands(stage: SimulationFactory, world: str, outcome: ErrandsOutcome, path: Path) -> None:
+def draw_errands(factory: SimulationFactory, world: str, outcome: ErrandsOutcome, path: Path) -> None:
     """One robot."""
     figure = Figure(figsize=(7.2, 8.0), layout="constrained")
     axes = figure.subplots()
-    stage.draw(axes, world)
+    factory.draw(axes, world)
     label = f"led about, {outcome.teaching_s:.0f} s"
     axes.plot([x for x, _ in outcome.led], [y for _, y in outcome.led], color=_LED, lw=0.8, zorder=2, label=label)
     run = outcome.run_of("planning")

@@ -8,7 +8,7 @@ from kurt2rt.experiments.study.provenance import Provenance
 Place = tuple[float, float]
 """x and y in m, to the millimetre."""
 
-How = Literal["planning", "chance", "first taught"]
+Strategy = Literal["planning", "chance", "first taught"]
 """By what the robot goes: a plan; or, as controls, any of the ways that were taught at a place, by chance; or always
 the one that was taught first."""
 
@@ -45,7 +45,7 @@ class ErrandDone(Settings):
 class ErrandsRun(Settings):
     """All goals, one after the other."""
 
-    how: How
+    how: Strategy
     errands: tuple[ErrandDone, ...]
     trail: tuple[Place, ...]
 
@@ -82,6 +82,6 @@ class ErrandsOutcome(Settings):
     runs: tuple[ErrandsRun, ...]
     """By planning, and controls."""
 
-    def run_of(self, how: How) -> ErrandsRun | None:
+    def run_of(self, how: Strategy) -> ErrandsRun | None:
         """How it went by one of these; None where it was not tried."""
         return next((each for each in self.runs if each.how == how), None)

@@ -9,17 +9,15 @@ from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.navigation.guided_tour import navigation_settings
-from kurt2rt.experiments.navigation.job import ErrandsJob
+from kurt2rt.experiments.navigation.jobs import NavigationJob
 from kurt2rt.experiments.navigation.outcome import ErrandsOutcome
 from kurt2rt.experiments.navigation.robot_day import CONTROLS, PLANNING
-from kurt2rt.experiments.route.job import BasicJob
+from kurt2rt.experiments.route.jobs import BasicJob
 from kurt2rt.experiments.route.plan import streets_of
-from kurt2rt.experiments.study.pool import Standing
 from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
 from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.run_jobs import do_waves, time_of_missing_s
 
-DECIDING = (ErrandsJob,)
+DECIDING = (NavigationJob,)
 """Classes whose code, and all that it imports, decides the results."""
 
 
@@ -31,25 +29,25 @@ class NavigationPlan:
     seeds: tuple[int, ...]
     basic_jobs: tuple[BasicJob, ...]
     """Empty where the streets were taught before."""
-    jobs: tuple[ErrandsJob, ...]
+    jobs: tuple[NavigationJob, ...]
 
     @property
-    def waves(self) -> tuple[tuple[BasicJob | ErrandsJob, ...], ...]:
+    def waves(self) -> tuple[tuple[BasicJob | NavigationJob, ...], ...]:
         """Jobs that need none but those of the waves before."""
         return self.basic_jobs, self.jobs
 
 
-def plan(
+def make_plan(
     task: TaskSettings,
     basic: TaskSettings,
     seeds: Sequence[int],
-    stage: SimulationFactory,
+    factory: SimulationFactory,
     robot: RobotSettings,
     results: Results,
     *,
     basic_folder: Path | None = None,
     controls: bool = False,
-    source_of: Callable[[SimulationFactory], str] = lambda stage: source_hash(*DECIDING, type(stage)),
+    source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> NavigationPlan:
     """Look at task and worlds, and make the jobs.
 
@@ -58,30 +56,29 @@ def plan(
     """
     worlds = (task.teaching.world, *task.exam.worlds[:1])
     navigation_settings(task)
-    stage.require_worlds(*worlds, basic.teaching.world)
-    require_course(stage, task, worlds)
-    hows = (*PLANNING, *(CONTROLS if controls else ()))
-    fingerprints = Fingerprints(stage, robot, source_of(stage), ("paper", "plain", "phases"))
-    streets = streets_of(basic, seeds, stage, robot, results, fingerprints, basic_folder)
+    factory.require_worlds(*worlds, basic.teaching.world)
+    require_course(factory, task, worlds)
+    strategies = (*PLANNING, *(CONTROLS if controls else ()))
+    fingerprints = Fingerprints(factory, robot, source_of(factory), ("paper", "plain", "phases"))
+    streets = streets_of(basic, seeds, factory, robot, results, fingerprints, basic_folder)
     jobs = []
     for seed in seeds:
-        made = fingerprints.of(task, worlds, streets.made_of[seed], " ".join(hows))
-        jobs.append(ErrandsJob(stage, robot, task, hows, seed, streets.files[seed], made, results))
+        made = fingerprints.of(task, worlds, streets.made_of[seed], " ".join(strategies))
+        jobs.append(
+            NavigationJob(
+                factory=factory,
+                robot=robot,
+                task=task,
+                strategies=strategies,
+                seed=seed,
+                basic=streets.files[seed],
+                made_of=made,
+                results=results,
+            )
+        )
     return NavigationPlan(task, tuple(seeds), streets.jobs, tuple(jobs))
 
 
-def robot_time_s(programme: NavigationPlan, results: Results) -> float:
-    """What is still to be simulated. Raises StudyError."""
-    return time_of_missing_s(programme.waves, results)
-
-
-def conduct(
-    programme: NavigationPlan, results: Results, processes: int, on_standing: Callable[[Standing], None]
-) -> None:
-    """Do the jobs that are missing, wave by wave. Raises StudyError and what a job raises."""
-    do_waves(programme.waves, results, processes, on_standing)
-
-
-def read_outcomes(programme: NavigationPlan, results: Results) -> tuple[ErrandsOutcome, ...]:
+def read_outcomes(plan: NavigationPlan, results: Results) -> tuple[ErrandsOutcome, ...]:
     """What all jobs have left. Raises StudyError."""
-    return tuple(results.read(job, ErrandsOutcome) for job in programme.jobs)
+    return tuple(results.read(job, ErrandsOutcome) for job in plan.jobs)

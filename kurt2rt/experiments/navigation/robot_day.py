@@ -16,23 +16,23 @@ from kurt2rt.experiments.lockstep.runtimes import build_unattended_runtime
 from kurt2rt.experiments.navigation.exam import GoalsRun
 from kurt2rt.experiments.navigation.goals import choose_goals
 from kurt2rt.experiments.navigation.guided_tour import guided_tour, navigation_settings, street_tracker
-from kurt2rt.experiments.navigation.outcome import ErrandsOutcome, How, Place
+from kurt2rt.experiments.navigation.outcome import ErrandsOutcome, Place, Strategy
 from kurt2rt.experiments.study.provenance import Provenance
 from kurt2rt.knowledge.journal.loading import read_lessons
 
-PLANNING: tuple[How, ...] = ("planning",)
-CONTROLS: tuple[How, ...] = ("chance", "first taught")
+PLANNING: tuple[Strategy, ...] = ("planning",)
+CONTROLS: tuple[Strategy, ...] = ("chance", "first taught")
 _BESIDE_M = 0.15
 
 
 async def teach_and_send(
-    stage: SimulationFactory,
+    factory: SimulationFactory,
     settings: RobotSettings,
     task: TaskSettings,
     knowledge: Path,
     *,
     seed: int,
-    hows: Sequence[How],
+    strategies: Sequence[Strategy],
     report: Report,
     made_of: Provenance | None = None,
 ) -> ErrandsOutcome:
@@ -43,7 +43,7 @@ async def teach_and_send(
     world, exam_world = task.teaching.world, task.exam.worlds[0]
     whole_s = task.teaching.duration_s
     with lessons_kept(knowledge, settings, task) as keeping:
-        with closing(stage.open(world, seed, "errands")) as simulation:
+        with closing(factory.open(world, seed, "errands")) as simulation:
             led = await guided_tour(
                 simulation,
                 settings,
@@ -55,16 +55,16 @@ async def teach_and_send(
         keeping.end(led.saved)
         report(f"led about world {world}", whole_s, whole_s)
     events = read_lessons(knowledge, settings, task)
-    course, town = navigation_settings(task), street_tracker(stage.plan_of(exam_world), task).town
+    course, town = navigation_settings(task), street_tracker(factory.plan_of(exam_world), task).town
     start = town.street_at(led.home)
     assert start is not None  # the lesson began there
     goals = choose_goals(town, led.named, led.streets, start, course, random.Random(f"errands of robot {seed}"))
     runs = []
-    for how in hows:
-        with closing(stage.open(exam_world, seed, "errands without teacher")) as simulation:
+    for how in strategies:
+        with closing(factory.open(exam_world, seed, "errands without teacher")) as simulation:
             runtime = build_unattended_runtime(simulation, settings, task, events, led.saved)
 
-            def on_goal(done: float, how: How = how) -> None:
+            def on_goal(done: float, how: Strategy = how) -> None:
                 report(f"errands by {how}", done * task.exam.duration_s, len(goals) * task.exam.duration_s)
 
             run = GoalsRun(simulation, runtime, goals, how=how, seed=seed, on_goal=on_goal)

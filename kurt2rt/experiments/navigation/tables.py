@@ -6,29 +6,29 @@ from math import ceil
 
 from behaviors.metrics.errands import ErrandsSettings
 from kurt2rt.experiments.lockstep.report import wilson_interval
-from kurt2rt.experiments.navigation.outcome import ErrandDone, ErrandsOutcome, ErrandsRun, How
+from kurt2rt.experiments.navigation.outcome import ErrandDone, ErrandsOutcome, ErrandsRun, Strategy
 from kurt2rt.experiments.navigation.robot_day import CONTROLS, PLANNING
-from kurt2rt.experiments.study.eligibility import reasons_of_robots
+from kurt2rt.experiments.study.eligibility import reasons_against_judging
 from kurt2rt.experiments.study.table import Table
 
 SHARE = 18 / 20
 """Of the goals that are to be reached, by a way that is short enough; and of the robots that are to do so."""
 
-_TITLES: dict[How, str] = {
+_TITLES: dict[Strategy, str] = {
     "planning": "by a plan",
     "chance": "control: any way taught, by chance",
     "first taught": "control: always the way taught first",
 }
 
 
-def sheets(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Iterator[Table]:
+def all_tables(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Iterator[Table]:
     """All tables."""
-    yield asked_sheet(outcomes, course)
-    yield runs_sheet(outcomes, course)
-    yield robots_sheet(outcomes, course)
+    yield targets_table(outcomes, course)
+    yield runs_table(outcomes, course)
+    yield robots_table(outcomes, course)
 
 
-def asked_sheet(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
+def targets_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
     """What was asked beside what came."""
     runs = _runs(outcomes, "planning")
     goals = sum(len(run.errands) for run in runs)
@@ -57,7 +57,7 @@ def asked_sheet(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> 
             mean <= course.detour_at_most,
         ),
     )
-    reasons = list(reasons_of_robots([each.seed for each in outcomes]))
+    reasons = list(reasons_against_judging([each.seed for each in outcomes]))
     told = tuple((what, asked, came, "not judged" if reasons else _word(met)) for what, asked, came, met in rows)
     return Table(
         "Errands: what was asked",
@@ -68,7 +68,7 @@ def asked_sheet(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> 
     )
 
 
-def runs_sheet(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
+def runs_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
     """By a plan, and the controls."""
     rows = []
     for how in (*PLANNING, *CONTROLS):
@@ -106,7 +106,7 @@ def runs_sheet(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> T
     )
 
 
-def robots_sheet(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
+def robots_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
     """Each robot by itself."""
     rows = []
     for each in outcomes:
@@ -142,7 +142,7 @@ def _failed(run: ErrandsRun) -> Iterator[ErrandDone]:
     return (each for each in run.errands if not each.reached)
 
 
-def _runs(outcomes: Sequence[ErrandsOutcome], how: How) -> list[ErrandsRun]:
+def _runs(outcomes: Sequence[ErrandsOutcome], how: Strategy) -> list[ErrandsRun]:
     return [run for each in outcomes if (run := each.run_of(how)) is not None]
 
 

@@ -11,11 +11,11 @@ from kurt2rt.core.phase_settings import PHASES
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.paper.extent import Extent
-from kurt2rt.experiments.paper.growth_job import GrowthJob, with_radius_only
+from kurt2rt.experiments.paper.jobs import GrowthJob, TaughtJob, with_radius_only
 from kurt2rt.experiments.paper.outcome import Reading
 from kurt2rt.experiments.paper.settings import AskedSettings, ExperimentSettings, PaperSettings
-from kurt2rt.experiments.paper.taught_job import TaughtJob
 from kurt2rt.experiments.study.eligibility import ROBOTS
+from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
 from kurt2rt.experiments.study.results import Results, StudyError
 
@@ -56,6 +56,11 @@ class PaperPlan:
     """Empty when its task is not among those to be done."""
 
     @property
+    def waves(self) -> tuple[tuple[TaughtJob | GrowthJob, ...], ...]:
+        """One wave: no job needs another."""
+        return (tuple(self.jobs),)
+
+    @property
     def jobs(self) -> list[TaughtJob | GrowthJob]:
         """All jobs."""
         return [
@@ -68,16 +73,16 @@ class PaperPlan:
         return tuple(each for each in self.experiments if each.reading == reading)
 
 
-def plan(
+def make_plan(
     paper: PaperSettings,
     extent: Extent,
     seeds: Sequence[int],
     readings: Sequence[Reading],
-    stage: SimulationFactory,
+    factory: SimulationFactory,
     robot: RobotSettings,
     results: Results,
     *,
-    source_of: Callable[[SimulationFactory], str] = lambda stage: source_hash(*DECIDING, type(stage)),
+    source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
     tasks: Sequence[str] = (),
 ) -> PaperPlan:
     """Look at every task and world, and make the jobs.
@@ -104,16 +109,17 @@ def plan(
     for each in chosen:
         task = loaded[each.task]
         generated = each.unseen.names if each.unseen else ()
-        require_course(stage, task, (task.teaching.world, *task.exam.worlds, *generated))
-    source = source_of(stage)
-    fingerprints = Fingerprints(stage, robot, source, ("paper", "plain", *PHASES))
+        require_course(factory, task, (task.teaching.world, *task.exam.worlds, *generated))
+    source = source_of(factory)
+    common = JobParts(factory=factory, robot=robot, results=results)
+    fingerprints = Fingerprints(factory, robot, source, ("paper", "plain", *PHASES))
 
     def experiment(each: ExperimentSettings, reading: Reading, task: TaskSettings) -> PaperExperiment:
         jobs = []
         for seed in seeds:
             own = unseen_of(seed, each)
             made = fingerprints.of(task, (task.teaching.world, *task.exam.worlds, *own))
-            jobs.append(TaughtJob(stage, robot, task, reading, seed, own, made, results))
+            jobs.append(TaughtJob(task=task, reading=reading, seed=seed, unseen=own, made_of=made, **common))
         return PaperExperiment(each, reading, task, tuple(jobs))
 
     def growth(reading: Reading, task: TaskSettings) -> Growth:
@@ -122,7 +128,7 @@ def plan(
             of_radius = with_radius_only(task, radius, paper.growth.duration_s)
             made = fingerprints.of(of_radius, (task.teaching.world,))
             for seed in seeds[: paper.growth.robots]:
-                jobs.append(GrowthJob(stage, robot, of_radius, reading, seed, made, results))
+                jobs.append(GrowthJob(task=of_radius, reading=reading, seed=seed, made_of=made, **common))
         return Growth(reading, task, tuple(jobs))
 
     return PaperPlan(

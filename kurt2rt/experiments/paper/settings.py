@@ -82,8 +82,8 @@ class PaperSettings(Settings):
         return self
 
 
-def load_paper(name_or_path: str = "basic_level", stage: SimulationFactory | None = None) -> PaperSettings:
-    """Shipped settings by name, or a file by path; with a stage its worlds are looked at, too.
+def load_paper(name_or_path: str = "basic_level", factory: SimulationFactory | None = None) -> PaperSettings:
+    """Shipped settings by name, or a file by path; with a factory its worlds are looked at, too.
 
     Raises hal.settings.SettingsError that names file and key.
     """
@@ -95,12 +95,12 @@ def load_paper(name_or_path: str = "basic_level", stage: SimulationFactory | Non
             raise SettingsError(
                 f"{key}: there is no experiment with task {task!r}", where=path, do=f"give one of: {', '.join(tasks)}"
             )
-    if stage is None:
+    if factory is None:
         return paper
     worlds = {"testing_ground": paper.testing_ground} | {f"worlds.{k}": each for k, each in enumerate(paper.worlds)}
     for key, world in worlds.items():
         try:
-            stage.require_worlds(world)
+            factory.require_worlds(world)
         except SettingsError as error:
             raise SettingsError(f"{key}: {error}", where=path) from error
     return paper

@@ -1,7 +1,7 @@
 """Tables of the settings that each task was taught and examined with."""
 
 from kurt2rt.core.task_settings import FeatureWeight
-from kurt2rt.experiments.paper.study import PaperStudy
+from kurt2rt.experiments.paper.summary import PaperStudy
 from kurt2rt.experiments.study.table import Table
 
 SUCCESS = (
@@ -12,7 +12,7 @@ SUCCESS = (
 )
 
 
-def learning_sheet(study: PaperStudy) -> Table:
+def learning_table(study: PaperStudy) -> Table:
     """How each task was taught, in each reading of the paper."""
     rows = []
     for each in study.summaries:
@@ -58,7 +58,7 @@ def learning_sheet(study: PaperStudy) -> Table:
     return Table("Settings of learning and of the scripted teacher", columns, tuple(rows), words=2)
 
 
-def exams_sheet(study: PaperStudy) -> Table:
+def exams_table(study: PaperStudy) -> Table:
     """How each task was examined; the same in every reading."""
     rows = []
     for task in {each.task.name: each.task for each in study.summaries}.values():

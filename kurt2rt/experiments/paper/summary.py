@@ -1,4 +1,4 @@
-"""What the robots of one experiment come to together."""
+"""Results of all jobs of the paper study, summarized by experiment."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,10 +8,11 @@ from behaviors.metrics.task_metric import JUNCTIONS, RIGHT
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.lockstep.report import label_of, quartiles, wilson_interval
-from kurt2rt.experiments.paper.outcome import DriveOutcome, Reading, TaughtOutcome
-from kurt2rt.experiments.paper.plan import PaperExperiment
+from kurt2rt.experiments.paper.outcome import DriveOutcome, GrowthOutcome, Reading, TaughtOutcome
+from kurt2rt.experiments.paper.plan import PaperExperiment, PaperPlan
 from kurt2rt.experiments.paper.settings import ExperimentSettings
 from kurt2rt.experiments.study.intervals import Rate, rate_of
+from kurt2rt.experiments.study.results import Results
 
 _TEN_MIN_S = 600.0
 
@@ -157,3 +158,51 @@ def success_text(world: WorldSummary) -> str:
     """Return `18 of 20`, or `18 of 19, 1 not judged`."""
     left_out = world.robots - world.judged
     return f"{world.succeeded} of {world.judged}" + (f", {left_out} not judged" if left_out else "")
+
+
+@dataclass(frozen=True, slots=True)
+class GrowthStudy:
+    """Fig. 2 in one reading."""
+
+    reading: Reading
+    task: str
+    outcomes: tuple[GrowthOutcome, ...]
+
+    @property
+    def radii(self) -> list[float]:
+        """Each R once, in rising order."""
+        return sorted({each.radius for each in self.outcomes})
+
+    def curves(self, radius: float) -> list[tuple[int, ...]]:
+        """Number of RLAs after each second, one curve per robot."""
+        return [each.growth for each in self.outcomes if each.radius == radius]
+
+
+@dataclass(frozen=True, slots=True)
+class PaperStudy:
+    """All numbers."""
+
+    plan: PaperPlan
+    summaries: tuple[PaperSummary, ...]
+    growth: tuple[GrowthStudy, ...]
+
+    @property
+    def readings(self) -> tuple[Reading, ...]:
+        """In the order in which they are shown."""
+        return tuple(dict.fromkeys(each.reading for each in self.summaries))
+
+    def of(self, reading: Reading) -> tuple[PaperSummary, ...]:
+        """The experiments in one reading."""
+        return tuple(each for each in self.summaries if each.reading == reading)
+
+
+def read_study(plan: PaperPlan, results: Results) -> PaperStudy:
+    """Put together what all jobs have left. Raises StudyError."""
+    return PaperStudy(
+        plan,
+        tuple(summarize(each, [results.read(job, TaughtOutcome) for job in each.jobs]) for each in plan.experiments),
+        tuple(
+            GrowthStudy(each.reading, each.task.name, tuple(results.read(job, GrowthOutcome) for job in each.jobs))
+            for each in plan.growth
+        ),
+    )

@@ -5,14 +5,20 @@ from collections.abc import Iterator, Sequence
 from behaviors.metrics.task_metric import JUNCTIONS, RIGHT
 from kurt2rt.experiments.lockstep.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
 from kurt2rt.experiments.lockstep.report import quartiles
-from kurt2rt.experiments.paper.judging import reasons_not_to_judge
+from kurt2rt.experiments.paper.eligibility import reasons_not_to_judge
 from kurt2rt.experiments.paper.outcome import DriveOutcome
 from kurt2rt.experiments.paper.settings_tables import SUCCESS
-from kurt2rt.experiments.paper.study import GrowthStudy, PaperStudy
-from kurt2rt.experiments.paper.summary import PaperSummary, Quartiles, WorldSummary, success_text
-from kurt2rt.experiments.paper.verdict import verdicts
+from kurt2rt.experiments.paper.summary import (
+    GrowthStudy,
+    PaperStudy,
+    PaperSummary,
+    Quartiles,
+    WorldSummary,
+    success_text,
+)
+from kurt2rt.experiments.paper.verdicts import verdicts
 from kurt2rt.experiments.study.table import Table
-from kurt2rt.experiments.study.verdict_text import cells_of, result_text
+from kurt2rt.experiments.study.targets_table import targets_table
 
 _SUCCESS_WORDS = {**EXAM_VERDICT_TEXTS, ExamVerdict.PASSED: "yes", ExamVerdict.FAILED: "NO"}
 _GROWTH_AT_S = (60, 120, 200, 345, 600)
@@ -22,37 +28,34 @@ _OF_RATES = (
 )
 
 
-def sheets(study: PaperStudy) -> Iterator[Table]:
+def all_tables(study: PaperStudy) -> Iterator[Table]:
     """All tables, those of each reading of the paper's scheme behind each other."""
-    reasons = list(reasons_not_to_judge(study.programme))
+    reasons = list(reasons_not_to_judge(study.plan))
     for reading in study.readings:
         summaries = study.of(reading)
         how = "" if reading == "shipped" else "plain reading: "
-        yield asked_sheet(summaries, f"{how}what was asked", reasons)
-        yield knowledge_sheet(summaries, f"{how}what was taught")
-        yield exam_sheet(summaries, f"{how}exams without teacher")
-        yield drive_sheet(summaries, f"{how}drives of these exams")
+        yield paper_targets_table(summaries, f"{how}what was asked", reasons)
+        yield knowledge_table(summaries, f"{how}what was taught")
+        yield exam_table(summaries, f"{how}exams without teacher")
+        yield drive_table(summaries, f"{how}drives of these exams")
         if any(each.rlas_of for each in summaries):
-            yield behaviour_sheet(summaries, f"{how}taught in common")
+            yield behaviour_table(summaries, f"{how}taught in common")
     for growth in study.growth:
-        yield growth_sheet(growth)
+        yield growth_table(growth)
 
 
-def asked_sheet(summaries: Sequence[PaperSummary], title: str, not_judged_because: Sequence[str] = ()) -> Table:
-    """Each number that was asked for beside what came, and whether it is met, unless there are reasons not to judge."""
-    found = [(each.label, verdict) for each in summaries for verdict in verdicts(each)]
-    met = sum(verdict.met for _, verdict in found)
-    note = f"{met} of {len(found)} numbers asked for are met." if found else "Of these tasks nothing is asked."
-    return Table(
-        _sentence(title),
-        ("task", "what", "asked", "came", "verdict"),
-        tuple((label, *cells_of(verdict), result_text(verdict, not_judged_because)) for label, verdict in found),
-        words=5,
-        note=" ".join(["Not judged.", *not_judged_because]) if not_judged_because else note,
+def paper_targets_table(summaries: Sequence[PaperSummary], title: str, not_judged_because: Sequence[str] = ()) -> Table:
+    """Return the table of all targets."""
+    return targets_table(
+        [((each.label,), verdict) for each in summaries for verdict in verdicts(each)],
+        not_judged_because,
+        title=_sentence(title),
+        headings=("task",),
+        note_without_targets="Of these tasks nothing is asked.",
     )
 
 
-def knowledge_sheet(summaries: Sequence[PaperSummary], title: str) -> Table:
+def knowledge_table(summaries: Sequence[PaperSummary], title: str) -> Table:
     """RLAs and teaching time beside the paper's."""
     rows = [
         (
@@ -76,7 +79,7 @@ def knowledge_sheet(summaries: Sequence[PaperSummary], title: str) -> Table:
     )
 
 
-def exam_sheet(summaries: Sequence[PaperSummary], title: str) -> Table:
+def exam_table(summaries: Sequence[PaperSummary], title: str) -> Table:
     """Success and collisions by world."""
     rows = []
     for each, world in _worlds(summaries):
@@ -106,7 +109,7 @@ def exam_sheet(summaries: Sequence[PaperSummary], title: str) -> Table:
     )
 
 
-def drive_sheet(summaries: Sequence[PaperSummary], title: str) -> Table:
+def drive_table(summaries: Sequence[PaperSummary], title: str) -> Table:
     """How far they came and how well, by world."""
     names = list(dict.fromkeys(name for _, world in _worlds(summaries) for name in world.lengths))
     rows = []
@@ -140,7 +143,7 @@ def drive_sheet(summaries: Sequence[PaperSummary], title: str) -> Table:
     )
 
 
-def behaviour_sheet(summaries: Sequence[PaperSummary], title: str) -> Table:
+def behaviour_table(summaries: Sequence[PaperSummary], title: str) -> Table:
     """RLAs and junctions of each taught behaviour, where several were taught in one session."""
     rows = []
     for each in summaries:
@@ -163,7 +166,7 @@ def behaviour_sheet(summaries: Sequence[PaperSummary], title: str) -> Table:
     return Table(_sentence(title), columns, tuple(rows), words=2)
 
 
-def growth_sheet(growth: GrowthStudy) -> Table:
+def growth_table(growth: GrowthStudy) -> Table:
     """Numbers behind Fig. 2."""
     last_s = min(len(each.growth) for each in growth.outcomes)
     at_s = [time_s for time_s in _GROWTH_AT_S if time_s <= last_s] or [last_s]
@@ -182,7 +185,7 @@ def growth_sheet(growth: GrowthStudy) -> Table:
     )
 
 
-def unseen_sheet(summary: PaperSummary) -> Table:
+def unseen_table(summary: PaperSummary) -> Table:
     """Which robot drove in which generated world, and how that went; no rows where these robots drove in none."""
     names = summary.settings.unseen.names if summary.settings.unseen is not None else ()
     drives = sorted(

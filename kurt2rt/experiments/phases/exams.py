@@ -1,9 +1,11 @@
-"""Exams of one stage."""
+"""Exams of one stage, and the critic compared with the judge."""
 
-from collections.abc import Callable, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 
+from behaviors.judges.judge import Judge
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.rla.rla import TeachingEvent
@@ -14,14 +16,34 @@ from kurt2rt.experiments.lockstep.curriculum import Report
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine
 from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.phases.outcome import ExamOutcome, Judgement
-from kurt2rt.experiments.phases.scoring import Scoring
+
+
+class Scoring:
+    """Counts what the critic says of what the judge thinks, while something drives the robot."""
+
+    def __init__(self, judge: Judge) -> None:
+        self._judge = judge
+        self._ticks: Counter[tuple[int, int | None]] = Counter()
+
+    def look(self, record: TickRecord) -> None:
+        """Take in one tick."""
+        if record.appraisal_features is None or not record.decision.driving:
+            return
+        said = None if record.opinion is None else record.opinion.said
+        self._ticks[self._judge.judge(record.appraisal_features), said] += 1
+
+    @property
+    def judgements(self) -> Iterator[Judgement]:
+        """Each pair of opinions that came."""
+        for judged, said in sorted(self._ticks, key=str):
+            yield Judgement(judged=judged, said=said, ticks=self._ticks[judged, said])
 
 
 @dataclass(frozen=True, slots=True)
 class Examiner:
     """Examines one robot; a robot that gets stuck is set down elsewhere and goes on."""
 
-    stage: SimulationFactory
+    factory: SimulationFactory
     robot: RobotSettings
     task: TaskSettings
     seed: int
@@ -83,7 +105,7 @@ class Examiner:
             stuck_ends=not events and not teacher_policy,
             on_tick=lambda record, _metric: on_record(record),
         )
-        with closing(self.stage.open(world, self.seed, "exam")) as simulation:
+        with closing(self.factory.open(world, self.seed, "exam")) as simulation:
             return await examine(
                 simulation,
                 self.robot,

@@ -22,8 +22,7 @@ from kurt2rt.experiments.phases.steps import (
     PHASE_5,
     TITLES,
 )
-from kurt2rt.experiments.phases.study import PhasesStudy
-from kurt2rt.experiments.phases.summary import MEASURES, Measure, worlds_of
+from kurt2rt.experiments.phases.summary import MEASURES, Measure, PhasesStudy, worlds_of
 from kurt2rt.experiments.study.figure import SavedFigure
 from kurt2rt.experiments.study.figure_style import save
 
@@ -33,9 +32,9 @@ _AGREEMENT_EVERY_MIN = 1 / 6
 _WORLD_COLOURS = ("#1f6fb2", "#d1495b", "#2e8540", "#b8860b", "#6b4c9a")
 
 
-def draw_pictures(study: PhasesStudy, folder: Path) -> Iterator[SavedFigure]:
+def draw_figures(study: PhasesStudy, folder: Path) -> Iterator[SavedFigure]:
     """Draw each figure into the folder: phases.png, load.png, agreement.png, branches.png, intact.png."""
-    robots = len(study.programme.seeds)
+    robots = len(study.plan.seeds)
     path = folder / "phases.png"
     _draw_stages(study, PATH, path)
     yield SavedFigure(path, "Phase by phase", f"{robots} robots; bars are 95 % intervals.")
@@ -146,7 +145,7 @@ def _draw_agreement(study: PhasesStudy, path: Path) -> None:
         low, median, high = np.nanpercentile(shares[:, heard], (25, 50, 75), axis=0)
         axes.fill_between(times[heard], low, high, alpha=0.2, color="#1f6fb2", linewidth=0)
         axes.plot(times[heard], median, color="#1f6fb2", linewidth=1.8, label="agreement")
-    bound = load_critic(study.programme.task.critic).agreement.bound
+    bound = load_critic(study.plan.task.critic).agreement.bound
     axes.axhline(bound, color="#d1495b", linestyle="--", label=f"trusted from {bound:g}")
     axes.set_ylim(0.0, 1.0)
     axes.set_xlabel("phase 4, min")

@@ -9,8 +9,9 @@ from kurt2rt.core.critic.settings import CriticSettings, load_critic
 from kurt2rt.core.reinforcement.settings import AutonomousValues
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
-from kurt2rt.experiments.phases.job import Job, Robot, StepJob, TaughtJob
+from kurt2rt.experiments.phases.jobs import Job, StepJob, TaughtJob
 from kurt2rt.experiments.phases.steps import PHASE_2, PhaseStep, phases_of, steps_of
+from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.provenance import Fingerprints, Provenance, source_hash
 from kurt2rt.experiments.study.results import Results
 
@@ -19,6 +20,11 @@ DECIDING = (TaughtJob, StepJob)
 _QUICK_TEACHING_S, _QUICK_EXAM_S, _QUICK_STEP_S, _QUICK_ALONE_S = 40.0, 6.0, 10.0, 40.0
 _QUICK_SHARE = 0.2
 """What is done every so often in a whole run is done after this share of the time in a quick one."""
+
+
+class _RobotParts(JobParts):
+    task: TaskSettings
+    seed: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,15 +46,15 @@ class PhasesPlan:
         return [job for wave in self.waves for job in wave]
 
 
-def plan(
+def make_plan(
     task: TaskSettings,
     seeds: Sequence[int],
-    stage: SimulationFactory,
+    factory: SimulationFactory,
     robot: RobotSettings,
     results: Results,
     *,
     quick: bool = False,
-    source_of: Callable[[SimulationFactory], str] = lambda stage: source_hash(*DECIDING, type(stage)),
+    source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> PhasesPlan:
     """Look at task and worlds, and make the jobs.
 
@@ -59,11 +65,11 @@ def plan(
         task = _shortened(task)
     steps = tuple(steps_of(task))
     worlds = (task.teaching.world, *task.exam.worlds, *phases_of(task).repair_worlds)
-    stage.require_worlds(*worlds)
-    require_course(stage, task, worlds)
-    source = source_of(stage)
+    factory.require_worlds(*worlds)
+    require_course(factory, task, worlds)
+    source = source_of(factory)
     # What is long enough for one step decides nothing of another: each is made of the steps that lead to it.
-    fingerprints = Fingerprints(stage, robot, source, ("paper", "plain", "phases"))
+    fingerprints = Fingerprints(factory, robot, source, ("paper", "plain", "phases"))
     critic = load_critic(task.critic).model_dump_json()
     by_name = {step.name: step for step in steps}
 
@@ -75,13 +81,18 @@ def plan(
     made_first = made_of(None)
     waves: list[list[Job]] = [[] for _ in range(1 + max(_depth(step, by_name) for step in steps))]
     for seed in seeds:
-        of = Robot(stage, robot, task, seed, results)
-        first = TaughtJob(of, made_first)
+        common = _RobotParts(factory=factory, robot=robot, task=task, seed=seed, results=results)
+        first = TaughtJob(**common, made_of=made_first)
         waves[0].append(first)
         jobs: dict[str, Job] = {PHASE_2: first}
         for step in steps:
             jobs[step.name] = job = StepJob(
-                of, step, jobs[step.after], first, jobs.get(step.blames_like), made[step.name]
+                **common,
+                of=step,
+                before=jobs[step.after],
+                first=first,
+                alike=jobs.get(step.blames_like),
+                made_of=made[step.name],
             )
             waves[_depth(step, by_name)].append(job)
     return PhasesPlan(task, tuple(seeds), quick, source, tuple(map(tuple, waves)))

@@ -1,4 +1,4 @@
-"""What the robots come to together at one stage."""
+"""Results of all jobs of the phases study, summarized by stage."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -6,8 +6,10 @@ from dataclasses import dataclass
 
 from behaviors.metrics.task_metric import DISTANCE_ERROR
 from kurt2rt.experiments.lockstep.report import label_of, quartiles, wilson_interval
-from kurt2rt.experiments.phases.outcome import ExamOutcome, Judgement, StageOutcome
+from kurt2rt.experiments.phases.outcome import ExamOutcome, JobOutcome, Judgement, StageOutcome
+from kurt2rt.experiments.phases.plan import PhasesPlan
 from kurt2rt.experiments.study.intervals import Rate, RateDifference, difference_of, rate_of
+from kurt2rt.experiments.study.results import Results
 
 TEN_MIN_S = 600.0
 
@@ -198,3 +200,27 @@ def _paired(world: str, measure: Measure, values: Sequence[tuple[float, float]])
 
 def _exam_in(world: str, stage: StageOutcome) -> ExamOutcome:
     return next(exam for exam in stage.exams if exam.world == world)
+
+
+@dataclass(frozen=True, slots=True)
+class PhasesStudy:
+    """All numbers."""
+
+    plan: PhasesPlan
+    stages: dict[str, tuple[StageOutcome, ...]]
+    """By the name of the step, each in the order of the seeds."""
+    teachers: tuple[tuple[ExamOutcome, ...], ...]
+    """Drives of the teacher's own policy, per seed one in each world."""
+
+
+def read_study(plan: PhasesPlan, results: Results) -> PhasesStudy:
+    """Put together what all jobs have left. Raises StudyError."""
+    stages: dict[str, list[StageOutcome]] = {}
+    teachers = []
+    for job in plan.jobs:
+        outcome = results.read(job, JobOutcome)
+        for stage in outcome.stages:
+            stages.setdefault(stage.name, []).append(stage)
+        if outcome.teachers:
+            teachers.append(outcome.teachers)
+    return PhasesStudy(plan, {name: tuple(each) for name, each in stages.items()}, tuple(teachers))

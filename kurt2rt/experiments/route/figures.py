@@ -1,7 +1,7 @@
 """Pictures of routes, and of the drives along them."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
 
@@ -12,6 +12,8 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from hal.simulation import SimulationFactory
 from kurt2rt.experiments.lockstep.trails import ASKED, columns, draw_trail
 from kurt2rt.experiments.route.outcome import LAYERS, Place, RouteOutcome
+from kurt2rt.experiments.route.summary import RouteStudy
+from kurt2rt.experiments.study.figure import SavedFigure
 from kurt2rt.experiments.study.figure_style import COLLIDED, START, legend_below, save
 
 _ROUTE = "#e8a33d"
@@ -21,32 +23,48 @@ _BESIDE_M = 0.13
 """So far to the right of the middle of a street its way is drawn, so that both ways through it are seen."""
 
 
-def draw_route(stage: SimulationFactory, world: str, outcome: RouteOutcome, path: Path) -> None:
+def draw_figures(study: RouteStudy, factory: SimulationFactory, folder: Path) -> Iterator[SavedFigure]:
+    """Draw each length and way of teaching into the folder: route-<way>-<decisions>.png."""
+    world = study.plan.task.exam.worlds[0]
+    for summary in study.summaries:
+        variant, decisions = summary.experiment.variant, summary.experiment.decisions
+        path = folder / f"route-{variant.name}-{decisions}.png"
+        draw_routes(factory, world, summary.outcomes, path)
+        yield SavedFigure(
+            path,
+            f"Routes of {decisions} decisions: {variant.title}",
+            "Orange: the route of each robot with the number of each decision behind its junction; blue: its drive "
+            "without a teacher; red: wrong decisions (triangle: symbols, square: mid level, circle: basic level); "
+            "black: collisions.",
+        )
+
+
+def draw_route(factory: SimulationFactory, world: str, outcome: RouteOutcome, path: Path) -> None:
     """One robot: its route with the number of each decision, and its drive."""
     figure = Figure(figsize=(7.2, 7.8), layout="constrained")
     axes = figure.subplots()
-    _draw(axes, stage, world, outcome)
+    _draw(axes, factory, world, outcome)
     axes.set_title(_told(outcome), fontsize="medium")
     legend_below(axes, columns=3)
     save(figure, path)
 
 
-def draw_routes(stage: SimulationFactory, world: str, outcomes: Sequence[RouteOutcome], path: Path) -> None:
+def draw_routes(factory: SimulationFactory, world: str, outcomes: Sequence[RouteOutcome], path: Path) -> None:
     """A panel per robot."""
     wide = min(_COLUMNS, len(outcomes))
     rows = math.ceil(len(outcomes) / wide)
     figure = Figure(figsize=(4.0 * wide, 4.4 * rows), layout=ConstrainedLayoutEngine(h_pad=0.12, w_pad=0.08))
     panels = figure.subplots(rows, wide, squeeze=False).flatten().tolist()
     for axes, outcome in zip(panels, outcomes, strict=False):
-        _draw(axes, stage, world, outcome)
+        _draw(axes, factory, world, outcome)
         axes.set_title(_told(outcome), fontsize="small")
     for axes in panels[len(outcomes) :]:
         axes.set_axis_off()
     save(figure, path)
 
 
-def _draw(axes: Axes, stage: SimulationFactory, world: str, outcome: RouteOutcome) -> None:
-    stage.draw(axes, world)
+def _draw(axes: Axes, factory: SimulationFactory, world: str, outcome: RouteOutcome) -> None:
+    factory.draw(axes, world)
     route = [*outcome.route, outcome.route[0]]
     label: str | None = f"the route, {len(outcome.route)} decisions"
     for number, (here, there) in enumerate(pairwise(route), start=1):

@@ -75,7 +75,7 @@ class TaughtRoute:
 
 
 async def teach_route(
-    stage: SimulationFactory,
+    factory: SimulationFactory,
     settings: RobotSettings,
     task: TaskSettings,
     variant: Variant,
@@ -93,11 +93,11 @@ async def teach_route(
     lessons = []
     for plan in variant.plans(task, route_of_task(task).starts):
         lesson, events = await run_lesson(
-            stage, settings, task, knowledge, seed=seed, report=_named(report, plan), plan=plan
+            factory, settings, task, knowledge, seed=seed, report=_named(report, plan), plan=plan
         )
         lessons.append(lesson)
     watching = RouteMonitor()
-    with closing(stage.open(world, seed, "exam of a route")) as simulation:
+    with closing(factory.open(world, seed, "exam of a route")) as simulation:
         exam = await examine(
             simulation,
             settings,
@@ -107,7 +107,7 @@ async def teach_route(
             lambda done_s: report("exam without teacher", done_s, task.exam.duration_s),
         )
     watching.end()
-    route = route_of_task(task).route_in(stage.plan_of(world), task.behaviours)
+    route = route_of_task(task).route_in(factory.plan_of(world), task.behaviours)
     return TaughtRoute(route, tuple(lessons), exam, tuple(watching.wrong))
 
 

@@ -10,9 +10,10 @@ from hal.settings import SettingsError
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.compatibility import require_course
-from kurt2rt.experiments.route.job import BasicJob, RouteJob
+from kurt2rt.experiments.route.jobs import BasicJob, RouteJob
 from kurt2rt.experiments.route.lesson import route_of_task, with_route
 from kurt2rt.experiments.route.variants import Variant
+from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
 from kurt2rt.experiments.study.results import Results, StudyError
 from kurt2rt.knowledge.journal.loading import read_lessons
@@ -55,18 +56,18 @@ class RoutePlan:
         return [job for wave in self.waves for job in wave]
 
 
-def plan(
+def make_plan(
     task: TaskSettings,
     basic: TaskSettings,
     seeds: Sequence[int],
     decisions: Sequence[int],
     variants: Sequence[Variant],
-    stage: SimulationFactory,
+    factory: SimulationFactory,
     robot: RobotSettings,
     results: Results,
     *,
     basic_folder: Path | None = None,
-    source_of: Callable[[SimulationFactory], str] = lambda stage: source_hash(*DECIDING, type(stage)),
+    source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> RoutePlan:
     """Look at tasks, worlds and routes, and make the jobs.
 
@@ -75,20 +76,22 @@ def plan(
     Raises hal.settings.SettingsError, StudyError, KnowledgeError.
     """
     worlds = (task.teaching.world, *task.exam.worlds[:1])
-    stage.require_worlds(*worlds, basic.teaching.world)
+    factory.require_worlds(*worlds, basic.teaching.world)
     routes = {(seed, count): with_route(task, seed, count) for seed in seeds for count in decisions}
     for each in routes.values():
-        require_course(stage, each, worlds)
-    source = source_of(stage)
-    fingerprints = Fingerprints(stage, robot, source, ("paper", "plain", "phases"))
-    streets = streets_of(basic, seeds, stage, robot, results, fingerprints, basic_folder)
+        require_course(factory, each, worlds)
+    source = source_of(factory)
+    common = JobParts(factory=factory, robot=robot, results=results)
+    fingerprints = Fingerprints(factory, robot, source, ("paper", "plain", "phases"))
+    streets = streets_of(basic, seeds, factory, robot, results, fingerprints, basic_folder)
 
     def experiment(count: int, variant: Variant) -> RouteExperiment:
         jobs = []
         for seed in seeds:
             own = routes[seed, count]
             made = fingerprints.of(variant.task(own), worlds, streets.made_of[seed], repr(variant))
-            jobs.append(RouteJob(stage, robot, own, variant, seed, streets.files[seed], made, results))
+            basic_file = streets.files[seed]
+            jobs.append(RouteJob(task=own, variant=variant, seed=seed, basic=basic_file, made_of=made, **common))
         return RouteExperiment(count, variant, tuple(jobs))
 
     return RoutePlan(
@@ -115,7 +118,7 @@ class Streets(NamedTuple):
 def streets_of(
     basic: TaskSettings,
     seeds: Sequence[int],
-    stage: SimulationFactory,
+    factory: SimulationFactory,
     robot: RobotSettings,
     results: Results,
     fingerprints: Fingerprints,
@@ -129,7 +132,9 @@ def streets_of(
         files = {seed: basic_file(folder, basic, seed) for seed in seeds}
         return Streets((), files, {seed: repr(read_lessons(file, robot, basic)) for seed, file in files.items()})
     made = fingerprints.of(basic, (basic.teaching.world,))
-    jobs = tuple(BasicJob(stage, robot, basic, seed, made, results) for seed in seeds)
+    jobs = tuple(
+        BasicJob(factory=factory, robot=robot, task=basic, seed=seed, made_of=made, results=results) for seed in seeds
+    )
     return Streets(jobs, {job.seed: job.knowledge for job in jobs}, dict.fromkeys(seeds, made.model_dump_json()))
 
 

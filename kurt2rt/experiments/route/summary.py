@@ -1,15 +1,13 @@
-"""The programme, done: results of all jobs, put together."""
+"""The plan, done: results of all jobs, put together."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from kurt2rt.experiments.lockstep.report import quartiles
 from kurt2rt.experiments.route.outcome import LAYERS, Layer, RouteOutcome
 from kurt2rt.experiments.route.plan import RouteExperiment, RoutePlan
 from kurt2rt.experiments.study.intervals import Rate, rate_of
-from kurt2rt.experiments.study.pool import Standing
 from kurt2rt.experiments.study.results import Results
-from kurt2rt.experiments.study.run_jobs import do_waves, time_of_missing_s
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,26 +62,13 @@ class RouteSummary:
 class RouteStudy:
     """All numbers."""
 
-    programme: RoutePlan
+    plan: RoutePlan
     summaries: tuple[RouteSummary, ...]
 
 
-def robot_time_s(programme: RoutePlan, results: Results) -> float:
-    """What is still to be simulated. Raises StudyError."""
-    return time_of_missing_s(programme.waves, results)
-
-
-def conduct(programme: RoutePlan, results: Results, processes: int, on_standing: Callable[[Standing], None]) -> None:
-    """Do the jobs that are missing, wave by wave; each leaves its result as soon as it is done.
-
-    Raises StudyError and what a job raises.
-    """
-    do_waves(programme.waves, results, processes, on_standing)
-
-
-def read_study(programme: RoutePlan, results: Results) -> RouteStudy:
+def read_study(plan: RoutePlan, results: Results) -> RouteStudy:
     """Put together what all jobs have left. Raises StudyError."""
-    return RouteStudy(programme, tuple(_summary(each, results) for each in programme.experiments))
+    return RouteStudy(plan, tuple(_summary(each, results) for each in plan.experiments))
 
 
 def _summary(experiment: RouteExperiment, results: Results) -> RouteSummary:

@@ -6,11 +6,10 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.report import wilson_interval
 from kurt2rt.experiments.route.outcome import RouteOutcome
 from kurt2rt.experiments.route.summary import RouteStudy, RouteSummary
-from kurt2rt.experiments.route.verdict import verdicts
-from kurt2rt.experiments.study.eligibility import reasons_of_robots
+from kurt2rt.experiments.route.verdicts import verdicts
+from kurt2rt.experiments.study.eligibility import reasons_against_judging
 from kurt2rt.experiments.study.table import Table
-from kurt2rt.experiments.study.verdict import Result, Verdict
-from kurt2rt.experiments.study.verdict_text import cells_of, result_text
+from kurt2rt.experiments.study.targets_table import targets_table
 
 _LAYERS = (
     "Which layer failed: symbols: what the robot had noticed of junctions was not what it had done there; mid: it had "
@@ -18,33 +17,21 @@ _LAYERS = (
 )
 
 
-def sheets(study: RouteStudy) -> Iterator[Table]:
+def all_tables(study: RouteStudy) -> Iterator[Table]:
     """All tables."""
-    if any(list(_verdicts(study))):
-        yield asked_sheet(study)
-    yield taught_sheet(study.summaries)
-    yield exam_sheet(study.summaries)
+    found = [
+        ((_heading(each)[1],), verdict) for each in study.summaries for verdict in verdicts(each, study.plan.task.paper)
+    ]
+    if found:
+        yield targets_table(found, list(reasons_against_judging(study.plan.seeds)), headings=("route",))
+    yield taught_table(study.summaries)
+    yield exam_table(study.summaries)
     for summary in study.summaries:
         if len(study.summaries) == 1 or summary.robots <= 2:
-            yield robots_sheet(summary)
+            yield robots_table(summary)
 
 
-def asked_sheet(study: RouteStudy) -> Table:
-    """Each number that was asked for beside what came."""
-    reasons = list(reasons_of_robots(study.programme.seeds))
-    found = list(_verdicts(study))
-    met = sum(verdict.result is Result.MET for _, verdict in found)
-    rows = tuple((route, *cells_of(verdict), result_text(verdict, reasons)) for route, verdict in found)
-    return Table(
-        "What was asked",
-        ("route", "what", "asked", "came", "verdict"),
-        rows,
-        words=5,
-        note=" ".join(["Not judged.", *reasons]) if reasons else f"{met} of {len(found)} numbers asked for are met.",
-    )
-
-
-def taught_sheet(summaries: Sequence[RouteSummary]) -> Table:
+def taught_table(summaries: Sequence[RouteSummary]) -> Table:
     """What the lessons came to."""
     rows = []
     for each in summaries:
@@ -73,7 +60,7 @@ def taught_sheet(summaries: Sequence[RouteSummary]) -> Table:
     )
 
 
-def exam_sheet(summaries: Sequence[RouteSummary]) -> Table:
+def exam_table(summaries: Sequence[RouteSummary]) -> Table:
     """Drives without a teacher."""
     rows = []
     for each in summaries:
@@ -106,7 +93,7 @@ def exam_sheet(summaries: Sequence[RouteSummary]) -> Table:
     )
 
 
-def robots_sheet(summary: RouteSummary) -> Table:
+def robots_table(summary: RouteSummary) -> Table:
     """Each robot by itself."""
     rows = tuple((str(each.seed), *_of_robot(each)) for each in summary.outcomes)
     return Table(
@@ -117,7 +104,7 @@ def robots_sheet(summary: RouteSummary) -> Table:
     )
 
 
-def robot_sheet(outcome: RouteOutcome, task: TaskSettings) -> Table:
+def robot_table(outcome: RouteOutcome, task: TaskSettings) -> Table:
     """One robot, beside what the paper reports."""
     drive, paper = outcome.drive, task.paper
     rows = (
@@ -160,12 +147,6 @@ def _of_robot(outcome: RouteOutcome) -> tuple[str, ...]:
         f"{drive.duration_s:.0f}",
         errors_of(outcome) or "none",
     )
-
-
-def _verdicts(study: RouteStudy) -> Iterator[tuple[str, Verdict]]:
-    for each in study.summaries:
-        for verdict in verdicts(each, study.programme.task.paper):
-            yield _heading(each)[1], verdict
 
 
 def _heading(summary: RouteSummary) -> tuple[str, str]:

@@ -8,7 +8,7 @@ CHOSEN_ON = range(80)
 """Seeds that settings were searched on; a robot made of one of them proves nothing."""
 
 
-def reasons_of_robots(seeds: Sequence[int]) -> Iterator[str]:
+def reasons_against_judging(seeds: Sequence[int]) -> Iterator[str]:
     """Sentences; none where there are enough robots that nobody has seen."""
     robots = len(seeds)
     if robots < ROBOTS:

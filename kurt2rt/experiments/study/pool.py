@@ -17,7 +17,7 @@ from threadpoolctl import threadpool_limits
 
 from hal.errors import UserError
 
-Tell = Callable[[float], None]
+Progress = Callable[[float], None]
 """Takes how far a job is, in seconds of robot time."""
 
 ResultT = TypeVar("ResultT")
@@ -44,12 +44,12 @@ class Job(Protocol[ResultT_co]):
         """How much there is to simulate."""
         ...
 
-    def run(self, tell: Tell) -> ResultT_co:
+    def run(self, tell: Progress) -> ResultT_co:
         """Do it."""
         ...
 
 
-class Standing(NamedTuple):
+class PoolProgress(NamedTuple):
     """How far the jobs are."""
 
     done_s: float
@@ -63,41 +63,41 @@ def run_jobs(
     processes: int,
     *,
     on_done: Callable[[int], None] = lambda _: None,
-    on_standing: Callable[[Standing], None] = lambda _: None,
+    on_progress: Callable[[PoolProgress], None] = lambda _: None,
 ) -> list[ResultT]:
     """Run all jobs, the longest first; results in the order of the jobs. With one process it is this one.
 
-    `on_done` hears the place of each job that is through, `on_standing` twice a second how far all are.
+    `on_done` hears the place of each job that is through, `on_progress` twice a second how far all are.
     What a job raises ends all the others at once, and so does Ctrl-C; the error's notes name the job.
     Raises JobKilledError when a process is killed from outside.
     """
     # The longest last would leave the other processes idle at the end.
     order = sorted(range(len(jobs)), key=lambda place: -jobs[place].robot_time_s)
     if processes == 1 or len(jobs) <= 1:
-        return _run_here(jobs, order, on_done, on_standing)
-    return _run_apart(jobs, order, min(processes, len(jobs)), on_done, on_standing)
+        return _run_here(jobs, order, on_done, on_progress)
+    return _run_apart(jobs, order, min(processes, len(jobs)), on_done, on_progress)
 
 
 def _run_here(
     jobs: Sequence[Job[ResultT]],
     order: Sequence[int],
     on_done: Callable[[int], None],
-    on_standing: Callable[[Standing], None],
+    on_progress: Callable[[PoolProgress], None],
 ) -> list[ResultT]:
     results: dict[int, ResultT] = {}
     before_s = 0.0
     for place in order:
         job = jobs[place]
-        on_standing(Standing(before_s, (job.name,)))
+        on_progress(PoolProgress(before_s, (job.name,)))
 
         def tell(done_s: float, job: Job[ResultT] = job, before_s: float = before_s) -> None:
-            on_standing(Standing(before_s + done_s, (job.name,)))
+            on_progress(PoolProgress(before_s + done_s, (job.name,)))
 
         with threadpool_limits(limits=1), _named(job):
             results[place] = job.run(_now_and_then(tell))
         before_s += job.robot_time_s
         on_done(place)
-    on_standing(Standing(before_s, ()))
+    on_progress(PoolProgress(before_s, ()))
     return [results[place] for place in range(len(jobs))]
 
 
@@ -106,7 +106,7 @@ def _run_apart(
     order: Sequence[int],
     processes: int,
     on_done: Callable[[int], None],
-    on_standing: Callable[[Standing], None],
+    on_progress: Callable[[PoolProgress], None],
 ) -> list[ResultT]:
     # Fresh interpreters: a fork would share the parent's threads and buses half-way.
     context = multiprocessing.get_context("spawn")
@@ -132,7 +132,7 @@ def _run_apart(
                             results[places[future]] = future.result()
                         on_done(places[future])
                     left = [place for place in order if place not in results]
-                    on_standing(_standing(jobs, left, processes, clocks))
+                    on_progress(_pool_progress(jobs, left, processes, clocks))
             except BrokenProcessPool as error:
                 left = [place for place in order if place not in results]
                 pool.shutdown()  # how each process ended is known once the pool has waited for all
@@ -173,7 +173,7 @@ def _run_in_worker(
         return job.run(_now_and_then(lambda done_s: clocks.__setitem__(place, done_s)))
 
 
-def _now_and_then(tell: Tell) -> Tell:
+def _now_and_then(tell: Progress) -> Progress:
     told_s = 0.0
 
     def tell_now_and_then(done_s: float) -> None:
@@ -185,15 +185,15 @@ def _now_and_then(tell: Tell) -> Tell:
     return tell_now_and_then
 
 
-def _standing(
+def _pool_progress(
     jobs: Sequence[Job[ResultT]], left: Sequence[int], processes: int, clocks: MutableMapping[int, float]
-) -> Standing:
+) -> PoolProgress:
     """`left`: places of the jobs that are not through, in the order in which they are begun."""
     clock_s = dict(clocks)
     running = left[:processes]
     through_s = sum(job.robot_time_s for job in jobs) - sum(jobs[place].robot_time_s for place in left)
     running_s = sum(min(clock_s.get(place, 0.0), jobs[place].robot_time_s) for place in running)
-    return Standing(through_s + running_s, tuple(jobs[place].name for place in running))
+    return PoolProgress(through_s + running_s, tuple(jobs[place].name for place in running))
 
 
 def _belong_to_the_parent() -> None:

@@ -1,12 +1,12 @@
 """How far a job of several drives is."""
 
-from kurt2rt.experiments.study.pool import Tell
+from kurt2rt.experiments.study.pool import Progress
 
 
 class ProgressSum:
     """Adds up the robot time of drives that come one after the other."""
 
-    def __init__(self, tell: Tell) -> None:
+    def __init__(self, tell: Progress) -> None:
         self._tell = tell
         self._before_s = 0.0
         self._now_s = 0.0

@@ -63,7 +63,7 @@ class Fingerprints:
 
     def __init__(
         self,
-        stage: SimulationFactory,
+        factory: SimulationFactory,
         robot: RobotSettings,
         source: str,
         leave_out: Collection[str] = ("paper", "plain"),
@@ -77,7 +77,7 @@ class Fingerprints:
         self._source = source
         self._versions = versions()
         self._robot = settings_hash(robot.model_dump_json(serialize_as_any=True))
-        self._stage = stage
+        self._stage = factory
         self._known: dict[tuple[str, str], str] = {}
 
     def of(self, task: TaskSettings, worlds: Iterable[str], *more: str) -> Provenance:

@@ -21,11 +21,11 @@ class Table:
     """What one has to know to read it."""
 
 
-def as_rich(sheet: Table) -> RenderableType:
-    """For the terminal. Plain text: what is missed is said in a word, not in a colour."""
-    table = TextTable(title=sheet.title)
-    for place, heading in enumerate(sheet.columns):
-        table.add_column(heading, number=place >= sheet.words, whole=place < sheet.words <= 2)
-    for row in sheet.rows:
-        table.add_row(*row)
-    return Group(table, *([Text(sheet.note)] if sheet.note else ()))
+def as_rich(table: Table) -> RenderableType:
+    """Return the table for the terminal, in plain text: a missed target shows as a word, not as a color."""
+    shown = TextTable(title=table.title)
+    for place, heading in enumerate(table.columns):
+        shown.add_column(heading, number=place >= table.words, whole=place < table.words <= 2)
+    for row in table.rows:
+        shown.add_row(*row)
+    return Group(shown, *([Text(table.note)] if table.note else ()))

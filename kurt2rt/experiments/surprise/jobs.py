@@ -10,7 +10,7 @@ from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.study.pool import Tell
+from kurt2rt.experiments.study.pool import Progress
 from kurt2rt.experiments.study.table import Table
 from kurt2rt.experiments.surprise.drive import Difference, SurpriseCounts, SurpriseSetup, drive
 from kurt2rt.knowledge.journal.loading import read_lessons
@@ -25,7 +25,7 @@ DIFFERENT_S = 300.0
 class SurpriseJob:
     """What one process does: one robot that was taught."""
 
-    stage: SimulationFactory
+    factory: SimulationFactory
     settings: RobotSettings
     task: TaskSettings
     knowledge: Path
@@ -43,11 +43,11 @@ class SurpriseJob:
         """All its drives."""
         return self.learns_s + 4 * self.different_s
 
-    def run(self, tell: Tell) -> tuple[SurpriseCounts, ...]:
+    def run(self, tell: Progress) -> tuple[SurpriseCounts, ...]:
         """Drive them all."""
         return anyio.run(self._drives, tell)
 
-    async def _drives(self, tell: Tell) -> tuple[SurpriseCounts, ...]:
+    async def _drives(self, tell: Progress) -> tuple[SurpriseCounts, ...]:
         events = read_lessons(self.knowledge, self.settings, self.task)
         before_s = 0.0
 
@@ -56,7 +56,7 @@ class SurpriseJob:
         ) -> tuple[SurpriseCounts, Statistics]:
             nonlocal before_s
             result = await drive(
-                self.stage,
+                self.factory,
                 self.settings,
                 self.task,
                 events,
@@ -80,7 +80,7 @@ class SurpriseJob:
         )
 
 
-def sheet_of(results: Sequence[Sequence[SurpriseCounts]]) -> Table:
+def surprise_table(results: Sequence[Sequence[SurpriseCounts]]) -> Table:
     """A row for each difference, all robots together; `results`: one sequence for each robot, alike."""
     rows = []
     for drives in zip(*results, strict=True):

@@ -12,8 +12,9 @@ from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.navigation.figures import draw_errands
 from kurt2rt.experiments.navigation.guided_tour import navigation_settings
 from kurt2rt.experiments.navigation.outcome import ErrandsOutcome
-from kurt2rt.experiments.navigation.plan import NavigationPlan, conduct, plan, read_outcomes, robot_time_s
-from kurt2rt.experiments.navigation.tables import sheets
+from kurt2rt.experiments.navigation.plan import NavigationPlan, make_plan, read_outcomes
+from kurt2rt.experiments.navigation.tables import all_tables
+from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.knowledge.journal.journal import Journal
 from tests.experiments.helpers import ROBOT, STAGE
@@ -26,23 +27,23 @@ def short(name: str, teaching_s: float, exam_s: float) -> TaskSettings:
 
 def a_programme(results: Results, streets_s: float, errands_s: float, exam_s: float) -> NavigationPlan:
     errands, streets = short("errands", errands_s, exam_s), short("streets", streets_s, 6.0)
-    return plan(errands, streets, (1,), STAGE, ROBOT, results, controls=True, source_of=lambda _: "tested")
+    return make_plan(errands, streets, (1,), STAGE, ROBOT, results, controls=True, source_of=lambda _: "tested")
 
 
 @dataclass(frozen=True)
 class Done:
     results: Results
-    programme: NavigationPlan
+    plan: NavigationPlan
     outcome: ErrandsOutcome
 
 
 def carried_out(folder: Path, streets_s: float, errands_s: float, exam_s: float) -> Done:
     results = Results(folder)
-    programme = a_programme(results, streets_s, errands_s, exam_s)
+    plan = a_programme(results, streets_s, errands_s, exam_s)
     with results.held():
-        conduct(programme, results, 1, lambda _: None)
-    (outcome,) = read_outcomes(programme, results)
-    return Done(results, programme, outcome)
+        run_missing(plan, results, 1, lambda _: None)
+    (outcome,) = read_outcomes(plan, results)
+    return Done(results, plan, outcome)
 
 
 @pytest.fixture(scope="module")
@@ -51,7 +52,7 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
 
 
 def test_streets_and_errands_are_one_robots_knowledge(done: Done) -> None:
-    (job,) = done.programme.jobs
+    (job,) = done.plan.jobs
     with Journal.read_only(job.knowledge) as journal:
         events = journal.events()
         assert MID in journal.binding.levels
@@ -61,7 +62,7 @@ def test_streets_and_errands_are_one_robots_knowledge(done: Done) -> None:
 
 
 def test_what_is_done_is_not_done_again(done: Done) -> None:
-    assert robot_time_s(done.programme, done.results) == 0.0
+    assert missing_time_s(done.plan, done.results) == 0.0
 
 
 def test_plan_and_controls_are_sent_to_the_same_goals(done: Done) -> None:
@@ -70,7 +71,7 @@ def test_plan_and_controls_are_sent_to_the_same_goals(done: Done) -> None:
 
 
 def test_it_is_told_and_drawn(done: Done, tmp_path: Path) -> None:
-    assert len(list(sheets([done.outcome], navigation_settings(done.programme.task)))) == 3
+    assert len(list(all_tables([done.outcome], navigation_settings(done.plan.task)))) == 3
     picture = tmp_path / "robot.png"
     draw_errands(STAGE, "manhattan", done.outcome, picture)
     assert imread(picture).shape[0] > 400

@@ -1,7 +1,7 @@
 """What is told of errands."""
 
-from kurt2rt.experiments.navigation.outcome import ErrandDone, ErrandsOutcome, ErrandsRun, How
-from kurt2rt.experiments.navigation.tables import asked_sheet, robots_sheet, runs_sheet
+from kurt2rt.experiments.navigation.outcome import ErrandDone, ErrandsOutcome, ErrandsRun, Strategy
+from kurt2rt.experiments.navigation.tables import robots_table, runs_table, targets_table
 from tests.experiments.navigation.test_goals import settings
 
 
@@ -21,7 +21,7 @@ def errand(
     )
 
 
-def run(*errands: ErrandDone, how: How = "planning") -> ErrandsRun:
+def run(*errands: ErrandDone, how: Strategy = "planning") -> ErrandsRun:
     return ErrandsRun(how=how, errands=errands, trail=())
 
 
@@ -56,8 +56,8 @@ def test_a_goal_counts_where_the_way_was_short_and_nothing_was_touched() -> None
 def test_robots_that_nobody_has_seen_before_are_judged() -> None:
     outcomes = [robot(seed, GOOD) for seed in range(100, 118)]
     outcomes += [robot(seed, run(*[errand()] * 17, *[errand(why_not="no way")] * 3)) for seed in (118, 119)]
-    sheet = asked_sheet(outcomes, settings())
-    assert [(row[1], row[2], row[3]) for row in sheet.rows] == [
+    table = targets_table(outcomes, settings())
+    assert [(row[1], row[2], row[3]) for row in table.rows] == [
         ("360 of 400", "394 of 400", "met"),
         ("18 of 20", "18 of 20", "met"),
         ("at most 1.3 times the shortest", "0.90", "met"),
@@ -65,22 +65,22 @@ def test_robots_that_nobody_has_seen_before_are_judged() -> None:
 
 
 def test_robots_that_settings_were_chosen_on_are_not() -> None:
-    sheet = asked_sheet([robot(1, GOOD)], settings())
-    assert {row[3] for row in sheet.rows} == {"not judged"}
-    assert "20" in sheet.note
+    table = targets_table([robot(1, GOOD)], settings())
+    assert {row[3] for row in table.rows} == {"not judged"}
+    assert "20" in table.note
 
 
 def test_controls_stand_beside_the_plan_and_what_replay_would_come_to() -> None:
     by_chance = run(errand(why_not="astray"), errand(1.2), how="chance")
-    sheet = runs_sheet([robot(1, run(errand(demonstrated=None), errand(demonstrated=2.0)), by_chance)], settings())
-    assert [row[:2] for row in sheet.rows] == [
+    table = runs_table([robot(1, run(errand(demonstrated=None), errand(demonstrated=2.0)), by_chance)], settings())
+    assert [row[:2] for row in table.rows] == [
         ("by a plan", "2 of 2"),
         ("control: any way taught, by chance", "1 of 2"),
     ]
-    assert "mean 2.0, least 2.00 times the shortest; for 1 goals there is no such piece" in sheet.note
+    assert "mean 2.0, least 2.00 times the shortest; for 1 goals there is no such piece" in table.note
 
 
 def test_each_robot_tells_what_it_did_not_reach_and_why() -> None:
-    sheet = robots_sheet([robot(3, run(errand(), errand(why_not="time"), errand(collisions=2)))], settings())
-    assert sheet.rows[0][0] == "3"
-    assert sheet.rows[0][-1] == "place 7: time, place 7: 2 collisions"
+    table = robots_table([robot(3, run(errand(), errand(why_not="time"), errand(collisions=2)))], settings())
+    assert table.rows[0][0] == "3"
+    assert table.rows[0][-1] == "place 7: time, place 7: 2 collisions"

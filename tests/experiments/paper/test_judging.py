@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.core.task_settings import load_task
+from kurt2rt.experiments.paper.eligibility import reasons_not_to_judge
 from kurt2rt.experiments.paper.extent import QUICK, WHOLE
-from kurt2rt.experiments.paper.judging import reasons_not_to_judge
+from kurt2rt.experiments.paper.jobs import TaughtJob
 from kurt2rt.experiments.paper.plan import PaperExperiment, PaperPlan, unseen_of
 from kurt2rt.experiments.paper.settings import ExperimentSettings, load_paper
-from kurt2rt.experiments.paper.taught_job import TaughtJob
 from kurt2rt.experiments.study.results import Results
 from tests.experiments.helpers import ROBOT, STAGE
 from tests.experiments.paper.outcomes import MADE_OF, settings_of
@@ -19,9 +19,18 @@ TASK = load_task("wall_following")
 NOT_SEEN = range(100, 120)
 
 
-def programme(seeds: range | tuple[int, ...], settings: ExperimentSettings) -> PaperPlan:
+def plan(seeds: range | tuple[int, ...], settings: ExperimentSettings) -> PaperPlan:
     jobs = tuple(
-        TaughtJob(STAGE, ROBOT, TASK, "shipped", seed, unseen_of(seed, settings), MADE_OF, Results(Path("never-made")))
+        TaughtJob(
+            factory=STAGE,
+            robot=ROBOT,
+            task=TASK,
+            reading="shipped",
+            seed=seed,
+            unseen=unseen_of(seed, settings),
+            made_of=MADE_OF,
+            results=Results(Path("never-made")),
+        )
         for seed in seeds
     )
     experiment = PaperExperiment(settings, "shipped", TASK, jobs)
@@ -32,7 +41,7 @@ SETTINGS = settings_of("wall_following")
 
 
 def test_twenty_robots_that_nobody_has_seen_are_judged() -> None:
-    assert list(reasons_not_to_judge(programme(NOT_SEEN, SETTINGS))) == []
+    assert list(reasons_not_to_judge(plan(NOT_SEEN, SETTINGS))) == []
 
 
 @pytest.mark.parametrize(
@@ -49,16 +58,16 @@ def test_twenty_robots_that_nobody_has_seen_are_judged() -> None:
     ],
 )
 def test_others_are_not_and_the_reason_is_said(seeds: range | tuple[int, ...], reason: str) -> None:
-    assert list(reasons_not_to_judge(programme(seeds, SETTINGS))) == [reason]
+    assert list(reasons_not_to_judge(plan(seeds, SETTINGS))) == [reason]
 
 
 def test_a_part_is_not_judged() -> None:
-    (reason,) = reasons_not_to_judge(replace(programme(NOT_SEEN, SETTINGS), extent=QUICK))
+    (reason,) = reasons_not_to_judge(replace(plan(NOT_SEEN, SETTINGS), extent=QUICK))
     assert reason.startswith("A part only")
 
 
 def test_rooms_on_which_settings_were_chosen_judge_nothing() -> None:
     assert SETTINGS.unseen is not None
     known = SETTINGS.model_copy(update={"unseen": SETTINGS.unseen.model_copy(update={"first": 59})})
-    (reason,) = reasons_not_to_judge(programme(NOT_SEEN, known))
+    (reason,) = reasons_not_to_judge(plan(NOT_SEEN, known))
     assert "among rooms-0 to rooms-59" in reason

@@ -12,7 +12,7 @@ from hal.settings import SettingsError
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.paper.extent import QUICK, WHOLE, Extent
 from kurt2rt.experiments.paper.outcome import Reading
-from kurt2rt.experiments.paper.plan import PaperPlan, plan, unseen_of
+from kurt2rt.experiments.paper.plan import PaperPlan, make_plan, unseen_of
 from kurt2rt.experiments.paper.settings import PaperSettings, load_paper
 from kurt2rt.experiments.study.results import Results, StudyError
 from tests.experiments.helpers import ROBOT, STAGE
@@ -33,7 +33,7 @@ def planned(
     readings: tuple[Reading, ...] = ("shipped",),
     paper: PaperSettings | None = None,
 ) -> PaperPlan:
-    return plan(
+    return make_plan(
         paper or load_paper(),
         extent,
         seeds,
@@ -67,11 +67,11 @@ def test_the_shipped_experiments_ask_what_was_asked() -> None:
 
 
 def test_everything_that_is_shipped_can_be_planned() -> None:
-    programme = planned(readings=("shipped", "plain"), seeds=(100,), extent=Extent(most_unseen=1))
+    plan = planned(readings=("shipped", "plain"), seeds=(100,), extent=Extent(most_unseen=1))
     tasks = [each.task for each in load_paper().experiments]
     for reading in ("shipped", "plain"):
-        assert [each.task.name for each in programme.experiments if each.reading == reading] == tasks
-    assert len({job.file for job in programme.jobs}) == len(programme.jobs)
+        assert [each.task.name for each in plan.experiments if each.reading == reading] == tasks
+    assert len({job.file for job in plan.jobs}) == len(plan.jobs)
 
 
 WALL_FOLLOWING = next(each for each in load_paper().experiments if each.task == "wall_following")

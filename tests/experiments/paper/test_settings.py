@@ -35,4 +35,4 @@ def test_what_is_not_there_is_named_with_file_and_key(changed: dict[str, Any], s
 
 
 def test_what_is_shipped_has_everything() -> None:
-    assert load_paper(stage=STAGE) == load_paper()
+    assert load_paper(factory=STAGE) == load_paper()

@@ -11,13 +11,13 @@ from matplotlib.image import imread
 
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.experiments.paper.report import write_report
-from kurt2rt.experiments.paper.settings_tables import SUCCESS, exams_sheet, learning_sheet
-from kurt2rt.experiments.paper.study import conduct
-from kurt2rt.experiments.paper.tables import sheets
+from kurt2rt.experiments.paper.settings_tables import SUCCESS, exams_table, learning_table
+from kurt2rt.experiments.paper.tables import all_tables
+from kurt2rt.experiments.study.plan import run_missing
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.knowledge.journal.loading import read_lessons
 from tests.experiments.helpers import ROBOT
-from tests.experiments.paper.tiny import COMMAND, Tiny, tiny_programme
+from tests.experiments.paper.tiny import COMMAND, Tiny, tiny_plan
 from tests.experiments.study.page import Page
 
 pytestmark = pytest.mark.deep  # what all look at takes seconds; tests/cli/test_paper.py is the quick story
@@ -25,9 +25,9 @@ pytestmark = pytest.mark.deep  # what all look at takes seconds; tests/cli/test_
 
 def test_each_job_leaves_its_result_and_each_robot_its_knowledge(tiny: Tiny) -> None:
     folder = tiny.results.folder
-    assert tiny.results.missing(tiny.programme.jobs) == []
+    assert tiny.results.missing(tiny.plan.jobs) == []
     assert not list(folder.glob("unfinished-*"))
-    for experiment in tiny.programme.experiments:
+    for experiment in tiny.plan.experiments:
         (job,) = experiment.jobs
         (outcome,) = next(
             each.outcomes for each in tiny.study.of(job.reading) if each.task.name == experiment.task.name
@@ -36,7 +36,7 @@ def test_each_job_leaves_its_result_and_each_robot_its_knowledge(tiny: Tiny) -> 
         assert len(lessons) >= outcome.rlas > 0
         assert [drive.world for drive in outcome.drives] == [*job.task.exam.worlds, *job.unseen]
         assert all(len(drive.trail) == 5 for drive in outcome.drives)  # 1 s, 0.2 s from one to the next
-    growth = tiny.programme.growth[0].jobs
+    growth = tiny.plan.growth[0].jobs
     assert {job.radius for job in growth} == {load_task("wall_following").learning.radius}  # as it is shipped
 
 
@@ -44,16 +44,16 @@ def test_an_interrupted_run_does_only_what_is_missing_and_comes_to_the_same_byte
     tiny: Tiny, tmp_path: Path
 ) -> None:
     results = Results(tmp_path)
-    programme = tiny_programme(results, "eight")
-    first, second = (job.file for job in programme.jobs)
+    plan = tiny_plan(results, "eight")
+    first, second = (job.file for job in plan.jobs)
     (tmp_path / first).parent.mkdir(parents=True)
     (tmp_path / first).write_bytes((tiny.results.folder / first).read_bytes())
     stamp_ns = (tmp_path / first).stat().st_mtime_ns
 
-    conduct(programme, results.missing(programme.jobs), 1, lambda _: None)
+    run_missing(plan, results, 1, lambda _: None)
     assert (tmp_path / first).stat().st_mtime_ns == stamp_ns
     assert (tmp_path / second).read_bytes() == (tiny.results.folder / second).read_bytes()
-    assert results.missing(programme.jobs) == []
+    assert results.missing(plan.jobs) == []
 
 
 def test_every_figure_is_drawn_under_its_name(tiny: Tiny) -> None:
@@ -76,7 +76,7 @@ def test_the_report_holds_every_figure_and_every_table(tiny: Tiny) -> None:
     assert page.images == [each.title for each in tiny.pictures]
     pictures = [base64.b64decode(address.removeprefix("data:image/png;base64,")) for address in page.addresses]
     assert pictures == [each.path.read_bytes() for each in tiny.pictures]
-    titles = [sheet.title for sheet in sheets(tiny.study)]
+    titles = [table.title for table in all_tables(tiny.study)]
     assert len(titles) == len(set(titles)) == 10
     assert all(f"<caption>{title}</caption>" in text for title in titles)
     assert page.tags.count("table") == len(titles) + 4  # generated worlds in both readings, and two of settings
@@ -110,13 +110,13 @@ def test_what_is_filled_into_the_report_is_escaped(tiny: Tiny, tmp_path: Path) -
 
 @pytest.mark.parametrize("how", ["", "Plain reading: "], ids=["shipped", "plain"])
 def test_both_readings_have_their_tables(tiny: Tiny, how: str) -> None:
-    titles = {sheet.title.lower() for sheet in sheets(tiny.study)}
+    titles = {table.title.lower() for table in all_tables(tiny.study)}
     for what in ("what was asked", "what was taught", "exams without teacher", "drives of these exams"):
         assert (how + what).lower() in titles
 
 
 def test_the_report_tells_every_setting_of_learning_and_exams_and_what_success_is(tiny: Tiny) -> None:
-    learning, exams = learning_sheet(tiny.study), exams_sheet(tiny.study)
+    learning, exams = learning_table(tiny.study), exams_table(tiny.study)
     shipped, plain = (
         dict(zip(learning.columns, row, strict=True)) for row in learning.rows if row[0] == "wall following"
     )
@@ -128,6 +128,8 @@ def test_the_report_tells_every_setting_of_learning_and_exams_and_what_success_i
     assert [row[0] for row in exams.rows] == ["wall following", "eight"]
     assert exams.rows[1] == ("eight", "a start pose", "1", "20", "1", "0", "80%", "")
     text = tiny.report.read_text(encoding="utf-8")
-    assert all(f"<caption>{sheet.title}</caption>" in text for sheet in (learning, exams))
+    assert all(f"<caption>{table.title}</caption>" in text for table in (learning, exams))
     assert html.escape(SUCCESS, quote=False).replace("'", "&#39;") in text
-    assert all(SUCCESS in sheet.note for sheet in sheets(tiny.study) if "exams without teacher" in sheet.title.lower())
+    assert all(
+        SUCCESS in table.note for table in all_tables(tiny.study) if "exams without teacher" in table.title.lower()
+    )

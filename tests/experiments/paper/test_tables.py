@@ -4,35 +4,35 @@ import pytest
 from rich.console import Console
 
 from kurt2rt.experiments.paper.outcome import GrowthOutcome
-from kurt2rt.experiments.paper.study import GrowthStudy
+from kurt2rt.experiments.paper.summary import GrowthStudy
 from kurt2rt.experiments.paper.tables import (
-    asked_sheet,
-    behaviour_sheet,
-    drive_sheet,
-    exam_sheet,
-    growth_sheet,
-    knowledge_sheet,
-    unseen_sheet,
+    behaviour_table,
+    drive_table,
+    exam_table,
+    growth_table,
+    knowledge_table,
+    paper_targets_table,
+    unseen_table,
 )
 from kurt2rt.experiments.study.table import Table, as_rich
 from tests.experiments.paper.outcomes import MADE_OF, drive, robot, summary_of
 
 
-def verdicts_of(sheet: Table) -> dict[str, tuple[str, ...]]:
-    return {row[1]: row[2:] for row in sheet.rows}
+def verdicts_of(table: Table) -> dict[str, tuple[str, ...]]:
+    return {row[1]: row[2:] for row in table.rows}
 
 
 def test_what_was_taught_stands_beside_the_paper() -> None:
     summary = summary_of("wall_following", [robot(seed, rlas, drive()) for seed, rlas in ((1, 80), (2, 90), (3, 99))])
-    sheet = knowledge_sheet([summary], "what was taught")
-    assert sheet.title == "What was taught"
-    assert sheet.rows == (("wall following", "90", "85 to 94.5", "91", "345", "345", "41", "52", "3"),)
-    assert "3 robots" in sheet.note
+    table = knowledge_table([summary], "what was taught")
+    assert table.title == "What was taught"
+    assert table.rows == (("wall following", "90", "85 to 94.5", "91", "345", "345", "41", "52", "3"),)
+    assert "3 robots" in table.note
 
 
 def test_a_teaching_time_that_the_paper_does_not_tell_is_not_made_up() -> None:
-    sheet = knowledge_sheet([summary_of("turn_left", [robot(1, 40, drive("manhattan"))])], "what was taught")
-    assert sheet.rows[0][3:6] == ("43", "345", "not told")
+    table = knowledge_table([summary_of("turn_left", [robot(1, 40, drive("manhattan"))])], "what was taught")
+    assert table.rows[0][3:6] == ("43", "345", "not told")
 
 
 def test_success_and_collisions_come_with_intervals() -> None:
@@ -41,7 +41,7 @@ def test_success_and_collisions_come_with_intervals() -> None:
         robot(2, 80, drive("a"), drive("b", succeeded=False, stuck=True, duration_s=150.0)),
         robot(3, 80, drive("a"), drive("b", collisions=0, duration_s=150.0)),
     ]
-    a, b = exam_sheet([summary_of("wall_following", robots)], "exams").rows
+    a, b = exam_table([summary_of("wall_following", robots)], "exams").rows
     # Wilson's interval of 3 of 3; Poisson's exact upper end of no collision in 1.5 times 10 min.
     assert a == ("wall following", "A", "3 of 3", "44% to 100%", "0", "0", "0.00", "0.00 to 2.46")
     # 3 collisions in 600 s: drawn robots alone have none, or 3 in 300 s; Poisson's upper end is 8.77.
@@ -56,13 +56,13 @@ def test_generated_worlds_are_one_row_and_each_is_named_with_its_robot() -> None
         robot(101, 80, drive("a"), drive("rooms-101")),
     ]
     summary = summary_of("wall_following", robots)
-    *_, generated = exam_sheet([summary], "exams").rows
+    *_, generated = exam_table([summary], "exams").rows
     assert generated[:3] == ("wall following", "3 of rooms-100..129", "2 of 3")
 
 
 def test_each_generated_world_is_told_with_the_robot_that_drove_in_it() -> None:
     robots = [robot(seed, 80, *(drive(f"rooms-{room}") for room in range(seed, 130, 2))) for seed in (100, 101)]
-    rows = unseen_sheet(summary_of("wall_following", robots)).rows
+    rows = unseen_table(summary_of("wall_following", robots)).rows
     assert len(rows) == 30
     assert rows[0] == ("rooms-100", "100", "yes", "0", "8.0 (9.0) laps", "")
     assert [row[1] for row in rows[:4]] == ["100", "101", "100", "101"]
@@ -70,7 +70,7 @@ def test_each_generated_world_is_told_with_the_robot_that_drove_in_it() -> None:
 
 def test_a_generated_world_that_several_robots_drove_in_is_told_for_each_and_one_that_none_did_is_left_out() -> None:
     robots = [robot(seed, 80, drive("rooms-101", collisions=seed - 100)) for seed in (121, 101)]
-    rows = unseen_sheet(summary_of("wall_following", robots)).rows
+    rows = unseen_table(summary_of("wall_following", robots)).rows
     assert [row[:4] for row in rows] == [("rooms-101", "101", "yes", "1"), ("rooms-101", "121", "yes", "21")]
 
 
@@ -82,9 +82,9 @@ def test_junctions_are_counted_over_all_robots() -> None:
         robot(1, 130, drive("manhattan", findings=driven(50, 50))),
         robot(2, 140, drive("manhattan", findings=driven(30, 26))),
     ]
-    sheet = drive_sheet([summary_of("streets", robots)], "drives")
-    assert sheet.columns[-3:] == ("lateral deviation, m", "junctions right", "95 %")
-    (row,) = sheet.rows
+    table = drive_table([summary_of("streets", robots)], "drives")
+    assert table.columns[-3:] == ("lateral deviation, m", "junctions right", "95 %")
+    (row,) = table.rows
     assert row[:6] == ("streets", "manhattan", "8.0 laps", "9.0", "0, 0", "3.4%")
     assert row[6:8] == ("0.030", "95.0% of 80")
     assert row[8] == "86.7% to 100.0%"  # the second robot drawn twice, and the first
@@ -97,10 +97,10 @@ def test_comparisons_with_a_teacher_who_did_not_do_well_are_told() -> None:
         robot(3, 80, drive("a"), drive("rooms-102", teachers_progress=0.0)),
     ]
     summary = summary_of("wall_following", robots)
-    sheet = drive_sheet([summary], "drives")
-    assert sheet.columns[4] == "failed, nowhere"
-    assert [row[4] for row in sheet.rows] == ["2, 0", "1, 1"]
-    told = [row[4] for row in unseen_sheet(summary).rows]
+    table = drive_table([summary], "drives")
+    assert table.columns[4] == "failed, nowhere"
+    assert [row[4] for row in table.rows] == ["2, 0", "1, 1"]
+    told = [row[4] for row in unseen_table(summary).rows]
     assert told == ["8.0 (9.0) laps", "8.0 (9.0, failed) laps", "8.0 (0.0, got nowhere) laps"]
 
 
@@ -112,12 +112,12 @@ def test_exams_with_a_teacher_that_gets_nowhere_count_neither_way() -> None:
         robot(3, 80, drive("a", succeeded=False), drive("b", teachers_progress=-1.0)),
     ]
     summary = summary_of("wall_following", robots)
-    a, b, _ = exam_sheet([summary], "exams").rows
+    a, b, _ = exam_table([summary], "exams").rows
     assert a[1:4] == ("A", "1 of 2, 1 not judged", "9% to 91%")
     assert b[1:4] == ("B", "0 of 0, 3 not judged", "")
-    assert [row[2] for row in unseen_sheet(summary).rows] == ["not judged"]
-    sheet = asked_sheet([summary], "what was asked")
-    said = verdicts_of(sheet)
+    assert [row[2] for row in unseen_table(summary).rows] == ["not judged"]
+    table = paper_targets_table([summary], "what was asked")
+    said = verdicts_of(table)
     assert said["success in A"] == ("at least 2 of 2", "1 of 2, 1 not judged", "MISSED")
     assert said["success in B"] == ("at least 0 of 0", "0 of 0, 3 not judged", "not judged")
 
@@ -133,8 +133,8 @@ def test_behaviours_taught_in_common_stand_beside_the_papers_parts() -> None:
     }
     of = {"straight_on": 70, "turn_left": 40}
     robots = [robot(seed, 110, drive("manhattan", findings=found), rlas_of=of) for seed in (1, 2)]
-    sheet = behaviour_sheet([summary_of("streets", robots)], "taught in common")
-    assert sheet.rows == (
+    table = behaviour_table([summary_of("streets", robots)], "taught in common")
+    assert table.rows == (
         ("streets", "straight_on", "70", "70 to 70", "71", "10 of 10"),
         ("streets", "turn_left", "40", "40 to 40", "43", "6 of 8"),
     )
@@ -145,25 +145,25 @@ def test_what_is_missed_is_said_in_a_word() -> None:
         robot(seed, 92, drive("a"), drive("b", succeeded=seed < 18), drive("c", succeeded=seed < 17))
         for seed in range(20)
     ]
-    sheet = asked_sheet([summary_of("wall_following", robots)], "what was asked")
-    assert verdicts_of(sheet) == {
+    table = paper_targets_table([summary_of("wall_following", robots)], "what was asked")
+    assert verdicts_of(table) == {
         "RLAs, median": ("at most 91", "92", "MISSED"),
         "teaching": ("at most 345 s", "345 s", "met"),
         "success in A": ("at least 19 of 20", "20 of 20", "met"),
         "success in B": ("at least 18 of 20", "18 of 20", "met"),
         "success in C": ("at least 18 of 20", "17 of 20", "MISSED"),
     }
-    assert sheet.note == "3 of 5 numbers asked for are met."
+    assert table.note == "3 of 5 numbers asked for are met."
     console = Console(width=100, no_color=True)
     with console.capture() as capture:
-        console.print(as_rich(sheet))
+        console.print(as_rich(table))
     assert capture.get().count("MISSED") == 2
 
 
 def test_where_there_is_a_reason_nothing_is_judged() -> None:
-    sheet = asked_sheet([summary_of("wall_following", [robot(1, 9, drive())])], "what was asked", ["Too few."])
-    assert {row[-1] for row in sheet.rows} == {"not judged"}
-    assert sheet.note == "Not judged. Too few."
+    table = paper_targets_table([summary_of("wall_following", [robot(1, 9, drive())])], "what was asked", ["Too few."])
+    assert {row[-1] for row in table.rows} == {"not judged"}
+    assert table.note == "Not judged. Too few."
 
 
 @pytest.mark.parametrize(
@@ -173,15 +173,15 @@ def test_where_there_is_a_reason_nothing_is_judged() -> None:
 def test_streets_are_judged_by_junctions_and_collisions(right: int, collisions: int, verdicts: tuple[str, str]) -> None:
     found = {"junctions": 100.0, "junctions right": float(right)}
     robots = [robot(1, 130, drive("manhattan", collisions=collisions, duration_s=600.0, findings=found))]
-    said = verdicts_of(asked_sheet([summary_of("streets", robots)], "what was asked"))
+    said = verdicts_of(paper_targets_table([summary_of("streets", robots)], "what was asked"))
     assert said["junctions right in manhattan"] == ("at least 95%", f"{right}.0% of 100", verdicts[0])
     assert said["collisions in 10 min in manhattan"] == ("below 0.5", f"{collisions:.2f}", verdicts[1])
 
 
 def test_nothing_is_asked_of_tasks_taught_alone() -> None:
-    sheet = asked_sheet([summary_of("turn_right", [robot(1, 20, drive("manhattan"))])], "what was asked")
-    assert sheet.rows == ()
-    assert sheet.note == "Of these tasks nothing is asked."
+    table = paper_targets_table([summary_of("turn_right", [robot(1, 20, drive("manhattan"))])], "what was asked")
+    assert table.rows == ()
+    assert table.note == "Of these tasks nothing is asked."
 
 
 def test_growth_is_told_at_the_times_of_the_study() -> None:
@@ -190,6 +190,6 @@ def test_growth_is_told_at_the_times_of_the_study() -> None:
         for radius in (300.0, 150.0)
         for seed in (1, 2, 3)
     )
-    sheet = growth_sheet(GrowthStudy("plain", "wall_following", outcomes))
-    assert sheet.columns == ("R", "robots", "60 s", "120 s")
-    assert sheet.rows == (("150", "3", "61", "121"), ("300", "3", "61", "121"))
+    table = growth_table(GrowthStudy("plain", "wall_following", outcomes))
+    assert table.columns == ("R", "robots", "60 s", "120 s")
+    assert table.rows == (("150", "3", "61", "121"), ("300", "3", "61", "121"))

@@ -24,7 +24,8 @@ from kurt2rt.experiments.phases.steps import (
     UNKNOWN_BAD,
     UNTAUGHT,
 )
-from kurt2rt.experiments.phases.study import PhasesStudy
+from kurt2rt.experiments.phases.summary import PhasesStudy
+from kurt2rt.experiments.study.table import Table
 
 TASK = load_task("wall_following")
 ALL = (
@@ -97,5 +98,12 @@ def study(robots: int = 2, task: TaskSettings = TASK, **changed: Sequence[StageO
         for name in ALL
     }
     stages |= {name.replace("_", "-"): tuple(each) for name, each in changed.items()}
-    programme = PhasesPlan(task, tuple(range(100, 100 + robots)), False, "s", ())
-    return PhasesStudy(programme, stages, ((exam(),),) * robots)
+    plan = PhasesPlan(task, tuple(range(100, 100 + robots)), False, "s", ())
+    return PhasesStudy(plan, stages, ((exam(),),) * robots)
+
+
+def cells(table: Table, place: int) -> dict[str, str]:
+    """Return a row of a table by the names of its columns."""
+    row = dict(zip(table.columns, table.rows[place], strict=True))
+    assert len(table.rows[place]) == len(table.columns)
+    return row

@@ -4,9 +4,9 @@ from pathlib import Path
 
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.experiments.phases.job import StepJob
+from kurt2rt.experiments.phases.jobs import StepJob
 from kurt2rt.experiments.phases.outcome import JobOutcome
-from kurt2rt.experiments.phases.plan import DECIDING, PhasesPlan, plan
+from kurt2rt.experiments.phases.plan import DECIDING, PhasesPlan, make_plan
 from kurt2rt.experiments.phases.steps import BLAME_BY_CHANCE, CRITIC_ALONE, LONG_RUN, PHASE_2, PHASE_4, PHASE_5, REWARDS
 from kurt2rt.experiments.study.import_graph import modules_needed
 from kurt2rt.experiments.study.results import Results
@@ -18,7 +18,7 @@ TASK = load_task("wall_following")
 
 def planned(task: TaskSettings = TASK, seeds: tuple[int, ...] = (100, 101), *, quick: bool = False) -> PhasesPlan:
     results = Results(Path("never-made"))
-    return plan(task, seeds, STAGE, ROBOT, results, quick=quick, source_of=lambda _: "s")
+    return make_plan(task, seeds, STAGE, ROBOT, results, quick=quick, source_of=lambda _: "s")
 
 
 def with_phases(**changed: float) -> TaskSettings:
@@ -41,7 +41,7 @@ def test_every_job_keeps_its_result_in_a_file_of_its_own() -> None:
 
 def test_who_blames_by_chance_blames_each_robot_as_often_as_its_rewards_did(tmp_path: Path) -> None:
     results = Results(tmp_path)
-    jobs = {(job.step, job.file): job for job in plan(TASK, (100, 101), STAGE, ROBOT, results, source_of=str).jobs}
+    jobs = {(job.step, job.file): job for job in make_plan(TASK, (100, 101), STAGE, ROBOT, results, source_of=str).jobs}
     by_step = {step: [job for (name, _), job in jobs.items() if name == step] for step in (REWARDS, BLAME_BY_CHANCE)}
     for job, seed, blame in zip(by_step[REWARDS], (100, 101), (37, 5), strict=True):
         (tmp_path / job.file).parent.mkdir(parents=True, exist_ok=True)
@@ -70,14 +70,12 @@ def test_deciding_modules_hold_the_steps_not_the_report() -> None:
     assert {
         "corruption",
         "exams",
-        "event_replay",
-        "scoring",
         "steps",
-        "lesson_summary",
+        "stages",
         "lesson_plan",
         "agreement",
     } <= names
-    assert not {"html_report", "table", "table_rows", "figures"} & names
+    assert not {"html_report", "table", "tables", "figures"} & names
 
 
 def test_quick_is_every_step_for_seconds() -> None:

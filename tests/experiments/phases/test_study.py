@@ -18,14 +18,15 @@ from kurt2rt.experiments.phases.steps import (
     PHASE_4,
     SHUFFLED,
 )
-from kurt2rt.experiments.phases.study import conduct, read_study
-from kurt2rt.experiments.phases.table_rows import sheets
-from kurt2rt.experiments.study.pool import Standing
+from kurt2rt.experiments.phases.summary import read_study
+from kurt2rt.experiments.phases.tables import all_tables
+from kurt2rt.experiments.study.plan import run_missing
+from kurt2rt.experiments.study.pool import PoolProgress
 from kurt2rt.experiments.study.results import Results, StudyError
 from kurt2rt.knowledge.journal.loading import read_lessons
 from tests.experiments.helpers import ROBOT
 from tests.experiments.phases.outcomes import ALL
-from tests.experiments.phases.tiny import COMMAND, Tiny, tiny_programme, tiny_task
+from tests.experiments.phases.tiny import COMMAND, Tiny, tiny_plan, tiny_task
 from tests.experiments.study.page import Page
 
 
@@ -37,9 +38,9 @@ def lessons(tiny: Tiny, step: str) -> list[TeachingEvent]:
 
 def test_every_stage_is_there_and_every_step_leaves_what_the_robot_knows(tiny: Tiny) -> None:
     assert set(tiny.study.stages) == set(ALL)
-    assert tiny.results.missing(tiny.programme.jobs) == []
+    assert tiny.results.missing(tiny.plan.jobs) == []
     kept = {path.parent.name for path in tiny.results.folder.glob("knowledge/*/*.knowledge")}
-    assert kept == {job.step for job in tiny.programme.jobs}
+    assert kept == {job.step for job in tiny.plan.jobs}
     (long_run,) = tiny.study.stages[LONG_RUN]
     assert long_run.exams == ()
 
@@ -84,21 +85,21 @@ def test_phase_4_changes_the_critic_alone(tiny: Tiny) -> None:
 
 def test_an_interrupted_run_does_only_what_is_missing_and_comes_to_the_same(tiny: Tiny, tmp_path: Path) -> None:
     results = Results(tmp_path)
-    programme = tiny_programme(results)
-    left_out = {job.file for job in programme.jobs if job.step in (CORRUPTED, LONG_RUN)}
+    plan = tiny_plan(results)
+    left_out = {job.file for job in plan.jobs if job.step in (CORRUPTED, LONG_RUN)}
     for path in tiny.results.folder.rglob("*-100.*"):
         name = path.relative_to(tiny.results.folder)
         if str(name) not in left_out:
             (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
             (tmp_path / name).write_bytes(path.read_bytes())
-    seen: list[Standing] = []
-    conduct(programme, results, 1, seen.append)
-    assert {name for standing in seen for name in standing.running} == {
+    seen: list[PoolProgress] = []
+    run_missing(plan, results, 1, seen.append)
+    assert {name for progress in seen for name in progress.running} == {
         "corrupted, untouched, seed 100",
         "long run, seed 100",
     }
-    assert seen[-1].done_s == sum(job.robot_time_s for job in programme.jobs if job.file in left_out)
-    assert read_study(programme, results).stages == tiny.study.stages
+    assert seen[-1].done_s == sum(job.robot_time_s for job in plan.jobs if job.file in left_out)
+    assert read_study(plan, results).stages == tiny.study.stages
 
 
 def test_the_critic_is_judged_where_nothing_is_taught(tiny: Tiny) -> None:
@@ -111,15 +112,15 @@ def test_the_critic_is_judged_where_nothing_is_taught(tiny: Tiny) -> None:
 
 def test_knowledge_that_is_gone_while_its_result_stands_is_told_with_what_to_delete(tmp_path: Path) -> None:
     results = Results(tmp_path)
-    programme = tiny_programme(results)
-    (job,) = [job for job in programme.jobs if job.step == CORRUPTED]
+    plan = tiny_plan(results)
+    (job,) = [job for job in plan.jobs if job.step == CORRUPTED]
     with pytest.raises(StudyError, match=r"phase-2/\S+.knowledge is gone, and \S+100.json stands; delete that too"):
         job.run(lambda _: None)
 
 
 def test_results_that_are_not_there_are_not_shown(tiny: Tiny, tmp_path: Path) -> None:
     with pytest.raises(StudyError):
-        read_study(tiny.programme, Results(tmp_path))
+        read_study(tiny.plan, Results(tmp_path))
 
 
 def test_the_report_holds_every_figure_and_every_table_and_needs_nothing_else(tiny: Tiny) -> None:
@@ -136,7 +137,7 @@ def test_the_report_holds_every_figure_and_every_table_and_needs_nothing_else(ti
     pictures = [base64.b64decode(address.removeprefix("data:image/png;base64,")) for address in page.addresses]
     assert pictures == [each.path.read_bytes() for each in tiny.pictures]
     assert all(min(imread(each.path).shape[:2]) > 400 for each in tiny.pictures)
-    titles = [sheet.title for sheet in sheets(tiny.study, tiny.reasons)]
+    titles = [table.title for table in all_tables(tiny.study, tiny.reasons)]
     assert len(titles) == len(set(titles))
     assert all(f"<caption>{title}</caption>" in text for title in titles)
     assert page.tags.count("table") == len(titles) + 1  # and that of the settings

@@ -4,11 +4,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.experiments.phases.figures import draw_pictures
-from kurt2rt.experiments.phases.plan import PhasesPlan, plan
+from kurt2rt.experiments.phases.figures import draw_figures
+from kurt2rt.experiments.phases.plan import PhasesPlan, make_plan
 from kurt2rt.experiments.phases.report import reasons_not_to_judge, write_report
-from kurt2rt.experiments.phases.study import PhasesStudy, conduct, read_study
+from kurt2rt.experiments.phases.summary import PhasesStudy, read_study
 from kurt2rt.experiments.study.figure import SavedFigure
+from kurt2rt.experiments.study.plan import run_missing
 from kurt2rt.experiments.study.results import Results
 from tests.experiments.helpers import ROBOT, STAGE
 
@@ -18,7 +19,7 @@ COMMAND = "kurt2rt phases --task wall_following --seeds 100"
 @dataclass(frozen=True)
 class Tiny:
     results: Results
-    programme: PhasesPlan
+    plan: PhasesPlan
     study: PhasesStudy
     pictures: list[SavedFigure]
     report: Path
@@ -34,17 +35,17 @@ def tiny_task() -> TaskSettings:
     return task.model_copy(update={"teaching": teaching, "exam": exam, "phases": phases})
 
 
-def tiny_programme(results: Results) -> PhasesPlan:
-    return plan(tiny_task(), (100,), STAGE, ROBOT, results, source_of=lambda _: "tested")
+def tiny_plan(results: Results) -> PhasesPlan:
+    return make_plan(tiny_task(), (100,), STAGE, ROBOT, results, source_of=lambda _: "tested")
 
 
 def do_tiny(folder: Path) -> Tiny:
     results = Results(folder)
-    programme = tiny_programme(results)
+    plan = tiny_plan(results)
     with results.held():
-        conduct(programme, results, 1, lambda _: None)
-    study = read_study(programme, results)
-    pictures = list(draw_pictures(study, folder))
+        run_missing(plan, results, 1, lambda _: None)
+    study = read_study(plan, results)
+    pictures = list(draw_figures(study, folder))
     report = folder / "report.html"
     write_report(study, pictures, COMMAND, report)
-    return Tiny(results, programme, study, pictures, report, list(reasons_not_to_judge(programme)))
+    return Tiny(results, plan, study, pictures, report, list(reasons_not_to_judge(plan)))

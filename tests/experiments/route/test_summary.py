@@ -8,13 +8,15 @@ from matplotlib.image import imread
 
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.task_settings import TaskSettings, load_task
-from kurt2rt.experiments.route.plan import RoutePlan, basic_file, basic_task_of, plan
-from kurt2rt.experiments.route.report import draw_pictures, write_report
-from kurt2rt.experiments.route.summary import RouteStudy, conduct, read_study, robot_time_s
-from kurt2rt.experiments.route.tables import sheets
+from kurt2rt.experiments.route.figures import draw_figures
+from kurt2rt.experiments.route.plan import RoutePlan, basic_file, basic_task_of, make_plan
+from kurt2rt.experiments.route.report import write_report
+from kurt2rt.experiments.route.summary import RouteStudy, read_study
+from kurt2rt.experiments.route.tables import all_tables
 from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT
 from kurt2rt.experiments.study.figure import SavedFigure
-from kurt2rt.experiments.study.pool import Standing
+from kurt2rt.experiments.study.plan import missing_time_s, run_missing
+from kurt2rt.experiments.study.pool import PoolProgress
 from kurt2rt.experiments.study.results import Results, StudyError
 from kurt2rt.knowledge.journal.fold import fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
@@ -33,7 +35,7 @@ def short(task: TaskSettings, teaching_s: float) -> TaskSettings:
 
 def a_programme(results: Results, basic_folder: Path | None = None, teaching_s: float = 8.0) -> RoutePlan:
     route, streets = short(load_task("route"), teaching_s), short(load_task("streets"), 10.0)
-    return plan(
+    return make_plan(
         route,
         streets,
         (1,),
@@ -50,39 +52,39 @@ def a_programme(results: Results, basic_folder: Path | None = None, teaching_s: 
 @dataclass(frozen=True)
 class Done:
     results: Results
-    programme: RoutePlan
+    plan: RoutePlan
     study: RouteStudy
     pictures: list[SavedFigure]
     report: Path
-    standings: list[Standing]
+    progress: list[PoolProgress]
 
 
 @pytest.fixture(scope="module")
 def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
     results = Results(tmp_path_factory.mktemp("routes"))
-    programme = a_programme(results)
-    standings: list[Standing] = []
+    plan = a_programme(results)
+    progress: list[PoolProgress] = []
     with results.held():
-        conduct(programme, results, 1, standings.append)
-    study = read_study(programme, results)
-    pictures = list(draw_pictures(study, STAGE, results.folder))
+        run_missing(plan, results, 1, progress.append)
+    study = read_study(plan, results)
+    pictures = list(draw_figures(study, STAGE, results.folder))
     report = results.folder / "report.html"
     write_report(study, pictures, COMMAND, report)
-    return Done(results, programme, study, pictures, report, standings)
+    return Done(results, plan, study, pictures, report, progress)
 
 
 def test_the_streets_are_taught_once_and_every_way_of_teaching_goes_on_from_them(done: Done) -> None:
-    (basic,) = done.programme.basic_jobs
+    (basic,) = done.plan.basic_jobs
     assert basic.knowledge.is_file()
     taught, commanded = (summary.outcomes[0] for summary in done.study.summaries)
     assert (taught.teaching_s, commanded.teaching_s) == (8.0, 8.0)
     assert taught.mid_rlas == taught.mid_asks > 0 == commanded.mid_rlas
-    assert done.results.missing(done.programme.jobs) == []
-    assert done.standings[-1].done_s == 10.0 + 2 * (8.0 + 3.0)
+    assert done.results.missing(done.plan.jobs) == []
+    assert done.progress[-1].done_s == 10.0 + 2 * (8.0 + 3.0)
 
 
 def test_what_the_mid_level_was_taught_stands_in_its_file(done: Done) -> None:
-    job = done.programme.experiments[0].jobs[0]
+    job = done.plan.experiments[0].jobs[0]
     with Journal.read_only(job.knowledge) as journal:
         system = fold_journal(journal, job.task.learning.radius)
         assert journal.binding.system == "streets"
@@ -95,19 +97,19 @@ def test_what_the_mid_level_was_taught_stands_in_its_file(done: Done) -> None:
 
 def test_done_again_nothing_is_left_to_do_and_other_settings_are_refused(done: Done) -> None:
     again = a_programme(done.results)
-    assert robot_time_s(again, done.results) == 0.0
+    assert missing_time_s(again, done.results) == 0.0
     with pytest.raises(StudyError, match="made with other settings"):
         done.results.missing(a_programme(done.results, teaching_s=13.0).jobs)
 
 
 def test_robots_that_know_the_streets_already_are_taught_the_route_only(done: Done, tmp_path: Path) -> None:
-    folder = done.programme.basic_jobs[0].knowledge.parent
-    programme = a_programme(Results(tmp_path), folder)
-    assert programme.basic_jobs == ()
-    assert programme.experiments[0].jobs[0].basic == folder / "streets-1.knowledge"
-    assert basic_file(folder / "streets-1.knowledge", programme.basic, 1) == folder / "streets-1.knowledge"
+    folder = done.plan.basic_jobs[0].knowledge.parent
+    plan = a_programme(Results(tmp_path), folder)
+    assert plan.basic_jobs == ()
+    assert plan.experiments[0].jobs[0].basic == folder / "streets-1.knowledge"
+    assert basic_file(folder / "streets-1.knowledge", plan.basic, 1) == folder / "streets-1.knowledge"
     with pytest.raises(StudyError, match=r"streets-2\.knowledge: there is no such file; teach the streets with"):
-        basic_file(folder, programme.basic, 2)
+        basic_file(folder, plan.basic, 2)
 
 
 def test_pictures_and_report_show_every_way_of_teaching(done: Done) -> None:
@@ -117,8 +119,8 @@ def test_pictures_and_report_show_every_way_of_teaching(done: Done) -> None:
     text = done.report.read_text(encoding="utf-8")
     assert Page(text).images == [each.title for each in done.pictures]
     assert COMMAND in text
-    for sheet in sheets(done.study):
-        assert sheet.title in text
+    for table in all_tables(done.study):
+        assert table.title in text
 
 
 def test_the_streets_are_the_task_whose_knowledge_the_route_goes_on_in() -> None:

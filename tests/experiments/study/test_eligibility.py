@@ -1,6 +1,6 @@
 import pytest
 
-from kurt2rt.experiments.study.eligibility import reasons_of_robots
+from kurt2rt.experiments.study.eligibility import reasons_against_judging
 
 
 @pytest.mark.parametrize(
@@ -13,4 +13,4 @@ from kurt2rt.experiments.study.eligibility import reasons_of_robots
     ],
 )
 def test_only_enough_robots_that_nobody_has_seen_are_judged(seeds: range, reasons: list[str]) -> None:
-    assert list(reasons_of_robots(seeds)) == reasons
+    assert list(reasons_against_judging(seeds)) == reasons

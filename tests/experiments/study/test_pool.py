@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.experiments.study.pool import JobKilledError, Standing, Tell, run_jobs
+from kurt2rt.experiments.study.pool import JobKilledError, PoolProgress, Progress, run_jobs
 
 
 @dataclass(frozen=True)
@@ -18,7 +18,7 @@ class Job:
     robot_time_s: float
     fails: bool = False
 
-    def run(self, tell: Tell) -> str:
+    def run(self, tell: Progress) -> str:
         if self.fails:
             raise RuntimeError(f"{self.name} fails")
         tell(self.robot_time_s / 2)
@@ -35,8 +35,8 @@ def test_the_longest_job_comes_first_and_results_keep_their_order() -> None:
 
 
 def test_how_far_it_is_is_told_in_robot_time() -> None:
-    told: list[Standing] = []
-    run_jobs(JOBS, 1, on_standing=told.append)
+    told: list[PoolProgress] = []
+    run_jobs(JOBS, 1, on_progress=told.append)
     assert told == [
         (0.0, ("long",)),
         (20.0, ("long",)),
@@ -62,9 +62,9 @@ def test_no_jobs_are_no_work() -> None:
 
 @pytest.mark.deep
 def test_other_processes_come_to_the_same() -> None:
-    told: list[Standing] = []
+    told: list[PoolProgress] = []
     done: list[int] = []
-    assert run_jobs(JOBS, 2, on_done=done.append, on_standing=told.append) == run_jobs(JOBS, 1)
+    assert run_jobs(JOBS, 2, on_done=done.append, on_progress=told.append) == run_jobs(JOBS, 1)
     assert sorted(done) == [0, 1, 2]
     assert told[-1] == (70.0, ())
 
@@ -83,7 +83,7 @@ class Killed:
     name: str = "greedy, seed 7"
     robot_time_s: float = 30.0
 
-    def run(self, tell: Tell) -> str:
+    def run(self, tell: Progress) -> str:
         del tell
         os.kill(os.getpid(), signal.SIGKILL)
         return "never"
@@ -104,7 +104,7 @@ class Waiting:
     file: Path
     robot_time_s: float = 1.0
 
-    def run(self, tell: Tell) -> None:
+    def run(self, tell: Progress) -> None:
         del tell
         self.file.write_text(str(os.getpid()))
         os.write(1, b"begun\n")  # one piece, whoever else writes

@@ -8,7 +8,7 @@ import pytest
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.study.table import Table
 from kurt2rt.experiments.surprise.drive import SurpriseCounts
-from kurt2rt.experiments.surprise.jobs import SurpriseJob, sheet_of
+from kurt2rt.experiments.surprise.jobs import SurpriseJob, surprise_table
 from tests.experiments.helpers import ROBOT, STAGE, teach
 
 QUIET = SurpriseCounts("nothing", 200, 4, 10, 0, 0, 0.0)
@@ -17,8 +17,8 @@ QUIET = SurpriseCounts("nothing", 200, 4, 10, 0, 0, 0.0)
 def test_a_table_has_a_row_for_each_difference_and_the_robots_together() -> None:
     one = (QUIET, SurpriseCounts("set down elsewhere", 100, 20, 30, 10, 8, 0.05))
     other = (replace(QUIET, surprising=8), SurpriseCounts("set down elsewhere", 100, 10, 30, 10, 6, 0.15))
-    sheet: Table = sheet_of([one, other])
-    assert sheet.rows == (
+    table: Table = surprise_table([one, other])
+    assert table.rows == (
         ("nothing", "400", "3.0 %", "2.0 to 4.0 %", "5.0 %", "", "0.0 %"),
         ("set down elsewhere", "200", "15.0 %", "10.0 to 20.0 %", "30.0 %", "70.0 %", "10.0 %"),
     )

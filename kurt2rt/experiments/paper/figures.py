@@ -1,0 +1,189 @@
+"""Figures of the paper, drawn from our results, and one figure of drives for each task."""
+
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+from hal.simulation import SimulationFactory
+from kurt2rt.core.task_settings import PaperResult
+from kurt2rt.experiments.lockstep.exam_verdict import EXAM_VERDICT_TEXTS, ExamVerdict
+from kurt2rt.experiments.lockstep.report import label_of
+from kurt2rt.experiments.lockstep.trails import ASKED, columns, draw_trail
+from kurt2rt.experiments.paper.outcome import DriveOutcome
+from kurt2rt.experiments.paper.summary import GrowthStudy, PaperStudy, PaperSummary
+from kurt2rt.experiments.study.figure import SavedFigure
+from kurt2rt.experiments.study.figure_style import COLLIDED, START, legend_below, save
+
+_LIFTED_M = 0.5
+"""A robot that is so far from where it was a moment ago was set down elsewhere."""
+_COLUMNS = 3
+_VERDICT_TEXTS = {**EXAM_VERDICT_TEXTS, ExamVerdict.PASSED: "success", ExamVerdict.FAILED: "no success"}
+
+
+def draw_eight(factory: SimulationFactory, drive: DriveOutcome, path: Path) -> None:
+    """Fig. 7: the way round the two columns, with its start."""
+    figure = Figure(figsize=(7.0, 6.0), layout="constrained")
+    axes = figure.subplots()
+    _draw_drive(axes, factory, drive)
+    legend_below(axes, columns=4)
+    save(figure, path)
+
+
+def draw_drives(factory: SimulationFactory, drives: Sequence[DriveOutcome], path: Path) -> None:
+    """A panel per drive: the way, its start, where the robot did not know the situation and where it collided."""
+    columns = 2 if len(drives) == 4 else min(_COLUMNS, len(drives))
+    rows = math.ceil(len(drives) / columns)
+    figure = Figure(
+        figsize=(max(5.4, 4.6 * columns), 5.4 * rows), layout=ConstrainedLayoutEngine(h_pad=0.15, w_pad=0.1)
+    )
+    panels = figure.subplots(rows, columns, squeeze=False).flatten().tolist()
+    for axes, drive in zip(panels, drives, strict=False):
+        _draw_drive(axes, factory, drive)
+        axes.set_title(_format_drive(drive), fontsize="medium")
+        legend_below(axes, columns=2)
+    for axes in panels[len(drives) :]:
+        axes.set_axis_off()
+    save(figure, path)
+
+
+def _format_drive(drive: DriveOutcome) -> str:
+    collisions = f"{drive.collisions} collision{'' if drive.collisions == 1 else 's'}"
+    verdict = _VERDICT_TEXTS[drive.verdict]
+    early = drive.alarm or ("stuck" if drive.stuck else "")
+    end = f", {early} after {drive.duration_s:.0f} s" if early else ""
+    return f"{label_of(drive.world)}: {drive.progress:.1f} {drive.unit}, {collisions}\n{verdict}{end}"
+
+
+def _draw_drive(axes: Axes, factory: SimulationFactory, drive: DriveOutcome) -> None:
+    factory.draw(axes, drive.world)
+    draw_trail(axes, drive.trail, f"the robot, {drive.duration_s:.0f} s", carried_m=_LIFTED_M, width=0.9)
+    if drive.trail:
+        # Hollow, for a robot that knows nothing asks where it starts.
+        axes.plot(*columns(drive.trail[:1]), "s", color=START, fillstyle="none", mew=2.0, ms=9, zorder=6, label="start")
+    if drive.asked_at:
+        label = f"situation unknown ({len(drive.asked_at)})"
+        axes.plot(*columns(drive.asked_at), "o", color=ASKED, markersize=4, zorder=4, label=label)
+    if drive.collided_at:
+        label = f"collided ({len(drive.collided_at)})"
+        axes.plot(*columns(drive.collided_at), "X", color=COLLIDED, markersize=8, zorder=5, label=label)
+
+
+_TITLES = {"shipped": "With the shipped settings", "plain": "Plain reading of the paper"}
+
+
+def draw_growth(studies: Sequence[GrowthStudy], paper: PaperResult, path: Path) -> None:
+    """One panel per reading: medians as lines, quartiles as bands, and the point that the paper's text gives."""
+    figure = Figure(figsize=(5.6 * len(studies), 4.8), layout="constrained")
+    panels = figure.subplots(1, len(studies), squeeze=False, sharey=True)[0]
+    for axes, study in zip(panels, studies, strict=True):
+        radii = study.radii
+        colours = mpl.colormaps["viridis"](np.linspace(0.0, 0.85, len(radii)))
+        for radius, colour in zip(radii, colours, strict=True):
+            curves = study.curves(radius)
+            last_s = min(map(len, curves))
+            low, median, high = np.percentile([curve[:last_s] for curve in curves], (25, 50, 75), axis=0)
+            time_s = np.arange(1, last_s + 1)
+            axes.fill_between(time_s, low, high, color=colour, alpha=0.2, linewidth=0)
+            axes.plot(time_s, median, color=colour, linewidth=1.8, label=f"R = {radius:g}")
+        if paper.teaching_s:
+            label = f"the paper's text: {paper.rlas} RLAs, {paper.teaching_s:g} s"
+            axes.plot([paper.teaching_s], [paper.rlas], "k*", markersize=12, linestyle="none", label=label)
+        axes.set_title(_TITLES[study.reading])
+        axes.set_xlabel("teaching in phase 1, s of robot time")
+        axes.set_xlim(left=0)
+        axes.set_ylim(bottom=0)
+        axes.grid(alpha=0.25)
+    panels[0].set_ylabel("RLAs")
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=3, fontsize="small", frameon=False)
+    save(figure, path)
+
+
+def draw_testing_ground(factory: SimulationFactory, world: str, path: Path) -> None:
+    """Fig. 4: the world that is taught in, with the robot in it."""
+    figure = Figure(figsize=(5.6, 6.0), layout="constrained")
+    axes = figure.subplots()
+    factory.draw(axes, world)
+    factory.draw_robot(axes, world)
+    save(figure, path)
+
+
+def draw_worlds(factory: SimulationFactory, worlds: Sequence[str], path: Path) -> None:
+    """Fig. 6: all worlds, two beside each other."""
+    rows = math.ceil(len(worlds) / 2)
+    figure = Figure(figsize=(10.0, 5.0 * rows), layout="constrained")
+    panels = figure.subplots(rows, 2, squeeze=False).flatten().tolist()
+    for axes, world in zip(panels, worlds, strict=False):
+        factory.draw(axes, world)
+        axes.set_title(f"World {label_of(world)}" if len(world) == 1 else f"{world.capitalize()} world")
+    for axes in panels[len(worlds) :]:
+        axes.set_axis_off()
+    save(figure, path)
+
+
+_MOST_UNSEEN = 1
+"""Generated worlds in the picture of a task."""
+
+
+def draw_figures(study: PaperStudy, factory: SimulationFactory, folder: Path) -> Iterator[SavedFigure]:
+    """Draw each figure into the folder: fig2.png, fig4.png, fig6.png, fig7.png, drive-<task>.png.
+
+    Those are left out whose task is not in the study.
+    """
+    paper = study.plan.paper
+    shipped = study.of("shipped")
+    if study.growth:
+        path = folder / "fig2.png"
+        planned = study.plan.growth[0]
+        draw_growth(study.growth, planned.task.paper, path)
+        robots = len({each.seed for each in study.growth[0].outcomes})
+        yield SavedFigure(
+            path,
+            "Fig. 2: RLAs against teaching time for several R",
+            f"{planned.task.name}, phase 1 only. Median (line) and quartiles (band) of {robots} robots for each R. The "
+            "star is the only number in the paper's text, for both phases; the paper does not tell its R.",
+        )
+    path = folder / "fig4.png"
+    draw_testing_ground(factory, paper.testing_ground, path)
+    ground = f"World {label_of(paper.testing_ground)}, the testing ground, with the robot at a start pose, to scale."
+    yield SavedFigure(path, "Fig. 4: the testing environment", ground)
+    path = folder / "fig6.png"
+    draw_worlds(factory, paper.worlds, path)
+    yield SavedFigure(path, "Fig. 6: the test worlds", "World A is the one that is taught in.")
+    for summary in shipped:
+        outcome = summary.outcomes[0]
+        if summary.settings.task == paper.eight:
+            path = folder / "fig7.png"
+            draw_eight(factory, outcome.drives[0], path)
+            yield SavedFigure(
+                path,
+                "Fig. 7: the eight round two columns",
+                f"The exam of the robot of seed {outcome.seed} without its teacher: "
+                f"{_format_summary(outcome.drives[0])}. It is the first of the seeds, and was not chosen.",
+            )
+    for summary in shipped:
+        outcome = summary.outcomes[0]
+        path = folder / f"drive-{summary.task.name}.png"
+        draw_drives(factory, _of_picture(summary), path)
+        yield SavedFigure(
+            path,
+            summary.settings.title,
+            f"Exams of the robot of seed {outcome.seed}, the first one, after {outcome.teaching_s:g} s of teaching, "
+            f"with {outcome.rlas} RLAs.",
+        )
+
+
+def _of_picture(summary: PaperSummary) -> list[DriveOutcome]:
+    drives = summary.outcomes[0].drives
+    own = [each for each in drives if each.world in summary.task.exam.worlds]
+    return own + [each for each in drives if each not in own][:_MOST_UNSEEN]
+
+
+def _format_summary(drive: DriveOutcome) -> str:
+    return f"{drive.progress:.1f} {drive.unit} in {drive.duration_s:.0f} s, {drive.collisions} collisions"

@@ -1,1 +1,0 @@
-"""The tables of a path of all phases, a file for each subject."""

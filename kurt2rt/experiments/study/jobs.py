@@ -1,0 +1,81 @@
+"""Jobs of a study: one robot each, with a stored result and the robot's knowledge file."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ClassVar, TypedDict
+
+import anyio
+
+from hal.robot_settings import RobotSettings
+from hal.settings import Settings
+from hal.simulation import SimulationFactory
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.curriculum import Report
+from kurt2rt.experiments.study.pool import Progress
+from kurt2rt.experiments.study.progress_sum import ProgressSum
+from kurt2rt.experiments.study.provenance import Provenance
+from kurt2rt.experiments.study.results import Results
+
+
+class JobParts(TypedDict):
+    """Fields that all jobs of a study share."""
+
+    factory: SimulationFactory
+    robot: RobotSettings
+    results: Results
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StudyJob(ABC):
+    """Training and exams of one robot, in a process of their own."""
+
+    outcome: ClassVar[type[Settings]]
+    """Schema of the result."""
+    keeps_knowledge: ClassVar[bool] = True
+    factory: SimulationFactory
+    robot: RobotSettings
+    task: TaskSettings
+    seed: int
+    made_of: Provenance
+    results: Results
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """Name in progress displays."""
+
+    @property
+    @abstractmethod
+    def stem(self) -> str:
+        """Path of result and knowledge, without the top folder and the ending."""
+
+    @property
+    @abstractmethod
+    def robot_time_s(self) -> float:
+        """Simulated time in s, at most."""
+
+    @abstractmethod
+    async def measure(self, knowledge: Path, report: Report) -> Settings:
+        """Train and examine the robot and return the outcome; `knowledge` is the file to teach into."""
+
+    @property
+    def file(self) -> str:
+        """Path of the result within the folder of results."""
+        return f"results/{self.stem}.json"
+
+    @property
+    def knowledge(self) -> Path:
+        """Path of the knowledge file."""
+        return self.results.folder / f"knowledge/{self.stem}.knowledge"
+
+    def run(self, on_progress: Progress) -> None:
+        """Run the job and store result and knowledge."""
+        anyio.run(self._run, ProgressSum(on_progress).report)
+
+    async def _run(self, report: Report) -> None:
+        with self.results.scratch() as folder:
+            outcome = await self.measure(folder / "knowledge", report)
+            if self.keeps_knowledge:
+                self.results.keep(folder / "knowledge", f"knowledge/{self.stem}.knowledge")
+        self.results.write(self, outcome)

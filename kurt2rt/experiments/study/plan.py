@@ -1,0 +1,51 @@
+"""Plan of a study: stored jobs in waves, of which the missing ones are run."""
+
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+from kurt2rt.experiments.study.pool import Job, JobKilledError, PoolProgress, run_jobs
+from kurt2rt.experiments.study.results import Results, StoredResult, StudyError
+
+
+class StoredJob(StoredResult, Job[None], Protocol):
+    """Job that leaves its result in a file."""
+
+
+class StudyPlan(Protocol):
+    """Jobs of a study in waves, each of which needs only the waves before."""
+
+    @property
+    def waves(self) -> Sequence[Sequence[StoredJob]]:
+        """Jobs in the order of the waves."""
+        ...
+
+
+def missing_time_s(plan: StudyPlan, results: Results) -> float:
+    """Return the robot time of all jobs without a result, in s. Raises StudyError."""
+    return sum(wave[place].robot_time_s for wave in plan.waves for place in results.missing(wave))
+
+
+def run_missing(plan: StudyPlan, results: Results, processes: int, on_progress: Callable[[PoolProgress], None]) -> None:
+    """Run the jobs without a result, wave by wave; each stores its result as soon as it is done.
+
+    Args:
+        on_progress: called with the progress of all waves together.
+
+    Raises:
+        StudyError: a process was killed, or results of other settings are in the folder.
+        Exception: any error of a job.
+    """
+    before_s = 0.0
+    for wave in plan.waves:
+        jobs = [wave[place] for place in results.missing(wave)]
+
+        def update(progress: PoolProgress, before_s: float = before_s) -> None:
+            on_progress(PoolProgress(before_s + progress.done_s, progress.running))
+
+        try:
+            run_jobs(jobs, processes, on_progress=update)
+        except JobKilledError as error:
+            raise StudyError(
+                f"{error}", do="run again, it goes on where it was (with fewer --jobs it needs less)"
+            ) from error
+        before_s += sum(job.robot_time_s for job in jobs)

@@ -1,0 +1,62 @@
+"""The same curriculum for many seeds, in parallel processes."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import anyio
+
+from hal.robot_settings import RobotSettings
+from hal.simulation import SimulationFactory
+from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, run_exams, run_lesson
+from kurt2rt.experiments.study.pool import JobKilledError, Progress, run_jobs
+from kurt2rt.experiments.study.progress_sum import ProgressSum
+
+
+@dataclass(frozen=True, slots=True)
+class SeedJob:
+    """What one process does: teach with one seed into a knowledge file, then examine."""
+
+    factory: SimulationFactory
+    settings: RobotSettings
+    task: TaskSettings
+    worlds: tuple[str, ...]
+    seed: int
+    knowledge: Path
+
+    @property
+    def name(self) -> str:
+        """What is shown while it runs."""
+        return f"{self.task.name}, seed {self.seed}"
+
+    @property
+    def robot_time_s(self) -> float:
+        """The lesson; and in each world the exam and the teacher's own drive."""
+        return self.task.teaching.duration_s + 2 * len(self.worlds) * self.task.exam.duration_s
+
+    def run(self, tell: Progress) -> CurriculumResult:
+        """Teach and examine one seed."""
+        report = ProgressSum(tell).report
+
+        async def run() -> CurriculumResult:
+            lesson, events = await run_lesson(
+                self.factory, self.settings, self.task, self.knowledge, seed=self.seed, report=report
+            )
+            exams = await run_exams(
+                self.factory, self.settings, self.task, events, self.worlds, seed=self.seed, report=report
+            )
+            return CurriculumResult(lesson, exams)
+
+        return anyio.run(run)
+
+
+def run_seeds(jobs: Sequence[SeedJob], processes: int, on_done: Callable[[int], None]) -> list[CurriculumResult]:
+    """Run all jobs; results in the order of the jobs. `on_done` hears each seed that is through.
+
+    Raises JobKilledError and what a job raises.
+    """
+    try:
+        return run_jobs(jobs, processes, on_done=lambda place: on_done(jobs[place].seed))
+    except JobKilledError as error:
+        raise JobKilledError(str(error), do="run again, with fewer --jobs it needs less") from error
