@@ -57,13 +57,13 @@ class RuntimeOptions:
     active_behaviour: ActiveBehaviour | None = None
     """Shared with a `level_override` that reads it; made from the task by default."""
     attended: bool = False
-    """Whether the robot drives by its RLAs in phases 1 to 4 only while a teacher is present."""
+    """Drive by RLAs in phases 1 to 4 only while a teacher is present."""
     teacher_available: bool = True
     """False if there is no teacher to ask: RLAs whose action was withdrawn are skipped."""
     tolerates_stalls: bool = False
-    """Whether the robot stalls with this program, because it is simulated in it."""
+    """True if the robot stalls with this program, because it is simulated in it."""
     asks_at_bumper: bool = True
-    """Whether the robot asks that touches something; False for recordings of before it did."""
+    """Ask if an RLA pushes on toward what a bumper touches; False for recordings of before this question."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""The stack of layers: information goes up to the mid level, its command comes down to the basic level."""
+"""Layer stack: information goes up to the mid level, its command comes down to the basic level."""
 
 from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.decision.decision import Cause, Decision, stopped
@@ -10,16 +10,16 @@ from kurt2rt.core.planning.navigator import Navigator
 from kurt2rt.core.rla.rla import MID
 
 _STANDS: dict[GoalStatus | None, Cause] = {GoalStatus.ARRIVED: Cause.AT_GOAL, GoalStatus.NO_WAY: Cause.NO_WAY}
-"""Why a robot stands that seeks a goal, whatever its mid level commands."""
+"""Causes by which a goal stops the robot, even if the mid level has a command."""
 
 
 class LayerStack:
-    """A mid level over a basic one; itself a level, so the tick sees one layer (kurt2rt.core.decision.level.Level)."""
+    """Mid level over a basic level; itself a Level, so the tick calls one level."""
 
     def __init__(self, basic: Level, mid: MidLevel, navigator: Navigator | None = None) -> None:
-        """Both share one ActiveBehaviour: the mid level commands there, the basic level looks there.
+        """Connect two levels that share one ActiveBehaviour: the mid level sets it, the basic level reads it.
 
-        `navigator`: of that mid level; has it go to a goal, while there is one.
+        `navigator` leads the mid level to a goal while there is one.
         """
         self.basic = basic
         self.mid = mid
@@ -27,7 +27,7 @@ class LayerStack:
         self._before = Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
 
     def decide(self, situation: Situation, senses: SensorReadings, blocking_cause: Cause | None) -> Decision:
-        """The basic level's decision about what the mid level commands; where that one asks, the robot stands."""
+        """Return the basic level's decision for the mid level's command; the robot stands while the mid level asks."""
         commanded = self.mid.decide(senses, self._before)
         navigator = self.navigator
         if navigator is not None:
@@ -45,7 +45,7 @@ class LayerStack:
         return self._before
 
     def restart(self) -> None:
-        """The robot has been set down elsewhere."""
+        """Reset the mid level after the robot was repositioned."""
         self.mid.restart()
 
     def _decide_below(self, situation: Situation, senses: SensorReadings, blocking_cause: Cause | None) -> Decision:

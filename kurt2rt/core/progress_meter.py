@@ -9,26 +9,26 @@ class ProgressMeter:
     """Counters of the last 60 seconds in a ring of one-second bins; memory and time per tick are constant."""
 
     def __init__(self, period_s: float) -> None:
-        """`period_s`: of a tick."""
+        """`period_s`: length of a tick in s."""
         self._ticks_per_s = max(1, round(1 / period_s))
         self._ticks = [0] * WINDOW_S
         self._driven = [0] * WINDOW_S
         self._asks = [0] * WINDOW_S
         self._second = -1
-        """Of the newest bin; -1 before the first tick."""
+        """Second of the newest bin; -1 before the first tick."""
         self._seconds = 0
         self._asking = False
         self._asked_at = -self._ticks_per_s
 
     def update(self, record: TickRecord) -> None:
-        """Count one tick. Ticks that were missed pass as time and count for nothing."""
+        """Count one tick. Missed ticks pass as time and are not counted."""
         self._turn_to(record.tick // self._ticks_per_s)
         place = self._second % WINDOW_S
         standing = record.standing
         self._ticks[place] += 1
         if record.decision.rla_id is not None and standing.reason is StandReason.DRIVES:
             self._driven[place] += 1
-        # As the terminal tells questions: at the border of R the robot asks for moments at a time.
+        # At the border of R the robot asks for moments at a time: count one question a second, as the terminal does.
         asking = standing.asks and not standing.needs_resume
         if asking and not self._asking and record.tick - self._asked_at >= self._ticks_per_s:
             self._asks[place] += 1
@@ -42,7 +42,7 @@ class ProgressMeter:
         return Progress(self._seconds, percent, sum(self._asks))
 
     def _turn_to(self, second: int) -> None:
-        """Clear the bins of the seconds that have begun since the last tick."""
+        """Clear the bins of seconds that began after the last tick."""
         if second == self._second:
             return
         passed = 1 if self._second < 0 else min(second - self._second, WINDOW_S)

@@ -28,8 +28,8 @@ AnyMid = Annotated[
 Sentence = Annotated[str, Field(pattern=r"^[^\x00-\x1f\x7f]+$", max_length=120)]
 
 Place = Literal["starts", "in_sight"]
-"""Where a hand sets the robot down: at a start pose, or anywhere free from where it sees something near (a post, where
-there are posts)."""
+"""Pose to set the robot down at: a start pose, or a random free one in sight of something near (a post, if there are
+posts)."""
 
 
 def _each_once(names: tuple[str, ...]) -> tuple[str, ...]:
@@ -39,31 +39,31 @@ def _each_once(names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 class FeatureWeight(Settings):
-    """How much some features count in every distance, recent and averaged ones."""
+    """Weight of some features in every distance, for their recent and averaged values."""
 
     weight: Annotated[float, Field(ge=0, le=10)]
     features: Annotated[tuple[str, ...], Field(min_length=1)]
-    """By their names in the situation definition."""
+    """Names in the situation definition."""
 
 
 class LearningSettings(Settings):
-    """How the RLA system of this task matches and takes lessons."""
+    """Settings of the match and of corrections."""
 
     radius: Annotated[float, Field(gt=0, le=100_000)]
     """Confidence radius R, in the units of the situation (counts)."""
     past_weight: Annotated[float, Field(ge=0, le=10)]
-    """What the averaged features weigh in every distance, as a share of what the recent ones do."""
+    """Weight of the averaged features in every distance, as a fraction of the recent ones' weight."""
     weights: tuple[FeatureWeight, ...] = ()
-    """Features that do not weigh 1."""
+    """Weights other than 1."""
     insert_beyond_share: Share
     """A correction farther than this share of R from the nearest condition inserts a new RLA, else it replaces."""
     minimum_action_s: Annotated[float, Field(ge=0, le=5)]
 
 
 class PlainSettings(LearningSettings):
-    """The plain reading of the paper: all 72 values weigh 1, corrections only replace, no action is held.
+    """Plain reading of the paper: all 72 values weigh 1, corrections only replace, no action is held.
 
-    Only the radius is free; with other values than these it would be another reading.
+    Only the radius can be set; other values would make it another reading.
     """
 
     past_weight: Annotated[float, Field(ge=1, le=1)] = 1.0
@@ -73,104 +73,104 @@ class PlainSettings(LearningSettings):
 
 
 class TeacherSettings(Settings):
-    """How the scripted teacher behaves."""
+    """Settings of the scripted teacher."""
 
     reaction_s: Seconds
-    """From the robot's question to the answer."""
+    """Time between the robot's question and the answer."""
     patience_s: Seconds
-    """How long the robot must do something else than the teacher would before it is corrected."""
+    """Time for which the robot acts unlike the policy before it is corrected."""
     error_rate: Share
-    """Share of answers and corrections that name another action than the policy."""
+    """Fraction of answers and corrections that name another action than the policy."""
     delete_after: Annotated[int, Field(ge=0, le=1000)] = 0
-    """An RLA whose action was replaced so many times is deleted the next time it would be again; 0: never."""
+    """Number of replaced actions after which an RLA is deleted instead; 0: never."""
 
 
 class TeachingSettings(Settings):
-    """The course of a lesson."""
+    """Settings of a training run."""
 
     world: str
     supervised_s: Seconds
-    """Phase 1: the teacher answers questions only."""
+    """Length of phase 1, in which the teacher only answers questions."""
     corrections_s: Seconds
-    """Phase 2, after it: the teacher corrects while the robot drives, and still answers."""
+    """Length of phase 2, in which the teacher corrects as well."""
     rescue_after_s: Annotated[float, Field(gt=0, le=1000)]
-    """A robot that makes no way for so long, without a question, is set down elsewhere by hand."""
+    """Time without progress or question after which the robot is set down elsewhere."""
     reposition_every_s: Seconds = 0.0
-    """After each such time the robot is set down elsewhere, whatever it does; 0: never."""
+    """Interval at which the robot is set down elsewhere; 0: never."""
     reposition_to: Place = "starts"
     teacher: TeacherSettings
 
     @property
     def duration_s(self) -> float:
-        """Robot time of the whole lesson."""
+        """Return the robot time of the whole training run, in s."""
         return self.supervised_s + self.corrections_s
 
 
 class SuccessSettings(Settings):
-    """What counts as success, besides not to be stuck and not to be stopped by the guard."""
+    """Conditions of success, in addition to not getting stuck and no guard stop."""
 
     collisions_at_most: Annotated[int, Field(ge=0, le=1000)] = 0
     progress_share: Share = 0.8
-    """Share of the progress that the teacher's own policy makes."""
+    """Required progress as a fraction of the teacher's own policy's."""
     right_at_least: Share = 0.0
-    """Share of the junctions that are left through the side that was asked for."""
+    """Required fraction of junctions that are left through the right side."""
 
 
 class ExamSettings(Settings):
-    """The course of an exam, without a teacher."""
+    """Settings of an exam, which has no teacher."""
 
     worlds: Annotated[tuple[str, ...], Field(min_length=1)]
     start: Place = "starts"
     duration_s: Annotated[float, Field(ge=1, le=100_000)]
     stuck_after_s: Annotated[float, Field(gt=0, le=1000)]
-    """No way made for so long is stuck, and ends the exam."""
+    """Time without progress after which the robot counts as stuck and the exam ends."""
     stuck_within_m: Annotated[float, Field(gt=0, le=100)] = 1.0
-    """No way is made by a robot that stays within this distance; in lessons, too."""
+    """A robot that stays within this distance makes no progress; in training runs as well."""
     success: SuccessSettings = SuccessSettings()
 
 
 class PaperResult(Settings):
-    """What the paper reports for this task (section VII)."""
+    """Results of the paper for this task (section VII)."""
 
     rlas: int
     teaching_s: Seconds = 0.0
-    """0: the paper does not say it."""
+    """0 if the paper does not report it."""
 
     @property
     def teaching_time_text(self) -> str:
-        """The teaching time as it is shown, in whole seconds."""
+        """Return the teaching time for tables, in whole seconds."""
         return f"{self.teaching_s:.0f}" if self.teaching_s else "not told"
 
 
 class TaskSettings(Settings):
-    """One task."""
+    """Task: what is taught, with which features and actions, and how it is examined."""
 
     name: Name
-    """Files that hold what was taught and found are called after it."""
+    """Name of the task, also in the names of its files."""
     what: Sentence | None = None
-    """The task in one sentence to its teacher, such as "Teach it to follow the wall on its left". Default: made from
-    the name.
+    """Task in one sentence to its teacher, such as "Teach it to follow the wall on its left"; made from the name by
+    default.
     """
     system: Name | None = None
-    """The RLA system that is taught, where it is not only this task's: tasks that name the same one have the same
-    situation and behaviours, and go on in each other's knowledge. Named as the task when absent."""
+    """Name of the RLA system, if several tasks share it. They have the same situation and behaviours and continue each
+    other's knowledge. The task's name by default."""
     situation: str
     repertoire: str
     behaviours: Annotated[tuple[Name, ...], Field(min_length=1, max_length=64), AfterValidator(_each_once)] = ("",)
-    """What is taught, each with RLAs of its own; the first is wanted at the start. One without a name when absent."""
+    """Taught behaviours, each with its own RLAs; the first is active at the start. A single unnamed one by default."""
     mid: AnyMid | None = None
-    """The mid level, which says which of the behaviours is wanted: of `config/mid_levels` by name, or its settings;
-    None: the teacher says it."""
+    """Mid level, which selects the behaviours: a name in `config/mid_levels`, or its settings; None: the teacher
+    selects."""
     learning: LearningSettings
     plain: PlainSettings
-    """What to take instead of `learning` for the plain reading of the paper."""
+    """Settings in place of `learning` for the plain reading of the paper."""
     reinforcement: ReinforcementSettings = ReinforcementSettings()
     critic: AnyCritic = "basic"
-    """The internal critic, which is taught in phase 4: of `config/critics` by name, or its settings."""
+    """Critic, which is taught in phase 4: a name in `config/critics`, or its settings."""
     judge: AnyJudgeSettings | None = None
-    """What the scripted teacher praises and blames; None: nothing."""
+    """Judge by which the scripted teacher gives rewards; None: it gives none."""
     phases: PhasesSettings | None = None
-    """How phases 3 to 5 are tried out; None: not at all."""
+    """Settings of the study of phases 3 to 5; None: there is none."""
     policy: AnyPolicySettings
     course: AnyCourseSettings
     teaching: TeachingSettings
@@ -179,12 +179,12 @@ class TaskSettings(Settings):
 
     @property
     def sentence(self) -> str:
-        """The task in one sentence to its teacher."""
+        """Return the task in one sentence to its teacher."""
         return self.what or f"Teach it the task {self.name.replace('_', ' ')}"
 
     @property
     def system_name(self) -> str:
-        """What knowledge of this task is bound to."""
+        """Return the name of the RLA system that knowledge of this task belongs to."""
         return self.system or self.name
 
     @field_validator("mid")
@@ -221,10 +221,15 @@ class TaskSettings(Settings):
 
 
 def load_task(name_or_path: str, *, plain: bool = False, changes: Mapping[str, str] | None = None) -> TaskSettings:
-    """Settings of a shipped task by name, or of a file by path; `plain`: for the plain reading of the paper.
+    """Load the settings of a shipped task by name, or of a file by path.
 
-    `changes` as in hal.settings.load_settings, and none of `learning` where `plain` stands for it.
-    Raises hal.settings.SettingsError.
+    Args:
+        name_or_path: a name in `config/tasks`, or a path.
+        plain: take the plain reading of the paper in place of `learning`.
+        changes: values by dotted key, as in hal.settings.load_settings; none of `learning` if `plain`.
+
+    Raises:
+        hal.settings.SettingsError: for a missing or invalid file, and for a change of `learning` if `plain`.
     """
     path = find_config("tasks", name_or_path)
     for key in changes or ():

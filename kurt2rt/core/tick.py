@@ -83,7 +83,7 @@ class TickRecord(NamedTuple):
     knowledge: tuple[Rla, ...] | None = None
     """All active RLAs after this tick, if it changed them and once a second; None otherwise."""
     standing: Standing = DRIVES
-    """Whether the robot drives, and the reason if it stands."""
+    """Reason that the robot stands, or DRIVES."""
 
     @property
     def mid(self) -> MidDecision | None:
@@ -116,9 +116,9 @@ class TickOptions:
     stale_infrared_s: float
     """The robot is blind if its infra-red readings are older."""
     tolerates_stalls: bool = False
-    """Whether missed ticks extend the teacher's leases, as for a simulated robot that stalls with this program."""
+    """Extend the teacher's leases by missed ticks, for a simulated robot that stalls with this program."""
     asks_at_bumper: bool = True
-    """Whether a robot asks that touches something and would drive on toward it."""
+    """Ask if an RLA pushes on toward what a bumper touches."""
 
 
 class _View(NamedTuple):
@@ -149,7 +149,7 @@ class _Motion(NamedTuple):
     drove_at_s: float
     asks_at_bumper: bool
     turning: bool
-    """Whether the decided action turns the wheels."""
+    """True if the decided action turns the wheels."""
 
 
 class Tick:
@@ -195,20 +195,20 @@ class Tick:
         return self._publish(tick, now_s, readings, view, choice, motion, surprise)
 
     def _count(self, tick: int) -> None:
-        """Number this tick; extend the teacher's leases by missed ticks if the robot stalls with the program."""
+        """Count this tick, and extend the teacher's leases by missed ticks of a robot that stalls with the program."""
         self._number += 1
         if self._options.tolerates_stalls and self._last_tick is not None and tick > self._last_tick + 1:
             self._handler.authority.extend_leases(tick - self._last_tick - 1)
         self._last_tick = tick
 
     def _sense(self, now_s: float) -> SensorReadings:
-        """Step 1: read the bus without waiting."""
+        """Read the bus without waiting (step 1)."""
         readings = self._robot.sense(now_s)
         self._timer.lap(Stage.SENSE)
         return readings
 
     def _perceive(self, tick: int, readings: SensorReadings) -> _View:
-        """Step 2: compute the situation, and the critic's opinion before this tick's commands can change it."""
+        """Compute the situation, and the critic's opinion before this tick's commands can change it (step 2)."""
         # The averages stand still while the robot waits for its teacher: autonomy has no waits to learn from.
         situation = self._perception.perceive(readings, history_frozen=not self._driving or self._waits)
         blind = not readings.infrared_age_s <= self._options.stale_infrared_s
@@ -221,7 +221,7 @@ class Tick:
         return _View(situation, blind, features, opinion)
 
     def _decide(self, tick: int, readings: SensorReadings, view: _View) -> _Choice:
-        """Step 3: handle the teacher's commands, then let the levels decide."""
+        """Handle the teacher's commands, then let the levels decide (step 3)."""
         commands = self._inbox.pop_all()
         results: list[CommandResult] = []
         events: list[TeachingEvent] = []
@@ -242,7 +242,7 @@ class Tick:
         return _Choice(commands, results, events, self._error, decision, self._handler.active_behaviour.behaviour)
 
     def _guard(self, tick: int, now_s: float, decision: Decision) -> _Motion:
-        """Step 4: send the decided speeds through the guard; note an emergency stop and a wait at a bumper."""
+        """Send the decided speeds through the guard; note an emergency stop and a wait at a bumper (step 4)."""
         # A decision without an action never drives. The clock is read again, so that the guard sees a decision's
         # true age if the tick was held up.
         speeds = decision.wheel_speeds if decision.driving else STANDSTILL
@@ -260,7 +260,7 @@ class Tick:
         return _Motion(result, drove_at_s, asks, self._driving and not self._waits)
 
     def _learn(self, tick: int, view: _View, choice: _Choice, motion: _Motion) -> Surprise | None:
-        """Step 5: count, remember and learn; return the surprise of an RLA that ended."""
+        """Count, remember and learn; return the surprise of an RLA that ended (step 5)."""
         handler, decision, turning = self._handler, choice.decision, motion.turning
         if turning:
             self._perception.remember_driven(decision.wheel_speeds)
@@ -300,7 +300,7 @@ class Tick:
         motion: _Motion,
         surprise: Surprise | None,
     ) -> TickRecord:
-        """Step 6: hand lessons to the journal and return the record of the tick."""
+        """Hand lessons to the journal and return the record of the tick (step 6)."""
         for event in choice.events:
             self._event_store.submit(event)
             if self._expectations is not None:

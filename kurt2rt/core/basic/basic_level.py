@@ -1,4 +1,4 @@
-"""The basic level: RLAs over the 72-D situation, of the taught behaviour that is wanted; actions of the repertoire."""
+"""Basic level: RLAs over the 72-D situation, of the active behaviour; their actions are the repertoire's."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,7 @@ def _named(behaviour: str) -> str:
 
 
 class BasicLevel:
-    """Winner takes all, with a minimum time per action against dithering between neighbours."""
+    """Winner-takes-all level with a minimum time per action against dithering between neighbours."""
 
     def __init__(
         self,
@@ -42,9 +42,18 @@ class BasicLevel:
         active_behaviour: ActiveBehaviour,
         choice: EpsilonGreedy | None = None,
     ) -> None:
-        """`choice`: among RLAs on the very same condition; without it the oldest answers.
+        """Check the RLAs and connect them to the repertoire.
 
-        Raises UnknownActionError, or UnknownBehaviourError for RLAs that nothing which can be wanted would ask.
+        Args:
+            system: with the taught RLAs.
+            repertoire: actions that the RLAs name.
+            minimum_action_ticks: ticks before another RLA's action may replace the driving one.
+            active_behaviour: only its RLAs compete.
+            choice: chooses among RLAs on the same condition; without it the oldest answers.
+
+        Raises:
+            UnknownActionError: for an RLA whose action the repertoire lacks.
+            UnknownBehaviourError: for an RLA of a behaviour that the task lacks.
         """
         for rla in system.rlas:
             if rla.behaviour not in active_behaviour.behaviours:
@@ -65,30 +74,30 @@ class BasicLevel:
         self._held = HeldAction(repertoire, minimum_action_ticks)
         self._choice = choice
         self.skip_withdrawn = False
-        """Whether RLAs whose action was withdrawn are passed over, so that their neighbours answer."""
+        """Skip RLAs whose action was withdrawn, so that their neighbours answer."""
         self.held_action = ""
-        """The action whose minimum time was not over when it was decided last; empty where any could drive."""
+        """Action whose minimum time was not over at the last decision; empty if any action could drive."""
         self._decisions = 0
         self._driver: Rla | None = None
         self._drivers_condition: NDArray[np.float64] | None = None
-        """Of the RLA that drives, once it was needed."""
+        """Condition of the RLA that drives, shape (d,), once it was needed."""
 
     def restart(self) -> None:
-        """Decide as if nothing had driven before; what was taught stays."""
+        """Forget the driving action and the choices; the RLAs stay."""
         self._held.stop()
         self._driver = None
         if self._choice is not None:
             self._choice.reset()
 
     def apply(self, event: TeachingEvent) -> None:
-        """Change the knowledge; what the robot does next follows it at once, whatever action was being held."""
+        """Change the knowledge; the next decision follows it at once, even if an action is held."""
         drives = self._is_about_driving(event)
         self.system.apply(event)
         if drives:
             self._held.allow_switch()
 
     def _is_about_driving(self, event: TeachingEvent) -> bool:
-        """Whether an event, not yet applied, may change what drives; rewards, and what the critic is taught, do not."""
+        """Return whether an event, not yet applied, may change the driving RLA; rewards and critic lessons do not."""
         match event:
             case RlaCreated(rla):
                 return rla.level == BASIC
@@ -98,7 +107,7 @@ class BasicLevel:
         return isinstance(event, LessonUndone | LessonRedone)
 
     def decide(self, situation: Situation, senses: SensorReadings, blocking_cause: Cause | None) -> Decision:
-        """Answer a situation: the winner's action, the held one, or standstill where it may not drive or knows none."""
+        """Return the winner's action or the held one; standstill with a blocking cause or without a known RLA."""
         if self._behaviour != self.active_behaviour.behaviour:
             self._behaviour = self.active_behaviour.behaviour
             self._held.allow_switch()
@@ -124,19 +133,19 @@ class BasicLevel:
         return self._drive(senses, Cause.HELD, driver, match, answers=answers)
 
     def would_answer(self, group: tuple[Rla, ...]) -> Rla:
-        """Which of several on one condition, oldest first, answers where that is nearest, chance left out."""
+        """Return which RLA of one condition, oldest first, would answer there without random exploration."""
         return group[0] if self._choice is None else self._choice.preview(group, self._decisions)
 
     def _drive(self, senses: SensorReadings, cause: Cause, rla: Rla, match: Match, *, answers: bool) -> Decision:
-        """What the action at the wheels does; where that one is lost, this level knows no better and asks."""
+        """Step the held action; ask if it is lost."""
         wheel_speeds = self._held.step(senses)
         if self._held.lost:
-            # It is not begun anew: back where it knows the situation it goes on, as any RLA does.
+            # The action is not restarted: it goes on by itself once its situation is known again.
             return Decision(STANDSTILL, Cause.UNKNOWN, None, None, match)
         return Decision(wheel_speeds, cause, self._held.name, rla.rla_id, match, answers)
 
     def _inside(self, rla: Rla, situation: Situation) -> bool:
-        """Whether the situation lies within the radius of the RLA that drives, though another one is nearer."""
+        """Return whether the situation lies within the radius of the driving RLA, although another RLA is nearer."""
         if self._drivers_condition is None:
             self._drivers_condition = np.array(rla.condition)
         off = (situation.vector - self._drivers_condition) * self.system.weights
@@ -144,6 +153,6 @@ class BasicLevel:
         return exact_square(off) <= radius * radius
 
     def _stand(self, cause: Cause, match: Match | None) -> Decision:
-        """Stand; the next action begins anew."""
+        """Stop the held action; the next one starts from its beginning."""
         self._held.stop()
         return Decision(STANDSTILL, cause, None, None, match)

@@ -1,4 +1,4 @@
-"""The action at the wheels, held for a minimum time against dithering between neighbours."""
+"""Held action: it drives for a minimum time, against dithering between neighbours."""
 
 from behaviors.behaviour import Behaviour
 from behaviors.repertoire import Repertoire
@@ -6,7 +6,7 @@ from hal.robot import SensorReadings, WheelSpeeds
 
 
 class HeldAction:
-    """Which behaviour of a repertoire drives, and for how long it has."""
+    """Driving behaviour of a repertoire and the number of ticks it has driven."""
 
     def __init__(self, repertoire: Repertoire, minimum_ticks: int) -> None:
         self._repertoire = repertoire
@@ -14,12 +14,12 @@ class HeldAction:
         self._active: Behaviour | None = None
         self._ticks = 0
         self.name = ""
-        """Of the action that drives, or drove last."""
+        """Name of the action that drives or drove last."""
 
     def select(self, action: str) -> bool:
-        """Let `action` drive; False when another one keeps the wheels, for its minimum time is not over.
+        """Let `action` drive; return False if another action is held because its minimum time is not over.
 
-        One that has finished, or does not know how to go on, keeps them from nobody.
+        A finished or lost action is not held.
         """
         if self._active is not None:
             if action == self.name:
@@ -34,7 +34,7 @@ class HeldAction:
 
     @property
     def held(self) -> str:
-        """The action that no other one can take the wheels from now; empty where one can."""
+        """Action that no other can replace now; empty if any can."""
         active = self._active
         if active is None or self._ticks >= self._minimum_ticks or active.finished or active.lost:
             return ""
@@ -42,19 +42,19 @@ class HeldAction:
 
     @property
     def lost(self) -> bool:
-        """Whether the action at the wheels does not know how to go on, after `step`."""
+        """Return whether the driving action does not know its situation, after `step`."""
         return self._active is not None and self._active.lost
 
     def step(self, senses: SensorReadings) -> WheelSpeeds:
-        """Wheel speeds of the action that drives, after `choose`."""
+        """Return the wheel speeds of the action that drives, after `select`."""
         assert self._active is not None
         self._ticks += 1
         return self._active.step(senses)
 
     def allow_switch(self) -> None:
-        """The next choice counts at once, however short this action drove."""
+        """Let the next `select` replace the action at once."""
         self._ticks = self._minimum_ticks
 
     def stop(self) -> None:
-        """Nothing drives; the next action begins anew."""
+        """Stop the action; the next one starts from its beginning."""
         self._active = None

@@ -1,4 +1,4 @@
-"""A layer that consults a reference policy in every tick: what the teacher would reach at the wheels itself."""
+"""Level that drives by a reference policy, as a bound for what its teaching can reach."""
 
 from behaviors.policies.policy import ReferencePolicy
 from behaviors.repertoire import Repertoire
@@ -11,7 +11,7 @@ from kurt2rt.core.perception.perception import Situation
 
 
 class PolicyLevel:
-    """Drives as the policy says, with the same minimum time per action as a taught level."""
+    """Level that drives by a policy, with the same minimum time per action as a taught level."""
 
     def __init__(
         self,
@@ -27,7 +27,7 @@ class PolicyLevel:
         self._held = HeldAction(repertoire, minimum_action_ticks)
 
     def decide(self, situation: Situation, senses: SensorReadings, blocking_cause: Cause | None) -> Decision:  # noqa: ARG002 - the policy sees the senses
-        """The policy's action for the behaviour that is wanted. Raises UnknownActionError."""
+        """Return the policy's action for the active behaviour. Raises UnknownActionError."""
         if self._behaviour != self._active_behaviour.behaviour:
             self._behaviour = self._active_behaviour.behaviour
             self._held.allow_switch()

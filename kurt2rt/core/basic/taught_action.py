@@ -1,4 +1,4 @@
-"""A taught system as one action: it perceives for itself, and tells when it does not know how to go on."""
+"""Taught system as one action: it perceives for itself and reports unknown situations."""
 
 from typing import Protocol
 
@@ -8,36 +8,36 @@ from kurt2rt.core.perception.perception import Perception
 
 
 class Restartable(Protocol):
-    """A part that remembers what was."""
+    """Part with a history."""
 
     def restart(self) -> None:
-        """Forget it; what was taught stays."""
+        """Forget the history; knowledge stays."""
         ...
 
 
 class TaughtSystem:
-    """Drives as its own level decides, on its own situations; a behaviour (paper, III.A.2)."""
+    """Behaviour that drives by its own level on its own situations (paper, III.A.2)."""
 
     finished = False
-    """What was taught goes on until the layer above wants something else."""
+    """Never: it goes on until the level above selects another action."""
 
     def __init__(self, perception: Perception, level: Level, restartable: tuple[Restartable, ...]) -> None:
-        """All are this action's alone. `remembering`: what of them begins anew when it does."""
+        """Connect parts that belong to this action alone; `restartable` parts restart with it."""
         self._perception = perception
         self._level = level
         self._restartable = restartable
         self._driving = False
         self.lost = False
-        """Whether its level asks: what it asks about has to be answered in the layer above."""
+        """True while its level asks; the answer is a lesson of the level above."""
 
     def start(self) -> None:
-        """Forget how it was before; the past begins where the robot is now."""
+        """Start with an empty history."""
         for part in self._restartable:
             part.restart()
         self._driving = self.lost = False
 
     def step(self, senses: SensorReadings) -> WheelSpeeds:
-        """What its level decides. While it is lost it stands, and its averages stand still as a waiting robot's do."""
+        """Return the wheel speeds of its level. While it is lost it stands and its averages stand still."""
         situation = self._perception.perceive(senses, history_frozen=not self._driving)
         decision = self._level.decide(situation, senses, None)
         self._driving, self.lost = decision.driving, decision.asking

@@ -1,19 +1,19 @@
-"""The taught behaviour that the robot is to follow now."""
+"""Active behaviour: the taught behaviour that the robot follows now."""
 
 from kurt2rt.core.outcome import CommandRefusedError, RefusalCode
 
 
 class ActiveBehaviour:
-    """One of the behaviours that a task teaches: only its RLAs answer. A teacher, later a mid level, changes it."""
+    """Selection of one of a task's taught behaviours; only its RLAs compete. A teacher or the mid level changes it."""
 
     def __init__(self, behaviours: tuple[str, ...] = ("",)) -> None:
-        """`behaviours`: all that can be wanted, the first from the start; a task with one leaves it without a name."""
+        """`behaviours`: names to select from, the first active at the start; a single behaviour has no name."""
         self.behaviours = behaviours
         self.behaviour = behaviours[0]
-        """The one that is wanted now."""
+        """Name of the active one."""
 
     def select(self, name: str) -> None:
-        """Follow another behaviour from now on. Raises CommandRefusedError that lists them."""
+        """Make another behaviour active. Raises CommandRefusedError, which lists the names."""
         if name not in self.behaviours:
             raise CommandRefusedError(RefusalCode.NO_BEHAVIOUR, behaviour=name, known=self.behaviours)
         self.behaviour = name

@@ -1,29 +1,29 @@
-"""Stops that hold until a teacher says Go, as codes with their fields."""
+"""Active stop: why the robot stands until a teacher resumes, as a code with its fields."""
 
 from enum import StrEnum
 from typing import NamedTuple
 
 
 class StopReason(StrEnum):
-    """Code for why the robot stands until Go."""
+    """Code for why the robot stands until a resume."""
 
     SAID_STOP = "said stop"
-    """A teacher said stop."""
+    """A teacher gave a stop."""
     LET_GO = "let go"
     """A teacher drove by hand and let go, or the press was lost."""
     BEHAVIOUR_OVER = "behaviour over"
     """A behaviour that the teacher ran has ended."""
     SESSION_OVER = "session over"
     NO_TEACHER = "no teacher"
-    """The robot drove, and has no teacher any more."""
+    """The robot drove and has no teacher now."""
     TEACHER_NOT_YET = "teacher not yet"
-    """The robot drove, and its new teacher has not looked at it yet."""
+    """The robot drove, and its new teacher has sent no sign of presence yet."""
     LINK_LOST = "link lost"
-    """The robot drove, and its teacher is not heard any more."""
+    """The robot drove, and messages of its teacher ceased."""
     STARTED = "started"
     """The robot program was started."""
     NEXT_RUN = "next run"
-    """A new run was begun in the same program."""
+    """The same program began a new run."""
     GUARD = "guard"
     """The guard keeps the robot stopped."""
     OTHER = "other"
@@ -31,7 +31,7 @@ class StopReason(StrEnum):
 
 
 class ActiveStop(NamedTuple):
-    """A stop that holds, and the name that its reason is about."""
+    """Stop that lasts until a resume, with the name that its reason is about."""
 
     reason: StopReason
     name: str = ""
@@ -44,7 +44,7 @@ class ActiveStop(NamedTuple):
 
     @property
     def is_automatic(self) -> bool:
-        """Whether the robot stopped itself, so that a script may resume, unlike after a person's stop."""
+        """Return whether the robot stopped itself; a script may resume then, unlike after a person's stop."""
         return self.reason in (StopReason.GUARD, StopReason.LINK_LOST)
 
 

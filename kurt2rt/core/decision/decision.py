@@ -1,4 +1,4 @@
-"""What was decided in a tick, and the rule that decided it."""
+"""Decision of one tick: wheel speeds, their cause, and the RLAs that were compared."""
 
 from enum import StrEnum
 from typing import NamedTuple
@@ -11,82 +11,82 @@ from kurt2rt.core.rla.rla import BASIC
 
 
 class Cause(StrEnum):
-    """Why the wheels are told what they are told."""
+    """Code for why a decision sets these wheel speeds."""
 
     RLA = "rla"
-    """The nearest RLA answers, inside its radius."""
+    """The situation lies inside the radius of the nearest RLA, whose action drives."""
     HELD = "held"
-    """Another RLA is nearest now; the action chosen before keeps its minimum time."""
+    """Another RLA is nearest now, but the minimum time of the action before is not over."""
     TEACHER = "teacher"
-    """A teacher, or the policy that stands in for one, drives."""
+    """A teacher drives by hand, or a reference policy drives."""
     UNKNOWN = "unknown"
-    """No RLA is near enough: the robot stands and asks."""
+    """No RLA is near enough; the robot stands and asks."""
     BLIND = "blind"
-    """The infra-red readings are old or never came: there is no situation to decide on, nor to ask about."""
+    """The infra-red readings are old or missing, so there is no situation to decide on or to ask about."""
     STOPPED = "stopped"
     """A teacher stopped the robot."""
     UNATTENDED = "unattended"
-    """The robot knows what to do, but needs a teacher who is there, and none is."""
+    """The situation is known, but the teacher whose presence is required is absent."""
     UNSAVED = "unsaved"
-    """Lessons cannot be saved at the moment: the robot stands until they are."""
+    """Lessons cannot be saved; the robot stands until they are."""
     AT_GOAL = "at goal"
-    """The robot has come to where it was sent."""
+    """The robot has reached its goal."""
     TOUCHES = "touches"
-    """The robot touches something, an RLA goes on toward it, and the guard lets no wheel turn: the robot asks."""
+    """An RLA pushes toward what a bumper touches and the guard lets no wheel turn; the robot asks."""
     NO_WAY = "no way"
-    """From here nothing that was taught leads to where the robot was sent."""
+    """No taught way leads from here to the goal."""
 
 
 class MidDecision(NamedTuple):
-    """What the mid level commands in this tick."""
+    """Command of the mid level in one tick."""
 
     behaviour: str
-    """The taught behaviour of the basic level that is wanted; where the mid level asks, the one that was."""
+    """Active behaviour of the basic level; while the mid level asks, the last one."""
     rla_id: int | None
-    """The mid-level RLA whose action this is; None while it asks, or a teacher overrides it."""
+    """Mid-level RLA whose action this is; None while the level asks or a teacher overrides it."""
     match: Match | None
-    """Nearest mid-level RLA, its distance, R and the runner-up; None before the first lesson at this level."""
+    """Nearest mid-level RLA, its distance, R and the runner-up; None before the first lesson of this level."""
     asks: bool
-    """Whether no RLA is near enough, and nobody overrides it: the robot stands and asks."""
+    """True if no RLA is near enough and no teacher overrides the level; the robot stands and asks."""
     overridden: bool
-    """Whether a teacher has commanded a behaviour that no RLA says here, until the next junction has been passed."""
+    """True while a teacher's command replaces the RLAs', until the next junction has been passed."""
     event: JunctionEvent | None
-    """The junction that has been passed in this very tick."""
+    """Junction that was passed in this tick; None without one."""
 
 
 class Decision(NamedTuple):
-    """One tick's decision."""
+    """Decision of one tick."""
 
     wheel_speeds: WheelSpeeds
     cause: Cause
     action: str | None
     """Name of the action that drives; None while the robot stands."""
     rla_id: int | None
-    """The RLA whose action drives; None while the robot stands or a teacher drives."""
+    """RLA whose action drives; None while the robot stands or a teacher drives."""
     match: Match | None
     """Nearest RLA at this situation, its distance, R and the runner-up; None before the first lesson."""
     answers: bool = False
-    """Whether the situation lies inside the radius of the RLA that drives; outside it nobody may blame it."""
+    """True if the situation lies inside the radius of the RLA that drives; outside it the RLA gets no reward."""
     asks_at: str = BASIC
-    """The level that does not know its situation, where one does not; `match` is that level's."""
+    """Level that asks, if the cause is UNKNOWN; `match` is that level's."""
     mid: MidDecision | None = None
-    """What the mid level commands; None where there is none."""
+    """Command of the mid level; None without one."""
     plan: PlanStep | None = None
-    """How it stands with the goal; None while there is none."""
+    """Progress toward the goal; None without a goal."""
 
     @property
     def driving(self) -> bool:
-        """Whether an action drives the wheels."""
+        """Return whether an action drives the wheels."""
         return self.action is not None
 
     @property
     def asking(self) -> bool:
-        """Whether the robot stands until it is taught: it does not know this situation, or touches something."""
+        """Return whether the robot waits for an answer, because the situation is unknown or it touches something."""
         return self.cause in (Cause.UNKNOWN, Cause.TOUCHES)
 
 
 def withdrawn_rla_in(decision: Decision) -> int | None:
-    """Return the basic level's RLA whose action was withdrawn, where the robot asks for another one; None elsewhere."""
+    """Return the id of the basic level's RLA that waits for a new action; None if the robot asks for no such RLA."""
     match = decision.match
     if decision.cause is not Cause.UNKNOWN or decision.asks_at != BASIC or match is None:
         return None
@@ -94,9 +94,11 @@ def withdrawn_rla_in(decision: Decision) -> int | None:
 
 
 def stopped(decision: Decision, cause: Cause | None) -> Decision:
-    """The decision of a level that was told to stand: one that fails, and would drive all the same, stands.
+    """Return the decision at standstill if a cause forbids driving, even if a faulty level would drive.
 
-    `cause`: why it was told so; None: it was not, and may drive.
+    Args:
+        decision: of the level that was given `cause`.
+        cause: reason to stand; None: the decision may drive and is returned unchanged.
     """
     if cause is None or (decision.wheel_speeds == STANDSTILL and not decision.driving):
         return decision

@@ -1,44 +1,44 @@
-"""What a teacher can send the robot to."""
+"""Goals that a teacher can send the robot to."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
 class NamedGoal:
-    """A situation that the teacher has named: door, this junction."""
+    """Situation that a teacher has named, such as "door"."""
 
     name: str
 
     @property
     def text(self) -> str:
-        """In words."""
+        """Return the goal in words."""
         return self.name
 
 
 @dataclass(frozen=True, slots=True)
 class RlaGoal:
-    """The situation that an RLA of the mid level knows."""
+    """Condition of a mid-level RLA."""
 
     rla_id: int
 
     @property
     def text(self) -> str:
-        """In words."""
+        """Return the goal in words."""
         return f"the situation of RLA {self.rla_id}"
 
 
 @dataclass(frozen=True, slots=True)
 class PartialGoal:
-    """Any situation in which some features are as wanted, such as a wall on the left."""
+    """Any situation with the given values of some features, such as a wall on the left."""
 
     features: tuple[tuple[str, float], ...]
-    """Names of features of the mid level's situation, and the values they are to have."""
+    """Names of mid-level features and their wanted values."""
     tolerance: float = 0.0
-    """How far each may be off."""
+    """Largest difference of each value, in the feature's unit."""
 
     @property
     def text(self) -> str:
-        """In words."""
+        """Return the goal in words."""
         return " and ".join(f"{name} {value:g}" for name, value in self.features)
 
 

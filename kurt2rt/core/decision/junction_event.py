@@ -1,25 +1,25 @@
-"""What a robot did at a junction, as it measured it itself."""
+"""Junction event: a passed junction, as the robot measured it."""
 
 from typing import NamedTuple
 
 NAMES = {0: "straight", 1: "left", -1: "right", 2: "back"}
-"""How the quarter turns are spoken of."""
+"""Names of the quarter turns."""
 
 
 class JunctionEvent(NamedTuple):
-    """The robot has passed a junction: a side was open, now a wall stands on either side again."""
+    """Passed junction: a side was open, and now there are walls on both sides again."""
 
     quarters: int
     """Quarter turns to the left between the street it came from and the one it is in: 0, 1, -1 (right) or 2 (back)."""
     left_open: bool
-    """Whether there was a way to the left, as it came."""
+    """True if there was a way to the left of the street it came from."""
     right_open: bool
     turn_rad: float
-    """How far it turned, by its encoders."""
+    """Angle by the encoders, in rad; positive to the left."""
     way_m: float
-    """How far it drove from the last of the one street to where it was sure of the next."""
+    """Distance from the end of the one street to the certain detection of the next, in m."""
 
     @property
     def name(self) -> str:
-        """straight, left, right or back."""
+        """Return straight, left, right or back."""
         return NAMES[self.quarters]

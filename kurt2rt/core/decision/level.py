@@ -1,4 +1,4 @@
-"""What the tick needs of the layer that has the wheels."""
+"""Interface between the tick and the level that drives."""
 
 from typing import Protocol
 
@@ -8,8 +8,8 @@ from kurt2rt.core.perception.perception import Situation
 
 
 class Level(Protocol):
-    """Answers each situation with a decision."""
+    """Layer that answers each situation with a decision."""
 
     def decide(self, situation: Situation, senses: SensorReadings, blocking_cause: Cause | None) -> Decision:
-        """Decide this tick; with a reason to stand, stand."""
+        """Return the decision of this tick; with a blocking cause, one at standstill."""
         ...

@@ -1,36 +1,36 @@
-"""How it stands with the goal, in one tick."""
+"""Goal status that is reported with each tick."""
 
 from enum import StrEnum
 from typing import NamedTuple
 
 
 class GoalStatus(StrEnum):
-    """How it stands with a goal."""
+    """Status of the goal."""
 
     NONE = "none"
-    """There is none: the mid level commands as ever."""
+    """No goal; the mid level commands by its RLAs."""
     PLANNING = "planning"
-    """A plan is being made, and has no wish yet; where the robot stood it stands, else the mid level commands."""
+    """A plan is being computed. The robot goes on as it did: it stands, or the mid level commands."""
     UNDER_WAY = "under way"
     ARRIVED = "arrived"
-    """The robot stands there."""
+    """The robot stands at the goal."""
     NO_WAY = "no way"
-    """From where it is nothing that it knows leads there, or the goal means nothing any more; the robot stands."""
+    """No known way leads to the goal, or the goal does not exist now; the robot stands."""
     LOST = "lost"
-    """It is at no place that it knows; the robot stands, and its mid level asks."""
+    """The robot is at no known place; it stands, and its mid level asks."""
 
 
 class PlanStep(NamedTuple):
-    """Where the robot is to go, and how."""
+    """Goal, status and next behaviours of one tick."""
 
     goal: str
-    """In words."""
+    """Goal in words."""
     course: GoalStatus
     behaviours: tuple[str, ...]
-    """Those that lead there, that of the way that is being gone first."""
+    """Behaviours that lead to the goal, the present one first."""
     rla_id: int | None
-    """The RLA of the mid level whose way is being gone; None while none is."""
+    """Mid-level RLA whose way the robot drives; None between ways."""
     says: str
-    """How it stands, in a line."""
+    """Status in one line."""
     surprises: int
-    """How often the robot came to another place than planned, since this goal was given."""
+    """Number of arrivals at another place than planned, since the goal was given."""

@@ -1,7 +1,6 @@
-"""Standing: whether the robot drives after a tick, and if not, why and whether it waits for Go.
+"""Standing: whether the robot drives after a tick, and if not, why and whether it waits for a resume.
 
-The one source of this for page, terminal, status line, status and channel. `kurt2rt.core.decision.standing_text` holds
-its texts.
+Page, terminal, status line, status and channel all read it. `kurt2rt.core.decision.standing_text` holds its texts.
 """
 
 from enum import StrEnum
@@ -15,27 +14,27 @@ from kurt2rt.core.rla.rla import MID
 
 
 class StandReason(StrEnum):
-    """Why the wheels stand."""
+    """Code for why the wheels stand."""
 
     DRIVES = "drives"
-    """They do not."""
+    """The wheels turn."""
     ASKS = "asks"
-    """The basic level does not know its situation."""
+    """The situation of the basic level is unknown."""
     ASKS_THE_WAY = "asks the way"
-    """The mid level does not."""
+    """The situation of the mid level is unknown."""
     FRONT_BUMPER = "front bumper"
-    """The robot touches something in front, and is to drive on toward it."""
+    """The robot touches something in front and would drive on toward it."""
     REAR_BUMPER = "rear bumper"
     BOTH_BUMPERS = "both bumpers"
     STOPPED = "stopped"
-    """A teacher stopped the robot, or it lost its teacher, or it was just started."""
+    """A teacher stopped the robot, it lost its teacher, or it was just started."""
     UNATTENDED = "unattended"
     BLIND = "blind"
     UNSAVED = "unsaved"
     AT_GOAL = "at goal"
     NO_WAY = "no way"
     COMPUTER_TOO_SLOW = "computer too slow"
-    """The second guard braked, for ticks had ceased; until Go."""
+    """The watchdog braked because ticks had ceased; until a resume."""
     BUS_LOST = "bus lost"
     BUS_BLOCKED = "bus blocked"
     BUS_OFF = "bus off"
@@ -43,9 +42,9 @@ class StandReason(StrEnum):
     WHEELS_DISOBEY = "wheels disobey"
     INFRARED_FROZEN = "infra-red frozen"
     HALTED = "halted"
-    """The robot program itself had the guard stop the robot: it ends, or waits for what it needs."""
+    """The robot program stopped the robot, because it ends or waits for a dependency."""
     LATE = "late"
-    """Decisions are too old when they come to the guard."""
+    """Decisions are too old when they reach the guard."""
     CLOCK = "clock"
     """The computer's clock ran backwards."""
     ENCODERS_SILENT = "encoders silent"
@@ -55,19 +54,19 @@ class StandReason(StrEnum):
 
 
 class Standing(NamedTuple):
-    """Whether the robot drives, and if not why."""
+    """Reason that the robot stands, or DRIVES, and what lets it drive on."""
 
     reason: StandReason = StandReason.DRIVES
     needs_resume: bool = False
-    """Whether the robot stands until its teacher says Go, whatever else ends."""
+    """True if the robot stands until its teacher resumes it."""
     asks: bool = False
-    """Whether an answer of its teacher lets it drive on."""
+    """True if an answer of its teacher lets it drive on."""
     stall_s: float | None = None
-    """For how long no tick ran before the second guard braked, where that is the reason; None else."""
+    """Time without a tick before the watchdog braked, in s, for COMPUTER_TOO_SLOW; None otherwise."""
     says: str = ""
-    """Details that the reason lacks: the goal's outcome, the disk's error."""
+    """Details that the reason lacks, such as the disk's error."""
     stop: ActiveStop | None = None
-    """Actor and kind of the stop, of STOPPED only."""
+    """Actor and kind of the stop, for STOPPED; None otherwise."""
 
 
 DRIVES = Standing()
@@ -81,7 +80,7 @@ LATCHED: dict[str, StandReason] = {
     GuardReason.WHEELS_DISOBEY: StandReason.WHEELS_DISOBEY,
     GuardReason.INFRARED_FROZEN: StandReason.INFRARED_FROZEN,
 }
-"""By the guard's word for why it keeps the robot stopped; any other word is one that the program gave it."""
+"""Reasons by the guard's code for an emergency stop; the program itself gave any other code."""
 
 _HELD: dict[str, StandReason] = {
     GuardReason.INFRARED_STALE: StandReason.BLIND,
@@ -91,7 +90,7 @@ _HELD: dict[str, StandReason] = {
     GuardReason.CLOCK_RAN_BACKWARDS: StandReason.CLOCK,
     GuardReason.NOT_A_NUMBER: StandReason.NOT_A_NUMBER,
 }
-"""By the guard's word for what it lets no set point through, tick by tick."""
+"""Reasons by the guard's code for set points that it blocks tick by tick."""
 
 _CAUSES = {
     Cause.STOPPED: StandReason.STOPPED,
@@ -104,13 +103,13 @@ _CAUSES = {
 
 
 def standing_for(cause: str, asks_at: str, stop: ActiveStop | None, says: str = "") -> Standing:
-    """Return the standing of a robot that no guard holds, from why it decided to stand.
+    """Return the standing of a robot that the guard does not hold, from the cause of its decision.
 
     Args:
-        cause: a value of Cause; one that is not known here stands without a reason of its own.
-        asks_at: the level that does not know its situation, where `cause` says that one does not.
-        stop: the one that holds until Go; None while none does.
-        says: in words what came of the goal, or why lessons cannot be saved.
+        cause: a value of Cause; an unknown value becomes HALTED with it as detail.
+        asks_at: level that asks, if `cause` is UNKNOWN.
+        stop: active stop; None without one.
+        says: outcome of the goal, or why lessons cannot be saved, in words.
     """
     asks = cause in (Cause.UNKNOWN, Cause.TOUCHES)
     if stop is not None:
@@ -127,14 +126,14 @@ def standing_for(cause: str, asks_at: str, stop: ActiveStop | None, says: str = 
 
 
 ASKS_AFTER_TICKS = 50
-"""For so long a bumper has to hold what an RLA wants before the robot asks: 0.5 s, for a brush is over sooner."""
+"""Ticks for which a bumper blocks an RLA before the robot asks: 0.5 s, because a brush is over sooner."""
 
 HELD_TICKS = 10
-"""For so long a set point has to be held back before the robot is told to stand: a late tick is over in one."""
+"""Ticks for which a set point is blocked before the robot counts as standing; a late tick blocks a single one."""
 
 
 def standing_latched(reasons: tuple[str, ...], *, asks: bool = False, stall_s: float | None = None) -> Standing:
-    """Return the standing of a robot that the guard keeps stopped for `reasons`, after a stall of `stall_s`."""
+    """Return the standing after an emergency stop of the guard for `reasons`, after a stall of `stall_s`, in s."""
     word = reasons[0] if reasons else ""
     reason = LATCHED.get(word, StandReason.HALTED)
     if reason is StandReason.HALTED:
@@ -143,11 +142,11 @@ def standing_latched(reasons: tuple[str, ...], *, asks: bool = False, stall_s: f
 
 
 def touched_bumper(wheel_speeds: WheelSpeeds, reasons: tuple[str, ...]) -> StandReason | None:
-    """Return which bumpers hold wheels that were to drive on; None where they turn, or none of the bumpers holds.
+    """Return which bumpers block the wheels; None if a wheel turns or no bumper blocks.
 
     Args:
-        wheel_speeds: what the guard let through.
-        reasons: why that differs from what was wanted, in the guard's words.
+        wheel_speeds: set points that the guard applied.
+        reasons: the guard's codes for why they differ from the decided ones.
     """
     if wheel_speeds != STANDSTILL:
         return None
@@ -158,19 +157,19 @@ def touched_bumper(wheel_speeds: WheelSpeeds, reasons: tuple[str, ...]) -> Stand
 
 
 class BumperWatch:
-    """Notices that an RLA goes on toward what a bumper touches, so that the guard lets no wheel turn.
+    """Detector of an RLA that pushes toward what a bumper touches while the guard lets no wheel turn.
 
-    A bumper may spring back while nothing pushes it: ticks in which the wheels turn end the wait only when there were
-    as many of them.
+    A bumper may spring back between pushes, so the count starts again only after ASKS_AFTER_TICKS ticks without a
+    push.
     """
 
     def __init__(self) -> None:
         self._held_ticks = self._free_ticks = 0
 
-    def update(self, decision: Decision, grant: GuardResult) -> bool:
-        """Return whether the robot is held now, and has been for ASKS_AFTER_TICKS."""
-        pushes = decision.cause in (Cause.RLA, Cause.HELD) and not grant.latched
-        held = pushes and touched_bumper(grant.wheel_speeds, grant.reasons) is not None
+    def update(self, decision: Decision, guard_result: GuardResult) -> bool:
+        """Count one tick; return whether a bumper blocks the robot now and has for ASKS_AFTER_TICKS."""
+        pushes = decision.cause in (Cause.RLA, Cause.HELD) and not guard_result.latched
+        held = pushes and touched_bumper(guard_result.wheel_speeds, guard_result.reasons) is not None
         if held:
             self._held_ticks = min(self._held_ticks + 1, ASKS_AFTER_TICKS)
             self._free_ticks = 0
@@ -182,7 +181,7 @@ class BumperWatch:
 
 
 class StandingWatch:
-    """Tells after each tick whether the robot drives, and if not why; remembers how long a stall lasted."""
+    """Standing after each tick; remembers the length of the last stall."""
 
     def __init__(self) -> None:
         self._drove_at_s: float | None = None
@@ -192,43 +191,48 @@ class StandingWatch:
         self._held_ticks = 0
 
     def update(
-        self, decision: Decision, grant: GuardResult, drove_at_s: float, stop: ActiveStop | None, trouble: str | None
+        self,
+        decision: Decision,
+        guard_result: GuardResult,
+        drove_at_s: float,
+        stop: ActiveStop | None,
+        error: str | None,
     ) -> Standing:
         """Return the standing after one tick.
 
         Args:
-            decision: of the tick, as it is told.
-            grant: what the guard let through.
-            drove_at_s: when the guard was asked, on the runtime's clock.
-            stop: the one that holds until Go; None while none does.
-            trouble: why lessons cannot be saved; None while they can.
+            decision: of the tick, as it is published.
+            guard_result: set points that the guard applied, and why.
+            drove_at_s: time of the guard's call on the runtime's clock, in s.
+            stop: active stop; None without one.
+            error: reason that lessons cannot be saved; None if they can.
         """
-        if grant.latched and not self._latched:
+        if guard_result.latched and not self._latched:
             self._stall_s = None if self._drove_at_s is None else drove_at_s - self._drove_at_s
-        self._latched = grant.latched
+        self._latched = guard_result.latched
         self._drove_at_s = drove_at_s
-        held = self._held_back(decision, grant)
+        held = self._held_back(decision, guard_result)
         asks = decision.asking
-        if grant.latched:
-            return standing_latched(grant.reasons, asks=asks, stall_s=self._stall_s)
+        if guard_result.latched:
+            return standing_latched(guard_result.reasons, asks=asks, stall_s=self._stall_s)
         if held is not None:
             return Standing(held, asks=asks)
         if decision.driving:
             return DRIVES
-        says = trouble if trouble is not None else "" if decision.plan is None else decision.plan.says
+        says = error if error is not None else "" if decision.plan is None else decision.plan.says
         return standing_for(decision.cause, decision.asks_at, stop, says)
 
-    def _held_back(self, decision: Decision, grant: GuardResult) -> StandReason | None:
-        """Return why the guard lets none of what was decided through, once it has for some ticks."""
-        if decision.cause is Cause.TOUCHES and not grant.latched:
-            return touched_bumper(grant.wheel_speeds, grant.reasons)
-        if grant.latched or not decision.driving:
+    def _held_back(self, decision: Decision, guard_result: GuardResult) -> StandReason | None:
+        """Return why the guard blocks the decision, after HELD_TICKS ticks or at a bumper; None if it does not."""
+        if decision.cause is Cause.TOUCHES and not guard_result.latched:
+            return touched_bumper(guard_result.wheel_speeds, guard_result.reasons)
+        if guard_result.latched or not decision.driving:
             self._held, self._held_ticks = None, 0
             return None
-        bumpers = touched_bumper(grant.wheel_speeds, grant.reasons)
+        bumpers = touched_bumper(guard_result.wheel_speeds, guard_result.reasons)
         if bumpers is not None:
             return bumpers
-        held = next((_HELD[each] for each in grant.reasons if each in _HELD), None)
+        held = next((_HELD[each] for each in guard_result.reasons if each in _HELD), None)
         self._held_ticks = self._held_ticks + 1 if held is not None and held is self._held else 0
         self._held = held
         return held if self._held_ticks >= HELD_TICKS else None

@@ -1,4 +1,4 @@
-"""Standing in words: why the robot stands, and what to touch or to look at."""
+"""Texts of Standing: why the robot stands, and what the teacher can do."""
 
 import re
 from typing import NamedTuple
@@ -12,9 +12,9 @@ GO_IN_TERMINAL = "Type go to let it drive on"
 
 class _Text(NamedTuple):
     why: str
-    """Goes on from "stands: "; may name the fields of Standing."""
+    """Continues "stands: "; placeholders are fields of Standing."""
     to_do: str = ""
-    """A sentence of its own; before Go, where it stands until Go."""
+    """Separate sentence; it precedes the resume if the robot stands until then."""
 
 
 _TEXTS: dict[StandReason, _Text] = {
@@ -58,14 +58,14 @@ _STOPS: dict[StopReason, str] = {
     StopReason.GUARD: "the guard: {name}",
     StopReason.OTHER: "{name}",
 }
-"""Sentences of stops, read by older devices and kept in recordings: in the order in which they are recognised."""
+"""Sentences of stops, which older devices read and recordings keep, in the order in which they are recognised."""
 
 _QUESTIONS = {
     StandReason.FRONT_BUMPER: "I touch something in front of me; what now?",
     StandReason.REAR_BUMPER: "I touch something behind me; what now?",
     StandReason.BOTH_BUMPERS: "I touch something in front of me and behind me; what now?",
 }
-"""Asked where an RLA goes on pushing."""
+"""Questions of a robot whose RLA pushes on toward what it touches."""
 
 
 def stop_text(stop: ActiveStop | None) -> str:
@@ -74,9 +74,9 @@ def stop_text(stop: ActiveStop | None) -> str:
 
 
 def stop_of_text(text: str) -> ActiveStop | None:
-    """Return the stop of a sentence, as an older robot or a recording has it; None of an empty one.
+    """Return the stop of a sentence of an older robot or a recording; None of an empty sentence.
 
-    A sentence that is not in the table becomes the name of an OTHER.
+    A sentence that is not in the table becomes the name of a stop OTHER.
     """
     for reason, sentence in _STOPS.items():
         before, name, after = re.split(r"({name(?:!r)?}|$)", sentence, maxsplit=1)
@@ -88,7 +88,7 @@ def stop_of_text(text: str) -> ActiveStop | None:
 
 
 def reason_text(standing: Standing) -> str:
-    """Return the reason in a few words, to go on from "stands: "; empty while the robot drives."""
+    """Return the reason in a few words that continue "stands: "; empty while the robot drives."""
     stall = "" if standing.stall_s is None else f" for {standing.stall_s:.1f} s"
     return _TEXTS[standing.reason].why.format(
         says=standing.says or standing.reason, stop=stop_text(standing.stop) or standing.reason, stall=stall
@@ -96,12 +96,12 @@ def reason_text(standing: Standing) -> str:
 
 
 def question_text(standing: Standing) -> str:
-    """Return the question of a robot that is held at a bumper; empty where it asks nothing, or something else."""
+    """Return the question of a robot at a bumper; empty if it asks nothing or something else."""
     return _QUESTIONS.get(standing.reason, "") if standing.asks and not standing.needs_resume else ""
 
 
 def short_text(standing: Standing) -> str:
-    """Return why the robot stands, for one line among others; empty while it drives or asks what to do."""
+    """Return why the robot stands, for a status line; empty while it drives or asks what to do."""
     if standing.needs_resume:
         return f"stands until Go: {reason_text(standing)}"
     if standing.reason in (StandReason.DRIVES, StandReason.ASKS, StandReason.ASKS_THE_WAY):
@@ -114,7 +114,7 @@ def standing_headline(standing: Standing, go: str) -> str:
 
     Args:
         standing: of the robot.
-        go: how the teacher says Go on this surface, as a sentence without its full stop.
+        go: how the teacher resumes on this surface, as a sentence without its full stop.
     """
     question = question_text(standing)
     if question or standing.reason is StandReason.DRIVES:

@@ -1,4 +1,4 @@
-"""Teaching the critic what a situation was worth (paper, phase 4)."""
+"""Lessons of the critic: values of situations (paper, phase 4)."""
 
 from kurt2rt.core.critic.critic import Critic
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
@@ -10,7 +10,7 @@ from kurt2rt.core.teaching.lesson_result import LessonResult, rla_outcome
 
 
 class AppraisalLessons:
-    """Turns what a teacher says of a situation into the event that teaches it to the critic."""
+    """Builder of the events that teach a teacher's appraisals to the critic."""
 
     def __init__(self, critic: Critic, system: RlaSystem, recent: DecisionHistory) -> None:
         self._critic = critic
@@ -19,14 +19,17 @@ class AppraisalLessons:
 
     @property
     def appraisals(self) -> tuple[str, ...]:
-        """Names that a situation can be given."""
+        """Return the names of the critic's values."""
         return self._critic.appraisals
 
     def build(self, command: Appraise, meant: int, origin: Origin) -> LessonResult:
-        """Return what is done and its event; `meant`: a tick that is remembered. Raises CommandRefusedError.
+        """Return the outcome and the event of an appraisal about the remembered tick `meant`.
 
-        Another opinion than the critic's is learnt, the same one only counts for how far they agree. What the critic
-        has come to think since that tick counts for nothing: it may have learnt it from what was said just before.
+        An appraisal unlike the critic's present opinion is learnt. An equal one counts as agreement, but only if the
+        critic was of that opinion in that tick already: it may have learnt it from an appraisal in between.
+
+        Raises:
+            CommandRefusedError: for an unknown value, or a tick in which the robot was blind.
         """
         if command.appraisal not in self.appraisals:
             raise CommandRefusedError(RefusalCode.NO_APPRAISAL, appraisal=command.appraisal, known=self.appraisals)

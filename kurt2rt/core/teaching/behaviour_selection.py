@@ -1,4 +1,4 @@
-"""The teacher says which taught behaviour is to be followed: for good, or before a mid level until a junction."""
+"""Behaviour selection by the teacher: permanently, or under a mid level until the next junction."""
 
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
@@ -7,17 +7,17 @@ from kurt2rt.core.teaching.mid_lessons import MidLessons
 
 
 class BehaviourSelection:
-    """Takes the wishes of teachers in the order in which they saw the robot, however late they come."""
+    """Selection in the order in which teachers saw the robot; a late command on an older state is refused."""
 
     def __init__(self, active_behaviour: ActiveBehaviour, mid: MidLessons | None) -> None:
-        """`mid`: None: nobody but the teacher says what is wanted."""
+        """`mid`: lessons of the mid level; None: the teacher alone selects."""
         self._active_behaviour = active_behaviour
         self._mid = mid
         self._seen_tick = -1
-        """What the teacher had seen when he said what is wanted now."""
+        """Tick that the teacher had seen at the last selection."""
 
     def select(self, command: Pursue, tick: int) -> Outcome:
-        """Follow the behaviour from this tick on; return what was done. Raises CommandRefusedError."""
+        """Select the behaviour from this tick on and return the outcome. Raises CommandRefusedError."""
         wanted, mid = self._active_behaviour, self._mid
         seen_tick = tick if command.seen_tick is None else command.seen_tick
         if seen_tick < self._seen_tick:

@@ -1,4 +1,4 @@
-"""Carries out the teacher's commands, in the tick that takes them."""
+"""Command handler: carries out the teacher's commands in the tick that takes them."""
 
 from collections import deque
 from collections.abc import Iterable
@@ -48,10 +48,10 @@ from kurt2rt.core.teaching.mid_lessons import MidLessons
 from kurt2rt.core.teaching.session_clock import SessionClock
 
 DERIVED = "/"
-"""In the ids of what comes of a signal; a teacher's id with it might be one that the robot gives later."""
+"""Separator in ids that the robot derives from a command's id; refused in the ids of teachers."""
 
 _KNOWN_STOPS = 32
-"""Newest stops whose copies are known; a copy of an older one counts as a stop of its own, which only refuses more."""
+"""Number of stops whose copies are recognised; a copy of an older one counts as another stop, which is safe."""
 
 _Answer = tuple[CommandResult, TeachingEvent | None]
 
@@ -72,7 +72,7 @@ class HandlerParts:
 
 
 class CommandHandler:
-    """What teachers may do: lessons, rewards, appraisals and undo, sessions, phases, stop and resume."""
+    """Handler of lessons, rewards, appraisals, undo, sessions, phases, goals, stop and resume."""
 
     def __init__(
         self,
@@ -97,7 +97,7 @@ class CommandHandler:
         parts = parts or HandlerParts()
         self._level = level
         self.teacher_available = teacher_available
-        """Whether there is a teacher to ask."""
+        """False if there is no teacher to ask."""
         self.active_behaviour = level.active_behaviour
         self.authority = authority
         self.critic = critic = parts.critic
@@ -123,31 +123,34 @@ class CommandHandler:
         )
         self.phase = Phase.SUPERVISED
         self.active_stop: ActiveStop | None = None
-        """The stop that holds until `Resume`; None while none does."""
+        """Stop that lasts until `Resume`; None without one."""
         self._stopped_by: set[str] = set()
         self.stopped_at_tick = -1
-        """When a teacher last said stop, or the guard did: what was said on an older picture must not lift it."""
+        """Tick of the last stop by a teacher or the guard; a command given on an older state must not lift it."""
         self._stops_since_resume: deque[str] = deque(maxlen=_KNOWN_STOPS)
         self._selection = BehaviourSelection(self.active_behaviour, parts.mid)
         self._clock = SessionClock()
 
     def was_handled(self, command_id: str) -> bool:
-        """Whether a command of this id was carried out already."""
+        """Return whether a command of this id was carried out already."""
         return command_id in self.updater.handled_ids
 
     @property
     def corrections(self) -> int:
-        """How often a teacher has corrected the basic level."""
+        """Return the number of corrections of the basic level."""
         return self.corrections_at(BASIC)
 
     def corrections_at(self, level: str) -> int:
-        """How often a teacher has corrected a level."""
+        """Return the number of corrections of a level."""
         return self._lessons.corrections_at[level]
 
     def stop(self, stop: ActiveStop, by: str | None = None) -> None:
-        """Stand until `Resume`. `by`: a teacher, who may still drive by hand; another one may not.
+        """Stand until `Resume`.
 
-        Stopped by two, neither may: a late copy of one's stop must not lift the other's.
+        Args:
+            stop: reason for the active stop.
+            by: teacher who stopped the robot and may still drive it by hand; other teachers may not. After stops by
+                two teachers neither may, because a late copy of one's stop must not lift the other's.
         """
         self.authority.end_manual()
         self.active_stop = stop
@@ -156,22 +159,22 @@ class CommandHandler:
 
     @property
     def active_rlas(self) -> tuple[Rla, ...]:
-        """All RLAs that live, of all levels, in no order."""
+        """Return all active RLAs of all levels, in no order."""
         return self._level.system.active_rlas
 
     @property
     def session(self) -> str | None:
-        """Name of the session that is on."""
+        """Return the name of the open session; None without one."""
         return self._clock.session
 
     def teaching_ticks(self, tick: int) -> int:
-        """How long the session that is on has lasted at `tick`, or how long the last one did."""
+        """Return the length of the open session at `tick`, or of the last one, in ticks."""
         return self._clock.ticks(tick)
 
     def before_decision(self, tick: int, *, was_driving: bool) -> None:
-        """Before each decision: a robot that drove and has lost its teacher stands until it is told to resume.
+        """Stop a robot that drove and whose required teacher is absent; call it before each decision.
 
-        Where nobody is asked, RLAs whose action was withdrawn are passed over.
+        Without a teacher to ask, the level skips RLAs whose action was withdrawn.
         """
         self._level.skip_withdrawn = not self.teacher_available or self.phase is Phase.AUTONOMOUS
         authority = self.authority
@@ -180,11 +183,11 @@ class CommandHandler:
 
     @property
     def requires_teacher(self) -> bool:
-        """Whether the robot may drive by its RLAs only while a teacher is there."""
+        """Return whether the robot drives by its RLAs only while a teacher is present."""
         return self.authority.attended and self.phase is not Phase.AUTONOMOUS
 
     def handle_stream(self, command: Watch | Drive, tick: int) -> Outcome | None:
-        """Apply a message of a stream, of which only the newest counts; return a refusal."""
+        """Apply a message of a stream, in which only the newest counts; return a refusal, or None."""
         authority = self.authority
         refusal = _no_person(command.teacher) or authority.refusal_for(command.teacher) or self.manual_refusal(command)
         if refusal is not None:
@@ -194,13 +197,13 @@ class CommandHandler:
             return None
         authority.claim(command.teacher)
         authority.drive(command, tick)
-        # When the hand lets go, or is not heard any more, the robot stands; the RLAs go on when told to.
+        # After manual drive the robot stands until a resume, also when messages cease.
         self.active_stop = ActiveStop(StopReason.LET_GO, command.teacher)
         self._stopped_by = {command.teacher}
         return None
 
     def manual_refusal(self, command: Watch | Drive) -> Outcome | None:
-        """Return why this press does not drive the robot; None if it does. Being there is always allowed."""
+        """Return why this press does not drive the robot; None if it does, and for a sign of presence."""
         if isinstance(command, Watch):
             return None
         if self.authority.is_press_over(command):
@@ -208,15 +211,15 @@ class CommandHandler:
         return self._refusal_if_stopped_by_another(command.teacher)
 
     def refusal_if_stopped_since(self, seen_tick: int | None) -> Outcome | None:
-        """Return why a command given on the picture of this tick must not lift a stop; None if no stop came since."""
+        """Return the refusal of a command given on the state of `seen_tick` if a stop came since; None otherwise."""
         if seen_tick is None or seen_tick >= self.stopped_at_tick:
             return None
         return Outcome(RefusalCode.STOPPED_SINCE)
 
     def handle(self, command: Command, situation: Situation, tick: int) -> _Answer:
-        """Carry out one command. An event in the answer already acts and has to reach the journal."""
+        """Carry out one command; an event in the answer is applied already and must be submitted to the journal."""
         assert not isinstance(command, Watch | Drive)
-        # A stop that comes twice stops twice: it may be the second one that is meant.
+        # Every copy of a stop brakes: a copy may be the one that matters.
         stops_again = isinstance(command, Stop) and command.hold is None
         if self.was_handled(command.command_id) and not stops_again:
             return CommandResult(command.command_id, Outcome(ResultCode.REPEATED)), None
@@ -231,7 +234,7 @@ class CommandHandler:
             self._notify_mid_level(command)
         except (CommandRefusedError, InvalidEventError) as error:
             if was_free and self.authority.teacher is not None:
-                self.authority.hand_over(None)  # who was refused has not become the teacher by it
+                self.authority.hand_over(None)  # a refused command gives no authority
             why = (
                 error.outcome
                 if isinstance(error, CommandRefusedError)
@@ -242,12 +245,12 @@ class CommandHandler:
         return CommandResult(command.command_id, outcome, lesson=event is not None), event
 
     def _notify_mid_level(self, command: Command) -> None:
-        """What was taught about the present goes before what the teacher had commanded for it."""
+        """Tell the mid level of a lesson, which replaces the teacher's override of the present situation."""
         if self.mid is not None and isinstance(command, Teach | Correct) and command.level == MID:
             self.mid.on_lesson(command)
 
     def learn(self, tick: int, decision: Decision, opinion: Opinion | None) -> list[TeachingEvent]:
-        """What is learnt from a tick when the wheels have been told; see `KnowledgeUpdater.from_tick`."""
+        """Learn from a tick after its wheel speeds were sent; see `KnowledgeUpdater.learn_from_tick`."""
         return self.updater.learn_from_tick(self.phase, tick, decision, opinion)
 
     def _carry_out(self, command: Command, situation: Situation, tick: int) -> LessonResult:
@@ -304,7 +307,7 @@ class CommandHandler:
     def _stop(self, command: Stop, tick: int) -> Outcome:
         if command.hold is not None and self.authority.drives_by_later_press(command.teacher, command.hold, tick):
             return Outcome(ResultCode.RELEASE_SUPERSEDED)
-        # A copy brakes again, but nobody has said it anew: who says go has seen what it was a copy of.
+        # A copy brakes again but is not a newer stop: the teacher who resumes has seen the original.
         if command.command_id not in self._stops_since_resume:
             self._stops_since_resume.append(command.command_id)
             self.stopped_at_tick = tick
@@ -318,7 +321,7 @@ class CommandHandler:
         return self._goals
 
     def _clear_stop_of(self, before: str | None) -> None:
-        """The robot stays stopped, but the next teacher may drive it by hand though the one before had stopped it."""
+        """Let the next teacher drive by hand although the one before stopped the robot, which stays stopped."""
         if before is not None:
             self._stopped_by.discard(before)
 
@@ -335,7 +338,7 @@ class CommandHandler:
         name = self.session
         taken = self._clock.apply(command, tick, self._origin(command, tick))
         if isinstance(command, EndSession):
-            # A reason that is there already stays: the end of a session must not hide that somebody said stop.
+            # An earlier reason stays: the end of a session must not hide a teacher's stop.
             self.stop(self.active_stop or ActiveStop(StopReason.SESSION_OVER, name or ""), command.teacher)
         return taken
 

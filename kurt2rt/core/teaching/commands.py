@@ -1,7 +1,8 @@
-"""What a teacher can tell the robot: one typed interface for the scripted teacher, the terminal and the network.
+"""Commands of teachers, shared by the scripted teacher, the terminal and the network.
 
-Four kinds, as in the paper: motor commands, behaviours, reinforcements, and organising commands. Those with a
-`command_id` count once however often they come; the others are a stream of which the newest counts.
+Four kinds, as in the paper: motor commands, behaviours, reinforcements, and organising commands. A command with a
+`command_id` counts once, in any number of copies; the others are streams in which the newest message counts.
+`seen_tick` is the tick of the newest state that the teacher had; None for a teacher in the same program.
 """
 
 from dataclasses import dataclass
@@ -15,22 +16,20 @@ from kurt2rt.core.rla.rla import BASIC, Phase
 
 @dataclass(frozen=True, slots=True)
 class Watch:
-    """The teacher is there and sees the robot; while nobody is, a robot that needs a teacher stands."""
+    """Sign that the teacher is present; a robot that requires a teacher stands without it."""
 
     teacher: str
     seen_tick: int
-    """Tick of the newest sign of the robot that he had."""
 
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """The teacher drives by hand for as long as these come (a dead man's handle)."""
+    """Speeds of manual drive, which lasts while these messages come (deadman switch)."""
 
     teacher: str
     seen_tick: int
-    """Tick of the newest sign of the robot that he had."""
     hold: int
-    """Number of this press of the button, larger than that of any press before; a stop ends a press for good."""
+    """Press id, larger than that of any press before; a stop ends a press permanently."""
     left_m_s: float
     right_m_s: float
 
@@ -40,47 +39,47 @@ class Drive:
 
 @dataclass(frozen=True, slots=True)
 class RunBehaviour:
-    """Run one action of the repertoire for a time, whatever the RLAs say; the robot stands afterwards."""
+    """Run one action of the repertoire for `ticks` ticks in place of the RLAs; the robot stands afterwards."""
 
     command_id: str
     teacher: str
     action: str
     ticks: int
     seen_tick: int | None = None
-    """Tick of the newest sign of the robot that the teacher had; a stop after it is not lifted. None: he stands by."""
+    """A stop after this tick refuses the command."""
 
 
 @dataclass(frozen=True, slots=True)
 class Teach:
-    """Answer a situation: a new RLA with this action stands there (phase 1)."""
+    """Answer a situation by a new RLA with this action (phase 1)."""
 
     command_id: str
     teacher: str
     action: str
-    """A name in the repertoire; at the mid level a taught behaviour."""
+    """Name in the repertoire; at the mid level a taught behaviour."""
     decision_tick: int | None = None
-    """The situation of which tick; None: the present one."""
+    """Tick of the situation; None: the present one."""
     level: str = BASIC
-    """Whose situation it is: BASIC, or MID where the robot has a mid level."""
+    """Level of the situation: BASIC, or MID if the robot has a mid level."""
     beside: bool = False
-    """At the mid level: this is possible there, too, beside what the RLAs say that know the situation already."""
+    """True at the mid level to add an alternative to the RLAs that know the situation already."""
 
 
 @dataclass(frozen=True, slots=True)
 class Correct:
-    """Another action is right in a situation (phase 2).
+    """Replace the action in a situation (phase 2).
 
-    Close to the nearest RLA's condition its action is replaced; farther off a new RLA is inserted, because replacing
-    would flip one RLA to and fro between situations that contradict each other.
+    Close to the nearest RLA's condition its action is replaced. Farther off a new RLA is inserted, because replacing
+    would flip one RLA between situations that contradict each other.
     """
 
     command_id: str
     teacher: str
     action: str
     decision_tick: int | None = None
-    """The decision of which tick was wrong; None: the present one."""
+    """Tick of the wrong decision; None: the present one."""
     level: str = BASIC
-    """Whose decision it was, as in `Teach`."""
+    """Level of the wrong decision, as in `Teach`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,25 +106,25 @@ class DeleteRla:
 
 @dataclass(frozen=True, slots=True)
 class Reward:
-    """Praise (+1) or blame (-1) for the RLA that decided in a tick, however long ago it was."""
+    """Reward of +1 or -1 for the RLAs that drove up to a tick of the last 1000 (phase 3)."""
 
     command_id: str
     teacher: str
     value: int
     decision_tick: int | None = None
-    """The decision of which tick; None: the present one."""
+    """Tick of the decision; None: the present one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Appraise:
-    """Teach the critic what a situation is worth, whoever drove in it and whatever was done (phase 4)."""
+    """Teach the critic the value of a situation, independent of the action (phase 4)."""
 
     command_id: str
     teacher: str
     appraisal: str
-    """A name in the critic's repertoire: bad, neutral, good."""
+    """Name in the critic's repertoire: bad, neutral, good."""
     decision_tick: int | None = None
-    """The situation of which tick; None: the present one."""
+    """Tick of the situation; None: the present one."""
 
 
 # Organising commands.
@@ -133,92 +132,86 @@ class Appraise:
 
 @dataclass(frozen=True, slots=True)
 class Undo:
-    """Take a lesson back."""
+    """Undo a lesson."""
 
     command_id: str
     teacher: str
     lesson: str | None = None
-    """Command id of the lesson; None: the last one that still stands."""
+    """Command id of the lesson; None: the last lesson that stands."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pursue:
-    """Follow another taught behaviour from now on: only its RLAs answer, and lessons are about it.
+    """Make another taught behaviour active: only its RLAs compete, and lessons are about it.
 
-    Where a mid level commands, this goes before it until the next junction has been passed.
+    It overrides a mid level until the next junction has been passed.
     """
 
     command_id: str
     teacher: str
     behaviour: str
     seen_tick: int | None = None
-    """Tick of the newest sign of the robot that the teacher had; a stop or another `Pursue` after it goes before.
-    None: he stands by.
-    """
+    """A stop or another `Pursue` after this tick refuses the command."""
 
 
 @dataclass(frozen=True, slots=True)
 class NameSituation:
-    """Give a situation of the mid level a name, so that the robot can be sent there: door, this junction."""
+    """Give a situation of the mid level a name, such as "door", so that it can be a goal."""
 
     command_id: str
     teacher: str
     name: str
-    """One that was given already means this situation from now on."""
+    """New or existing name; an existing one moves to this situation."""
     decision_tick: int | None = None
-    """The situation of which tick; None: the present one."""
+    """Tick of the situation; None: the present one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Seek:
-    """Go to a goal, by whatever ways were taught; stand there."""
+    """Go to a goal on taught ways, and stand there."""
 
     command_id: str
     teacher: str
     goal: Goal
     seen_tick: int | None = None
-    """Tick of the newest sign of the robot that the teacher had; a stop, or another goal, after it goes before.
-    None: he stands by.
-    """
+    """A stop or another goal after this tick refuses the command."""
 
 
 @dataclass(frozen=True, slots=True)
 class StopSeeking:
-    """Seek no goal any more: the mid level commands as ever."""
+    """Drop the goal; the mid level commands by its RLAs."""
 
     command_id: str
     teacher: str
     seen_tick: int | None = None
-    """As in `Seek`: a robot that has arrived may drive on."""
+    """As in `Seek`, because a robot that has arrived may drive on."""
 
 
 @dataclass(frozen=True, slots=True)
 class BeAt:
-    """The robot was set down at a place that has a name: its reckoning goes on from there."""
+    """Set the location after the robot was put down at a named place."""
 
     command_id: str
     teacher: str
     name: str
     seen_tick: int | None = None
-    """Tick of the newest sign of the robot that the teacher had; a junction passed after it goes before.
-    None: he stands by.
-    """
+    """A junction that was passed after this tick refuses the command."""
 
 
 @dataclass(frozen=True, slots=True)
 class SetPhase:
-    """The training phase from now on."""
+    """Set the training phase."""
 
     command_id: str
     teacher: str
     phase: Phase
     seen_tick: int | None = None
-    """Tick of the newest sign of the robot that the teacher had; a stop after it is not lifted. None: he stands by."""
+    """A stop after this tick refuses the command."""
 
 
 @dataclass(frozen=True, slots=True)
 class BeginSession:
-    """Teaching begins: the teaching clock runs."""
+    """Begin a session; its teaching time runs."""
 
     command_id: str
     teacher: str
@@ -227,7 +220,7 @@ class BeginSession:
 
 @dataclass(frozen=True, slots=True)
 class EndSession:
-    """Teaching ends: the teaching clock stops and the robot stands."""
+    """End the session and its teaching time; the robot stands."""
 
     command_id: str
     teacher: str
@@ -235,7 +228,7 @@ class EndSession:
 
 @dataclass(frozen=True, slots=True)
 class Take:
-    """Be the teacher from now on, also where another one is; not while that one drives by hand."""
+    """Take control authority, also from another teacher; refused while that one drives by hand."""
 
     command_id: str
     teacher: str
@@ -243,22 +236,22 @@ class Take:
 
 @dataclass(frozen=True, slots=True)
 class HandOver:
-    """Be the teacher no longer."""
+    """Give up control authority."""
 
     command_id: str
     teacher: str
     to: str | None = None
-    """Who is the teacher next; None: whoever takes it."""
+    """Next teacher; None: the first one that commands."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """Stand until `Resume`. Every teacher may say it, at any time."""
+    """Stand until `Resume`. Every teacher may send it at any time."""
 
     command_id: str
     teacher: str
     hold: int | None = None
-    """The press that he lets go, which is no reason to end a later one; None: whatever moves the robot."""
+    """Press id that ends; a later press goes on. None: stop all motion."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -268,7 +261,7 @@ class Resume:
     command_id: str
     teacher: str
     seen_tick: int | None = None
-    """Tick of the newest sign of the robot that the teacher had; a stop after it is not lifted. None: he stands by."""
+    """A stop after this tick refuses the command."""
 
 
 Command = (
@@ -299,19 +292,19 @@ Command = (
 
 @dataclass(frozen=True, slots=True)
 class CommandResult:
-    """What became of a command in the tick that took it. A lesson is safe only once the journal says so as well."""
+    """Outcome of a command in the tick that took it. A lesson is safe only after the journal acknowledged it."""
 
     command_id: str
     outcome: Outcome
     lesson: bool = False
-    """Whether it became an event that has to reach the journal."""
+    """True if it became an event for the journal."""
 
     @property
     def accepted(self) -> bool:
-        """Whether the command was carried out."""
+        """Return whether the command was carried out."""
         return self.outcome.accepted
 
     @property
     def code(self) -> Code:
-        """Code of the outcome."""
+        """Return the code of the outcome."""
         return self.outcome.code

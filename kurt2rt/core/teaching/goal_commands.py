@@ -1,4 +1,4 @@
-"""What a teacher says of places and goals: names for situations, where the robot is, where it is to go."""
+"""Commands about places and goals: naming situations, setting the location, seeking goals."""
 
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.planning.navigator import Navigator
@@ -12,17 +12,17 @@ LONGEST_NAME = 64
 
 
 class GoalCommands:
-    """Carries these commands out, with the navigator."""
+    """Handler of goal commands, which the navigator carries out."""
 
     def __init__(self, navigator: Navigator, lessons: MidLessons) -> None:
         self._navigator = navigator
         self._lessons = lessons
         self._seen_tick = -1
-        """What the teacher had seen when he said what is sought now."""
+        """Tick that the teacher had seen at the last goal command."""
         self._planned_tick = -1
 
     def name_situation(self, command: NameSituation, origin: Origin) -> tuple[Outcome, TeachingEvent]:
-        """Return what was done and the event that names a situation. Raises CommandRefusedError."""
+        """Return the outcome and the event that names a situation. Raises CommandRefusedError."""
         name = command.name
         if not 0 < len(name) <= LONGEST_NAME or not name.isprintable() or name != name.strip():
             raise CommandRefusedError(RefusalCode.BAD_NAME, name=name, longest=LONGEST_NAME)
@@ -30,7 +30,7 @@ class GoalCommands:
         return Outcome.of(ResultCode.SITUATION_NAMED, name=name), SituationNamed(name, situation, MID, origin)
 
     def carry_out(self, command: Seek | StopSeeking | BeAt, tick: int) -> Outcome:
-        """Return what was done. Raises CommandRefusedError, also for a command that a later one has replaced."""
+        """Carry out a command and return the outcome. Raises CommandRefusedError, also for a superseded command."""
         seen_tick = tick if command.seen_tick is None else command.seen_tick
         if isinstance(command, BeAt):
             return self._locate(command.name, seen_tick)

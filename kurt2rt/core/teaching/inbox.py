@@ -1,4 +1,4 @@
-"""Where commands wait for the next tick."""
+"""Inbox: queue of commands for the next tick."""
 
 from collections import deque
 from collections.abc import Iterable
@@ -8,20 +8,20 @@ from kurt2rt.core.teaching.system_events import Input, PairingRenewed, RobotRepo
 
 
 class InboxFullError(RuntimeError):
-    """More commands wait than a teacher can mean; nothing was taken in."""
+    """The inbox is full; the command was not queued."""
 
 
 class TeacherInbox:
-    """A bounded queue that any thread may fill and the tick empties."""
+    """Bounded queue that any thread fills and the tick empties."""
 
     def __init__(self, capacity: int = 256) -> None:
         self._waiting: deque[Input] = deque()
         self._capacity = capacity
 
     def put(self, command: Input) -> None:
-        """Hand a command to the next tick. Raises InboxFullError; a stop, and what has happened, is always taken."""
+        """Queue a message for the next tick. Raises InboxFullError; a stop or a system event is always queued."""
         if isinstance(command, PairingRenewed | RobotRepositioned | SpeedChanged):
-            self._waiting.appendleft(command)  # it has happened, and the commands that wait have not
+            self._waiting.appendleft(command)  # it happened before the waiting commands act
             return
         if len(self._waiting) >= self._capacity and not isinstance(command, Stop):
             raise InboxFullError(
@@ -30,14 +30,14 @@ class TeacherInbox:
         self._waiting.append(command)
 
     def replace_pending(self, commands: Iterable[Input]) -> None:
-        """Have the next tick take exactly these, in this order, as a recorded one did."""
+        """Replace all waiting messages, so that the next tick takes exactly these, as a recorded tick did."""
         self._waiting = deque(commands)
 
     def pop_all(self) -> tuple[Input, ...]:
-        """All commands that wait, in the order they came; never blocks."""
+        """Return all waiting messages in order of arrival; never block."""
         if not self._waiting:
             return ()
-        # One at a time: another thread may append meanwhile, and what came late may as well come along.
+        # One at a time, because another thread may append meanwhile; its message is taken as well.
         taken = []
         while self._waiting:
             taken.append(self._waiting.popleft())

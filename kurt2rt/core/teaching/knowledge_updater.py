@@ -1,4 +1,4 @@
-"""What is learnt when the wheels have been told: from rewards, and from the critic in its teacher's place."""
+"""Updates of the knowledge after each decision: by lessons, rewards and the critic."""
 
 from collections.abc import Iterable
 
@@ -14,7 +14,7 @@ from kurt2rt.core.rla.rla_system import InvalidEventError
 
 
 class KnowledgeUpdater:
-    """The one place where the knowledge of a running robot changes; all that follow it are told."""
+    """Only place where the knowledge of a running robot changes; it notifies the parts that depend on it."""
 
     def __init__(
         self,
@@ -25,29 +25,29 @@ class KnowledgeUpdater:
         agreement: Agreement | None,
         self_teaching: SelfTeaching | None,
     ) -> None:
-        """Without `reinforcement` nothing is learnt from rewards, without `self_teaching` nothing in phase 5."""
+        """Connect the parts; `reinforcement` applies rewards, `self_teaching` is the teacher of phase 5."""
         self._level = level
         self._reinforcement = reinforcement
         self._agreement = agreement
         self._self_teaching = self_teaching
         self.handled_ids = set(handled_command_ids)
-        """Ids of all commands that were carried out, and of all that came of signals."""
+        """Ids of all commands that were carried out, and of all repairs."""
         self.error = ""
-        """What the robot wanted to learn by itself and could not, in one line; empty while there is nothing."""
+        """Changes that did not fit the knowledge and were skipped, in one line; empty without any."""
         self._skipped = 0
 
     @property
     def critic_state(self) -> CriticState:
-        """What the critic did in the last tick; it listens where there is none."""
+        """Return the critic's state in the last tick; LISTENS without a critic."""
         return CriticState.LISTENS if self._self_teaching is None else self._self_teaching.state
 
     @property
     def bad_share(self) -> float | None:
-        """Share of the driven time that the critic found bad lately; None while it only listens."""
+        """Return the fraction of recently driven time that the critic found bad; None while it only listens."""
         return None if self._self_teaching is None else self._self_teaching.bad_share
 
     def apply(self, event: TeachingEvent) -> None:
-        """Change the knowledge, and tell all that follow it. Raises InvalidEventError, and then nothing has changed."""
+        """Apply an event and notify the dependent parts. Raises InvalidEventError without having changed anything."""
         self._level.apply(event)
         self.handled_ids.add(event.origin.command_id)
         if self._reinforcement is not None:
@@ -60,7 +60,7 @@ class KnowledgeUpdater:
     def learn_from_tick(
         self, phase: Phase, tick: int, decision: Decision, opinion: Opinion | None
     ) -> list[TeachingEvent]:
-        """What is learnt from a tick: the decision, and what the critic thinks of it.
+        """Learn from a tick's decision and the critic's opinion of it; return the events.
 
         The events act from the next tick on and have to reach the journal.
         """
@@ -86,7 +86,7 @@ class KnowledgeUpdater:
         return events
 
     def _apply_own(self, event: TeachingEvent, events: list[TeachingEvent]) -> None:
-        """Apply what the robot learnt by itself. Where it does not fit, it is skipped, and told of."""
+        """Apply an event that the robot itself made; skip and report it if it does not fit the knowledge."""
         try:
             self.apply(event)
         except InvalidEventError as error:

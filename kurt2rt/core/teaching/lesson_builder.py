@@ -1,4 +1,4 @@
-"""What a teacher's command teaches: the event that changes the knowledge as he said."""
+"""Lesson builder: from a teacher's command to the event that changes the knowledge."""
 
 from collections import Counter
 from collections.abc import Iterable
@@ -27,11 +27,11 @@ from kurt2rt.core.teaching.lesson_result import LessonResult, rla_outcome
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 
 LessonCommand = Teach | Correct | ReplaceAction | DeleteRla | Reward | Appraise | Undo
-"""Commands that are about the knowledge."""
+"""Command that changes the knowledge."""
 
 
 class LessonBuilder:
-    """Makes the events of lessons, and applies none; the teacher may mean a decision of the last seconds."""
+    """Builder of the events of lessons, also about decisions of the last seconds; it applies none."""
 
     def __init__(
         self,
@@ -56,10 +56,10 @@ class LessonBuilder:
         self._appraisals: tuple[str, ...] = () if appraisal_lessons is None else appraisal_lessons.appraisals
         self._mid = mid
         self.corrections_at: Counter[str] = Counter()
-        """How often a teacher has corrected, by level."""
+        """Number of corrections by level."""
 
     def build(self, command: LessonCommand, situation: Situation, origin: Origin) -> LessonResult:
-        """Return what a command teaches in the present `situation`. Raises CommandRefusedError."""
+        """Return the outcome and event of a command in the present `situation`. Raises CommandRefusedError."""
         match command:
             case Teach() | Correct():
                 return self._lesson(command, situation, origin)
@@ -94,7 +94,7 @@ class LessonBuilder:
         nearest = self._system.match(meant.vector, meant.behaviour, meant.level)
         if isinstance(command, Teach) and command.beside:
             return self._add_alternative(command.action, meant, nearest, origin)
-        # On the very condition of an RLA a second one would never win: the older one does.
+        # A second RLA on the same condition would never win, because the older one does.
         replace_within_share = 0.0
         if isinstance(command, Correct):
             self.corrections_at[command.level] += 1
@@ -129,7 +129,7 @@ class LessonBuilder:
     def _add_alternative(
         self, action: str, meant: LessonContext, nearest: Match | None, origin: Origin
     ) -> LessonResult:
-        """Another RLA on the very condition of those that know the situation; where none does, a first one."""
+        """Create another RLA on the condition of those that know the situation, or the first one there."""
         if meant.level != MID:
             raise CommandRefusedError(RefusalCode.NO_OTHER_WAY)
         if nearest is None or not nearest.known:
@@ -140,7 +140,7 @@ class LessonBuilder:
         return self._create(action, meant, origin, beside=nearest.rla)
 
     def _corrected_rla(self, nearest: Rla, meant: LessonContext) -> Rla:
-        """Where several stand on one condition: the one that drove then, else the one that would answer."""
+        """Return which of several RLAs on one condition is meant: the one that drove, or else the one that would."""
         group = self._system.competitors(nearest)
         if len(group) == 1 or nearest.is_withdrawn:
             return nearest
@@ -174,7 +174,7 @@ class LessonBuilder:
         return LessonResult(rla_outcome(ResultCode.RLA_CORRECTED, rla, action=action, was=rla.action), event)
 
     def _competitor_with(self, action: str, rla: Rla) -> Rla | None:
-        """Another RLA on the same condition that says so: at the mid level they are ways, and no two are the same."""
+        """Return another mid-level RLA on the same condition with this action; no two may be equal."""
         if rla.level != MID or rla.is_withdrawn:
             return None
         return next((each for each in self._system.competitors(rla) if each is not rla and each.action == action), None)
@@ -210,7 +210,7 @@ class LessonBuilder:
         return LessonResult(Outcome.of(ResultCode.LESSON_UNDONE, says=record.text), LessonUndone(lesson, origin))
 
     def _known_tick(self, decision_tick: int | None) -> int:
-        # The newest, not the tick before this one, which may have been missed.
+        # Default to the newest remembered tick: the previous number may have been missed.
         meant = self._recent.newest if decision_tick is None else decision_tick
         self._require_known(meant)
         return meant
@@ -222,7 +222,7 @@ class LessonBuilder:
             require_action(action, self._level.repertoire if level == BASIC else self._appraisals)
 
     def _can_act(self, rla: Rla) -> bool:
-        """Whether an RLA that comes back can be followed: knowledge may be older than the task, or another task's."""
+        """Return whether an RLA that comes back can act here; knowledge may be older than the task, or another's."""
         behaviours = self._level.active_behaviour.behaviours
         if rla.level == BASIC:
             return rla.behaviour in behaviours and (rla.is_withdrawn or rla.action in self._level.repertoire)
@@ -242,7 +242,7 @@ class LessonBuilder:
 
 
 def _is_at_known_place(nearest: Match, meant: LessonContext) -> bool:
-    """Whether a situation is at a place that is known, where a second one so near would be the same place twice."""
+    """Return whether a situation is so near to a known place that a second one would be the same place."""
     return (
         meant.insert_beyond_share > 0.0
         and nearest.known
@@ -251,14 +251,14 @@ def _is_at_known_place(nearest: Match, meant: LessonContext) -> bool:
 
 
 def require_action(action: str, repertoire: Iterable[str]) -> None:
-    """Raise CommandRefusedError, which lists the actions, for a name that a repertoire does not have."""
+    """Raise CommandRefusedError, which lists the actions, if the repertoire lacks `action`."""
     names = tuple(repertoire)
     if action not in names:
         raise CommandRefusedError(RefusalCode.NO_ACTION, action=action, known=names)
 
 
 def require_behaviour(name: str, behaviours: Iterable[str]) -> None:
-    """Raise CommandRefusedError, which lists the behaviours, for one that the task does not teach."""
+    """Raise CommandRefusedError, which lists the behaviours, if the task does not teach `name`."""
     names = tuple(behaviours)
     if name not in names:
         raise CommandRefusedError(RefusalCode.NO_BEHAVIOUR, behaviour=name, known=names)

@@ -1,4 +1,4 @@
-"""The situation that a lesson is about."""
+"""Lesson context: the situation that a lesson is about."""
 
 from typing import NamedTuple
 
@@ -7,16 +7,16 @@ from numpy.typing import NDArray
 
 
 class LessonContext(NamedTuple):
-    """Which situation a teacher means, of which level, and what was done there."""
+    """Situation that a teacher means, its level, and the RLA that drove there."""
 
     vector: NDArray[np.float64]
-    """Situation of that level, shape (d,)."""
+    """Situation of the level, shape (d,)."""
     behaviour: str
-    """The taught behaviour that a lesson about it belongs to; empty where that level has only one system."""
+    """Behaviour that the lesson belongs to; empty if the level has a single one."""
     level: str
     drove: int | None
-    """The RLA that answered there; None where none did."""
+    """RLA that answered there; None if none did."""
     insert_beyond_share: float
     """A correction farther than this share of R from the nearest condition inserts a new RLA, else it replaces."""
     touched: bool = False
-    """Whether the robot asked what to do with what it touched: an answer corrects the RLA that goes on toward it."""
+    """True if the robot asked at a bumper: an answer corrects the RLA that pushed on."""

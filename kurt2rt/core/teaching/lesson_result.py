@@ -1,4 +1,4 @@
-"""Result of a command that is about the knowledge."""
+"""Lesson result: outcome and event of a command that teaches."""
 
 from typing import NamedTuple
 
@@ -7,15 +7,15 @@ from kurt2rt.core.rla.rla import BASIC, Rla, TeachingEvent
 
 
 class LessonResult(NamedTuple):
-    """What a lesson comes to."""
+    """Outcome of a lesson and the event that makes it."""
 
     outcome: Outcome
     event: TeachingEvent | None = None
-    """Changes the knowledge so; None if nothing has to be changed."""
+    """Change of the knowledge; None if it changes nothing."""
 
 
 def rla_outcome(code: ResultCode | RefusalCode, rla: Rla, **fields: Field) -> Outcome:
-    """Return an outcome that names an RLA: its id, and its behaviour and level if they are not the usual ones."""
+    """Return an outcome with an RLA's id, and with its behaviour and level if they are not the default."""
     named: dict[str, Field] = {"rla": rla.rla_id}
     if rla.behaviour:
         named["behaviour"] = rla.behaviour

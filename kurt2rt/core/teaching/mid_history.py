@@ -1,4 +1,4 @@
-"""The latest situations of the mid level: each lasts from one junction to the next, so few of them reach far back."""
+"""History of the mid level: each situation lasts from one junction to the next, so a few reach far back."""
 
 from bisect import bisect_right
 from collections import deque
@@ -9,16 +9,16 @@ from numpy.typing import NDArray
 
 
 class MidSnapshot(NamedTuple):
-    """What the mid level saw and decided, the same for many ticks."""
+    """Situation and decision of the mid level, equal for many ticks."""
 
     vector: NDArray[np.float64]
     """Mid-level situation, shape (d,)."""
     rla_id: int | None
-    """The mid-level RLA that commanded; None where it asked, or a teacher commanded."""
+    """Mid-level RLA that commanded; None if the level asked or a teacher commanded."""
 
 
 class MidHistory:
-    """The last `capacity` of them, by the ticks in which they were: a teacher may mean a junction of minutes ago."""
+    """Last `capacity` snapshots by tick, because a teacher may mean a junction of minutes ago."""
 
     def __init__(self, capacity: int = 64) -> None:
         self._first_ticks: deque[int] = deque(maxlen=capacity)
@@ -26,9 +26,13 @@ class MidHistory:
         self._newest = -1
 
     def remember(self, tick: int, vector: NDArray[np.float64], rla_id: int | None) -> None:
-        """Keep that of a tick; the oldest is forgotten.
+        """Add the snapshot of a tick; the oldest is dropped.
 
-        The vector is kept as it is and must never be changed in place: the same object is the same situation.
+        Args:
+            tick: number of the tick.
+            vector: mid-level situation, shape (d,). It is stored without a copy and must never change: an identical
+                object is the same situation.
+            rla_id: RLA that commanded; None if the level asked or a teacher commanded.
         """
         self._newest = tick
         if self._snapshots:
@@ -40,10 +44,10 @@ class MidHistory:
 
     @property
     def newest(self) -> MidSnapshot | None:
-        """The newest one; None before the first."""
+        """Return the newest snapshot; None before the first."""
         return self._snapshots[-1] if self._snapshots else None
 
     def get(self, tick: int) -> MidSnapshot | None:
-        """That of a tick; None where it is forgotten, or still to come."""
+        """Return the snapshot of a tick; None if it was dropped or is in the future."""
         place = bisect_right(self._first_ticks, tick) - 1 if tick <= self._newest else -1
         return self._snapshots[place] if place >= 0 else None

@@ -1,4 +1,4 @@
-"""What a teacher says of the way to go: lessons of the mid level, and commands in its place."""
+"""Lessons of the mid level, and a teacher's commands in its place."""
 
 import numpy as np
 
@@ -12,16 +12,16 @@ from kurt2rt.core.teaching.mid_history import MidHistory
 
 
 class MidLessons:
-    """Remembers what the mid level decided, so that a teacher can mean it, and lets him go before it."""
+    """History of the mid level for lessons on past decisions, and its override by a teacher."""
 
     def __init__(self, mid: MidLevel) -> None:
         self.mid = mid
         self.passed_at_tick = -1
-        """When a junction had been passed last: what was said before it was about that one."""
+        """Tick in which the last junction was passed; commands on older states are about that junction."""
         self._history = MidHistory()
 
     def remember(self, tick: int, decision: Decision) -> None:
-        """Keep what the mid level decided in a tick."""
+        """Add the mid level's decision of a tick to the history."""
         decided = decision.mid
         if decided is None:
             return
@@ -30,9 +30,10 @@ class MidLessons:
             self.passed_at_tick = tick
 
     def context_of(self, decision_tick: int | None) -> LessonContext:
-        """The situation of a tick; None: the present one.
+        """Return the context of a lesson about a tick; None: about the present.
 
-        Raises CommandRefusedError for one that is not remembered, or in which the robot did not know where it was.
+        Raises:
+            CommandRefusedError: if the tick was forgotten, or the robot did not know its place then.
         """
         share = self.mid.settings.learning.insert_beyond_share
         if decision_tick is None:
@@ -44,12 +45,12 @@ class MidLessons:
         return _known(LessonContext(moment.vector, "", MID, moment.rla_id, share))
 
     def on_lesson(self, command: Teach | Correct) -> None:
-        """A lesson of the mid level was given just now: where it is about the present, it ends what went before it.
+        """Let a new lesson about the present situation replace the teacher's override.
 
-        Where another RLA on the same condition goes before the one that was taught, the robot still goes that way now.
+        If another RLA on the same condition wins against the taught one, override the level by the taught action.
         """
         if isinstance(command, Teach) and command.beside:
-            return  # what else is possible says nothing of what is to be done
+            return  # an alternative does not change the present command
         mid = self.mid
         if not np.array_equal(self.context_of(command.decision_tick).vector, mid.vector):
             return
@@ -61,7 +62,7 @@ class MidLessons:
 
 
 def _known(meant: LessonContext) -> LessonContext:
-    """Places are matched by distances, and there are none from nowhere."""
+    """Return the context; raise CommandRefusedError if its place is unknown, because it has no distances."""
     if np.isnan(meant.vector).any():
         raise CommandRefusedError(RefusalCode.PLACE_UNKNOWN)
     return meant

@@ -10,11 +10,11 @@ class Progress:
     """The last minute of a run; in its first minute the time since its start."""
 
     seconds: int
-    """Whole and begun seconds that were counted, 0 to 60."""
+    """Number of counted seconds, including the current one, 0 to 60."""
     driven_percent: int | None
-    """Ticks in which an RLA drove the wheels, in per cent of all, rounded down; None before the first tick."""
+    """Percentage of ticks in which an RLA drove the wheels, rounded down; None before the first tick."""
     asks: int
-    """Questions that the robot began to ask."""
+    """Number of questions that began."""
 
 
 NO_PROGRESS = Progress(seconds=0, driven_percent=None, asks=0)

@@ -1,4 +1,4 @@
-"""The robot's question: "I don't know this situation, teach me"."""
+"""Questions of the robot: "I don't know this situation, teach me"."""
 
 import math
 from collections.abc import Iterable
@@ -14,7 +14,7 @@ from kurt2rt.core.rla.rla import ASK, MID, rla_title
 
 @dataclass(frozen=True, slots=True)
 class FeatureDifference:
-    """One feature in which the situation differs from the nearest RLA's condition."""
+    """Feature in which the situation differs from the nearest RLA's condition."""
 
     name: str
     here: float
@@ -23,24 +23,24 @@ class FeatureDifference:
 
 @dataclass(frozen=True, slots=True)
 class Question:
-    """What the teacher sees when the robot asks."""
+    """Question of the basic level."""
 
     nearest_rla: int | None
     """None before the first lesson."""
     action: str | None
-    """What the nearest RLA would do."""
+    """Action of the nearest RLA."""
     distance: float
     radius: float
     differing: tuple[FeatureDifference, ...]
-    """The features that differ most, most first."""
+    """Features that differ most, in descending order."""
     behaviour: str = ""
-    """The taught behaviour that is wanted; empty where the task has only one."""
+    """Active behaviour; empty if the task has a single one."""
     words: SensorWords = field(default=NO_WORDS, compare=False, repr=False)
-    """For the features that differ."""
+    """Words for the features that differ."""
     worth: float | None = None
-    """Of the nearest RLA where its action was withdrawn; None where that is not known."""
+    """Value of the nearest RLA if its action was withdrawn; None if unknown."""
     touches: str = ""
-    """The question of a robot that is held at a bumper; empty where it asks what it does not know."""
+    """Question of a robot at a bumper; empty for an unknown situation."""
 
     def __str__(self) -> str:
         if self.nearest_rla is None:
@@ -58,7 +58,7 @@ class Question:
             worth = "" if self.worth is None else f": worth {self.worth:.2f} now"
             return f"{nearest} was blamed{worth}, teach me again"
         if self.action != ASK and self.distance <= self.radius:
-            # It was chosen, and is a taught system itself, in which no RLA is near enough.
+            # The action is a taught system itself, and none of its RLAs is near enough.
             return f"{nearest} says {self.action}, which does not know how to go on here; teach me another action"
         action = "its action was withdrawn" if self.action == ASK else self.action
         return (
@@ -69,17 +69,17 @@ class Question:
 
 @dataclass(frozen=True, slots=True)
 class MidQuestion:
-    """What the teacher sees when the mid level asks which taught behaviour is to be followed."""
+    """Question of the mid level: which taught behaviour to follow."""
 
     nearest_rla: int | None
     """None before the first lesson of the mid level."""
     behaviour: str | None
-    """What the nearest RLA would command."""
+    """Behaviour that the nearest RLA commands."""
     distance: float
-    """Infinite where there is none, and where the robot does not know where it is."""
+    """Distance of the nearest RLA; infinite without one and at an unknown place."""
     radius: float
     here: tuple[str, ...]
-    """The mid level's situation in words, the newest first."""
+    """Mid level's situation in words, newest first."""
 
     def __str__(self) -> str:
         came_by = f"; I came by {', '.join(self.here)}" if self.here else ""
@@ -96,7 +96,7 @@ class MidQuestion:
 
 
 def ask_the_way(match: Match | None, words: Iterable[str]) -> MidQuestion:
-    """Question of the mid level, whose nearest RLA is `match`; `words` of its situation, empty ones left out."""
+    """Return the mid level's question with nearest RLA `match`; empty `words` of its situation are left out."""
     here = tuple(word for word in words if word)
     if match is None:
         return MidQuestion(None, None, float("inf"), 0.0, here)

@@ -1,4 +1,4 @@
-"""Sessions, and how long they last: the time that the paper counts as teaching."""
+"""Sessions and their length, which the paper counts as teaching time."""
 
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import Origin, SessionBegun, SessionEnded, TeachingEvent
@@ -6,20 +6,20 @@ from kurt2rt.core.teaching.commands import BeginSession, EndSession
 
 
 class SessionClock:
-    """Runs while a session is on; one at a time."""
+    """Clock of the session; at most one session is open."""
 
     def __init__(self) -> None:
         self.session: str | None = None
-        """Name of the session that is on."""
+        """Name of the open session; None without one."""
         self._from_tick = 0
         self._lasted_ticks = 0
 
     def ticks(self, tick: int) -> int:
-        """How long the session that is on has lasted at `tick`, or how long the last one did."""
+        """Return the length of the open session at `tick`, or of the last one, in ticks."""
         return self._lasted_ticks if self.session is None else tick - self._from_tick
 
     def apply(self, command: BeginSession | EndSession, tick: int, origin: Origin) -> tuple[Outcome, TeachingEvent]:
-        """Begin or end a session; return what was done and its event. Raises CommandRefusedError."""
+        """Begin or end a session; return the outcome and its event. Raises CommandRefusedError."""
         if isinstance(command, BeginSession):
             if self.session is not None:
                 raise CommandRefusedError(RefusalCode.SESSION_ON, session=self.session)

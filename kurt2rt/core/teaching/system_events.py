@@ -1,4 +1,4 @@
-"""What happens to a robot between two ticks that no teacher's command is: it goes through the inbox, too.
+"""Inbox messages that are not teacher commands: pairing renewed, robot repositioned, speed changed.
 
 So a tick has all its inputs from one place, and a recorded run can be replayed.
 """
@@ -10,19 +10,19 @@ from kurt2rt.core.teaching.commands import Command
 
 @dataclass(frozen=True, slots=True)
 class PairingRenewed:
-    """A teacher's device has new keys, or none any more: presses of it are counted anew."""
+    """New or removed keys of a teacher's device: its press ids start again."""
 
     teacher: str
 
 
 @dataclass(frozen=True, slots=True)
 class RobotRepositioned:
-    """Somebody has set the robot down elsewhere: how it came there says nothing now."""
+    """New place of the robot, which a hand set down elsewhere; its history there is empty."""
 
 
 @dataclass(frozen=True, slots=True)
 class SpeedChanged:
-    """Robot time passes `times` as fast as real time from now on, in a simulation."""
+    """New speed of a simulation: robot time passes `times` as fast as real time."""
 
     times: int
 
@@ -30,4 +30,4 @@ class SpeedChanged:
 SystemEvent = PairingRenewed | RobotRepositioned | SpeedChanged
 
 Input = Command | SystemEvent
-"""What a tick takes from the inbox."""
+"""Message that a tick takes from the inbox."""
