@@ -109,7 +109,7 @@ class Bedlam(Town):
         rla_id = chance.randrange(self.runtime.level.system.next_id + 2)
         phase = Phase(chance.choice((1, 1, 1, 2, 3, 4, 5)))
         may_say: tuple[Callable[[], Command], ...] = (
-            lambda: Teach(command_id, who, what, meant, level, beside=chance.random() < 0.5),
+            lambda: Teach(command_id, who, what, meant, level, alternative=chance.random() < 0.5),
             lambda: Correct(command_id, who, what, meant, level),
             lambda: ReplaceAction(command_id, who, rla_id, chance.choice((way, action))),
             lambda: DeleteRla(command_id, who, rla_id),

@@ -328,7 +328,7 @@ def test_a_way_is_replaced_deleted_and_each_of_it_undone_as_every_rla_is(town: T
         (Teach("x", "Ann", "turn_left"), RefusalCode.NO_ACTION),
         (Teach("x", "Ann", "forward", None, "top"), RefusalCode.NO_LEVEL),
         (Correct("x", "Ann", "bad", None, CRITIC), RefusalCode.NO_LEVEL),
-        (Teach("x", "Ann", "forward", beside=True), RefusalCode.NO_OTHER_WAY),
+        (Teach("x", "Ann", "forward", alternative=True), RefusalCode.NO_OTHER_WAY),
         (Pursue("x", "Ann", "turn_back"), RefusalCode.NO_BEHAVIOUR),
     ],
 )

@@ -94,7 +94,7 @@ class ControlAuthority:
     def is_press_over(self, command: Drive) -> bool:
         """Return whether a stop, silence or a later press has ended this press, so that the message is a late one."""
         ended, newest = self._ended_press_ids.get(command.teacher, -1), self._press_ids.get(command.teacher, -1)
-        return command.hold <= ended or command.hold < newest
+        return command.press_id <= ended or command.press_id < newest
 
     @property
     def absence_stop(self) -> ActiveStop:
@@ -106,7 +106,7 @@ class ControlAuthority:
 
     def drive(self, command: Drive, tick: int) -> None:
         """Set the speeds of manual drive; only for the teacher, with a press that is not over."""
-        self._press_ids[command.teacher] = command.hold
+        self._press_ids[command.teacher] = command.press_id
         self._behaviour = None
         self._speeds = WheelSpeeds(command.left_m_s, command.right_m_s)
         self._driven_until = self._lease_end(tick, command.seen_tick)

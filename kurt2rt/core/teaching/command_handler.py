@@ -61,13 +61,13 @@ class HandlerParts:
     """Optional parts of a command handler, each None if the task lacks it."""
 
     reinforcement: Reinforcement | None = None
-    """Without it the robot learns nothing from rewards."""
+    """Effect of rewards; None: they have none."""
     critic: Critic | None = None
     agreement: Agreement | None = None
     self_teaching: SelfTeaching | None = None
-    """Without it the robot learns nothing in phase 5."""
+    """Teacher of phase 5; None: the robot learns nothing then."""
     mid: MidLessons | None = None
-    """Without it the teacher alone selects the behaviour."""
+    """Lessons of the mid level; None: the teacher alone selects the behaviour."""
     goals: GoalCommands | None = None
 
 
@@ -220,7 +220,7 @@ class CommandHandler:
         """Carry out one command; an event in the answer is applied already and must be submitted to the journal."""
         assert not isinstance(command, Watch | Drive)
         # Every copy of a stop brakes: a copy may be the one that matters.
-        stops_again = isinstance(command, Stop) and command.hold is None
+        stops_again = isinstance(command, Stop) and command.press_id is None
         if self.was_handled(command.command_id) and not stops_again:
             return CommandResult(command.command_id, Outcome(ResultCode.REPEATED)), None
         if DERIVED in command.command_id and not isinstance(command, Stop):
@@ -305,13 +305,15 @@ class CommandHandler:
                 return self._lessons.build(command, situation, self._origin(command, tick))
 
     def _stop(self, command: Stop, tick: int) -> Outcome:
-        if command.hold is not None and self.authority.drives_by_later_press(command.teacher, command.hold, tick):
+        if command.press_id is not None and self.authority.drives_by_later_press(
+            command.teacher, command.press_id, tick
+        ):
             return Outcome(ResultCode.RELEASE_SUPERSEDED)
         # A copy brakes again but is not a newer stop: the teacher who resumes has seen the original.
         if command.command_id not in self._stops_since_resume:
             self._stops_since_resume.append(command.command_id)
             self.stopped_at_tick = tick
-        reason = StopReason.SAID_STOP if command.hold is None else StopReason.LET_GO
+        reason = StopReason.SAID_STOP if command.press_id is None else StopReason.LET_GO
         self.stop(ActiveStop(reason, command.teacher), command.teacher)
         return Outcome(ResultCode.STOPPED)
 

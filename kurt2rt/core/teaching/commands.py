@@ -28,7 +28,7 @@ class Drive:
 
     teacher: str
     seen_tick: int
-    hold: int
+    press_id: int
     """Press id, larger than that of any press before; a stop ends a press permanently."""
     left_m_s: float
     right_m_s: float
@@ -61,7 +61,7 @@ class Teach:
     """Tick of the situation; None: the present one."""
     level: str = BASIC
     """Level of the situation: BASIC, or MID if the robot has a mid level."""
-    beside: bool = False
+    alternative: bool = False
     """True at the mid level to add an alternative to the RLAs that know the situation already."""
 
 
@@ -184,7 +184,7 @@ class StopSeeking:
     command_id: str
     teacher: str
     seen_tick: int | None = None
-    """As in `Seek`, because a robot that has arrived may drive on."""
+    """A stop or a goal after this tick refuses the command, because a robot that has arrived may drive on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -250,7 +250,7 @@ class Stop:
 
     command_id: str
     teacher: str
-    hold: int | None = None
+    press_id: int | None = None
     """Press id that ends; a later press goes on. None: stop all motion."""
 
 

@@ -43,9 +43,15 @@ class LessonBuilder:
         appraisal_lessons: AppraisalLessons | None,
         mid: MidLessons | None = None,
     ) -> None:
-        """Without `reinforcement` rewards are only counted; without `appraising` there is no critic to teach.
+        """Connect the level and its optional parts.
 
-        Without `mid` there is no mid level to teach.
+        Args:
+            level: whose RLAs are taught.
+            recent: decisions that lessons can be about.
+            insert_beyond_share: a correction farther than this share of R from the nearest condition inserts an RLA.
+            reinforcement: shares rewards out; without it they are only counted.
+            appraisal_lessons: lessons of the critic; None without a critic.
+            mid: lessons of the mid level; None without one.
         """
         self._level = level
         self._system = level.system
@@ -92,7 +98,7 @@ class LessonBuilder:
         else:
             raise CommandRefusedError(RefusalCode.NO_LEVEL, level=command.level, known=(BASIC, MID))
         nearest = self._system.match(meant.vector, meant.behaviour, meant.level)
-        if isinstance(command, Teach) and command.beside:
+        if isinstance(command, Teach) and command.alternative:
             return self._add_alternative(command.action, meant, nearest, origin)
         # A second RLA on the same condition would never win, because the older one does.
         replace_within_share = 0.0
@@ -137,7 +143,7 @@ class LessonBuilder:
         for rla in self._system.competitors(nearest.rla):
             if rla.action == action:
                 return LessonResult(rla_outcome(ResultCode.RLA_AGREES, rla, action=action))
-        return self._create(action, meant, origin, beside=nearest.rla)
+        return self._create(action, meant, origin, competitor=nearest.rla)
 
     def _corrected_rla(self, nearest: Rla, meant: LessonContext) -> Rla:
         """Return which of several RLAs on one condition is meant: the one that drove, or else the one that would."""
@@ -151,20 +157,20 @@ class LessonBuilder:
             return nearest
         return self._reinforcement.choice.best(group)
 
-    def _create(self, action: str, meant: LessonContext, origin: Origin, beside: Rla | None = None) -> LessonResult:
+    def _create(self, action: str, meant: LessonContext, origin: Origin, competitor: Rla | None = None) -> LessonResult:
         rla = Rla(
             rla_id=self._system.next_id,
-            condition=tuple(meant.vector.tolist()) if beside is None else beside.condition,
+            condition=tuple(meant.vector.tolist()) if competitor is None else competitor.condition,
             action=action,
-            radius=None if beside is None else beside.radius,
+            radius=None if competitor is None else competitor.radius,
             origin=origin,
             behaviour=meant.behaviour,
             level=meant.level,
         )
-        if beside is None:
+        if competitor is None:
             outcome = rla_outcome(ResultCode.RLA_TAUGHT, rla, action=action)
         else:
-            outcome = rla_outcome(ResultCode.RLA_ADDED, rla, action=action, next_to=beside.rla_id)
+            outcome = rla_outcome(ResultCode.RLA_ADDED, rla, action=action, next_to=competitor.rla_id)
         return LessonResult(outcome, RlaCreated(rla))
 
     def _replace(self, rla: Rla, action: str, origin: Origin) -> LessonResult:

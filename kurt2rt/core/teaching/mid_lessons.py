@@ -49,7 +49,7 @@ class MidLessons:
 
         If another RLA on the same condition wins against the taught one, override the level by the taught action.
         """
-        if isinstance(command, Teach) and command.beside:
+        if isinstance(command, Teach) and command.alternative:
             return  # an alternative does not change the present command
         mid = self.mid
         if not np.array_equal(self.context_of(command.decision_tick).vector, mid.vector):

@@ -99,7 +99,7 @@ class TourGuide:
         wanted = self._wanted
         if (street, wanted) not in self._led:
             self._led.add((street, wanted))
-            return Teach(self._next_id(), _NAME, wanted, level=MID, beside=True)
+            return Teach(self._next_id(), _NAME, wanted, level=MID, alternative=True)
         if mid.behaviour == wanted:
             return None
         return Pursue(self._next_id(), _NAME, wanted)

@@ -15,6 +15,9 @@ _NAMES: dict[type[Any], str] = {
     PairingRenewed: "PressesForgotten",
     RobotRepositioned: "SetDown",
 }
+_FIELD_NAMES = {"press_id": "hold", "alternative": "beside"}
+"""Names of fields in recordings, if they differ from the command's."""
+_RECORDED = {name: field for field, name in _FIELD_NAMES.items()}
 _ADAPTERS: dict[str, TypeAdapter[Any]] = {name: TypeAdapter(kind) for kind, name in _NAMES.items()}
 
 
@@ -22,14 +25,14 @@ def encode_command(command: Input) -> dict[str, Any]:
     """Return a JSON object: the name of the class as `is`, then the fields."""
     name = _NAMES[type(command)]
     fields: dict[str, Any] = _finite(_ADAPTERS[name].dump_python(command, mode="json"))
-    return {"is": name, **fields}
+    return {"is": name, **{_FIELD_NAMES.get(field, field): value for field, value in fields.items()}}
 
 
 def decode_command(content: object) -> Input:
     """Return the command that `encode_command` wrote, equal to the last bit. Raises RecordingError."""
     if not isinstance(content, dict):
         raise RecordingError(f"a {type(content).__name__} is no command")
-    fields = dict(content)
+    fields = {_RECORDED.get(name, name): value for name, value in content.items()}
     name = fields.pop("is", None)
     adapter = _ADAPTERS.get(name) if isinstance(name, str) else None
     if adapter is None:

@@ -556,15 +556,15 @@ def test_who_takes_over_from_one_who_stopped_it_may_drive_by_hand_at_once_but_no
 def test_a_release_that_comes_late_ends_its_own_press_only() -> None:
     lesson = Lesson()
     lesson.drive(hold=1)
-    release = Stop("1", "Ann", hold=1)
+    release = Stop("1", "Ann", press_id=1)
     lesson.drive(hold=2)
     assert lesson.say(release).outcome == Outcome(ResultCode.RELEASE_SUPERSEDED)
     assert lesson.school.authority.is_manual(lesson.tick)
-    assert lesson.say(Stop("2", "Ann", hold=2)).accepted
+    assert lesson.say(Stop("2", "Ann", press_id=2)).accepted
     assert not lesson.school.authority.is_manual(lesson.tick)
     assert lesson.school.active_stop == ActiveStop(StopReason.LET_GO, "Ann")
     lesson.say(resume())
-    assert lesson.say(Stop("2", "Ann", hold=2)).outcome == Outcome(ResultCode.REPEATED)
+    assert lesson.say(Stop("2", "Ann", press_id=2)).outcome == Outcome(ResultCode.REPEATED)
     assert not lesson.school.active_stop
 
 
