@@ -41,7 +41,7 @@ def decode_command(content: object) -> Input:
         command: Input = adapter.validate_python(fields, strict=False)
     except ValidationError as error:
         problem = error.errors(include_url=False)[0]
-        place = ".".join(map(str, problem["loc"]))
+        place = ".".join(_FIELD_NAMES.get(str(each), str(each)) for each in problem["loc"])
         raise RecordingError(f"{place}: {problem['msg']}", where=name) from error
     return command
 
