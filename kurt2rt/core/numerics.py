@@ -1,8 +1,7 @@
-"""Numbers that come out the same on every processor, so that a run which one has recorded another one can replay.
+"""Functions with equal results on every processor, so that a run recorded on one can be replayed on another.
 
-Sums, products, quotients and square roots do by themselves, as long as they are done in the same order. Of sines,
-exponentials and their like the C library has several versions, for processors with and without fused multiply-add,
-whose last bits differ in one result of some thousand; in a recorded distance that would be another number.
+Sums, products, quotients and square roots are equal if their order is. The C library has several versions of sines and
+exponentials, with and without fused multiply-add: one result in some thousand differs in its last bits.
 """
 
 import math
@@ -11,12 +10,12 @@ _GRID = 2.0**32
 
 
 def round_portable(value: float) -> float:
-    """A value of some thousand at most, rounded to 2e-10: what a last bit could change is rounded away."""
+    """Return a dimensionless number below about 4000, rounded to 2e-10, which removes differences of last bits."""
     return math.floor(value * _GRID + 0.5) / _GRID
 
 
 def power(base: float, exponent: int) -> float:
-    """A whole power by multiplication alone: where a small result must keep its digits."""
+    """Return a dimensionless number to a whole power by multiplication alone; small results keep their digits."""
     if exponent < 0:
         return 1.0 / power(base, -exponent)
     result = 1.0

@@ -113,7 +113,7 @@ class BasicLevel:
             self._held.allow_switch()
         self._decisions += 1
         self.held_action = self._held.held
-        match = self.system.match(situation.vector, self._behaviour, asking=not self.skip_withdrawn)
+        match = self.system.match(situation.vector, self._behaviour, include_withdrawn=not self.skip_withdrawn)
         if blocking_cause is not None:
             return self._stand(blocking_cause, match)
         if match is None or not match.known:

@@ -1,4 +1,4 @@
-"""How far the critic agrees with its teacher, measured on signals it was not taught with."""
+"""Agreement of the critic with its teacher, measured on signals that did not train it."""
 
 from collections import deque
 from collections.abc import Iterable, Mapping
@@ -17,41 +17,40 @@ from kurt2rt.core.rla.rla import (
 
 
 class Agreement:
-    """A fold of teaching events: what the teacher said of a tick against what the critic had said of it before.
+    """Fold of teaching events: the teacher's signal about a tick against the critic's earlier opinion of that tick.
 
-    An appraisal that taught something is a disagreement, for only another opinion than the critic's is learnt. Not to
-    know is no agreement either. What is said before the critic has its first appraisal counts for nothing, nor does
-    what is said soon after a signal that counts: the critic has just been taught about such a place.
+    An appraisal that teaches an RLA is a disagreement, and so is a reward without an opinion. Signals before the first
+    appraisal do not count, nor do those within `apart_s` of a counted one: they would measure what was just taught.
     """
 
     def __init__(self, settings: AgreementSettings, appraisals: Mapping[str, int], period_s: float) -> None:
-        """`appraisals`: value of each by its name. `period_s` of a tick."""
+        """`appraisals`: name -> value (-1, 0 or +1). `period_s`: duration of a tick in s."""
         self._settings = settings
         self._values = dict(appraisals)
         self._apart_ticks = round(settings.apart_s / period_s)
         self._counted_at: int | None = None
-        """Tick in which the last signal that counts was heard."""
+        """Tick of the last counted signal."""
         self._signals: dict[int, deque[tuple[str, bool]]] = {
             value: deque(maxlen=settings.window) for value in (-1, 0, 1)
         }
-        """Of each value of the teacher's: command id, and whether the critic had said the same."""
+        """Teacher's value -> (command id, whether the critic agreed)."""
         self._undone: dict[str, list[tuple[int, bool]]] = {}
-        """What was heard in lessons that were undone, by command id: the teacher's value, and whether it was right."""
+        """Command id of an undone lesson -> its (teacher's value, whether the critic agreed)."""
         self._appraisal_rlas: set[int] = set()
-        """Ids of all appraisal RLAs that ever lived."""
+        """Ids of all appraisal RLAs ever created."""
         self.share: float | None = None
-        """Agreement: mean over the values of their shares; None while too few bad or good signals were heard.
+        """Mean of the shares of agreement of each value; None while there are too few signals of value -1 or +1.
 
-        Neutral ones count as soon as there are enough of them, too.
+        Neutral signals are included once there are enough of them.
         """
 
     @property
     def trusted(self) -> bool:
-        """Whether the critic may act."""
+        """Return whether the critic may act."""
         return self.share is not None and self.share >= self._settings.bound
 
     def on_event(self, event: TeachingEvent) -> None:
-        """Take in an event of the journal, or one that was just made."""
+        """Count an event of the journal, or a new one."""
         match event:
             case LessonUndone(lesson, _):
                 self._remove(lesson)
@@ -61,7 +60,7 @@ class Agreement:
                 return
             case RlaCreated(rla) if rla.level == CRITIC:
                 self._appraisal_rlas.add(rla.rla_id)
-        if event.origin.teacher == CRITIC:  # of itself it thinks well
+        if event.origin.teacher == CRITIC:  # the critic's own events say nothing about agreement
             return
         match event:
             case RlaCreated(rla) if rla.level == CRITIC:
@@ -74,32 +73,32 @@ class Agreement:
                 self._add(event.value, event, right=event.said == event.value)
 
     def replay(self, events: Iterable[TeachingEvent]) -> None:
-        """Take in events in order."""
+        """Count events in order."""
         for event in events:
             self.on_event(event)
 
     def count_for(self, value: int) -> int:
-        """How many signals of a value count."""
+        """Return the number of counted signals of a value."""
         return len(self._signals[value])
 
     def share_for(self, value: int) -> float | None:
-        """Share of the signals of a value in which it agreed; None where none was heard."""
+        """Return the share of agreement, 0 to 1, among the signals of a value; None without signals."""
         heard = self._signals[value]
         return sum(right for _, right in heard) / len(heard) if heard else None
 
     def _add(self, value: int | None, event: TeachingEvent, *, right: bool) -> None:
-        if value is None or self._too_soon(event.origin.tick):  # None: taught with what these settings do not have
+        if value is None or self._too_soon(event.origin.tick):  # None: an appraisal of other settings
             return
         self._counted_at = event.origin.tick
         self._signals[value].append((event.origin.command_id, right))
         self._update_share()
 
     def _too_soon(self, tick: int) -> bool:
-        """Whether a signal comes so soon after one that counts that it says nothing new; ticks begin anew each run."""
+        """Return whether a signal is too soon after the last counted one; a lower tick belongs to a new run."""
         return self._counted_at is not None and 0 <= tick - self._counted_at < self._apart_ticks
 
     def _remove(self, lesson: str) -> None:
-        """What was taken back was never said."""
+        """Remove the signal of an undone lesson."""
         for value, heard in self._signals.items():
             for each in [each for each in heard if each[0] == lesson]:
                 heard.remove(each)
@@ -107,13 +106,13 @@ class Agreement:
         self._update_share()
 
     def _restore(self, lesson: str) -> None:
-        """What stands again was said, as the newest."""
+        """Add the signal of a redone lesson as the newest."""
         for value, right in self._undone.pop(lesson, ()):
             self._signals[value].append((lesson, right))
         self._update_share()
 
     def _update_share(self) -> None:
-        """Here and not when it is asked for: that is in every tick."""
+        """Compute the share once per event, because each tick reads it."""
         enough = [value for value in (-1, 0, 1) if self.count_for(value) >= self._settings.least]
         shares = [share for share in map(self.share_for, enough) if share is not None]
         self.share = sum(shares) / len(shares) if {-1, 1} <= set(enough) else None

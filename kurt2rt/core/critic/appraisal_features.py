@@ -1,4 +1,4 @@
-"""Appraisal features of one tick: the critic's view of the last few seconds of senses."""
+"""Appraisal features of one tick: the critic's view of the last seconds of sensor readings."""
 
 import math
 from collections.abc import Callable
@@ -14,10 +14,10 @@ from kurt2rt.core.numerics import round_portable
 
 
 class AppraisalPerception:
-    """Turns SensorReadings into AppraisalFeatures, once per tick, in memory that does not grow."""
+    """Converter from SensorReadings to AppraisalFeatures, once per tick, in constant memory."""
 
     def __init__(self, critic: CriticSettings, robot: RobotSettings) -> None:
-        """Raises SettingsError for a sensor that the robot does not have."""
+        """Prepare tables for a robot. Raises SettingsError for an unknown sensor."""
         want, period_s = critic.perception, robot.can.cycle_s
         sensors, infrared = want.sensors, robot.infrared
         missing = sorted(sensors.used - set(infrared.names))
@@ -26,15 +26,15 @@ class AppraisalPerception:
                 f"critic {critic.name}: perception.sensors: the robot has no sensor {', '.join(missing)}",
                 do=f"allowed: {', '.join(infrared.names)}",
             )
-        # Looked up by the highest count of a side, for a nearer thing never has a lower one: this runs in every tick.
+        # Distance by count, looked up for the highest count of a side in each tick: nearer objects have higher counts.
         self._distance_m = tuple(infrared.distance_m(counts) for counts in range(HIGHEST_COUNTS + 1))
         sides = (sensors.left, sensors.front, sensors.right, sensors.rear, sensors.ahead_left, sensors.ahead_right)
         self._left, self._front, self._right, self._rear, self._ahead_left, self._ahead_right = (
-            _look(infrared, side) for side in sides
+            _counts_of(infrared, side) for side in sides
         )
-        self._wall = _look(infrared, sensors.wall)
+        self._wall = _counts_of(infrared, sensors.wall)
         self._left_ends, self._right_ends = (
-            _look(infrared, (side[0], side[-1])) for side in (sensors.left, sensors.right)
+            _counts_of(infrared, (side[0], side[-1])) for side in (sensors.left, sensors.right)
         )
         self._left_baseline_m = _baseline_m(infrared, sensors.left, critic.name)
         self._right_baseline_m = _baseline_m(infrared, sensors.right, critic.name)
@@ -53,7 +53,7 @@ class AppraisalPerception:
         self.restart()
 
     def restart(self) -> None:
-        """Forget what was: the robot has just been switched on, or was blind."""
+        """Reset after power-on or missing sensor data."""
         self._speed_m_s = self._turn_rad_s = 0.0
         self._since_bump = self._bump_held_ticks
         self._since_surprise = self._surprise_held_ticks
@@ -62,13 +62,13 @@ class AppraisalPerception:
         self._next = 0
 
     def notify_surprise(self) -> None:
-        """In the tick before something else came than was expected."""
+        """Record that the previous tick was surprising."""
         self._since_surprise = -1
 
     def perceive(self, senses: SensorReadings, *, driving: bool) -> AppraisalFeatures:
         """Return the features of this tick; `driving`: whether an action drove the wheels until now.
 
-        While the robot waits, the time without a wall stands still, and a wait is not a lack of progress.
+        A waiting robot does not add to the time without a wall, and a wait is not a lack of progress.
         """
         if not senses.infrared_age_s <= self._stale_infrared_s:
             self.restart()
@@ -81,31 +81,31 @@ class AppraisalPerception:
         elif driving:
             self._without_wall += 1
         return AppraisalFeatures(
-            distance_m[max(self._left(counts))],
-            distance_m[max(self._front(counts))],
-            distance_m[max(self._right(counts))],
-            distance_m[max(self._rear(counts))],
-            distance_m[max(self._ahead_left(counts))],
-            distance_m[max(self._ahead_right(counts))],
-            self._angle_rad(self._left_ends(counts), self._left_baseline_m),
-            self._angle_rad(self._right_ends(counts), self._right_baseline_m),
-            self._speed_m_s,
-            self._turn_rad_s,
-            1.0 if self._since_bump < self._bump_held_ticks else 0.0,
-            1.0 if self._no_progress(driving=driving) else 0.0,
-            1.0 if self._without_wall >= self._no_wall_ticks else 0.0,
-            1.0 if self._since_surprise < self._surprise_held_ticks else 0.0,
+            left_m=distance_m[max(self._left(counts))],
+            front_m=distance_m[max(self._front(counts))],
+            right_m=distance_m[max(self._right(counts))],
+            rear_m=distance_m[max(self._rear(counts))],
+            ahead_left_m=distance_m[max(self._ahead_left(counts))],
+            ahead_right_m=distance_m[max(self._ahead_right(counts))],
+            left_angle_rad=self._angle_rad(self._left_ends(counts), self._left_baseline_m),
+            right_angle_rad=self._angle_rad(self._right_ends(counts), self._right_baseline_m),
+            speed_m_s=self._speed_m_s,
+            turn_rad_s=self._turn_rad_s,
+            bumped=1.0 if self._since_bump < self._bump_held_ticks else 0.0,
+            no_progress=1.0 if self._no_progress(driving=driving) else 0.0,
+            no_wall=1.0 if self._without_wall >= self._no_wall_ticks else 0.0,
+            surprised=1.0 if self._since_surprise < self._surprise_held_ticks else 0.0,
         )
 
     def _angle_rad(self, counts: tuple[int, ...], baseline_m: float) -> float:
-        """Angle to a wall of which a side's foremost and hindmost sensors see so many counts."""
+        """Return the angle in rad to a wall, from the counts of a side's first and last sensor."""
         front_m, back_m = self._distance_m[counts[0]], self._distance_m[counts[1]]
         if front_m >= self._wall_m and back_m >= self._wall_m:
             return 0.0
         return round_portable(math.atan2(front_m - back_m, baseline_m))
 
     def _move(self, motion: WheelMotion) -> None:
-        """Follow the wheels through one tick."""
+        """Add the wheels' motion of one tick to speed, turn rate and position."""
         way_m, turn_rad = motion.forward_m, motion.turn_rad
         self._speed_m_s += self._share_of_new * (way_m / self._period_s - self._speed_m_s)
         self._turn_rad_s += self._share_of_new * (turn_rad / self._period_s - self._turn_rad_s)
@@ -114,7 +114,7 @@ class AppraisalPerception:
         self._here_y_m += way_m * round_portable(math.sin(self._heading_rad))
 
     def _no_progress(self, *, driving: bool) -> bool:
-        """Whether it has driven for the whole time and is about where it was."""
+        """Return whether the robot has driven for the whole time and is near its old position."""
         if not driving:
             self._driven = 0
             return False
@@ -126,16 +126,16 @@ class AppraisalPerception:
         return self._driven > steps and off_x_m * off_x_m + off_y_m * off_y_m < self._no_progress_m2
 
 
-def _look(infrared: InfraredSettings, names: tuple[str, ...]) -> Callable[[tuple[int, ...]], tuple[int, ...]]:
-    """The counts of some sensors."""
+def _counts_of(infrared: InfraredSettings, names: tuple[str, ...]) -> Callable[[tuple[int, ...]], tuple[int, ...]]:
+    """Return a function that selects the counts of some sensors."""
     places = [infrared.names.index(name) for name in names]
-    if len(places) == 1:  # of one place alone itemgetter gives no tuple
+    if len(places) == 1:  # itemgetter of one index returns no tuple
         places *= 2
     return itemgetter(*places)
 
 
 def _baseline_m(infrared: InfraredSettings, side: tuple[str, ...], critic: str) -> float:
-    """How far ahead of a side's last sensor its first one sits."""
+    """Return the distance in m from a side's last sensor forward to its first. Raises SettingsError if not ahead."""
     x_m = {sensor.name: sensor.x_m for sensor in infrared.sensors}
     baseline_m = x_m[side[0]] - x_m[side[-1]]
     if baseline_m <= 0:

@@ -1,30 +1,64 @@
-"""When the critic speaks in its teacher's place (paper, phase 5)."""
+"""Autonomy: the critic's signals in place of a teacher's rewards (paper, phase 5)."""
 
 from typing import NamedTuple
 
-from kurt2rt.core.critic.activation import ActivationMonitor
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.critic import Opinion
-from kurt2rt.core.critic.settings import CriticSettings
+from kurt2rt.core.critic.settings import ActivationSettings, CriticSettings
+
+
+class ActivationMonitor:
+    """Leaky mean of the share of bad driven time; at a threshold it activates the critic for the rest of phase 5.
+
+    A critic errs at times: on a robot that drives well its errors are a small share of the time.
+    """
+
+    def __init__(self, settings: ActivationSettings, period_s: float) -> None:
+        """`period_s`: duration of a tick in s."""
+        self._bad_share = settings.bad_share
+        self._kept = 1.0 - min(1.0, period_s / settings.mean_s)
+        self._first_ticks = round(settings.first_s / period_s)
+        self.reset()
+
+    def reset(self) -> None:
+        """Start phase 5."""
+        self.needed = False
+        """Whether the critic has to act."""
+        self._bad = self._weight = 0.0
+        self._ticks = 0
+
+    @property
+    def share(self) -> float:
+        """Mean share of bad driven time, 0 to 1; 0 before the first drive."""
+        return self._bad / self._weight if self._weight else 0.0
+
+    def update(self, *, driving: bool, bad: bool) -> None:
+        """Count one tick of phase 5; only driving ticks change the mean."""
+        self._ticks += 1
+        if driving:
+            self._bad = self._kept * self._bad + bad
+            self._weight = self._kept * self._weight + 1.0
+        if self._ticks >= self._first_ticks and self.share >= self._bad_share:
+            self.needed = True
 
 
 class Signal(NamedTuple):
-    """What the critic says of a tick, as a teacher's reward would."""
+    """Critic's signal about one tick, like a teacher's reward."""
 
     value: int
     """-1 or +1."""
     appraisal: str
     tick: int
-    """The one that is meant: that in which it was said."""
+    """Tick of the signal, which it is also about."""
     trace_s: float
-    """How far back it reaches."""
+    """Time constant of its eligibility trace."""
 
 
 class Autonomy:
-    """Makes a trusted critic's opinions signals, bad ones and good ones no more often than a person would."""
+    """Converter from opinions of a trusted critic to signals, at most as often as a person's."""
 
     def __init__(self, settings: CriticSettings, agreement: Agreement, period_s: float) -> None:
-        """`period_s` of a tick."""
+        """`period_s`: duration of a tick in s."""
         self._agreement = agreement
         self.activation = ActivationMonitor(settings.need, period_s)
         every_s = settings.signal_every_s
@@ -36,22 +70,27 @@ class Autonomy:
         self._last_tick = -1
 
     def restart(self) -> None:
-        """The robot is alone from now on."""
+        """Start phase 5."""
         self.activation.reset()
 
     def signal(self, tick: int, opinion: Opinion | None, driving: bool, *, listening: bool = False) -> Signal | None:
-        """What is to be learnt from in this tick, of what the critic thinks; to be asked in every tick of phase 5.
+        """Return the signal of this tick; call it in each tick of phase 5.
 
-        `driving`: whether an action drives. `listening`: it says nothing now, whatever it thinks. None where the critic
-        is not trusted or not needed, has just said the same, or has not thought so for long enough: what it thinks for
-        a moment is often chance.
+        Returns None if the critic is not trusted or not needed, if its opinion is not `patience_s` old (momentary
+        opinions are often chance), or if the last signal of this value is too recent.
+
+        Args:
+            tick: number of this tick.
+            opinion: critic's opinion of this tick; None before its first lesson.
+            driving: whether an action drives.
+            listening: whether to suppress signals.
         """
-        thought = opinion.value if opinion is not None and driving and opinion.known else 0
-        if thought != self._opinion_value or tick != self._last_tick + 1:
-            self._opinion_value, self._since_tick = thought, tick
+        value = opinion.value if opinion is not None and driving and opinion.known else 0
+        if value != self._opinion_value or tick != self._last_tick + 1:
+            self._opinion_value, self._since_tick = value, tick
         self._last_tick = tick
-        held = thought != 0 and tick - self._since_tick >= self._patience_ticks
-        self.activation.update(driving=driving, bad=held and thought < 0)
+        held = value != 0 and tick - self._since_tick >= self._patience_ticks
+        self.activation.update(driving=driving, bad=held and value < 0)
         if opinion is None or not held or listening or not self.activation.needed:
             return None
         if tick < self._next_tick[opinion.value] or not self._agreement.trusted:

@@ -1,4 +1,4 @@
-"""The internal critic: an RLA system whose actions are opinions (paper, phase 4)."""
+"""Internal critic: an RLA system whose actions are opinions (paper, phase 4)."""
 
 from typing import NamedTuple
 
@@ -12,29 +12,29 @@ from kurt2rt.core.rla.rla_system import RlaSystem
 
 
 class Opinion(NamedTuple):
-    """What the critic thinks of an appraisal situation."""
+    """Critic's opinion of an appraisal situation."""
 
     value: int
-    """-1 bad, 0 neutral, +1 good; 0 where it does not know."""
+    """-1 bad, 0 neutral, +1 good; 0 for an unknown situation."""
     appraisal: str
-    """Name of the opinion; empty where it does not know."""
+    """Name of the opinion; empty for an unknown situation."""
     trace_s: float
-    """How far back the opinion reaches; 0 where it does not know."""
+    """Time constant of the opinion's trace; 0 for an unknown situation."""
     rla: Rla | None
-    """The nearest appraisal RLA."""
+    """Nearest appraisal RLA."""
     distance: float
     radius: float
     known: bool
-    """Whether the situation lies within that RLA's radius."""
+    """True if the situation lies inside that RLA's radius and its appraisal exists."""
 
     @property
     def said(self) -> int | None:
-        """The value of an opinion that it has; None where it does not know."""
+        """Value of the opinion; None for an unknown situation."""
         return self.value if self.known else None
 
 
 class Critic:
-    """Asks the appraisal RLAs of a system what they think."""
+    """Matcher of appraisal situations against the appraisal RLAs of a system."""
 
     def __init__(self, system: RlaSystem, settings: CriticSettings) -> None:
         self.settings = settings
@@ -47,18 +47,21 @@ class Critic:
 
     @property
     def appraisals(self) -> tuple[str, ...]:
-        """Names of the opinions that it can be taught."""
+        """Names of the opinions that can be taught."""
         return tuple(self._appraisals)
 
     @property
     def insert_beyond(self) -> float:
-        """Farther than this from the nearest condition another opinion is inserted, else it replaces."""
+        """Distance from the nearest condition beyond which a correction inserts an RLA; else it replaces the opinion.
+
+        A weighted distance, dimensionless.
+        """
         return self.settings.learning.insert_beyond_share * self.settings.learning.radius
 
     def appraise(self, tick: int, circumstances: AppraisalFeatures) -> Opinion | None:
-        """What it thinks in this tick, looked up anew every few ticks and after each lesson; None before its first one.
+        """Return the opinion in this tick; None before the first lesson.
 
-        The features do not change within hundredths of a second, and the search would be the dearest part of a tick.
+        The search runs every `think_every_ticks` and after each lesson, because it would dominate a tick's time.
         """
         lessons = self._system.standing_lessons
         if tick >= self._next_tick or lessons != self._lessons:
@@ -68,16 +71,16 @@ class Critic:
         return self._opinion
 
     def to_vector(self, circumstances: AppraisalFeatures) -> NDArray[np.float64]:
-        """Appraisal situation vector (d,), unweighted, for `opinion` and for conditions."""
+        """Return the appraisal situation (d,), unweighted, for `opinion` and for conditions."""
         return np.array(circumstances[: self._dimensions], dtype=np.float64)
 
     def opinion(self, vector: NDArray[np.float64]) -> Opinion | None:
-        """What it thinks of an appraisal situation vector (d,); None before its first lesson."""
+        """Return the opinion of an appraisal situation (d,); None before the first lesson."""
         match = self._system.match(vector, level=CRITIC)
         if match is None:
             return None
         appraisal = self._appraisals.get(match.rla.action) if match.known else None
-        if appraisal is None:  # too far off, asks again, or taught with an appraisal that these settings do not have
+        if appraisal is None:  # outside the radius, withdrawn, or an appraisal of other settings
             return Opinion(0, "", 0.0, match.rla, match.distance, match.radius, False)
         return Opinion(
             appraisal.value, appraisal.name, appraisal.trace_s, match.rla, match.distance, match.radius, True

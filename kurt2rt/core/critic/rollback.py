@@ -1,4 +1,4 @@
-"""The guard over what the critic changes: the best knowledge so far is kept, and come back to."""
+"""Rollback of the critic's changes to the best knowledge so far."""
 
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -21,83 +21,86 @@ from kurt2rt.core.rla.rla import (
 
 
 class _Change(NamedTuple):
-    """A standing change of the critic's own."""
+    """Standing lesson of the critic."""
 
     lesson: str
-    """Its command id."""
+    """Command id."""
     rla_id: int
     number: int
-    """Among all teaching events, from 1."""
+    """Number among all teaching events, from 1."""
 
 
 class RollbackMonitor:
-    """Scores each window of driving, and of not knowing the way, and tells which of its changes are to be undone.
+    """Score of each window of driving, and choice of the critic's lessons to undo after a bad one.
 
-    Scores come with chance, so knowledge is measured while nothing changes it: in the first window of phase 5, and in
-    the one after a roll-back, whose score is the best from then on: else one lucky window would have everything undone
-    that is ever learnt after it. A window that is won proves what was changed before it began, and no more.
+    Scores vary by chance. So knowledge is measured unchanged in the first window of phase 5 and in the window after
+    a rollback; that score is the new best one. Otherwise one lucky window would undo all later lessons. A window with
+    a best score proves the lessons before its beginning.
     """
 
     def __init__(self, settings: RollbackSettings, period_s: float) -> None:
-        """`period_s` of a tick."""
+        """`period_s`: duration of a tick in s."""
         self._window_ticks = max(1, round(settings.window_s / period_s))
         self._margin = settings.margin
         self.best: float | None = None
-        """Score of the best window; None before the first one has ended, and after a roll-back."""
+        """Score of the best window; None before the end of the first one, and after a rollback."""
         self.includes = 0
-        """How many teaching events there were when the best window began: what the critic changed later is unproven."""
+        """Number of teaching events at the beginning of the best window; later lessons of the critic are unproven."""
         self.score: float | None = None
-        """Score of the last window."""
+        """Score of the last window, -1 to 1."""
         self.windows_won = 0
-        """How many windows were won."""
+        """Number of windows with a best score."""
         self.is_measuring = True
-        """Whether knowledge is measured as it is: in this window the critic changes nothing."""
+        """Whether this window measures unchanged knowledge: the critic changes nothing."""
         self._sum = self._counted = 0
         self._events = 0
-        """How many teaching events there were."""
+        """Number of teaching events so far."""
         self._window_from = 0
-        """How many there were when the window began."""
+        """Number of teaching events at the beginning of the window."""
         self._unproven: list[_Change] = []
         """Oldest first."""
 
     def restore(self, events: Iterable[TeachingEvent], best: float | None, includes: int) -> None:
-        """Go on from another run: all its events, and what `best` and `includes` were at its end."""
+        """Restore the state at the end of another run: its events, its best score (-1 to 1), and `includes`.
+
+        `best` is dimensionless; None: no window has ended.
+        """
         for event in events:
             self.on_event(event)
         self.best, self.includes = best, includes
-        # Knowledge without a best is measured as it is.
         self._unproven = [] if best is None else [each for each in self._unproven if each.number > includes]
 
     def restart(self) -> None:
-        """The robot is alone from now on: what counted before may have been elsewhere, so it is measured first."""
+        """Start phase 5: discard the open window and measure one window before changing anything."""
         self.is_measuring = True
         self._sum = self._counted = 0
 
     def on_event(self, event: TeachingEvent) -> None:
-        """An event that was applied, whoever made it, and in whichever phase."""
+        """Count an applied event of any teacher and phase."""
         self._events += 1
         match event:
             case LessonUndone(lesson, _):
                 self._unproven = [each for each in self._unproven if each.lesson != lesson]
             case Appraised() | SituationNamed() | SessionBegun() | SessionEnded() | KnowledgeMerged():
                 pass
-            case LessonRedone():  # a person wants it back, whoever it was from: it needs no proof
+            case LessonRedone():  # a person's decision needs no proof
                 pass
             case _ if event.origin.teacher == CRITIC:
                 self._unproven.append(_Change(event.origin.command_id, rla_id_of(event), self._events))
-            case _:  # a teacher went on from there: what stands below a lesson of his stays
+            case _:  # lessons below a teacher's lesson stay
                 taught = rla_id_of(event)
                 self._unproven = [each for each in self._unproven if each.rla_id != taught]
 
     def update(
         self, tick: int, opinion_value: int | None, answers: bool, *, asking: bool = False
     ) -> tuple[LessonUndone, ...]:
-        """Count one tick; at the end of a window that was too bad: what to undo, in this order, newest first.
+        """Count one tick; return the undos, newest first, at the end of a bad window.
 
-        `opinion_value`: of the critic's opinion, None where it has none, which counts as neutral. `answers`: whether an
-        RLA answers that knows the situation; what a teacher's hand does is not the merit of the knowledge. `asking`: it
-        stands because it does not know the situation, which is bad, for nobody is there to be asked; to stand else is
-        nothing.
+        Args:
+            tick: number of this tick.
+            opinion_value: -1, 0 or +1 of the critic's opinion; None counts as 0.
+            answers: whether an RLA inside its radius drives; manual driving does not count.
+            asking: whether the robot stands in an unknown situation: counts as -1, because no teacher answers.
         """
         if not answers and not asking:
             return ()

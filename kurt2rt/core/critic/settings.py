@@ -22,20 +22,20 @@ Sensors = Annotated[tuple[str, ...], Field(min_length=1)]
 
 *_ALWAYS, SURPRISED = AppraisalFeatures._fields
 NAMES = tuple(_ALWAYS)
-"""Of the features of an appraisal situation, in their order; a critic may look at SURPRISED, too."""
+"""Names of the appraisal features in order; SURPRISED is optional."""
 
 
 class AppraisalSettings(Settings):
-    """One signal that the critic can give: an action of its RLAs."""
+    """Signal that the critic can give: an action of its RLAs."""
 
     name: Name
     value: Annotated[int, Field(ge=-1, le=1)]
     trace_s: Seconds
-    """Time constant of the eligibility trace: how far back it reaches."""
+    """Time constant of the eligibility trace."""
 
 
 class SideSensors(Settings):
-    """Which sensors look to which side; left and right from front to back."""
+    """Sensors of each side; left and right from front to back."""
 
     left: Annotated[Sensors, Field(min_length=2)]
     right: Annotated[Sensors, Field(min_length=2)]
@@ -44,34 +44,34 @@ class SideSensors(Settings):
     ahead_left: Sensors
     ahead_right: Sensors
     wall: Sensors
-    """Those that look for the wall that is gone after a while without."""
+    """Sensors for the feature no_wall."""
 
     @property
     def used(self) -> frozenset[str]:
-        """All of them."""
+        """Names of all sensors."""
         return frozenset(name for names in self.model_dump().values() for name in names)
 
 
 class AppraisalPerceptionSettings(Settings):
-    """How circumstances are told from senses."""
+    """Settings of the appraisal features: sensors, distances and times."""
 
     sensors: SideSensors
     wall_m: Metres
-    """Farther than this is no wall: it has no angle."""
+    """Greatest distance of a wall; farther objects have no angle."""
     no_wall_s: Seconds
-    """The wall is gone when its sensors have seen none for so long."""
+    """Time without a wall after which the feature no_wall is 1."""
     smoothing_s: Seconds
     """Time constant of speed and turn rate."""
     bump_held_s: Seconds
     no_progress_s: Annotated[float, Field(gt=0, le=60)]
     no_progress_m: Metres
-    """Less way than this in that time, from where to where, while it drives, is no progress."""
+    """Displacement in no_progress_s below which a driving robot makes no progress."""
     surprise_held_s: Seconds | None = None
-    """Something surprising (kurt2rt.core.expectations) is a circumstance for so long; left out: it is none."""
+    """Duration of the feature surprised after a surprise; None: the feature does not exist."""
 
 
 class AppraisalWeights(Settings):
-    """What each circumstance counts in a distance; nothing where it is left out. One for each of AppraisalFeatures."""
+    """Weight of each of AppraisalFeatures in a distance; 0 by default."""
 
     left_m: Weight = 0.0
     front_m: Weight = 0.0
@@ -96,27 +96,25 @@ class AppraisalWeights(Settings):
 
 
 class CriticLearningSettings(Settings):
-    """How the critic's RLA system matches and takes lessons."""
+    """Settings of matching and lessons of the critic's RLA system."""
 
     radius: Annotated[float, Field(gt=0, le=100_000)]
     insert_beyond_share: Share
-    """Another opinion farther than this share of the radius from the nearest condition inserts, else it replaces."""
+    """Share of the radius beyond which another opinion inserts an RLA; nearer it replaces the opinion."""
     weights: AppraisalWeights
 
 
 class AgreementSettings(Settings):
-    """When the critic is trusted."""
+    """Conditions for trusting the critic."""
 
     bound: Share
-    """It may act while its agreement with its teacher is at least this."""
+    """Least agreement with the teacher at which the critic may act."""
     window: Annotated[int, Field(ge=1, le=10_000)]
-    """The last signals of each value that count."""
+    """Number of newest signals of each value that count."""
     least: Annotated[int, Field(ge=1, le=10_000)]
-    """Of these so many must have been heard."""
+    """Least number of signals of a value."""
     apart_s: Annotated[float, Field(ge=0, le=1000)]
-    """Between two signals that count, agreeing or not: else what was just taught would be measured, or one place many
-    times.
-    """
+    """Least time between two counted signals: nearer ones would measure what was just taught."""
 
     @model_validator(mode="after")
     def _window_holds_the_least(self) -> Self:
@@ -126,45 +124,45 @@ class AgreementSettings(Settings):
 
 
 class SignalEverySettings(Settings):
-    """The shortest time between two signals of one value."""
+    """Shortest time between two signals of one value."""
 
     bad: Seconds
     good: Seconds
 
 
 class ActivationSettings(Settings):
-    """When a critic that is trusted begins to act: what drives well enough is left alone."""
+    """Conditions under which a trusted critic begins to act: a robot that drives well is left alone."""
 
     bad_share: Share
-    """It acts once it has found this share of the driven time bad, and then until phase 5 ends; 0: always."""
+    """Share of bad driven time that activates the critic until phase 5 ends; 0: always active."""
     mean_s: Seconds
-    """Time constant of that share, in driven time."""
+    """Time constant of bad_share, in driven time."""
     first_s: Annotated[float, Field(ge=0, le=100_000)]
-    """Not before phase 5 has lasted so long."""
+    """Duration of phase 5 before the first activation."""
 
 
 class RollbackSettings(Settings):
-    """The guard that keeps the best knowledge."""
+    """Settings of the rollback to the best knowledge."""
 
     window_s: Seconds
-    """Time of driving after which a score is told."""
+    """Driving time of one scored window."""
     margin: Annotated[float, Field(ge=0, le=2)]
-    """A score that is lower than the best one by more than this rolls back."""
+    """Drop below the best score that triggers a rollback."""
 
 
 class CriticSettings(Settings):
-    """The critic, whole."""
+    """Settings of a critic."""
 
     name: Name
     appraisals: Annotated[tuple[AppraisalSettings, ...], Field(min_length=1)]
     perception: AppraisalPerceptionSettings
     learning: CriticLearningSettings
     think_every_ticks: Annotated[int, Field(ge=1, le=100)]
-    """How often it is looked up what it thinks."""
+    """Ticks between two searches for an opinion."""
     agreement: AgreementSettings
     signal_every_s: SignalEverySettings
     patience_s: Annotated[float, Field(ge=0, le=10)]
-    """It gives a signal only when it has thought the same for so long."""
+    """Time that an opinion must persist before it becomes a signal."""
     need: ActivationSettings
     best: RollbackSettings
 
@@ -187,29 +185,29 @@ class CriticSettings(Settings):
 
     @property
     def level_features(self) -> LevelFeatures:
-        """Names and fingerprint of the circumstances, for a knowledge file."""
+        """Names and fingerprint of the appraisal features, for a knowledge file."""
         return LevelFeatures(self.feature_hash, self.names)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the features that it looks at."""
+        """Names of its features, in order."""
         return NAMES if self.perception.surprise_held_s is None else (*NAMES, SURPRISED)
 
     @property
     def weight_vector(self) -> NDArray[np.float64]:
-        """Weights (d,) in the order of its features."""
+        """Weights of its features in order, shape (d,)."""
         return np.array([getattr(self.learning.weights, name) for name in self.names], dtype=np.float64)
 
     @property
     def values(self) -> dict[str, int]:
-        """What each appraisal is worth, by its name."""
+        """Value of each appraisal, by name."""
         return {each.name: each.value for each in self.appraisals}
 
     @property
     def feature_hash(self) -> str:
-        """Fingerprint of what the circumstances are; appraisals are refused under another.
+        """Fingerprint of the appraisal features; appraisals with another one are refused.
 
-        Radius, weights and the rest are no part of it: with other ones the same appraisals have other borders.
+        Radius and weights are not part of it: they only move the borders between appraisals.
         """
         perception = self.perception.model_dump(mode="json", exclude_none=True)
         content = {"names": list(self.names), "perception": perception}
@@ -217,7 +215,7 @@ class CriticSettings(Settings):
 
 
 def load_critic(name_or_path: str | CriticSettings = "basic") -> CriticSettings:
-    """Settings of a shipped critic by name, or of a file by path; settings are taken as they are.
+    """Return the settings of a built-in critic by name, or of a file by path; settings are returned unchanged.
 
     Raises hal.settings.SettingsError.
     """

@@ -1,16 +1,16 @@
-"""What the critic does just now."""
+"""State of the critic in one tick."""
 
 from enum import StrEnum
 
 
 class CriticState(StrEnum):
-    """What becomes of the critic's opinions."""
+    """Use of the critic's opinions."""
 
     LISTENS = "listens"
-    """Nothing: before phase 5, and in it while the critic is not trusted."""
+    """None: before phase 5, or while the critic is not trusted."""
     MEASURES = "measures"
-    """They score how well the robot does; nothing is changed meanwhile."""
+    """They score the knowledge, which does not change meanwhile."""
     NOT_NEEDED = "not needed"
-    """They are counted; too little of the driven time was bad so far."""
+    """They are counted; too little of the driven time was bad."""
     ACTS = "acts"
-    """They are signals, as a teacher's are."""
+    """They are signals, like a teacher's rewards."""

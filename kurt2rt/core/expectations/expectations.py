@@ -1,4 +1,4 @@
-"""The expectations of all RLAs of one level: learned at each end of an RLA, from the situation that it ended in."""
+"""Expectations of all RLAs of one level, learned from the situation at each end of an RLA."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -23,20 +23,20 @@ from kurt2rt.core.rla.space import Space
 
 
 class End(NamedTuple):
-    """An RLA has ended, and another one took over."""
+    """End of an RLA: another one took over."""
 
     rla_id: int
     follow_up: int
     situation: NDArray[np.float64]
-    """That it ended in, shape (d,)."""
+    """Situation at the end, shape (d,)."""
     ticks: int
-    """How long it had driven."""
+    """Duration of the RLA's drive."""
 
 
 class Expectations:
-    """Learns what follows each RLA of one level, and says how surprising it is. A robot that stands learns nothing.
+    """Learner of the situation after each RLA of one level, and of its surprise.
 
-    An expectation is never changed but replaced, so what is saved is what is held: it is in memory once.
+    An `Expectation` is replaced, never changed, so a snapshot shares it.
     """
 
     def __init__(
@@ -48,10 +48,10 @@ class Expectations:
         saved: Mapping[int, Expectation] | None = None,
         settings: SurpriseSettings | None = None,
     ) -> None:
-        """`transitions`: how often each RLA was followed by each other one, as counted up to now.
+        """Restore the saved expectations whose RLAs are active at this level with the same action.
 
-        `saved`: goes on from these, as far as those RLAs live at this level with the same action. Raises ValueError
-        where one of them is of other features.
+        `transitions`: (RLA id, follow-up id) -> count, without this tick's. Raises ValueError for a saved
+        expectation with another number of features.
         """
         self.level = level
         self._system = system
@@ -75,30 +75,30 @@ class Expectations:
                 )
 
     def get(self, rla_id: int) -> Expectation | None:
-        """What is expected of an RLA now; None for one that was never seen to end."""
+        """Return the expectation of an RLA; None before its first end."""
         return self._learned.get(rla_id)
 
     def learn(self, end: End) -> Surprise | None:
-        """Take in one end of an RLA; None where too few were seen before to be surprised."""
+        """Learn one end of an RLA; return its surprise, None if there were too few ends before."""
         rla_id, situation = end.rla_id, end.situation
         rla = self._system.get(rla_id)
         if rla is None:
             return None
-        before = self._learned.get(rla_id) or _nothing_yet(rla.origin.command_id, situation)
+        before = self._learned.get(rla_id) or _empty(rla.origin.command_id, situation)
         if self._symbols:
             deviation = (situation != before.mean).astype(np.float64)
             surprise = self._surprise(before, end, deviation)
-            self._learned[rla_id] = _with_symbols(before, deviation, end)
+            self._learned[rla_id] = _updated_symbols(before, deviation, end)
         else:
             deviation = situation - before.mean
             surprise = self._surprise(before, end, deviation)
-            self._learned[rla_id] = _with(before, deviation, end)
+            self._learned[rla_id] = _updated(before, deviation, end)
         return surprise
 
     def on_event(self, event: TeachingEvent) -> int | None:
-        """Forget what is expected of the RLA that an event, already applied, has ended or given another action.
+        """Drop the expectation of the RLA whose action an applied event changed.
 
-        Returns its id; None where the event changes no action.
+        Returns its id; None if the event changes no action.
         """
         if isinstance(event, LessonUndone | LessonRedone):
             record = self._system.lesson(event.lesson)
@@ -106,21 +106,30 @@ class Expectations:
         return self._forget(event)
 
     def snapshot(self) -> dict[int, Expectation]:
-        """All of them as they are now: what has not changed since the last call is the same object."""
+        """Return all expectations; unchanged ones are the same objects as in the last call."""
         return dict(self._learned)
 
     def _surprise(self, learned: Expectation, end: End, deviation: NDArray[np.float64]) -> Surprise | None:
         count = learned.count
         if count < self._settings.least:
             return None
-        # Of symbols a square is 1 or 0: this is the number of places that differ, and how many usually do.
+        # Squares of symbols are 1 or 0, so the sums are numbers of different symbols.
         squared = float(np.add.reduce(self._squared_weights * (deviation * deviation)))
         usual_squared = float(np.add.reduce(self._squared_weights * learned.squares)) / (count - 1)
         distance, usual = (squared, usual_squared) if self._symbols else (math.sqrt(squared), math.sqrt(usual_squared))
         usual = max(usual, self._least_usual)
         seen = self._transitions.get((end.rla_id, end.follow_up), 0)
         surprising = distance > self._settings.beyond * usual
-        return Surprise(self.level, end.rla_id, end.follow_up, distance, usual, count, seen, surprising)
+        return Surprise(
+            level=self.level,
+            rla_id=end.rla_id,
+            follow_up=end.follow_up,
+            distance=distance,
+            usual=usual,
+            ends=count,
+            seen=seen,
+            surprising=surprising,
+        )
 
     def _forget(self, event: TeachingEvent) -> int | None:
         rla_id = affected_rla(event)
@@ -131,7 +140,7 @@ class Expectations:
 
 
 def affected_rla(event: TeachingEvent) -> int | None:
-    """Id of the RLA whose action an event gives, changes or ends; None where it does nothing of the kind."""
+    """Return the id of the RLA whose action an event creates, changes or ends; None for other events."""
     match event:
         case RlaCreated(rla):
             return rla.rla_id
@@ -143,38 +152,36 @@ def affected_rla(event: TeachingEvent) -> int | None:
 def valid_expectations(
     system: RlaSystem, saved: Mapping[int, Expectation], levels: Iterable[str]
 ) -> dict[int, Expectation]:
-    """Those of RLAs that live at one of these levels and have the action that they are about."""
+    """Return the expectations whose RLAs are active at one of these levels with the same action."""
     return {
         rla_id: each for rla_id, each in saved.items() if any(is_valid_for(system, rla_id, each, at) for at in levels)
     }
 
 
 def is_valid_for(system: RlaSystem, rla_id: int, expectation: Expectation, level: str) -> bool:
-    """Whether that RLA lives at that level and has the action that the expectation is about."""
+    """Return whether an RLA is active at a level with the action of the expectation."""
     rla = system.get(rla_id)
     return rla is not None and rla.level == level and rla.origin.command_id == expectation.lesson
 
 
-def _nothing_yet(lesson: str, situation: NDArray[np.float64]) -> Expectation:
-    """Before its first end, which is in this situation."""
+def _empty(lesson: str, situation: NDArray[np.float64]) -> Expectation:
+    """Return the expectation before the first end; `situation`: of that end, shape (d,)."""
     return Expectation(lesson, 0, 0.0, pack(situation), bytes(8 * len(situation)))
 
 
-def _with(before: Expectation, deviation: NDArray[np.float64], end: End) -> Expectation:
-    """Welford's way to mean and spread: exact enough however long it goes on, without a list."""
+def _updated(before: Expectation, deviation: NDArray[np.float64], end: End) -> Expectation:
+    """Return the expectation after one more end (Welford's algorithm for mean and spread)."""
     mean = before.mean + deviation / (before.count + 1)
-    return _seen_again(before, mean, before.squares + deviation * (end.situation - mean), end.ticks)
+    return _replaced(before, mean, before.squares + deviation * (end.situation - mean), end.ticks)
 
 
-def _with_symbols(before: Expectation, differs: NDArray[np.float64], end: End) -> Expectation:
-    """The majority's symbols (Boyer and Moore): one that came less often than all others together gives way."""
+def _updated_symbols(before: Expectation, differs: NDArray[np.float64], end: End) -> Expectation:
+    """Return the expectation of symbols after one more end (majority vote of Boyer and Moore)."""
     outvoted = (differs > 0) & (2 * before.squares >= before.count)
     mean = np.where(outvoted, end.situation, before.mean)
-    return _seen_again(before, mean, before.squares + differs - outvoted, end.ticks)
+    return _replaced(before, mean, before.squares + differs - outvoted, end.ticks)
 
 
-def _seen_again(
-    before: Expectation, mean: NDArray[np.float64], squares: NDArray[np.float64], ticks: int
-) -> Expectation:
+def _replaced(before: Expectation, mean: NDArray[np.float64], squares: NDArray[np.float64], ticks: int) -> Expectation:
     count = before.count + 1
     return Expectation(before.lesson, count, before.ticks + (ticks - before.ticks) / count, pack(mean), pack(squares))

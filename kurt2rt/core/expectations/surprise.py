@@ -1,4 +1,4 @@
-"""How far what came is from what was expected."""
+"""Surprise: distance between the expected situation and the real one."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -6,40 +6,40 @@ from typing import NamedTuple
 
 @dataclass(frozen=True, slots=True)
 class SurpriseSettings:
-    """When something is surprising. Chosen on seeds 0-2 of the task streets, so that few ends on known ground are."""
+    """Thresholds of a surprise. Chosen on seeds 0 to 2 of the task streets, so that known ground rarely surprises."""
 
     least: int = 5
-    """An RLA of which fewer ends were seen surprises nobody."""
+    """Least number of earlier ends of an RLA."""
     beyond: float = 2.0
-    """Surprising is what is farther off than this many times the usual distance."""
+    """Multiple of the usual distance beyond which an end is surprising."""
     least_usual_share: float = 0.05
-    """The usual distance counts as at least this share of the radius R: else what always came alike might not vary."""
+    """Least usual distance as a share of the radius R, for RLAs whose ends hardly vary."""
 
 
 class Surprise(NamedTuple):
-    """What came when an RLA ended, beside what was expected."""
+    """Real end of an RLA compared with its expectation."""
 
     level: str
     rla_id: int
-    """The one that ended: whose expectation it was."""
+    """RLA that ended."""
     follow_up: int
-    """The RLA that took over."""
+    """RLA that took over."""
     distance: float
-    """From the expected situation to the one that came, weighted as in a match."""
+    """Distance from the expected to the real situation, weighted as in a match."""
     usual: float
-    """The same as it usually is."""
+    """Usual distance."""
     ends: int
-    """How many ends of this RLA had been seen before."""
+    """Number of earlier ends of this RLA."""
     seen: int
-    """In how many of them this follow-up had come."""
+    """Number of earlier ends with this follow-up."""
     surprising: bool
 
     @property
     def multiple(self) -> float:
-        """How many times the usual distance it is."""
+        """Return the distance as a multiple of the usual one."""
         return self.distance / self.usual
 
     @property
     def new_follow_up(self) -> bool:
-        """Whether this RLA had never taken over before."""
+        """Return whether this follow-up is new for the RLA."""
         return self.seen == 0

@@ -1,4 +1,4 @@
-"""What is expected at all levels that drive: learned and compared in every tick, saved with the statistics."""
+"""Expectations of all driving levels: learned and compared in each tick, saved with the statistics."""
 
 from collections.abc import Mapping
 from itertools import chain
@@ -16,7 +16,7 @@ from kurt2rt.core.rla.space import Space
 
 
 class ExpectationTracker:
-    """The expectations of the basic level, and of the mid level where there is one."""
+    """Expectations of the basic level and of the optional mid level."""
 
     def __init__(
         self,
@@ -25,9 +25,9 @@ class ExpectationTracker:
         transitions: Mapping[tuple[int, int], int],
         saved: Mapping[int, Expectation] | None = None,
     ) -> None:
-        """`system`: with all that was taught. `transitions`: as counted, this tick's not yet.
+        """Restore saved expectations; those of levels that do not drive here are kept for the next snapshot.
 
-        `saved`: goes on from these; those of levels that do not drive here are kept.
+        `transitions`: (RLA id, follow-up id) -> count, without this tick's.
         """
         self._system = system
         self._mid = mid
@@ -46,7 +46,7 @@ class ExpectationTracker:
     def update(
         self, tick: int, decision: Decision, situation: Situation, behaviour: str, *, driving: bool
     ) -> Surprise | None:
-        """Take in one tick, before its transition is counted. Of two levels that have something to say, the higher."""
+        """Learn from one tick before its transition is counted; return the surprise, the mid level's first."""
         surprise = self._basic.update(tick, decision.rla_id if driving else None, situation.vector, behaviour)
         following, mid, commanded = self._mid_transitions, self._mid, decision.mid
         if following is None or mid is None or commanded is None:
@@ -56,9 +56,9 @@ class ExpectationTracker:
         return following.update(commanded, mid.vector, driving=driving) or surprise
 
     def on_event(self, event: TeachingEvent) -> int | None:
-        """An event that was applied: what an RLA did with another action is expected no more.
+        """Drop the expectation of the RLA whose action an applied event changed.
 
-        Returns the RLA of which that is so: what was counted as following it does so no more, either.
+        Returns its id, because its counted transitions are invalid too; None for new RLAs and other events.
         """
         changed = self._basic.on_event(event)
         if self._mid_transitions is not None:
@@ -66,19 +66,19 @@ class ExpectationTracker:
         return None if isinstance(event, RlaCreated) else changed
 
     def restart(self) -> None:
-        """The robot was set down elsewhere: what comes next follows from nothing."""
+        """Forget the driving RLAs after the robot was repositioned: the next RLA is no follow-up."""
         self._basic.restart()
         if self._mid_transitions is not None:
             self._mid_transitions.restart()
 
     def get(self, rla_id: int) -> Expectation | None:
-        """What is expected of an RLA; None for one that was never seen to end, and for levels that do not drive."""
+        """Return the expectation of an RLA; None before its first end, and for levels that do not drive."""
         rla = self._system.get(rla_id)
         expectations = None if rla is None else self._levels.get(rla.level)
         return None if expectations is None else expectations.get(rla_id)
 
     def snapshot(self) -> dict[int, Expectation]:
-        """All of them as they are now; what has not changed since the last call is the same object."""
+        """Return all expectations; unchanged ones are the same objects as in the last call."""
         kept = {rla_id: each for rla_id, each in self._others.items() if self._is_elsewhere(rla_id)}
         return dict(chain(kept.items(), *(each.snapshot().items() for each in self._levels.values())))
 

@@ -1,4 +1,4 @@
-"""Notices when an RLA has ended of itself: from tick to tick at the basic level, from junction to junction at mid."""
+"""Detection of the end of an RLA: per tick at the basic level, per junction at the mid level."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ _NOTHING = np.zeros(0)
 
 
 class BasicTransitionTracker:
-    """Follows the RLA that drives. Standstill, and another behaviour that is wanted, end it without a follow-up."""
+    """Tracker of the driving RLA. Standstill and a change of behaviour end it without a follow-up."""
 
     def __init__(self, expectations: Expectations) -> None:
         self.expectations = expectations
@@ -21,7 +21,7 @@ class BasicTransitionTracker:
         self._since_tick = 0
 
     def update(self, tick: int, rla_id: int | None, situation: NDArray[np.float64], behaviour: str) -> Surprise | None:
-        """Take in one tick: the RLA that drives, None while the robot stands; `situation`: vector (d,)."""
+        """Learn from one tick; `rla_id`: driving RLA, None at standstill; `situation`: shape (d,)."""
         if rla_id == self._driver:
             return None
         before, since_tick, same = self._driver, self._since_tick, behaviour == self._behaviour
@@ -31,11 +31,11 @@ class BasicTransitionTracker:
         return self.expectations.learn(End(before, rla_id, situation, tick - since_tick))
 
     def restart(self) -> None:
-        """What comes now follows from nothing: the robot was set down elsewhere."""
+        """Forget the driving RLA: the next one is no follow-up."""
         self._driver = None
 
     def on_event(self, event: TeachingEvent) -> int | None:
-        """As `Expectations.hear`."""
+        """Apply an event; return as `Expectations.on_event` does."""
         changed = self.expectations.on_event(event)
         if changed is not None and changed == self._driver:
             self.restart()
@@ -43,10 +43,10 @@ class BasicTransitionTracker:
 
 
 class MidTransitionTracker:
-    """Follows the RLA that commands. It ends where the mid-level situation becomes another, also if it goes on itself.
+    """Tracker of the commanding RLA, which ends at each change of the mid-level situation.
 
-    What else changes it (a lesson, another goal, the teacher's word) is no consequence of what it commanded. Where
-    nobody knew the situation that it led to, the RLA that is taught there is what followed.
+    Other changes (a lesson, a new goal, an override) are no consequence of its command. If the next situation is
+    unknown, the RLA that is taught there is the follow-up.
     """
 
     def __init__(self, expectations: Expectations) -> None:
@@ -55,11 +55,11 @@ class MidTransitionTracker:
         self._situation: NDArray[np.float64] = _NOTHING
         self._driven_ticks = 0
         self._before: int | None = None
-        """The one that led here, while nobody knows this situation."""
+        """RLA that led here, until the follow-up is known."""
         self._before_ticks = 0
 
     def update(self, mid: MidDecision, situation: NDArray[np.float64], *, driving: bool) -> Surprise | None:
-        """Take in one tick. `situation`: a new array (d,) whenever it becomes another; `driving`: whether it drove."""
+        """Learn from one tick; `situation`: shape (d,), a new array after each change; `driving`: the wheels turned."""
         rla_id = mid.rla_id
         if situation is self._situation:
             if rla_id == self._commander:
@@ -78,12 +78,12 @@ class MidTransitionTracker:
         return self.expectations.learn(End(before, rla_id, situation, self._before_ticks))
 
     def restart(self) -> None:
-        """What comes now follows from nothing: the robot was set down elsewhere, or driven by hand."""
+        """Forget the commanding RLA after repositioning or manual driving."""
         self._commander = self._before = None
         self._driven_ticks = 0
 
     def on_event(self, event: TeachingEvent) -> int | None:
-        """As `Expectations.hear`."""
+        """Apply an event; return as `Expectations.on_event` does."""
         changed = self.expectations.on_event(event)
         if changed is not None and changed in (self._commander, self._before):
             self.restart()

@@ -23,7 +23,7 @@ class MidUsageCounter:
         if mid is None:
             return
         if mid.event is not None:
-            self._counter.count(self._leads, MID, anew=True)
+            self._counter.count(self._leads, MID, again=True)
         if driving:
             by_teacher = mid.overridden or decision.cause is Cause.TEACHER
             self._leads = None if by_teacher else mid.rla_id

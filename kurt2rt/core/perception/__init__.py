@@ -1,1 +1,1 @@
-"""From senses to the situation: ring buffer, features, and the definition that knowledge is bound to."""
+"""Perception: situation from sensor readings, by the definition that knowledge is bound to."""

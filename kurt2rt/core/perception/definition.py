@@ -1,4 +1,4 @@
-"""Schema of `config/situations/*.yaml`: which features a situation has, and the hash that knowledge is bound to."""
+"""Schema of `config/situations/*.yaml`: the features of a situation, and the hash that knowledge is bound to."""
 
 import hashlib
 import json
@@ -9,7 +9,7 @@ from pydantic import Field
 from hal.settings import Settings, SettingsError, find_config, load_settings
 
 AVERAGED = " (10 s average)"
-"""Behind the name of a feature that is averaged over the history."""
+"""Suffix of the names of averaged features."""
 
 Heading = Literal["front", "left", "right", "rear"]
 
@@ -40,7 +40,7 @@ class Extreme(Settings):
 
 
 class Orientation(Settings):
-    """Difference of two sensors of one heading where positive, else 0: how far the wall is from parallel."""
+    """Difference of two sensors of one heading, 0 if negative: deviation of the wall from parallel."""
 
     kind: Literal["orientation"]
     heading: Heading
@@ -54,7 +54,7 @@ class Orientation(Settings):
 
 
 class WheelSpeed(Settings):
-    """Set point of one side of the action last driven, held while the robot waits."""
+    """Set point of one side of the last driven action; constant while the robot waits."""
 
     kind: Literal["wheel_speed"]
     side: Literal["left", "right"]
@@ -69,13 +69,13 @@ Feature = Annotated[Reading | Extreme | Orientation | WheelSpeed, Field(discrimi
 
 
 class SituationDefinition(Settings):
-    """The features of a situation; the recent values come first, then the same values averaged."""
+    """Features of a situation: recent values first, then their averages."""
 
     name: str
     history_steps: Annotated[int, Field(ge=1, le=100_000)]
     features: Annotated[tuple[Feature, ...], Field(min_length=1)]
     wheel_speed_counts_per_m_s: Annotated[int, Field(ge=0, le=1000)]
-    """Scale of the wheel-speed features; 0 leaves them out of every distance."""
+    """Scale of the wheel-speed features; 0 removes them from all distances."""
 
     @property
     def dimensions(self) -> int:
@@ -84,13 +84,13 @@ class SituationDefinition(Settings):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """One name per dimension, as the teacher sees them."""
+        """Name of each dimension, as shown to the teacher."""
         recent = tuple(feature.name for feature in self.features)
         return recent + tuple(name + AVERAGED for name in recent)
 
     @property
     def sensors_used(self) -> frozenset[str]:
-        """Sensors that any feature reads."""
+        """Names of all sensors that features read."""
         used: set[str] = set()
         for feature in self.features:
             match feature:
@@ -105,13 +105,13 @@ class SituationDefinition(Settings):
         return frozenset(used)
 
     def hash(self, sensors: tuple[str, ...]) -> str:
-        """Fingerprint of the definition together with the robot's sensor order; knowledge is refused under another."""
+        """Return the fingerprint of definition and sensor order; knowledge with another one is refused."""
         content = {"definition": self.model_dump(mode="json"), "sensors": list(sensors)}
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
 
 def load_situation(name_or_path: str, sensors: tuple[str, ...]) -> SituationDefinition:
-    """Load a definition for a robot with these sensors. Raises SettingsError, also for a sensor it does not have."""
+    """Return the definition for a robot with these sensors. Raises SettingsError, also for an unknown sensor."""
     path = find_config("situations", name_or_path)
     definition = load_settings(path, SituationDefinition)
     missing = sorted(definition.sensors_used - set(sensors))

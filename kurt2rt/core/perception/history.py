@@ -1,15 +1,11 @@
-"""Ring buffer of the last steps with exact running sums."""
+"""Ring buffer of feature vectors with exact running sums."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 
 class History:
-    """The last `steps` feature vectors and their sum.
-
-    Values are integers (counts), so the running sum never drifts: after any number of steps it is the sum of what the
-    ring holds, bit for bit.
-    """
+    """Last `steps` feature vectors and their sum; integers, so the running sum never drifts."""
 
     def __init__(self, steps: int, width: int) -> None:
         self._ring = np.zeros((steps, width), dtype=np.int64)
@@ -23,7 +19,7 @@ class History:
         return self._filled
 
     def push(self, values: NDArray[np.int64]) -> None:
-        """Take in one step; the oldest leaves when the ring is full. `values`: shape (width,), integers."""
+        """Append one step, `values` of shape (width,); a full ring drops the oldest."""
         row = self._ring[self._next]
         self._sums += values
         self._sums -= row  # zeros until the ring is full
@@ -35,17 +31,17 @@ class History:
             self._filled += 1
 
     def fill(self, values: NDArray[np.int64]) -> None:
-        """Hold `values` in every step, as if the robot had been here all the time."""
+        """Set every step to `values`, shape (width,), as if the robot had always been here."""
         self._ring[:] = values
         self._sums[:] = len(self._ring) * values
         self._filled = len(self._ring)
 
     def clear(self) -> None:
-        """Hold no step any more."""
+        """Remove all steps."""
         self._ring[:] = 0
         self._sums[:] = 0
         self._next = self._filled = 0
 
     def average_into(self, out: NDArray[np.float64]) -> None:
-        """Write the average of the steps held into `out`, shape (width,); zeros before the first step."""
+        """Write the mean of all steps to `out`, shape (width,); zeros before the first step."""
         np.divide(self._sums, max(self._filled, 1), out=out)

@@ -1,4 +1,4 @@
-"""Perception: senses in, situation out, once per tick."""
+"""Perception: from sensor readings to the situation, once per tick."""
 
 import math
 from typing import NamedTuple
@@ -13,16 +13,16 @@ from kurt2rt.core.perception.history import History
 
 
 class Situation(NamedTuple):
-    """Where the robot is in feature space."""
+    """Feature vector of one tick."""
 
     vector: NDArray[np.float64]
-    """Recent features, then the same averaged over the history; shape (dimensions,)."""
+    """Recent features, then their averages over the history; shape (dimensions,)."""
     history_frozen: bool
-    """True while the robot waits for its teacher: the averages stand still."""
+    """True while the robot waits for its teacher: the averages do not change."""
 
 
 class Perception:
-    """Turns SensorReadings into a Situation (paper, VI.B.1)."""
+    """Converter from SensorReadings to Situation (paper, section VI.B.1)."""
 
     def __init__(self, definition: SituationDefinition, sensors: tuple[str, ...]) -> None:
         self.definition = definition
@@ -33,15 +33,15 @@ class Perception:
         self._driven = STANDSTILL
 
     def restart(self) -> None:
-        """Forget what was, as a robot that has just been switched on."""
+        """Reset to the state after power-on."""
         self._history.clear()
         self._driven = STANDSTILL
 
     def perceive(self, senses: SensorReadings, *, history_frozen: bool) -> Situation:
-        """Situation of this tick. While frozen the history keeps the steps before the robot stopped to ask."""
+        """Return the situation of this tick; a frozen history keeps the steps before the robot stopped to ask."""
         recent = self._extract(senses.infrared_counts, self._driven)
         if self._history.filled == 0 and senses.infrared_age_s < math.inf:
-            # A robot that was just switched on has no past; where it stands is the best guess of it.
+            # After power-on the present is the best estimate of the past.
             self._history.fill(recent)
         if not history_frozen:
             self._history.push(recent)
@@ -51,5 +51,5 @@ class Perception:
         return Situation(vector, history_frozen)
 
     def remember_driven(self, wheel_speeds: WheelSpeeds) -> None:
-        """Set points of an action that was chosen; held while the robot waits, where nothing is chosen."""
+        """Store the set points of the driven action; they are a feature until the next call."""
         self._driven = wheel_speeds

@@ -1,4 +1,4 @@
-"""Words for features: sensors by their places, readings in centimetres."""
+"""Texts for features: sensors by position, readings in centimetres."""
 
 import re
 from collections.abc import Mapping
@@ -10,7 +10,7 @@ from kurt2rt.core.perception.definition import AVERAGED
 _NEAR_NOISE = 4
 """Standard deviations above the floor within which a reading is noise."""
 _EXTREME = re.compile(r"(maximum|minimum) (\w+)")
-_WHERE = {"front": "in front", "rear": "behind", "left": "on the left", "right": "on the right"}
+_SIDES = {"front": "in front", "rear": "behind", "left": "on the left", "right": "on the right"}
 _ORIENTATION = re.compile(r"orientation \w+ (\w+)>(\w+)")
 
 
@@ -23,14 +23,14 @@ class InfraredLaw(NamedTuple):
     near_m: float
     far_m: float
     nothing_counts: float
-    """Readings up to here are noise: the sensor sees nothing."""
+    """Readings up to this value are noise."""
 
     def detects(self, counts: float) -> bool:
-        """Return whether a reading stands for anything but noise."""
+        """Return whether a reading, in counts, is above the noise."""
         return counts > self.nothing_counts
 
     def distance_m(self, counts: float) -> float:
-        """Return the distance from the sensor's face that a reading stands for, near_m to far_m."""
+        """Return the distance in m from the sensor's face for a reading in counts, near_m to far_m."""
         if not self.detects(counts):
             return self.far_m
         return min(self.far_m, max(self.near_m, self.numerator_counts_m / (counts + self.bias_counts) - self.offset_m))
@@ -49,20 +49,20 @@ def infrared_law(infrared: InfraredSettings) -> InfraredLaw:
 
 
 class SensorWords:
-    """Words for the features of a situation, by the names of the situation's definition."""
+    """Texts for the features of a situation, by their names in the definition."""
 
     def __init__(self, labels: Mapping[str, str], law: InfraredLaw | None) -> None:
-        """`labels`: the sensors' places by their names, such as `front left`; `law`: None where it is not known."""
+        """`labels`: sensor name -> position such as `front left`; `law`: None if unknown."""
         self._labels = labels
         self._law = law
 
     def place(self, feature: str) -> str:
-        """Return the feature's place, such as `front left`; a name that is not known stays as it is."""
+        """Return the feature's position, such as `front left`; an unknown name is returned unchanged."""
         if not self._labels:
             return feature
         recent = feature.removesuffix(AVERAGED)
         if extreme := _EXTREME.fullmatch(recent):
-            place = f"{'nearest' if extreme[1] == 'maximum' else 'farthest'} {_WHERE.get(extreme[2], extreme[2])}"
+            place = f"{'nearest' if extreme[1] == 'maximum' else 'farthest'} {_SIDES.get(extreme[2], extreme[2])}"
         elif turned := _ORIENTATION.fullmatch(recent):
             place = f"{self._label(turned[1])} nearer than {self._label(turned[2])}"
         else:
@@ -70,10 +70,7 @@ class SensorWords:
         return place if recent == feature else f"{place}{AVERAGED}"
 
     def reading(self, feature: str, value: float) -> str:
-        """Return the feature's value: centimetres for a reading, otherwise the number.
-
-        How much nearer one sensor is than another is told in counts: it is no distance.
-        """
+        """Return the text of a feature's value: cm for a reading, counts for an orientation, otherwise the number."""
         if self._labels and _ORIENTATION.fullmatch(feature.removesuffix(AVERAGED)):
             return f"by {value:.0f} counts" if round(value) else "not"
         if self._law is None or not self.is_reading(feature):
@@ -84,11 +81,11 @@ class SensorWords:
         return f"{_centimetres(distance_m)}{' or less' if distance_m <= self._law.near_m else ''}"
 
     def difference(self, feature: str, here: float, there: float) -> str:
-        """Return what the feature is and what it was taught as, such as `front left: 13 cm, was 40 cm`."""
+        """Return the text of two values, such as `front left: 13 cm, was 40 cm`."""
         return f"{self.place(feature)}: {self.reading(feature, here)}, was {self.reading(feature, there)}"
 
     def differs(self, feature: str, here: float, there: float) -> bool:
-        """Return whether the two values read differently: readings of the same whole centimetre do not."""
+        """Return whether two values, in counts, have different texts: those of one whole cm do not."""
         return self.reading(feature, here) != self.reading(feature, there)
 
     def is_reading(self, feature: str) -> bool:
@@ -101,11 +98,11 @@ class SensorWords:
 
 
 NO_WORDS = SensorWords({}, None)
-"""For sensors that are not known: names and numbers stay as they are."""
+"""Texts without a robot: names and numbers are unchanged."""
 
 
 def words_for(infrared: InfraredSettings) -> SensorWords:
-    """Return the words for a robot's sensors."""
+    """Return the texts for a robot's sensors."""
     return SensorWords({each.name: each.label for each in infrared.sensors}, infrared_law(infrared))
 
 

@@ -1,4 +1,4 @@
-"""What each feature counts in the distance between a situation and a condition."""
+"""Weights of the features in a distance between situation and condition."""
 
 from collections.abc import Iterable
 
@@ -12,10 +12,10 @@ from kurt2rt.core.perception.definition import SituationDefinition
 def feature_weights(
     definition: SituationDefinition, changed: Iterable[tuple[Iterable[str], float]], past_weight: float, task: str
 ) -> NDArray[np.float64]:
-    """Weights (d,): 1 for recent features but those of `changed`, and `past_weight` times that for averaged ones.
+    """Return the weights, shape (d,): 1 for recent features except `changed` ones, times `past_weight` for averages.
 
-    Raises SettingsError, with the name of the `task`, for a feature that the definition has not, or that is changed
-    twice, and when nothing weighs anything.
+    Raises SettingsError, with the name of the `task`, for an unknown feature, for one with two weights, and if all
+    weights are 0.
     """
     names = [feature.name for feature in definition.features]
     recent = dict.fromkeys(names, 1.0)

@@ -1,4 +1,4 @@
-"""The RLAs that live, and which of them answers a situation: the nearest one (paper, III)."""
+"""Active RLAs, and the search for the one nearest to a situation (paper, section III)."""
 
 import math
 from collections import Counter
@@ -16,125 +16,126 @@ from kurt2rt.core.rla.space import Space
 
 
 class ActiveRlas:
-    """Of all levels and behaviours; winner takes all by distance, among the RLAs of one level and taught behaviour."""
+    """RLAs of all levels and behaviours. Among those of one level and behaviour the nearest wins."""
 
     def __init__(self, spaces: Mapping[str, Space]) -> None:
-        """`spaces`: by level. With RLAs of a level that is not among them nothing is matched."""
+        """`spaces`: by level; RLAs of other levels are kept, but never matched."""
         self._spaces = spaces
         self._rlas: dict[int, Rla] = {}
         self._indexes: dict[tuple[str, str], CandidateIndex] = {}
         """By level and behaviour."""
         self._groups = CompetitorGroups()
-        self._count_at: Counter[str] = Counter()
+        self._counts: Counter[str] = Counter()
 
     def __iter__(self) -> Iterator[Rla]:
-        """Of all levels, oldest first."""
+        """Yield all RLAs, oldest first."""
         return (self._rlas[rla_id] for rla_id in sorted(self._rlas))
 
     @property
     def unsorted(self) -> tuple[Rla, ...]:
-        """Of all levels, in no order: a copy that costs a tick next to nothing."""
+        """All RLAs in no order: a copy that is cheap enough for each tick."""
         return tuple(self._rlas.values())
 
     def count(self, level: str) -> int:
-        """How many of a level live."""
-        return self._count_at[level]
+        """Return the number of active RLAs of a level."""
+        return self._counts[level]
 
     def get(self, rla_id: int) -> Rla | None:
-        """The living RLA of that id, of whatever level."""
+        """Return the active RLA of an id, of any level."""
         return self._rlas.get(rla_id)
 
-    def match(self, situation: NDArray[np.float64], behaviour: str, level: str, asking: bool) -> Match | None:
-        """The nearest to a situation (d,), and the one behind it; None where there is none of that level and behaviour.
+    def match(
+        self, situation: NDArray[np.float64], behaviour: str, level: str, *, include_withdrawn: bool
+    ) -> Match | None:
+        """Return the RLA nearest to a situation (d,), and the runner-up; None if the level and behaviour have no RLA.
 
-        All are infinitely far from a situation that holds NaN. `asking`: False passes over those that ask.
+        All distances are infinite if the situation holds NaN: the robot does not know its position.
         """
-        contest = self._indexes.get((level, behaviour))
-        nearest = None if contest is None else contest.index.nearest(situation * contest.weights)
-        if contest is None or nearest is None:
+        index = self._indexes.get((level, behaviour))
+        nearest = None if index is None else index.index.nearest(situation * index.weights)
+        if index is None or nearest is None:
             return None
-        rla = self._rlas[contest.ids[nearest.position]]
-        if not asking and rla.is_withdrawn:
-            return self._match_without_withdrawn(contest, situation)
-        runner_up = self._rlas[contest.ids[nearest.runner_up]] if nearest.runner_up >= 0 else None
-        radius = contest.radius if rla.radius is None else rla.radius
-        if math.isnan(nearest.distance):  # of a robot that does not know where it is: far from all, not near nothing
+        rla = self._rlas[index.ids[nearest.position]]
+        if not include_withdrawn and rla.is_withdrawn:
+            return self._match_without_withdrawn(index, situation)
+        runner_up = self._rlas[index.ids[nearest.runner_up]] if nearest.runner_up >= 0 else None
+        radius = index.radius if rla.radius is None else rla.radius
+        if math.isnan(nearest.distance):
             return Match(rla, math.inf, radius, runner_up, math.inf)
         return Match(rla, nearest.distance, radius, runner_up, nearest.runner_up_distance)
 
-    def _match_without_withdrawn(self, contest: CandidateIndex, situation: NDArray[np.float64]) -> Match | None:
-        """The nearest that has an action: looks at all, for it is seldom needed."""
-        distances = contest.index.distances(situation * contest.weights)
-        order = np.argsort(distances, kind="stable").tolist()  # of equally near ones the older
-        found = [place for place in order if not self._rlas[contest.ids[place]].is_withdrawn][:2]
+    def _match_without_withdrawn(self, index: CandidateIndex, situation: NDArray[np.float64]) -> Match | None:
+        """Return the nearest RLA that has an action. Computes all distances: rare, so not optimised."""
+        distances = index.index.distances(situation * index.weights)
+        order = np.argsort(distances, kind="stable").tolist()  # stable: the older of equally near RLAs comes first
+        found = [place for place in order if not self._rlas[index.ids[place]].is_withdrawn][:2]
         if not found:
             return None
-        rla = self._rlas[contest.ids[found[0]]]
-        radius = contest.radius if rla.radius is None else rla.radius
+        rla = self._rlas[index.ids[found[0]]]
+        radius = index.radius if rla.radius is None else rla.radius
         if len(found) == 1:
             return Match(rla, float(distances[found[0]]), radius, None, math.inf)
-        runner_up = self._rlas[contest.ids[found[1]]]
+        runner_up = self._rlas[index.ids[found[1]]]
         return Match(rla, float(distances[found[0]]), radius, runner_up, float(distances[found[1]]))
 
     def nearest_first(
-        self, situation: NDArray[np.float64], behaviour: str, level: str, most: int | None
+        self, situation: NDArray[np.float64], behaviour: str, level: str, limit: int | None
     ) -> tuple[tuple[int, float], ...]:
-        """Ids and distances of the RLAs of a level and behaviour, the nearest to a situation (d,) first.
+        """Return (id, distance) of the RLAs of a level and behaviour, nearest to a situation (d,) first.
 
-        `most`: so many of them; None: all. Looks at all of them: to explain with, not for every tick.
+        Computes all distances: for explanations, not for each tick. `limit`: None returns all RLAs.
         """
-        contest = self._indexes.get((level, behaviour))
-        if contest is None or not contest.ids:
+        index = self._indexes.get((level, behaviour))
+        if index is None or not index.ids:
             return ()
-        distances = contest.index.distances(situation * contest.weights)
-        if most is None or most >= len(distances):
-            order = np.argsort(distances, kind="stable").tolist()  # of equally near ones the older
+        distances = index.index.distances(situation * index.weights)
+        if limit is None or limit >= len(distances):
+            order = np.argsort(distances, kind="stable").tolist()
         else:
-            # Only those as near as the last one that is wanted are put in order; NaN, far off, comes behind all.
-            limit = np.partition(distances, most - 1)[most - 1]
-            near = np.flatnonzero((distances <= limit) | np.isnan(limit))
-            order = near[np.argsort(distances[near], kind="stable")][:most].tolist()
+            # Sort only the rows up to the limit-th distance; NaN sorts last.
+            farthest = np.partition(distances, limit - 1)[limit - 1]
+            near = np.flatnonzero((distances <= farthest) | np.isnan(farthest))
+            order = near[np.argsort(distances[near], kind="stable")][:limit].tolist()
         return tuple(
-            (contest.ids[place], math.inf if math.isnan(distances[place]) else float(distances[place]))
-            for place in order
+            (index.ids[place], math.inf if math.isnan(distances[place]) else float(distances[place])) for place in order
         )
 
     def candidate_count(self, behaviour: str, level: str) -> int:
-        """How many RLAs of a level and behaviour compete."""
-        contest = self._indexes.get((level, behaviour))
-        return 0 if contest is None else len(contest.ids)
+        """Return the number of RLAs that compete at a level for a behaviour."""
+        index = self._indexes.get((level, behaviour))
+        return 0 if index is None else len(index.ids)
 
     def competitors(self, rla: Rla) -> tuple[Rla, ...]:
-        """Those of its level and behaviour with exactly its condition, itself among them, oldest first."""
+        """Return the RLAs of its level and behaviour with an equal condition, itself included, oldest first."""
         return self._groups.for_rla(rla)
 
     def neighbours(self, rla: Rla, count: int) -> tuple[Rla, ...]:
-        """Those of its level and behaviour with another condition, nearest first, at most `count`; sorts all."""
-        contest = self._indexes.get((rla.level, rla.behaviour))
-        if contest is None:
+        """Return at most `count` RLAs of its level and behaviour with another condition, nearest first; sorts all."""
+        index = self._indexes.get((rla.level, rla.behaviour))
+        if index is None:
             return ()
-        others = (self._rlas[rla_id] for rla_id in contest.nearest_first(rla.condition))
+        others = (self._rlas[rla_id] for rla_id in index.nearest_first(rla.condition))
         return tuple(islice((other for other in others if other.condition != rla.condition), count))
 
     def add(self, rla: Rla) -> None:
-        """One begins to live. Raises ValueError, and changes nothing, where its condition cannot be matched."""
+        """Add an RLA. Raises ValueError, changing nothing, if its condition cannot be matched."""
         space = self._spaces.get(rla.level)
         if space is not None:
-            contest = self._indexes.get((rla.level, rla.behaviour)) or CandidateIndex(space)
-            contest.add(rla.rla_id, rla.condition)
-            self._indexes[rla.level, rla.behaviour] = contest
+            index = self._indexes.get((rla.level, rla.behaviour)) or CandidateIndex(space)
+            index.add(rla.rla_id, rla.condition)
+            self._indexes[rla.level, rla.behaviour] = index
         self.replace(rla)
-        self._count_at[rla.level] += 1
+        self._counts[rla.level] += 1
 
     def replace(self, rla: Rla) -> None:
-        """In the place of one that lives, with the same condition."""
+        """Replace the RLA of the same id and condition."""
         self._rlas[rla.rla_id] = rla
         self._groups.add_or_replace(rla)
 
     def remove(self, rla: Rla) -> Rla:
-        """One that lives does so no more; returns it."""
+        """Remove an active RLA and return it."""
         if rla.level in self._spaces:
             self._indexes[rla.level, rla.behaviour].remove(rla.rla_id)
         self._groups.remove(rla)
-        self._count_at[rla.level] -= 1
+        self._counts[rla.level] -= 1
         return self._rlas.pop(rla.rla_id)

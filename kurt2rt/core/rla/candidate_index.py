@@ -1,4 +1,4 @@
-"""The RLAs that compete for the situations of one level and taught behaviour."""
+"""RLAs that compete for the situations of one level and taught behaviour."""
 
 from bisect import bisect_left
 
@@ -12,16 +12,17 @@ from kurt2rt.core.rla.symbol_index import SymbolIndex
 
 
 class CandidateIndex:
-    """The RLAs of one level and taught behaviour, by their ids: the same rows as in the index of their conditions."""
+    """Ids of competing RLAs, in the row order of the index of their conditions."""
 
     def __init__(self, space: Space) -> None:
         self.radius = space.radius
         self.weights = np.ones(space.dimensions) if space.weights is None else space.weights
-        self.ids: list[int] = []  # oldest first
-        self.index = _index_of(space)
+        self.ids: list[int] = []
+        """Oldest first."""
+        self.index = _make_index(space)
 
     def add(self, rla_id: int, condition: Condition) -> None:
-        """Put one where its age belongs. Raises ValueError for a wrong length or a number that is not finite."""
+        """Insert an RLA in the order of ids. Raises ValueError for a wrong length or a number that is not finite."""
         dimensions = len(self.weights)
         if len(condition) != dimensions:
             raise ValueError(f"condition has {len(condition)} values, this system matches {dimensions}")
@@ -30,13 +31,13 @@ class CandidateIndex:
         self.ids.insert(position, rla_id)
 
     def remove(self, rla_id: int) -> None:
-        """Take out one that is there."""
+        """Remove an RLA of the index."""
         position = bisect_left(self.ids, rla_id)
         self.index.remove(position)
         del self.ids[position]
 
     def nearest_first(self, condition: Condition) -> list[int]:
-        """Ids of all, the nearest to a condition first; of equally near ones the older."""
+        """Return all ids, nearest to a condition first; of equally near RLAs the older first."""
         order = np.argsort(self.index.distances(self._weighted(condition)), kind="stable")
         return [self.ids[position] for position in order.tolist()]
 
@@ -45,7 +46,7 @@ class CandidateIndex:
         return weighted
 
 
-def _index_of(space: Space) -> ConditionIndex | SymbolIndex:
+def _make_index(space: Space) -> ConditionIndex | SymbolIndex:
     if space.metric == "euclidean":
         return ConditionIndex(space.dimensions)
     if space.weights is not None:

@@ -1,4 +1,4 @@
-"""A condition: a point in feature space, held once for as long as its RLA is known."""
+"""Conditions: points in feature space, stored once for the lifetime of their RLA."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -12,10 +12,10 @@ _BYTES = 8
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class PackedCondition(Sequence[float]):
-    """Is, equals and hashes as the tuple of its numbers, in 8 bytes a number where boxed floats take 32."""
+    """Tuple of float64 in 8 bytes a number, where boxed floats take 32. Equals and hashes as the tuple."""
 
     packed: bytes
-    """Its float64s, as this machine has them in memory."""
+    """Numbers in the byte order of this machine."""
 
     @property
     def _numbers(self) -> "memoryview[float]":
@@ -42,7 +42,7 @@ class PackedCondition(Sequence[float]):
         mine, its = self.packed, other.packed
         if mine is its:
             return True
-        # Of the numbers, not of the bytes: 0.0 and -0.0 are one place.
+        # Compare numbers, not bytes: 0.0 equals -0.0.
         return memoryview(mine).cast("d").__eq__(memoryview(its).cast("d"))
 
     def __hash__(self) -> int:
@@ -52,17 +52,17 @@ class PackedCondition(Sequence[float]):
         return repr(tuple(self))
 
     def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> NDArray[np.float64]:
-        """Shape (d,), for `np.array`; not to be written to where no copy was asked for."""
+        """Return an array (d,) for `np.array`; read-only unless a copy is requested."""
         array = np.frombuffer(self.packed)
         return array.astype(dtype or array.dtype, copy=bool(copy))
 
 
 Condition = tuple[float, ...] | PackedCondition
-"""A point in feature space, one float64 per feature of the situation definition."""
+"""Point in feature space: one float64 per feature of the level."""
 
 
-def packed(condition: Condition) -> Condition:
-    """The same in less memory; what is not made of floats alone stays as it is, for others to refuse."""
+def pack_condition(condition: Condition) -> Condition:
+    """Return an equal condition in less memory; return anything but a tuple of floats unchanged."""
     if isinstance(condition, PackedCondition) or set(map(type, condition)) != {float}:
         return condition
     return PackedCondition(np.array(condition).tobytes())

@@ -1,4 +1,4 @@
-"""What a reward changed: the share of each RLA in it, held for as long as the reward can be undone."""
+"""Credits of a reward: the change of each RLA's value, stored so that the reward can be undone."""
 
 import struct
 from collections.abc import Iterator, Sequence
@@ -6,23 +6,23 @@ from dataclasses import dataclass
 from typing import NamedTuple, overload
 
 _ROW = struct.Struct("=IdI")
-"""Id, change, and id of the one before it, 0 for none."""
-_MOST_ID = 2**32 - 1
+"""Id, change, id of the predecessor (0: none)."""
+_MAX_ID = 2**32 - 1
 
 
 class Credit(NamedTuple):
-    """An RLA's share in a reward."""
+    """Share of one RLA, or of one edge of the RLA network, in a reward."""
 
     rla_id: int
     change: float
-    """What its value was changed by; with `before` what that of the edge was."""
+    """Change of the RLA's value; of the edge's weight if `before` is set."""
     before: int | None = None
-    """The RLA before it, where it was an edge of the network whose weight was changed."""
+    """Predecessor RLA of a changed edge; None for a change of a value."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class PackedCredits(Sequence[Credit]):
-    """Is, equals and hashes as the tuple of its credits, in 16 bytes each where objects take 120."""
+    """Tuple of credits in 16 bytes each, where objects take 120. Equals and hashes as the tuple."""
 
     packed: bytes
 
@@ -30,7 +30,7 @@ class PackedCredits(Sequence[Credit]):
         return len(self.packed) // _ROW.size
 
     def __iter__(self) -> Iterator[Credit]:
-        return (_credit(*row) for row in _ROW.iter_unpack(self.packed))
+        return (Credit(rla_id, change, before or None) for rla_id, change, before in _ROW.iter_unpack(self.packed))
 
     @overload
     def __getitem__(self, place: int) -> Credit: ...
@@ -51,8 +51,8 @@ class PackedCredits(Sequence[Credit]):
         return repr(tuple(self))
 
 
-def packed(credits_: Sequence[Credit]) -> Sequence[Credit]:
-    """The same in less memory; none, and what is not made as credits are, stay as they are, for others to refuse."""
+def pack_credits(credits_: Sequence[Credit]) -> Sequence[Credit]:
+    """Return equal credits in less memory; return an empty sequence, or one of other types, unchanged."""
     if not credits_ or not all(map(_can_be_packed, credits_)):
         return credits_
     return PackedCredits(b"".join(_ROW.pack(rla_id, change, before or 0) for rla_id, change, before in credits_))
@@ -68,8 +68,4 @@ def _can_be_packed(credit: object) -> bool:
 
 
 def _is_id(value: object) -> bool:
-    return type(value) is int and 1 <= value <= _MOST_ID
-
-
-def _credit(rla_id: int, change: float, before: int) -> Credit:
-    return Credit(rla_id, change, before or None)
+    return type(value) is int and 1 <= value <= _MAX_ID

@@ -1,4 +1,4 @@
-"""What is expected of one RLA: part E of it (paper, III.A.3)."""
+"""Expectation of one RLA: part E of it (paper, section III.A.3)."""
 
 from dataclasses import dataclass
 
@@ -8,34 +8,34 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
-    """The situation in which an RLA ended and another took over, as it was on average. Numbers are packed float64."""
+    """Mean situation in which an RLA ended and another one took over. Arrays are packed float64."""
 
     lesson: str
-    """Command id of the lesson that gave the RLA its action: with another action it leads elsewhere."""
+    """Command id of the lesson that gave the RLA its action; another action has another expectation."""
     count: int
-    """How often it was seen to end so."""
+    """Number of ends so far."""
     ticks: float
-    """How long it drove, on average."""
+    """Mean duration in ticks."""
     packed_mean: bytes
     packed_squares: bytes
 
     @property
     def mean(self) -> NDArray[np.float64]:
-        """The expected situation, shape (d,), not weighted; of symbols the most frequent ones."""
+        """Expected situation, shape (d,), not weighted; of symbols the most frequent ones."""
         return np.frombuffer(self.packed_mean, dtype="<f8")
 
     @property
     def squares(self) -> NDArray[np.float64]:
-        """Sum of squared deviations from the mean, shape (d,); of symbols how often another one came."""
+        """Sum of squared deviations from the mean, shape (d,); of symbols the number of other symbols."""
         return np.frombuffer(self.packed_squares, dtype="<f8")
 
     @property
     def spread(self) -> NDArray[np.float64]:
-        """Standard deviation of each feature, shape (d,); zeros before it ended twice."""
+        """Standard deviation of each feature, shape (d,); zeros before the second end."""
         spread: NDArray[np.float64] = np.sqrt(self.squares / max(self.count - 1, 1))
         return spread
 
 
 def pack(values: NDArray[np.float64]) -> bytes:
-    """Numbers as an expectation keeps them, to the last bit."""
+    """Return the bytes of an array (d,) as an expectation stores them, to the last bit."""
     return np.asarray(values, dtype="<f8").tobytes()

@@ -1,4 +1,4 @@
-"""Features that the conditions of one level are made of."""
+"""Features of the conditions of one level."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Fingerprint of what is known."""
+"""Fingerprint of the knowledge."""
 
 import hashlib
 from collections.abc import Iterable
@@ -9,7 +9,7 @@ from kurt2rt.core.rla.rla import BASIC, Rla
 
 
 def knowledge_hash_of(rlas: Iterable[Rla]) -> str:
-    """SHA-256 of RLAs in the order of their ids: levels, behaviours, conditions, actions, radii; not who taught."""
+    """Return the SHA-256 of RLAs, given in the order of their ids; teachers and dates do not count."""
     digest = hashlib.sha256()
     for rla in rlas:
         at = f"at {rla.level} " if rla.level != BASIC else ""

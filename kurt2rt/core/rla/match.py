@@ -1,4 +1,4 @@
-"""What an RLA system answers to a situation."""
+"""Result of a search for the nearest RLA."""
 
 from typing import NamedTuple
 
@@ -6,17 +6,17 @@ from kurt2rt.core.rla.rla import Rla
 
 
 class Match(NamedTuple):
-    """Answer of an RLA system to a situation."""
+    """Nearest RLA of a situation, and the runner-up."""
 
     rla: Rla
-    """The nearest RLA, also when the situation lies outside its radius."""
+    """Nearest RLA, also if the situation lies outside its radius."""
     distance: float
     radius: float
     runner_up: Rla | None
     runner_up_distance: float
-    """Infinite where there is no runner-up."""
+    """Infinite without a runner-up."""
 
     @property
     def known(self) -> bool:
-        """Whether the situation lies within the nearest RLA's confidence radius, and that one has an action."""
+        """Return whether the situation lies inside the nearest RLA's confidence radius, and that RLA has an action."""
         return self.distance <= self.radius and not self.rla.is_withdrawn

@@ -1,10 +1,10 @@
-"""Names of the programs that teach, as a journal has them in place of a person's name."""
+"""Names of the programs that teach: in a journal they stand in place of a person's name."""
 
 from kurt2rt.core.rla.rla import CRITIC
 
 AUTO = "auto"
-"""Scripted teacher on a device of its own."""
+"""Scripted teacher on its own device."""
 SCRIPTED = "scripted teacher"
 """Scripted teacher of an experiment, in the robot's process."""
 PROGRAMS = frozenset({AUTO, SCRIPTED, CRITIC})
-"""Teachers in a journal that are no people."""
+"""Teachers in a journal that are programs."""

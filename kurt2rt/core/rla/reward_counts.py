@@ -1,35 +1,35 @@
-"""What teachers thought of what each RLA decided (paper, phase 3)."""
+"""Numbers of rewards and punishments of each RLA (paper, phase 3)."""
 
 from typing import NamedTuple
 
 
 class Appraisal(NamedTuple):
-    """How often teachers praised and blamed what an RLA decided (paper, phase 3)."""
+    """Number of rewards (+1) and punishments (-1) of one RLA."""
 
     rewards: int = 0
     punishments: int = 0
 
 
 class RewardCounts:
-    """Those of all RLAs, by their ids."""
+    """Appraisals of all RLAs, by id."""
 
     def __init__(self) -> None:
-        self._of: dict[int, Appraisal] = {}
+        self._appraisals: dict[int, Appraisal] = {}
 
     def get(self, rla_id: int) -> Appraisal:
-        """What teachers thought of an RLA; none and none where nobody said so."""
-        return self._of.get(rla_id, Appraisal())
+        """Return the numbers of an RLA; zeros without rewards."""
+        return self._appraisals.get(rla_id, Appraisal())
 
     def add(self, rla_id: int, value: int) -> None:
-        """A reward (1) or a punishment (-1) is given."""
+        """Count one reward; `value` is -1 or +1."""
         self._count(rla_id, value, 1)
 
     def remove(self, rla_id: int, value: int) -> None:
-        """One that was given is taken back."""
+        """Subtract one reward that was undone; `value` is -1 or +1."""
         self._count(rla_id, value, -1)
 
-    def _count(self, rla_id: int, value: int, more: int) -> None:
+    def _count(self, rla_id: int, value: int, step: int) -> None:
         rewards, punishments = self.get(rla_id)
-        self._of[rla_id] = (
-            Appraisal(rewards + more, punishments) if value > 0 else Appraisal(rewards, punishments + more)
+        self._appraisals[rla_id] = (
+            Appraisal(rewards + step, punishments) if value > 0 else Appraisal(rewards, punishments + step)
         )

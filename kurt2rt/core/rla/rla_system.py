@@ -1,7 +1,6 @@
-"""The RLA system: what was taught, as a set of RLAs of which the nearest one answers a situation (paper, III).
+"""RLA system: the fold of teaching events; the RLA nearest to a situation answers it (paper, section III).
 
-Where a task teaches several behaviours there is one such system for each, and where there is a critic one more for it
-(its level); ids and the history of lessons run through all of them.
+RLAs of each level and taught behaviour compete among themselves; ids and the history of lessons are common to all.
 """
 
 import math
@@ -72,7 +71,7 @@ class InvalidEventError(ValueError):
 
 
 class RlaSystem:
-    """The fold of teaching events; kurt2rt.core.rla.active_rlas finds the RLA that answers a situation."""
+    """Fold of teaching events: active RLAs, named situations, numbers of rewards and the history of lessons."""
 
     def __init__(
         self,
@@ -82,18 +81,22 @@ class RlaSystem:
         *,
         others: Mapping[str, Space] | None = None,
     ) -> None:
-        """`weights`, shape (dimensions,): how much each feature counts in a distance; all count 1 unless given.
+        """Create an empty system.
 
-        `others`: the spaces of further levels, by name. RLAs of a level that is not among them are kept and can be
-        undone, but nothing is matched with them: a robot without a critic can go on with knowledge that has one.
+        Args:
+            dimensions: length d of a basic-level situation.
+            radius: confidence radius of RLAs without an own one.
+            weights: weight of each feature in a distance, shape (d,); None: all 1.
+            others: spaces of further levels. RLAs of other levels are kept and can be undone, but are never matched:
+                a robot without a critic can use knowledge that has one.
         """
         self.dimensions = dimensions
         self.radius = radius
         self.weights = np.ones(dimensions) if weights is None else weights
         self.teaching_ticks = 0
-        """How long all sessions that have ended lasted, together."""
+        """Total duration of the ended sessions, in ticks."""
         self.changes = 0
-        """How many events were applied: while it stays as it is, equal situations have equal answers."""
+        """Number of applied events; while it is unchanged, equal situations have equal matches."""
         self._spaces = {**(others or {}), BASIC: Space(dimensions, radius, self.weights)}
         self._active = ActiveRlas(self._spaces)
         self._last_id = 0
@@ -101,118 +104,114 @@ class RlaSystem:
         self._names = NamedSituations()
         self._history = LessonHistory()
         self._before: dict[str, str] = {}
-        """Of each lesson that stands and changed an action: that which had given the one before. By command ids, for an
-        RLA as it was would be kept of every correction."""
+        """Command id of each standing lesson that changed an action -> id of the lesson that gave the action before."""
         self._deleted: dict[str, Rla] = {}
-        """The RLA as it was before a lesson that stands and deleted it, by command id."""
+        """Deleted RLAs, by command id of the deletion."""
 
     def __len__(self) -> int:
         return self._active.count(BASIC)
 
     @property
     def rlas(self) -> tuple[Rla, ...]:
-        """All living RLAs of the basic level, of all behaviours, oldest first."""
+        """All active RLAs of the basic level, of all behaviours, oldest first."""
         return self.rlas_at(BASIC)
 
     def rlas_at(self, level: str) -> tuple[Rla, ...]:
-        """All living RLAs of a level, of all behaviours, oldest first."""
+        """Return all active RLAs of a level, of all behaviours, oldest first."""
         return tuple(rla for rla in self._active if rla.level == level)
 
     @property
     def active_rlas(self) -> tuple[Rla, ...]:
-        """All living RLAs of all levels, in no order: a copy that costs a tick next to nothing."""
+        """All active RLAs of all levels, in no order: a copy that is cheap enough for each tick."""
         return self._active.unsorted
 
     @property
     def next_id(self) -> int:
-        """Id of the next RLA to be taught; ids of deleted or undone RLAs are never given again."""
+        """Id of the next RLA to be taught; ids of deleted or undone RLAs are not used again."""
         return self._last_id + 1
 
     def get(self, rla_id: int) -> Rla | None:
-        """The living RLA of that id, of whatever level."""
+        """Return the active RLA of an id, of any level."""
         return self._active.get(rla_id)
 
     def named_situations(self, level: str) -> Mapping[str, Condition]:
-        """The situations of a level that teachers gave names to, by name."""
+        """Return the named situations of a level, by name."""
         return self._names.for_level(level)
 
     def appraisal(self, rla_id: int) -> Appraisal:
-        """What teachers thought of an RLA; none and none where nobody said so."""
+        """Return the numbers of rewards and punishments of an RLA."""
         return self._rewards.get(rla_id)
 
     @property
     def lessons(self) -> tuple[LessonRecord, ...]:
-        """All lessons, oldest first, those that were undone among them."""
+        """All lessons, oldest first, undone ones included."""
         return self._history.records
 
     def lessons_about(self, rla_id: int) -> tuple[LessonRecord, ...]:
-        """All lessons about one RLA, oldest first, those that were undone among them."""
+        """Return all lessons about one RLA, oldest first, undone ones included."""
         return self._history.about(rla_id)
 
     @property
     def standing_lessons(self) -> int:
-        """Number of lessons that stand, rewards among them."""
+        """Number of standing lessons, rewards included."""
         return self._history.standing
 
     @property
     def last_standing_lesson(self) -> str | None:
-        """Command id of the newest lesson that stands."""
+        """Command id of the newest standing lesson."""
         return self._history.last_standing
 
     def lesson(self, command_id: str) -> LessonRecord | None:
-        """The lesson of that command."""
+        """Return the lesson of a command; None for an unknown id."""
         return self._history.get(command_id)
 
     def why_not_undo(self, command_id: str) -> Outcome | None:
-        """Return why the lesson of that command cannot be undone now; None if it can."""
+        """Return why the lesson of a command cannot be undone now; None if it can."""
         return self._history.why_not_undo(command_id)
 
     @property
     def last_undone_lesson(self) -> str | None:
-        """Command id of the lesson that was undone last and does not stand again."""
+        """Command id of the lesson that was undone last."""
         return self._history.last_undone
 
     def why_not_redo(self, command_id: str) -> Outcome | None:
-        """Return why the undone lesson of that command cannot stand again now; None if it can."""
+        """Return why the lesson of a command cannot be redone now; None if it can."""
         return self._history.why_not_redo(command_id)
 
     def restored_by_undo(self, command_id: str) -> Rla | None:
-        """The RLA as it will be when the lesson of that command is undone; None where no action comes back by that."""
+        """Return the RLA as an undo of a lesson would restore it; None if that undo restores no action."""
         before = self._before.get(command_id)
         return self._deleted.get(command_id) if before is None else self._as_taught_by(before)
 
     def match(
-        self, situation: NDArray[np.float64], behaviour: str = "", level: str = BASIC, *, asking: bool = True
+        self, situation: NDArray[np.float64], behaviour: str = "", level: str = BASIC, *, include_withdrawn: bool = True
     ) -> Match | None:
-        """The RLA of a level and taught behaviour nearest to a situation vector (d,), and the one behind it.
+        """Return the RLA of a level and taught behaviour nearest to a situation (d,), and the runner-up.
 
-        None when nothing was taught there yet; all are infinitely far from a situation that holds NaN. `asking`: False
-        passes over those that ask, for nobody is there.
+        Returns None if nothing was taught yet. Distances are infinite if the situation holds NaN.
+        `include_withdrawn`: False skips RLAs without an action, for a robot without a teacher.
         """
-        return self._active.match(situation, behaviour, level, asking)
+        return self._active.match(situation, behaviour, level, include_withdrawn=include_withdrawn)
 
     def nearest_first(
-        self, situation: NDArray[np.float64], behaviour: str = "", level: str = BASIC, *, most: int | None = None
+        self, situation: NDArray[np.float64], behaviour: str = "", level: str = BASIC, *, limit: int | None = None
     ) -> tuple[tuple[int, float], ...]:
-        """Ids and distances of the RLAs of a level and behaviour, the nearest to a situation (d,) first.
+        """Return (id, distance) of the RLAs of a level and behaviour, nearest to a situation (d,) first.
 
-        `most`: so many of them; None: all. Looks at all of them: to explain with, not for every tick.
+        Computes all distances: for explanations, not for each tick. `limit`: None returns all RLAs.
         """
-        return self._active.nearest_first(situation, behaviour, level, most)
+        return self._active.nearest_first(situation, behaviour, level, limit)
 
     def candidate_count(self, behaviour: str = "", level: str = BASIC) -> int:
-        """How many RLAs of a level and behaviour compete."""
+        """Return the number of RLAs that compete at a level for a behaviour."""
         return self._active.candidate_count(behaviour, level)
 
     def competitors(self, rla: Rla) -> tuple[Rla, ...]:
-        """The living RLAs of its level and behaviour with exactly its condition, itself among them, oldest first."""
+        """Return the RLAs of its level and behaviour with an equal condition, itself included, oldest first."""
         return self._active.competitors(rla)
 
     def neighbours(self, rla: Rla, count: int) -> tuple[Rla, ...]:
-        """The RLAs of its level and behaviour with another condition, nearest first, at most `count`.
-
-        Sorts all of them: not for every tick.
-        """
+        """Return at most `count` RLAs of its level and behaviour with another condition, nearest first; sorts all."""
         return self._active.neighbours(rla, count)
 
     def apply(self, event: TeachingEvent) -> None:
@@ -248,11 +247,11 @@ class RlaSystem:
             self.apply(event)
 
     def knowledge_hash(self) -> str:
-        """Fingerprint of what the system knows: ids, levels, behaviours, conditions, actions, radii; not who taught."""
+        """Return the SHA-256 of all active RLAs; teachers and dates do not count."""
         return knowledge_hash_of(self._active)
 
     def _learn(self, lesson: Lesson, *, again: bool = False) -> None:
-        """`again`: it was taken back, and its RLA or name is as it found it."""
+        """Apply a lesson; `again`: as a redo."""
         match lesson:
             case RlaCreated(rla):
                 if rla.rla_id <= self._last_id and not again:
@@ -290,7 +289,7 @@ class RlaSystem:
                 self._rewards.add(rla_id, value)
 
     def _undo(self, lesson: Lesson) -> None:
-        """Undo a lesson after which nothing that stands happened to its RLA."""
+        """Reverse a lesson that is on top of its stack."""
         match lesson:
             case RlaCreated(rla):
                 self._active.remove(self._require_active(rla.rla_id))
@@ -305,7 +304,7 @@ class RlaSystem:
                 self._names.remove(lesson)
 
     def _require_situation(self, name: str, situation: Condition, level: str) -> None:
-        """A situation of a level that nothing is matched at here may be named all the same, as its RLAs are kept."""
+        """Raise InvalidEventError for a wrong length or a number that is not finite; levels without a space fit."""
         space = self._spaces.get(level)
         if not all(map(math.isfinite, situation)):
             raise InvalidEventError(
@@ -322,7 +321,7 @@ class RlaSystem:
         self._before[origin.command_id] = old.origin.command_id
 
     def _as_taught_by(self, command_id: str) -> Rla:
-        """The RLA as the lesson of that command, which gave it an action or took it away, left it."""
+        """Return the RLA as a lesson left it that gave or withdrew its action."""
         record = self._history.get(command_id)
         assert record is not None
         match record.event:

@@ -1,4 +1,4 @@
-"""What distances of one level are measured in."""
+"""Space of one level: dimensions, radius, weights and metric of its distances."""
 
 from typing import Literal, NamedTuple
 
@@ -6,16 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 Metric = Literal["euclidean", "hamming", "edit"]
-"""How far apart two points are: of features that measure something, the Euclidean distance; of symbols, which are
-equal or not, in how many places they differ, or how many insertions, deletions and changes make one of the other."""
+"""Distance between two points: Euclidean for measured features; for symbols the number of places that differ
+(hamming), or of insertions, deletions and changes (edit, Levenshtein)."""
 
 
 class Space(NamedTuple):
-    """What distances of one level are measured in."""
+    """Dimensions, radius, weights and metric of the distances of one level."""
 
     dimensions: int
     radius: float
-    """Confidence radius of RLAs that have none of their own."""
+    """Confidence radius of RLAs without an own radius."""
     weights: NDArray[np.float64] | None = None
-    """Shape (dimensions,): how much each feature counts in a distance; None: all count 1. Symbols have none."""
+    """Weight of each feature in a distance, shape (dimensions,); None: all 1. Symbols have no weights."""
     metric: Metric = "euclidean"

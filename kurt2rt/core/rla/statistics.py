@@ -1,4 +1,4 @@
-"""What the robot counted while it used its knowledge; unlike a lesson, the last second of it may be lost."""
+"""Statistics of use: unlike a lesson, the last second of them may be lost."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -7,34 +7,34 @@ from kurt2rt.core.rla.expectation import Expectation
 
 VALUES_INCLUDE = "rows that the values include"
 EDGE_WEIGHTS_INCLUDE = "rows that the edge weights include"
-"""How many rows the journal had when that table was saved; what lessons behind them are worth is booked later."""
+"""Number of journal rows included in that table when it was saved; credits of later rows are applied at the start."""
 FIRST_VALUE = "first value"
-"""What an action that was just taught is worth in the table of values."""
+"""Value of a newly taught action in the table of values."""
 BEST_SCORE = "best score"
 BEST_INCLUDES = "rows that the best knowledge includes"
-"""Phase 5: the score of the best window, and how many rows the journal had when its knowledge stood."""
+"""Phase 5: score of the best window, and the number of journal rows at its beginning."""
 
 
 @dataclass(frozen=True, slots=True)
 class Statistics:
-    """Counts and worths since the knowledge was begun. Must not be changed once it is handed over to be written."""
+    """Counts and values since the knowledge was created. Do not change it once it is handed to the writer."""
 
     uses: Mapping[int, int] = field(default_factory=dict)
-    """RLA id -> how often it won."""
+    """RLA id -> number of uses."""
     transitions: Mapping[tuple[int, int], int] = field(default_factory=dict)
-    """(RLA id, follow-up RLA id) -> how often the one followed the other; edges of the RLA network (paper, III)."""
+    """(RLA id, follow-up RLA id) -> number of transitions: edges of the RLA network (paper, III)."""
     values: Mapping[int, float] = field(default_factory=dict)
-    """RLA id -> what rewards made its value."""
+    """RLA id -> value, as rewards changed it."""
     edge_weights: Mapping[tuple[int, int], float] = field(default_factory=dict)
-    """(RLA id, follow-up RLA id) -> weight of the edge, where rewards changed it; the smaller the better."""
+    """(RLA id, follow-up RLA id) -> weight of an edge that rewards changed; smaller is better."""
     numbers: Mapping[str, float] = field(default_factory=dict)
-    """Single numbers by their names, those above."""
+    """Single numbers by the names above."""
     expectations: Mapping[int, Expectation] = field(default_factory=dict)
-    """RLA id -> the situation that follows it; of RLAs that have another action by now it says nothing."""
+    """RLA id -> expectation; invalid for an RLA that has another action now."""
 
 
 def follow_ups(statistics: Statistics) -> dict[int, dict[int, float]]:
-    """Share of each follow-up RLA in percent, most frequent first: RLA id -> {follow-up id: percent}."""
+    """Return RLA id -> {follow-up id: percent of its transitions}, most frequent follow-up first."""
     totals: dict[int, int] = {}
     for (before, _), count in statistics.transitions.items():
         totals[before] = totals.get(before, 0) + count

@@ -116,7 +116,7 @@ class _Reader:
         asking = not self._runtime.level.skip_withdrawn
         match = decision.match
         if decision.asks_at != BASIC:
-            match = system.match(vector, record.behaviour, asking=asking)
+            match = system.match(vector, record.behaviour, include_withdrawn=asking)
         situation = _LevelSituation(self._runtime.definition.names, vector, system.weights)
         return self._level(BASIC, record.behaviour, situation, match, decision.rla_id)
 
@@ -177,7 +177,7 @@ class _Reader:
     ) -> tuple[tuple[int, float], ...]:
         """Return the nearest RLAs; all of them if the driver is not among the nearest."""
         if self._most is not None:
-            ranking = self._system.nearest_first(vector, behaviour, level, most=self._most + 1 + _PASSED_OVER)
+            ranking = self._system.nearest_first(vector, behaviour, level, limit=self._most + 1 + _PASSED_OVER)
             ids = {rla_id for rla_id, _ in ranking}
             rlas = [self._system.get(rla_id) for rla_id in ids]
             speak = sum(rla is not None and not rla.is_withdrawn for rla in rlas)

@@ -93,7 +93,7 @@ class CounterfactualPolicy:
         """
         system, choice = self._system, self._worths.choice
         asking = not runtime.level.skip_withdrawn
-        basic = system.match(record.situation.vector, record.behaviour, asking=asking)
+        basic = system.match(record.situation.vector, record.behaviour, include_withdrawn=asking)
         mid = None
         if runtime.mid is not None:
             mid = _mid_answer(system.match(runtime.mid.vector, level=MID))

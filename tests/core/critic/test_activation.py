@@ -2,7 +2,7 @@
 
 import pytest
 
-from kurt2rt.core.critic.activation import ActivationMonitor
+from kurt2rt.core.critic.autonomy import ActivationMonitor
 from kurt2rt.core.critic.settings import ActivationSettings
 
 

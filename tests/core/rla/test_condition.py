@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurt2rt.core.rla.condition import PackedCondition, packed
+from kurt2rt.core.rla.condition import PackedCondition, pack_condition
 from kurt2rt.core.rla.rla import Origin, Phase, Rla
 
 _NUMBERS = st.lists(st.floats(allow_nan=False), min_size=1, max_size=80).map(tuple)
@@ -17,7 +17,7 @@ _ORIGIN = Origin("c-1", "Ann", Phase.SUPERVISED, 0)
 
 @given(_NUMBERS)
 def test_it_is_its_numbers_to_the_last_bit(numbers: tuple[float, ...]) -> None:
-    condition = packed(numbers)
+    condition = pack_condition(numbers)
     assert isinstance(condition, PackedCondition)
     assert tuple(map(float.hex, condition)) == tuple(map(float.hex, numbers))
     assert np.array(condition).tobytes() == np.array(numbers).tobytes()
@@ -29,21 +29,21 @@ def test_it_is_its_numbers_to_the_last_bit(numbers: tuple[float, ...]) -> None:
 
 @given(_NUMBERS, _NUMBERS)
 def test_equal_numbers_are_one_key_whatever_they_are_kept_in(a: tuple[float, ...], b: tuple[float, ...]) -> None:
-    assert packed(a) == a
-    assert a == packed(a)
-    assert (packed(a) == packed(b)) == (a == b)
-    assert hash(packed(a)) == hash(a)
+    assert pack_condition(a) == a
+    assert a == pack_condition(a)
+    assert (pack_condition(a) == pack_condition(b)) == (a == b)
+    assert hash(pack_condition(a)) == hash(a)
 
 
 def test_zero_and_minus_zero_are_one_place() -> None:
-    assert packed((0.0, 1.0)) == packed((-0.0, 1.0))
-    assert hash(packed((0.0, 1.0))) == hash(packed((-0.0, 1.0)))
-    assert packed((0.0, 1.0)) != packed((0.0, 1.0, 2.0))
-    assert packed((0.0,)) != [0.0]
+    assert pack_condition((0.0, 1.0)) == pack_condition((-0.0, 1.0))
+    assert hash(pack_condition((0.0, 1.0))) == hash(pack_condition((-0.0, 1.0)))
+    assert pack_condition((0.0, 1.0)) != pack_condition((0.0, 1.0, 2.0))
+    assert pack_condition((0.0,)) != [0.0]
 
 
 def test_what_numpy_makes_of_it_may_be_written_to() -> None:
-    condition = packed((1.0, 2.0))
+    condition = pack_condition((1.0, 2.0))
     array = np.array(condition)
     array[0] = 5.0
     assert condition == (1.0, 2.0)
@@ -53,7 +53,7 @@ def test_what_numpy_makes_of_it_may_be_written_to() -> None:
 
 @pytest.mark.parametrize("numbers", [(), (1, 2.0), ("a", 1.0), (True,)])
 def test_what_is_not_made_of_floats_stays_for_others_to_refuse(numbers: tuple[float, ...]) -> None:
-    assert packed(numbers) is numbers
+    assert pack_condition(numbers) is numbers
 
 
 def test_an_rla_keeps_its_condition_in_little_room() -> None:

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kurt2rt.core.rla.credit import Credit, PackedCredits, packed
+from kurt2rt.core.rla.credit import Credit, PackedCredits, pack_credits
 from kurt2rt.core.rla.rla import Origin, Phase, RlaRewarded
 
 _IDS = st.integers(1, 2**32 - 1)
@@ -18,7 +18,7 @@ _ORIGIN = Origin("c-1", "Ann", Phase.REINFORCEMENT, 0)
 
 @given(_CREDITS, _CREDITS)
 def test_they_are_their_credits_to_the_last_bit(a: tuple[Credit, ...], b: tuple[Credit, ...]) -> None:
-    credits_ = packed(a)
+    credits_ = pack_credits(a)
     assert isinstance(credits_, PackedCredits)
     assert [(each.rla_id, each.change.hex(), each.before) for each in credits_] == [
         (each.rla_id, each.change.hex(), each.before) for each in a
@@ -26,7 +26,7 @@ def test_they_are_their_credits_to_the_last_bit(a: tuple[Credit, ...], b: tuple[
     assert (len(credits_), credits_[0], credits_[1:]) == (len(a), a[0], a[1:])
     assert credits_ == a
     assert a == credits_
-    assert (credits_ == packed(b)) == (a == b)
+    assert (credits_ == pack_credits(b)) == (a == b)
     assert (hash(credits_), repr(credits_)) == (hash(a), repr(a))
     assert pickle.loads(pickle.dumps(credits_)) == credits_
 
@@ -44,7 +44,7 @@ def test_they_are_their_credits_to_the_last_bit(a: tuple[Credit, ...], b: tuple[
 )
 def test_what_is_no_sound_credit_stays_for_others_to_refuse(credit: Credit) -> None:
     credits_ = (Credit(1, 1.0), credit)
-    assert packed(credits_) is credits_
+    assert pack_credits(credits_) is credits_
 
 
 def test_a_reward_keeps_its_credits_in_little_room() -> None:
@@ -53,4 +53,4 @@ def test_a_reward_keeps_its_credits_in_little_room() -> None:
     assert isinstance(rewarded.credits, PackedCredits)
     assert len(rewarded.credits.packed) == 16 * len(credits_)
     assert RlaRewarded(1, 1, 7, _ORIGIN).credits == ()
-    assert rewarded == RlaRewarded(1, 1, 7, _ORIGIN, packed(credits_))
+    assert rewarded == RlaRewarded(1, 1, 7, _ORIGIN, pack_credits(credits_))

@@ -145,7 +145,7 @@ def test_passing_over_those_that_ask_is_as_if_they_were_not_there(taught: list[t
     system = system_of(*every, *(withdrawn(number) for number in asking))
     without = system_of(*every, *(deleted(number) for number in asking))
     here = np.array([float(place), 1.0])
-    passed_over, expected = system.match(here, asking=False), without.match(here)
+    passed_over, expected = system.match(here, include_withdrawn=False), without.match(here)
     assert (passed_over is None) == (expected is None)
     if passed_over is not None and expected is not None:
         assert passed_over.rla == expected.rla

@@ -297,8 +297,8 @@ def test_the_nearest_few_are_the_first_of_all_in_order_of_nearness_and_age(most:
     assert system.candidate_count() == len(places)
     whole = system.nearest_first(np.array([0.0, 0.0]))
     assert [rla_id for rla_id, _ in whole] == [3, 6, 7, 1, 2, 5, 8, 4]
-    assert system.nearest_first(np.array([0.0, 0.0]), most=most) == whole[:most]
-    lost = system.nearest_first(np.array([math.nan, 0.0]), most=most)
+    assert system.nearest_first(np.array([0.0, 0.0]), limit=most) == whole[:most]
+    lost = system.nearest_first(np.array([math.nan, 0.0]), limit=most)
     assert lost == tuple((rla_id, math.inf) for rla_id in range(1, 9))[:most]
 
 

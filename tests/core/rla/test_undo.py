@@ -125,7 +125,7 @@ def test_sessions_change_no_rla_and_their_time_adds_up() -> None:
         (FIRST, "RLA 1 taught: forward"),
         (replaced(1, "back", "forward"), "RLA 1 corrected: back instead of forward"),
         (withdrawn(1), "RLA 1 withdrawn: it asks again"),
-        (replaced(1, "back", ASK), "RLA 1 answered anew: back"),
+        (replaced(1, "back", ASK), "RLA 1 answered again: back"),
         (deleted(1), "RLA 1 deleted"),
         (rewarded(1), "RLA 1 rewarded"),
         (rewarded(1, -1), "RLA 1 punished"),

@@ -55,7 +55,7 @@ def test_each_level_has_a_chain_of_its_own_in_the_same_tables() -> None:
 def test_what_is_decided_anew_is_another_use_though_it_be_the_same_rla() -> None:
     statistics = StatisticsCounter()
     for anew in (True, False, True):
-        statistics.count(8, MID, anew=anew)
+        statistics.count(8, MID, again=anew)
     assert statistics.uses == {8: 2}
     assert statistics.transitions == {(8, 8): 1}
 
