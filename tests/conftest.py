@@ -12,7 +12,7 @@ from xdist.remote import Producer
 from xdist.scheduler.loadfile import LoadFileScheduling
 
 from tests.examples import register_profiles
-from tests.forked_program import nursery
+from tests.forked_program import fork_server
 
 register_profiles()
 
@@ -34,7 +34,7 @@ def pytest_configure(config: pytest.Config) -> None:
             os.environ.setdefault("TMPDIR", str(_MEMORY))
             tempfile.tempdir = None  # read from TMPDIR again
         around = ExitStack()
-        around.enter_context(nursery())
+        around.enter_context(fork_server())
         config.add_cleanup(around.close)
 
 

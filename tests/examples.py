@@ -1,4 +1,4 @@
-"""How many examples a property is tried with."""
+"""Numbers of examples for property tests."""
 
 import os
 
@@ -6,11 +6,11 @@ from hypothesis import settings
 
 QUICK, THOROUGH = "quick", "thorough"
 _SHARE = {QUICK: 0.12, THOROUGH: 1.0}
-"""Of the examples of a property that wants more than others."""
+"""Share of the examples of a property that asks for its own number."""
 
 
 def register_profiles() -> None:
-    """The quick ones of `make test`, and those of its slower sisters, which say EXAMPLES=thorough.
+    """Register the quick profile of `make test` and the thorough one (EXAMPLES=thorough).
 
     The same examples each time, on any machine: what they find they have found at the first run. No deadline for one:
     it would be a wall-clock assertion, and the machine that runs the tests is shared.

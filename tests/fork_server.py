@@ -1,10 +1,10 @@
 """Process that forks the programs of stories, with all their imports loaded: `python -m tests.fork_server`.
 
-A fresh interpreter takes more than a second of a processor until it has imported as much, for each program anew. What
-runs in a fork is what `python -m` would run, and it ends as an interpreter ends.
+A fresh interpreter takes more than a second of a processor for these imports, in each program. A fork
+runs the same as `python -m`, and ends as an interpreter ends.
 
 One serves a whole test session, all its workers: its first argument is the address (Linux's abstract kind), its second
-the descriptor of a pipe from whoever started it; it ends with that one.
+the descriptor of a pipe from the process that started it; it ends with that process.
 """
 
 import atexit
@@ -26,7 +26,7 @@ ADDRESS = "KURT2RT_NURSERY"
 NUMBER = struct.Struct("=q")
 """Both numbers that are told of a program: its process id, and at its end the exit code."""
 DESCRIPTORS = 4
-"""With each order: standard input, output and errors of the program, and the pipe on which these numbers go."""
+"""Descriptors of each order: standard input, output and errors of the program, and the pipe for both numbers."""
 _MODULES = (
     "aiocoap.oscore",
     "aiocoap.transports.udp6",
@@ -90,7 +90,7 @@ def _bury() -> None:
 
 
 def _born(descriptors: list[int]) -> bool:
-    """Fork the program, and somebody who waits for its end and tells it; True in the program itself."""
+    """Fork the program and a process that waits for its end and reports it; return True in the program."""
     told = descriptors[3]
     if os.fork():
         for each in descriptors:
@@ -149,7 +149,7 @@ def serve(address: str, parent: int) -> Order | None:
 
 
 class _Leave:
-    """The last that an interpreter does at its end; it then need not tear down what it shares with the nursery."""
+    """The last that an interpreter does at its end; it then need not tear down what it shares with the fork server."""
 
     def __init__(self) -> None:
         self.code: int | None = None

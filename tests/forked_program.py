@@ -1,4 +1,4 @@
-"""Programs forked by the session's nursery: with the words of subprocess.Popen, as far as stories need them."""
+"""Programs forked by the session's fork_server: with the words of subprocess.Popen, as far as stories need them."""
 
 import json
 import os
@@ -20,15 +20,15 @@ from tests.fork_server import ADDRESS, NUMBER
 _ROOT = Path(__file__).parents[1]
 
 
-def there_is_a_nursery() -> bool:
-    """Whether this session has one."""
+def has_fork_server() -> bool:
+    """Return whether this session has a fork server."""
     return ADDRESS in os.environ
 
 
 @contextmanager
-def nursery() -> Iterator[None]:
-    """For this session and the workers that it starts."""
-    address = f"kurt2rt-nursery-{uuid.uuid4().hex}"
+def fork_server() -> Iterator[None]:
+    """Run a fork server for this session and its workers."""
+    address = f"kurt2rt-fork_server-{uuid.uuid4().hex}"
     theirs, ours = os.pipe()
     with subprocess.Popen(
         [sys.executable, "-m", "tests.fork_server", address, str(theirs)],
@@ -50,7 +50,7 @@ def nursery() -> Iterator[None]:
 
 
 class ForkedProcess:
-    """What runs as `python -m MODULE WORDS` does."""
+    """Forked program that runs like `python -m MODULE WORDS`."""
 
     def __init__(
         self,
@@ -62,7 +62,7 @@ class ForkedProcess:
     ) -> None:
         """`streams`: the descriptors of its standard input, output and errors, which stay open here.
 
-        Raises KeyError where there is no nursery, and OSError where it has gone.
+        Raises KeyError where there is no fork_server, and OSError where it has gone.
         """
         self.returncode: int | None = None
         self._told, tells = os.pipe()
@@ -80,7 +80,7 @@ class ForkedProcess:
     def _number(self) -> int:
         data = os.read(self._told, NUMBER.size)
         if len(data) != NUMBER.size:
-            raise OSError("the nursery of this session has gone, or cannot import what it should")
+            raise OSError("the fork_server of this session has gone, or cannot import what it should")
         (number,) = NUMBER.unpack(data)
         return int(number)
 
@@ -118,7 +118,7 @@ class ForkedProgram(ForkedProcess):
     """One with pipes to its keyboard and from its outputs."""
 
     def __init__(self, module: str, words: Sequence[str], folder: Path, environment: Mapping[str, str]) -> None:
-        """Raises as ForkedProcess does."""
+        """Start the program; raise the errors of ForkedProcess."""
         keyboard, stdin = os.pipe()
         stdout, printed = os.pipe()
         stderr, complained = os.pipe()

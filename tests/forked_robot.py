@@ -9,7 +9,7 @@ from typing import IO, cast
 import pytest
 
 from kurt2rt.teacher.client import robot_process
-from tests.forked_program import ForkedProcess, there_is_a_nursery
+from tests.forked_program import ForkedProcess, has_fork_server
 
 
 class ForkedRobot(ForkedProcess):
@@ -32,5 +32,5 @@ def fork_robots(monkeypatch: pytest.MonkeyPatch) -> None:
     def started(words: Sequence[str], folder: Path, log: Path) -> "Popen[bytes]":
         return cast("Popen[bytes]", ForkedRobot(words, folder, log))
 
-    if there_is_a_nursery():
+    if has_fork_server():
         monkeypatch.setattr(robot_process, "_started", started)

@@ -14,7 +14,7 @@ from types import MappingProxyType
 import pytest
 
 from kurt2rt.cli.main import main
-from tests.forked_program import ForkedProgram, there_is_a_nursery
+from tests.forked_program import ForkedProgram, has_fork_server
 
 ROOT = Path(__file__).parents[2]
 
@@ -130,7 +130,7 @@ def started(
 ) -> "subprocess.Popen[str] | ForkedProgram":
     """Start `python -m MODULE ...`; the rest as `running` says."""
     environment = {**os.environ, "PYTHONUNBUFFERED": "1", **environment}
-    if there_is_a_nursery() and not fresh:
+    if has_fork_server() and not fresh:
         return ForkedProgram(module, words, folder, environment)
     return subprocess.Popen(
         [sys.executable, "-m", module, *words],

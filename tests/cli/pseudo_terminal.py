@@ -12,7 +12,7 @@ from fcntl import ioctl
 from pathlib import Path
 from termios import TIOCSWINSZ
 
-from tests.forked_program import ForkedProcess, there_is_a_nursery
+from tests.forked_program import ForkedProcess, has_fork_server
 
 _STEP = re.compile(r"\x1b\[([\d;]*)([A-Za-z])|\x1b\[\?\d+[hl]|(\r)|(\n)|([^\x1b\r\n]+)")
 
@@ -58,7 +58,7 @@ class ProgramInTerminal:
         for name in ("COLUMNS", "LINES", "NO_COLOR"):
             environment.pop(name, None)
         self._process: ForkedProcess | subprocess.Popen[bytes]
-        if there_is_a_nursery():
+        if has_fork_server():
             self._process = ForkedProcess("kurt2rt.cli.main", list(words), folder, environment, (theirs,) * 3)
         else:
             command = [sys.executable, "-m", "kurt2rt.cli.main", *words]

@@ -1,6 +1,6 @@
 """`kurt2rt ...` by a wall clock that is set while it runs: the first argument is a file that says by how many seconds.
 
-Everything else keeps its time, as it does when somebody sets the clock of a machine.
+Every other clock keeps its time, as on a machine whose wall clock is set.
 """
 
 import datetime
@@ -21,7 +21,7 @@ class _WallClock:
 
 
 def set_clocks_by(file: Path) -> None:
-    """From now on whatever looks at the wall clock is told the wrong time, also what was imported before."""
+    """Shift the wall clock of all modules of this process, also of those imported before, by the seconds in `file`."""
     wall_clock = _WallClock(file)
     right_s: Callable[[], float] = time.time
     right_ns: Callable[[], int] = time.time_ns

@@ -30,7 +30,7 @@ CALLS = (
     "mmap",
     "close",
 )
-"""What Python and SQLite do to files."""
+"""System calls of Python and SQLite on files."""
 _CALL = re.compile(r"^(\d+) +(\w+)\(")
 
 
@@ -48,7 +48,7 @@ class FailingCall:
 
 @dataclass(frozen=True, slots=True)
 class Ended:
-    """How a program ended."""
+    """Exit code and output of a program that ended."""
 
     exit_code: int
     out: str

@@ -44,15 +44,15 @@ ACTIONS = ("forward", "forward", "back", "spin_left", "whirl_right")
 LONGEST_S = 600.0
 """Fails a story whose event never comes."""
 YOUNGEST_SHARE = 0.3
-"""Of the programs that are killed while they start."""
+"""Share of programs that are killed while they start."""
 START_S = 0.6
-"""How long that may take, before it is known how long it takes here and now."""
+"""Assumed duration of a start, until one was measured on this machine."""
 DRIVING_SHARE = 0.6
-"""Of the others that are killed not before the robot drives by what it was taught."""
+"""Share of the other programs that are killed only after the robot drives by a taught RLA."""
 IN_A_LESSON_SHARE = 0.4
-"""Of the others that are killed not before the next lesson is sent, and soon after it."""
+"""Share of the other programs that are killed soon after the next lesson is sent."""
 MOST_INTO_A_LESSON_S = 0.03
-"""About how long it takes until it is acknowledged."""
+"""Typical time from sending a lesson to its acknowledgement."""
 LONGEST_LIFE_S = 1.5
 MOST_LESSONS = 5
 REPLAYED_EVERY = 3
@@ -64,7 +64,7 @@ _LOOK_S = 0.005
 
 @dataclass
 class Tally:
-    """What was seen over many kills."""
+    """Counts over many kills."""
 
     kills: int = 0
     young: int = 0
@@ -77,21 +77,21 @@ class Tally:
     stored: int = 0
     """Lessons in the file in the end."""
     unacknowledged: int = 0
-    """Of them those of which the teacher was told nothing."""
+    """Lessons in the file that the teacher got no answer for."""
     most_cycles_to_rest: int = 0
     recorded_ticks: int = 0
-    """That can be read of the recordings."""
+    """Ticks that can be read from the recordings."""
     unreadable: int = 0
     """Recordings that ended before the first second was on the disk."""
     most_unrecorded_s: float = 0.0
-    """From the last recorded tick to the kill."""
+    """Longest time from the last recorded tick to the kill."""
     replayed: int = 0
     """Recordings that were replayed, bit for bit."""
     kinds: Counter[str] = field(default_factory=Counter)
-    """Of the acknowledged lessons."""
+    """Acknowledged lessons by kind."""
 
     def add(self, more: "Tally") -> None:
-        """What was seen over further kills."""
+        """Add the counts of further kills; keep the larger of each maximum."""
         for each in fields(self):
             mine, others = getattr(self, each.name), getattr(more, each.name)
             setattr(self, each.name, max(mine, others) if each.name.startswith("most_") else mine + others)
@@ -110,7 +110,7 @@ class Tally:
 
 
 class Life:
-    """What the teacher did and was told in one life of the robot program."""
+    """Teacher's commands and answers during one run of the robot program."""
 
     def __init__(self, we: TeacherClient, chance: random.Random) -> None:
         self._we = we
@@ -123,7 +123,7 @@ class Life:
 
     @property
     def drives(self) -> bool:
-        """Whether the robot drove when it was last seen."""
+        """Return whether the robot drove in the newest state."""
         state = self._we.state
         return state is not None and state.rla is not None and abs(state.left_m_s) + abs(state.right_m_s) > 0.1
 
@@ -271,7 +271,7 @@ class KillStory:
         return self._bus.drain()
 
     async def _comes_to_rest(self) -> None:
-        """The controller's own watchdog stops the wheels; nothing is said to them by a program that is gone."""
+        """Wait until the controller's own watchdog has stopped the wheels, with the program gone."""
         cycles: list[bool] = []
         while len(cycles) <= WATCHDOG_CYCLES or cycles[-1]:
             for frame in self._heard():

@@ -1,4 +1,4 @@
-"""What a killed robot program leaves of its recording, and what has to be true of it."""
+"""Check of the recording that a killed robot program leaves."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +18,7 @@ class KilledRecording:
     ticks: int = 0
     """That can be read."""
     until_s: float = 0.0
-    """When the last of them was, by the runtime's clock."""
+    """Time of the last readable tick, by the runtime's clock."""
     refused: str = ""
     """Why nothing can be read, in a sentence: it was killed before the first second was on the disk."""
 

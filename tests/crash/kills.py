@@ -13,7 +13,7 @@ from pathlib import Path
 import anyio
 
 from tests.crash.kill_story import KillStory, Tally
-from tests.forked_program import nursery
+from tests.forked_program import fork_server
 
 OF_A_STORY = 50
 """Kills of programs that teach into one knowledge file."""
@@ -35,7 +35,7 @@ def main() -> None:
         parser.error(f"there is no shard {arguments.shard}")
     before = arguments.after + sum(kills_of_shard(arguments.kills, each, shards) for each in range(1, shard))
     kills = Kills(before, kills_of_shard(arguments.kills, shard, shards))
-    with nursery():
+    with fork_server():
         anyio.run(kills.run, arguments.at_once)
     print(kills.tally)
     print(f"{kills.tally.kills} passed, {kills.failed} failed")
@@ -43,7 +43,7 @@ def main() -> None:
 
 
 def kills_of_shard(kills: int, shard: int, shards: int) -> int:
-    """How many of all kills are those of a shard, from 1."""
+    """Return the number of kills of a shard; shards count from 1."""
     return kills * shard // shards - kills * (shard - 1) // shards
 
 

@@ -1,4 +1,4 @@
-"""What is done to files on a disk, in the order of doing it."""
+"""Operations on files of a disk, in order."""
 
 from dataclasses import dataclass
 
@@ -57,7 +57,7 @@ class FolderSynced:
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """Somebody was told that the lessons up to this number are saved."""
+    """Acknowledgement that the lessons up to this number are saved."""
 
     lessons: int
 

@@ -1,4 +1,4 @@
-"""A robot that is taught on a disk that fails, by somebody who starts it again until it works."""
+"""Lessons on a disk that fails, with the robot program restarted until all are saved."""
 
 from pathlib import Path
 
@@ -33,7 +33,7 @@ def a_lesson_at_a_time(path: Path, disk: WatchedDisk) -> list[Acknowledgement]:
 
 
 def with_patience(path: Path, disk: WatchedDisk) -> tuple[list[Acknowledgement], list[str]]:
-    """The same again and again until the disk lets it; what was acknowledged, and in which words it was refused."""
+    """Restart until the disk accepts all lessons; return the acknowledgements and the texts of the refusals."""
     refused: list[str] = []
     acknowledged: list[Acknowledgement] = []
     while True:

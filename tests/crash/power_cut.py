@@ -1,6 +1,6 @@
-"""What may be on a disk when the power goes at any moment.
+"""Possible contents of a disk after a power cut at any moment.
 
-What was synced is there. Of what was not, any part may be, in any order, and a write by whole sectors only.
+Synced data is there. Of other data any part may be there, in any order, and a write by whole sectors only.
 Names come and go in order, as in every file system with a journal.
 """
 
@@ -39,7 +39,7 @@ class PowerCut:
     after: int
     """So many operations had been done."""
     told: int
-    """The lessons that somebody was told are saved."""
+    """Number of lessons that were acknowledged as saved."""
 
     def put(self, folder: Path) -> None:
         """Make the files of the folder these, and no others."""
@@ -77,7 +77,7 @@ class Disk:
 
     inodes: list[_Inode] = field(default_factory=list)
     names: dict[str, int] = field(default_factory=dict)
-    """As programs see them."""
+    """File names to inodes, as programs see them."""
     durable_names: dict[str, int] = field(default_factory=dict)
     pending_names: list[tuple[str, int | None]] = field(default_factory=list)
     told: int = 0
@@ -94,7 +94,7 @@ class Disk:
         return disk
 
     def do(self, operation: Operation) -> None:
-        """The next operation has been done."""
+        """Apply the next operation."""
         self.done += 1
         match operation:
             case Made(name):
@@ -119,11 +119,11 @@ class Disk:
                 self.told = lessons
 
     def now(self) -> PowerCut:
-        """What programs see: what the kernel keeps when they are killed."""
+        """Return the contents that programs see, which the kernel keeps when a program is killed."""
         return self._state(self.names, {}, len(self.inodes))
 
     def cuts(self, chance: random.Random) -> Iterator[PowerCut]:
-        """What may be left if the power goes now; a state may come more than once."""
+        """Yield the possible contents after a power cut now; some more than once."""
         for count in range(len(self.pending_names) + 1):
             names = _named(self.durable_names, self.pending_names[:count])
             for changes in self._selections(sorted(set(names.values())), chance):
@@ -200,7 +200,7 @@ def _changed(content: bytes, changes: Iterable[Change]) -> bytes:
 
 
 def _left_of(doubtful: Written, later: Change) -> Iterator[Written]:
-    """The parts of a write that a later change left alone."""
+    """Yield the parts of a write that a later change did not touch."""
     begin, end = doubtful.at, doubtful.at + len(doubtful.content)
     match later:
         case Truncated(_, size):
@@ -228,7 +228,7 @@ def _subsets(count: int, chance: random.Random) -> Iterator[list[int]]:
 
 
 def _torn(change: Change, chance: random.Random) -> Iterator[Written]:
-    """A write of which only the sectors before a border came to the disk, or those behind it, or some."""
+    """Yield torn versions of a write: sectors before a border, after it, or a random choice."""
     if not isinstance(change, Written):
         return
     end = change.at + len(change.content)

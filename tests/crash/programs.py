@@ -15,7 +15,7 @@ _LOOK_S = 0.005
 
 
 class Program:
-    """A `kurt2rt ...` forked by the session's nursery; as a context manager it is killed at the end."""
+    """A `kurt2rt ...` forked by the session's fork server; as a context manager it is killed at the end."""
 
     def __init__(self, *words: str, folder: Path, log: Path) -> None:
         """Start it in a folder; what it prints goes to the end of the log."""
@@ -31,7 +31,7 @@ class Program:
 
     @property
     def lives(self) -> bool:
-        """Whether it still runs."""
+        """Return whether the program still runs."""
         return self._process.poll() is None
 
     async def says(self, text: str) -> str:
@@ -42,7 +42,7 @@ class Program:
                     return line
             if not self.lives:
                 raise AssertionError(f"{text!r} was never said:\n{self.said}")
-            await anyio.sleep(_LOOK_S)  # a file tells nobody that it grows
+            await anyio.sleep(_LOOK_S)  # a growing file sends no event
 
     def signal(self, number: signal.Signals) -> None:
         """Send it a signal, if it is still there."""

@@ -19,28 +19,28 @@ from tests.cli.three_programs import BRAKING_CYCLES, WATCHDOG_CYCLES, drives, is
 from tests.crash.programs import Program
 
 ON_THE_SPOT = "spin_left"
-"""What the robot may do for ever without coming anywhere."""
+"""Action that turns the robot in place for ever."""
 ROBOT = load_robot()
 LONGEST_S = 240.0
 LOOKED_ON_S = 0.6
-"""After the program goes on: six times what it takes to drive by mistake."""
+"""Observation time after the program continues: six times the time that a wrong command would need."""
 _LOOK_S = 0.005
 
 
 @dataclass(frozen=True, slots=True)
 class Stopped:
-    """What the bus carried round one stop of the program."""
+    """Frames on the bus around one stop of the program."""
 
     gap_s: float
-    """Between two CONTROL frames."""
+    """Longest time between two CONTROL frames."""
     drove_on: int
     """CONTROL frames after it that told the wheels to turn."""
     most_at_once: int
-    """Of those, within the time that a command may be old."""
+    """Largest number of these frames within the maximum age of a command."""
     cycles_to_rest: int | None
-    """Of the controller, from the last CONTROL frame; None where the stop was over before it rested."""
+    """Controller cycles from the last CONTROL frame to rest; None if the program continued before."""
     state: State
-    """What the teacher saw afterwards."""
+    """State on the teacher's device afterwards."""
 
 
 class StopStory:
@@ -111,7 +111,7 @@ def _most_within(span_s: float, frames: Iterable[can.Message]) -> int:
 
 
 def _cycles_to_rest(frames: list[can.Message]) -> int | None:
-    """Of the controller, after the last CONTROL frame."""
+    """Return the controller cycles from the last CONTROL frame to rest, None without rest."""
     last = max(index for index, frame in enumerate(frames) if is_control(frame))
     turning = [turns(frame) for frame in frames[last:] if turns(frame) or stands(frame)]
     if not turning or turning[-1]:
@@ -124,7 +124,7 @@ MOST_CYCLES_TO_REST = WATCHDOG_CYCLES + BRAKING_CYCLES
 
 @asynccontextmanager
 async def a_robot_that_turns(folder: Path, bus: str) -> AsyncIterator[StopStory]:
-    """A simulated robot, its program and its teacher."""
+    """Run a simulated robot that turns in place, its program and its teacher."""
     with ExitStack() as ending:
         sim = ending.enter_context(Program("sim", "--bus", bus, folder=folder, log=folder / "sim.log"))
         await sim.says("is on bus")

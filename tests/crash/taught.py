@@ -16,7 +16,7 @@ PAGES_UNTIL_MERGED = 6
 
 @contextmanager
 def taught(path: Path) -> Iterator[Journal]:
-    """The journal, whose log is merged often."""
+    """Open the journal with a log that is checkpointed often."""
     with Journal.open(path, BINDING) as journal:
         journal._connection.execute(f"PRAGMA wal_autocheckpoint = {PAGES_UNTIL_MERGED}")
         yield journal
@@ -33,7 +33,7 @@ def teach(journal: Journal, disk: WatchedDisk, *lessons: int, statistics: bool =
 
 
 def a_day(path: Path, disk: WatchedDisk) -> None:
-    """The robot is taught, switched off, and taught again."""
+    """Teach the robot, switch it off, and teach it again."""
     with taught(path) as journal:
         teach(journal, disk, 1)
         teach(journal, disk, 2, 3, 4)
@@ -47,7 +47,7 @@ def a_day(path: Path, disk: WatchedDisk) -> None:
 
 
 def require_kept(path: Path, told: int) -> None:
-    """The file opens, is sound, holds the lessons from the first on in order and once, at least those, and goes on."""
+    """Assert that the file is sound, holds lessons 1 to `told` or more, in order and once, and takes another."""
     with Journal.open(path, BINDING) as journal:
         assert journal.check() == []
         events = journal.events()

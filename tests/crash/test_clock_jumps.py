@@ -35,7 +35,7 @@ async def a_robot(folder: Path) -> AsyncIterator[None]:
 
 
 async def taught_the_other_way(we: TeacherClient, wall_clock: WallClock) -> None:
-    """A correction counts, and is stamped by the wall clock as it is now; the robot drives by it."""
+    """Correct the robot; assert that it drives by the correction, which has a stamp of the present wall clock."""
     await until_it_drives(we, ON_THE_SPOT)
     with anyio.fail_after(LONG_ENOUGH_S):
         async for state in we.states():

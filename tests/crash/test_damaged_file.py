@@ -33,7 +33,7 @@ def taught(path: Path) -> list[RlaCreated]:
 
 
 def damaged(whole: bytes, chance: random.Random) -> Iterator[tuple[str, bytes]]:
-    """The file cut, with a sector lost or of something else, and with a page in the place of another one."""
+    """Yield damaged files: truncated, a sector lost or foreign, a page in another page's place."""
     for at in range(0, len(whole), SECTOR_BYTES):
         rest = whole[at + SECTOR_BYTES :]
         elsewhere = (at + PAGE_BYTES) % len(whole)

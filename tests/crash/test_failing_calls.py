@@ -13,7 +13,7 @@ from tests.knowledge.lessons import BINDING, created
 CHILD = "tests.crash.teach_a_little"
 ERRORS = ("ENOSPC", "EIO", "EINTR")
 EVERY = {"fcntl": 6}
-"""Of locks not all: where SQLite cannot unlock it tries for 10 s, and a writer then begins anew."""
+"""Every sixth lock call only: if SQLite cannot unlock it tries for 10 s, and the writer then reconnects."""
 SOME = (
     FailingCall("pwrite64", 9, "ENOSPC"),
     FailingCall("pwrite64", 11, "EINTR"),

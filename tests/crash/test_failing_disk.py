@@ -60,7 +60,7 @@ def test_no_call_that_fails_costs_a_lesson_however_long_it_fails(tmp_path: Path,
 
 
 class StuckJournal(Journal):
-    """Its locks are stuck until it connects anew, which does not succeed at once."""
+    """Journal with stuck locks until it reconnects; the first reconnection fails."""
 
     stuck = True
     tries = 0
@@ -78,7 +78,7 @@ class StuckJournal(Journal):
         self.stuck = False
 
 
-def test_a_writer_whose_locks_are_stuck_begins_anew_and_loses_nothing(tmp_path: Path) -> None:
+def test_writer_with_stuck_locks_reconnects_and_loses_nothing(tmp_path: Path) -> None:
     path = tmp_path / "knowledge"
     journal = StuckJournal.open(path, BINDING)
     journal.stuck = False

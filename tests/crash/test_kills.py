@@ -11,7 +11,7 @@ from tests.crash.kills import OF_A_STORY, kills_of_shard, stories
 KILLS_OF_A_SHARD = 50
 
 
-async def test_a_robot_whose_program_is_killed_stands_asks_before_it_drives_and_has_lost_no_lesson(
+async def test_killed_program_robot_stands_and_no_lesson_is_lost(
     tmp_path: Path,
 ) -> None:
     tally = await KillStory(tmp_path, f"shared:killed-twice-{os.getpid()}", seed=7, longest_life_s=50.0).run(kills=2)

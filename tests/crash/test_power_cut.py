@@ -17,11 +17,11 @@ from tests.knowledge.lessons import BINDING, entry
 
 LEAST_STATES = 400
 EVERY = [3, pytest.param(1, marks=pytest.mark.deep)]
-"""Of the states that a day may leave a third are quick to look at."""
+"""Every third state in the quick test, all in the deep one."""
 
 
 def files_of(folder: Path) -> dict[str, bytes]:
-    """What stands on the disk; a lock is none of it."""
+    """Return the contents of all files by name, without locks."""
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file() and path.suffix != ".lock"}
 
 
@@ -49,7 +49,7 @@ def after_each_cut(disk: Disk, operations: list[Operation], path: Path, seed: in
 
 
 @pytest.mark.parametrize("every", EVERY)
-def test_nothing_that_was_said_to_be_saved_is_lost_in_any_power_cut(tmp_path: Path, every: int) -> None:
+def test_power_cut_keeps_every_acknowledged_lesson(tmp_path: Path, every: int) -> None:
     path, disk = new_file(tmp_path), WatchedDisk()
     before = Disk.holding(files_of(tmp_path))
     with watched(disk):
@@ -57,7 +57,7 @@ def test_nothing_that_was_said_to_be_saved_is_lost_in_any_power_cut(tmp_path: Pa
     assert after_each_cut(before, disk.operations, path, seed=1, every=every) > LEAST_STATES // every
 
 
-def test_what_a_killed_program_had_written_is_on_the_disk_before_anybody_hears_that_it_is_saved(
+def test_next_program_syncs_writes_of_a_killed_one_first(
     tmp_path: Path,
 ) -> None:
     """The kernel shows the next program what the first never synced; the teacher's device sends its lesson again."""
@@ -95,9 +95,7 @@ def killed_then_cut(folder: Path, name: str, whole: dict[str, bytes], operations
     return after_each_cut(disk, second.operations, folder / name, seed)
 
 
-def test_the_log_is_synced_also_where_a_reader_keeps_it_from_being_merged(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_log_is_synced_while_a_reader_blocks_the_checkpoint(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = new_file(tmp_path)
     synced: list[Path] = []
     monkeypatch.setattr(journal_file, "fsync_file", synced.append)
@@ -119,10 +117,8 @@ def test_the_log_is_synced_also_where_a_reader_keeps_it_from_being_merged(
 @pytest.mark.parametrize(
     ("shard", "every"), [(0, 3), *(pytest.param(shard, 1, marks=pytest.mark.deep) for shard in (0, 1, 2))]
 )
-def test_what_a_failed_sync_left_in_doubt_is_written_again_before_anybody_is_told(
-    tmp_path: Path, shard: int, every: int
-) -> None:
-    """After an error the kernel takes what it could not write for written: asking it once more does not help."""
+def test_data_of_a_failed_sync_is_rewritten_before_the_answer(tmp_path: Path, shard: int, every: int) -> None:
+    """The kernel counts data as written after a failed sync: a second sync does not help."""
     path, sound = new_file(tmp_path), WatchedDisk()
     whole = files_of(tmp_path)
     with watched(sound):

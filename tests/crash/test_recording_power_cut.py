@@ -18,7 +18,7 @@ SMALL = Budget(10_000_000, segment_bytes=20_000, reserve_bytes=0)
 
 
 def recorded(folder: Path, disk: TracedDisk, seconds: int) -> list[int]:
-    """Some seconds of a run, in files that are soon full; its ticks."""
+    """Record some seconds in small files; return the ticks."""
     desk = RecordedDesk(folder, disk=disk, budget=SMALL)
     desk.recorder.poll()
     for second in range(seconds):
@@ -40,7 +40,7 @@ def require_readable(cut: PowerCut, folder: Path, ticks: list[int]) -> None:
 
 
 def cut_everywhere(folder: Path, disk: TracedDisk, seconds: int, every: int) -> int:
-    """How many states were looked at."""
+    """Check the recording after a power cut at each moment; return the number of states."""
     ticks = recorded(folder / "runs", disk, seconds)
     after = folder / "20261122T031005Z-after"
     after.mkdir()
@@ -53,7 +53,7 @@ def cut_everywhere(folder: Path, disk: TracedDisk, seconds: int, every: int) -> 
 
 
 @pytest.mark.parametrize("failing_syncs", [(), (2, 4)], ids=["sound", "two syncs fail"])
-def test_what_the_disk_was_said_to_have_can_be_read(tmp_path: Path, failing_syncs: tuple[int, ...]) -> None:
+def test_recording_is_readable_up_to_its_last_sync(tmp_path: Path, failing_syncs: tuple[int, ...]) -> None:
     assert cut_everywhere(tmp_path, TracedDisk(failing_syncs), seconds=4, every=23) > 5
 
 

@@ -16,7 +16,7 @@ SHORT_S = 0.08
 
 
 def require_safe(stopped: Stopped) -> None:
-    """By the gap that the bus saw: on a machine that has much to do it may be longer than the stop."""
+    """Assert safety by the gap on the bus, which may be longer than the stop on a busy machine."""
     if stopped.cycles_to_rest is not None:
         assert stopped.cycles_to_rest <= MOST_CYCLES_TO_REST
     if stopped.gap_s > TICKS_CEASED_S + SLACK_S:
@@ -28,7 +28,7 @@ def require_safe(stopped: Stopped) -> None:
     assert stopped.most_at_once <= MOST_AT_ONCE
 
 
-async def test_a_program_that_was_halted_drives_on_after_a_moment_and_after_longer_not_before_it_is_told_to(
+async def test_halted_program_drives_on_at_once_or_only_after_resume(
     tmp_path: Path,
 ) -> None:
     async with a_robot_that_turns(tmp_path, "shared:halted") as story:

@@ -10,7 +10,7 @@ HOUR_S = 3600
 
 
 class WallClock:
-    """How far it is off."""
+    """Offset of the wall clock of a robot program, kept in a file."""
 
     def __init__(self, folder: Path) -> None:
         self._file = folder / "wall-clock"

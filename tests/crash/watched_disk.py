@@ -20,7 +20,7 @@ from tests.crash.operations import FolderSynced, Made, Operation, Synced, SyncFa
 
 
 class Call(StrEnum):
-    """What SQLite asks of a disk, as far as it can fail."""
+    """Calls of SQLite to a disk that can fail."""
 
     OPEN = "open"
     READ = "read"
@@ -34,7 +34,7 @@ class Call(StrEnum):
 
 
 class Failure(StrEnum):
-    """How a call fails. Of what is written half has been written by then."""
+    """Errors of a failing call; a failing write has written half."""
 
     FULL = "ENOSPC"
     BROKEN = "EIO"
@@ -118,7 +118,7 @@ class Fault:
 
 @dataclass
 class WatchedDisk:
-    """What was done, in order, and what is to fail."""
+    """Disk that logs its calls in order and fails one of them."""
 
     fault: Fault | None = None
     calls: list[Call] = field(default_factory=list)
@@ -210,7 +210,7 @@ class _Shim:
         return result
 
     def _watching(self, sound: _Methods) -> _Methods:
-        """A table of methods that look on at the sound ones."""
+        """Return a table of methods that log each call, then forward it."""
         disk, names = self._disk, self._names
 
         def read(file: int, buffer: int, count: int, at: int) -> int:

@@ -16,7 +16,7 @@ import pytest
 from hal.bus import BusError, CanBus, open_bus
 from hal.frame import Frame
 from hal.shared_bus import KEPT_FRAMES, SHARED_MEMORY, SharedBus
-from tests.forked_program import ForkedProcess, there_is_a_nursery
+from tests.forked_program import ForkedProcess, has_fork_server
 from tests.hal.bus_conformance import Behind, Ends, ErrorFrameConformance, Join, joining
 from tests.hal.helpers import cycle, send
 from tests.hal.shared_bus_writer import NUMBERED, payload
@@ -40,7 +40,7 @@ def file_of(name: str) -> Path:
 def writing(name: str, frame_id: int, *, child: bool = False) -> Iterator["subprocess.Popen[bytes] | ForkedProcess"]:
     """Return a process that writes as fast as it can; `child`: a child process, which can be waited for."""
     writer: subprocess.Popen[bytes] | ForkedProcess
-    if there_is_a_nursery() and not child:
+    if has_fork_server() and not child:
         writer = ForkedProcess(WRITER, (name, str(frame_id)), ROOT, os.environ, (0, 1, 2))
     else:
         writer = subprocess.Popen([sys.executable, "-m", WRITER, name, str(frame_id)], cwd=ROOT)
