@@ -11,8 +11,8 @@ from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
 from kurt2rt.knowledge.knowledge_error import KnowledgeError, ReconnectRequiredError
-from tests.crash.patience import LESSONS, LONGEST_S, SOON, a_lesson_at_a_time, with_patience
-from tests.crash.taught import require_kept
+from tests.crash.lessons_on_disk import require_kept
+from tests.crash.restarts import LESSONS, LONGEST_S, SOON, a_lesson_at_a_time, with_patience
 from tests.crash.watched_disk import Call, Failure, Fault, WatchedDisk, watched
 from tests.knowledge.lessons import BINDING, STAMP, created, entry
 

@@ -8,10 +8,10 @@ import pytest
 from kurt2rt.knowledge.journal import journal_file
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from tests.crash.lessons_on_disk import a_day, require_kept, taught, teach
 from tests.crash.operations import Operation
-from tests.crash.patience import a_lesson_at_a_time, with_patience
 from tests.crash.power_cut import Disk, power_cuts
-from tests.crash.taught import a_day, require_kept, taught, teach
+from tests.crash.restarts import a_lesson_at_a_time, with_patience
 from tests.crash.watched_disk import Call, Failure, Fault, WatchedDisk, watched
 from tests.knowledge.lessons import BINDING, entry
 

@@ -27,7 +27,7 @@ class WallClock:
     @contextmanager
     def running(self, *words: str, folder: Path) -> Iterator[Running]:
         """Start `kurt2rt ...` in a folder, by this clock; what is left of it at the end is killed."""
-        with started("tests.crash.by_another_clock", str(self._file), *words, folder=folder) as process:
+        with started("tests.crash.skewed_clock", str(self._file), *words, folder=folder) as process:
             try:
                 yield Running(process)
             finally:

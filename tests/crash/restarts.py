@@ -5,8 +5,8 @@ from pathlib import Path
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter, RetryDelays
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from tests.crash.lessons_on_disk import taught
 from tests.crash.operations import Told
-from tests.crash.taught import taught
 from tests.crash.watched_disk import WatchedDisk
 from tests.knowledge.lessons import STAMP, created
 
