@@ -109,7 +109,7 @@ class Kurt2Simulation:
         """One cycle of 10 ms."""
         self._line.cycle(self.simulated_robot.step)
 
-    def look_on(self, tap: Tap | None) -> None:
+    def attach_tap(self, tap: Tap | None) -> None:
         """Somebody who sees what passes the notebook's end of the bus; None: nobody."""
         self._line.notebook_end.tap = tap
 
@@ -191,7 +191,7 @@ def simulated_robot(
     `tap` looks on at the notebook's end of its bus. Raises SettingsError, and on leaving whatever ended the simulation.
     """
     simulation = Kurt2Simulation(settings, world, seed, "run", wire, StallTolerantKurt2)
-    simulation.look_on(tap)
+    simulation.attach_tap(tap)
     try:
         with simulation.live() as realtime:
             yield (

@@ -10,8 +10,8 @@ from rich.console import Console
 from rich.progress import Progress
 
 from hal.robot_settings import load_robot
-from kurt2rt.checks.bench.report import as_json, look_at_machine, print_report
-from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, RobotUnderTest
+from kurt2rt.checks.bench.report import as_json, measure_machine, print_report
+from kurt2rt.checks.bench.robot_under_test import SEED, BenchFixture, OnProgress
 from kurt2rt.checks.bench.suite import FULL, QUICK, BenchName, run_suite
 from kurt2rt.cli.json_output import AsJson, JsonFile, require_json_file
 from kurt2rt.cli.tables import console_of
@@ -56,23 +56,23 @@ def bench(
 
     benches = _chosen(only)
     require_json_file(file, as_json=json)
-    machine = look_at_machine()
+    machine = measure_machine()
     settings = load_robot()
     task = load_task("wall_following")
-    stage = Kurt2SimulationFactory(settings)
-    subject = RobotUnderTest(settings, task, lambda purpose: stage.open(task.teaching.world, SEED, purpose))
+    factory = Kurt2SimulationFactory(settings)
+    fixture = BenchFixture(settings, task, lambda purpose: factory.open(task.teaching.world, SEED, purpose))
     # A bar that redraws itself would do so in the middle of what is measured.
     with (
         Progress(console=Console(stderr=True), auto_refresh=False) as progress,
         tempfile.TemporaryDirectory(prefix=".kurt2rt-bench-", dir=folder) as scratch,
     ):
 
-        def progress_of(what: str) -> OnProgress:
+        def start_job(what: str) -> OnProgress:
             task_id = progress.add_task(what, total=1.0)
             progress.refresh()
             return lambda share: progress.update(task_id, completed=share, refresh=True)
 
-        results = anyio.run(run_suite, benches, subject, Path(scratch), QUICK if quick else FULL, progress_of)
+        results = anyio.run(run_suite, benches, fixture, Path(scratch), QUICK if quick else FULL, start_job)
     if json and file is None:
         typer.echo(as_json(results, machine))
     else:

@@ -18,7 +18,14 @@ from hal.codec import load_codec
 from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings, load_robot
 from hal.settings import SettingsError
-from kurt2rt.checks.commission.checklist import STEPS, Checklist, barring, open_steps, step_named, steps_to_take
+from kurt2rt.checks.commission.checklist import (
+    STEPS,
+    Checklist,
+    blocking_failures,
+    open_steps,
+    step_named,
+    steps_to_run,
+)
 from kurt2rt.checks.commission.console_operator import ConsoleOperator
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.listener import Listener
@@ -103,11 +110,11 @@ def commission(
     if target.exists() and not force:
         raise typer.BadParameter(f"{target} is there already; --force overwrites it", param_hint="--out")
     wanted, skipped = _named(only, "--only"), _named(skip, "--skip")
-    person = _in_one_line(who or _user())
+    operator = _require_one_line(who or _user())
     base = load_robot(robot_settings)
     path = Path("var", "commission", f"{name}.json")
     progress = _progress(path, Progress(name=name, base=robot_settings, bus=bus), anew)
-    chosen = [step for step in (wanted or steps_to_take(progress)) if step not in skipped]
+    chosen = [step for step in (wanted or steps_to_run(progress)) if step not in skipped]
     console = Console()
     _tell(console, f"{name} on {bus}; progress is kept in {path}; Ctrl-C brakes")
     for step in STEPS:
@@ -116,7 +123,7 @@ def commission(
             _tell(
                 console, f"  {step.name}: {record.outcome} on {record.at}, {record.who}; again with --only {step.name}"
             )
-    taken = anyio.run(_walk, bus, base, progress, path, chosen, skipped, person, console)
+    taken = anyio.run(_run_checklist, bus, base, progress, path, chosen, skipped, operator, console)
     print_report(taken, STEPS, console)
     report = path.with_suffix(".txt")
     write_durably(report, as_text(taken, STEPS))
@@ -126,7 +133,7 @@ def commission(
         raise typer.Exit(1)
 
 
-async def _walk(
+async def _run_checklist(
     bus: str,
     base: RobotSettings,
     progress: Progress,
@@ -136,19 +143,19 @@ async def _walk(
     who: str,
     console: Console,
 ) -> Progress:
-    person = ConsoleOperator(sys.stdin, console)
+    operator = ConsoleOperator(sys.stdin, console)
     listener = Listener(open_bus(bus), load_codec(base.can.database))
     with TimerfdClock() as clock:
-        bench = TestStand(
-            base, lambda settings: Kurt2(settings, open_bus(bus)), listener, clock, person, second_guard=True
+        stand = TestStand(
+            base, lambda settings: Kurt2(settings, open_bus(bus)), listener, clock, operator, second_guard=True
         )
-        checklist = Checklist(bench, progress, path, who, _now)
+        checklist = Checklist(stand, progress, path, who, _now)
         stopped = True
         async with anyio.create_task_group() as tasks:
-            await tasks.start(_leave_on_signal, tasks.cancel_scope)
-            with bench:  # inside of the scope: whatever ends it, the wheels are braked first
+            await tasks.start(_cancel_on_signal, tasks.cancel_scope)
+            with stand:  # inside of the scope: whatever ends it, the wheels are braked first
                 try:
-                    await checklist.walk(chosen, skipped)
+                    await checklist.run(chosen, skipped)
                 except AbortedError:
                     _tell(console, "left; the same command goes on from here")
                 stopped = False  # not by a signal
@@ -158,7 +165,7 @@ async def _walk(
         return checklist.progress
 
 
-async def _leave_on_signal(scope: anyio.CancelScope, *, task_status: anyio.abc.TaskStatus[None]) -> None:
+async def _cancel_on_signal(scope: anyio.CancelScope, *, task_status: anyio.abc.TaskStatus[None]) -> None:
     with anyio.open_signal_receiver(*SHUTDOWN_SIGNALS) as signals:
         task_status.started()
         async for _ in signals:
@@ -167,10 +174,10 @@ async def _leave_on_signal(scope: anyio.CancelScope, *, task_status: anyio.abc.T
 
 def _conclude(console: Console, progress: Progress, base: RobotSettings, target: Path) -> None:
     """Write the file, or tell why not."""
-    barred = barring(progress)
+    blocking = blocking_failures(progress)
     missing = open_steps(progress)
-    if barred:
-        failed = ", ".join(step.name for step in barred)
+    if blocking:
+        failed = ", ".join(step.name for step in blocking)
         _tell(console, f"no settings file is written while these fail: {failed}; mend, then run the same command again")
         return
     if missing:
@@ -228,7 +235,7 @@ def _user() -> str:
         return "somebody"
 
 
-def _in_one_line(who: str) -> str:
+def _require_one_line(who: str) -> str:
     """A name as it can stand in a comment of the settings file."""
     name = " ".join(who.split())
     if not name or not name.isprintable():

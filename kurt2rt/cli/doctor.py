@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from kurt2rt.checks.doctor.checks import examine
+from kurt2rt.checks.doctor.checks import run_checks
 from kurt2rt.checks.doctor.report import as_json, print_report
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.tables import console_of
@@ -36,7 +36,7 @@ def doctor(
         kurt2rt doctor
     """
     with Console(stderr=True).status("looking at this machine ..."):
-        findings = examine(folder, ticks)
+        findings = run_checks(folder, ticks)
     if json:
         typer.echo(as_json(findings))
     else:

@@ -51,7 +51,7 @@ class SimulatedFaultRig:
         """Place the robot in the corridor; `part` has the fault, None if it is not on this side of the driver."""
         self.time = EventScheduler()
         self.disturbance = disturbance
-        self.on_put: Callable[[int, bytes], None] = lambda _number, _payload: None
+        self.on_sent: Callable[[int, bytes], None] = lambda _number, _payload: None
         """Callback with number and payload of each frame that the driver sends."""
         self.on_control: Callable[[int, bytes], None] = lambda _number, _payload: None
         """Callback with number and payload of each CONTROL that arrives at the robot."""
@@ -71,13 +71,13 @@ class SimulatedFaultRig:
         self.time.every(settings.can.cycle_s, 0.0, self.simulation.step)
         self.time.every(POLL_S, chance.uniform(0.0, POLL_S), self._poll_watchdog)
 
-    def start_anew(self) -> Kurt2:
+    def restart_driver(self) -> Kurt2:
         """Replace the driver by a new one, like a restart of its process."""
         self.robot.close()
         self.robot = self._driver()
         return self.robot
 
-    def look_on(self, tap: Tap) -> None:
+    def attach_tap(self, tap: Tap) -> None:
         """Attach a tap to the driver's interface."""
         self._notebooks_bus.tap = tap
 
@@ -126,7 +126,7 @@ class SimulatedFaultRig:
 
     def _number(self, payload: bytes) -> int:
         self._put += 1
-        self.on_put(self._put, payload)
+        self.on_sent(self._put, payload)
         return self._put
 
     def _on_delivered(self, number: int) -> None:

@@ -41,7 +41,7 @@ class LongRunRig:
         """Place the robot at a random start pose of the world, without a driver. Raises UserError."""
         self._chance = random.Random(f"lasting place in {world}, seed {seed}")
         self.time = EventScheduler()
-        self.on_put: Callable[[int, bytes], None] = lambda _number, _payload: None
+        self.on_sent: Callable[[int, bytes], None] = lambda _number, _payload: None
         """Callback with number and payload of each CONTROL that the driver sends."""
         self.on_control: Callable[[int, bytes, float], None] = lambda _number, _payload, _at_s: None
         """Callback with number, payload and arrival time in s of each CONTROL that the robot receives."""
@@ -69,7 +69,7 @@ class LongRunRig:
             robot_seed=seed,
             wheels=self._wheels,
         )
-        self.set_down()
+        self.reposition()
         self._notebooks_bus: CanBus | None = None
         self.robot: Kurt2 | None = None
         self.time.every(self._cycle_s, 0.0, self._step)
@@ -107,16 +107,16 @@ class LongRunRig:
         self._robots_links.outward = self._notebooks_links.inward = self._notebooks_links.outward = None
         self._wheels.disturb(None, TimedFault("off", 0.0, 0.0, 0.0, 0.0), self.time, self._chance)
 
-    def look_on(self, tap: Tap | None) -> None:
+    def attach_tap(self, tap: Tap | None) -> None:
         """Attach a tap to the driver's interface; None detaches it."""
         if self._notebooks_bus is not None:
             self._notebooks_bus.tap = tap
 
-    def set_down(self) -> None:
+    def reposition(self) -> None:
         """Reposition the robot at a random start pose."""
         self.simulation.place(self._chance.choice(self._starts))
 
-    def switch_on(self) -> None:
+    def power_cycle(self) -> None:
         """Power-cycle the robot's controller."""
         self.simulation.controller.power_cycle()
 
@@ -148,7 +148,7 @@ class LongRunRig:
         self.turned_m[0] += left_m_s * self._cycle_s
         self.turned_m[1] += right_m_s * self._cycle_s
         if simulation.controller.crashed:
-            self.switch_on()
+            self.power_cycle()
             self.crashes += 1
 
     def _poll_watchdog(self) -> None:
@@ -178,7 +178,7 @@ class LongRunRig:
     def _number(self, frame: can.Message) -> can.Message:
         self._numbers += 1
         payload = bytes(frame.data)
-        self.on_put(self._numbers, payload)
+        self.on_sent(self._numbers, payload)
         return NumberedFrame(frame.arbitration_id, payload, self._numbers)
 
     def _on_arrival(self, frame: NumberedFrame) -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from kurt2rt.checks.faults.complaint import ComplaintCode, complaint, text_of
-from kurt2rt.checks.soak.check_text import found_of, what_of
+from kurt2rt.checks.soak.check_text import found_text, property_text
 from kurt2rt.checks.soak.result import CheckCode, SoakCheck
 
 _VALUES: dict[str, float | str] = {
@@ -80,6 +80,6 @@ def soak_checks() -> Iterator[tuple[str, str]]:
     """Yield the texts of each check, judged and too short to judge."""
     for code in CheckCode:
         check = SoakCheck(code, passed=True, values=_CHECK_VALUES)
-        yield code, f"{what_of(check)} | {found_of(check)}"
+        yield code, f"{property_text(check)} | {found_text(check)}"
     for code in (CheckCode.MEMORY, CheckCode.FILES_AND_THREADS):
-        yield f"{code}, too short", found_of(SoakCheck(code, passed=True, values=_CHECK_VALUES, judged=False))
+        yield f"{code}, too short", found_text(SoakCheck(code, passed=True, values=_CHECK_VALUES, judged=False))

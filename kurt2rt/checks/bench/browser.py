@@ -14,8 +14,8 @@ import anyio
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.typing import Origin
 
-from kurt2rt.checks.bench.job_loop import do_jobs
-from kurt2rt.checks.bench.press_schedule import SPEED_M_S, rhythms
+from kurt2rt.checks.bench.job_loop import run_jobs
+from kurt2rt.checks.bench.press_schedule import SPEED_M_S, press_schedules
 from kurt2rt.checks.bench.robot_under_test import SEED
 
 _BEAT_S = 0.1
@@ -27,7 +27,7 @@ class Browser:
 
     def __init__(self, page: ClientConnection) -> None:
         self._page = page
-        self._rhythms = rhythms(SEED)
+        self._schedules = press_schedules(SEED)
         self._forward = True
         self._numbers = itertools.count(1)
         self._picture: int | None = None
@@ -60,17 +60,17 @@ class Browser:
         """Press so many times, forward and backward in turns; when, on the monotonic clock."""
         made = []
         for _ in range(presses):
-            rhythm = next(self._rhythms)
+            schedule = next(self._schedules)
             speed_m_s = SPEED_M_S if self._forward else -SPEED_M_S
             hold = next(self._numbers)
             begun_s = anyio.current_time()
             made.append((time.monotonic_ns(), self._forward))
-            while (left_s := begun_s + rhythm.held_s - anyio.current_time()) > 0:
+            while (left_s := begun_s + schedule.held_s - anyio.current_time()) > 0:
                 await self._say("press", hold=hold, left_m_s=speed_m_s, right_m_s=speed_m_s, picture=self._picture)
                 await anyio.sleep(min(_PRESS_S, left_s))
             await self._say("release")
             self._forward = not self._forward
-            await anyio.sleep_until(begun_s + rhythm.next_s)
+            await anyio.sleep_until(begun_s + schedule.next_s)
         return {"presses": made}
 
     async def _say(self, kind: str, **fields: Any) -> None:
@@ -91,7 +91,7 @@ async def main(port: int, cookie: str) -> None:
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(browser.listen)
             tasks.start_soon(browser.beat)
-            await do_jobs({"take": browser.take, "press": browser.press})
+            await run_jobs({"take": browser.take, "press": browser.press})
             tasks.cancel_scope.cancel()
 
 

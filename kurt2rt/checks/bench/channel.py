@@ -9,7 +9,7 @@ from kurt2rt.checks.bench.channel_lesson import measure_channel_lessons
 from kurt2rt.checks.bench.channel_load import LoadShifts, measure_load
 from kurt2rt.checks.bench.press_to_wheel import measure_presses, measure_presses_on_page
 from kurt2rt.checks.bench.result import BenchResult
-from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest
+from kurt2rt.checks.bench.robot_under_test import BenchFixture, OnProgress
 
 _PAGE_PACKAGES = ("starlette", "uvicorn", "websockets")
 
@@ -24,7 +24,7 @@ class ChannelLengths:
 
 
 async def measure_channel(
-    subject: RobotUnderTest, folder: Path, lengths: ChannelLengths, progress_of: Callable[[str], OnProgress]
+    fixture: BenchFixture, folder: Path, lengths: ChannelLengths, start_job: Callable[[str], OnProgress]
 ) -> tuple[BenchResult, ...]:
     """Presses, with and without the page; the loop with a teacher there; lessons. Files go to folders in `folder`.
 
@@ -32,20 +32,18 @@ async def measure_channel(
     ChannelError, PartnerLostError, OSError without a timerfd.
     """
     results = [
-        await measure_presses(
-            subject, folder / "press", lengths.presses, progress_of("pressing, in a teacher's program")
-        )
+        await measure_presses(fixture, folder / "press", lengths.presses, start_job("pressing, in a teacher's program"))
     ]
     if all(find_spec(package) for package in _PAGE_PACKAGES):
         results.append(
             await measure_presses_on_page(
-                subject, folder / "press_on_page", lengths.presses, progress_of("pressing, on the teacher's page")
+                fixture, folder / "press_on_page", lengths.presses, start_job("pressing, on the teacher's page")
             )
         )
     results += await measure_load(
-        subject, folder / "load", lengths.shifts, progress_of("driving, with and without a teacher there")
+        fixture, folder / "load", lengths.shifts, start_job("driving, with and without a teacher there")
     )
     results.append(
-        await measure_channel_lessons(subject, folder / "lessons", lengths.lessons, progress_of("teaching over UDP"))
+        await measure_channel_lessons(fixture, folder / "lessons", lengths.lessons, start_job("teaching over UDP"))
     )
     return tuple(results)

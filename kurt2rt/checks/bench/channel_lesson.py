@@ -6,10 +6,10 @@ from pathlib import Path
 
 from anyio import to_thread
 
-from kurt2rt.checks.bench.helper_process import partner
+from kurt2rt.checks.bench.helper_process import helper_process
 from kurt2rt.checks.bench.open_robot import OpenRobot, open_robot
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
-from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest
+from kurt2rt.checks.bench.robot_under_test import BenchFixture, OnProgress
 from kurt2rt.core.teaching.commands import Teach
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
 from kurt2rt.platform.ledger import percentiles_of
@@ -22,7 +22,7 @@ _PATIENCE_S = 10.0
 
 
 async def measure_channel_lessons(
-    subject: RobotUnderTest, folder: Path, lessons: int, on_progress: OnProgress
+    fixture: BenchFixture, folder: Path, lessons: int, on_progress: OnProgress
 ) -> BenchResult:
     """From an answer of the teacher's device until it is acknowledged there; files go to `folder`.
 
@@ -31,7 +31,10 @@ async def measure_channel_lessons(
     """
     took_ns: list[int] = []
     inside_ns: list[int] = []
-    async with open_robot(subject, folder) as robot, partner("kurt2rt.checks.bench.device", *robot.address) as device:
+    async with (
+        open_robot(fixture, folder) as robot,
+        helper_process("kurt2rt.checks.bench.device", *robot.address) as device,
+    ):
         await device.ask("watch")
         await device.ask("teach", lessons=_WARMING_UP)  # what is slow but once
         while len(took_ns) < lessons:
@@ -53,11 +56,11 @@ async def measure_channel_lessons(
 
 async def _teach_inside(robot: OpenRobot, number: int) -> int:
     """As kurt2rt.checks.bench.lesson does; how long it took, in ns."""
-    command_id, rounds = f"bench-inside-{number}", robot.rounds
+    command_id, gate = f"bench-inside-{number}", robot.gate
     action = tuple(robot.runtime.level.repertoire)[number % 2]
     begun_ns = time.perf_counter_ns()
     robot.runtime.inbox.put(Teach(command_id, robot.device.name, action))
-    await rounds.until(lambda: rounds.newest is not None and bool(rounds.newest.results))
+    await gate.until(lambda: gate.newest is not None and bool(gate.newest.results))
     if not await to_thread.run_sync(partial(robot.writer.flush, _PATIENCE_S)):
         raise LessonLostError(robot.writer.error or f"the disk did not answer within {_PATIENCE_S:g} s")
     return time.perf_counter_ns() - begun_ns

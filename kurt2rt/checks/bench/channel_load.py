@@ -8,10 +8,10 @@ from pathlib import Path
 from statistics import fmean
 
 from kurt2rt.channel.server.channel import STATES_PER_S
-from kurt2rt.checks.bench.helper_process import partner
+from kurt2rt.checks.bench.helper_process import helper_process
 from kurt2rt.checks.bench.open_robot import OpenRobot, open_robot
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
-from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest
+from kurt2rt.checks.bench.robot_under_test import BenchFixture, OnProgress
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.platform.ledger import Percentiles, TickTimer, percentiles_of
 
@@ -69,51 +69,54 @@ class LoadPhases:
     @property
     def missed_ticks(self) -> int:
         """In all stays."""
-        return sum(stay.missed_ticks for stay in self.each)
+        return sum(phase.missed_ticks for phase in self.each)
 
 
 async def measure_load(
-    subject: RobotUnderTest, folder: Path, shifts: LoadShifts, on_progress: OnProgress
+    fixture: BenchFixture, folder: Path, shifts: LoadShifts, on_progress: OnProgress
 ) -> tuple[BenchResult, ...]:
     """Lateness and processor time of a robot that drives by its RLAs, with and without company; files go to `folder`.
 
     Raises KnowledgeError, PartnerLostError, OSError without a timerfd.
     """
-    ledgers = {company: TickTimer(shifts.rounds * shifts.ticks) for company in Load}
-    stays: dict[Load, list[LoadPhase]] = {company: [] for company in Load}
-    async with open_robot(subject, folder) as robot, partner("kurt2rt.checks.bench.device", *robot.address) as device:
+    ledgers = {load: TickTimer(shifts.rounds * shifts.ticks) for load in Load}
+    phases: dict[Load, list[LoadPhase]] = {load: [] for load in Load}
+    async with (
+        open_robot(fixture, folder) as robot,
+        helper_process("kurt2rt.checks.bench.device", *robot.address) as device,
+    ):
         # It drives in the same way whoever is there.
         robot.runtime.handler.phase = Phase.AUTONOMOUS
         robot.runtime.handler.active_stop = None
         period_s = robot.runtime.robot.can.cycle_s
         for number in range(shifts.rounds):
             robot.pace.shift(period_s / shifts.rounds)
-            for company in Load:
-                robot.rounds.open = True
-                await device.ask(company.value)
-                await _settle(robot, company)
-                stays[company].append(await _stay(robot, ledgers[company], shifts.ticks))
+            for load in Load:
+                robot.gate.open = True
+                await device.ask(load.value)
+                await _settle(robot, load)
+                phases[load].append(await _measure_phase(robot, ledgers[load], shifts.ticks))
             on_progress((number + 1) / shifts.rounds)
     return load_results(
-        {company: LoadPhases(ledgers[company].lateness(), tuple(stays[company])) for company in Load},
+        {load: LoadPhases(ledgers[load].lateness(), tuple(phases[load])) for load in Load},
         period_s=period_s,
-        driving_share=robot.rounds.driving / robot.rounds.ticks,
+        driving_share=robot.gate.driving / robot.gate.ticks,
     )
 
 
-async def _settle(robot: OpenRobot, company: Load) -> None:
-    somebody = company is not Load.NOBODY
-    await robot.rounds.until(lambda: (robot.channel.observers > 0) is somebody)
-    robot.rounds.open = somebody
-    await robot.rounds.go_on_for(round(_SETTLING_S / robot.runtime.robot.can.cycle_s))
+async def _settle(robot: OpenRobot, load: Load) -> None:
+    somebody = load is not Load.NOBODY
+    await robot.gate.until(lambda: (robot.channel.observers > 0) is somebody)
+    robot.gate.open = somebody
+    await robot.gate.run_ticks(round(_SETTLING_S / robot.runtime.robot.can.cycle_s))
 
 
-async def _stay(robot: OpenRobot, ledger: TickTimer, ticks: int) -> LoadPhase:
+async def _measure_phase(robot: OpenRobot, ledger: TickTimer, ticks: int) -> LoadPhase:
     counters, runtime = robot.channel.endpoint.counters, robot.runtime
     missed, messages = runtime.timer.missed_ticks, counters.received
     processor_ns, begun_ns = time.process_time_ns(), time.monotonic_ns()
     robot.clock.ledger = ledger
-    await robot.rounds.go_on_for(ticks)
+    await robot.gate.run_ticks(ticks)
     robot.clock.ledger = None
     return LoadPhase(
         seconds=(time.monotonic_ns() - begun_ns) / 1e9,
@@ -123,12 +126,12 @@ async def _stay(robot: OpenRobot, ledger: TickTimer, ticks: int) -> LoadPhase:
     )
 
 
-def load_results(stays: dict[Load, LoadPhases], *, period_s: float, driving_share: float) -> tuple[BenchResult, ...]:
+def load_results(phases: dict[Load, LoadPhases], *, period_s: float, driving_share: float) -> tuple[BenchResult, ...]:
     """How late ticks begin with a teacher there, and what the channel's work is made of."""
-    nobody, onlooker, teacher = (stays[company] for company in Load)
+    nobody, onlooker, teacher = (phases[load] for load in Load)
     late = Reference("alone, p99", nobody.lateness.p99_us, teacher.lateness.p99_us)
     channel = _more(nobody.each, teacher.each, [1.0] * len(teacher.each))
-    alone_us = percentiles_of([round(stay.work_us * 1e3) for stay in nobody.each]).median_us
+    alone_us = percentiles_of([round(phase.work_us * 1e3) for phase in nobody.each]).median_us
     picture = _more(nobody.each, onlooker.each, [STATES_PER_S] * len(onlooker.each))
     more_messages = [
         taught.messages_per_s - looked.messages_per_s

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from kurt2rt.checks.bench.one_core import on_one_core
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
-from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, RobotUnderTest, kept_knowledge, lasting
+from kurt2rt.checks.bench.robot_under_test import SEED, BenchFixture, OnProgress, open_writer, with_duration
 from kurt2rt.checks.bench.tick_budget import share_result
 from kurt2rt.experiments.lockstep.lesson import teach
 from kurt2rt.experiments.lockstep.runtimes import TrainingStore
@@ -15,16 +15,16 @@ TIMES_REAL_TIME = 60.0
 
 
 async def measure_closed_loop(
-    subject: RobotUnderTest, folder: Path, blocks: int, seconds_per_block: int, on_progress: OnProgress
+    fixture: BenchFixture, folder: Path, blocks: int, seconds_per_block: int, on_progress: OnProgress
 ) -> tuple[BenchResult, ...]:
     """Time per tick of a lesson that goes on from the subject's knowledge, and the runtime's share of it.
 
     Timed by blocks of whole simulated seconds. The journal goes to `folder`. Raises KnowledgeError.
     """
-    period_s = subject.settings.can.cycle_s
+    period_s = fixture.settings.can.cycle_s
     ticks_per_block = round(seconds_per_block / period_s)
     # One second ahead of the first block, for all that is slow but once.
-    task = lasting(subject.task, supervised_s=period_s, corrections_s=1 + blocks * seconds_per_block - period_s)
+    task = with_duration(fixture.task, supervised_s=period_s, corrections_s=1 + blocks * seconds_per_block - period_s)
     tick_ns: list[int] = []
     begun_ns = seconds = 0
 
@@ -39,11 +39,11 @@ async def measure_closed_loop(
             on_progress(blocks_done / blocks)
         begun_ns = time.perf_counter_ns()
 
-    simulation = subject.open_simulation("bench closed_loop")
+    simulation = fixture.open_simulation("bench closed_loop")
     try:
-        with on_one_core() as core, kept_knowledge(subject, folder / "closed_loop.knowledge") as writer:
-            training = TrainingStore(writer, subject.events)
-            lesson = await teach(simulation, subject.settings, task, training, seed=SEED, on_progress=after_second)
+        with on_one_core() as core, open_writer(fixture, folder / "closed_loop.knowledge") as writer:
+            training = TrainingStore(writer, fixture.events)
+            lesson = await teach(simulation, fixture.settings, task, training, seed=SEED, on_progress=after_second)
     finally:
         simulation.close()
     tick = percentiles_of(tick_ns)

@@ -9,8 +9,8 @@ from typing import Any
 
 import anyio
 
-from kurt2rt.checks.bench.job_loop import do_jobs
-from kurt2rt.checks.bench.press_schedule import SPEED_M_S, rhythms
+from kurt2rt.checks.bench.job_loop import run_jobs
+from kurt2rt.checks.bench.press_schedule import SPEED_M_S, press_schedules
 from kurt2rt.checks.bench.robot_under_test import SEED
 from kurt2rt.teacher.client.answer import Answer
 from kurt2rt.teacher.client.client import TeacherClient
@@ -27,7 +27,7 @@ class BenchDevice:
         self._folder = folder
         self._port = port
         self._opened = AsyncExitStack()
-        self._rhythms = rhythms(SEED)
+        self._schedules = press_schedules(SEED)
         self._actions = itertools.cycle(("forward", "back"))
         self._forward = True
         self._client: TeacherClient | None = None
@@ -51,22 +51,22 @@ class BenchDevice:
         """Press so many times, forward and backward in turns; when, on the monotonic clock."""
         robot, made = self._robot, []
         for _ in range(presses):
-            rhythm = next(self._rhythms)
+            schedule = next(self._schedules)
             speed_m_s = SPEED_M_S if self._forward else -SPEED_M_S
             begun_s = anyio.current_time()
             made.append((time.monotonic_ns(), self._forward))
             robot.press(speed_m_s, speed_m_s)
-            await anyio.sleep(rhythm.held_s)
+            await anyio.sleep(schedule.held_s)
             await robot.let_go()
             self._forward = not self._forward
-            await anyio.sleep_until(begun_s + rhythm.next_s)
+            await anyio.sleep_until(begun_s + schedule.next_s)
         return {"presses": made}
 
     async def teach(self, lessons: int) -> dict[str, Any]:
         """Answer so many situations, each in the middle of nothing; how long until it was known to be durable."""
         took_ns = []
         for _ in range(lessons):
-            await anyio.sleep(next(self._rhythms).held_s / 2)  # the teacher does not know when ticks begin
+            await anyio.sleep(next(self._schedules).held_s / 2)  # the teacher does not know when ticks begin
             action = next(self._actions)
             begun_ns = time.monotonic_ns()
             _require(await self._robot.answer(action))
@@ -103,7 +103,7 @@ async def main(folder: Path, port: int) -> None:
     """Do jobs until the input ends."""
     device = BenchDevice(folder, port)
     try:
-        await do_jobs(
+        await run_jobs(
             {
                 "look": device.look,
                 "watch": device.watch,

@@ -23,7 +23,7 @@ class HelperProcess:
     """Does one job at a time."""
 
     def __init__(self, module: str, process: anyio.abc.Process) -> None:
-        """Use `partner`."""
+        """Use `helper_process`."""
         assert process.stdin is not None
         assert process.stdout is not None
         self._module = module
@@ -47,7 +47,7 @@ class HelperProcess:
 
 
 @asynccontextmanager
-async def partner(module: str, *arguments: str) -> AsyncIterator[HelperProcess]:
+async def helper_process(module: str, *arguments: str) -> AsyncIterator[HelperProcess]:
     """Start `python -m module`; however this ends, the process ends as well."""
     # In a session of its own, so that Ctrl-C reaches the robot first. Its input ends when we do, and so does it.
     process = await anyio.open_process(

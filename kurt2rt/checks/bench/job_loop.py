@@ -11,7 +11,7 @@ Job = Callable[..., Awaitable[dict[str, Any]]]
 """Gets the fields of the request, and returns those of the answer."""
 
 
-async def do_jobs(jobs: Mapping[str, Job]) -> None:
+async def run_jobs(jobs: Mapping[str, Job]) -> None:
     """Take jobs from standard input and answer each on standard output, until the input ends."""
     while line := await anyio.to_thread.run_sync(sys.stdin.readline):
         request = json.loads(line)

@@ -4,7 +4,7 @@ from kurt2rt.platform.clock import Clock
 from kurt2rt.platform.ledger import TickTimer
 
 
-class NotingClock:
+class LatenessClock:
     """A clock (kurt2rt.platform.clock.Clock) of which one may ask how late a part of a run was."""
 
     def __init__(self, clock: Clock) -> None:

@@ -9,7 +9,7 @@ import anyio
 from anyio import to_thread
 
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
-from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, RobotUnderTest, kept_knowledge
+from kurt2rt.checks.bench.robot_under_test import SEED, BenchFixture, OnProgress, open_writer
 from kurt2rt.core.teaching.commands import Teach
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
@@ -23,26 +23,26 @@ P99_LIMIT_US = 20_000.0
 
 
 async def measure_lessons(
-    subject: RobotUnderTest, folder: Path, lessons: int, on_progress: OnProgress, patience_s: float = 10.0
+    fixture: BenchFixture, folder: Path, lessons: int, on_progress: OnProgress, patience_s: float = 10.0
 ) -> BenchResult:
     """Time from a command of the teacher, over the tick that takes it, to the journal in `folder` that has it durable.
 
     In turns with a bare fsync there. Raises LessonLostError, KnowledgeError, OSError without a timerfd.
     """
-    period_s = subject.settings.can.cycle_s
+    period_s = fixture.settings.can.cycle_s
     chance = random.Random(SEED)
     took_ns: list[int] = []
     syncs_ns: list[int] = []
-    simulation = subject.open_simulation("bench lesson")
+    simulation = fixture.open_simulation("bench lesson")
     try:
         with (
-            kept_knowledge(subject, folder / "lesson.knowledge") as writer,
+            open_writer(fixture, folder / "lesson.knowledge") as writer,
             (folder / "sync").open("wb", buffering=0) as file,
             TimerfdClock() as clock,
             simulation.live(),
             gc_frozen(),
         ):
-            runtime = build_runtime(simulation.robot, subject.settings, subject.task, subject.events, writer, clock)
+            runtime = build_runtime(simulation.robot, fixture.settings, fixture.task, fixture.events, writer, clock)
             actions = tuple(runtime.level.repertoire)
             taken = anyio.Event()
 

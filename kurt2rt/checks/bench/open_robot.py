@@ -10,9 +10,9 @@ import anyio.to_thread
 
 from kurt2rt.channel.security.pairing import Device, local_pairing
 from kurt2rt.channel.server.channel import Channel
-from kurt2rt.checks.bench.lateness_clock import NotingClock
-from kurt2rt.checks.bench.press_schedule import WitnessedRobot
-from kurt2rt.checks.bench.robot_under_test import RobotUnderTest, kept_knowledge
+from kurt2rt.checks.bench.lateness_clock import LatenessClock
+from kurt2rt.checks.bench.press_schedule import ObservedRobot
+from kurt2rt.checks.bench.robot_under_test import BenchFixture, open_writer
 from kurt2rt.checks.bench.tick_phase import LoopPacer
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.tick import TickRecord
@@ -39,7 +39,7 @@ class PauseGate:
         self.newest: TickRecord | None = None
         self._with_channel = with_channel
         self._without = without
-        self._come: Callable[[], bool] | None = None
+        self._condition: Callable[[], bool] | None = None
         self._noticed = anyio.Event()
 
     def __call__(self, record: TickRecord) -> None:
@@ -48,18 +48,18 @@ class PauseGate:
         self.driving += record.decision.driving
         self.newest = record
         (self._with_channel if self.open else self._without)(record)
-        if self._come is not None and self._come():
-            self._come = None
+        if self._condition is not None and self._condition():
+            self._condition = None
             self._noticed.set()
 
-    async def until(self, come: Callable[[], bool]) -> None:
+    async def until(self, condition: Callable[[], bool]) -> None:
         """Wait until something is so after a tick; one waits at a time. Raises TimeoutError after half a minute."""
         self._noticed = anyio.Event()
-        self._come = come
+        self._condition = condition
         with anyio.fail_after(_PATIENCE_S):
             await self._noticed.wait()
 
-    async def go_on_for(self, ticks: int) -> None:
+    async def run_ticks(self, ticks: int) -> None:
         """Let so many ticks go by."""
         last = self.ticks + ticks
         await self.until(lambda: self.ticks >= last)
@@ -72,11 +72,11 @@ class OpenRobot:
     runtime: Runtime
     writer: JournalWriter
     channel: Channel
-    witness: WitnessedRobot
-    clock: NotingClock
+    observer: ObservedRobot
+    clock: LatenessClock
     device: Device
     """A teacher's device that is paired with it."""
-    rounds: PauseGate
+    gate: PauseGate
     pace: LoopPacer
 
     @property
@@ -86,7 +86,7 @@ class OpenRobot:
 
 
 @asynccontextmanager
-async def open_robot(subject: RobotUnderTest, folder: Path) -> AsyncIterator[OpenRobot]:
+async def open_robot(fixture: BenchFixture, folder: Path) -> AsyncIterator[OpenRobot]:
     """Set the robot down, standing and open to teachers; knowledge and pairing go to `folder`, which is made.
 
     Raises KnowledgeError, ChannelError, OSError without a timerfd, and what the block raises as it is.
@@ -96,18 +96,18 @@ async def open_robot(subject: RobotUnderTest, folder: Path) -> AsyncIterator[Ope
         update={"knowledge": str(folder / "bench.knowledge"), "teachers": str(folder / "teachers"), "port": 0}
     )
     failed: Exception | None = None
-    simulation = subject.open_simulation(f"bench {folder.name}")
+    simulation = fixture.open_simulation(f"bench {folder.name}")
     try:
         with (
-            kept_knowledge(subject, Path(service.knowledge)) as writer,
+            open_writer(fixture, Path(service.knowledge)) as writer,
             TimerfdClock() as real_clock,
             simulation.live(),
             gc_frozen(),
         ):
-            clock = NotingClock(real_clock)
-            witness = WitnessedRobot(simulation.robot, clock)
+            clock = LatenessClock(real_clock)
+            observer = ObservedRobot(simulation.robot, clock)
             runtime = build_runtime(
-                witness, subject.settings, subject.task, subject.events, writer, clock, RuntimeOptions(attended=True)
+                observer, fixture.settings, fixture.task, fixture.events, writer, clock, RuntimeOptions(attended=True)
             )
             runtime.handler.stop(STARTED)
             robot = RobotService(runtime, writer, service)
@@ -116,11 +116,11 @@ async def open_robot(subject: RobotUnderTest, folder: Path) -> AsyncIterator[Ope
                 anyio.create_task_group() as tasks,
                 open_service_channel(robot, robot.channel_dependencies()) as channel,
             ):
-                rounds = PauseGate(PostTick(robot, console, channel=channel), PostTick(robot, console))
+                gate = PauseGate(PostTick(robot, console, channel=channel), PostTick(robot, console))
                 pace = LoopPacer(runtime.scheduler, clock)
-                tasks.start_soon(pace.run, rounds)
+                tasks.start_soon(pace.run, gate)
                 try:
-                    yield OpenRobot(runtime, writer, channel, witness, clock, pairing.device, rounds, pace)
+                    yield OpenRobot(runtime, writer, channel, observer, clock, pairing.device, gate, pace)
                 except Exception as error:  # noqa: BLE001  # raised below: a task group would wrap it
                     failed = error
                 pace.end()

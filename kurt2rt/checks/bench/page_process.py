@@ -7,7 +7,7 @@ from typing import Any
 import anyio
 
 from kurt2rt.channel.security.pairing import read_device
-from kurt2rt.checks.bench.job_loop import do_jobs
+from kurt2rt.checks.bench.job_loop import run_jobs
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.page.access import Access
 from kurt2rt.teacher.page.server import listen, run_page
@@ -25,7 +25,7 @@ async def main(folder: Path, port: int) -> None:
             return {"port": page_port, "cookie": f"{access.cookie_name}={access.cookie}"}
 
         async def until_ended() -> None:
-            await do_jobs({"place": place})
+            await run_jobs({"place": place})
 
         async with TeacherClient(folder, port=port) as robot:
             await run_page(robot, access, f"127.0.0.1:{port}", listener, until_ended)

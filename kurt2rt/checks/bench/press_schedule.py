@@ -21,7 +21,7 @@ class PressSchedule(NamedTuple):
     next_s: float
 
 
-class Press(NamedTuple):
+class PressTime(NamedTuple):
     """A press, where it was made."""
 
     at_ns: int
@@ -36,14 +36,14 @@ class PressStart(NamedTuple):
     forward: bool
 
 
-def rhythms(seed: int) -> Iterator[PressSchedule]:
+def press_schedules(seed: int) -> Iterator[PressSchedule]:
     """One after another, without end."""
     chance = random.Random(seed)
     while True:
         yield PressSchedule(chance.uniform(*_HELD_S), chance.uniform(*_UNTIL_NEXT_S))
 
 
-def waits_ns(presses: Sequence[Press], starts: Sequence[PressStart]) -> list[int]:
+def waits_ns(presses: Sequence[PressTime], starts: Sequence[PressStart]) -> list[int]:
     """From each press to the start of the wheels before the next press; one that did not start them has none."""
     waits = []
     for number, press in enumerate(presses):
@@ -56,7 +56,7 @@ def waits_ns(presses: Sequence[Press], starts: Sequence[PressStart]) -> list[int
     return waits
 
 
-class WitnessedRobot(RobotProxy):
+class ObservedRobot(RobotProxy):
     """A robot of which is noted when its wheels are told to start."""
 
     def __init__(self, robot: Robot, clock: Clock) -> None:

@@ -5,11 +5,11 @@ from contextlib import AsyncExitStack
 from pathlib import Path
 from typing import Any
 
-from kurt2rt.checks.bench.helper_process import partner
+from kurt2rt.checks.bench.helper_process import helper_process
 from kurt2rt.checks.bench.open_robot import OpenRobot, open_robot
-from kurt2rt.checks.bench.press_schedule import Press, waits_ns
+from kurt2rt.checks.bench.press_schedule import PressTime, waits_ns
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
-from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest
+from kurt2rt.checks.bench.robot_under_test import BenchFixture, OnProgress
 from kurt2rt.platform.ledger import percentiles_of
 
 MEDIAN_LIMIT_US = 25_000.0
@@ -20,25 +20,28 @@ _WARMING_UP = 1
 _Ask = Callable[..., Awaitable[dict[str, Any]]]
 
 
-async def measure_presses(subject: RobotUnderTest, folder: Path, presses: int, on_progress: OnProgress) -> BenchResult:
+async def measure_presses(fixture: BenchFixture, folder: Path, presses: int, on_progress: OnProgress) -> BenchResult:
     """From a press in a teacher's program to the first CONTROL frame that moves the wheels; files go to `folder`.
 
     Raises KnowledgeError, PartnerLostError, OSError without a timerfd.
     """
-    async with open_robot(subject, folder) as robot, partner("kurt2rt.checks.bench.device", *robot.address) as device:
+    async with (
+        open_robot(fixture, folder) as robot,
+        helper_process("kurt2rt.checks.bench.device", *robot.address) as device,
+    ):
         await device.ask("watch")
         return await _pressed(robot, device.ask, presses, "press to CONTROL", on_progress)
 
 
 async def measure_presses_on_page(
-    subject: RobotUnderTest, folder: Path, presses: int, on_progress: OnProgress
+    fixture: BenchFixture, folder: Path, presses: int, on_progress: OnProgress
 ) -> BenchResult:
     """The same from a press on the teacher's page, over its WebSocket and the page's server. Raises as the other."""
-    async with open_robot(subject, folder) as robot, AsyncExitStack() as ending:
-        page = await ending.enter_async_context(partner("kurt2rt.checks.bench.page_process", *robot.address))
+    async with open_robot(fixture, folder) as robot, AsyncExitStack() as ending:
+        page = await ending.enter_async_context(helper_process("kurt2rt.checks.bench.page_process", *robot.address))
         place = await page.ask("place")
         browser = await ending.enter_async_context(
-            partner("kurt2rt.checks.bench.browser", str(place["port"]), place["cookie"])
+            helper_process("kurt2rt.checks.bench.browser", str(place["port"]), place["cookie"])
         )
         await browser.ask("take")
         return await _pressed(robot, browser.ask, presses, "  from the page", on_progress)
@@ -46,13 +49,13 @@ async def measure_presses_on_page(
 
 async def _pressed(robot: OpenRobot, ask: _Ask, presses: int, what: str, on_progress: OnProgress) -> BenchResult:
     await ask("press", presses=_WARMING_UP)  # what is slow but once
-    made: list[Press] = []
+    made: list[PressTime] = []
     while len(made) < presses:
         answer = await ask("press", presses=min(_PRESSES_AT_ONCE, presses - len(made)))
-        made += [Press(*press) for press in answer["presses"]]
+        made += [PressTime(*press) for press in answer["presses"]]
         # Only here: drawing a progress bar takes milliseconds of the loop.
         on_progress(len(made) / presses)
-    waits = waits_ns(made, robot.witness.starts)
+    waits = waits_ns(made, robot.observer.starts)
     return press_result(what, waits, lost=presses - len(waits), period_s=robot.runtime.robot.can.cycle_s)
 
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from kurt2rt.checks.bench.robot_under_test import SEED, OnProgress, RobotUnderTest, kept_knowledge
+from kurt2rt.checks.bench.robot_under_test import SEED, BenchFixture, OnProgress, open_writer
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.tick import TickRecord
@@ -17,7 +17,7 @@ from kurt2rt.teacher.scripted.teacher import build_teacher, view_of_tick
 
 
 @dataclass(frozen=True, slots=True)
-class Turns:
+class RealTimeTurns:
     """How long runtime and reference run, in turns; what the machine does meanwhile falls on both alike."""
 
     rounds: int
@@ -45,17 +45,19 @@ class RealTimeRun:
     stages: dict[Stage, Percentiles]
 
 
-async def run_in_real_time(subject: RobotUnderTest, folder: Path, turns: Turns, on_progress: OnProgress) -> RealTimeRun:
+async def run_in_real_time(
+    fixture: BenchFixture, folder: Path, turns: RealTimeTurns, on_progress: OnProgress
+) -> RealTimeRun:
     """Drive as the service does, its journal in `folder`. Raises KnowledgeError, OSError without a timerfd."""
-    period_s = subject.settings.can.cycle_s
+    period_s = fixture.settings.can.cycle_s
     asyncio_ledger = TickTimer()
     driving = 0
-    simulation = subject.open_simulation("bench real_time")
+    simulation = fixture.open_simulation("bench real_time")
     try:
-        with kept_knowledge(subject, folder / "real_time.knowledge") as writer, TimerfdClock() as clock, gc_frozen():
-            runtime = build_runtime(simulation.robot, subject.settings, subject.task, subject.events, writer, clock)
+        with open_writer(fixture, folder / "real_time.knowledge") as writer, TimerfdClock() as clock, gc_frozen():
+            runtime = build_runtime(simulation.robot, fixture.settings, fixture.task, fixture.events, writer, clock)
             actions = tuple(runtime.level.repertoire)
-            teacher = build_teacher(subject.task, subject.settings, actions, seed=SEED, session="bench")
+            teacher = build_teacher(fixture.task, fixture.settings, actions, seed=SEED, session="bench")
             runtime.inbox.put(teacher.begin_phase(Phase.CORRECTIONS))
             ticks_per_checkpoint = round(1 / period_s)
 

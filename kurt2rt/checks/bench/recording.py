@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kurt2rt.checks.bench.channel_load import LoadShifts
-from kurt2rt.checks.bench.lateness_clock import NotingClock
+from kurt2rt.checks.bench.lateness_clock import LatenessClock
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
-from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest, kept_knowledge
+from kurt2rt.checks.bench.robot_under_test import BenchFixture, OnProgress, open_writer
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.platform.gc_control import gc_frozen
@@ -51,23 +51,23 @@ class RecordedDrive:
 
 
 async def measure_recording(
-    subject: RobotUnderTest, folder: Path, shifts: LoadShifts, on_progress: OnProgress
+    fixture: BenchFixture, folder: Path, shifts: LoadShifts, on_progress: OnProgress
 ) -> tuple[BenchResult, ...]:
     """Drive in real time by what is known, in turns with and without a recorder; files go to `folder`.
 
     Raises KnowledgeError, OSError without a timerfd.
     """
-    return recording_results(await drive_recorded(subject, folder, shifts, on_progress))
+    return recording_results(await drive_recorded(fixture, folder, shifts, on_progress))
 
 
 async def drive_recorded(
-    subject: RobotUnderTest, folder: Path, shifts: LoadShifts, on_progress: OnProgress
+    fixture: BenchFixture, folder: Path, shifts: LoadShifts, on_progress: OnProgress
 ) -> RecordedDrive:
     """The drive. Raises as `measure_recording`."""
     runs = folder / "runs"
-    settings, period_s = subject.settings, subject.settings.can.cycle_s
+    settings, period_s = fixture.settings, fixture.settings.can.cycle_s
     recording = Recording(runs, budget_of(_BUDGET_MB), "sim")
-    recorder = recording.recorder(settings, subject.task, None, RunContext("bench", "", attended=False))
+    recorder = recording.recorder(settings, fixture.task, None, RunContext("bench", "", attended=False))
     ledgers = {recorded: TickTimer(shifts.rounds * shifts.ticks) for recorded in (False, True)}
     stretches: dict[bool, list[RecordedStretch]] = {False: [], True: []}
     noted_ns: list[int] = []
@@ -77,17 +77,17 @@ async def drive_recorded(
         recorder.on_tick(record)
         noted_ns.append(time.perf_counter_ns() - begun_ns)
 
-    simulation = subject.open_simulation("bench recording")
+    simulation = fixture.open_simulation("bench recording")
     try:
         with (
-            kept_knowledge(subject, folder / "recording.knowledge") as writer,
+            open_writer(fixture, folder / "recording.knowledge") as writer,
             TimerfdClock() as timer,
             gc_frozen(),
             short_switch_interval(),
             recorder,
         ):
-            clock = NotingClock(timer)
-            runtime = build_runtime(simulation.robot, settings, subject.task, subject.events, writer, clock)
+            clock = LatenessClock(timer)
+            runtime = build_runtime(simulation.robot, settings, fixture.task, fixture.events, writer, clock)
             runtime.handler.phase = Phase.AUTONOMOUS
             for number in range(shifts.rounds):
                 with simulation.live():

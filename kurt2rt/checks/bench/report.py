@@ -25,7 +25,7 @@ class BenchMachine:
     numpy: str
 
 
-def look_at_machine() -> BenchMachine:
+def measure_machine() -> BenchMachine:
     """The machine as it is now."""
     return BenchMachine(len(os.sched_getaffinity(0)), os.getloadavg(), platform.python_version(), np.__version__)
 
@@ -53,10 +53,10 @@ def print_report(results: Sequence[BenchResult], machine: BenchMachine, console:
         reference = result.reference
         table.add_row(
             result.what,
-            _shown(result.took.median_us),
-            _shown(result.took.p99_us),
+            _format_us(result.took.median_us),
+            _format_us(result.took.p99_us),
             reference.what if reference else "",
-            _shown(reference.took_us) if reference else "",
+            _format_us(reference.took_us) if reference else "",
             f"{reference.ratio:.2f}" if reference else "",
             Text("\n").join(
                 Text(f"{goal}: ") + (Text("yes", "green") if goal.met else Text("no", "bold red"))
@@ -66,7 +66,7 @@ def print_report(results: Sequence[BenchResult], machine: BenchMachine, console:
     print_whole(console, table, "")
     for result in results:
         if result.note:
-            print_whole(console, f"{result.what.strip()}: worst {_shown(result.took.worst_us)} us; {result.note}")
+            print_whole(console, f"{result.what.strip()}: worst {_format_us(result.took.worst_us)} us; {result.note}")
     busy = ", ".join(f"{load:.2f}" for load in machine.load_before)
     print_whole(
         console,
@@ -75,5 +75,5 @@ def print_report(results: Sequence[BenchResult], machine: BenchMachine, console:
     )
 
 
-def _shown(time_us: float) -> str:
+def _format_us(time_us: float) -> str:
     return f"{time_us:.0f}" if time_us >= 1000 else f"{time_us:.1f}"

@@ -23,7 +23,7 @@ SEED = 1
 
 
 @dataclass(frozen=True, slots=True)
-class RobotUnderTest:
+class BenchFixture:
     """The robot, where it drives and what it knows."""
 
     settings: RobotSettings
@@ -33,15 +33,15 @@ class RobotUnderTest:
     events: tuple[TeachingEvent, ...] = ()
 
 
-async def learn(subject: RobotUnderTest, duration_s: float, on_progress: OnProgress) -> RobotUnderTest:
+async def learn(fixture: BenchFixture, duration_s: float, on_progress: OnProgress) -> BenchFixture:
     """The same subject, taught in lockstep for that much simulated time, two thirds of it with corrections."""
     notebook = InMemoryEventStore()
-    task = lasting(subject.task, supervised_s=duration_s / 3, corrections_s=duration_s * 2 / 3)
-    simulation = subject.open_simulation("lesson")
+    task = with_duration(fixture.task, supervised_s=duration_s / 3, corrections_s=duration_s * 2 / 3)
+    simulation = fixture.open_simulation("lesson")
     try:
         await teach(
             simulation,
-            subject.settings,
+            fixture.settings,
             task,
             TrainingStore(notebook),
             seed=SEED,
@@ -49,19 +49,19 @@ async def learn(subject: RobotUnderTest, duration_s: float, on_progress: OnProgr
         )
     finally:
         simulation.close()
-    return RobotUnderTest(subject.settings, subject.task, subject.open_simulation, tuple(notebook.events))
+    return BenchFixture(fixture.settings, fixture.task, fixture.open_simulation, tuple(notebook.events))
 
 
-def lasting(task: TaskSettings, *, supervised_s: float, corrections_s: float) -> TaskSettings:
+def with_duration(task: TaskSettings, *, supervised_s: float, corrections_s: float) -> TaskSettings:
     """The task with a lesson of that length."""
     teaching = task.teaching.model_copy(update={"supervised_s": supervised_s, "corrections_s": corrections_s})
     return task.model_copy(update={"teaching": teaching})
 
 
 @contextmanager
-def kept_knowledge(subject: RobotUnderTest, path: Path) -> Iterator[JournalWriter]:
+def open_writer(fixture: BenchFixture, path: Path) -> Iterator[JournalWriter]:
     """A writer on a new knowledge file that holds what the subject was taught. Raises KnowledgeError."""
-    with open_knowledge(path, subject.settings, subject.task) as journal:
-        journal.append([JournalEntry(event, utc_now()) for event in subject.events])
+    with open_knowledge(path, fixture.settings, fixture.task) as journal:
+        journal.append([JournalEntry(event, utc_now()) for event in fixture.events])
         with JournalWriter(journal, utc_now) as writer:
             yield writer

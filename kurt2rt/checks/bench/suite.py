@@ -11,10 +11,10 @@ from kurt2rt.checks.bench.closed_loop import measure_closed_loop
 from kurt2rt.checks.bench.lateness import lateness_result
 from kurt2rt.checks.bench.lesson import measure_lessons
 from kurt2rt.checks.bench.match import SIZES, Size, measure_match
-from kurt2rt.checks.bench.real_time import Turns, run_in_real_time
+from kurt2rt.checks.bench.real_time import RealTimeTurns, run_in_real_time
 from kurt2rt.checks.bench.recording import measure_recording
 from kurt2rt.checks.bench.result import BenchResult
-from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest, learn
+from kurt2rt.checks.bench.robot_under_test import BenchFixture, OnProgress, learn
 from kurt2rt.checks.bench.tick_budget import tick_results
 
 
@@ -36,7 +36,7 @@ class Lengths:
 
     learning_s: float
     """Simulated time of the lesson that comes before, for knowledge to drive with."""
-    turns: Turns
+    turns: RealTimeTurns
     sizes: tuple[Size, ...]
     loop_blocks: int
     loop_block_s: int
@@ -48,7 +48,7 @@ class Lengths:
 
 FULL = Lengths(
     learning_s=345.0,  # as long as the paper took: some 90 RLAs
-    turns=Turns(rounds=12, ticks=500, reference_ticks=250),
+    turns=RealTimeTurns(rounds=12, ticks=500, reference_ticks=250),
     sizes=SIZES,
     loop_blocks=15,
     loop_block_s=20,
@@ -58,7 +58,7 @@ FULL = Lengths(
 )
 QUICK = Lengths(
     learning_s=90.0,
-    turns=Turns(rounds=4, ticks=125, reference_ticks=50),
+    turns=RealTimeTurns(rounds=4, ticks=125, reference_ticks=50),
     sizes=tuple(Size(size.rlas, size.limit_us, size.calls // 4) for size in SIZES),
     loop_blocks=4,
     loop_block_s=20,
@@ -70,38 +70,38 @@ QUICK = Lengths(
 
 async def run_suite(
     benches: Collection[BenchName],
-    subject: RobotUnderTest,
+    fixture: BenchFixture,
     folder: Path,
     lengths: Lengths,
-    progress_of: Callable[[str], OnProgress],
+    start_job: Callable[[str], OnProgress],
 ) -> tuple[BenchResult, ...]:
     """Measure what is asked for; files go to `folder`, which must be empty.
 
-    `progress_of` begins a job of that name and gives what is to be told of its progress.
+    `start_job` begins a job of that name and gives what is to be told of its progress.
     """
     results: list[BenchResult] = []
     if any(bench is not BenchName.MATCH for bench in benches):
-        subject = await learn(subject, lengths.learning_s, progress_of("teaching, to have something to drive with"))
+        fixture = await learn(fixture, lengths.learning_s, start_job("teaching, to have something to drive with"))
     if BenchName.LATENESS in benches or BenchName.TICK in benches:
-        run = await run_in_real_time(subject, folder, lengths.turns, progress_of("driving in real time"))
+        run = await run_in_real_time(fixture, folder, lengths.turns, start_job("driving in real time"))
         if BenchName.LATENESS in benches:
             results.append(lateness_result(run))
         if BenchName.TICK in benches:
-            results.extend(tick_results(run, subject.settings.can.cycle_s))
+            results.extend(tick_results(run, fixture.settings.can.cycle_s))
     if BenchName.MATCH in benches:
-        results.extend(measure_match(lengths.sizes, progress_of("matching")))
+        results.extend(measure_match(lengths.sizes, start_job("matching")))
     if BenchName.LOOP in benches:
         results.extend(
             await measure_closed_loop(
-                subject, folder, lengths.loop_blocks, lengths.loop_block_s, progress_of("driving in lockstep")
+                fixture, folder, lengths.loop_blocks, lengths.loop_block_s, start_job("driving in lockstep")
             )
         )
     if BenchName.LESSON in benches:
-        results.append(await measure_lessons(subject, folder, lengths.lessons, progress_of("making lessons durable")))
+        results.append(await measure_lessons(fixture, folder, lengths.lessons, start_job("making lessons durable")))
     if BenchName.CHANNEL in benches:
-        results.extend(await measure_channel(subject, folder, lengths.channel, progress_of))
+        results.extend(await measure_channel(fixture, folder, lengths.channel, start_job))
     if BenchName.RECORDING in benches:
         results.extend(
-            await measure_recording(subject, folder, lengths.recording, progress_of("driving, recorded and not"))
+            await measure_recording(fixture, folder, lengths.recording, start_job("driving, recorded and not"))
         )
     return tuple(results)

@@ -21,18 +21,18 @@ class BumpersStep:
     why = "A pressed bumper forbids the wheels to turn its way; with the ends exchanged it would forbid the way out."
     what_to_do = "Press each bumper by hand as you are asked, and hold it for a second after Enter."
     moves = False
-    bars_driving = False
+    blocks_driving = False
 
-    async def take(self, bench: TestStand, findings: Findings) -> StepResult:
+    async def run(self, stand: TestStand, findings: Findings) -> StepResult:
         """Ask for each bumper of the table."""
-        bumpers = bench.settings.bumpers
+        bumpers = stand.settings.bumpers
         result = StepResult(findings.model_copy(update={"bumper_bits": {}}))
         if not bumpers:
             result.note("the settings know no bumpers")
             return result
-        await bench.ask(OperatorQuestion(QuestionKind.UNTOUCHED, "Touch no bumper.", (AnswerChoice("", "look"),)))
-        await bench.stand(_SETTLE_S)
-        heard = await bench.stand(_LOOK_S)
+        await stand.ask(OperatorQuestion(QuestionKind.UNTOUCHED, "Touch no bumper.", (AnswerChoice("", "look"),)))
+        await stand.listen(_SETTLE_S)
+        heard = await stand.listen(_LOOK_S)
         if not heard.bumpers:
             result.to_do.append("BUMPERC (0x0A) never came: this robot has no bumpers, or they are not connected")
             return result
@@ -41,20 +41,20 @@ class BumpersStep:
             result.to_do.append(f"{_bits(untouched)} pressed though nobody touches it: a bumper hangs")
         found: dict[str, int] = {}
         for at, bumper in enumerate(bumpers):
-            bit = await _find(bench, bumper.name, untouched, found)
+            bit = await _find(stand, bumper.name, untouched, found)
             if bit is None:
                 result.note(f"{bumper.name}: not found")
                 result.to_do.append(f"{bumper.name}: no bit answered, or it was skipped; check its switch and its plug")
                 continue
             found[bumper.name] = bit
             result.tell(
-                bench, f"{bumper.name}: bit {bit}" + (", as the table says" if bit == at else f", the table says {at}")
+                stand, f"{bumper.name}: bit {bit}" + (", as the table says" if bit == at else f", the table says {at}")
             )
         result.findings = findings.model_copy(update={"bumper_bits": found})
         return result
 
 
-async def _find(bench: TestStand, name: str, untouched: int, found: dict[str, int]) -> int | None:
+async def _find(stand: TestStand, name: str, untouched: int, found: dict[str, int]) -> int | None:
     while True:
         question = OperatorQuestion(
             QuestionKind.BUMPER,
@@ -62,19 +62,19 @@ async def _find(bench: TestStand, name: str, untouched: int, found: dict[str, in
             (AnswerChoice("", "look"), AnswerChoice(SKIP, "skip this one")),
             subject=name,
         )
-        if await bench.ask(question) == SKIP:
+        if await stand.ask(question) == SKIP:
             return None
-        await bench.stand(_SETTLE_S)
-        held = _held(await bench.stand(_LOOK_S)) & ~untouched
+        await stand.listen(_SETTLE_S)
+        held = _held(await stand.listen(_LOOK_S)) & ~untouched
         if held.bit_count() != 1:
             seen = f"{_bits(held)} answered together" if held else "no bit answered"
-            bench.tell(f"{seen}: press this bumper alone, and hold it", Tone.BAD)
+            stand.tell(f"{seen}: press this bumper alone, and hold it", Tone.BAD)
             continue
         bit = held.bit_length() - 1
         owner = next((other for other, its in found.items() if its == bit), None)
         if owner is None:
             return bit
-        bench.tell(f"bit {bit} answered, but that is {owner}'s: press {name}, or skip it and repeat the step", Tone.BAD)
+        stand.tell(f"bit {bit} answered, but that is {owner}'s: press {name}, or skip it and repeat the step", Tone.BAD)
 
 
 def _held(heard: FrameStatistics) -> int:

@@ -20,10 +20,10 @@ from kurt2rt.checks.commission.test_stand import TestStand
 from kurt2rt.checks.commission.wheels import WheelsStep
 from kurt2rt.checks.commission.wheels_off_ground_step import WheelsOffGroundStep
 
-_LIFTED = WheelsOffGroundStep()
+_OFF_GROUND = WheelsOffGroundStep()
 STEPS: tuple[CommissionStep, ...] = (
     IdentityStep(),
-    _LIFTED,
+    _OFF_GROUND,
     SpeedModesStep(),
     WheelsStep(),
     StoppingStep(),
@@ -38,16 +38,16 @@ _AGAIN = "r"
 class Checklist:
     """Walks a person through steps; after each one the progress is on the disk."""
 
-    def __init__(self, bench: TestStand, progress: Progress, path: Path, who: str, now: Callable[[], str]) -> None:
+    def __init__(self, stand: TestStand, progress: Progress, path: Path, who: str, now: Callable[[], str]) -> None:
         """`path` of the progress file; `now` tells date and time in UTC to the minute."""
-        self._bench = bench
+        self._stand = stand
         self.progress = progress
         self._path = path
         self._who = who
         self._now = now
-        self._lifted = False
+        self._wheels_are_up = False
 
-    async def walk(self, chosen: Sequence[CommissionStep], skipped: Sequence[CommissionStep] = ()) -> None:
+    async def run(self, chosen: Sequence[CommissionStep], skipped: Sequence[CommissionStep] = ()) -> None:
         """Take the chosen steps in the checklist's order, note the skipped.
 
         Raises LeftError, BusError, OSError, and SettingsError when what was found before is another robot's.
@@ -57,37 +57,39 @@ class Checklist:
             await self._skip(step, "as was wished on the command line", on_purpose=True)
         # Whoever turns wheels is asked about the block first, in every session.
         moving = [step for step in chosen if step.moves]
-        walked = [step for step in STEPS if step in chosen or (step is _LIFTED and moving and step not in skipped)]
-        for number, step in enumerate(walked, 1):
-            self._bench.tell(f"{number} of {len(walked)}: {step.title}  [{step.name}]", Tone.TITLE)
-            self._bench.tell(f"Why: {step.why}")
-            self._bench.tell(f"Do:  {step.what_to_do}")
-            await self._take(step)
+        selected = [
+            step for step in STEPS if step in chosen or (step is _OFF_GROUND and moving and step not in skipped)
+        ]
+        for number, step in enumerate(selected, 1):
+            self._stand.tell(f"{number} of {len(selected)}: {step.title}  [{step.name}]", Tone.TITLE)
+            self._stand.tell(f"Why: {step.why}")
+            self._stand.tell(f"Do:  {step.what_to_do}")
+            await self._run_step(step)
 
-    async def _take(self, step: CommissionStep) -> None:
+    async def _run_step(self, step: CommissionStep) -> None:
         again = True
         while again:
             try:
                 result = await self._result(step)
             except SkippedError as skipped:
-                self._bench.tell(f"skipped: {skipped}")
+                self._stand.tell(f"skipped: {skipped}")
                 await self._skip(step, str(skipped))
                 return
             again = await self._judge(step, result)
 
     async def _result(self, step: CommissionStep) -> StepResult:
-        if step.moves and not self._lifted:
+        if step.moves and not self._wheels_are_up:
             raise SkippedError("the wheels were not confirmed off the ground")
-        if step is not _LIFTED:
+        if step is not _OFF_GROUND:
             begin = OperatorQuestion(
                 QuestionKind.BEGIN, "Ready?", (AnswerChoice("", "begin"), AnswerChoice(SKIP, "skip this step"))
             )
-            if await self._bench.ask(begin) == SKIP:
+            if await self._stand.ask(begin) == SKIP:
                 raise SkippedError("as you wished")
             await self._require_same_robot()
-        result = await step.take(self._bench, self.progress.findings)
-        if step is _LIFTED:
-            self._lifted = True
+        result = await step.run(self._stand, self.progress.findings)
+        if step is _OFF_GROUND:
+            self._wheels_are_up = True
         return result
 
     async def _judge(self, step: CommissionStep, result: StepResult) -> bool:
@@ -100,17 +102,17 @@ class Checklist:
             to_do=tuple(result.to_do),
         )
         await self._keep(step, record, result)
-        for line in result.untold:
-            self._bench.tell(line, Tone.MEASURED)
+        for line in result.unprinted:
+            self._stand.tell(line, Tone.MEASURED)
         if result.outcome is StepOutcome.PASSED:
-            self._bench.tell(f"passed: {step.title}", Tone.GOOD)
+            self._stand.tell(f"passed: {step.title}", Tone.GOOD)
             return False
         for line in result.to_do:
-            self._bench.tell(line, Tone.TO_DO)
-        self._bench.tell(f"FAILED: {step.title}", Tone.BAD)
+            self._stand.tell(line, Tone.TO_DO)
+        self._stand.tell(f"FAILED: {step.title}", Tone.BAD)
         choices = (AnswerChoice(_AGAIN, "repeat it, when that is mended"), AnswerChoice("", "go on"))
         return (
-            await self._bench.ask(OperatorQuestion(QuestionKind.AFTER_FAILURE, "Repeat this step?", choices)) == _AGAIN
+            await self._stand.ask(OperatorQuestion(QuestionKind.AFTER_FAILURE, "Repeat this step?", choices)) == _AGAIN
         )
 
     async def _require_same_robot(self) -> None:
@@ -118,7 +120,7 @@ class Checklist:
         before = self.progress.findings.hardware_id
         if before is None:
             return
-        now = await self._bench.hardware_id()
+        now = await self._stand.hardware_id()
         if now is not None and now != before:
             raise SettingsError(
                 f"is about a robot of {hardware(before)}, but INFO_1 says {hardware(now)}",
@@ -134,7 +136,7 @@ class Checklist:
         if before is not None and before.outcome is StepOutcome.PASSED:
             return
         if before is not None and before.outcome is StepOutcome.FAILED and not on_purpose:
-            self._bench.tell(f"{step.title}: failed on {before.at}, and that stands", Tone.BAD)
+            self._stand.tell(f"{step.title}: failed on {before.at}, and that stands", Tone.BAD)
             return
         to_do = () if before is None else before.to_do
         record = StepRecord(outcome=StepOutcome.SKIPPED, at=self._now(), who=self._who, measured=(why,), to_do=to_do)
@@ -148,25 +150,27 @@ class Checklist:
 
 def open_steps(progress: Progress) -> list[CommissionStep]:
     """Steps without an outcome; the block under the wheels is none by itself."""
-    return [step for step in STEPS if step is not _LIFTED and step.name not in progress.steps]
+    return [step for step in STEPS if step is not _OFF_GROUND and step.name not in progress.steps]
 
 
-def steps_to_take(progress: Progress) -> list[CommissionStep]:
+def steps_to_run(progress: Progress) -> list[CommissionStep]:
     """Steps that have not passed, as a session takes them when nobody chose any."""
     steps = progress.steps
     return [
         step
         for step in STEPS
-        if step is not _LIFTED and (step.name not in steps or steps[step.name].outcome is not StepOutcome.PASSED)
+        if step is not _OFF_GROUND and (step.name not in steps or steps[step.name].outcome is not StepOutcome.PASSED)
     ]
 
 
-def barring(progress: Progress) -> list[CommissionStep]:
+def blocking_failures(progress: Progress) -> list[CommissionStep]:
     """Steps that failed in a way that forbids to drive this robot."""
     return [
         step
         for step in STEPS
-        if step.bars_driving and step.name in progress.steps and progress.steps[step.name].outcome is StepOutcome.FAILED
+        if step.blocks_driving
+        and step.name in progress.steps
+        and progress.steps[step.name].outcome is StepOutcome.FAILED
     ]
 
 

@@ -63,7 +63,7 @@ class FrameStatistics:
         metres_s = robot.geometry.metres_per_tick / robot.can.cycle_s / len(frames)
         return WheelSpeeds(sum(each.left for each in frames) * metres_s, sum(each.right for each in frames) * metres_s)
 
-    def rested_at_s(self) -> float | None:
+    def rest_began_s(self) -> float | None:
         """When the wheels had come to rest: the first of the ENCODER frames without a tick that last to the end.
 
         None when they still turn, or when nothing is heard of them.

@@ -20,21 +20,21 @@ class IdentityStep:
     why = "The controller names itself in INFO_1. Frames that are missing, slow or junk would stop the robot later."
     what_to_do = f"Switch the robot on; end every other program that sends on this bus. {_LISTEN_S:.0f} s of listening."
     moves = False
-    bars_driving = True
+    blocks_driving = True
 
-    async def take(self, bench: TestStand, findings: Findings) -> StepResult:
+    async def run(self, stand: TestStand, findings: Findings) -> StepResult:
         """Listen, compare with the settings."""
-        heard = await bench.stand(_LISTEN_S)
+        heard = await stand.listen(_LISTEN_S)
         result = StepResult(findings)
         if not heard.arrivals_s:
             result.to_do.append(
                 "Nothing was heard: is the robot on, the cable in, the interface up at "
-                f"{bench.settings.can.bit_rate_bit_s} bit/s, the bus terminated at both ends?"
+                f"{stand.settings.can.bit_rate_bit_s} bit/s, the bus terminated at both ends?"
             )
             result.to_do += [f"{what}: {count} of them; check the bit rate" for what, count in heard.junk.items()]
             return result
         _judge_identity(heard, result)
-        _judge_periods(bench, heard, result)
+        _judge_periods(stand, heard, result)
         _judge_junk(heard, result)
         return result
 
@@ -61,8 +61,8 @@ def _judge_identity(heard: FrameStatistics, result: StepResult) -> None:
         result.to_do.append("INFO_1 (0x04) never came: this is not the KURT2 controller, or it has not started")
 
 
-def _judge_periods(bench: TestStand, heard: FrameStatistics, result: StepResult) -> None:
-    robot = bench.settings
+def _judge_periods(stand: TestStand, heard: FrameStatistics, result: StepResult) -> None:
+    robot = stand.settings
     codec = load_codec(robot.can.database)
     sensor_of = {sensor.channel: sensor.name for sensor in robot.infrared.sensors}
     periods_ms: dict[int, list[str]] = {}

@@ -27,17 +27,17 @@ class IrCalibrationStep:
         "the sensor's face. Two sensors are better than one."
     )
     moves = False
-    bars_driving = False
+    blocks_driving = False
 
-    async def take(self, bench: TestStand, findings: Findings) -> StepResult:
+    async def run(self, stand: TestStand, findings: Findings) -> StepResult:
         """Ask which sensors, then for the board at each distance."""
         result = StepResult(findings.model_copy(update={"law": None}))
-        chosen = await _choose(bench, findings)
-        await bench.ask(
+        chosen = await _choose(stand, findings)
+        await stand.ask(
             OperatorQuestion(QuestionKind.CLEAR, "Step back: nothing within a metre.", (AnswerChoice("", "measure"),))
         )
-        await bench.stand(SETTLE_S)
-        heard = await bench.stand(_MEASURE_S)
+        await stand.listen(SETTLE_S)
+        heard = await stand.listen(_MEASURE_S)
         floors = [heard.median(_channel(sensor, findings)) for sensor in chosen]
         if None in floors:
             result.to_do.append("A chosen sensor's channel is not heard: take the step sensors first")
@@ -46,11 +46,11 @@ class IrCalibrationStep:
         readings: list[IrReading] = []
         for sensor in chosen:
             for distance_m in DISTANCES_M:
-                reading = await _read(bench, sensor, distance_m, findings)
+                reading = await _read(stand, sensor, distance_m, findings)
                 if reading is not None:
                     readings.append(reading)
         try:
-            fit = await _fit_with_second_looks(bench, readings, {each.name: each for each in chosen}, findings)
+            fit = await _fit_with_second_looks(stand, readings, {each.name: each for each in chosen}, findings)
         except IrCalibrationError as error:
             result.to_do.append(f"No law was fitted: {error}")
             result.measured += [f"{each.sensor} at {each.distance_m:.2f} m: {each.counts:.0f}" for each in readings]
@@ -63,7 +63,7 @@ class IrCalibrationStep:
             result.note(row)
         result.note(f"nothing in view: {floor:.0f} counts")
         near_m = min(each.distance_m for each in readings)
-        far_m = _far_m(law, floor, max(each.distance_m for each in readings))
+        far_m = _detection_limit_m(law, floor, max(each.distance_m for each in readings))
         if far_m < _LEAST_FAR_M:
             result.to_do.append(
                 f"With nothing in view the sensor says as much as before a board at {far_m:.2f} m: clear a metre "
@@ -87,8 +87,8 @@ class IrCalibrationStep:
         return result
 
 
-async def _choose(bench: TestStand, findings: Findings) -> tuple[SensorSettings, ...]:
-    sensors = {sensor.name: sensor for sensor in bench.settings.infrared.sensors}
+async def _choose(stand: TestStand, findings: Findings) -> tuple[SensorSettings, ...]:
+    sensors = {sensor.name: sensor for sensor in stand.settings.infrared.sensors}
     usable = [name for name in sensors if name not in findings.dead_sensors]
     if not usable:
         raise SkippedError("no sensor answers: take the step sensors first")
@@ -100,15 +100,15 @@ async def _choose(bench: TestStand, findings: Findings) -> tuple[SensorSettings,
         free=True,
     )
     while True:
-        names = (await bench.ask(question)).split() or [usual]
+        names = (await stand.ask(question)).split() or [usual]
         strange = [name for name in names if name not in usable]
         if not strange:
             return tuple(sensors[name] for name in dict.fromkeys(names))
-        bench.tell(f"no such sensor, or a dead one: {', '.join(strange)}; there are: {', '.join(usable)}", Tone.BAD)
+        stand.tell(f"no such sensor, or a dead one: {', '.join(strange)}; there are: {', '.join(usable)}", Tone.BAD)
 
 
 async def _read(
-    bench: TestStand, sensor: SensorSettings, distance_m: float, findings: Findings, again: str = ""
+    stand: TestStand, sensor: SensorSettings, distance_m: float, findings: Findings, again: str = ""
 ) -> IrReading | None:
     question = OperatorQuestion(
         QuestionKind.BOARD,
@@ -120,19 +120,19 @@ async def _read(
         subject=sensor.name,
         distance_m=distance_m,
     )
-    if await bench.ask(question) == SKIP:
+    if await stand.ask(question) == SKIP:
         return None
-    await bench.stand(SETTLE_S)
-    counts = (await bench.stand(_MEASURE_S)).median(_channel(sensor, findings))
+    await stand.listen(SETTLE_S)
+    counts = (await stand.listen(_MEASURE_S)).median(_channel(sensor, findings))
     if counts is None:
-        bench.tell(f"{sensor.name} is not heard any more", Tone.BAD)
+        stand.tell(f"{sensor.name} is not heard any more", Tone.BAD)
         return None
-    bench.tell(f"{sensor.name} at {distance_m:.2f} m: {counts:.0f} counts", Tone.MEASURED)
+    stand.tell(f"{sensor.name} at {distance_m:.2f} m: {counts:.0f} counts", Tone.MEASURED)
     return IrReading(sensor.name, distance_m, counts)
 
 
 async def _fit_with_second_looks(
-    bench: TestStand, readings: list[IrReading], sensors: dict[str, SensorSettings], findings: Findings
+    stand: TestStand, readings: list[IrReading], sensors: dict[str, SensorSettings], findings: Findings
 ) -> IrFit:
     """Fit; what does not fit to the others is asked for once more, a few times at most. Raises IrCalibrationError."""
     looked_twice: set[int] = set()
@@ -145,7 +145,7 @@ async def _fit_with_second_looks(
         looked_twice.add(at)
         odd = readings[at]
         why = f"{odd.counts:.0f} counts do not fit, the others say {fit.law.counts_at(odd.distance_m):.0f}. Once more: "
-        better = await _read(bench, sensors[odd.sensor], odd.distance_m, findings, why)
+        better = await _read(stand, sensors[odd.sensor], odd.distance_m, findings, why)
         if better is not None:
             readings[at] = better
 
@@ -158,7 +158,7 @@ def _rows(readings: list[IrReading], fit: IrFit) -> list[str]:
     ]
 
 
-def _far_m(law: IrLaw, floor: float, farthest_m: float) -> float:
+def _detection_limit_m(law: IrLaw, floor: float, farthest_m: float) -> float:
     """Where the law comes down to the reading of an empty room, if that is within what was measured."""
     return round(min(farthest_m, law.distance_m(floor)), 2)
 

@@ -29,19 +29,19 @@ class Listener:
         self.hardware_id: int | None = None
         """As INFO_1 said it last."""
 
-    def hear(self, now_s: float, heard: FrameStatistics) -> None:
+    def poll(self, now_s: float, heard: FrameStatistics) -> None:
         """Take what waits, on the clock of `now_s`. Raises hal.bus.BusError."""
         messages = self._bus.drain()
         bus_now_s = self._bus.now_s() if messages else None
         for message in messages:
             age_s = 0.0 if bus_now_s is None else max(0.0, bus_now_s - message.timestamp)
-            self._note(message, now_s - age_s, heard)
+            self._add(message, now_s - age_s, heard)
 
     def close(self) -> None:
         """Give the end back."""
         self._bus.shutdown()
 
-    def _note(self, message: can.Message, at_s: float, heard: FrameStatistics) -> None:
+    def _add(self, message: can.Message, at_s: float, heard: FrameStatistics) -> None:
         if message.is_error_frame:
             heard.junk["error frames of the bus"] += 1
             return

@@ -13,28 +13,28 @@ STEADY_FRAMES = 30
 """At the end of a drive, when the wheels have their speed."""
 
 
-async def leave_to_move(bench: TestStand, text: str) -> None:
+async def confirm_motion(stand: TestStand, text: str) -> None:
     """Ask before wheels turn. Raises SkippedError."""
     question = OperatorQuestion(
         QuestionKind.MOVE, text, (AnswerChoice("", "turn them"), AnswerChoice(SKIP, "do not turn them"))
     )
-    if await bench.ask(question) == SKIP:
+    if await stand.ask(question) == SKIP:
         raise SkippedError("the wheels were not to turn")
 
 
-def mode_found(findings: Findings) -> SpeedMode:
+def required_speed_mode(findings: Findings) -> SpeedMode:
     """The mode that answered. Raises SkippedError when that is not known."""
     if findings.speed_mode is None:
         raise SkippedError("no speed mode is known to answer: take the step modes first")
     return findings.speed_mode
 
 
-def steady(drive: TestDrive, robot: RobotSettings) -> WheelSpeeds:
+def steady_speeds(drive: TestDrive, robot: RobotSettings) -> WheelSpeeds:
     """Speeds of the wheels by the encoders before the brake."""
     return drive.heard.wheel_speeds(robot, STEADY_FRAMES)
 
 
-def why_it_stood(drive: TestDrive) -> str | None:
+def standstill_cause(drive: TestDrive) -> str | None:
     """Why the guard let nothing through; None when it did."""
     if drive.stopped_by is not None:
         return drive.stopped_by
@@ -43,11 +43,11 @@ def why_it_stood(drive: TestDrive) -> str | None:
     return None
 
 
-def rests(bench: TestStand, drive: TestDrive, result: StepResult) -> bool:
+def require_rest(stand: TestStand, drive: TestDrive, result: StepResult) -> bool:
     """Whether the brake brought the wheels to rest; says at once what to do when not. No step goes on then."""
     if drive.rested_after_s is not None:
         return True
     heard = "still turn" if drive.after.encoder else "are not heard of any more"
     result.to_do.append(f"The wheels {heard} after the brake: SWITCH THE MOTORS OFF, then look for the reason")
-    bench.tell(result.to_do[-1], Tone.BAD)
+    stand.tell(result.to_do[-1], Tone.BAD)
     return False

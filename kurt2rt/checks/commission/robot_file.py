@@ -19,7 +19,7 @@ from kurt2rt.checks.commission.step import CommissionStep
 from kurt2rt.platform.durable_files import write_durably
 
 
-def commissioned(base: RobotSettings, name: str, findings: Findings) -> RobotSettings:
+def commissioned_settings(base: RobotSettings, name: str, findings: Findings) -> RobotSettings:
     """The settings with all that was found out. Raises SettingsError for findings that contradict one another."""
     content = base.model_dump(mode="json")
     content["name"] = name
@@ -49,7 +49,7 @@ def commissioned(base: RobotSettings, name: str, findings: Findings) -> RobotSet
 
 def robot_file(base: RobotSettings, progress: Progress, steps: Sequence[CommissionStep]) -> str:
     """Text of the file. Raises SettingsError for findings that contradict one another."""
-    settings = commissioned(base, progress.name, progress.findings)
+    settings = commissioned_settings(base, progress.name, progress.findings)
     verdict = "PASSED" if passed(progress, steps) else "NOT PASSED"
     head = [
         f"# {progress.name}, commissioned with kurt2rt commission {progress.bus}: {verdict}",

@@ -31,17 +31,17 @@ class SensorsStep:
         "as you are asked. Hold it still for a second after Enter."
     )
     moves = False
-    bars_driving = False
+    blocks_driving = False
 
-    async def take(self, bench: TestStand, findings: Findings) -> StepResult:
+    async def run(self, stand: TestStand, findings: Findings) -> StepResult:
         """Ask for a hand before each sensor of the table."""
-        sensors = bench.settings.infrared.sensors
-        found = await _kept(bench, findings, sensors)
-        await bench.ask(
+        sensors = stand.settings.infrared.sensors
+        found = await _kept(stand, findings, sensors)
+        await stand.ask(
             OperatorQuestion(QuestionKind.CLEAR, "Step back: nothing within a metre.", (AnswerChoice("", "measure"),))
         )
-        await bench.stand(SETTLE_S)
-        heard = await bench.stand(_BASELINE_S)
+        await stand.listen(SETTLE_S)
+        heard = await stand.listen(_BASELINE_S)
         if not heard.channels:
             result = StepResult(findings)
             result.to_do.append("No analog channel is heard: is the robot on? Step identity tells which frames come")
@@ -51,7 +51,7 @@ class SensorsStep:
         waiting = [sensor for sensor in sensors if sensor.name not in found]
         while waiting:
             sensor = waiting.pop(0)
-            answer = await _find(bench, sensor, empty, found, dead)
+            answer = await _find(stand, sensor, empty, found, dead)
             if answer is not None:  # an earlier hand was at the wrong sensor: that one is asked for again
                 del found[answer]
                 waiting = [sensor, *waiting, *(each for each in sensors if each.name == answer)]
@@ -66,7 +66,7 @@ class SensorsStep:
         return result
 
 
-async def _kept(bench: TestStand, findings: Findings, sensors: Sequence[SensorSettings]) -> dict[str, str]:
+async def _kept(stand: TestStand, findings: Findings, sensors: Sequence[SensorSettings]) -> dict[str, str]:
     """Channels that were found before and need no hand again."""
     before = dict(findings.channels)
     missing = [sensor.name for sensor in sensors if sensor.name not in before]
@@ -77,11 +77,11 @@ async def _kept(bench: TestStand, findings: Findings, sensors: Sequence[SensorSe
         f"{len(before)} channels were found before.",
         (AnswerChoice("", f"go on with {', '.join(missing)}"), AnswerChoice(_ALL, "ask for all of them anew")),
     )
-    return {} if await bench.ask(question) == _ALL else before
+    return {} if await stand.ask(question) == _ALL else before
 
 
 async def _find(
-    bench: TestStand, sensor: SensorSettings, empty: Mapping[str, float], found: dict[str, str], dead: list[str]
+    stand: TestStand, sensor: SensorSettings, empty: Mapping[str, float], found: dict[str, str], dead: list[str]
 ) -> str | None:
     """Ask until a channel is found or the sensor is given up; returns another sensor that has to be asked for again."""
     tried = False
@@ -92,41 +92,41 @@ async def _find(
             (AnswerChoice("", "measure"), AnswerChoice(SKIP, "give this one up" if tried else "skip this one")),
             subject=sensor.name,
         )
-        if await bench.ask(question) == SKIP:
+        if await stand.ask(question) == SKIP:
             if tried:
                 dead.append(sensor.name)
             return None
-        await bench.stand(SETTLE_S)
-        heard = await bench.stand(_HAND_S)
+        await stand.listen(SETTLE_S)
+        heard = await stand.listen(_HAND_S)
         rises = sorted(
             ((channel, (heard.median(channel) or 0.0) - counts) for channel, counts in empty.items()),
             key=lambda each: -each[1],
         )
         tried = True
         if not rises or rises[0][1] < _LEAST_RISE:
-            bench.tell("No channel answered. Nearer, flat, straight before the sensor?", Tone.BAD)
+            stand.tell("No channel answered. Nearer, flat, straight before the sensor?", Tone.BAD)
             continue
         channel, rise = rises[0]
         if len(rises) > 1 and rise < _CLEARLY * rises[1][1]:
-            bench.tell(f"{channel} and {rises[1][0]} both answered: take your hand away from the neighbours", Tone.BAD)
+            stand.tell(f"{channel} and {rises[1][0]} both answered: take your hand away from the neighbours", Tone.BAD)
             continue
         owner = next((name for name, its in found.items() if its == channel), None)
         if owner is None:
             found[sensor.name] = channel
-            bench.tell(f"{_said(sensor, channel)}, {rise:+.0f} counts", Tone.MEASURED)
+            stand.tell(f"{_format_channel(sensor, channel)}, {rise:+.0f} counts", Tone.MEASURED)
             return None
-        bench.tell(f"{channel} answered, but that was {owner}'s already.", Tone.BAD)
+        stand.tell(f"{channel} answered, but that was {owner}'s already.", Tone.BAD)
         taken = OperatorQuestion(
             QuestionKind.HAND,
             f"Your hand before {sensor.label} ({sensor.name}) again, or was it {owner}'s turn that was wrong?",
             (AnswerChoice("", "measure again"), AnswerChoice(_FORGET, f"{owner} was wrong, ask for it again later")),
             subject=sensor.name,
         )
-        if await bench.ask(taken) == _FORGET:
+        if await stand.ask(taken) == _FORGET:
             return owner
 
 
-def _said(sensor: SensorSettings, channel: str) -> str:
+def _format_channel(sensor: SensorSettings, channel: str) -> str:
     if channel == sensor.channel:
         return f"{sensor.name} {sensor.label}: {channel}, as the table says"
     return f"{sensor.name} {sensor.label}: {channel}, the table says {sensor.channel}"
@@ -134,7 +134,7 @@ def _said(sensor: SensorSettings, channel: str) -> str:
 
 def _row(sensor: SensorSettings, found: Mapping[str, str], dead: list[str]) -> str:
     if sensor.name in found:
-        return _said(sensor, found[sensor.name])
+        return _format_channel(sensor, found[sensor.name])
     if sensor.name in dead:
         return f"{sensor.name} {sensor.label}: no channel answers"
     return f"{sensor.name} {sensor.label}: not tried, the table says {sensor.channel}"

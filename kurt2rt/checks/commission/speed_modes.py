@@ -6,7 +6,14 @@ from dataclasses import dataclass, field
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings, SpeedMode
 from kurt2rt.checks.commission.findings import Findings
-from kurt2rt.checks.commission.moving import DRIVE_S, TEST_SPEED_M_S, leave_to_move, rests, steady, why_it_stood
+from kurt2rt.checks.commission.moving import (
+    DRIVE_S,
+    TEST_SPEED_M_S,
+    confirm_motion,
+    require_rest,
+    standstill_cause,
+    steady_speeds,
+)
 from kurt2rt.checks.commission.operator import SkippedError
 from kurt2rt.checks.commission.step import StepResult
 from kurt2rt.checks.commission.test_stand import RAN_AWAY, TURNS_SHARE, TestDrive, TestStand
@@ -27,28 +34,28 @@ class SpeedModesStep:
     why = "Old firmware lacks SPEED_CM, newer firmware may lack SPEED, and there is no acknowledge: only wheels tell."
     what_to_do = f"Each mode turns all wheels at {TEST_SPEED_M_S} m/s, {DRIVE_S} s forward and {DRIVE_S} s backward."
     moves = True
-    bars_driving = True
+    blocks_driving = True
 
-    async def take(self, bench: TestStand, findings: Findings) -> StepResult:
+    async def run(self, stand: TestStand, findings: Findings) -> StepResult:
         """Try all three; the first of the preference that answers is the robot's."""
-        robot = bench.settings
+        robot = stand.settings
         result = StepResult(findings.model_copy(update={"speed_mode": None, "full_speed_m_s": None}))
         trials: list[_Trial] = []
         for mode in PREFERENCE:
             try:
-                await leave_to_move(bench, f"All wheels turn forward, then backward: mode {mode}.")
+                await confirm_motion(stand, f"All wheels turn forward, then backward: mode {mode}.")
             except SkippedError:
-                result.tell(bench, f"{mode}: left out")
+                result.tell(stand, f"{mode}: left out")
                 continue
             trial = _Trial(mode)
             for sign in (1.0, -1.0):
-                drive = await bench.drive(mode, WheelSpeeds(sign * TEST_SPEED_M_S, sign * TEST_SPEED_M_S), DRIVE_S)
+                drive = await stand.drive(mode, WheelSpeeds(sign * TEST_SPEED_M_S, sign * TEST_SPEED_M_S), DRIVE_S)
                 trial.drives.append(drive)
-                if not rests(bench, drive, result):
+                if not require_rest(stand, drive, result):
                     return result
-                if why_it_stood(drive) is not None:
+                if standstill_cause(drive) is not None:
                     break
-            result.tell(bench, trial.said(robot))
+            result.tell(stand, trial.text(robot))
             trials.append(trial)
         return _conclude(trials, robot, result)
 
@@ -60,13 +67,15 @@ class _Trial:
     mode: SpeedMode
     drives: list[TestDrive] = field(default_factory=list)
 
-    def stood(self) -> str | None:
+    def standstill_cause(self) -> str | None:
         """Why the wheels were kept from turning."""
-        return next((why for why in map(why_it_stood, self.drives) if why is not None), None)
+        return next((why for why in map(standstill_cause, self.drives) if why is not None), None)
 
     def answers(self, robot: RobotSettings) -> bool:
         """Whether wheels turned both ways."""
-        return self.stood() is None and all(_fastest_m_s(drive, robot) >= _TURNS_M_S for drive in self.drives)
+        return self.standstill_cause() is None and all(
+            _fastest_m_s(drive, robot) >= _TURNS_M_S for drive in self.drives
+        )
 
     def share(self, robot: RobotSettings) -> float:
         """Measured speed of the faster side against the set point's."""
@@ -77,9 +86,9 @@ class _Trial:
         """What 100 % are, where the mode is SPEED."""
         return round(robot.motors.full_speed_m_s * self.share(robot), 3)
 
-    def said(self, robot: RobotSettings) -> str:
+    def text(self, robot: RobotSettings) -> str:
         """One line of what came."""
-        stood = self.stood()
+        stood = self.standstill_cause()
         if stood is not None:
             return f"{self.mode}: not tried out, {stood}"
         if not self.answers(robot):
@@ -89,9 +98,9 @@ class _Trial:
         said = f"{self.mode}: answers, {told_m_s * self.share(robot):.3f} m/s for a set point of {told_m_s:.3f} m/s"
         return said + (f"; 100 % are {self.full_speed_m_s(robot):.2f} m/s" if self.mode is SpeedMode.SPEED else "")
 
-    def trouble(self, robot: RobotSettings) -> str:
+    def problem(self, robot: RobotSettings) -> str:
         """What is wrong with a mode that the firmware knows; empty when nothing is."""
-        stood = self.stood()
+        stood = self.standstill_cause()
         if stood == RAN_AWAY:
             return f"{self.mode}: {RAN_AWAY} and were braked; {_AFTER_RUNAWAY}"
         if stood is not None:
@@ -109,9 +118,9 @@ class _Trial:
 def _conclude(trials: list[_Trial], robot: RobotSettings, result: StepResult) -> StepResult:
     """The first mode that answers is taken; what is wrong with those after it is no matter."""
     for trial in trials:
-        trouble = trial.trouble(robot)
-        if trouble:
-            result.to_do.append(trouble)
+        problem = trial.problem(robot)
+        if problem:
+            result.to_do.append(problem)
         if trial.answers(robot):
             update: dict[str, object] = {"speed_mode": trial.mode}
             if trial.mode is SpeedMode.SPEED:
@@ -124,4 +133,4 @@ def _conclude(trials: list[_Trial], robot: RobotSettings, result: StepResult) ->
 
 
 def _fastest_m_s(drive: TestDrive, robot: RobotSettings) -> float:
-    return max(map(abs, steady(drive, robot)))
+    return max(map(abs, steady_speeds(drive, robot)))

@@ -26,18 +26,18 @@ class StepResult:
     to_do: list[str] = field(default_factory=list)
     """One instruction for each thing that is wrong."""
 
-    untold: list[str] = field(default_factory=list)
+    unprinted: list[str] = field(default_factory=list)
     """Those of the measured lines that the person has not heard yet."""
 
     def note(self, line: str) -> None:
         """A measured line, for the end of the step."""
         self.measured.append(line)
-        self.untold.append(line)
+        self.unprinted.append(line)
 
-    def tell(self, bench: TestStand, line: str) -> None:
+    def tell(self, stand: TestStand, line: str) -> None:
         """A measured line, told at once."""
         self.measured.append(line)
-        bench.tell(line, Tone.MEASURED)
+        stand.tell(line, Tone.MEASURED)
 
     @property
     def outcome(self) -> StepOutcome:
@@ -46,7 +46,7 @@ class StepResult:
 
 
 class CommissionStep(Protocol):
-    """One step. `take` may be called again; it then starts over."""
+    """One step. `run` may be called again; it then starts over."""
 
     name: str
     """What --only and --skip call it."""
@@ -55,9 +55,9 @@ class CommissionStep(Protocol):
     what_to_do: str
     moves: bool
     """True when the wheels turn."""
-    bars_driving: bool
+    blocks_driving: bool
     """True when a robot that failed here must not be driven, so that no settings file is written."""
 
-    async def take(self, bench: TestStand, findings: Findings) -> StepResult:
+    async def run(self, stand: TestStand, findings: Findings) -> StepResult:
         """Take the step; `findings` are those of the steps before. Raises SkippedError, LeftError, BusError."""
         ...

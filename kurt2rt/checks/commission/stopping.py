@@ -7,11 +7,11 @@ from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.moving import (
     DRIVE_S,
     TEST_SPEED_M_S,
-    leave_to_move,
-    mode_found,
-    rests,
-    steady,
-    why_it_stood,
+    confirm_motion,
+    require_rest,
+    required_speed_mode,
+    standstill_cause,
+    steady_speeds,
 )
 from kurt2rt.checks.commission.step import StepResult
 from kurt2rt.checks.commission.test_stand import TURNS_SHARE, TestDrive, TestStand
@@ -30,62 +30,62 @@ class StoppingStep:
     why = "The brake is what every fault ends in. The watchdog is all that stops the robot when this computer dies."
     what_to_do = f"All wheels turn forward at {TEST_SPEED_M_S} m/s, twice: once they are braked, once left alone."
     moves = True
-    bars_driving = True
+    blocks_driving = True
 
-    async def take(self, bench: TestStand, findings: Findings) -> StepResult:
+    async def run(self, stand: TestStand, findings: Findings) -> StepResult:
         """Brake; fall silent."""
-        mode = mode_found(findings)
+        mode = required_speed_mode(findings)
         result = StepResult(findings.model_copy(update={"controller_watchdog_s": None}))
-        await leave_to_move(bench, "All wheels turn forward; then the brake.")
-        drive = await bench.drive(mode, _FORWARD, DRIVE_S)
+        await confirm_motion(stand, "All wheels turn forward; then the brake.")
+        drive = await stand.drive(mode, _FORWARD, DRIVE_S)
         rested_s = drive.rested_after_s
-        if not rests(bench, drive, result) or rested_s is None:
+        if not require_rest(stand, drive, result) or rested_s is None:
             return result
-        if _was_turning(bench, drive, result):
-            result.tell(bench, f"braked: the wheels stood {rested_s * 1000:.0f} ms after the frame")
+        if _was_turning(stand, drive, result):
+            result.tell(stand, f"braked: the wheels stood {rested_s * 1000:.0f} ms after the frame")
             if rested_s > BRAKED_WITHIN_S:
                 result.to_do.append(
                     f"The brake took {rested_s:.2f} s, allowed are {BRAKED_WITHIN_S} s: "
                     "does the firmware know RAW and its brake bit?"
                 )
-        await leave_to_move(bench, f"All wheels turn forward; then nothing is sent for at most {SILENT_S} s.")
-        drive = await bench.fall_silent(mode, _FORWARD, DRIVE_S, SILENT_S)
-        if _was_turning(bench, drive, result):
-            _judge_watchdog(bench, drive, result)
+        await confirm_motion(stand, f"All wheels turn forward; then nothing is sent for at most {SILENT_S} s.")
+        drive = await stand.stop_sending(mode, _FORWARD, DRIVE_S, SILENT_S)
+        if _was_turning(stand, drive, result):
+            _judge_watchdog(stand, drive, result)
         return result
 
 
-def _was_turning(bench: TestStand, drive: TestDrive, result: StepResult) -> bool:
-    stood = why_it_stood(drive)
-    if stood is None and max(map(abs, steady(drive, bench.settings))) < TURNS_SHARE * TEST_SPEED_M_S:
+def _was_turning(stand: TestStand, drive: TestDrive, result: StepResult) -> bool:
+    stood = standstill_cause(drive)
+    if stood is None and max(map(abs, steady_speeds(drive, stand.settings))) < TURNS_SHARE * TEST_SPEED_M_S:
         stood = "no answer to the set point"
     if stood is not None:
         result.to_do.append(f"The wheels did not turn, so nothing could stop them: {stood}")
     return stood is None
 
 
-def _judge_watchdog(bench: TestStand, drive: TestDrive, result: StepResult) -> None:
+def _judge_watchdog(stand: TestStand, drive: TestDrive, result: StepResult) -> None:
     if drive.rested_after_s is None:
         result.to_do.append(
             f"Without CONTROL the wheels turned on for {SILENT_S} s: this controller does not stop by itself. "
             "Never drive it out of reach of a switch that cuts the motors"
         )
         return
-    fell_s = _fell_after_s(bench, drive)
+    fell_s = _fell_after_s(stand, drive)
     result.tell(
-        bench,
+        stand,
         f"without CONTROL: the drive dropped out after {fell_s * 1000:.0f} ms, "
         f"the wheels stood after {drive.rested_after_s * 1000:.0f} ms",
     )
     result.findings = result.findings.model_copy(update={"controller_watchdog_s": round(fell_s, 2)})
 
 
-def _fell_after_s(bench: TestStand, drive: TestDrive) -> float:
+def _fell_after_s(stand: TestStand, drive: TestDrive) -> float:
     """From the last CONTROL to the first ENCODER frame that is clearly slower than the ones before."""
     before = drive.heard.encoder[-30:]
     steady_ticks = statistics.mean(abs(each.left) + abs(each.right) for each in before)
     from_s = drive.heard.encoder[-1].time_s
     for frame in drive.after.encoder:
         if abs(frame.left) + abs(frame.right) < _FALLEN_SHARE * steady_ticks:
-            return max(bench.settings.can.cycle_s, frame.time_s - from_s)
+            return max(stand.settings.can.cycle_s, frame.time_s - from_s)
     return drive.rested_after_s or 0.0

@@ -15,7 +15,7 @@ from hal.robot_settings import RobotSettings, SpeedMode
 from kurt2rt.checks.commission.frame_statistics import FrameStatistics
 from kurt2rt.checks.commission.listener import Listener
 from kurt2rt.checks.commission.operator import LEAVE, AbortedError, Operator, OperatorQuestion, Tone
-from kurt2rt.checks.commission.test_stand_settings import bench_settings
+from kurt2rt.checks.commission.test_stand_settings import test_stand_settings
 from kurt2rt.platform.clock import Clock
 
 RAN_AWAY = "the wheels ran away"
@@ -63,7 +63,7 @@ class TestStand:
         open_robot: Callable[[RobotSettings], Kurt2],
         listener: Listener,
         clock: Clock,
-        person: Operator,
+        operator: Operator,
         *,
         second_guard: bool,
     ) -> None:
@@ -72,11 +72,11 @@ class TestStand:
         self._open_robot = open_robot
         self._listener = listener
         self._clock = clock
-        self._person = person
+        self._operator = operator
         self._second_guard = second_guard
         self._robot: Kurt2 | None = None
         self._mode: SpeedMode | None = None
-        self._grant = GuardResult(STANDSTILL, (), latched=True)
+        self._result = GuardResult(STANDSTILL, (), latched=True)
         self._cycle_s = settings.can.cycle_s
         self._deadline_s = clock.now_s()
 
@@ -91,7 +91,7 @@ class TestStand:
 
     def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
         """Say a line to the person."""
-        self._person.tell(text, tone)
+        self._operator.tell(text, tone)
 
     async def ask(self, question: OperatorQuestion) -> str:
         """The person's answer; the robot stands meanwhile. Raises AbortedError, also when the answer is to leave."""
@@ -101,7 +101,7 @@ class TestStand:
         async def listen() -> None:
             nonlocal gone
             try:
-                answers.append(await self._person.answer(question))
+                answers.append(await self._operator.answer(question))
             except AbortedError:
                 gone = True
 
@@ -114,7 +114,7 @@ class TestStand:
             raise AbortedError
         return answers[0]
 
-    async def stand(self, seconds: float) -> FrameStatistics:
+    async def listen(self, seconds: float) -> FrameStatistics:
         """What is heard in a while in which the robot stands; nothing is sent before the wheels first turned."""
         heard = FrameStatistics()
         for _ in range(self._ticks(seconds)):
@@ -124,23 +124,23 @@ class TestStand:
     async def hardware_id(self) -> int | None:
         """As INFO_1 says it; None when that does not come. The robot stands while it is waited for."""
         if self._listener.hardware_id is None:
-            await self.stand(_IDENTITY_S)
+            await self.listen(_IDENTITY_S)
         return self._listener.hardware_id
 
     async def drive(self, mode: SpeedMode, wanted: WheelSpeeds, seconds: float) -> TestDrive:
         """Turn the wheels in a speed mode for so long, then brake; sooner when the guard or a runaway stops them, or
         when nothing is counted of a side that is to turn.
         """
-        robot = await self._ready(mode)
-        return await self._brake(robot, await self._order(robot, wanted, seconds))
+        robot = await self._prepared_robot(mode)
+        return await self._brake(robot, await self._drive_steadily(robot, wanted, seconds))
 
-    async def fall_silent(self, mode: SpeedMode, wanted: WheelSpeeds, seconds: float, silent_s: float) -> TestDrive:
+    async def stop_sending(self, mode: SpeedMode, wanted: WheelSpeeds, seconds: float, silent_s: float) -> TestDrive:
         """As `drive`, but then no CONTROL is sent for at most `silent_s`, until the wheels rest by themselves.
 
         `rested_after_s` counts from the last CONTROL frame, and is None when they had to be braked in the end.
         """
-        robot = await self._ready(mode)
-        drive = await self._order(robot, wanted, seconds)
+        robot = await self._prepared_robot(mode)
+        drive = await self._drive_steadily(robot, wanted, seconds)
         if drive.stopped_by is None and self._unanswered(drive.heard, wanted):
             drive = replace(drive, stopped_by=UNANSWERED)
         if drive.stopped_by is not None:
@@ -158,7 +158,7 @@ class TestStand:
         await self._until_rest(drive, _HALT_S, STANDSTILL)
         return silent
 
-    async def _order(self, robot: Kurt2, wanted: WheelSpeeds, seconds: float) -> TestDrive:
+    async def _drive_steadily(self, robot: Kurt2, wanted: WheelSpeeds, seconds: float) -> TestDrive:
         heard = FrameStatistics()
         fastest_m_s = max(abs(wanted.left_m_s), abs(wanted.right_m_s)) * _RUNAWAY_FACTOR + _RUNAWAY_MARGIN_M_S
         stopped_by = None
@@ -174,7 +174,7 @@ class TestStand:
                 break
             if ticks == self._ticks(_ANSWER_S) and self._unanswered(heard, wanted):
                 break  # a speed loop that hears nothing of its wheels turns them faster and faster
-        return TestDrive(heard, FrameStatistics(), self._grant.wheel_speeds, self._grant.reasons, stopped_by, None)
+        return TestDrive(heard, FrameStatistics(), self._result.wheel_speeds, self._result.reasons, stopped_by, None)
 
     def _unanswered(self, heard: FrameStatistics, wanted: WheelSpeeds) -> bool:
         """Whether a side that was told to turn is not counted to."""
@@ -192,25 +192,25 @@ class TestStand:
         rested_s = None
         for _ in range(self._ticks(at_most_s)):
             await self._tick(after, wanted)
-            rested_s = after.rested_at_s()
+            rested_s = after.rest_began_s()
             if rested_s is not None and self._clock.now_s() - rested_s >= _REST_S:
                 break
         return replace(drive, after=after, rested_after_s=None if rested_s is None else max(0.0, rested_s - from_s))
 
-    async def _ready(self, mode: SpeedMode) -> Kurt2:
+    async def _prepared_robot(self, mode: SpeedMode) -> Kurt2:
         """The robot, opened for this mode, braked, its senses fresh."""
         if self._robot is None or self._mode is not mode:
             self._close_robot()
-            ear = self._listener
-            if not ear.channels:
-                await self.stand(_BREATH_S)  # to hear which boards there are
-            settings = bench_settings(self.settings, mode, ear.channels, has_bumpers=ear.has_bumpers)
+            listener = self._listener
+            if not listener.channels:
+                await self.listen(_BREATH_S)  # to hear which boards there are
+            settings = test_stand_settings(self.settings, mode, listener.channels, has_bumpers=listener.has_bumpers)
             robot = self._robot = self._open_robot(settings)
             self._mode = mode
             robot.emergency_stop(GuardReason.CHECKLIST_WAITS)
             if self._second_guard:
                 robot.watchdog.start()
-        await self.stand(_BREATH_S)
+        await self.listen(_BREATH_S)
         return self._robot
 
     def _close_robot(self) -> None:
@@ -227,13 +227,13 @@ class TestStand:
         self._deadline_s = max(self._deadline_s + self._cycle_s, self._clock.now_s())
         await self._clock.wait_until(self._deadline_s)
         now_s = self._clock.now_s()
-        self._listener.hear(now_s, heard)
+        self._listener.poll(now_s, heard)
         robot = self._robot
         if robot is None:
             return
         robot.sense(now_s)
         if wanted is not None:
-            self._grant = robot.drive(wanted, now_s, now_s)
+            self._result = robot.drive(wanted, now_s, now_s)
 
 
 def _stopped_by(robot: Kurt2) -> str | None:

@@ -11,7 +11,7 @@ PATIENCE_S = 0.5
 sends them at another pace than the table says is what the checklist is there to find."""
 
 
-def bench_settings(
+def test_stand_settings(
     robot: RobotSettings, mode: SpeedMode, channels: Collection[str], *, has_bumpers: bool
 ) -> RobotSettings:
     """What the guard is given for the wheels' tests in a speed mode; only analog channels that were heard count.

@@ -6,16 +6,16 @@ from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.moving import (
     DRIVE_S,
     TEST_SPEED_M_S,
-    leave_to_move,
-    mode_found,
-    rests,
-    steady,
-    why_it_stood,
+    confirm_motion,
+    require_rest,
+    required_speed_mode,
+    standstill_cause,
+    steady_speeds,
 )
 from kurt2rt.checks.commission.operator import AnswerChoice, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.step import StepResult
 from kurt2rt.checks.commission.test_stand import TURNS_SHARE, TestDrive, TestStand
-from kurt2rt.checks.commission.wiring import Motion, WheelSide, WheelTrial, one, parse_seen, what_to_rewire
+from kurt2rt.checks.commission.wiring import Motion, WheelSide, WheelTrial, parse_seen, single_side, wiring_advice
 
 _UNEQUAL_SHARE = 0.25
 _YES = "y"
@@ -29,36 +29,36 @@ class WheelsStep:
     why = "With sides exchanged or one reversed the robot turns into the wall it wants to leave."
     what_to_do = "Watch the wheels: three turn together on each side. Say which turned, and which way."
     moves = True
-    bars_driving = True
+    blocks_driving = True
 
-    async def take(self, bench: TestStand, findings: Findings) -> StepResult:
+    async def run(self, stand: TestStand, findings: Findings) -> StepResult:
         """Four drives and four looks."""
-        mode = mode_found(findings)
+        mode = required_speed_mode(findings)
         result = StepResult(findings)
         trials: list[WheelTrial] = []
         fastest_m_s: dict[WheelSide, float] = {}
         for side in WheelSide:
             for sign in (1, -1):
-                ordered = one(side, sign)
-                await leave_to_move(bench, f"The wheels of one side turn: {ordered}.")
+                ordered = single_side(side, sign)
+                await confirm_motion(stand, f"The wheels of one side turn: {ordered}.")
                 wanted = WheelSpeeds(ordered.left * TEST_SPEED_M_S, ordered.right * TEST_SPEED_M_S)
-                drive = await bench.drive(mode, wanted, DRIVE_S)
-                if not rests(bench, drive, result):
+                drive = await stand.drive(mode, wanted, DRIVE_S)
+                if not require_rest(stand, drive, result):
                     return result
-                stood = why_it_stood(drive)
-                speeds = steady(drive, bench.settings)
-                counted = _counted(drive, bench.settings)
-                seen = await _seen(bench, ordered, counted)
+                stood = standstill_cause(drive)
+                speeds = steady_speeds(drive, stand.settings)
+                counted = _counted(drive, stand.settings)
+                seen = await _seen(stand, ordered, counted)
                 trials.append(WheelTrial(ordered, seen, counted))
                 fastest_m_s[side] = max(map(abs, speeds))
                 result.tell(
-                    bench,
+                    stand,
                     f"ordered {ordered}, seen {seen}, encoders {counted} "
                     f"({speeds.left_m_s:+.3f} and {speeds.right_m_s:+.3f} m/s)",
                 )
                 if stood is not None:
                     result.to_do.append(f"{ordered}: the wheels were kept from turning: {stood}")
-        result.to_do += what_to_rewire(trials)
+        result.to_do += wiring_advice(trials)
         if not result.to_do and min(fastest_m_s.values()) < (1.0 - _UNEQUAL_SHARE) * max(fastest_m_s.values()):
             result.to_do.append(
                 "One side turns much slower than the other: look for a wheel that rubs, a slack belt, a weak motor"
@@ -67,7 +67,7 @@ class WheelsStep:
 
 
 def _counted(drive: TestDrive, robot: RobotSettings) -> Motion:
-    return Motion(*(_sign(speed_m_s) for speed_m_s in steady(drive, robot)))
+    return Motion(*(_sign(speed_m_s) for speed_m_s in steady_speeds(drive, robot)))
 
 
 def _sign(speed_m_s: float) -> int:
@@ -76,7 +76,7 @@ def _sign(speed_m_s: float) -> int:
     return 1 if speed_m_s > 0 else -1
 
 
-async def _seen(bench: TestStand, ordered: Motion, counted: Motion) -> Motion:
+async def _seen(stand: TestStand, ordered: Motion, counted: Motion) -> Motion:
     """What a person saw. Enter alone is no answer: with motors and encoders exchanged only eyes tell. Nor is yes, where
     the encoders disagree with the order.
     """
@@ -88,11 +88,11 @@ async def _seen(bench: TestStand, ordered: Motion, counted: Motion) -> Motion:
     )
     question = OperatorQuestion(QuestionKind.SEEN, text, as_ordered, free=True)
     while True:
-        answer = await bench.ask(question)
+        answer = await stand.ask(question)
         if answer == _YES and as_ordered:
             return ordered
         seen = parse_seen(answer)
         if seen is not None:
             return seen
         yes = ", or y" if as_ordered else ""
-        bench.tell(f"Two words, please, such as: left forward. Or: none{yes}.", Tone.BAD)
+        stand.tell(f"Two words, please, such as: left forward. Or: none{yes}.", Tone.BAD)

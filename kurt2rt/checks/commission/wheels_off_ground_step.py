@@ -16,9 +16,9 @@ class WheelsOffGroundStep:
     why = "Nobody knows yet which way this robot turns its wheels, nor whether it stops when it is told to."
     what_to_do = "Put the robot on a block so that all six wheels turn freely; cables, sleeves and fingers away."
     moves = False
-    bars_driving = True
+    blocks_driving = True
 
-    async def take(self, bench: TestStand, findings: Findings) -> StepResult:
+    async def run(self, stand: TestStand, findings: Findings) -> StepResult:
         """Ask until the words are typed."""
         question = OperatorQuestion(
             QuestionKind.LIFTED,
@@ -27,11 +27,11 @@ class WheelsOffGroundStep:
             free=True,
         )
         while True:
-            answer = await bench.ask(question)
+            answer = await stand.ask(question)
             if answer == SKIP:
                 raise SkippedError("the wheels were not confirmed off the ground")
             if " ".join(answer.split()) == WORDS:
                 result = StepResult(findings)
                 result.note("confirmed by typing")
                 return result
-            bench.tell(f"That was {answer!r}, not {WORDS!r}.", Tone.BAD)
+            stand.tell(f"That was {answer!r}, not {WORDS!r}.", Tone.BAD)

@@ -41,7 +41,7 @@ class Motion(NamedTuple):
 STILL = Motion(0, 0)
 
 
-def one(side: WheelSide, sign: int) -> Motion:
+def single_side(side: WheelSide, sign: int) -> Motion:
     """Only this side turns."""
     return Motion(sign, 0) if side is WheelSide.LEFT else Motion(0, sign)
 
@@ -73,7 +73,7 @@ def parse_seen(answer: str) -> Motion | None:
     return {"left": Motion(way[0], 0), "right": Motion(0, way[0]), "both": Motion(way[0], way[0])}.get(who[0])
 
 
-def what_to_rewire(trials: list[WheelTrial]) -> list[str]:
+def wiring_advice(trials: list[WheelTrial]) -> list[str]:
     """Instructions, motors before encoders; empty when all is as it should be. `trials`: each side, both ways."""
     motors = [(trial.ordered, trial.seen) for trial in trials]
     encoders = [(trial.seen, trial.counted) for trial in trials]

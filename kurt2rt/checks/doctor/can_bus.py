@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
-from kurt2rt.checks.doctor.sysfs import attribute
+from kurt2rt.checks.doctor.sysfs import read_attribute
 
 NET_FOLDER = Path("/sys/class/net")
 MODULES_FOLDER = Path("/lib/modules", os.uname().release)
@@ -28,7 +28,7 @@ def check_can_kernel(
     try:
         open_socket().close()
     except (OSError, AttributeError) as error:  # AttributeError: a Python that was built without CAN
-        code = FindingCode.CAN_UNLOADED if _offers("can-raw", modules) else FindingCode.CAN_MISSING
+        code = FindingCode.CAN_UNLOADED if _has_module("can-raw", modules) else FindingCode.CAN_MISSING
         return CheckResult(code, CheckStatus.MISSING, {"error": str(error)})
     return CheckResult(FindingCode.CAN, CheckStatus.OK)
 
@@ -37,7 +37,7 @@ def check_can_interfaces(net: Path = NET_FOLDER) -> tuple[CheckResult, ...]:
     """Which CAN interfaces with hardware are there, and are they up? One finding each, or one that there is none."""
     interfaces = [each for each in _can_interfaces(net) if not _is_virtual(each)]
     if not interfaces:
-        values = {"folder": str(net), "up": _up("can0")}
+        values = {"folder": str(net), "up": _up_command("can0")}
         return (CheckResult(FindingCode.CAN_INTERFACE_NONE, CheckStatus.MISSING, values),)
     return tuple(_check_interface(each) for each in interfaces)
 
@@ -50,22 +50,22 @@ def check_vcan(net: Path = NET_FOLDER, modules: Path = MODULES_FOLDER) -> CheckR
             return CheckResult(FindingCode.VCAN, CheckStatus.OK, {"name": each.name})
     if interfaces:
         return CheckResult(FindingCode.VCAN_DOWN, CheckStatus.WARNING, {"name": interfaces[0].name})
-    if not _offers("vcan", modules):
+    if not _has_module("vcan", modules):
         return CheckResult(FindingCode.VCAN_NO_MODULE, CheckStatus.WARNING, {"folder": str(modules)})
     return CheckResult(FindingCode.VCAN_NONE, CheckStatus.WARNING)
 
 
 def _check_interface(interface: Path) -> CheckResult:
-    values = {"name": interface.name, "up": _up(interface.name)}
+    values = {"name": interface.name, "up": _up_command(interface.name)}
     if not _is_up(interface):
         return CheckResult(FindingCode.CAN_INTERFACE_DOWN, CheckStatus.WARNING, values)
-    if attribute(interface / "carrier") == "0":
+    if read_attribute(interface / "carrier") == "0":
         return CheckResult(FindingCode.CAN_INTERFACE_OFF_BUS, CheckStatus.WARNING, values)
     return CheckResult(FindingCode.CAN_INTERFACE, CheckStatus.OK, values)
 
 
 def _can_interfaces(net: Path) -> list[Path]:
-    return [each for each in sorted(net.glob("*")) if attribute(each / "type") == str(_ARPHRD_CAN)]
+    return [each for each in sorted(net.glob("*")) if read_attribute(each / "type") == str(_ARPHRD_CAN)]
 
 
 def _is_virtual(interface: Path) -> bool:
@@ -74,16 +74,16 @@ def _is_virtual(interface: Path) -> bool:
 
 
 def _is_up(interface: Path) -> bool:
-    return bool(int(attribute(interface / "flags") or "0", 16) & _IFF_UP)
+    return bool(int(read_attribute(interface / "flags") or "0", 16) & _IFF_UP)
 
 
-def _up(name: str) -> str:
+def _up_command(name: str) -> str:
     # The bit rate of a serial-line adapter is slcand's to set; ip refuses it. And ip takes `up` only before `type`.
     bit_rate = "" if name.startswith("slcan") else f" type can bitrate {BIT_RATE_BIT_S}"
     return f"sudo ip link set {name} up{bit_rate}"
 
 
-def _offers(module: str, modules: Path) -> bool:
+def _has_module(module: str, modules: Path) -> bool:
     """Does the running kernel have this module, loadable or built in?"""
     lists = [modules / "modules.dep", modules / "modules.builtin"]
     return any(f"/{module}.ko" in each.read_text(encoding="utf-8") for each in lists if each.is_file())

@@ -12,7 +12,7 @@ from kurt2rt.checks.doctor.sqlite_log import check_sqlite
 from kurt2rt.checks.doctor.timer import check_clock, check_timer
 
 
-def examine(folder: Path, ticks: int = 100) -> tuple[CheckResult, ...]:
+def run_checks(folder: Path, ticks: int = 100) -> tuple[CheckResult, ...]:
     """Look at this machine; `folder` is where knowledge is kept. Changes nothing. Takes 20 ms for each of the ticks."""
     return (
         check_python(),

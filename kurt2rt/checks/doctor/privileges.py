@@ -29,7 +29,7 @@ def check_real_time_priority(
     if limit is None:
         limit = resource.getrlimit(resource.RLIMIT_RTPRIO)[0]
     capability = "with" if _has_capability(_CAP_SYS_NICE, status) else "without"
-    values = {"limit": _shown(limit), "capability": capability}
+    values = {"limit": _format_limit(limit), "capability": capability}
     with ThreadPoolExecutor(max_workers=1) as thread:
         trial = thread.submit(set_scheduler, 0, os.SCHED_FIFO, os.sched_param(_HIGHEST_PRIORITY))
     try:
@@ -66,5 +66,5 @@ def _status_field(name: str, status: Path) -> str:
     return fields[name].strip()
 
 
-def _shown(limit: int) -> str:
+def _format_limit(limit: int) -> str:
     return "unlimited" if limit == resource.RLIM_INFINITY else str(limit)

@@ -8,7 +8,7 @@ import numpy as np
 from threadpoolctl import threadpool_info
 
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
-from kurt2rt.checks.doctor.sysfs import attribute
+from kurt2rt.checks.doctor.sysfs import read_attribute
 
 CPU_FOLDER = Path("/sys/devices/system/cpu")
 
@@ -26,7 +26,7 @@ def check_cores(usable: int | None = None) -> CheckResult:
 def check_governor(cpu_folder: Path = CPU_FOLDER) -> CheckResult:
     """Do the cores stay at full clock? One that sleeps between ticks wakes late and slow."""
     files = sorted(cpu_folder.glob("cpu[0-9]*/cpufreq/scaling_governor"))
-    governors = Counter(governor for governor in map(attribute, files) if governor)
+    governors = Counter(governor for governor in map(read_attribute, files) if governor)
     if not governors:
         return CheckResult(FindingCode.GOVERNOR_NONE, CheckStatus.OK)
     found = ", ".join(f"{name} on {count} cores" for name, count in sorted(governors.items()))

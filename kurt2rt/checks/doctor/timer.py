@@ -10,7 +10,7 @@ from pathlib import Path
 import anyio
 
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
-from kurt2rt.checks.doctor.sysfs import attribute
+from kurt2rt.checks.doctor.sysfs import read_attribute
 from kurt2rt.platform.asyncio_clock import AsyncioClock
 from kurt2rt.platform.clock import Clock
 from kurt2rt.platform.timerfd_clock import TimerfdClock
@@ -78,7 +78,7 @@ def check_clock(resolution_s: float | None = None, source: Path = CLOCK_SOURCE) 
     """Is the monotonic clock fine and quick to read?"""
     if resolution_s is None:
         resolution_s = time.get_clock_info("monotonic").resolution
-    name = attribute(source) or "unknown"
+    name = read_attribute(source) or "unknown"
     values: dict[str, float | str] = {"resolution_ns": resolution_s * 1e9, "source": name}
     if resolution_s > COARSE_RESOLUTION_S:
         return CheckResult(FindingCode.CLOCK_COARSE, CheckStatus.WARNING, values)

@@ -19,7 +19,7 @@ _MOST_UNDER_WAY = 2048
 """Frames that may be on their way to the robot; what is older was lost."""
 
 
-class Told(NamedTuple):
+class WheelCommand(NamedTuple):
     """What a CONTROL frame tells the wheels."""
 
     left_m_s: float
@@ -32,27 +32,27 @@ class Told(NamedTuple):
         return self.left_m_s == 0.0 and self.right_m_s == 0.0
 
 
-_BRAKE = Told(0.0, 0.0, brake=True)
+_BRAKE = WheelCommand(0.0, 0.0, brake=True)
 
 
-def told_by(payload: bytes) -> Told | None:
+def decode_command(payload: bytes) -> WheelCommand | None:
     """What a payload says; None for one that the robot does not understand or that this guard never says."""
     if payload == _BRAKE_PAYLOAD:
         return _BRAKE
     if len(payload) != _SET_POINT.size:
         return None
     mode, left_cm_s, right_cm_s, _ = _SET_POINT.unpack(payload)
-    return Told(left_cm_s / 100.0, right_cm_s / 100.0, brake=False) if mode == _SPEED_CM else None
+    return WheelCommand(left_cm_s / 100.0, right_cm_s / 100.0, brake=False) if mode == _SPEED_CM else None
 
 
-class _Put(NamedTuple):
+class _SentFrame(NamedTuple):
     at_s: float
     age_s: float
-    told: Told | None
-    off_a_bumper: bool
+    told: WheelCommand | None
+    bumper_pressed: bool
 
 
-class _UnderWay:
+class _FramesInTransit:
     """The newest frames that were put and have not arrived, in memory of one size: what watches must not grow."""
 
     _ROW = struct.Struct("=qdddd???")
@@ -60,7 +60,7 @@ class _UnderWay:
     def __init__(self) -> None:
         self._rows = bytearray(self._ROW.size * _MOST_UNDER_WAY)
 
-    def put(self, number: int, put: _Put) -> None:
+    def put(self, number: int, put: _SentFrame) -> None:
         left_m_s, right_m_s, brake = (0.0, 0.0, False) if put.told is None else put.told
         self._ROW.pack_into(
             self._rows,
@@ -72,17 +72,17 @@ class _UnderWay:
             right_m_s,
             brake,
             put.told is not None,
-            put.off_a_bumper,
+            put.bumper_pressed,
         )
 
-    def pop(self, number: int) -> _Put | None:
+    def pop(self, number: int) -> _SentFrame | None:
         """None where it has arrived already, or was put too long ago."""
         place = self._place(number)
-        put, at_s, age_s, left_m_s, right_m_s, brake, is_told, off_a_bumper = self._ROW.unpack_from(self._rows, place)
+        put, at_s, age_s, left_m_s, right_m_s, brake, is_told, bumper_pressed = self._ROW.unpack_from(self._rows, place)
         if put != number + 1:
             return None
         self._ROW.pack_into(self._rows, place, *[0] * 8)
-        return _Put(at_s, age_s, Told(left_m_s, right_m_s, brake) if is_told else None, off_a_bumper)
+        return _SentFrame(at_s, age_s, WheelCommand(left_m_s, right_m_s, brake) if is_told else None, bumper_pressed)
 
     def _place(self, number: int) -> int:
         return number % _MOST_UNDER_WAY * self._ROW.size
@@ -103,48 +103,48 @@ class Envelope:
         self.unintelligible = 0
         """Frames that arrived garbled; the robot does not obey them."""
         self.slew_share = slew_share
-        self.clock_is_wrong = False
+        self.clock_is_faulty = False
         """While the driver's clock jumps, every frame may gain or lose what is allowed in the longest step."""
-        self.off_a_bumper = False
+        self.bumper_pressed = False
         """While the driver sees one pressed: a wheel that drives against it stops, and may turn round, at once."""
         self._limits = limits
-        self._under_way = _UnderWay()
-        self._last_put: _Put | None = None
-        self._last_arrived: _Put | None = None
+        self._in_transit = _FramesInTransit()
+        self._last_put: _SentFrame | None = None
+        self._last_arrived: _SentFrame | None = None
         self._arrived_number = 0
 
-    def put(self, number: int, at_s: float, payload: bytes, age_s: float, *, latched: bool) -> None:
+    def on_sent(self, number: int, at_s: float, payload: bytes, age_s: float, *, latched: bool) -> None:
         """The driver hands a frame to its bus; `age_s`: since its decision began."""
         self.frames += 1
-        told = told_by(payload)
-        put = _Put(at_s, age_s, told, self.off_a_bumper)
-        self._under_way.put(number, put)
+        told = decode_command(payload)
+        put = _SentFrame(at_s, age_s, told, self.bumper_pressed)
+        self._in_transit.put(number, put)
         if told is None:
-            self._violate(at_s, ComplaintCode.UNKNOWN_FRAME, payload=payload.hex(" "))
+            self._complain(at_s, ComplaintCode.UNKNOWN_FRAME, payload=payload.hex(" "))
             return
         if not told.standing:
             self.oldest_age_s = max(self.oldest_age_s, age_s)
             if not age_s <= self._limits.command_age_s + _ROUNDING:
-                self._violate(at_s, ComplaintCode.OLD_COMMAND, age_ms=age_s * 1000)
+                self._complain(at_s, ComplaintCode.OLD_COMMAND, age_ms=age_s * 1000)
         if latched and not told.brake:
-            self._violate(at_s, ComplaintCode.NO_BRAKE)
+            self._complain(at_s, ComplaintCode.NO_BRAKE)
         self._require_slow(at_s, told)
         if self._last_put is not None and self._last_put.told is not None:
             longest_s = self._limits.longest_step_s
-            by_frame = self.clock_is_wrong or self._last_put.told.brake
+            by_frame = self.clock_is_faulty or self._last_put.told.brake
             elapsed_s = longest_s if by_frame else at_s - self._last_put.at_s
             self._require_smooth(at_s, self._last_put.told, put, told, min(elapsed_s, longest_s))
         self._last_put = put
 
-    def arrived(self, number: int, at_s: float, payload: bytes) -> Told | None:
+    def on_arrived(self, number: int, at_s: float, payload: bytes) -> WheelCommand | None:
         """A frame arrives at the robot; returns what it tells, None where it is not understood."""
-        told = told_by(payload)
+        told = decode_command(payload)
         if told is None:
             self.unintelligible += 1
             return None
-        put = self._under_way.pop(number)
+        put = self._in_transit.pop(number)
         if put is None:
-            self._violate(at_s, ComplaintCode.ARRIVED_TWICE, frame=number, others=_MOST_UNDER_WAY)
+            self._complain(at_s, ComplaintCode.ARRIVED_TWICE, frame=number, others=_MOST_UNDER_WAY)
             return told
         if not told.standing and put.age_s + at_s - put.at_s > self._limits.command_age_s + _ROUNDING:
             self.old_frames += 1
@@ -156,7 +156,7 @@ class Envelope:
             if self._last_arrived.told.brake:
                 # The first step after a brake may be the longest, two cycles, and may be one of those that were lost.
                 elapsed_s = max(elapsed_s + longest_s / 2, longest_s)
-            elif self.clock_is_wrong:
+            elif self.clock_is_faulty:
                 elapsed_s = max(elapsed_s, longest_s)
             # A stop may be among frames that were lost on the way: it is free, and what comes after it may turn round.
             follows = number == self._arrived_number + 1
@@ -165,13 +165,20 @@ class Envelope:
         self._arrived_number = number
         return told
 
-    def _require_slow(self, at_s: float, told: Told) -> None:
+    def _require_slow(self, at_s: float, told: WheelCommand) -> None:
         fastest_m_s = max(abs(told.left_m_s), abs(told.right_m_s))
         if fastest_m_s > self._limits.speed_m_s + _ROUNDING:
-            self._violate(at_s, ComplaintCode.TOO_FAST, speed_m_s=fastest_m_s)
+            self._complain(at_s, ComplaintCode.TOO_FAST, speed_m_s=fastest_m_s)
 
     def _require_smooth(
-        self, at_s: float, before: Told, put: _Put, told: Told, elapsed_s: float, *, follows: bool = True
+        self,
+        at_s: float,
+        before: WheelCommand,
+        put: _SentFrame,
+        told: WheelCommand,
+        elapsed_s: float,
+        *,
+        follows: bool = True,
     ) -> None:
         limits = self._limits
         for side, old_m_s, new_m_s in (
@@ -182,16 +189,16 @@ class Envelope:
                 continue  # to stand is allowed at once
             if not follows and (old_m_s * new_m_s < 0.0 or abs(new_m_s) < abs(old_m_s)):
                 continue
-            if old_m_s * new_m_s < 0.0 and put.off_a_bumper:
+            if old_m_s * new_m_s < 0.0 and put.bumper_pressed:
                 old_m_s = 0.0
             if old_m_s * new_m_s < 0.0:
-                self._violate(at_s, ComplaintCode.TURNED_ROUND, side=side, from_m_s=old_m_s, to_m_s=new_m_s)
+                self._complain(at_s, ComplaintCode.TURNED_ROUND, side=side, from_m_s=old_m_s, to_m_s=new_m_s)
                 continue
             gained_m_s = abs(new_m_s) - abs(old_m_s)
             limit_m_s2 = limits.acceleration_m_s2 if gained_m_s > 0 else limits.braking_m_s2
             allowed_m_s = self.slew_share * limit_m_s2 * elapsed_s + limits.resolution_m_s
             if abs(gained_m_s) > allowed_m_s + _ROUNDING:
-                self._violate(
+                self._complain(
                     at_s,
                     ComplaintCode.JUMPED,
                     side=side,
@@ -201,5 +208,5 @@ class Envelope:
                     allowed_m_s=allowed_m_s,
                 )
 
-    def _violate(self, at_s: float, code: ComplaintCode, **values: Value) -> None:
+    def _complain(self, at_s: float, code: ComplaintCode, **values: Value) -> None:
         self.violations.append(complaint(code, at_s, **values))

@@ -11,7 +11,7 @@ _LOST_SHARE = 0.5
 _WAITS_PER_CHECKPOINT = 100
 
 
-class DrillClock:
+class RigClock:
     """Simulated time as the runtime's clock (kurt2rt.platform.clock.Clock): waiting makes it pass."""
 
     def __init__(self, time: SimulatedTime) -> None:
@@ -34,7 +34,7 @@ class BrokenClockError(OSError):
     """The clock cannot be read."""
 
 
-class DisturbedClock:
+class FaultyClock:
     """A clock that fails, and wakes the loop by its own wrong time, as the kernel's timers would.
 
     off: neither read nor waited for. stuck: it stands still. garbage: it is not a number. wrong: it was set back.
@@ -44,7 +44,7 @@ class DisturbedClock:
     def __init__(self, time: SimulatedTime, disturbance: RigDisturbance) -> None:
         self._time = time
         self._disturbance = disturbance
-        self._sound = DrillClock(time)
+        self._sound = RigClock(time)
 
     def now_s(self) -> float:
         """The wrong time. Raises BrokenClockError when it is off."""

@@ -25,7 +25,7 @@ class DiskOutOfStepError(RuntimeError):
     """The writer's thread did not do in time what it has to."""
 
 
-class DisturbedJournal(Journal):
+class FaultyJournal(Journal):
     """A journal whose writes fail or wait; used by the writer's thread, while the drill's thread rules over time."""
 
     disturbance: RigDisturbance | None = None
@@ -33,14 +33,14 @@ class DisturbedJournal(Journal):
     simulated: SimulatedTime
     waits_until_s: float | None = None
     """Simulated time until which a write waits; None while none does."""
-    given_up = False
+    is_over = False
     """The drill is over: nothing fails or waits any more."""
 
     def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
         """Write, with what the fault does to it. Raises KnowledgeError."""
         now_s = self.simulated.now_s()
         disturbance = self.disturbance
-        if self.given_up or disturbance is None or not disturbance.acts(now_s):
+        if self.is_over or disturbance is None or not disturbance.acts(now_s):
             return super().append(entries)
         match disturbance.kind:
             case "off" | "intermittent":
@@ -61,7 +61,7 @@ class DisturbedJournal(Journal):
 
     def _wait(self, until_s: float) -> None:
         self.waits_until_s = until_s
-        while self.simulated.now_s() < until_s and not self.given_up:
+        while self.simulated.now_s() < until_s and not self.is_over:
             time.sleep(_LOOK_S)
         self.waits_until_s = None
 
@@ -90,13 +90,13 @@ class FailingDisk:
         self._path, self._settings, self._task = path, settings, task
         with open_knowledge(path, settings, task) as new:
             binding = new.binding
-        self._journal = DisturbedJournal.open(path, binding)
+        self._journal = FaultyJournal.open(path, binding)
         self._journal.disturbance = disturbance
         self._journal.simulated = simulated
         retry = RetryDelays(first_s=0.001, longest_s=0.001)
         self._writer = JournalWriter(self._journal, utc_now, retry, clock=simulated.now_s)
         if disturbance.kind == "wrong":
-            exchange_file(simulated, disturbance, path)
+            schedule_file_swap(simulated, disturbance, path)
 
     @property
     def error(self) -> str | None:
@@ -119,7 +119,7 @@ class FailingDisk:
 
     def close(self) -> None:
         """Write what is left and close the file; may be called twice. Raises KnowledgeError."""
-        self._journal.given_up = True
+        self._journal.is_over = True
         self._writer.close()
 
     def lost_lessons(self) -> Complaint | None:
@@ -144,19 +144,19 @@ class FailingDisk:
         return fails and self._disturbance.acts(now_s) and self._writer.error is not None
 
 
-def exchange_file(simulated: SimulatedTime, disturbance: RigDisturbance, path: Path) -> None:
+def schedule_file_swap(simulated: SimulatedTime, disturbance: RigDisturbance, path: Path) -> None:
     """Another file stands in the place of this one, for the disturbance's span."""
     away = path.with_name(f"{path.name}.away")
-    simulated.at(disturbance.begin_s, lambda: _exchange(path, away))
-    simulated.at(disturbance.end_s, lambda: _put_back(away, path))
+    simulated.at(disturbance.begin_s, lambda: _swap_out(path, away))
+    simulated.at(disturbance.end_s, lambda: _swap_back(away, path))
 
 
-def _exchange(path: Path, away: Path) -> None:
+def _swap_out(path: Path, away: Path) -> None:
     path.rename(away)
     path.write_bytes(b"")
 
 
-def _put_back(away: Path, path: Path) -> None:
+def _swap_back(away: Path, path: Path) -> None:
     away.rename(path)
 
 

@@ -16,7 +16,7 @@ class BrokenTickError(RuntimeError):
     """A tick ended in an error of the program."""
 
 
-class DisturbedLevel:
+class FaultyLevel:
     """Stands before the layer that decides (kurt2rt.core.decision.level.Level).
 
     off: it raises. stuck: it comes back when the fault is over. garbage: it wants what is no number. wrong: it wants
@@ -28,13 +28,13 @@ class DisturbedLevel:
         self._time = time
         self._disturbance = disturbance
         self._hung = -1
-        self.behind: Level | None = None
+        self.inner: Level | None = None
         """The layer that really decides; set before the first tick."""
 
     def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
         """The decision, or what the fault makes of it. Raises BrokenTickError."""
-        assert self.behind is not None
-        decision = self.behind.decide(situation, senses, stand_because)
+        assert self.inner is not None
+        decision = self.inner.decide(situation, senses, stand_because)
         disturbance, now_s = self._disturbance, self._time.now_s()
         if not disturbance.acts(now_s):
             return decision

@@ -20,7 +20,7 @@ class _FailingWriter:
 
     def __init__(self, simulated: SimulatedTime, disturbance: RigDisturbance) -> None:
         self.waits_until_s: float | None = None
-        self.given_up = False
+        self.is_over = False
         self._simulated = simulated
         self._disturbance = disturbance
 
@@ -46,7 +46,7 @@ class _FailingWriter:
 
     def _wait(self, until_s: float) -> None:
         self.waits_until_s = until_s
-        while self._simulated.now_s() < until_s and not self.given_up:
+        while self._simulated.now_s() < until_s and not self.is_over:
             time.sleep(_LOOK_S)
         self.waits_until_s = None
 
@@ -84,7 +84,7 @@ class FailingRecorder:
 
     def close(self) -> None:
         """The drill is over: nobody waits any more."""
-        self._writer.given_up = True
+        self._writer.is_over = True
         if self._thread is not None:
             self._thread.join()
         self._log.write_waiting()
@@ -101,7 +101,7 @@ class FailingRecorder:
         self._simulated.at(self._next_s, self._write)
 
     def _write(self) -> None:
-        if self._writer.given_up:
+        if self._writer.is_over:
             return
         self._plan()
         self._keep_in_step()

@@ -64,7 +64,7 @@ class RigDisturbance(Protocol):
 class FaultRig(Protocol):
     """Robot, bus and driver."""
 
-    on_put: Callable[[int, bytes], None]
+    on_sent: Callable[[int, bytes], None]
     """Called with number and payload of each frame that the driver hands to its bus."""
     on_control: Callable[[int, bytes], None]
     """Called for each of them that arrives at the robot's end as CONTROL, with the same number."""
@@ -84,11 +84,11 @@ class FaultRig(Protocol):
         """The driver that is there now."""
         ...
 
-    def start_anew(self) -> Kurt2:
+    def restart_driver(self) -> Kurt2:
         """A driver that knows nothing takes the place of the one that was there."""
         ...
 
-    def look_on(self, tap: Tap) -> None:
+    def attach_tap(self, tap: Tap) -> None:
         """Somebody looks on at the driver's end of the bus."""
         ...
 

@@ -10,7 +10,7 @@ _MOMENT_S = 0.03
 """A robot that turns round stands for a tick or two on its way."""
 
 
-class DrillVerdict(NamedTuple):
+class FaultVerdict(NamedTuple):
     """Whether a case is as it must be."""
 
     passed: bool
@@ -18,18 +18,22 @@ class DrillVerdict(NamedTuple):
     """Deviations from the row; of a known gap those that the gap excuses."""
 
 
-def judge(must: CaseSettings, outcome: FaultOutcome) -> DrillVerdict:
+def judge(must: CaseSettings, outcome: FaultOutcome) -> FaultVerdict:
     """A known gap passes as long as it is one, and excuses nothing beyond the envelope."""
-    behaviour = (*_about_standing(must, outcome), *_about_the_latch(must, outcome), *_about_the_end(must, outcome))
-    limits = _about_the_limits(must, outcome)
+    behaviour = (
+        *_standstill_complaints(must, outcome),
+        *_latch_complaints(must, outcome),
+        *_end_complaints(must, outcome),
+    )
+    limits = _limit_complaints(must, outcome)
     if must.known_gap is None:
-        return DrillVerdict(not (limits or behaviour), (*limits, *behaviour))
+        return FaultVerdict(not (limits or behaviour), (*limits, *behaviour))
     if not behaviour:
-        return DrillVerdict(passed=False, complaints=(*limits, complaint(ComplaintCode.GAP_CLOSED)))
-    return DrillVerdict(not limits, (*limits, *behaviour))
+        return FaultVerdict(passed=False, complaints=(*limits, complaint(ComplaintCode.GAP_CLOSED)))
+    return FaultVerdict(not limits, (*limits, *behaviour))
 
 
-def _about_the_limits(must: CaseSettings, outcome: FaultOutcome) -> tuple[Complaint, ...]:
+def _limit_complaints(must: CaseSettings, outcome: FaultOutcome) -> tuple[Complaint, ...]:
     wrong = list(outcome.problems)
     if outcome.old_frames > must.old_frames:
         wrong.append(complaint(ComplaintCode.OLD_FRAMES, frames=outcome.old_frames, allowed=must.old_frames))
@@ -40,7 +44,7 @@ def _about_the_limits(must: CaseSettings, outcome: FaultOutcome) -> tuple[Compla
     return tuple(wrong)
 
 
-def _about_standing(must: CaseSettings, outcome: FaultOutcome) -> list[Complaint]:
+def _standstill_complaints(must: CaseSettings, outcome: FaultOutcome) -> list[Complaint]:
     if must.leads_to == "drives_on":
         if outcome.first is not None and outcome.longest_stand_s > _MOMENT_S:
             because = _listed(outcome.first.because)
@@ -61,7 +65,7 @@ def _about_standing(must: CaseSettings, outcome: FaultOutcome) -> list[Complaint
     return wrong
 
 
-def _about_the_latch(must: CaseSettings, outcome: FaultOutcome) -> list[Complaint]:
+def _latch_complaints(must: CaseSettings, outcome: FaultOutcome) -> list[Complaint]:
     if outcome.latched != must.latches:
         latched = f"{outcome.latched} ({outcome.ended_by})" if outcome.ended_by else str(outcome.latched)
         return [complaint(ComplaintCode.OTHER_LATCH, must=str(must.latches), latched=latched)]
@@ -73,7 +77,7 @@ def _about_the_latch(must: CaseSettings, outcome: FaultOutcome) -> list[Complain
     return []
 
 
-def _about_the_end(must: CaseSettings, outcome: FaultOutcome) -> list[Complaint]:
+def _end_complaints(must: CaseSettings, outcome: FaultOutcome) -> list[Complaint]:
     if must.ends_by == "itself":
         return [] if outcome.drove_by_itself else [complaint(ComplaintCode.DID_NOT_DRIVE_BY_ITSELF)]
     wrong = []

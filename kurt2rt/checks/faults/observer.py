@@ -32,15 +32,15 @@ class WheelObserver(RobotProxy):
         self._controller_watchdog_s = controller_watchdog_s
         self._sensed_at_s = 0.0
         self._arrivals: list[tuple[float, bool]] = []
-        self._words: list[tuple[float, tuple[str, ...]]] = []
-        rig.on_put = self._note_put
-        rig.on_control = self._note_arrival
+        self._causes: list[tuple[float, tuple[str, ...]]] = []
+        rig.on_sent = self._on_sent
+        rig.on_control = self._on_arrival
 
-    def look_at(self, robot: Robot) -> None:
+    def attach(self, robot: Robot) -> None:
         """Another driver has taken the place of the one that was there."""
         self._robot = robot
 
-    def note(self, record: TickRecord) -> None:
+    def on_tick(self, record: TickRecord) -> None:
         """A tick is over."""
         now_s = self._rig.time.now_s()
         if record.guard_result.wheel_speeds != STANDSTILL:
@@ -51,9 +51,9 @@ class WheelObserver(RobotProxy):
         else:
             # A layer that wants to drive is not why the robot stands.
             cause = () if record.decision.driving else (str(record.decision.cause),)
-            self._words.append((now_s, (*cause, *record.guard_result.reasons)))
+            self._causes.append((now_s, (*cause, *record.guard_result.reasons)))
 
-    def stands(self, begin_s: float, end_s: float) -> list[Stand]:
+    def standstills(self, begin_s: float, end_s: float) -> list[Stand]:
         """When the robot was told to stand, or heard nothing for so long that its own watchdog stopped it."""
         stands: list[Stand] = []
         state, since_s, heard_at_s = True, 0.0, 0.0
@@ -72,10 +72,10 @@ class WheelObserver(RobotProxy):
             stands.append(Stand(since_s, end_s))
         return [Stand(max(each.from_s, begin_s), each.to_s) for each in stands if each.to_s > begin_s]
 
-    def words_from(self, time_s: float) -> tuple[str, ...]:
+    def causes_from(self, time_s: float) -> tuple[str, ...]:
         """Why the driver told the robot to stand, the first time from a moment on."""
-        first_s = next((at_s for at_s, _ in self._words if at_s >= time_s), None)
-        return tuple(dict.fromkeys(word for at_s, words in self._words if at_s == first_s for word in words))
+        first_s = next((at_s for at_s, _ in self._causes if at_s >= time_s), None)
+        return tuple(dict.fromkeys(word for at_s, words in self._causes if at_s == first_s for word in words))
 
     def sense(self, now_s: float) -> SensorReadings:
         """A tick begins: from here on its decision ages."""
@@ -85,16 +85,16 @@ class WheelObserver(RobotProxy):
     def close(self) -> None:
         """Left to the place."""
 
-    def _note_put(self, number: int, payload: bytes) -> None:
+    def _on_sent(self, number: int, payload: bytes) -> None:
         now_s, latched = self._rig.time.now_s(), self._rig.robot.health.latched
         if latched is not None:
             if self.latched is None and now_s >= self._begin_s:
                 self.latched = (now_s, latched)
-            self._words.append((now_s, (latched,)))
-        self.envelope.put(number, now_s, payload, now_s - self._sensed_at_s, latched=latched is not None)
+            self._causes.append((now_s, (latched,)))
+        self.envelope.on_sent(number, now_s, payload, now_s - self._sensed_at_s, latched=latched is not None)
 
-    def _note_arrival(self, number: int, payload: bytes) -> None:
+    def _on_arrival(self, number: int, payload: bytes) -> None:
         now_s = self._rig.time.now_s()
-        told = self.envelope.arrived(number, now_s, payload)
+        told = self.envelope.on_arrived(number, now_s, payload)
         if told is not None:
             self._arrivals.append((now_s, told.standing))

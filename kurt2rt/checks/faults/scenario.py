@@ -9,16 +9,16 @@ from hal.guard_reason import GuardReason
 from hal.robot_settings import RobotSettings
 from kurt2rt.checks.faults.complaint import Complaint
 from kurt2rt.checks.faults.envelope import Envelope
-from kurt2rt.checks.faults.failing_clock import DisturbedClock, DrillClock
+from kurt2rt.checks.faults.failing_clock import FaultyClock, RigClock
 from kurt2rt.checks.faults.failing_disk import FailingDisk
-from kurt2rt.checks.faults.failing_level import DisturbedLevel
+from kurt2rt.checks.faults.failing_level import FaultyLevel
 from kurt2rt.checks.faults.failing_recorder import FailingRecorder
 from kurt2rt.checks.faults.fault_rig import FaultRig, RigFactory
 from kurt2rt.checks.faults.observer import WheelObserver
 from kurt2rt.checks.faults.outcome import LOST_FRAMES, FaultOutcome, Standstill
 from kurt2rt.checks.faults.script import Script
 from kurt2rt.checks.faults.table import FaultCase, FaultTable
-from kurt2rt.checks.faults.teacher_link import HandLink
+from kurt2rt.checks.faults.teacher_link import TeacherLink
 from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick import EventStore, InMemoryEventStore, TickRecord
@@ -32,7 +32,7 @@ class DidNotDriveError(UserError):
     """The robot stood before the fault began, so the fault's effect cannot be seen."""
 
 
-class _Drill:
+class _Scenario:
     """One drill in its place."""
 
     def __init__(
@@ -54,7 +54,7 @@ class _Drill:
         self._time = rig.time
         self._recorder = recorder
         self._script = Script(rig, case, table)
-        self._witness = WheelObserver(
+        self._observer = WheelObserver(
             rig, Envelope(table.envelope, case.must.slew_share), table.envelope.controller_watchdog_s
         )
         self._latched: str | None = None
@@ -62,36 +62,36 @@ class _Drill:
         # The ticks' phase against the controller's cycle.
         self._time.run_until(chance.uniform(0.1, 0.9) * settings.can.cycle_s)
         self._time.at(rig.disturbance.begin_s, self._require_driving)
-        self._time.at(self._script.word_at_s, self._note_the_end)
-        self._level = DisturbedLevel(self._time, rig.disturbance) if case.target == "tick" else None
+        self._time.at(self._script.resume_at_s, self._note_the_end)
+        self._level = FaultyLevel(self._time, rig.disturbance) if case.target == "tick" else None
         self._runtime = self._build(())
         if self._level is not None:
-            self._level.behind = self._runtime.level
-        self._link: HandLink | None = None
+            self._level.inner = self._runtime.level
+        self._link: TeacherLink | None = None
         if case.target == "teacher_link":
-            self._link = HandLink(self._time, rig.disturbance, self._runtime, chance)
+            self._link = TeacherLink(self._time, rig.disturbance, self._runtime, chance)
         if recorder is not None:
-            rig.look_on(recorder)
+            rig.attach_tap(recorder)
         self._script.begin(self._runtime, self._link)
 
     async def run(self) -> None:
         """All of it."""
         await self._serve()
-        if self._time.now_s() < self._script.word_at_s:  # the service has ended before its time
-            self._time.run_until(self._script.word_at_s)
-            self._start_anew()
+        if self._time.now_s() < self._script.resume_at_s:  # the service has ended before its time
+            self._time.run_until(self._script.resume_at_s)
+            self._restart()
             await self._serve()
 
     def outcome(self, seed: int, problems: tuple[Complaint, ...]) -> FaultOutcome:
         """What it came to."""
-        witness, word_at_s = self._witness, self._script.word_at_s
+        observer, resume_at_s = self._observer, self._script.resume_at_s
         begin_s, end_s = self._rig.disturbance.begin_s, self._rig.disturbance.end_s
-        stands = witness.stands(begin_s, end_s)
-        standstills = [Standstill(each.from_s - begin_s, witness.words_from(each.from_s)) for each in stands]
+        stands = observer.standstills(begin_s, end_s)
+        standstills = [Standstill(each.from_s - begin_s, observer.causes_from(each.from_s)) for each in stands]
         health = self._rig.robot.health
         counted = {
             "junk frames": health.junk,
-            "unintelligible commands": witness.envelope.unintelligible,
+            "unintelligible commands": observer.envelope.unintelligible,
             "missed ticks": self._runtime.timer.missed_ticks,
             "refused messages": 0 if self._link is None else self._link.refused,
             LOST_FRAMES: 0 if self._recorder is None else self._recorder.lost,
@@ -105,23 +105,23 @@ class _Drill:
             went_on=bool(stands) and stands[0].to_s < end_s,
             longest_stand_s=max((each.to_s - each.from_s for each in stands), default=0.0),
             latched=self._latched,
-            latched_after_s=None if witness.latched is None else witness.latched[0] - begin_s,
+            latched_after_s=None if observer.latched is None else observer.latched[0] - begin_s,
             ended_by=self._ended_by,
-            drove_by_itself=any(end_s < at_s <= word_at_s for at_s in witness.drove_at_s),
-            drove_when_told=any(at_s > word_at_s for at_s in witness.drove_at_s),
-            oldest_age_s=witness.envelope.oldest_age_s,
-            old_frames=witness.envelope.old_frames,
-            frames=witness.envelope.frames,
+            drove_by_itself=any(end_s < at_s <= resume_at_s for at_s in observer.drove_at_s),
+            drove_when_told=any(at_s > resume_at_s for at_s in observer.drove_at_s),
+            oldest_age_s=observer.envelope.oldest_age_s,
+            old_frames=observer.envelope.old_frames,
+            frames=observer.envelope.frames,
             counted=counted,
-            problems=(*witness.envelope.violations, *problems),
+            problems=(*observer.envelope.violations, *problems),
         )
 
     def _build(self, events: tuple[TeachingEvent, ...]) -> Runtime:
-        clock: Clock = DrillClock(self._time)
+        clock: Clock = RigClock(self._time)
         if self._case.target == "clock":
-            clock = DisturbedClock(self._time, self._rig.disturbance)
+            clock = FaultyClock(self._time, self._rig.disturbance)
         return build_runtime(
-            self._witness,
+            self._observer,
             self._settings,
             self._task,
             events,
@@ -132,7 +132,7 @@ class _Drill:
 
     def _require_driving(self) -> None:
         begin_s = self._rig.disturbance.begin_s
-        if self._witness.stands(begin_s - self._settings.can.cycle_s, begin_s):
+        if self._observer.standstills(begin_s - self._settings.can.cycle_s, begin_s):
             raise DidNotDriveError(
                 "the robot stands before anything fails", where=self._case, do="look at action and task"
             )
@@ -150,16 +150,16 @@ class _Drill:
             self._rig.robot.emergency_stop(GuardReason.SERVICE_ENDS)
             self._ended_by = repr(error)
 
-    def _start_anew(self) -> None:
+    def _restart(self) -> None:
         """What a supervisor does, and a teacher afterwards."""
         events = tuple(self._keeper.events) if isinstance(self._keeper, InMemoryEventStore) else ()
-        self._witness.look_at(self._rig.start_anew())
+        self._observer.attach(self._rig.restart_driver())
         self._level = None
         self._runtime = self._build(events)
-        self._script.begin_anew(self._runtime)
+        self._script.restart(self._runtime)
 
     def _after_tick(self, record: TickRecord) -> None:
-        self._witness.note(record)
+        self._observer.on_tick(record)
         if isinstance(self._keeper, FailingDisk):
             self._keeper.keep_in_step()
         self._script.after_tick(record)
@@ -167,8 +167,8 @@ class _Drill:
             self._runtime.scheduler.end()
 
 
-async def drill(
-    stage: RigFactory,
+async def run_scenario(
+    rigs: RigFactory,
     case: FaultCase,
     table: FaultTable,
     settings: RobotSettings,
@@ -179,7 +179,7 @@ async def drill(
 ) -> FaultOutcome:
     """Try one case. `folder`: empty, for a knowledge file. Raises DidNotDriveError, KnowledgeError."""
     schedule = table.schedule
-    rig = stage.open(
+    rig = rigs.open(
         case.target,
         case.kind,
         begin_s=schedule.begins_at_s,
@@ -201,7 +201,7 @@ async def drill(
         if case.target == "recorder":
             recorder = FailingRecorder(rig.time, rig.disturbance)
             stack.callback(recorder.close)
-        running = _Drill(rig, case, table, settings, task, chance, keeper, recorder)
+        running = _Scenario(rig, case, table, settings, task, chance, keeper, recorder)
         await running.run()
         problems: list[Complaint | None] = []
         if disk is not None:

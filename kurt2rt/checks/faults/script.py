@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from kurt2rt.checks.faults.fault_rig import FaultRig
 from kurt2rt.checks.faults.table import FaultCase, FaultTable
-from kurt2rt.checks.faults.teacher_link import HandLink
+from kurt2rt.checks.faults.teacher_link import TeacherLink
 from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.teaching.commands import Command, ReplaceAction, Resume, Stop, Teach
 from kurt2rt.core.tick import TickRecord
@@ -22,16 +22,16 @@ class Script:
         self._case = case
         self._action = table.action
         self._begin_s, self._end_s = rig.disturbance.begin_s, rig.disturbance.end_s
-        self.word_at_s = self._end_s + table.schedule.settles_s
+        self.resume_at_s = self._end_s + table.schedule.settles_s
         """When somebody says what lets the robot drive on; until then it may do so by itself."""
-        self.over_at_s = self.word_at_s
+        self.over_at_s = self.resume_at_s
         if case.must.ends_by != "itself":
             self.over_at_s += table.schedule.drives_again_s
         self._answers = 0
         self._runtime: Runtime | None = None
-        self._link: HandLink | None = None
+        self._link: TeacherLink | None = None
 
-    def begin(self, runtime: Runtime, link: HandLink | None) -> None:
+    def begin(self, runtime: Runtime, link: TeacherLink | None) -> None:
         """The robot's program runs; `link` is that of a teacher who drives by hand."""
         self._runtime, self._link = runtime, link
         at, must = self._time.at, self._case.must
@@ -40,39 +40,39 @@ class Script:
             link.start()
         match must.ends_by:
             case "resume":
-                at(self.word_at_s, self.say_resume)
+                at(self.resume_at_s, self.resume)
             case "press":
                 assert link is not None
-                at(self.word_at_s, link.press)
+                at(self.resume_at_s, link.press)
         if must.stop_said_after_s is not None:
-            at(self._begin_s + must.stop_said_after_s, self._saying(Stop("stop", _TEACHER)))
+            at(self._begin_s + must.stop_said_after_s, self._command_sender(Stop("stop", _TEACHER)))
         if self._case.target == "disk":
             for number in range(int((self._end_s - self._begin_s) / _LESSON_EVERY_S)):
                 # It changes nothing: what the robot does then is for the disk's sake alone.
                 lesson = ReplaceAction(f"lesson-{number}", _TEACHER, 1, self._action)
-                at(self._begin_s + number * _LESSON_EVERY_S, self._saying(lesson))
+                at(self._begin_s + number * _LESSON_EVERY_S, self._command_sender(lesson))
 
-    def begin_anew(self, runtime: Runtime) -> None:
+    def restart(self, runtime: Runtime) -> None:
         """The program was started anew; it stands, and is told to drive."""
         self._runtime, self._link = runtime, None
         runtime.handler.stop(STARTED)
-        self.say_resume()
+        self.resume()
 
-    def say_resume(self) -> None:
+    def resume(self) -> None:
         """The robot may drive on."""
-        self._say(Resume("resume", _TEACHER))
+        self._send(Resume("resume", _TEACHER))
 
     def after_tick(self, record: TickRecord) -> None:
         """See the robot; answer where it asks, while nothing is wrong."""
         if self._link is not None:
-            self._link.see(record.tick)
-        elif record.decision.asking and not self._begin_s <= self._time.now_s() < self.word_at_s:
+            self._link.set_displayed_tick(record.tick)
+        elif record.decision.asking and not self._begin_s <= self._time.now_s() < self.resume_at_s:
             self._answers += 1
-            self._say(Teach(f"answer-{self._answers}", _TEACHER, self._action))
+            self._send(Teach(f"answer-{self._answers}", _TEACHER, self._action))
 
-    def _saying(self, command: Command) -> Callable[[], None]:
-        return lambda: self._say(command)
+    def _command_sender(self, command: Command) -> Callable[[], None]:
+        return lambda: self._send(command)
 
-    def _say(self, command: Command) -> None:
+    def _send(self, command: Command) -> None:
         assert self._runtime is not None
         self._runtime.inbox.put(command)

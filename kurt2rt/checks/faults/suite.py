@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.checks.faults.fault_rig import RigFactory
-from kurt2rt.checks.faults.judge import DrillVerdict, judge
+from kurt2rt.checks.faults.judge import FaultVerdict, judge
 from kurt2rt.checks.faults.outcome import FaultOutcome
-from kurt2rt.checks.faults.scenario import drill
+from kurt2rt.checks.faults.scenario import run_scenario
 from kurt2rt.checks.faults.table import FaultCase, FaultTable
 from kurt2rt.core.task_settings import TaskSettings
 
@@ -19,20 +19,20 @@ class FaultTrial(NamedTuple):
 
     case: FaultCase
     outcome: FaultOutcome
-    verdict: DrillVerdict
+    verdict: FaultVerdict
 
 
 async def try_case(
-    stage: RigFactory, case: FaultCase, table: FaultTable, settings: RobotSettings, task: TaskSettings, seed: int
+    rigs: RigFactory, case: FaultCase, table: FaultTable, settings: RobotSettings, task: TaskSettings, seed: int
 ) -> FaultTrial:
     """Try one case. The seed makes noise, and the phases of fault, ticks and watchdog. Raises DidNotDriveError."""
     with tempfile.TemporaryDirectory(prefix="kurt2rt-faults-") as folder:
-        outcome = await drill(stage, case, table, settings, task, seed=seed, folder=Path(folder))
+        outcome = await run_scenario(rigs, case, table, settings, task, seed=seed, folder=Path(folder))
     return FaultTrial(case, outcome, judge(case.must, outcome))
 
 
 async def try_cases(
-    stage: RigFactory,
+    rigs: RigFactory,
     cases: Iterable[FaultCase],
     table: FaultTable,
     settings: RobotSettings,
@@ -44,7 +44,7 @@ async def try_cases(
     trials = []
     for case in cases:
         for seed in seeds:
-            trial = await try_case(stage, case, table, settings, task, seed)
+            trial = await try_case(rigs, case, table, settings, task, seed)
             trials.append(trial)
             on_done(trial)
     return trials

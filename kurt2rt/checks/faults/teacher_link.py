@@ -22,7 +22,7 @@ _SWERVES_EVERY_S = 0.25
 _ROUNDING_S = 1e-9
 
 
-class HandLink:
+class TeacherLink:
     """Messages of a press, as bytes, on their way from the teacher's device to the robot's reception.
 
     Past the keys: what they would refuse already, garbled bytes and copies, has to be refused by the rules behind them.
@@ -42,21 +42,21 @@ class HandLink:
         journal = JournalStatus(unsaved=int, trouble=lambda: None, stamp_of=lambda _: "")
         dependencies = ChannelDependencies(journal, _NoCopies(), str, None, boot=_BOOT)
         self._handler = RequestHandler(runtime, dependencies, {})
-        self._number = self._hold = 0
+        self._number = self._press_id = 0
         self._newest = (0, b"")
         self._passed_at_s = disturbance.begin_s
 
     def press(self) -> None:
         """A new press begins."""
-        self._hold += 1
+        self._press_id += 1
 
-    def see(self, tick: int) -> None:
+    def set_displayed_tick(self, tick: int) -> None:
         """The newest picture of the robot is of this tick, and the teacher sees it at once."""
         self._handler.tick = tick
 
     def beat(self) -> None:
         """Send what is due; call it every BEAT_S."""
-        if not self._hold:
+        if not self._press_id:
             return
         disturbance, now_s = self._disturbance, self._time.now_s()
         self._number += 1
@@ -88,7 +88,7 @@ class HandLink:
         self._time.every(BEAT_S, self._time.now_s(), self.beat)
 
     def _message(self, left_m_s: float, right_m_s: float) -> bytes:
-        return encode_request(DriveRequest(_BOOT, self._handler.tick, self._hold, left_m_s, right_m_s))
+        return encode_request(DriveRequest(_BOOT, self._handler.tick, self._press_id, left_m_s, right_m_s))
 
     def _arrive(self, number: int, payload: bytes) -> None:
         try:

@@ -43,12 +43,12 @@ _TEXTS: Mapping[CheckCode, _Texts] = {
 }
 
 
-def what_of(check: SoakCheck) -> str:
+def property_text(check: SoakCheck) -> str:
     """Return the property that must hold."""
     return _TEXTS[check.code].what.format(**check.values)
 
 
-def found_of(check: SoakCheck) -> str:
+def found_text(check: SoakCheck) -> str:
     """Return the measured numbers."""
     texts = _TEXTS[check.code]
     return texts.found.format(**check.values) if check.judged else texts.too_short

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from statistics import median
 
 from kurt2rt.checks.faults.complaint import Complaint
-from kurt2rt.checks.soak.faults import FaultSeen
+from kurt2rt.checks.soak.faults import FaultResult
 from kurt2rt.checks.soak.observer import Complaints
 from kurt2rt.checks.soak.result import CheckCode, SoakCheck, SoakMinute, SoakStart
 from kurt2rt.checks.soak.settings import LimitSettings
@@ -34,7 +34,7 @@ def memory_check(minutes: Sequence[SoakMinute], limits: LimitSettings) -> SoakCh
     return SoakCheck(CheckCode.MEMORY, grown_mb <= limits.memory_mb, values)
 
 
-def memory_told(minutes: Sequence[SoakMinute], starts: Sequence[SoakStart]) -> str:
+def format_memory_growth(minutes: Sequence[SoakMinute], starts: Sequence[SoakStart]) -> str:
     """What memory grew by after the first hour, apart: what programs left behind, and what knowledge takes.
 
     Empty for a soak that has not had an hour and two programs.
@@ -69,7 +69,7 @@ def steady_check(minutes: Sequence[SoakMinute]) -> SoakCheck:
     return SoakCheck(CheckCode.FILES_AND_THREADS, passed, values)
 
 
-def fault_check(faults: Sequence[FaultSeen]) -> SoakCheck:
+def fault_check(faults: Sequence[FaultResult]) -> SoakCheck:
     """Each fault led to the standstill that it must lead to."""
     wrong = sum(bool(each.complaints) for each in faults)
     values = {"faults": len(faults), "drove": sum(each.drove for each in faults), "wrong": wrong}

@@ -1,6 +1,6 @@
 """The program's clock: simulated time, wrong for a while."""
 
-from kurt2rt.checks.faults.failing_clock import DisturbedClock, DrillClock
+from kurt2rt.checks.faults.failing_clock import FaultyClock, RigClock
 from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
 from kurt2rt.platform.clock import Clock
 
@@ -10,15 +10,15 @@ class SoakClock:
 
     def __init__(self, time: SimulatedTime) -> None:
         self._time = time
-        self._sound = DrillClock(time)
+        self._sound = RigClock(time)
         self._inner: Clock = self._sound
         self._behind_s = 0.0
 
     def disturb(self, disturbance: RigDisturbance) -> None:
         """From now on it is wrong."""
-        self._inner = DisturbedClock(self._time, disturbance)
+        self._inner = FaultyClock(self._time, disturbance)
 
-    def mend(self) -> None:
+    def clear(self) -> None:
         """It is right again. Not to be called before the disturbance's end."""
         self._behind_s += self._time.now_s() - self._inner.now_s()
         self._inner = self._sound

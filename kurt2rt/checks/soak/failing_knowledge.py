@@ -6,7 +6,7 @@ from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
-from kurt2rt.checks.faults.failing_disk import DiskOutOfStepError, DisturbedJournal, exchange_file
+from kurt2rt.checks.faults.failing_disk import DiskOutOfStepError, FaultyJournal, schedule_file_swap
 from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.journal.journal import Journal
@@ -37,7 +37,7 @@ class SoakKnowledge:
         # Not the entries themselves: the program that is tried here does not keep them, either.
         self._before = [entry.event.origin.command_id for entry in opened.entries]
         binding = opened.journal.binding
-        self._journal = DisturbedJournal.open(path, binding)
+        self._journal = FaultyJournal.open(path, binding)
         self._journal.simulated = simulated
         retry = RetryDelays(first_s=0.001, longest_s=0.001)
         self.writer = JournalWriter(self._journal, utc_now, retry, clock=simulated.now_s)
@@ -53,41 +53,41 @@ class SoakKnowledge:
 
     def disturb(self, disturbance: RigDisturbance) -> None:
         """From now on the disk fails. Raises DiskOutOfStepError."""
-        self.keep_in_step(all_of_it=True)
+        self.keep_in_step(with_statistics=True)
         self._disturbance = self._journal.disturbance = disturbance
         if disturbance.kind == "wrong":
-            exchange_file(self._simulated, disturbance, self._path)
+            schedule_file_swap(self._simulated, disturbance, self._path)
 
-    def mend(self) -> None:
+    def clear(self) -> None:
         """It is sound again."""
         self._disturbance = self._journal.disturbance = None
 
-    def keep_in_step(self, *, all_of_it: bool = False) -> None:
+    def keep_in_step(self, *, with_statistics: bool = False) -> None:
         """Wait in real time until the thread has done what it can do at this moment. Raises DiskOutOfStepError.
 
-        `all_of_it`: statistics, too, of which nobody says whether they wait.
+        `with_statistics`: statistics, too, of which nobody says whether they wait.
         """
-        if self._disturbance is None and not self.writer.unwritten and not all_of_it:
+        if self._disturbance is None and not self.writer.unwritten and not with_statistics:
             return
         give_up_s = time.monotonic() + _PATIENCE_S
         while not self._in_step():
             if time.monotonic() > give_up_s:
                 raise DiskOutOfStepError(f"{self.writer.unwritten} lessons wait; {self.writer.error}")
             time.sleep(_LOOK_S)
-        if all_of_it and self._disturbance is None and not self.writer.flush(_PATIENCE_S):
+        if with_statistics and self._disturbance is None and not self.writer.flush(_PATIENCE_S):
             raise DiskOutOfStepError(f"statistics wait; {self.writer.error}")
 
-    def settled(self, acknowledgement: Acknowledgement) -> None:
+    def on_acknowledged(self, acknowledgement: Acknowledgement) -> None:
         """A lesson is durable, or never can be."""
         if acknowledgement.sequence is not None:
             self.acknowledged.append(acknowledgement.command_id)
 
     def close(self) -> None:
         """Write what is left and close the file. Raises KnowledgeError."""
-        self._journal.given_up = True
+        self._journal.is_over = True
         self.writer.close(_PATIENCE_S)
         for acknowledgement in self.writer.acknowledged():
-            self.settled(acknowledgement)
+            self.on_acknowledged(acknowledgement)
 
     def lost_lessons(self) -> Complaint | None:
         """Compare the closed file with the lessons; None if it holds all of them, once, and in order."""

@@ -1,7 +1,7 @@
 """The layer at the wheels, which may fail and take its tick along."""
 
 from hal.robot import SensorReadings
-from kurt2rt.checks.faults.failing_level import DisturbedLevel
+from kurt2rt.checks.faults.failing_level import FaultyLevel
 from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
 from kurt2rt.core.decision.decision import Cause, Decision
 from kurt2rt.core.decision.level import Level
@@ -13,21 +13,21 @@ class SoakLevel:
 
     def __init__(self, time: SimulatedTime) -> None:
         self._time = time
-        self._disturbed: DisturbedLevel | None = None
-        self.behind: Level | None = None
+        self._disturbed: FaultyLevel | None = None
+        self.inner: Level | None = None
         """The layer that really decides; set before the first tick."""
 
     def disturb(self, disturbance: RigDisturbance) -> None:
         """From now on it fails."""
-        self._disturbed = DisturbedLevel(self._time, disturbance)
-        self._disturbed.behind = self.behind
+        self._disturbed = FaultyLevel(self._time, disturbance)
+        self._disturbed.inner = self.inner
 
-    def mend(self) -> None:
+    def clear(self) -> None:
         """It is sound again."""
         self._disturbed = None
 
     def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
         """The decision, or what a fault makes of it. Raises BrokenTickError."""
-        level = self._disturbed or self.behind
+        level = self._disturbed or self.inner
         assert level is not None
         return level.decide(situation, senses, stand_because)

@@ -22,7 +22,7 @@ _SETTLES_S = 0.3
 _HAND_FIRST_S, _SOUND_FIRST_S = 1.0, 0.1
 
 
-class FaultSeen(NamedTuple):
+class FaultResult(NamedTuple):
     """One fault, and what it came to."""
 
     at_s: float
@@ -40,25 +40,25 @@ class FaultSeen(NamedTuple):
 class SoakFaults:
     """One fault at a time, each case of the table as often as any other."""
 
-    def __init__(self, rig: SoakRig, witness: SoakObserver, table: FaultTable, gap_s: float, seed: int) -> None:
-        self.seen: Spool[FaultSeen] = Spool()
-        self.expects_the_end = False
+    def __init__(self, rig: SoakRig, observer: SoakObserver, table: FaultTable, gap_s: float, seed: int) -> None:
+        self.results: Spool[FaultResult] = Spool()
+        self.may_end_program = False
         """Whether the program that runs may end by the fault that acts."""
         self.acting: FaultCase | None = None
         self.acts_until_s = 0.0
         """Of the newest fault."""
-        self.life: ProgramRun | None = None
+        self.program: ProgramRun | None = None
         """The program that runs; None while none does."""
-        self._rig, self._witness, self._table = rig, witness, table
+        self._rig, self._observer, self._table = rig, observer, table
         self._gap_s = gap_s
         self._chance = random.Random(f"faults, seed {seed}")
         self._deck: list[FaultCase] = []
         self._disturbance: RigDisturbance | None = None
         self._recorder: FailingRecorder | None = None
-        self._newest: FaultSeen | None = None
+        self._newest: FaultResult | None = None
         self._drove = False
         self._old_frames = self._resumes = 0
-        self._suffered: ProgramRun | None = None
+        self._faulty_program: ProgramRun | None = None
         self._plan()
 
     def _plan(self) -> None:
@@ -66,8 +66,8 @@ class SoakFaults:
         self._rig.time.at(self._rig.time.now_s() + gap_s, self._begin)
 
     def _begin(self) -> None:
-        time, life = self._rig.time, self.life
-        if life is None or not life.ready:
+        time, program = self._rig.time, self.program
+        if program is None or not program.ready:
             time.at(time.now_s() + _LOOKS_AGAIN_S, self._begin)
             return
         if not self._deck:
@@ -79,67 +79,67 @@ class SoakFaults:
         begin_s = now_s + (_HAND_FIRST_S if case.target == "teacher_link" else _SOUND_FIRST_S)
         end_s = begin_s + (must.lasts_s or self._table.schedule.lasts_s)
         self.acts_until_s = end_s
-        self._old_frames, self._resumes = self._witness.envelope.old_frames, self._witness.resumes
-        self._witness.clock_is_wrong = case.target == "clock"
+        self._old_frames, self._resumes = self._observer.envelope.old_frames, self._observer.resumes
+        self._observer.clock_is_faulty = case.target == "clock"
         time.at(begin_s, self._note_driving)
-        self._suffered = life
-        self.expects_the_end = must.ends_by == "restart"
-        self._witness.envelope.slew_share = must.slew_share
-        self._witness.envelope.clock_is_wrong = case.target == "clock"
+        self._faulty_program = program
+        self.may_end_program = must.ends_by == "restart"
+        self._observer.envelope.slew_share = must.slew_share
+        self._observer.envelope.clock_is_faulty = case.target == "clock"
         disturbance = self._disturbance = self._rig.begin(
             case.target, case.kind, begin_s=begin_s, end_s=end_s, period_s=must.period_s, delay_s=must.delay_s
         )
         match case.target:
             case "clock":
-                life.clock.disturb(disturbance)
+                program.clock.disturb(disturbance)
             case "tick":
-                life.level.disturb(disturbance)
+                program.level.disturb(disturbance)
             case "disk":
-                life.knowledge.disturb(disturbance)
+                program.knowledge.disturb(disturbance)
                 # A disk that comes and goes is to be met in both.
                 every_s = min(_LESSON_EVERY_S, must.period_s or _LESSON_EVERY_S)
                 for number in range(int((end_s - begin_s) / every_s)):
-                    time.at(begin_s + number * every_s, self._on_life(ProgramRun.teach_what_is_known))
+                    time.at(begin_s + number * every_s, self._on_program(ProgramRun.repeat_known_lesson))
             case "recorder":
                 self._recorder = FailingRecorder(time, disturbance)
-                self._rig.look_on(self._recorder)
+                self._rig.attach_tap(self._recorder)
             case "teacher_link":
-                life.take_by_hand(disturbance)
+                program.take_manual_control(disturbance)
         if must.stop_said_after_s is not None:
-            time.at(begin_s + must.stop_said_after_s, self._on_life(ProgramRun.say_stop))
-        time.at(end_s, self._look)
+            time.at(begin_s + must.stop_said_after_s, self._on_program(ProgramRun.stop))
+        time.at(end_s, self._judge)
         time.at(end_s + _SETTLES_S, self._end)
 
     def _note_driving(self) -> None:
-        self._drove = not self._witness.stands
-        self._witness.look_for_a_stand()
+        self._drove = not self._observer.stands
+        self._observer.watch_for_standstill()
 
-    def _on_life(self, act: Callable[[ProgramRun], None]) -> Callable[[], None]:
+    def _on_program(self, act: Callable[[ProgramRun], None]) -> Callable[[], None]:
         def do() -> None:
-            if self.life is not None and self.life is self._suffered:
-                act(self.life)
+            if self.program is not None and self.program is self._faulty_program:
+                act(self.program)
 
         return do
 
-    def _look(self) -> None:
+    def _judge(self) -> None:
         """The fault is over in this moment."""
-        case, robot, witness = self.acting, self._rig.robot, self._witness
+        case, robot, observer = self.acting, self._rig.robot, self._observer
         assert case is not None
         assert self._disturbance is not None
         begin_s = self._disturbance.begin_s
-        stood_at_s = witness.first_stand_s()
+        stood_at_s = observer.first_standstill_s()
         complaints: list[Complaint] = []
         # A robot that stood already shows nothing. One that is told to drive on by a teacher who has not seen what is
         # wrong may try again, and may put as many old set points into a queue that is blocked as the first time.
         # And wheels show only at some speed whether they obey: in a narrow curve one side nearly stands.
-        shows = GuardReason.WHEELS_DISOBEY not in case.must.words or witness.slowest_m_s >= _SHOWS_M_S
+        shows = GuardReason.WHEELS_DISOBEY not in case.must.words or observer.slowest_m_s >= _SHOWS_M_S
         if case.must.leads_to == "stands" and self._drove and stood_at_s is None and shows:
             complaints.append(complaint(ComplaintCode.DROVE_ALL_THE_WHILE))
-        old_frames = witness.envelope.old_frames - self._old_frames
-        allowed = case.must.old_frames * (1 + witness.resumes - self._resumes)
-        if old_frames > allowed and self.life is self._suffered and not self.lossy:
+        old_frames = observer.envelope.old_frames - self._old_frames
+        allowed = case.must.old_frames * (1 + observer.resumes - self._resumes)
+        if old_frames > allowed and self.program is self._faulty_program and not self.lossy:
             complaints.append(complaint(ComplaintCode.OLD_FRAMES, frames=old_frames, allowed=allowed))
-        self._newest = FaultSeen(
+        self._newest = FaultResult(
             at_s=begin_s,
             target=case.target,
             kind=case.kind,
@@ -152,26 +152,26 @@ class SoakFaults:
     @property
     def lossy(self) -> bool:
         """Whether the wire itself holds frames up."""
-        return self.life is not None and self.life.wire == "failing"
+        return self.program is not None and self.program.wire == "failing"
 
     def _end(self) -> None:
-        case, life, seen = self.acting, self.life, self._newest
+        case, program, seen = self.acting, self.program, self._newest
         assert case is not None
         assert seen is not None
         self._rig.end()
-        self._witness.envelope.slew_share = 1.0
-        self._witness.envelope.clock_is_wrong = False
-        self._witness.clock_is_wrong = False
+        self._observer.envelope.slew_share = 1.0
+        self._observer.envelope.clock_is_faulty = False
+        self._observer.clock_is_faulty = False
         if self._recorder is not None:
-            self._rig.look_on(None)
+            self._rig.attach_tap(None)
             self._recorder.close()
             uncounted = self._recorder.uncounted_frames()
             if uncounted is not None:
                 seen = seen._replace(complaints=(uncounted,))
             self._recorder = None
-        self.seen.append(seen)
-        if life is not None and life is self._suffered:
-            life.mend(case.target)
-        self.acting = self._disturbance = self._suffered = None
-        self.expects_the_end = False
+        self.results.append(seen)
+        if program is not None and program is self._faulty_program:
+            program.clear(case.target)
+        self.acting = self._disturbance = self._faulty_program = None
+        self.may_end_program = False
         self._plan()

@@ -17,7 +17,7 @@ class MinuteLog:
         self._ticks = self._drives = self._asks = self._stopped = self._missed = 0
         self._worst_late_s = 0.0
 
-    def note(self, record: TickRecord, late_s: float, missed: int) -> None:
+    def on_tick(self, record: TickRecord, late_s: float, missed: int) -> None:
         """A tick is over: so late, after so many that were missed."""
         self._ticks += 1
         self._drives += record.guard_result.wheel_speeds != STANDSTILL
@@ -26,7 +26,7 @@ class MinuteLog:
         self._missed += missed
         self._worst_late_s = max(self._worst_late_s, late_s)
 
-    def end_minute(self, at_s: float, life: ProgramRun, mood: str) -> None:
+    def end_minute(self, at_s: float, program: ProgramRun, mood: str) -> None:
         """A minute is over."""
         ticks = max(1, self._ticks)
         self.minutes.append(
@@ -35,8 +35,8 @@ class MinuteLog:
                 resident_mb=round(resident_mb(), 3),
                 open_files=open_files(),
                 threads=threads(),
-                rlas=len(life.runtime.level.system),
-                lessons=life.knowledge.lessons,
+                rlas=len(program.runtime.level.system),
+                lessons=program.knowledge.lessons,
                 drives=round(self._drives / ticks, 4),
                 asks=round(self._asks / ticks, 4),
                 stopped=round(self._stopped / ticks, 4),

@@ -12,7 +12,7 @@ from kurt2rt.checks.faults.table import Kind
 class SoakRig(Protocol):
     """Robot, bus and driver, one driver after another."""
 
-    on_put: Callable[[int, bytes], None]
+    on_sent: Callable[[int, bytes], None]
     """Called with number and payload of each CONTROL that a driver hands to its bus."""
     on_control: Callable[[int, bytes, float], None]
     """Called for each of them that the robot takes, with the same number and the time of its arrival in s."""
@@ -56,15 +56,15 @@ class SoakRig(Protocol):
         """All is well again."""
         ...
 
-    def look_on(self, tap: Tap | None) -> None:
+    def attach_tap(self, tap: Tap | None) -> None:
         """Somebody looks on at the driver's end of the bus; None: nobody."""
         ...
 
-    def set_down(self) -> None:
+    def reposition(self) -> None:
         """Somebody sets the robot down at a start pose."""
         ...
 
-    def switch_on(self) -> None:
+    def power_cycle(self) -> None:
         """Somebody switches the robot's controller off and on."""
         ...
 

@@ -23,13 +23,13 @@ class Complaints:
 
     def __init__(self) -> None:
         self.count = 0
-        self.told: list[Complaint] = []
+        self.stored: list[Complaint] = []
 
     def add(self, found: Complaint) -> None:
         """Count a complaint; store it while there are few."""
         self.count += 1
-        if len(self.told) < _MOST_TOLD:
-            self.told.append(found)
+        if len(self.stored) < _MOST_TOLD:
+            self.stored.append(found)
 
 
 class SoakObserver:
@@ -45,7 +45,7 @@ class SoakObserver:
         """Of the newest tick, against its deadline, on the program's clock."""
         self.resumes = 0
         """How often the robot was told to drive on, and might."""
-        self.clock_is_wrong = False
+        self.clock_is_faulty = False
         """While the program's clock itself fails, deadlines by it say nothing."""
         self._rig = rig
         self._robot: Robot | None = None
@@ -59,17 +59,17 @@ class SoakObserver:
         self._must_stand = ""
         self._begun_s: float | None = None
         self._period_s = 0.0
-        rig.on_put = self._note_put
-        rig.on_control = self._note_arrival
+        rig.on_sent = self._on_sent
+        rig.on_control = self._on_arrival
 
-    def look_at(self, robot: Robot, period_s: float) -> None:
+    def attach(self, robot: Robot, period_s: float) -> None:
         """A program was started anew: it must stand until it is told to drive."""
         self._robot = robot
         self._period_s = period_s
         self._must_stand = "the program was started"
         self._begun_s = None
 
-    def note(self, record: TickRecord, ledger: TickTimer, begun_s: float) -> None:
+    def on_tick(self, record: TickRecord, ledger: TickTimer, begun_s: float) -> None:
         """A tick is over; `begun_s`: when the program's loop began, on its own clock."""
         now_s = self._rig.time.now_s()
         moves = record.guard_result.wheel_speeds != STANDSTILL
@@ -89,7 +89,7 @@ class SoakObserver:
             code = ComplaintCode.TICKS_UNACCOUNTED
             self.complaints.add(complaint(code, now_s, tick=record.tick, done=done, missed=missed))
         late_s = self.late_s = record.now_s - begun_s - record.tick * self._period_s
-        if not -_ROUNDING_S <= late_s < self._period_s + _ROUNDING_S and not self.clock_is_wrong:
+        if not -_ROUNDING_S <= late_s < self._period_s + _ROUNDING_S and not self.clock_is_faulty:
             self.complaints.add(complaint(ComplaintCode.OFF_DEADLINE, now_s, tick=record.tick, late_s=late_s))
         for each in self.envelope.violations:
             self.complaints.add(each)
@@ -100,12 +100,12 @@ class SoakObserver:
         """Whether the robot's end of the bus knows nothing but to stand, for it was told so or hears nothing."""
         return self._told_standing or self._silent
 
-    def look_for_a_stand(self) -> None:
+    def watch_for_standstill(self) -> None:
         """From now on `stood_at_s` is that of the first standstill."""
         self.stood_at_s = None
         self.slowest_m_s = math.inf
 
-    def first_stand_s(self) -> float | None:
+    def first_standstill_s(self) -> float | None:
         """When the robot's end of the bus first knew nothing but to stand, since it was looked for."""
         if self.stood_at_s is None and self._silent:
             return self._heard_at_s + self._limits.controller_watchdog_s
@@ -120,7 +120,7 @@ class SoakObserver:
         self._sensed_at_s = self._rig.time.now_s()
         assert self._robot is not None
         senses = self._robot.sense(now_s)
-        self.envelope.off_a_bumper = senses.bumpers != 0
+        self.envelope.bumper_pressed = senses.bumpers != 0
         return senses
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
@@ -141,13 +141,13 @@ class SoakObserver:
     def close(self) -> None:
         """Left to the place."""
 
-    def _note_put(self, number: int, payload: bytes) -> None:
+    def _on_sent(self, number: int, payload: bytes) -> None:
         now_s, robot = self._rig.time.now_s(), self._rig.robot
         latched = robot is not None and robot.health.latched is not None
-        self.envelope.put(number, now_s, payload, now_s - self._sensed_at_s, latched=latched)
+        self.envelope.on_sent(number, now_s, payload, now_s - self._sensed_at_s, latched=latched)
 
-    def _note_arrival(self, number: int, payload: bytes, at_s: float) -> None:
-        told = self.envelope.arrived(number, at_s, payload)
+    def _on_arrival(self, number: int, payload: bytes, at_s: float) -> None:
+        told = self.envelope.on_arrived(number, at_s, payload)
         if told is None:
             return
         if self.stood_at_s is None:

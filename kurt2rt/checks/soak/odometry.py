@@ -16,16 +16,16 @@ class OdometryCheck:
         self._turned_m = [0.0, 0.0]
         self._valid = False
 
-    def hear(self, senses: SensorReadings) -> None:
+    def on_tick(self, senses: SensorReadings) -> None:
         """A tick's counts."""
         self._ticks[0] += senses.encoder_left_ticks
         self._ticks[1] += senses.encoder_right_ticks
 
-    def spoil(self) -> None:
+    def invalidate(self) -> None:
         """Until the next look nothing is said."""
         self._valid = False
 
-    def look(self) -> None:
+    def compare(self) -> None:
         """Compare, and begin anew."""
         if self._valid:
             for ticks, turned_m, before_m in zip(self._ticks, self._rig.turned_m, self._turned_m, strict=True):

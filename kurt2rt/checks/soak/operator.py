@@ -25,15 +25,15 @@ class SoakOperator:
         self._ticks = 0
         self._from_m = rig.position_m
         self._has_moved = True
-        self._go_in_vain = False
+        self._resume_in_vain = False
 
-    def sees(self, record: TickRecord) -> bool:
+    def on_tick(self, record: TickRecord) -> bool:
         """See a tick; True where the robot was picked up after it."""
         if not record.guard_result.latched:
-            self._go_in_vain = False
-        elif _was_told_to_go(record):
-            self._go_in_vain = True  # it stopped itself again in the very tick: where it is, no Go will help
-        if (record.guard_result.latched and not self._go_in_vain) or record.decision.cause not in _DRIVES:
+            self._resume_in_vain = False
+        elif _was_resumed(record):
+            self._resume_in_vain = True  # it stopped itself again in the very tick: where it is, no Go will help
+        if (record.guard_result.latched and not self._resume_in_vain) or record.decision.cause not in _DRIVES:
             return False
         here_m = self._rig.position_m
         if math.dist(here_m, self._from_m) > _WAY_M:
@@ -44,15 +44,15 @@ class SoakOperator:
         if self._ticks < self._most_ticks:
             return False
         if not self._has_moved:
-            self._rig.switch_on()
+            self._rig.power_cycle()
             self.switched_on += 1
-        self._has_moved = self._go_in_vain = False
-        self._rig.set_down()
+        self._has_moved = self._resume_in_vain = False
+        self._rig.reposition()
         self._from_m, self._ticks = self._rig.position_m, 0
         self.set_down += 1
         return True
 
 
-def _was_told_to_go(record: TickRecord) -> bool:
+def _was_resumed(record: TickRecord) -> bool:
     accepted = {result.command_id for result in record.results if result.accepted}
     return any(isinstance(each, Resume) and each.command_id in accepted for each in record.commands)

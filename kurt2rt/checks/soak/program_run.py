@@ -11,7 +11,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.checks.faults.complaint import Complaint
 from kurt2rt.checks.faults.fault_rig import RigDisturbance
 from kurt2rt.checks.faults.table import Target
-from kurt2rt.checks.faults.teacher_link import TEACHER, HandLink
+from kurt2rt.checks.faults.teacher_link import TEACHER, TeacherLink
 from kurt2rt.checks.soak.failing_clock import SoakClock
 from kurt2rt.checks.soak.failing_knowledge import SoakKnowledge, open_soak_knowledge
 from kurt2rt.checks.soak.failing_level import SoakLevel
@@ -34,7 +34,7 @@ _READY_AFTER_S = 3.0
 _FIRST_DAY = datetime(2000, 1, 1, tzinfo=UTC)
 """When simulated time begins, in the names of recordings."""
 _WRITES_EVERY_TICKS = 10
-_TENDS_EVERY_TICKS = 1000
+_POLL_EVERY_TICKS = 1000
 """Each waits for the disk, which does not become quicker in simulated time."""
 
 
@@ -44,7 +44,7 @@ class ProgramRun:
     def __init__(
         self,
         rig: SoakRig,
-        witness: SoakObserver,
+        observer: SoakObserver,
         teacher: SoakTeacher,
         settings: RobotSettings,
         task: TaskSettings,
@@ -63,38 +63,40 @@ class ProgramRun:
         """Commands in the inbox when a tick took them."""
         self.ended_by = ""
         """The error that ended the program; empty when none did."""
-        self._rig, self._witness, self._teacher = rig, witness, teacher
+        self._rig, self._observer, self._teacher = rig, observer, teacher
         self._settings = settings
         self._time = rig.time
         self._number = number
         self._presses = 0
-        self._lessons_said = self._recorded_at = self._tended_at = 0
+        self._lessons_sent = self._recorded_at = self._polled_at = 0
         self._chance = random.Random(f"life {number}, seed {seed}")
         self._started_s: float | None = None
         self._begun_s = 0.0
         self._checkpoint_ticks = round(service.checkpoint_period_s / settings.can.cycle_s)
-        self._link: HandLink | None = None
+        self._link: TeacherLink | None = None
         path = Path(service.knowledge)
         opened = open_soak_knowledge(path, settings, task)
         self.knowledge = SoakKnowledge(path, opened, rig.time)
         robot = rig.start_driver(wire)
-        witness.look_at(robot, settings.can.cycle_s)
+        observer.attach(robot, settings.can.cycle_s)
         teacher.program_started()
         self.clock = SoakClock(rig.time)
         self.level = SoakLevel(rig.time)
         context = RunContext(f"{number:016x}", service.knowledge, attended=True, stopped=STARTED)
         run_settings = RunSettings(settings, task, service)
         assembled = assemble_service(
-            witness, run_settings, opened, self.knowledge.writer, self.clock, context, self.level
+            observer, run_settings, opened, self.knowledge.writer, self.clock, context, self.level
         )
         self.runtime = assembled.runtime
-        self.level.behind = self.runtime.level
-        console = ProgramConsole(status=lambda _: None, question=lambda _: None, acknowledged=self.knowledge.settled)
+        self.level.inner = self.runtime.level
+        console = ProgramConsole(
+            status=lambda _: None, question=lambda _: None, acknowledged=self.knowledge.on_acknowledged
+        )
         started = _FIRST_DAY + timedelta(seconds=rig.time.now_s())
         # Without its thread: it writes when it is told to, as far as simulated time has gone.
         self.recorder = recording.recorder(settings, task, opened, context, started=started)
         self.recorder.poll()
-        self._rounds = PostTick(assembled, console, recorder=self.recorder)
+        self._post_tick = PostTick(assembled, console, recorder=self.recorder)
 
     @property
     def ready(self) -> bool:
@@ -120,9 +122,9 @@ class ProgramRun:
             try:
                 await runtime.scheduler.run(None, after_tick)
             except Exception as error:  # noqa: BLE001  # whatever a fault raised ends the program, and is judged
-                self.ended_by = _told(error)
+                self.ended_by = _format_error(error)
             finally:
-                self._witness.emergency_stop(GuardReason.SERVICE_ENDS)
+                self._observer.emergency_stop(GuardReason.SERVICE_ENDS)
         self._started_s = None
 
     def close(self) -> Complaint | None:
@@ -130,67 +132,67 @@ class ProgramRun:
         self.runtime.scheduler.end()
         self._rig.end_driver()
         if not self.ended_by:
-            self._rounds.save_statistics()
+            self._post_tick.save_statistics()
         self.recorder.close()
-        self.knowledge.mend()
+        self.knowledge.clear()
         self.knowledge.close()
         return self.knowledge.lost_lessons()
 
-    def take_by_hand(self, disturbance: RigDisturbance) -> None:
+    def take_manual_control(self, disturbance: RigDisturbance) -> None:
         """Somebody takes the robot and drives it by hand, over a link that will fail."""
-        link = self._link = HandLink(self._time, disturbance, self.runtime, self._chance)
+        link = self._link = TeacherLink(self._time, disturbance, self.runtime, self._chance)
         self._presses += 1
         for _ in range(self._presses):  # a press has a larger number than that of any press before
             link.press()
-        self._lessons_said += 1
-        self._put(Take(f"hand-{self._number}-{self._lessons_said}", TEACHER))
+        self._lessons_sent += 1
+        self._put(Take(f"hand-{self._number}-{self._lessons_sent}", TEACHER))
         self._beat(link)
 
-    def teach_what_is_known(self) -> None:
+    def repeat_known_lesson(self) -> None:
         """A lesson that changes nothing."""
         rla = next(iter(self.runtime.level.system.rlas), None)
         if rla is not None:
-            self._lessons_said += 1
-            self._put(ReplaceAction(f"known-{self._number}-{self._lessons_said}", NAME, rla.rla_id, rla.action))
+            self._lessons_sent += 1
+            self._put(ReplaceAction(f"known-{self._number}-{self._lessons_sent}", NAME, rla.rla_id, rla.action))
 
-    def say_stop(self) -> None:
+    def stop(self) -> None:
         """The teacher sees that something is wrong."""
         self._put(self._teacher.stop())
 
-    def mend(self, target: Target) -> None:
+    def clear(self, target: Target) -> None:
         """What failed is sound again."""
         match target:
             case "clock":
-                self.clock.mend()
+                self.clock.clear()
             case "tick":
-                self.level.mend()
+                self.level.clear()
             case "disk":
-                self.knowledge.mend()
+                self.knowledge.clear()
             case "teacher_link":
                 self._link = None
 
     def _after_tick(self, record: TickRecord) -> None:
         runtime = self.runtime
-        self._witness.note(record, runtime.timer, self._begun_s)
+        self._observer.on_tick(record, runtime.timer, self._begun_s)
         self.most_waiting = max(self.most_waiting, len(record.commands))
         self.refused += sum(not result.accepted for result in record.results)
         self.knowledge.submitted += [event.origin.command_id for event in record.events]
-        self._rounds(record)
+        self._post_tick(record)
         if record.tick - self._recorded_at >= _WRITES_EVERY_TICKS:
             self._recorded_at = record.tick
             self.recorder.write_waiting()
-        if record.tick - self._tended_at >= _TENDS_EVERY_TICKS:
-            self._tended_at = record.tick
+        if record.tick - self._polled_at >= _POLL_EVERY_TICKS:
+            self._polled_at = record.tick
             self.recorder.poll()
-        self.knowledge.keep_in_step(all_of_it=(runtime.timer.ticks % self._checkpoint_ticks) == 0)
+        self.knowledge.keep_in_step(with_statistics=(runtime.timer.ticks % self._checkpoint_ticks) == 0)
         authority = runtime.handler.authority
         if self._link is not None:
-            self._link.see(record.tick)
+            self._link.set_displayed_tick(record.tick)
         taken = authority.teacher not in (None, NAME)
         for command in self._teacher.watch(record, hand=self._link is not None, taken=taken):
             self._put(command)
 
-    def _beat(self, link: HandLink) -> None:
+    def _beat(self, link: TeacherLink) -> None:
         """The device of the hand sends, until somebody has ended it."""
         if self._link is link:
             link.beat()
@@ -203,7 +205,7 @@ class ProgramRun:
             self.refused += 1  # a loop that hangs takes nothing; he says it again
 
 
-def _told(error: Exception) -> str:
+def _format_error(error: Exception) -> str:
     """What it is, and where in the program."""
     *_, where = traceback.extract_tb(error.__traceback__)
     return f"{error!r} in {Path(where.filename).name}, line {where.lineno}"

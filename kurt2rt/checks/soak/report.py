@@ -11,9 +11,9 @@ from rich.text import Text
 
 from kurt2rt.checks.faults.complaint import Complaint, text_of
 from kurt2rt.checks.faults.table import TARGETS
-from kurt2rt.checks.soak.check_text import found_of, what_of
-from kurt2rt.checks.soak.checks import memory_told
-from kurt2rt.checks.soak.faults import FaultSeen
+from kurt2rt.checks.soak.check_text import found_text, property_text
+from kurt2rt.checks.soak.checks import format_memory_growth
+from kurt2rt.checks.soak.faults import FaultResult
 from kurt2rt.checks.soak.result import SoakResult
 from kurt2rt.platform.text_table import TextTable, print_whole
 
@@ -47,7 +47,7 @@ def as_json(result: SoakResult) -> str:
     plain: dict[str, Any] = asdict(result)
     plain["minutes"] = [each._asdict() for each in result.minutes]
     plain["checks"] = [
-        {"code": each.code, "what": what_of(each), "passed": each.passed, "found": found_of(each)}
+        {"code": each.code, "what": property_text(each), "passed": each.passed, "found": found_text(each)}
         for each in result.checks
     ]
     plain["starts"] = [
@@ -72,11 +72,11 @@ def _checks(result: SoakResult) -> TextTable:
     table = TextTable("what must hold", "", "found")
     for check in result.checks:
         verdict = Text("yes") if check.passed else Text("NO", style="bold red")
-        table.add_row(what_of(check), verdict, found_of(check))
+        table.add_row(property_text(check), verdict, found_text(check))
     return table
 
 
-def _faults(faults: Sequence[FaultSeen]) -> TextTable:
+def _faults(faults: Sequence[FaultResult]) -> TextTable:
     table = TextTable("what failed")
     for column in ("times", "while it drove", "stood then", "after, median", "worst", "stopped for good"):
         table.add_column(column, number=True)
@@ -107,7 +107,7 @@ def _print_day(result: SoakResult, console: Console) -> None:
         + f"{last.lessons} lessons, {last.rlas} RLAs at the end. Memory {minutes[0].resident_mb:.1f} MB first, "
         f"{last.resident_mb:.1f} MB at the end.",
     )
-    told = memory_told(minutes, result.starts)
+    told = format_memory_growth(minutes, result.starts)
     if told:
         print_whole(console, told)
     print_whole(console, ", ".join(f"{count} {what}" for what, count in result.counted.items()) + ".\n")

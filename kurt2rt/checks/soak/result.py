@@ -6,7 +6,7 @@ from enum import StrEnum
 from typing import NamedTuple
 
 from kurt2rt.checks.faults.complaint import Complaint, Value
-from kurt2rt.checks.soak.faults import FaultSeen
+from kurt2rt.checks.soak.faults import FaultResult
 
 
 class SoakMinute(NamedTuple):
@@ -86,7 +86,7 @@ class SoakResult:
     checks: tuple[SoakCheck, ...]
     minutes: tuple[SoakMinute, ...]
     starts: tuple[SoakStart, ...]
-    faults: tuple[FaultSeen, ...]
+    faults: tuple[FaultResult, ...]
     complaints: tuple[Complaint, ...]
     """The first ones."""
     counted: dict[str, int]

@@ -31,7 +31,7 @@ from kurt2rt.runs.recording.recording import Recording
 from kurt2rt.service.settings import ServiceSettings
 
 _MINUTE_S = 60.0
-_LEAST_LIFE_S = 5.0
+_LEAST_RUN_S = 5.0
 _MOST_UNEXPECTED = 20
 """Ends of the program after which there is nothing to be learnt from more of them."""
 
@@ -59,11 +59,11 @@ class SoakRun:
         self._by_module = by_module
         self._period_s = settings.can.cycle_s
         self._chance = random.Random(f"day {soak.name}, seed {seed}")
-        self._witness = SoakObserver(rig, table.envelope)
+        self._observer = SoakObserver(rig, table.envelope)
         actions = tuple(load_task_repertoire(task, settings))
         self._teacher = SoakTeacher(soak, task, settings, actions, seed)
-        self._faults = SoakFaults(rig, self._witness, table, soak.fault_gap_s, seed)
-        self._person = SoakOperator(rig, soak.picked_up_after_s, self._period_s)
+        self._faults = SoakFaults(rig, self._observer, table, soak.fault_gap_s, seed)
+        self._operator = SoakOperator(rig, soak.picked_up_after_s, self._period_s)
         self._odometry = OdometryCheck(rig, settings.geometry.metres_per_tick)
         self._log = MinuteLog()
         self._starts: Spool[SoakStart] = Spool()
@@ -90,7 +90,7 @@ class SoakRun:
         try:
             return await self._run(hours, on_progress)
         finally:
-            for spool in (self._log.minutes, self._starts, self._faults.seen):
+            for spool in (self._log.minutes, self._starts, self._faults.results):
                 spool.close()
 
     async def _run(self, hours: float, on_progress: Callable[[float], None]) -> SoakResult:
@@ -99,11 +99,9 @@ class SoakRun:
         clock = self._rig.time
         if self._by_module:
             tracemalloc.start(1)
-        while (
-            not self._cut_short and clock.now_s() < end_s - _LEAST_LIFE_S and len(self._unexpected) < _MOST_UNEXPECTED
-        ):
+        while not self._cut_short and clock.now_s() < end_s - _LEAST_RUN_S and len(self._unexpected) < _MOST_UNEXPECTED:
             until_s = min(end_s, clock.now_s() + self._chance.uniform(*self._soak.lives_s))
-            start = await self._live(until_s, on_progress)
+            start = await self._run_program(until_s, on_progress)
             # A fault that ended the program is over before somebody starts it anew.
             clock.run_until(max(clock.now_s(), self._faults.acts_until_s) + self._chance.uniform(*self._soak.down_s))
             # On a robot the end of the program takes all that it knew along; two at a time would count twice.
@@ -111,13 +109,13 @@ class SoakRun:
             self._starts.append(start._replace(left_mb=round(used_mb(), 3)))
         return self._result(clock.now_s(), time.monotonic() - begun_s)
 
-    async def _live(self, until_s: float, on_progress: Callable[[float], None]) -> SoakStart:
+    async def _run_program(self, until_s: float, on_progress: Callable[[float], None]) -> SoakStart:
         wires = self._soak.wires
         (wire,) = self._chance.choices(list(wires), list(wires.values()))
         begun_s = self._rig.time.now_s()
-        life = ProgramRun(
+        program = ProgramRun(
             self._rig,
-            self._witness,
+            self._observer,
             self._teacher,
             self._settings,
             self._task,
@@ -129,61 +127,61 @@ class SoakRun:
         )
         self._missed_before = 0
         self._session_from = None
-        self._odometry.spoil()
-        self._faults.life = life
+        self._odometry.invalidate()
+        self._faults.program = program
 
         def on_tick(record: TickRecord) -> None:
-            self._see(life, record, on_progress)
+            self._on_tick(program, record, on_progress)
 
         # A program that is ended while its disk fails says what it could not save; that is no loss to look for here.
-        await life.run(
+        await program.run(
             on_tick,
             lambda: (self._cut_short or self._rig.time.now_s() >= until_s) and self._faults.acting is None,
         )
-        expected = self._faults.expects_the_end
-        self._faults.life = None
-        if life.ended_by and not expected:
+        expected = self._faults.may_end_program
+        self._faults.program = None
+        if program.ended_by and not expected:
             now_s = self._rig.time.now_s()
-            self._unexpected.append(complaint(ComplaintCode.ENDED_UNEXPECTEDLY, now_s, error=life.ended_by))
+            self._unexpected.append(complaint(ComplaintCode.ENDED_UNEXPECTEDLY, now_s, error=program.ended_by))
         try:
-            lost = life.close()
+            lost = program.close()
         except KnowledgeError as error:
             lost = complaint(ComplaintCode.NOT_SAVED, error=str(error))
-        ledger = life.runtime.timer
-        self._witness.ticks += ledger.ticks
-        self._witness.missed_ticks += ledger.missed_ticks
-        self._refused += life.refused
-        self._unrecorded += life.recorder.dropped
-        self._recorded += life.recorder.written
-        if life.recorder.trouble and len(self._troubles) < 20:
-            self._troubles.append(life.recorder.trouble)
-        self._most_waiting = max(self._most_waiting, life.most_waiting)
+        ledger = program.runtime.timer
+        self._observer.ticks += ledger.ticks
+        self._observer.missed_ticks += ledger.missed_ticks
+        self._refused += program.refused
+        self._unrecorded += program.recorder.dropped
+        self._recorded += program.recorder.written
+        if program.recorder.trouble and len(self._troubles) < 20:
+            self._troubles.append(program.recorder.trouble)
+        self._most_waiting = max(self._most_waiting, program.most_waiting)
         lasted_s = self._rig.time.now_s() - begun_s
-        return SoakStart(begun_s, lasted_s, wire, life.ended_by, lost)
+        return SoakStart(begun_s, lasted_s, wire, program.ended_by, lost)
 
-    def _see(self, life: ProgramRun, record: TickRecord, on_progress: Callable[[float], None]) -> None:
+    def _on_tick(self, program: ProgramRun, record: TickRecord, on_progress: Callable[[float], None]) -> None:
         now_s = self._rig.time.now_s()
-        ledger = life.runtime.timer
+        ledger = program.runtime.timer
         missed = ledger.missed_ticks - self._missed_before
         self._missed_before = ledger.missed_ticks
-        self._log.note(record, self._witness.late_s, missed)
-        self._odometry.hear(record.senses)
-        if self._person.sees(record):
-            life.runtime.reposition()
-            self._odometry.spoil()
-        if self._faults.acting is not None or life.wire in ("lossy", "failing"):
-            self._odometry.spoil()
-        self._look_at_the_session(life, record)
+        self._log.on_tick(record, self._observer.late_s, missed)
+        self._odometry.on_tick(record.senses)
+        if self._operator.on_tick(record):
+            program.runtime.reposition()
+            self._odometry.invalidate()
+        if self._faults.acting is not None or program.wire in ("lossy", "failing"):
+            self._odometry.invalidate()
+        self._check_session(program, record)
         if now_s >= self._next_minute_s:
             self._next_minute_s += _MINUTE_S
-            self._odometry.look()
-            self._log.end_minute(now_s, life, self._teacher.mood)
+            self._odometry.compare()
+            self._log.end_minute(now_s, program, self._teacher.mood)
             on_progress(now_s)
             if len(self._log.minutes) % 60 == 0:
-                self._look_at_memory(len(self._log.minutes) // 60)
+                self._sample_memory(len(self._log.minutes) // 60)
 
-    def _look_at_the_session(self, life: ProgramRun, record: TickRecord) -> None:
-        school = life.runtime.handler
+    def _check_session(self, program: ProgramRun, record: TickRecord) -> None:
+        school = program.runtime.handler
         if school.session is None:
             return
         if self._session_from is None:
@@ -191,27 +189,27 @@ class SoakRun:
         if record.tick - self._session_from != school.teaching_ticks(record.tick):
             self._session_off += 1
 
-    def _look_at_memory(self, hour: int) -> None:
+    def _sample_memory(self, hour: int) -> None:
         if hour in (1, 6, 12, 18, 24):
             self._objects[str(hour)] = objects_by_type()
         if self._by_module and hour == 1:
             self._first_hour = tracemalloc.take_snapshot()
 
     def _result(self, simulated_s: float, took_s: float) -> SoakResult:
-        witness, limits = self._witness, self._soak.limits
-        minutes, starts, faults = tuple(self._log.minutes), tuple(self._starts), tuple(self._faults.seen)
-        frames = witness.envelope.frames
+        observer, limits = self._observer, self._soak.limits
+        minutes, starts, faults = tuple(self._log.minutes), tuple(self._starts), tuple(self._faults.results)
+        frames = observer.envelope.frames
         counted = {
-            "set down": self._person.set_down,
-            "switched off and on": self._person.switched_on,
+            "set down": self._operator.set_down,
+            "switched off and on": self._operator.switched_on,
             "controller crashes": self._rig.crashes,
             "collisions": self._rig.collisions,
             "refused commands": self._refused,
-            "commands": self._teacher.said,
-            "old set points": witness.envelope.old_frames,
+            "commands": self._teacher.sent,
+            "old set points": observer.envelope.old_frames,
         }
         checks = (
-            envelope_check(witness.complaints, frames),
+            envelope_check(observer.complaints, frames),
             fault_check(faults),
             starts_check(starts, self._unexpected),
             memory_check(minutes, limits),
@@ -228,10 +226,10 @@ class SoakRun:
             ),
             SoakCheck(
                 CheckCode.RECORDED,
-                self._unrecorded == 0 and self._recorded == witness.ticks,
+                self._unrecorded == 0 and self._recorded == observer.ticks,
                 {
                     "recorded": self._recorded,
-                    "ticks": witness.ticks,
+                    "ticks": observer.ticks,
                     "lost": self._unrecorded,
                     "trouble": "".join(f"; {each}" for each in self._troubles[:1]),
                 },
@@ -243,14 +241,14 @@ class SoakRun:
             seed=self._seed,
             simulated_s=simulated_s,
             took_s=took_s,
-            ticks=witness.ticks,
-            missed_ticks=witness.missed_ticks,
+            ticks=observer.ticks,
+            missed_ticks=observer.missed_ticks,
             frames=frames,
             checks=checks,
             minutes=minutes,
             starts=starts,
             faults=faults,
-            complaints=(*witness.complaints.told, *self._unexpected),
+            complaints=(*observer.complaints.stored, *self._unexpected),
             counted=counted,
             objects=self._objects,
             grown_kb=self._grown_kb(),

@@ -41,7 +41,7 @@ class SoakTeacher:
     ) -> None:
         self.mood = ""
         """The present one; empty before the first tick."""
-        self.said = 0
+        self.sent = 0
         """Commands so far, signs of being there left out."""
         self._soak, self._task, self._robot, self._actions = soak, task, robot, actions
         self._period_s = robot.can.cycle_s
@@ -97,7 +97,7 @@ class SoakTeacher:
             begins, self._begins = self._begins, []
             return begins
         if record.guard_result.latched or record.decision.cause is Cause.STOPPED:
-            return self._go(record)
+            return self._resume(record)
         self._stopped_ticks = 0
         if self._happens(settings.stops_every_s):
             self._resumes_in = round(chance.uniform(*_STOPS_FOR_S) / self._period_s)
@@ -119,7 +119,7 @@ class SoakTeacher:
     def _take_back(self, record: TickRecord) -> list[Command]:
         return [Take(self._next_id(), NAME)] if record.tick % _TAKES_EVERY_TICKS == 0 else []
 
-    def _go(self, record: TickRecord) -> list[Command]:
+    def _resume(self, record: TickRecord) -> list[Command]:
         """What lets a robot drive on that stands for good, some time after he has seen it."""
         self._stopped_ticks += 1
         waits = self._resumes_in or round(max(_LEAST_REACTION_S, self._settings.reaction_s) / self._period_s)
@@ -154,5 +154,5 @@ class SoakTeacher:
         return every_s > 0.0 and self._chance.random() < self._period_s / every_s
 
     def _next_id(self) -> str:
-        self.said += 1
-        return f"soak-{self.said}"
+        self.sent += 1
+        return f"soak-{self.sent}"

@@ -4,18 +4,18 @@ import anyio
 import pytest
 
 from hal.robot_settings import load_robot
-from kurt2rt.checks.bench.robot_under_test import SEED, RobotUnderTest, learn
+from kurt2rt.checks.bench.robot_under_test import SEED, BenchFixture, learn
 from kurt2rt.core.task_settings import load_task
 from simbridge.simulation import Kurt2SimulationFactory
 
 
 @pytest.fixture(scope="session")
-def untaught() -> RobotUnderTest:
+def untaught() -> BenchFixture:
     settings, task = load_robot(), load_task("wall_following")
     stage = Kurt2SimulationFactory(settings)
-    return RobotUnderTest(settings, task, lambda purpose: stage.open(task.teaching.world, SEED, purpose))
+    return BenchFixture(settings, task, lambda purpose: stage.open(task.teaching.world, SEED, purpose))
 
 
 @pytest.fixture(scope="session")
-def subject(untaught: RobotUnderTest) -> RobotUnderTest:
+def subject(untaught: BenchFixture) -> BenchFixture:
     return anyio.run(learn, untaught, 5.0, lambda _: None)

@@ -4,7 +4,7 @@ from typing import Any
 
 import anyio
 
-from kurt2rt.checks.bench.job_loop import do_jobs
+from kurt2rt.checks.bench.job_loop import run_jobs
 
 
 async def idle() -> dict[str, Any]:
@@ -13,4 +13,4 @@ async def idle() -> dict[str, Any]:
 
 
 if __name__ == "__main__":
-    anyio.run(do_jobs, {"idle": idle})
+    anyio.run(run_jobs, {"idle": idle})

@@ -9,7 +9,7 @@ from kurt2rt.checks.bench.channel import ChannelLengths
 from kurt2rt.checks.bench.channel_load import LoadShifts
 from kurt2rt.checks.bench.helper_process import HelperLostError
 from kurt2rt.checks.bench.open_robot import open_robot
-from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest
+from kurt2rt.checks.bench.robot_under_test import BenchFixture, OnProgress
 from kurt2rt.checks.bench.suite import QUICK, BenchName, run_suite
 from kurt2rt.knowledge.journal.loading import open_knowledge
 
@@ -19,13 +19,13 @@ SHORT = replace(
 
 
 @pytest.mark.deep
-async def test_presses_reach_the_wheels_and_lessons_the_file(untaught: RobotUnderTest, tmp_path: Path) -> None:
+async def test_presses_reach_the_wheels_and_lessons_the_file(untaught: BenchFixture, tmp_path: Path) -> None:
     told: dict[str, list[float]] = {}
 
-    def progress_of(what: str) -> OnProgress:
+    def start_job(what: str) -> OnProgress:
         return told.setdefault(what, []).append
 
-    results = await run_suite({BenchName.CHANNEL}, untaught, tmp_path, SHORT, progress_of)
+    results = await run_suite({BenchName.CHANNEL}, untaught, tmp_path, SHORT, start_job)
     pressed, on_page, late, work, picture, message, lesson = results
     assert {result.bench for result in results} == {"channel"}
     assert all(shares[-1] == 1.0 for shares in told.values())
@@ -43,18 +43,18 @@ async def test_presses_reach_the_wheels_and_lessons_the_file(untaught: RobotUnde
 
 
 async def test_an_open_robot_stands_until_a_teacher_comes_and_closes_when_one_fails(
-    subject: RobotUnderTest, tmp_path: Path
+    subject: BenchFixture, tmp_path: Path
 ) -> None:
     async def lose_a_partner() -> None:
         async with open_robot(subject, tmp_path / "robot") as robot:
-            await robot.rounds.go_on_for(5)
-            assert robot.rounds.driving == 0
-            assert robot.witness.starts == []
-            number = robot.rounds.newest.tick if robot.rounds.newest is not None else 0
+            await robot.gate.run_ticks(5)
+            assert robot.gate.driving == 0
+            assert robot.observer.starts == []
+            number = robot.gate.newest.tick if robot.gate.newest is not None else 0
             robot.pace.shift(0.004)
-            await robot.rounds.go_on_for(5)
-            assert robot.rounds.newest is not None
-            assert robot.rounds.newest.tick > number
+            await robot.gate.run_ticks(5)
+            assert robot.gate.newest is not None
+            assert robot.gate.newest.tick > number
             raise HelperLostError("gone")
 
     with pytest.raises(HelperLostError, match="gone"):

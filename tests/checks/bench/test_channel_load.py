@@ -6,7 +6,7 @@ from kurt2rt.checks.bench.channel_load import Load, LoadPhase, LoadPhases, load_
 from kurt2rt.platform.ledger import Percentiles
 
 
-def stays(lateness_p99_us: float, *each: LoadPhase) -> LoadPhases:
+def phases(lateness_p99_us: float, *each: LoadPhase) -> LoadPhases:
     return LoadPhases(Percentiles(70.0, lateness_p99_us, 2 * lateness_p99_us), each)
 
 
@@ -18,9 +18,9 @@ def stay(work_us: float, messages: int, missed: int = 0) -> LoadPhase:
 def test_what_a_picture_and_a_message_take_is_told_from_who_was_there() -> None:
     late, work, picture, message = load_results(
         {
-            Load.NOBODY: stays(200.0, stay(100_000.0, 0), stay(110_000.0, 0)),
-            Load.ONLOOKER: stays(250.0, stay(108_000.0, 2), stay(118_000.0, 2)),
-            Load.TEACHER: stays(400.0, stay(124_000.0, 66), stay(134_000.0, 66)),
+            Load.NOBODY: phases(200.0, stay(100_000.0, 0), stay(110_000.0, 0)),
+            Load.ONLOOKER: phases(250.0, stay(108_000.0, 2), stay(118_000.0, 2)),
+            Load.TEACHER: phases(400.0, stay(124_000.0, 66), stay(134_000.0, 66)),
         },
         period_s=0.01,
         driving_share=0.97,
@@ -39,9 +39,9 @@ def test_what_a_picture_and_a_message_take_is_told_from_who_was_there() -> None:
 def test_a_missed_tick_misses_the_goal() -> None:
     late, *_ = load_results(
         {
-            Load.NOBODY: stays(200.0, stay(100_000.0, 0)),
-            Load.ONLOOKER: stays(200.0, stay(110_000.0, 2)),
-            Load.TEACHER: stays(410.0, stay(150_001.0, 66, missed=1)),
+            Load.NOBODY: phases(200.0, stay(100_000.0, 0)),
+            Load.ONLOOKER: phases(200.0, stay(110_000.0, 2)),
+            Load.TEACHER: phases(410.0, stay(150_001.0, 66, missed=1)),
         },
         period_s=0.01,
         driving_share=1.0,

@@ -8,10 +8,10 @@ import pytest
 
 from kurt2rt.checks.bench.closed_loop import measure_closed_loop
 from kurt2rt.checks.bench.one_core import on_one_core
-from kurt2rt.checks.bench.robot_under_test import RobotUnderTest
+from kurt2rt.checks.bench.robot_under_test import BenchFixture
 
 
-async def test_blocks_are_timed_whole_and_one_by_one(subject: RobotUnderTest, tmp_path: Path) -> None:
+async def test_blocks_are_timed_whole_and_one_by_one(subject: BenchFixture, tmp_path: Path) -> None:
     told: list[float] = []
     result, share = await measure_closed_loop(subject, tmp_path, 2, 1, told.append)
     assert told == [0.5, 1.0]

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.checks.bench.helper_process import HelperLostError, partner
+from kurt2rt.checks.bench.helper_process import HelperLostError, helper_process
 
 IDLER = "tests.checks.bench.idler"
 ROOT = Path(__file__).parents[3]
@@ -22,7 +22,7 @@ def assert_gone(pid: int) -> None:
 
 
 async def test_a_partner_does_what_it_is_asked_to_and_ends_with_the_block() -> None:
-    async with partner(IDLER) as idler:
+    async with helper_process(IDLER) as idler:
         assert await idler.ask("idle") == {}
         assert await idler.ask("idle") == {}
     assert_gone(idler.pid)
@@ -30,7 +30,7 @@ async def test_a_partner_does_what_it_is_asked_to_and_ends_with_the_block() -> N
 
 async def test_a_partner_that_fails_is_missed_and_says_why_itself(capfd: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(HelperLostError, match=r"tests\.checks\.bench\.idler ended while it was asked to work"):
-        async with partner(IDLER) as idler:
+        async with helper_process(IDLER) as idler:
             await idler.ask("work")
     assert_gone(idler.pid)
     assert "KeyError: 'work'" in capfd.readouterr().err
@@ -38,6 +38,6 @@ async def test_a_partner_that_fails_is_missed_and_says_why_itself(capfd: pytest.
 
 async def test_a_silent_partner_is_given_up_and_ended() -> None:
     with pytest.raises(HelperLostError, match="did not idle within 0 s"):
-        async with partner(IDLER) as idler:
+        async with helper_process(IDLER) as idler:
             await idler.ask("idle", patience_s=0.0)
     assert_gone(idler.pid)

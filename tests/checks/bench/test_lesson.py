@@ -5,12 +5,12 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.checks.bench.lesson import measure_lessons
-from kurt2rt.checks.bench.robot_under_test import RobotUnderTest
+from kurt2rt.checks.bench.robot_under_test import BenchFixture
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 
-async def test_every_lesson_that_was_timed_is_in_the_file(subject: RobotUnderTest, tmp_path: Path) -> None:
+async def test_every_lesson_that_was_timed_is_in_the_file(subject: BenchFixture, tmp_path: Path) -> None:
     told: list[float] = []
     result = await measure_lessons(subject, tmp_path, 4, told.append)
     assert told == [0.25, 0.5, 0.75, 1.0]
@@ -24,7 +24,7 @@ async def test_every_lesson_that_was_timed_is_in_the_file(subject: RobotUnderTes
 
 
 @pytest.mark.deep  # closing a writer whose disk fails takes its patience of 10 s
-async def test_a_disk_that_fails_ends_the_run_and_says_why(subject: RobotUnderTest, tmp_path: Path) -> None:
+async def test_a_disk_that_fails_ends_the_run_and_says_why(subject: BenchFixture, tmp_path: Path) -> None:
     def take_the_file_away(_: float) -> None:
         (tmp_path / "lesson.knowledge").unlink()
 

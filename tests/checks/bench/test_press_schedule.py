@@ -6,25 +6,25 @@ import pytest
 
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
-from kurt2rt.checks.bench.press_schedule import Press, PressStart, WitnessedRobot, rhythms, waits_ns
+from kurt2rt.checks.bench.press_schedule import ObservedRobot, PressStart, PressTime, press_schedules, waits_ns
 from kurt2rt.checks.bench.press_to_wheel import press_result
 
 
 def test_a_press_waits_until_the_wheels_start_in_its_direction() -> None:
-    presses = [Press(1000, True), Press(2000, False)]
+    presses = [PressTime(1000, True), PressTime(2000, False)]
     assert waits_ns(presses, [PressStart(1007, True), PressStart(2009, False)]) == [7, 9]
 
 
 def test_a_press_that_the_next_one_overtook_is_lost() -> None:
-    presses = [Press(1000, True), Press(2000, False), Press(3000, True)]
+    presses = [PressTime(1000, True), PressTime(2000, False), PressTime(3000, True)]
     assert waits_ns(presses, [PressStart(900, True), PressStart(2500, True), PressStart(3004, True)]) == [4]
 
 
 def test_presses_keep_no_step_with_the_loop() -> None:
-    some = list(islice(rhythms(1), 100))
+    some = list(islice(press_schedules(1), 100))
     assert all(0.1 <= each.held_s <= 0.15 and 0.25 <= each.next_s <= 0.4 for each in some)
     assert len({round(each.next_s / 0.001) % 10 for each in some}) == 10
-    assert some == list(islice(rhythms(1), 100))
+    assert some == list(islice(press_schedules(1), 100))
 
 
 class GrantingRobot:
@@ -61,15 +61,15 @@ class StandingClock:
 
 def test_each_start_of_the_wheels_is_noted_once() -> None:
     robot = GrantingRobot()
-    witness = WitnessedRobot(robot, StandingClock())
+    observer = ObservedRobot(robot, StandingClock())
     forward, backward = WheelSpeeds(0.02, 0.02), WheelSpeeds(-0.02, -0.02)
     for speeds in (STANDSTILL, forward, WheelSpeeds(0.05, 0.05), STANDSTILL, backward, STANDSTILL):
-        assert witness.drive(speeds, 5.0, 5.0).wheel_speeds == speeds
-    assert witness.starts == [PressStart(5_000_000_000, True), PressStart(5_000_000_000, False)]
-    assert witness.sense(6.0) == robot.sense(6.0)
-    witness.emergency_stop(GuardReason.SERVICE_ENDS)
-    witness.release()
-    witness.close()
+        assert observer.drive(speeds, 5.0, 5.0).wheel_speeds == speeds
+    assert observer.starts == [PressStart(5_000_000_000, True), PressStart(5_000_000_000, False)]
+    assert observer.sense(6.0) == robot.sense(6.0)
+    observer.emergency_stop(GuardReason.SERVICE_ENDS)
+    observer.release()
+    observer.close()
     assert robot.told == [GuardReason.SERVICE_ENDS, "release", "close"]
 
 

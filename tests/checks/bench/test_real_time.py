@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.checks.bench.lateness import TIMES_BETTER, lateness_result
-from kurt2rt.checks.bench.real_time import RealTimeRun, Turns, run_in_real_time, sleep_bare
-from kurt2rt.checks.bench.robot_under_test import RobotUnderTest
+from kurt2rt.checks.bench.real_time import RealTimeRun, RealTimeTurns, run_in_real_time, sleep_bare
+from kurt2rt.checks.bench.robot_under_test import BenchFixture
 from kurt2rt.checks.bench.tick_budget import tick_results
 from kurt2rt.platform.ledger import Percentiles, Stage, TickTimer
 
@@ -42,9 +42,9 @@ def run(*, lateness_p99_us: float, asyncio_p99_us: float, missed: int = 0, tick:
     )
 
 
-async def test_a_drive_tells_where_its_time_went(subject: RobotUnderTest, tmp_path: Path) -> None:
+async def test_a_drive_tells_where_its_time_went(subject: BenchFixture, tmp_path: Path) -> None:
     told: list[float] = []
-    drive = await run_in_real_time(subject, tmp_path, Turns(rounds=2, ticks=30, reference_ticks=5), told.append)
+    drive = await run_in_real_time(subject, tmp_path, RealTimeTurns(rounds=2, ticks=30, reference_ticks=5), told.append)
     assert told == [0.5, 1.0]
     assert drive.ticks == 60
     assert 0 <= drive.missed_ticks < 60

@@ -4,13 +4,13 @@ from pathlib import Path
 
 from kurt2rt.checks.bench.channel_load import LoadShifts
 from kurt2rt.checks.bench.recording import drive_recorded, recording_results
-from kurt2rt.checks.bench.robot_under_test import RobotUnderTest
+from kurt2rt.checks.bench.robot_under_test import BenchFixture
 from kurt2rt.runs.recording.run_folder import runs_in, segments_in
 from kurt2rt.runs.recording.segment_reader import SegmentReader
 from kurt2rt.runs.recording.topics import TICK
 
 
-async def test_every_second_stretch_is_recorded(subject: RobotUnderTest, tmp_path: Path) -> None:
+async def test_every_second_stretch_is_recorded(subject: BenchFixture, tmp_path: Path) -> None:
     drive = await drive_recorded(subject, tmp_path, LoadShifts(rounds=2, ticks=20), lambda _: None)
     (run,) = runs_in(tmp_path / "runs")
     (segment,) = segments_in(run)

@@ -5,7 +5,7 @@ import json
 
 from rich.console import Console
 
-from kurt2rt.checks.bench.report import BenchMachine, as_json, look_at_machine, print_report
+from kurt2rt.checks.bench.report import BenchMachine, as_json, measure_machine, print_report
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
 from kurt2rt.platform.ledger import Percentiles, percentiles_of
 
@@ -54,7 +54,7 @@ def test_a_program_gets_ratio_and_verdicts() -> None:
 
 
 def test_this_machine_has_a_core() -> None:
-    assert look_at_machine().cores >= 1
+    assert measure_machine().cores >= 1
 
 
 def test_times_in_nanoseconds_become_microseconds() -> None:

@@ -7,13 +7,13 @@ import pytest
 from kurt2rt.checks.bench.channel import ChannelLengths
 from kurt2rt.checks.bench.channel_load import LoadShifts
 from kurt2rt.checks.bench.match import Size
-from kurt2rt.checks.bench.real_time import Turns
-from kurt2rt.checks.bench.robot_under_test import OnProgress, RobotUnderTest
+from kurt2rt.checks.bench.real_time import RealTimeTurns
+from kurt2rt.checks.bench.robot_under_test import BenchFixture, OnProgress
 from kurt2rt.checks.bench.suite import FULL, QUICK, BenchName, Lengths, run_suite
 
 TINY = Lengths(
     learning_s=3.0,
-    turns=Turns(rounds=1, ticks=20, reference_ticks=2),
+    turns=RealTimeTurns(rounds=1, ticks=20, reference_ticks=2),
     sizes=(Size(20, 10.0, 20),),
     loop_blocks=1,
     loop_block_s=1,
@@ -36,7 +36,7 @@ class Jobs:
 
 @pytest.mark.deep
 async def test_everything_is_measured_in_order_with_one_lesson_and_one_drive(
-    untaught: RobotUnderTest, tmp_path: Path
+    untaught: BenchFixture, tmp_path: Path
 ) -> None:
     jobs = Jobs()
     benches = [
@@ -56,7 +56,7 @@ async def test_everything_is_measured_in_order_with_one_lesson_and_one_drive(
     ],
 )
 async def test_only_what_is_asked_for_is_measured(
-    chosen: BenchName, jobs_begun: list[str], untaught: RobotUnderTest, tmp_path: Path
+    chosen: BenchName, jobs_begun: list[str], untaught: BenchFixture, tmp_path: Path
 ) -> None:
     jobs = Jobs()
     results = await run_suite({chosen}, untaught, tmp_path, TINY, jobs)

@@ -4,7 +4,7 @@ import pytest
 
 from hal.robot_settings import load_robot
 from hal.simulation import Simulation
-from kurt2rt.checks.bench.robot_under_test import RobotUnderTest
+from kurt2rt.checks.bench.robot_under_test import BenchFixture
 from kurt2rt.checks.bench.tick_phase import LoopPacer
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed
@@ -24,7 +24,7 @@ class PunctualClock:
         self._now_s = max(self._now_s, deadline_s)
 
 
-async def test_a_shift_moves_all_later_ticks_and_loses_none(untaught: RobotUnderTest) -> None:
+async def test_a_shift_moves_all_later_ticks_and_loses_none(untaught: BenchFixture) -> None:
     clock, settings = PunctualClock(), load_robot()
     simulation: Simulation = untaught.open_simulation("pace")
     runtime = build_runtime(simulation.robot, settings, untaught.task, (), NoTeachingAllowed(), clock)

@@ -6,7 +6,7 @@ import pytest
 
 from hal.robot_settings import SpeedMode
 from hal.settings import SettingsError
-from kurt2rt.checks.commission.checklist import STEPS, barring, open_steps, steps_to_take
+from kurt2rt.checks.commission.checklist import STEPS, blocking_failures, open_steps, steps_to_run
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.progress import Progress, load_progress
 from kurt2rt.checks.commission.report import passed
@@ -20,7 +20,7 @@ async def test_a_good_robot_passes_from_the_first_step_to_the_last(tmp_path: Pat
     with Workshop() as workshop:
         stood = workshop.robot.pose
         session = Session(workshop, tmp_path)
-        progress = await session.walk()
+        progress = await session.run()
         assert workshop.robot.pose == stood
     assert session.person.lines(Tone.BAD) == []
     assert passed(progress, STEPS)
@@ -46,7 +46,7 @@ async def test_nothing_moves_before_the_words_were_typed_and_a_key_was_hit(tmp_p
     with Workshop() as workshop:
         session = Session(workshop, tmp_path, note)
         session.knows(speed_mode=SpeedMode.SPEED_CM)
-        await session.walk("identity", "stop", "bumpers")
+        await session.run("identity", "stop", "bumpers")
     assert {about for about, fastest_m_s in moved.items() if fastest_m_s > 0.0} == {QuestionKind.MOVE}
     assert moved[QuestionKind.MOVE] <= MAXIMUM_SPEED_M_S
 
@@ -54,7 +54,7 @@ async def test_nothing_moves_before_the_words_were_typed_and_a_key_was_hit(tmp_p
 async def test_without_the_words_no_control_frame_is_sent_at_all(tmp_path: Path) -> None:
     with Workshop() as workshop:
         session = Session(workshop, tmp_path, lambda question: SKIP if question.about is QuestionKind.LIFTED else None)
-        await session.walk("identity", "modes", "wheels", "stop", "bumpers")
+        await session.run("identity", "modes", "wheels", "stop", "bumpers")
         assert workshop.wiring.controls == 0
     assert {session.outcome(step) for step in ("lifted", "modes", "wheels", "stop")} == {StepOutcome.SKIPPED}
     assert session.measured("modes") == ("the wheels were not confirmed off the ground",)
@@ -67,7 +67,7 @@ async def test_other_words_are_asked_for_again(tmp_path: Path) -> None:
         session = Session(
             workshop, tmp_path, lambda question: next(words) if question.about is QuestionKind.LIFTED else None
         )
-        await session.walk("lifted")
+        await session.run("lifted")
     assert session.person.lines(Tone.BAD) == ["That was 'yes', not 'wheels up'.", "That was '', not 'wheels up'."]
     assert session.outcome("lifted") is StepOutcome.PASSED
 
@@ -75,15 +75,15 @@ async def test_other_words_are_asked_for_again(tmp_path: Path) -> None:
 async def test_whoever_leaves_goes_on_another_day_and_is_asked_about_the_block_anew(tmp_path: Path) -> None:
     with Workshop() as workshop:
         first = Session(workshop, tmp_path, leaves_at(QuestionKind.SEEN))
-        await first.walk("identity", "modes", "wheels", "stop")
+        await first.run("identity", "modes", "wheels", "stop")
         assert max(map(abs, workshop.robot.wheel_speeds)) == 0.0
         kept = load_progress(first.path)
         assert kept == first.progress
-        assert [step.name for step in steps_to_take(kept)] == ["wheels", "stop", "sensors", "bumpers", "infrared"]
+        assert [step.name for step in steps_to_run(kept)] == ["wheels", "stop", "sensors", "bumpers", "infrared"]
 
         second = Session(workshop, tmp_path)
         second.progress = kept
-        await second.walk("wheels", "stop")
+        await second.run("wheels", "stop")
     assert QuestionKind.LIFTED in [question.about for question in second.person.asked]
     assert [second.outcome(step) for step in ("identity", "modes", "wheels", "stop")] == [StepOutcome.PASSED] * 4
 
@@ -92,7 +92,7 @@ async def test_the_robot_is_braked_when_somebody_leaves_while_it_stands(tmp_path
     with Workshop() as workshop:
         session = Session(workshop, tmp_path, leaves_at(QuestionKind.SEEN))
         session.knows(speed_mode=SpeedMode.SPEED)
-        await session.walk("wheels")
+        await session.run("wheels")
         workshop.step()
         assert workshop.robot.controller.commands == (0.0, 0.0, True, True)
 
@@ -107,19 +107,19 @@ async def test_a_step_that_failed_can_be_repeated_at_once_when_it_is_mended(tmp_
     with Workshop(wiring=Wiring(reversed_motors=(1,))) as workshop:
         session = Session(workshop, tmp_path, mend)
         session.knows(speed_mode=SpeedMode.SPEED_CM)
-        await session.walk("wheels")
+        await session.run("wheels")
     assert session.person.lines(Tone.TO_DO) == ["The right motor turns the wrong way: exchange its two leads"]
     assert session.outcome("wheels") is StepOutcome.PASSED
-    assert barring(session.progress) == []
+    assert blocking_failures(session.progress) == []
 
 
 async def test_a_step_that_passed_stays_passed_when_it_is_skipped_later(tmp_path: Path) -> None:
     with Workshop() as workshop:
         session = Session(workshop, tmp_path)
-        await session.walk("bumpers")
+        await session.run("bumpers")
         again = Session(workshop, tmp_path, lambda question: SKIP if question.about is QuestionKind.BEGIN else None)
         again.progress = session.progress
-        await again.walk("bumpers", "sensors")
+        await again.run("bumpers", "sensors")
     assert again.outcome("bumpers") is StepOutcome.PASSED
     assert again.outcome("sensors") is StepOutcome.SKIPPED
 
@@ -143,12 +143,12 @@ async def test_a_step_that_failed_stays_failed_when_it_is_skipped_later(tmp_path
     with Workshop(wiring=Wiring(reversed_motors=(1,))) as workshop:
         session = Session(workshop, tmp_path, skips_what_failed(again="r"))
         session.knows(speed_mode=SpeedMode.SPEED_CM)
-        await session.walk("wheels")
-        assert [step.name for step in barring(session.progress)] == ["wheels"]
+        await session.run("wheels")
+        assert [step.name for step in blocking_failures(session.progress)] == ["wheels"]
         another_day = Session(workshop, tmp_path, skips_what_failed(again=""))
         another_day.progress = session.progress
-        await another_day.walk("wheels", "bumpers")
-    assert [step.name for step in barring(another_day.progress)] == ["wheels"]
+        await another_day.run("wheels", "bumpers")
+    assert [step.name for step in blocking_failures(another_day.progress)] == ["wheels"]
     assert another_day.person.lines(Tone.BAD) == [
         f"Each wheel's side and direction: failed on {TODAY}, and that stands"
     ]
@@ -158,9 +158,9 @@ async def test_a_step_that_failed_is_passed_over_on_purpose_with_what_is_to_be_d
     with Workshop(wiring=Wiring(reversed_motors=(1,))) as workshop:
         session = Session(workshop, tmp_path)
         session.knows(speed_mode=SpeedMode.SPEED_CM)
-        await session.walk("wheels")
-        await session.walk("bumpers", skipped=("wheels",))
-    assert barring(session.progress) == []
+        await session.run("wheels")
+        await session.run("bumpers", skipped=("wheels",))
+    assert blocking_failures(session.progress) == []
     assert session.outcome("wheels") is StepOutcome.SKIPPED
     assert session.to_do("wheels") == ("The right motor turns the wrong way: exchange its two leads",)
 
@@ -168,14 +168,14 @@ async def test_a_step_that_failed_is_passed_over_on_purpose_with_what_is_to_be_d
 async def test_what_was_found_on_the_simulated_robot_is_not_taken_for_another(tmp_path: Path) -> None:
     with Workshop() as workshop:
         rehearsal = Session(workshop, tmp_path)
-        await rehearsal.walk("identity", "modes")
+        await rehearsal.run("identity", "modes")
         real = Session(workshop, tmp_path)
         real.progress = rehearsal.progress
         real.knows(hardware_id=7)
         with pytest.raises(
             SettingsError, match=r"about a robot of hardware 7, but INFO_1 says hardware 21321 \(the sim"
         ):
-            await real.walk("wheels", skipped=("sensors",))
+            await real.run("wheels", skipped=("sensors",))
         assert real.person.asked == []
         assert "sensors" not in real.progress.steps
 
@@ -183,8 +183,8 @@ async def test_what_was_found_on_the_simulated_robot_is_not_taken_for_another(tm
 async def test_skipped_steps_are_noted_and_do_not_wait_any_longer(tmp_path: Path) -> None:
     with Workshop() as workshop:
         session = Session(workshop, tmp_path)
-        await session.walk("identity", skipped=("sensors", "infrared"))
-        await session.walk("lifted", skipped=("identity",))
+        await session.run("identity", skipped=("sensors", "infrared"))
+        await session.run("lifted", skipped=("identity",))
     assert session.outcome("identity") is StepOutcome.PASSED
     assert [step.name for step in open_steps(session.progress)] == ["modes", "wheels", "stop", "bumpers"]
     assert not passed(session.progress, STEPS)

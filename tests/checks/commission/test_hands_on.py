@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.checks.commission.checklist import barring
+from kurt2rt.checks.commission.checklist import blocking_failures
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.step import StepOutcome
 from tests.checks.commission.wired_end import Wiring
@@ -16,7 +16,7 @@ from tests.checks.commission.workshop import BASE, CODEC, Session, Workshop, wit
 async def test_sensors_on_one_anothers_channels_are_found_where_they_are(tmp_path: Path) -> None:
     with Workshop(with_channels(s1="ADC08", s2="ADC07", s11="BDC10")) as workshop:
         session = Session(workshop, tmp_path)
-        await session.walk("sensors")
+        await session.run("sensors")
     found = session.progress.findings.channels
     assert (found["s1"], found["s2"], found["s11"]) == ("ADC08", "ADC07", "BDC10")
     assert session.outcome("sensors") is StepOutcome.PASSED
@@ -29,11 +29,11 @@ async def test_sensors_on_one_anothers_channels_are_found_where_they_are(tmp_pat
 async def test_a_dead_sensor_is_given_up_and_told(tmp_path: Path) -> None:
     with Workshop(without("s5")) as workshop:
         session = Session(workshop, tmp_path)
-        await session.walk("sensors")
+        await session.run("sensors")
     assert session.to_do("sensors") == ("s5 answers on no channel: check its plug and its 5 V, then repeat this step",)
     assert session.progress.findings.dead_sensors == ("s5",)
     assert "No channel answered. Nearer, flat, straight before the sensor?" in session.person.lines(Tone.BAD)
-    assert barring(session.progress) == []
+    assert blocking_failures(session.progress) == []
 
 
 async def test_no_hand_is_asked_for_while_no_channel_is_heard(tmp_path: Path) -> None:
@@ -41,7 +41,7 @@ async def test_no_hand_is_asked_for_while_no_channel_is_heard(tmp_path: Path) ->
     with Workshop(wiring=Wiring(silent_ids=boards)) as workshop:
         session = Session(workshop, tmp_path)
         session.knows(channels={"s9": "BDC04"})
-        await session.walk("sensors")
+        await session.run("sensors")
     assert QuestionKind.HAND not in [question.about for question in session.person.asked]
     assert session.to_do("sensors") == (
         "No analog channel is heard: is the robot on? Step identity tells which frames come",
@@ -55,7 +55,7 @@ async def test_a_sensor_that_is_skipped_at_once_is_neither_found_nor_dead(tmp_pa
 
     with Workshop() as workshop:
         session = Session(workshop, tmp_path, skip)
-        await session.walk("sensors")
+        await session.run("sensors")
     assert session.progress.findings.channels == {"s9": "BDC04"}
     assert session.progress.findings.dead_sensors == ()
     assert session.measured("sensors")[0] == "s1 left front: not tried, the table says ADC07"
@@ -67,7 +67,7 @@ async def test_what_was_found_before_needs_no_hand_again(tmp_path: Path) -> None
     with Workshop() as workshop:
         session = Session(workshop, tmp_path)
         session.knows(channels={each.name: each.channel for each in BASE.infrared.sensors if each.name != "s9"})
-        await session.walk("sensors")
+        await session.run("sensors")
     assert [question.subject for question in session.person.asked if question.about is QuestionKind.HAND] == ["s9"]
     assert session.outcome("sensors") is StepOutcome.PASSED
     assert len(session.progress.findings.channels) == 18
@@ -98,7 +98,7 @@ class Clumsy:
 async def test_a_hand_before_the_wrong_sensor_is_forgotten_when_the_right_ones_turn_comes(tmp_path: Path) -> None:
     with Workshop() as workshop:
         session = Session(workshop, tmp_path, Clumsy(workshop, "s1", "s2"))
-        await session.walk("sensors")
+        await session.run("sensors")
     assert session.progress.findings.channels == {each.name: each.channel for each in BASE.infrared.sensors}
     assert "ADC08 answered, but that was s1's already." in session.person.lines(Tone.BAD)
 
@@ -117,7 +117,7 @@ async def test_a_hand_that_covers_two_sensors_names_none_of_them(tmp_path: Path)
 
     with Workshop(hand_radius_m=0.14) as workshop:
         session = Session(workshop, tmp_path, cover)
-        await session.walk("sensors")
+        await session.run("sensors")
     (told, *_) = session.person.lines(Tone.BAD)
     assert session.progress.findings.channels == {}
     assert "both answered: take your hand away from the neighbours" in told
@@ -135,7 +135,7 @@ def without(sensor: str) -> RobotSettings:
 async def test_bumpers_on_one_anothers_bits_are_found(tmp_path: Path) -> None:
     with Workshop(wiring=Wiring(bumper_bits={"front left": 3, "rear left": 0})) as workshop:
         session = Session(workshop, tmp_path)
-        await session.walk("bumpers")
+        await session.run("bumpers")
     assert session.progress.findings.bumper_bits == {
         "front left": 3,
         "front centre": 1,
@@ -150,7 +150,7 @@ async def test_bumpers_on_one_anothers_bits_are_found(tmp_path: Path) -> None:
 async def test_a_bumper_that_hangs_is_named_by_its_bit(tmp_path: Path) -> None:
     with Workshop(wiring=Wiring(hanging_bits=0b100)) as workshop:
         session = Session(workshop, tmp_path)
-        await session.walk("bumpers")
+        await session.run("bumpers")
     assert session.to_do("bumpers") == (
         "bit 2 pressed though nobody touches it: a bumper hangs",
         "front right: no bit answered, or it was skipped; check its switch and its plug",
@@ -160,7 +160,7 @@ async def test_a_bumper_that_hangs_is_named_by_its_bit(tmp_path: Path) -> None:
 async def test_two_bumpers_that_answer_together_are_asked_for_again(tmp_path: Path) -> None:
     with Workshop(wiring=Wiring(bumper_bits={"front left": 1})) as workshop:
         session = Session(workshop, tmp_path)
-        await session.walk("bumpers")
+        await session.run("bumpers")
     told, _ = session.person.lines(Tone.BAD)
     assert told == ("bit 1 answered, but that is front left's: press front centre, or skip it and repeat the step")
     assert session.outcome("bumpers") is StepOutcome.FAILED
@@ -169,7 +169,7 @@ async def test_two_bumpers_that_answer_together_are_asked_for_again(tmp_path: Pa
 async def test_a_robot_whose_bumpers_are_not_heard_of_is_told_so(tmp_path: Path) -> None:
     with Workshop(wiring=Wiring(silent_ids=[0x0A])) as workshop:
         session = Session(workshop, tmp_path)
-        await session.walk("bumpers")
+        await session.run("bumpers")
     assert session.to_do("bumpers") == (
         "BUMPERC (0x0A) never came: this robot has no bumpers, or they are not connected",
     )

@@ -8,7 +8,7 @@ import pytest
 from hal.bus import open_bus
 from hal.codec import load_codec
 from hal.control import Mode, SpeedControl, control_frame
-from kurt2rt.checks.commission.checklist import barring
+from kurt2rt.checks.commission.checklist import blocking_failures
 from kurt2rt.checks.commission.operator import OperatorQuestion, QuestionKind
 from kurt2rt.checks.commission.step import StepOutcome
 from tests.checks.commission.wired_end import Wiring
@@ -24,7 +24,7 @@ def frame_id(name: str) -> int:
 async def listened(tmp_path: Path, wiring: Wiring) -> Session:
     with Workshop(wiring=wiring) as workshop:
         session = Session(workshop, tmp_path)
-        await session.walk("identity")
+        await session.run("identity")
     return session
 
 
@@ -42,7 +42,7 @@ async def test_a_robot_that_is_switched_off_is_told_what_to_look_at(tmp_path: Pa
     session = await listened(tmp_path, Wiring(silent_ids=range(0x800)))
     (told,) = session.to_do("identity")
     assert told.startswith("Nothing was heard: is the robot on")
-    assert barring(session.progress)
+    assert blocking_failures(session.progress)
 
 
 @pytest.mark.parametrize(
@@ -82,7 +82,7 @@ async def test_junk_strangers_and_another_sender_of_control_are_found(tmp_path: 
             stranger.control_port().send(control_frame(SpeedControl(Mode.SPEED_CM, 0, 0)))
 
         session = Session(workshop, tmp_path, disturb)
-        await session.walk("identity")
+        await session.run("identity")
         stranger.shutdown()
     assert session.outcome("identity") is StepOutcome.FAILED
     assert session.to_do("identity") == (
@@ -102,7 +102,7 @@ async def test_two_robots_on_one_bus_are_found(tmp_path: Path) -> None:
                 other.telemetry_port().send(CODEC.message("INFO_1").pack(7, 1, 0))
 
         session = Session(workshop, tmp_path, join)
-        await session.walk("identity")
+        await session.run("identity")
         other.shutdown()
     assert session.to_do("identity") == (
         "INFO_1 comes from hardware 7 and hardware 21321 (the simulated robot): two robots; take one off the bus",
@@ -113,7 +113,7 @@ async def test_a_robot_without_its_second_controller_can_turn_its_wheels_all_the
     second = [frame_id(name) for name in ("INFO_2", "BDC00_03", "BDC04_07", "BDC08_11", "BDC12_15", "GYRO_MC2")]
     with Workshop(wiring=Wiring(silent_ids=second)) as workshop:
         session = Session(workshop, tmp_path)
-        await session.walk("identity", "modes")
+        await session.run("identity", "modes")
     assert session.outcome("identity") is StepOutcome.FAILED
     assert session.outcome("modes") is StepOutcome.PASSED
     assert any("s3, s4, s7, s8" in line for line in session.to_do("identity"))
@@ -123,5 +123,5 @@ async def test_the_wheels_turn_also_when_they_are_all_that_is_tried(tmp_path: Pa
     second = [frame_id(name) for name in ("BDC00_03", "BDC04_07")]
     with Workshop(wiring=Wiring(silent_ids=second)) as workshop:
         session = Session(workshop, tmp_path)
-        await session.walk("modes")
+        await session.run("modes")
     assert session.outcome("modes") is StepOutcome.PASSED

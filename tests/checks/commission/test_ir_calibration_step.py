@@ -106,7 +106,7 @@ async def test_the_law_of_other_sensors_is_found(tmp_path: Path, changes: dict[s
     true = other_law(**changes)
     with Workshop(true, seed=4) as workshop:
         session = Session(workshop, tmp_path, answer_which("s11 s1 s5"))
-        await session.walk("infrared")
+        await session.run("infrared")
     assert session.outcome("infrared") is StepOutcome.PASSED
     found = session.progress.findings.law
     assert found is not None
@@ -143,7 +143,7 @@ async def test_a_board_at_the_wrong_distance_is_asked_for_once_more(tmp_path: Pa
 
     with Workshop() as workshop:
         session = Session(workshop, tmp_path, err)
-        await session.walk("infrared")
+        await session.run("infrared")
     (again,) = [question.text for question in session.person.asked if "do not fit" in question.text]
     assert again.endswith("Once more: The board 0.30 m before front centre (s11).")
     assert session.outcome("infrared") is StepOutcome.PASSED
@@ -161,7 +161,7 @@ async def test_a_reading_that_stays_odd_is_left_out_and_shown(tmp_path: Path) ->
 
     with Workshop() as workshop:
         session = Session(workshop, tmp_path, err)
-        await session.walk("infrared")
+        await session.run("infrared")
     (odd,) = [line for line in session.measured("infrared") if "left out" in line]
     assert odd.startswith("s11 at 0.30 m: 3")
     assert session.outcome("infrared") is StepOutcome.PASSED
@@ -173,7 +173,7 @@ async def test_no_law_is_made_from_a_board_that_was_never_there(tmp_path: Path) 
 
     with Workshop() as workshop:
         session = Session(workshop, tmp_path, forget)
-        await session.walk("infrared")
+        await session.run("infrared")
     assert session.outcome("infrared") is StepOutcome.FAILED
     assert session.progress.findings.law is None
     assert session.to_do("infrared")[0].startswith("No law was fitted: ")
@@ -188,7 +188,7 @@ async def test_a_room_that_was_not_clear_makes_no_law(tmp_path: Path) -> None:
 
     with Workshop() as workshop:
         session = Session(workshop, tmp_path, stand_in_the_way)
-        await session.walk("infrared")
+        await session.run("infrared")
     (told,) = session.to_do("infrared")
     assert told.startswith("With nothing in view the sensor says as much as before a board at 0.2")
     assert session.progress.findings.law is None
@@ -202,5 +202,5 @@ async def test_a_sensor_that_does_not_exist_is_asked_for_again(tmp_path: Path) -
 
     with Workshop() as workshop:
         session = Session(workshop, tmp_path, choose)
-        await session.walk("infrared")
+        await session.run("infrared")
     assert {question.subject for question in session.person.asked if question.about is QuestionKind.BOARD} == {"s1"}

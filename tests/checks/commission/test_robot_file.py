@@ -15,7 +15,7 @@ from hal.settings import SettingsError
 from kurt2rt.checks.commission.checklist import STEPS
 from kurt2rt.checks.commission.findings import Findings, LawFound
 from kurt2rt.checks.commission.progress import Progress, StepRecord
-from kurt2rt.checks.commission.robot_file import commissioned, robot_file, write_robot_file
+from kurt2rt.checks.commission.robot_file import commissioned_settings, robot_file, write_robot_file
 from kurt2rt.checks.commission.step import StepOutcome
 from kurt2rt.service.settings import load_service
 from tests.checks.commission.wired_end import Wiring
@@ -43,7 +43,7 @@ async def test_the_file_makes_the_robot_sense_in_order_and_drive(tmp_path: Path)
     out = tmp_path / "robbie.yaml"
     with Workshop(true, Wiring(modes=[SpeedMode.SPEED, SpeedMode.RAW])) as workshop:
         session = Session(workshop, tmp_path)
-        await session.walk("modes", "sensors")
+        await session.run("modes", "sensors")
         loaded = write_robot_file(out, BASE, session.progress, STEPS)
         assert loaded == load_robot(str(out))
         assert [each.channel for each in loaded.infrared.sensors] == [each.channel for each in true.infrared.sensors]
@@ -91,11 +91,11 @@ def test_the_file_is_whole_and_says_what_was_measured_and_what_was_not() -> None
 
 
 def test_a_robot_like_the_one_it_began_with_gets_the_same_settings() -> None:
-    assert commissioned(BASE, BASE.name, Findings()) == BASE
+    assert commissioned_settings(BASE, BASE.name, Findings()) == BASE
 
 
 def test_all_that_was_found_is_in_the_settings() -> None:
-    robot = commissioned(
+    robot = commissioned_settings(
         BASE,
         "robbie",
         Findings(
@@ -123,18 +123,18 @@ def test_words_that_mean_something_to_yaml_survive(tmp_path: Path) -> None:
 
 
 def test_what_a_hundred_per_cent_are_matters_in_speed_mode_alone() -> None:
-    robot = commissioned(BASE, "robbie", Findings(speed_mode=SpeedMode.SPEED_CM, full_speed_m_s=0.72))
+    robot = commissioned_settings(BASE, "robbie", Findings(speed_mode=SpeedMode.SPEED_CM, full_speed_m_s=0.72))
     assert robot.motors.full_speed_m_s == BASE.motors.full_speed_m_s
 
 
 def test_a_channel_that_another_sensor_took_must_be_found_anew() -> None:
     with pytest.raises(SettingsError, match="s2 has no channel: ADC08, which the table gives it, is s1's; find s2's"):
-        commissioned(BASE, "robbie", Findings(channels={"s1": "ADC08"}))
+        commissioned_settings(BASE, "robbie", Findings(channels={"s1": "ADC08"}))
 
 
 def test_a_bumper_on_anothers_bit_must_be_found_anew() -> None:
     with pytest.raises(SettingsError, match="bumper bits must be 0 to 5, each once, but are: front left 3, "):
-        commissioned(BASE, "robbie", Findings(bumper_bits={"front left": 3}))
+        commissioned_settings(BASE, "robbie", Findings(bumper_bits={"front left": 3}))
 
 
 def test_the_runtime_settings_take_the_file_by_its_path(tmp_path: Path) -> None:

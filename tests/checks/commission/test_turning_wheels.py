@@ -7,12 +7,12 @@ import pytest
 from hal.bus import open_bus
 from hal.guard_reason import GuardReason
 from hal.robot_settings import RobotSettings, SpeedMode
-from kurt2rt.checks.commission.checklist import barring
+from kurt2rt.checks.commission.checklist import blocking_failures
 from kurt2rt.checks.commission.moving import DRIVE_S
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.step import StepOutcome
 from kurt2rt.checks.commission.test_stand import UNANSWERED
-from kurt2rt.checks.commission.wiring import Motion, WheelTrial, parse_seen, what_to_rewire
+from kurt2rt.checks.commission.wiring import Motion, WheelTrial, parse_seen, wiring_advice
 from tests.checks.commission.wired_end import Wiring
 from tests.checks.commission.workshop import BASE, Instead, Session, Workshop
 
@@ -29,7 +29,7 @@ async def turned(
         session = Session(workshop, tmp_path, instead)
         if "modes" not in steps:
             session.knows(speed_mode=SpeedMode.SPEED_CM)
-        await session.walk(*steps)
+        await session.run(*steps)
     return session
 
 
@@ -52,7 +52,7 @@ async def test_no_mode_answers_on_a_robot_without_its_motors_supply(tmp_path: Pa
         "No speed mode answers: check the motors' supply, their fuses and the emergency switch",
     )
     assert session.measured("wheels") == ("no speed mode is known to answer: take the step modes first",)
-    assert [step.name for step in barring(session.progress)] == ["modes"]
+    assert [step.name for step in blocking_failures(session.progress)] == ["modes"]
 
 
 async def test_what_a_hundred_per_cent_are_is_measured(tmp_path: Path) -> None:
@@ -64,7 +64,7 @@ async def test_what_a_hundred_per_cent_are_is_measured(tmp_path: Path) -> None:
 async def test_wheels_that_run_away_are_braked_at_once(tmp_path: Path) -> None:
     with Workshop(wiring=Wiring(wild_modes=[SpeedMode.SPEED_CM])) as workshop:
         session = Session(workshop, tmp_path)
-        await session.walk("modes")
+        await session.run("modes")
         assert max(map(abs, workshop.take_peaks())) < 0.6
     (told,) = session.to_do("modes")
     assert told.startswith("SPEED_CM: the wheels ran away and were braked; an encoder that counts the wrong way does ")
@@ -85,7 +85,7 @@ async def test_wheels_with_other_encoders_seem_slow_and_the_settings_to_mend_are
     (told,) = session.to_do("modes")
     assert told.startswith("SPEED_CM: 0.23 times as fast as told, by the encoders. Turn a wheel once by hand: 21938 ")
     assert session.progress.findings.speed_mode is SpeedMode.SPEED_CM
-    assert [step.name for step in barring(session.progress)] == ["modes"]
+    assert [step.name for step in blocking_failures(session.progress)] == ["modes"]
 
 
 async def test_what_is_wrong_with_a_mode_that_is_not_needed_is_no_matter(tmp_path: Path) -> None:
@@ -113,7 +113,7 @@ async def test_a_controller_that_crashes_is_not_driven_on(tmp_path: Path) -> Non
                 workshop.robot.controller.crashed = True
 
         session = Session(workshop, tmp_path, crash)
-        await session.walk("modes")
+        await session.run("modes")
     (told,) = session.to_do("modes")
     assert told.startswith("The wheels are not heard of any more after the brake: SWITCH THE MOTORS OFF")
     assert [question.about for question in session.person.asked].count(QuestionKind.MOVE) == 1
@@ -123,7 +123,7 @@ async def test_somebody_else_on_the_bus_ends_a_drive(tmp_path: Path) -> None:
     with Workshop() as workshop:
         session = Session(workshop, tmp_path)
         workshop.stranger = open_bus(workshop.spec)
-        await session.walk("modes")
+        await session.run("modes")
     assert any(GuardReason.FOREIGN_CONTROL in line for line in session.to_do("modes"))
     assert session.outcome("modes") is StepOutcome.FAILED
 
@@ -180,7 +180,7 @@ ENCODERS_EXCHANGED = "The encoders are exchanged: exchange the left and the righ
 async def test_what_is_wired_wrong_is_told_by_its_name(tmp_path: Path, wiring: Wiring, told: list[str]) -> None:
     session = await turned(tmp_path, "wheels", wiring=wiring)
     assert list(session.to_do("wheels")) == told
-    assert [step.name for step in barring(session.progress)] == ["wheels"]
+    assert [step.name for step in blocking_failures(session.progress)] == ["wheels"]
 
 
 async def test_a_side_that_nothing_is_counted_of_does_not_turn_for_long(tmp_path: Path) -> None:
@@ -193,7 +193,7 @@ async def test_a_side_that_nothing_is_counted_of_does_not_turn_for_long(tmp_path
 
         session = Session(workshop, tmp_path, note)
         session.knows(speed_mode=SpeedMode.SPEED_CM)
-        await session.walk("wheels", "stop")
+        await session.run("wheels", "stop")
     took_s = [
         seen_s - move_s for move_s, seen_s in zip(asked_s[QuestionKind.MOVE], asked_s[QuestionKind.SEEN], strict=False)
     ]
@@ -256,7 +256,7 @@ def test_an_order_that_turns_both_sides_is_a_matter_of_both_motors() -> None:
         for sign in (1, -1)
         for ordered in (Motion(sign, 0), Motion(0, sign))
     ]
-    assert what_to_rewire(both) == [
+    assert wiring_advice(both) == [
         "The left motor's order turns both forward and both back: check the wiring of both motors",
         "The right motor's order turns both forward and both back: check the wiring of both motors",
     ]
@@ -270,7 +270,7 @@ def test_a_motor_that_does_not_turn_is_no_matter_of_its_encoder() -> None:
         WheelTrial(Motion(0, 1), Motion(0, 1), Motion(0, 1)),
         WheelTrial(Motion(0, -1), Motion(0, -1), Motion(0, -1)),
     ]
-    assert what_to_rewire(trials) == ["The left motor does not turn: check its plug, its fuse and its supply"]
+    assert wiring_advice(trials) == ["The left motor does not turn: check its plug, its fuse and its supply"]
 
 
 # Stopping
@@ -291,11 +291,11 @@ async def test_a_controller_that_does_not_stop_by_itself_is_braked_and_bars_driv
     with Workshop(endless) as workshop:
         session = Session(workshop, tmp_path)
         session.knows(speed_mode=SpeedMode.RAW)
-        await session.walk("stop")
+        await session.run("stop")
         assert tuple(workshop.robot.wheel_speeds) == (0.0, 0.0)
     (told,) = session.to_do("stop")
     assert told.startswith("Without CONTROL the wheels turned on for 1.5 s: this controller does not stop by itself.")
-    assert [step.name for step in barring(session.progress)] == ["stop"]
+    assert [step.name for step in blocking_failures(session.progress)] == ["stop"]
 
 
 async def test_a_brake_that_does_not_hold_says_to_switch_the_motors_off(tmp_path: Path) -> None:
@@ -314,7 +314,7 @@ async def test_an_alarm_that_brakes_while_nothing_is_sent_is_not_taken_for_the_c
         session.knows(speed_mode=SpeedMode.SPEED_CM)
         workshop.stranger = open_bus(workshop.spec)
         workshop.stranger_waits_s = 2 * DRIVE_S + 0.2  # some cycles after the second drive
-        await session.walk("stop")
+        await session.run("stop")
     (told,) = session.to_do("stop")
     assert GuardReason.FOREIGN_CONTROL in told
     assert session.progress.findings.controller_watchdog_s is None

@@ -91,9 +91,9 @@ class Workshop:
 
     def hold_between(self, sensor: str, neighbour: str, distance_m: float) -> None:
         """Before both."""
-        one, other = self._place(sensor), self._place(neighbour)
-        middle = {"x_m": (one.x_m + other.x_m) / 2, "y_m": (one.y_m + other.y_m) / 2}
-        self._hold(one.model_copy(update=middle), distance_m)
+        single_side, other = self._place(sensor), self._place(neighbour)
+        middle = {"x_m": (single_side.x_m + other.x_m) / 2, "y_m": (single_side.y_m + other.y_m) / 2}
+        self._hold(single_side.model_copy(update=middle), distance_m)
 
     def _place(self, sensor: str) -> SensorSettings:
         return next(each for each in BASE.infrared.sensors if each.name == sensor)
@@ -185,12 +185,12 @@ class Session:
         found = self.progress.findings.model_copy(update=findings)
         self.progress = self.progress.model_copy(update={"findings": found})
 
-    async def walk(self, *names: str, skipped: Sequence[str] = ()) -> Progress:
+    async def run(self, *names: str, skipped: Sequence[str] = ()) -> Progress:
         """Take the named steps, all when none is named; returns how far it came."""
         chosen: list[CommissionStep] = [step_named(name) for name in names] or list(STEPS)
         spec = self.workshop.spec
         with ExitStack() as ending:
-            bench = ending.enter_context(
+            stand = ending.enter_context(
                 TestStand(
                     BASE,
                     lambda settings: Kurt2(settings, open_bus(spec)),
@@ -200,9 +200,9 @@ class Session:
                     second_guard=False,
                 )
             )
-            checklist = Checklist(bench, self.progress, self.path, "anna", lambda: TODAY)
+            checklist = Checklist(stand, self.progress, self.path, "anna", lambda: TODAY)
             try:
-                await checklist.walk(chosen, [step_named(name) for name in skipped])
+                await checklist.run(chosen, [step_named(name) for name in skipped])
             except AbortedError:
                 self.person.tell("left")
             finally:

@@ -6,7 +6,7 @@ import pytest
 
 from hal.control import Mode, SpeedControl, control_frame, encode_brake
 from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
-from kurt2rt.checks.faults.envelope import Envelope, told_by
+from kurt2rt.checks.faults.envelope import Envelope, decode_command
 from kurt2rt.checks.faults.suite import FaultTrial
 from tests.checks.faults.helpers import TABLE, tried, with_guard
 
@@ -26,7 +26,7 @@ class Drive:
         self.number = 0
         self.now_s = 0.0
 
-    def put(
+    def on_sent(
         self,
         payload: bytes,
         *,
@@ -37,15 +37,15 @@ class Drive:
     ) -> "Drive":
         self.number += 1
         self.now_s += after_s
-        self.envelope.put(self.number, self.now_s, payload, age_s, latched=latched)
+        self.envelope.on_sent(self.number, self.now_s, payload, age_s, latched=latched)
         if late_s is not None:
-            self.envelope.arrived(self.number, self.now_s + late_s, payload)
+            self.envelope.on_arrived(self.number, self.now_s + late_s, payload)
         return self
 
     def to(self, cm_s: int) -> "Drive":
         """As a good guard does it, one cm/s in a cycle."""
         for speed in range(cm_s + 1):
-            self.put(set_point(speed))
+            self.on_sent(set_point(speed))
         return self
 
     @property
@@ -60,20 +60,28 @@ class Drive:
 
 
 def test_it_reads_what_the_robot_reads() -> None:
-    told = told_by(bytes(control_frame(SpeedControl(Mode.SPEED_CM, -12, 34)).data))
+    told = decode_command(bytes(control_frame(SpeedControl(Mode.SPEED_CM, -12, 34)).data))
     assert told is not None
     assert (told.left_m_s, told.right_m_s, told.brake) == (-0.12, 0.34, False)
-    brake = told_by(BRAKE)
+    brake = decode_command(BRAKE)
     assert brake is not None
     assert brake.brake
     assert brake.standing
-    assert told_by(bytes(8)) is None
-    assert told_by(b"\0\2") is None
+    assert decode_command(bytes(8)) is None
+    assert decode_command(b"\0\2") is None
 
 
 def test_a_good_drive_passes() -> None:
-    drive = Drive().to(60).put(set_point(0)).to(30).put(BRAKE, latched=True).put(set_point(3)).put(set_point(0))
-    drive.put(set_point(-1)).put(set_point(-2), after_s=0.1)
+    drive = (
+        Drive()
+        .to(60)
+        .on_sent(set_point(0))
+        .to(30)
+        .on_sent(BRAKE, latched=True)
+        .on_sent(set_point(3))
+        .on_sent(set_point(0))
+    )
+    drive.on_sent(set_point(-1)).on_sent(set_point(-2), after_s=0.1)
     assert not drive.violations
     assert drive.envelope.frames > 90
 
@@ -81,16 +89,16 @@ def test_a_good_drive_passes() -> None:
 @pytest.mark.parametrize(
     ("drive", "code", "value"),
     [
-        (Drive().to(60).put(set_point(61)), ComplaintCode.TOO_FAST, 0.61),
-        (Drive().to(10).put(set_point(13)), ComplaintCode.JUMPED, "left"),
-        (Drive().to(10).put(set_point(10, 13)), ComplaintCode.JUMPED, "right"),
-        (Drive().put(set_point(0)).put(set_point(5), after_s=0.5), ComplaintCode.JUMPED, 0.05),
-        (Drive().put(BRAKE).put(set_point(5)), ComplaintCode.JUMPED, 0.05),
-        (Drive().to(30).put(set_point(25)), ComplaintCode.JUMPED, 0.25),
-        (Drive().to(1).put(set_point(-1)), ComplaintCode.TURNED_ROUND, -0.01),
-        (Drive().to(10).put(set_point(10), age_s=0.021), ComplaintCode.OLD_COMMAND, 21.0),
-        (Drive().put(struct.pack(">HhhH", 1, 10, 10, 1)), ComplaintCode.UNKNOWN_FRAME, "00 01 00 0a 00 0a 00 01"),
-        (Drive().put(bytes(7)), ComplaintCode.UNKNOWN_FRAME, "00 00 00 00 00 00 00"),
+        (Drive().to(60).on_sent(set_point(61)), ComplaintCode.TOO_FAST, 0.61),
+        (Drive().to(10).on_sent(set_point(13)), ComplaintCode.JUMPED, "left"),
+        (Drive().to(10).on_sent(set_point(10, 13)), ComplaintCode.JUMPED, "right"),
+        (Drive().on_sent(set_point(0)).on_sent(set_point(5), after_s=0.5), ComplaintCode.JUMPED, 0.05),
+        (Drive().on_sent(BRAKE).on_sent(set_point(5)), ComplaintCode.JUMPED, 0.05),
+        (Drive().to(30).on_sent(set_point(25)), ComplaintCode.JUMPED, 0.25),
+        (Drive().to(1).on_sent(set_point(-1)), ComplaintCode.TURNED_ROUND, -0.01),
+        (Drive().to(10).on_sent(set_point(10), age_s=0.021), ComplaintCode.OLD_COMMAND, 21.0),
+        (Drive().on_sent(struct.pack(">HhhH", 1, 10, 10, 1)), ComplaintCode.UNKNOWN_FRAME, "00 01 00 0a 00 0a 00 01"),
+        (Drive().on_sent(bytes(7)), ComplaintCode.UNKNOWN_FRAME, "00 00 00 00 00 00 00"),
     ],
 )
 def test_drive_beyond_the_limits_is_a_complaint(drive: Drive, code: ComplaintCode, value: float | str) -> None:
@@ -98,62 +106,70 @@ def test_drive_beyond_the_limits_is_a_complaint(drive: Drive, code: ComplaintCod
 
 
 def test_set_point_of_a_latched_driver_is_a_complaint() -> None:
-    assert Drive().put(set_point(0), latched=True).violations == [complaint(ComplaintCode.NO_BRAKE, 0.01)]
+    assert Drive().on_sent(set_point(0), latched=True).violations == [complaint(ComplaintCode.NO_BRAKE, 0.01)]
 
 
 def test_it_judges_what_arrives_even_when_frames_are_lost() -> None:
-    drive = Drive().put(set_point(0)).put(set_point(1), late_s=None).put(set_point(2), late_s=None).put(set_point(3))
+    drive = (
+        Drive()
+        .on_sent(set_point(0))
+        .on_sent(set_point(1), late_s=None)
+        .on_sent(set_point(2), late_s=None)
+        .on_sent(set_point(3))
+    )
     assert not drive.violations
-    drive = Drive().put(set_point(0)).put(set_point(1), late_s=None).put(set_point(2), late_s=None)
-    drive.envelope.arrived(3, drive.now_s, set_point(9))
+    drive = Drive().on_sent(set_point(0)).on_sent(set_point(1), late_s=None).on_sent(set_point(2), late_s=None)
+    drive.envelope.on_arrived(3, drive.now_s, set_point(9))
     assert ("left", 0.0, 0.09) in drive.jumps_m_s
 
 
 @pytest.mark.parametrize(("cm_s", "allowed"), [(6, True), (8, False)])
 def test_the_longest_step_after_a_brake_may_be_among_frames_that_were_lost(cm_s: int, allowed: bool) -> None:
-    drive = Drive().put(BRAKE, latched=True).put(set_point(3), late_s=None).put(set_point(4), late_s=None)
+    drive = Drive().on_sent(BRAKE, latched=True).on_sent(set_point(3), late_s=None).on_sent(set_point(4), late_s=None)
     assert drive.violations == []
-    drive.put(set_point(cm_s))
+    drive.on_sent(set_point(cm_s))
     heard = [each for each in drive.violations if round(float(each.values["within_ms"])) in (30, 40)]
     assert (heard == []) is allowed
 
 
 def test_the_first_step_after_a_brake_may_be_the_longest_however_soon_it_comes() -> None:
-    drive = Drive().put(BRAKE, latched=True).put(set_point(3), after_s=0.002)
+    drive = Drive().on_sent(BRAKE, latched=True).on_sent(set_point(3), after_s=0.002)
     assert drive.violations == []
 
 
 def test_a_stop_may_be_among_frames_that_were_lost_on_the_way() -> None:
-    slows = Drive().put(set_point(5)).put(set_point(0), late_s=None).put(set_point(1))
-    turns = Drive().put(set_point(1)).put(set_point(0), late_s=None).put(set_point(-1))
+    slows = Drive().on_sent(set_point(5)).on_sent(set_point(0), late_s=None).on_sent(set_point(1))
+    turns = Drive().on_sent(set_point(1)).on_sent(set_point(0), late_s=None).on_sent(set_point(-1))
     assert not slows.violations
     assert not turns.violations
 
 
 def test_what_follows_one_another_at_the_robot_must_rest_in_between() -> None:
-    codes = [each.code for each in Drive().put(set_point(1)).put(set_point(-1)).violations]
+    codes = [each.code for each in Drive().on_sent(set_point(1)).on_sent(set_point(-1)).violations]
     assert ComplaintCode.TURNED_ROUND in codes
 
 
 def test_off_a_bumper_a_wheel_may_turn_round_at_once_but_not_jump() -> None:
-    drive = Drive().put(set_point(1)).put(set_point(2)).put(set_point(3))
-    drive.envelope.off_a_bumper = True
-    assert not drive.put(set_point(-1)).violations
-    assert ("left", 0.0, 0.09) in drive.put(set_point(9)).jumps_m_s
+    drive = Drive().on_sent(set_point(1)).on_sent(set_point(2)).on_sent(set_point(3))
+    drive.envelope.bumper_pressed = True
+    assert not drive.on_sent(set_point(-1)).violations
+    assert ("left", 0.0, 0.09) in drive.on_sent(set_point(9)).jumps_m_s
 
 
 def test_frames_of_a_driver_whose_clock_jumps_are_judged_one_by_one() -> None:
     drive = Drive()
-    drive.envelope.clock_is_wrong = True
-    drive.put(set_point(1)).put(set_point(4), after_s=0.003)
+    drive.envelope.clock_is_faulty = True
+    drive.on_sent(set_point(1)).on_sent(set_point(4), after_s=0.003)
     assert not drive.violations
-    assert ("left", 0.04, 0.09) in drive.put(set_point(9), after_s=0.003).jumps_m_s
+    assert ("left", 0.04, 0.09) in drive.on_sent(set_point(9), after_s=0.003).jumps_m_s
 
 
 def test_it_counts_what_arrives_too_late_and_what_is_garbled() -> None:
-    drive = Drive().put(set_point(1), late_s=0.019).put(set_point(2), late_s=0.03).put(set_point(0), late_s=0.5)
+    drive = (
+        Drive().on_sent(set_point(1), late_s=0.019).on_sent(set_point(2), late_s=0.03).on_sent(set_point(0), late_s=0.5)
+    )
     assert drive.envelope.old_frames == 1
-    drive.envelope.arrived(1, 1.0, b"\xff" * 8)
+    drive.envelope.on_arrived(1, 1.0, b"\xff" * 8)
     assert drive.envelope.unintelligible == 1
     assert not drive.violations
 

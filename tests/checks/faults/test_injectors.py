@@ -9,7 +9,7 @@ import pytest
 from hal.bus import CONTROL_ID
 from hal.frame import Frame
 from kurt2rt.checks.faults.envelope import Envelope
-from kurt2rt.checks.faults.failing_clock import BrokenClockError, DisturbedClock, DrillClock
+from kurt2rt.checks.faults.failing_clock import BrokenClockError, FaultyClock, RigClock
 from kurt2rt.checks.faults.observer import Stand, WheelObserver
 from simbridge.faults.event_scheduler import EventScheduler
 from simbridge.faults.fault_rig import FaultRigFactory, SimulatedFaultRig
@@ -191,7 +191,7 @@ def test_a_motor_fails_as_its_kind_says() -> None:
 
 async def test_a_sound_clock_waits_exactly() -> None:
     time = EventScheduler()
-    clock = DrillClock(time)
+    clock = RigClock(time)
     await clock.wait_until(0.25)
     assert clock.now_s() == time.now_s() == 0.25
 
@@ -202,7 +202,7 @@ async def test_a_sound_clock_waits_exactly() -> None:
 )
 async def test_a_clock_wakes_the_loop_by_its_own_time(kind: Kind, woken_at_s: float) -> None:
     time = EventScheduler()
-    clock = DisturbedClock(time, fault(kind))
+    clock = FaultyClock(time, fault(kind))
     await clock.wait_until(0.09)
     assert time.now_s() == 0.09
     await clock.wait_until(0.2)
@@ -213,10 +213,10 @@ async def test_a_clock_that_is_off_cannot_be_read_and_one_that_gives_garbage_giv
     time = EventScheduler()
     time.run_until(0.15)
     with pytest.raises(BrokenClockError):
-        DisturbedClock(time, fault("off")).now_s()
+        FaultyClock(time, fault("off")).now_s()
     with pytest.raises(BrokenClockError):
-        await DisturbedClock(time, fault("off")).wait_until(0.2)
-    now_s = DisturbedClock(time, fault("garbage")).now_s()
+        await FaultyClock(time, fault("off")).wait_until(0.2)
+    now_s = FaultyClock(time, fault("garbage")).now_s()
     assert now_s != now_s
 
 
@@ -231,14 +231,14 @@ def place() -> Iterator[SimulatedFaultRig]:
 
 
 def test_the_witness_knows_when_the_robot_stands(place: SimulatedFaultRig) -> None:
-    witness = WheelObserver(place, Envelope(TABLE.envelope), controller_watchdog_s=0.2)
+    observer = WheelObserver(place, Envelope(TABLE.envelope), controller_watchdog_s=0.2)
     go, stand = bytes((0, 2, 0, 1, 0, 1, 0, 1)), bytes((0, 2, 0, 0, 0, 0, 0, 1))
     for at_s, payload in ((0.1, go), (0.2, go), (0.3, stand), (0.4, go), (0.9, go), (1.0, b"\xff" * 8), (1.05, go)):
         place.time.run_until(at_s)
-        witness.envelope.put(round(at_s * 100), at_s, payload, 0.0, latched=False)
+        observer.envelope.on_sent(round(at_s * 100), at_s, payload, 0.0, latched=False)
         place.on_control(round(at_s * 100), payload)
     # Told so, silent for longer than its own watchdog waits, and silent in the end.
-    stands = [(round(each.from_s, 6), each.to_s) for each in witness.stands(0.0, 2.0)]
+    stands = [(round(each.from_s, 6), each.to_s) for each in observer.standstills(0.0, 2.0)]
     assert stands == [(0.0, 0.1), (0.3, 0.4), (0.6, 0.9), (1.25, 2.0)]
-    assert witness.stands(0.35, 0.5) == [Stand(0.35, 0.4)]
-    assert witness.stands(0.1, 0.2) == []
+    assert observer.standstills(0.35, 0.5) == [Stand(0.35, 0.4)]
+    assert observer.standstills(0.1, 0.2) == []

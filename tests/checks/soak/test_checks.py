@@ -7,8 +7,8 @@ import pytest
 from rich.console import Console
 
 from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint, text_of
-from kurt2rt.checks.soak.checks import fault_check, memory_check, memory_told, starts_check, steady_check
-from kurt2rt.checks.soak.faults import FaultSeen
+from kurt2rt.checks.soak.checks import fault_check, format_memory_growth, memory_check, starts_check, steady_check
+from kurt2rt.checks.soak.faults import FaultResult
 from kurt2rt.checks.soak.picture import draw_soak
 from kurt2rt.checks.soak.report import as_json, print_report
 from kurt2rt.checks.soak.result import CheckCode, SoakCheck, SoakMinute, SoakResult, SoakStart
@@ -29,8 +29,8 @@ def hours(count: float, grown_mb_per_hour: float) -> list[SoakMinute]:
     return [minute(number, 100.0 + grown_mb_per_hour * number / 60.0) for number in range(1, round(60 * count) + 1)]
 
 
-def fault(*complaints: Complaint, drove: bool = True, stood_after_s: float | None = 0.05) -> FaultSeen:
-    return FaultSeen(100.0, "encoders", "off", drove, stood_after_s, None, complaints)
+def fault(*complaints: Complaint, drove: bool = True, stood_after_s: float | None = 0.05) -> FaultResult:
+    return FaultResult(100.0, "encoders", "off", drove, stood_after_s, None, complaints)
 
 
 TOO_FAST = complaint(ComplaintCode.TOO_FAST, 5.0, speed_m_s=0.7)
@@ -77,14 +77,14 @@ def test_a_short_soak_is_not_asked_about_memory() -> None:
 
 def test_what_knowledge_takes_is_told_apart_from_what_stays() -> None:
     starts = [SoakStart(600.0 * number, 590.0, "none", "", left_mb=90.0 + 0.1 * number) for number in range(18)]
-    told = memory_told(hours(3, 1.0), starts)
+    told = format_memory_growth(hours(3, 1.0), starts)
     assert told.startswith("Of +2.0 MB since the first hour +1.2 MB stay when the program ends, after 12 more starts;")
     assert told.endswith("+0.8 MB are for what it knows: +124 lessons and +0 RLAs, 6.5 kB for each lesson.")
 
 
 def test_a_soak_of_one_program_has_nothing_to_tell_apart() -> None:
-    assert memory_told(hours(3, 1.0), [SoakStart(0.0, 10_800.0, "none", "", left_mb=90.0)]) == ""
-    assert memory_told(hours(0.5, 1.0), [SoakStart(0.0, 600.0, "none", "", left_mb=90.0)] * 3) == ""
+    assert format_memory_growth(hours(3, 1.0), [SoakStart(0.0, 10_800.0, "none", "", left_mb=90.0)]) == ""
+    assert format_memory_growth(hours(0.5, 1.0), [SoakStart(0.0, 600.0, "none", "", left_mb=90.0)] * 3) == ""
 
 
 def test_files_and_threads_that_become_more_are_seen() -> None:

@@ -30,7 +30,7 @@ def test_ctrl_c_ends_it_with_a_report_of_what_was_seen(tmp_path: Path, monkeypat
     app = typer.Typer()
     app.command()(soak)
     before = signal.getsignal(signal.SIGINT)
-    seen = SoakRun._see
+    seen = SoakRun._on_tick
     ticks = 0
 
     def interrupted(*words: object) -> None:
@@ -40,7 +40,7 @@ def test_ctrl_c_ends_it_with_a_report_of_what_was_seen(tmp_path: Path, monkeypat
             signal.raise_signal(signal.SIGINT)
         seen(*words)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(SoakRun, "_see", interrupted)
+    monkeypatch.setattr(SoakRun, "_on_tick", interrupted)
     monkeypatch.setattr("kurt2rt.checks.soak.picture.draw_soak", lambda *_: None)  # the soak above is drawn
     result = CliRunner(env={"COLUMNS": "120"}).invoke(app, ["--hours", "24", "--out", str(tmp_path)])
     assert result.exception is None, result.output

@@ -29,10 +29,10 @@ def drive(place: LongRunRig, until_s: float, envelope: Envelope | None = None) -
     robot, time = place.robot, place.time
     assert robot is not None
     if envelope is not None:
-        place.on_put = lambda number, payload: envelope.put(
+        place.on_sent = lambda number, payload: envelope.on_sent(
             number, time.now_s(), payload, 0.0, latched=robot.health.latched is not None
         )
-        place.on_control = lambda number, payload, at_s: envelope.arrived(number, at_s, payload) and None
+        place.on_control = lambda number, payload, at_s: envelope.on_arrived(number, at_s, payload) and None
     while True:
         time.run_until(time.now_s() + CYCLE_S)
         robot.sense(time.now_s())
@@ -103,7 +103,7 @@ async def test_a_clock_that_went_slow_does_not_get_back_what_it_lost() -> None:
     clock.disturb(TimedFault("slow", 1.0, 2.0, 1.0, 1.0))
     await clock.wait_until(1.5)
     assert time.now_s() == pytest.approx(2.0, abs=0.001)
-    clock.mend()
+    clock.clear()
     assert clock.now_s() == pytest.approx(1.5, abs=0.001)
     await clock.wait_until(2.5)
     assert time.now_s() == pytest.approx(3.0, abs=0.001)

@@ -40,17 +40,17 @@ def place() -> Iterator[LongRunRig]:
 
 
 @pytest.fixture
-def witness(place: LongRunRig) -> SoakObserver:
+def observer(place: LongRunRig) -> SoakObserver:
     return SoakObserver(place, TABLE.envelope)
 
 
-def started(folder: Path, place: LongRunRig, witness: SoakObserver, **moods: object) -> ProgramRun:
+def started(folder: Path, place: LongRunRig, observer: SoakObserver, **moods: object) -> ProgramRun:
     """A program with a teacher of one mood."""
     soak = DAY.model_copy(update={"moods": moods})
     teacher = SoakTeacher(soak, TASK, ROBOT, ("forward", "stand"), seed=1)
     return ProgramRun(
         place,
-        witness,
+        observer,
         teacher,
         ROBOT,
         TASK,
@@ -62,68 +62,68 @@ def started(folder: Path, place: LongRunRig, witness: SoakObserver, **moods: obj
     )
 
 
-def run(life: ProgramRun, place: LongRunRig, until_s: float) -> None:
-    anyio.run(life.run, lambda _: None, lambda: place.time.now_s() >= until_s)
+def run(program: ProgramRun, place: LongRunRig, until_s: float) -> None:
+    anyio.run(program.run, lambda _: None, lambda: place.time.now_s() >= until_s)
 
 
-def test_a_robot_that_nobody_told_to_drive_stands(tmp_path: Path, place: LongRunRig, witness: SoakObserver) -> None:
-    life = started(tmp_path, place, witness, away=AWAY)
-    run(life, place, 1.0)
-    assert (witness.complaints.count, life.ended_by, life.close()) == (0, "", None)
-    assert witness.stands
+def test_a_robot_that_nobody_told_to_drive_stands(tmp_path: Path, place: LongRunRig, observer: SoakObserver) -> None:
+    program = started(tmp_path, place, observer, away=AWAY)
+    run(program, place, 1.0)
+    assert (observer.complaints.count, program.ended_by, program.close()) == (0, "", None)
+    assert observer.stands
 
 
 def test_one_that_drives_though_it_was_only_started_is_seen(
-    tmp_path: Path, place: LongRunRig, witness: SoakObserver, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, place: LongRunRig, observer: SoakObserver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tick, "stopped", lambda decision, _: decision)
-    life = started(tmp_path, place, witness, away=AWAY)
-    assert life.level.behind is not None
-    life.level.behind = Careless(life.level.behind)
-    run(life, place, 1.0)
-    life.close()
-    assert witness.complaints.count > 80
-    assert witness.complaints.told[0].code is ComplaintCode.DROVE_UNTOLD
+    program = started(tmp_path, place, observer, away=AWAY)
+    assert program.level.inner is not None
+    program.level.inner = Careless(program.level.inner)
+    run(program, place, 1.0)
+    program.close()
+    assert observer.complaints.count > 80
+    assert observer.complaints.stored[0].code is ComplaintCode.DROVE_UNTOLD
 
 
 def test_a_layer_that_drives_whatever_it_is_told_does_not_drive_a_program_that_was_only_started(
-    tmp_path: Path, place: LongRunRig, witness: SoakObserver
+    tmp_path: Path, place: LongRunRig, observer: SoakObserver
 ) -> None:
-    life = started(tmp_path, place, witness, away=AWAY)
-    assert life.level.behind is not None
-    life.level.behind = Careless(life.level.behind)
-    run(life, place, 1.0)
-    assert (witness.complaints.count, life.ended_by, life.close()) == (0, "", None)
-    assert witness.stands
+    program = started(tmp_path, place, observer, away=AWAY)
+    assert program.level.inner is not None
+    program.level.inner = Careless(program.level.inner)
+    run(program, place, 1.0)
+    assert (observer.complaints.count, program.ended_by, program.close()) == (0, "", None)
+    assert observer.stands
 
 
-def test_a_tick_that_is_not_accounted_for_is_seen(tmp_path: Path, place: LongRunRig, witness: SoakObserver) -> None:
-    life = started(tmp_path, place, witness, away=AWAY)
-    run(life, place, 0.5)
-    assert witness.complaints.count == 0
-    life.runtime.timer.missed_ticks += 1
-    run(life, place, 0.6)
-    life.close()
-    (first, *_) = witness.complaints.told
+def test_a_tick_that_is_not_accounted_for_is_seen(tmp_path: Path, place: LongRunRig, observer: SoakObserver) -> None:
+    program = started(tmp_path, place, observer, away=AWAY)
+    run(program, place, 0.5)
+    assert observer.complaints.count == 0
+    program.runtime.timer.missed_ticks += 1
+    run(program, place, 0.6)
+    program.close()
+    (first, *_) = observer.complaints.stored
     assert (first.code, first.values["missed"]) == (ComplaintCode.TICKS_UNACCOUNTED, 1)
 
 
-def test_a_lesson_that_is_not_in_the_file_is_missed(tmp_path: Path, place: LongRunRig, witness: SoakObserver) -> None:
-    life = started(tmp_path, place, witness, patient=PATIENT)
-    run(life, place, 3.0)
-    life.knowledge.submitted.append("soak-999")
-    lost = life.close()
+def test_a_lesson_that_is_not_in_the_file_is_missed(tmp_path: Path, place: LongRunRig, observer: SoakObserver) -> None:
+    program = started(tmp_path, place, observer, patient=PATIENT)
+    run(program, place, 3.0)
+    program.knowledge.submitted.append("soak-999")
+    lost = program.close()
     assert lost is not None
     assert lost.code is ComplaintCode.LESSONS_NOT_STORED
 
 
 def test_an_error_in_the_loop_ends_the_program_and_says_where(
-    tmp_path: Path, place: LongRunRig, witness: SoakObserver
+    tmp_path: Path, place: LongRunRig, observer: SoakObserver
 ) -> None:
-    life = started(tmp_path, place, witness, away=AWAY)
-    life.level.behind = None
-    run(life, place, 1.0)
-    assert life.ended_by.startswith("AssertionError() in failing_level.py, line ")
-    assert life.close() is None
+    program = started(tmp_path, place, observer, away=AWAY)
+    program.level.inner = None
+    run(program, place, 1.0)
+    assert program.ended_by.startswith("AssertionError() in failing_level.py, line ")
+    assert program.close() is None
     place.time.run_until(1.0)
     assert place.standing

@@ -38,7 +38,7 @@ def drive(place: LongRunRig, person: SoakOperator, until_s: float, wanted: Wheel
         robot.sense(time.now_s())
         robot.release()
         grant = robot.drive(wanted, time.now_s(), time.now_s())
-        person.sees(seen(grant))
+        person.on_tick(seen(grant))
 
 
 def seen(grant: GuardResult, *commands: Resume) -> TickRecord:
@@ -87,7 +87,7 @@ def test_one_that_stopped_itself_waits_for_its_teacher_and_is_not_carried_about(
         time.run_until(time.now_s() + CYCLE_S)
         robot.sense(time.now_s())
         grant = robot.drive(AHEAD, time.now_s(), time.now_s())
-        person.sees(seen(grant))
+        person.on_tick(seen(grant))
     assert person.set_down == 0
 
 
@@ -97,11 +97,11 @@ def test_one_that_stops_itself_again_in_the_tick_of_every_go_is_set_down_elsewhe
     go = Resume("go", "Ann")
 
     def ticks(count: int) -> int:
-        return sum(person.sees(seen(again)) for _ in range(count))
+        return sum(person.on_tick(seen(again)) for _ in range(count))
 
     patience = round(PATIENCE_S / CYCLE_S)
     assert ticks(2 * patience) == 0, "nobody has said go yet"
-    assert not person.sees(seen(again, go))
+    assert not person.on_tick(seen(again, go))
     assert ticks(patience) == 1
     assert ticks(2 * patience) == 0, "it waits where it was set down"
     assert person.set_down == 1
