@@ -1,4 +1,4 @@
-"""The one codec of the teacher's channel: requests, answers and the state as CBOR (docs/the-wire.md)."""
+"""Codec of the teacher's channel: requests, answers and the state as CBOR (docs/the-wire.md)."""
 
 import math
 from collections.abc import Mapping
@@ -44,28 +44,28 @@ __all__ = [
 ]
 
 CONTENT_FORMAT = 60
-"""CoAP's number for application/cbor."""
+"""CoAP's content format of application/cbor."""
 
 MOST_REQUEST_BYTES = 1024
 MOST_ANSWER_BYTES = 65_507
-"""The largest UDP datagram: a world may have many walls."""
+"""Largest UDP datagram, for worlds with many walls."""
 
 _STATE_DEPTH = 3
 _ANSWER_DEPTH = 8
 
 PATHS: Mapping[str, type[Request]] = {kind.path: kind for kind in REQUESTS}
-"""What each path takes; its keys are all paths but /state."""
+"""Request of each path; /state is not among them."""
 
 _CHECKS = {kind: checks_of(kind) for kind in REQUESTS}
 
 
 def encode_request(request: Request) -> bytes:
-    """The body of a request. Raises WireError where the robot would: nothing is sent that it cannot take."""
+    """Return the body of a request. Raises WireError if the robot would refuse it."""
     return encode_plainly([check(name, getattr(request, name)) for name, check in _CHECKS[type(request)]])
 
 
 def decode_request(path: str, payload: bytes) -> Request:
-    """What was asked of a path (a key of PATHS). Raises WireError."""
+    """Return the request in a body; `path` is a key of PATHS. Raises WireError."""
     kind = PATHS.get(path)
     if kind is None:
         raise WireError(f"there is no {path} here")
@@ -78,13 +78,13 @@ def decode_request(path: str, payload: bytes) -> Request:
 
 
 def encode_answer(answer: Mapping[str, Any]) -> bytes:
-    """An answer: a map with text keys."""
+    """Return an answer, a map with text keys, as CBOR."""
     return encode_plainly(dict(answer))
 
 
 def decode_answer(payload: bytes) -> dict[str, Any]:
-    """An answer's map. Raises WireError."""
-    # Keys that are numbers cannot hurt here: an answer comes from the robot, and phases have numbers.
+    """Return the map of an answer. Raises WireError."""
+    # Integer keys are allowed: an answer comes from the robot, and phases have numbers.
     answer = decode_strictly(payload, most_bytes=MOST_ANSWER_BYTES, most_depth=_ANSWER_DEPTH, text_keys=False)
     if not isinstance(answer, dict) or not all(isinstance(key, str) for key in answer):
         raise WireError("an answer has to be a map with text keys")
@@ -93,7 +93,7 @@ def decode_answer(payload: bytes) -> dict[str, Any]:
 
 _MOST_SYMBOLS = 32
 _MOST_STEPS = 32
-"""Of a plan that are told; a longer one is cut."""
+"""Most steps of a plan; a longer plan is cut."""
 _LINE = Text(512)
 _NAME = Text(LONGEST_TEXT)
 _NUMBER = Int(0, LARGEST_NUMBER)
@@ -173,7 +173,7 @@ _PLACE = OrNone(Row((_FINITE, _FINITE, _FINITE, _FINITE, _NUMBER, _NUMBER)))
 
 
 def encode_state(state: State) -> bytes:
-    """The picture of the robot for /state. Texts are cut and tidied where the other side would refuse them."""
+    """Return the body of /state. Texts that a device would refuse are cut and made printable."""
     picture: dict[str, Any] = {key: _tidied(getattr(state, field), check) for key, field, check in _PLAIN}
     picture["m"] = [state.left_m_s, state.right_m_s]
     picture["ask"] = [[each.name, each.here, each.in_condition] for each in state.question]
@@ -188,7 +188,7 @@ def encode_state(state: State) -> bytes:
     picture["pg"] = _row(state.progress, _PROGRESS)
     picture["nv"] = state.nearest_value
     standing = state.standing
-    # An older device tells the stop by its sentence.
+    # Older devices read the stop from its sentence.
     picture["st"] = _tidied(stop_text(state.stopped), _LINE)
     picture["sr"] = _row(state.stopped, _STOP)
     if standing is not None and standing.stop is not None:
@@ -198,24 +198,21 @@ def encode_state(state: State) -> bytes:
 
 
 def decode_state(payload: bytes) -> State:
-    """The picture of the robot. Keys that are not known here are left out: a newer robot may tell more.
-
-    Raises WireError.
-    """
+    """Return the state in a body, without the unknown keys of a newer robot. Raises WireError."""
     picture = decode_strictly(payload, most_bytes=MOST_ANSWER_BYTES, most_depth=_STATE_DEPTH)
     if not isinstance(picture, dict):
         raise WireError("a state has to be a map")
-    values = {field: check(field, _take(picture, key)) for key, field, check in _PLAIN}
-    left_m_s, right_m_s = _WHEELS("wheel speeds", _take(picture, "m"))
-    question = tuple(FeatureDifference(*each) for each in _QUESTION("question", _take(picture, "ask")))
-    place = _PLACE("place", _take(picture, "pl"))
-    mid = OrNone(Row(_MID))("mid level", _take(picture, "mid"))
-    surprise = OrNone(Row(_SURPRISE))("surprise", _take(picture, "su"))
-    # Younger than the rest of version 4: a robot of before leaves them out.
+    values = {field: check(field, _value(picture, key)) for key, field, check in _PLAIN}
+    left_m_s, right_m_s = _WHEELS("wheel speeds", _value(picture, "m"))
+    question = tuple(FeatureDifference(*each) for each in _QUESTION("question", _value(picture, "ask")))
+    place = _PLACE("place", _value(picture, "pl"))
+    mid = OrNone(Row(_MID))("mid level", _value(picture, "mid"))
+    surprise = OrNone(Row(_SURPRISE))("surprise", _value(picture, "su"))
+    # Added within version 4: older robots leave them out.
     progress = OrNone(Row(_PROGRESS))("progress", picture.get("pg"))
     nearest_value = OrNone(_FINITE)("worth of the nearest", picture.get("nv"))
     standing = OrNone(Row(_STANDING))("standing", picture.get("sd"))
-    sentence = _LINE("stop", _take(picture, "st"))
+    sentence = _LINE("stop", _value(picture, "st"))
     stopped = _stop(OrNone(Row(_STOP))("stop", picture.get("sr")), sentence)
     return State(
         left_m_s=left_m_s,
@@ -240,7 +237,7 @@ def _row(value: MidState | SurpriseState | Progress | tuple[Any, ...] | None, ch
 
 
 def _stop(told: tuple[str, str] | None, sentence: str) -> ActiveStop | None:
-    """Return the stop that was told; by its sentence if the robot is older, or has reasons that are not known here."""
+    """Return the stop; by its sentence if the robot is older, or has reasons that are not known here."""
     if told is not None and told[0] in StopReason.__members__.values():
         return ActiveStop(StopReason(told[0]), told[1])
     return stop_of_text(sentence)
@@ -249,7 +246,7 @@ def _stop(told: tuple[str, str] | None, sentence: str) -> ActiveStop | None:
 def _standing(
     reason: str, needs_go: bool, asks: bool, stall_s: float | None, says: str, *, stopped: ActiveStop | None
 ) -> Standing:
-    """Return the standing that was told; a newer robot may have reasons that are not known here."""
+    """Return the standing; HALTED for a reason that is not known here."""
     if reason == StandReason.STOPPED and stopped is not None:
         return Standing(StandReason.STOPPED, needs_go, asks, stall_s, stop=stopped)
     if reason in StandReason.__members__.values():
@@ -257,7 +254,7 @@ def _standing(
     return Standing(StandReason.HALTED, needs_go, asks, stall_s, says or reason)
 
 
-def _take(picture: dict[Any, Any], key: str) -> object:
+def _value(picture: dict[Any, Any], key: str) -> object:
     try:
         value: object = picture[key]
     except KeyError:
@@ -266,7 +263,7 @@ def _take(picture: dict[Any, Any], key: str) -> object:
 
 
 def _tidied(value: Any, check: Check) -> Any:
-    # A line break in the text of some error must not cost the teacher the whole picture.
+    # A line break in an error's text must not make a device refuse the whole state.
     match check:
         case Text():
             return check.cut(value)

@@ -10,31 +10,31 @@ _MOST_WORLDS = 32
 
 @dataclass(frozen=True, slots=True)
 class WorldVerdict:
-    """The exam in one world."""
+    """Result of the exam in one world."""
 
     world: str
     passed: bool
     text: str
-    """Progress next to that of the teacher's own policy, collisions, an early end."""
+    """Progress compared with the teacher's own policy, collisions, early end."""
     judged: bool = True
-    """False: the teacher's own policy gets nowhere in this world, and `passed` says nothing."""
+    """False if the teacher's own policy makes no progress in this world; `passed` means nothing then."""
 
 
 @dataclass(frozen=True, slots=True)
 class ExamStatus:
-    """The exam that is under way, or the newest one."""
+    """Exam under way, or the newest one."""
 
     running: bool
     share: float
-    """Of the robot time that is over, 0 to 1."""
+    """Fraction of the robot time that is over, 0 to 1."""
     text: str
-    """The present drive, or the verdict in a sentence; empty before the first exam."""
+    """Present drive, or the verdict in a sentence; empty before the first exam."""
     verdicts: tuple[WorldVerdict, ...] = ()
-    """One per world; empty until the exam is over."""
+    """One verdict per world; empty until the exam is over."""
     picture: str = ""
     """Name of the PNG file, to be fetched as `/file`; empty until it is drawn."""
     trouble: str = ""
-    """Why there is no verdict, in a line; empty where nothing went wrong."""
+    """Reason of a missing verdict in a line; empty without error."""
 
 
 NO_EXAM = ExamStatus(False, 0.0, "")

@@ -1,4 +1,4 @@
-"""The facts of a decision as plain values, for CBOR, and back."""
+"""Codec of the facts of a decision."""
 
 import math
 from typing import Any
@@ -11,14 +11,14 @@ from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.decision.standing_text import stop_of_text
 from kurt2rt.runs.explain.facts import MOST_OTHERS, DecisionFacts, LessonFact, LevelFacts, RlaFacts
 
-_MOST_ACTS = 32
+_MOST_LESSONS = 32
 _MOST_FEATURES = 512
 
 _REAL = Float(1e12)
 _DISTANCE = OrNotFinite(_REAL, math.inf)
 _SPEEDS = Row((_REAL, _REAL))
 _VECTOR = ManyOf(OrNotFinite(_REAL, math.nan), most=_MOST_FEATURES)
-_STORY = MapOf(
+_RLA = MapOf(
     RlaFacts,
     rla_id=COUNT,
     title=NAME,
@@ -30,7 +30,7 @@ _STORY = MapOf(
         MapOf(
             LessonFact, text=LINE, teacher=NAME, phase=Int(1, 5), tick=COUNT, stamp=NAME, undone=Flag(), changes=Flag()
         ),
-        most=_MOST_ACTS,
+        most=_MOST_LESSONS,
     ),
     uses=COUNT,
     uses_since=OrNone(COUNT),
@@ -48,9 +48,9 @@ _LEVEL = MapOf(
     vector=_VECTOR,
     weights=ManyOf(_REAL, most=_MOST_FEATURES),
     euclidean=Flag(),
-    nearest=OrNone(_STORY),
-    driver=OrNone(_STORY),
-    others=ManyOf(_STORY, most=MOST_OTHERS),
+    nearest=OrNone(_RLA),
+    driver=OrNone(_RLA),
+    others=ManyOf(_RLA, most=MOST_OTHERS),
     count=COUNT,
     words=ManyOf(NAME, most=_MOST_FEATURES),
     nearest_words=ManyOf(NAME, most=_MOST_FEATURES),
@@ -58,7 +58,7 @@ _LEVEL = MapOf(
 
 
 def _stop(reason: str, name: str) -> ActiveStop | None:
-    """Return the stop that was told; None if its reason is one of a newer robot."""
+    """Return the stop in the facts; None for a reason of a newer robot."""
     return ActiveStop(StopReason(reason), name) if reason in StopReason.__members__.values() else None
 
 
@@ -109,5 +109,5 @@ _FACTS = MapOf(
 
 _FORM = Form[DecisionFacts]("what the robot knows of its decision", _FACTS)
 plain_of_facts = _FORM.plain_of
-"""At most MOST_OTHERS of the RLAs behind the nearest of each level are told."""
+"""Encode facts, with at most MOST_OTHERS RLAs after the nearest of each level."""
 facts_of_plain = _FORM.read

@@ -1,4 +1,4 @@
-"""The health report: how the robot's program is, once a second."""
+"""Health report of the robot's program, made once a second."""
 
 from dataclasses import dataclass
 
@@ -13,9 +13,9 @@ class Trouble:
 
     code: TroubleCode
     since_s: float
-    """Duration so far."""
+    """Duration so far in seconds."""
     urgent: bool
-    """The robot stands because of it, or lessons are at risk."""
+    """True if the robot stands because of it, or lessons are at risk."""
     name: str = ""
     """Sensor, folder, queue or part, as the code says."""
     numbers: tuple[float, ...] = ()
@@ -40,36 +40,36 @@ class Trouble:
 
 @dataclass(frozen=True, slots=True)
 class TickLateness:
-    """How late ticks begin, of the last minute unless said otherwise, in milliseconds."""
+    """Lateness of ticks in milliseconds, over the last minute unless stated."""
 
     newest_ms: float
-    """The worst of the last second."""
+    """Worst lateness of the last second."""
     median_ms: float
     p99_ms: float
     worst_ms: float
     took_p99_ms: float
-    """How long ticks take, 99th percentile."""
+    """Duration of ticks, 99th percentile."""
     ticks: int
-    """Since the program was started."""
+    """Number of ticks since the program started."""
     missed: int
-    """Of those that were due since the program was started; skipped whole, never caught up."""
+    """Number of due ticks that were skipped since the program started; they are not caught up."""
     missed_lately: int
-    """In the last minute."""
+    """Number of ticks skipped in the last minute."""
 
 
 @dataclass(frozen=True, slots=True)
 class SensorAges:
-    """How old the newest frame of each kind was in the tick of the report, in seconds; None: none has come."""
+    """Ages of the newest frames at the tick of the report, in seconds; None before the first frame."""
 
     infrared_s: float | None
-    """Of the oldest of the infra-red frames."""
+    """Age of the oldest of the infra-red frames."""
     encoders_s: float | None
     bumpers_s: float | None
 
 
 @dataclass(frozen=True, slots=True)
 class BusHealth:
-    """The robot's bus, by counters since it was opened."""
+    """Counters of the robot's bus since it was opened."""
 
     controller: str
     """State of this machine's CAN controller: a value of hal.bus_state.ControllerState."""
@@ -77,7 +77,7 @@ class BusHealth:
     junk: int
     error_frames: int
     foreign_control: int
-    """CONTROL frames of somebody else."""
+    """CONTROL frames of another sender."""
     send_failures: int
     receive_failures: int
 
@@ -87,43 +87,41 @@ class DiskSpace:
     """Room for one kind of file."""
 
     of: str
-    """What is kept there: knowledge, recordings."""
+    """Content of the disk: knowledge, recordings."""
     free_bytes: int | None
     """None while the disk does not answer."""
 
 
 @dataclass(frozen=True, slots=True)
 class JournalHealth:
-    """How lessons fare on their way to the disk."""
+    """State of the lessons on their way to the disk."""
 
     unwritten: int
-    """Lessons that are not durable yet."""
+    """Number of lessons that are not durable yet."""
     last_write_ms: float | None
-    """How long the disk took to keep the last ones; None before the first."""
+    """Duration of the last durable write; None before the first."""
 
 
 @dataclass(frozen=True, slots=True)
 class MachineHealth:
-    """The program and the machine that it runs on."""
+    """Program and the machine that it runs on."""
 
     memory_bytes: int
-    """That the program holds; 0 where the kernel does not tell."""
+    """Memory of the program; 0 if the kernel does not tell."""
     available_bytes: int | None
-    """That the machine could still give; None where it does not tell."""
+    """Available memory of the machine; None if it does not tell."""
     processor_share: float
-    """Of one core, in the last second."""
+    """Fraction of one core used in the last second."""
     threads: int
     battery: float | None
-    """Charge of the machine that the program runs on, 0 to 1; None where it has no battery. The robot tells none of
-    its own: no frame of KURT2 carries a voltage.
-    """
+    """Charge of this machine's battery, 0 to 1; None without battery. No frame of KURT2 carries its own voltage."""
     discharging: bool
-    """Whether that battery is being used up."""
+    """True while that battery discharges."""
 
 
 @dataclass(frozen=True, slots=True)
 class Drops:
-    """What one queue threw away since the program was started, because whoever empties it did not keep up."""
+    """Number of entries that a full queue dropped since the program started."""
 
     of: str
     count: int
@@ -131,41 +129,41 @@ class Drops:
 
 @dataclass(frozen=True, slots=True)
 class HealthReport:
-    """All of it, as of one tick."""
+    """Health of program, bus, disks and machine at one tick."""
 
     version: str
-    """Of kurt2rt."""
+    """Version of kurt2rt."""
     boot: str
     """Random letters of this start."""
     robot: str
     task: str
     knowledge: str
-    """File that lessons are kept in."""
+    """Knowledge file that keeps the lessons."""
     started_at: str
-    """UTC, ISO 8601."""
+    """Start of the program, UTC, ISO 8601."""
     uptime_s: float
     tick: int
     doing: str
-    """Who moves the wheels, or why they stand, in a few words."""
+    """Mover of the wheels, or reason of the standstill, in a few words."""
     rlas: int
     lessons: int
-    """That stand."""
+    """Number of lessons that stand."""
     punctuality: TickLateness
     ages: SensorAges
     bus: BusHealth | None
-    """None where the robot does not tell of one."""
+    """None if the robot reports no bus."""
     disks: tuple[DiskSpace, ...]
     safety: JournalHealth
     machine: MachineHealth
     drops: tuple[Drops, ...]
     troubles: tuple[Trouble, ...]
-    """The urgent ones first, then those that have lasted longest."""
+    """Urgent troubles first, then by duration, longest first."""
     pages: tuple[str, ...] = ()
-    """Links to the teacher's page, with their tokens: told to this machine's own user alone, never over the channel."""
+    """Links to the teacher's page with their tokens, for this machine's user only, never over the channel."""
     progress: Progress = NO_PROGRESS
-    """Of teaching, in the last minute."""
+    """Progress of teaching in the last minute."""
 
     @property
     def urgent(self) -> bool:
-        """Whether one of the troubles is."""
+        """True if a trouble is urgent."""
         return any(each.urgent for each in self.troubles)

@@ -1,4 +1,4 @@
-"""The report as plain values, for JSON and CBOR, and back."""
+"""Codec of the health report, for JSON and CBOR."""
 
 from kurt2rt.channel.protocol.cbor_schema import COUNT, LINE, NAME, Form, MapOf, MayLack
 from kurt2rt.channel.protocol.health import (
@@ -18,7 +18,7 @@ from kurt2rt.channel.protocol.trouble_text import numbers_of
 from kurt2rt.core.teaching.progress import Progress
 
 MOST_ROWS = 16
-"""Of troubles, disks and queues; more are not told."""
+"""Most troubles, disks and queues in a report; further ones are left out."""
 
 _TIME = Float(1e12)
 
@@ -34,7 +34,7 @@ def _trouble(
     numbers: tuple[float, ...] = (),
     line: str = "",
 ) -> Trouble:
-    """Return the trouble that was told; by its text if the robot is older, or has codes that are not known here."""
+    """Return a trouble; an older robot, or a code that is not known here, gives OTHER with its text."""
     if code in TroubleCode.__members__.values() and len(numbers) >= numbers_of(TroubleCode(code)):
         return Trouble(TroubleCode(code), since_s, urgent, name, numbers, line)
     return Trouble(TroubleCode.OTHER, since_s, urgent, about, (), f"{what}; {to_do}" if to_do else what)

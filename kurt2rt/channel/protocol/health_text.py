@@ -1,4 +1,4 @@
-"""The health report in words: one row for each subject, and a sentence for each trouble."""
+"""Text of the health report: one row for each subject, and a sentence for each trouble."""
 
 from typing import NamedTuple
 
@@ -6,11 +6,11 @@ from kurt2rt.channel.protocol.health import HealthReport, SensorAges, TickLatene
 from kurt2rt.core.teaching.progress import WINDOW_S, Progress
 
 FINE, WARNS, URGENT = "", "warns", "urgent"
-"""How a row is: a trouble is about it, or an urgent one."""
+"""Level of a row: without trouble, with a trouble, with an urgent trouble."""
 
 
 class HealthRow(NamedTuple):
-    """One subject."""
+    """Row of one subject."""
 
     name: str
     text: str
@@ -19,7 +19,7 @@ class HealthRow(NamedTuple):
 
 
 def rows_of(report: HealthReport) -> tuple[HealthRow, ...]:
-    """All subjects, in the order of a table."""
+    """Return the rows of all subjects."""
     late, bus = report.punctuality, report.bus
     rows = [
         ("does", report.doing),
@@ -67,13 +67,13 @@ def rows_of(report: HealthReport) -> tuple[HealthRow, ...]:
 
 
 def trouble_in(trouble: Trouble) -> str:
-    """What is wrong, since when, what to do."""
+    """Return the fault, its duration and the remedy."""
     to_do = f": {trouble.to_do}" if trouble.to_do else ""
     return f"{trouble.what} (for {lasting(trouble.since_s)}){to_do}"
 
 
 def lines_of(report: HealthReport | None) -> tuple[str, ...]:
-    """Everything as lines of a terminal; None: there is no report in the first second."""
+    """Return the report as lines of a terminal; None: no report in the first second."""
     if report is None:
         return ("nothing is known yet, the robot program has just begun",)
     troubles = (f"{'!!' if each.urgent else '!'} {trouble_in(each)}" for each in report.troubles)
@@ -81,7 +81,7 @@ def lines_of(report: HealthReport | None) -> tuple[str, ...]:
 
 
 def progress_in(progress: Progress) -> str:
-    """Return the share driven without help and the questions, over the last minute."""
+    """Return the percentage driven by RLAs and the number of questions, over the last minute."""
     if progress.driven_percent is None:
         return "nothing was driven yet"
     asks = "1 question" if progress.asks == 1 else f"{progress.asks} questions"
@@ -104,12 +104,12 @@ _NAMES = {
 
 
 def name_of(trouble: Trouble) -> str:
-    """Return what is wrong in one or two words, where there is room for no more."""
+    """Return the fault in one or two words."""
     return _NAMES.get(trouble.about, trouble.about)
 
 
 def headline(report: HealthReport) -> str:
-    """Return how the program is in a few words: each trouble by its name, or that it is well."""
+    """Return the names of all troubles, or `well`, and the lateness."""
     late = report.punctuality
     punctual = f"late {late.p99_ms:.2f} ms (p99), missed {late.missed}"
     urgent = {name_of(each) for each in report.troubles if each.urgent}
@@ -119,7 +119,7 @@ def headline(report: HealthReport) -> str:
 
 
 def lasting(seconds: float) -> str:
-    """A length of time with two of its units at most."""
+    """Return a duration with at most two of its units."""
     minutes, rest_s = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     days, hours = divmod(hours, 24)
@@ -131,7 +131,7 @@ def lasting(seconds: float) -> str:
 
 
 def size(count: int) -> str:
-    """Bytes in the unit that suits."""
+    """Return a number of bytes in kB, MB or GB."""
     for unit, bytes_each in (("GB", 10**9), ("MB", 10**6)):
         if count >= bytes_each:
             return f"{count / bytes_each:.{1 if unit == 'GB' else 0}f} {unit}"

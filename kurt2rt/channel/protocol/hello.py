@@ -1,4 +1,4 @@
-"""What robot this is, for a teacher's device that has never seen it."""
+"""Description of the robot for a teacher's device."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ _LAW = OrNone(Row((_COUNTS, _METRES, _COUNTS, _METRES, _METRES, _COUNTS)))
 
 
 class AppraisalName(NamedTuple):
-    """What a teacher can call a situation when he teaches the critic, and the signal that it stands for."""
+    """Name of an appraisal for teaching the critic, with its value."""
 
     name: str
     value: int
@@ -30,18 +30,18 @@ class AppraisalName(NamedTuple):
 
 
 class MidIntroduction(NamedTuple):
-    """The mid level, for who has never seen it."""
+    """Description of the mid level."""
 
     kind: str
-    """Of its situation: history, place."""
+    """Kind of its situation: history, place."""
     length: int
-    """How many features the situation has."""
+    """Number of features of the situation."""
     radius: float
-    """R of its RLA system."""
+    """Radius R of its RLA system."""
 
 
 class SensorPlace(NamedTuple):
-    """Where an infra-red sensor sits and looks, in the robot's frame: x forward, y to the left."""
+    """Pose of an infra-red sensor in the robot's frame: x forward, y to the left."""
 
     name: str
     label: str
@@ -52,20 +52,20 @@ class SensorPlace(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Hello:
-    """The robot introduces itself."""
+    """Description of the robot."""
 
     version: int
-    """Of the wire contract."""
+    """Version of the wire contract."""
     boot: bytes
     tick: int
     robot: str
     task: str
     radius: float
-    """R of the RLA system."""
+    """Radius R of the RLA system."""
     period_s: float
-    """Of a tick."""
+    """Period of a tick in seconds."""
     actions: tuple[str, ...]
-    """The repertoire."""
+    """Names of the repertoire."""
     sensors: tuple[SensorPlace, ...]
     outline: tuple[float, float]
     """Length and width of the robot in metres."""
@@ -74,19 +74,19 @@ class Hello:
     phases: tuple[str, ...]
     """Names of the training phases; the first one's number is 1."""
     behaviours: tuple[str, ...] = ("",)
-    """What the task teaches, each with RLAs of its own; a single one may have no name."""
+    """Behaviours of the task, each with its own RLAs; a single behaviour may have an empty name."""
     appraisals: tuple[AppraisalName, ...] = ()
-    """The critic's repertoire; empty where the robot has no critic."""
+    """Critic's repertoire; empty if the robot has no critic."""
     trusted_from: float = 1.0
-    """Agreement from which on the critic is trusted."""
+    """Least agreement of a trusted critic."""
     mid: MidIntroduction | None = None
-    """None where no mid level chooses the behaviours."""
+    """None if no mid level chooses the behaviours."""
     seeks: bool = False
-    """Whether the robot can be given a goal."""
+    """True if the robot can seek a goal."""
     what: str = ""
-    """The task in one sentence to its teacher; empty from a robot that does not tell it."""
+    """Sentence on the task for its teacher; empty from an older robot."""
     law: InfraredLaw | None = None
-    """Law of the infra-red sensors; None from a robot that does not tell it."""
+    """Law of the infra-red sensors; None from an older robot."""
 
     @property
     def sensor_words(self) -> SensorWords:
@@ -95,7 +95,7 @@ class Hello:
 
 
 def hello_of(body: Mapping[str, Any]) -> Hello:
-    """The introduction in a decoded body. Raises WireError, which for another version says what to do."""
+    """Return the description in a decoded body. Raises WireError, with the remedy for another version."""
     _require_version(body)
     try:
         phases = body["phases"]

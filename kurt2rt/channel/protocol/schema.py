@@ -1,4 +1,4 @@
-"""Strict CBOR: what may come from the network, and the checks that every value of it has to pass."""
+"""Strict CBOR for input from the network, and checks of its values."""
 
 import io
 from collections.abc import Callable, Iterator, Mapping
@@ -15,11 +15,11 @@ class ChannelError(UserError):
 
 
 class WireError(ValueError):
-    """Something that is not as the wire contract says; the message is a sentence for the one who sent it."""
+    """Value that breaks the wire contract; the message is a sentence for its sender."""
 
 
 Check = Callable[[str, object], Any]
-"""Takes what a value is called and the value, returns the value in its Python type. Raises WireError."""
+"""Function of a value's name and the value; it returns the value in its Python type. Raises WireError."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class Bytes:
     length: int
 
     def __call__(self, what: str, value: object) -> bytes:
-        """These bytes. Raises WireError."""
+        """Return the checked value. Raises WireError."""
         if not isinstance(value, bytes) or len(value) != self.length:
             raise WireError(f"{what} has to be {self.length} bytes")
         return value
@@ -37,12 +37,12 @@ class Bytes:
 
 @dataclass(frozen=True, slots=True)
 class BytesUpTo:
-    """At least one byte, and no more than `most`."""
+    """One byte to `most` bytes."""
 
     most: int
 
     def __call__(self, what: str, value: object) -> bytes:
-        """Return these bytes. Raises WireError."""
+        """Return the checked value. Raises WireError."""
         if not isinstance(value, bytes) or not 1 <= len(value) <= self.most:
             raise WireError(f"{what} has to be 1 to {self.most} bytes")
         return value
@@ -50,13 +50,13 @@ class BytesUpTo:
 
 @dataclass(frozen=True, slots=True)
 class Int:
-    """A whole number; True is none."""
+    """Whole number; a bool is none."""
 
     least: int
     most: int
 
     def __call__(self, what: str, value: object) -> int:
-        """This number. Raises WireError."""
+        """Return the checked value. Raises WireError."""
         if isinstance(value, bool) or not isinstance(value, int) or not self.least <= value <= self.most:
             raise WireError(f"{what} has to be a whole number from {self.least} to {self.most}")
         return value
@@ -64,14 +64,14 @@ class Int:
 
 @dataclass(frozen=True, slots=True)
 class Float:
-    """A number no larger than `most` either way, in `unit`. Whole ones count: some encoders shorten 1.0 to 1."""
+    """Number from -`most` to `most`, in `unit`. Integers count, because some encoders shorten 1.0 to 1."""
 
     most: float
     unit: str = ""
 
     def __call__(self, what: str, value: object) -> float:
-        """This number. Raises WireError."""
-        # Compared before it is made a float: a huge whole number would overflow. No comparison with NaN is true.
+        """Return the checked value. Raises WireError."""
+        # Compared before the conversion, which overflows for huge integers. No comparison with NaN is true.
         if isinstance(value, bool) or not isinstance(value, int | float) or not -self.most <= value <= self.most:
             unit = f" {self.unit}" if self.unit else ""
             raise WireError(f"{what} has to be a number from {-self.most:g} to {self.most:g}{unit}")
@@ -86,13 +86,13 @@ class Text:
     least: int = 0
 
     def __call__(self, what: str, value: object) -> str:
-        """This text. Raises WireError."""
+        """Return the checked value. Raises WireError."""
         if not isinstance(value, str) or not self.least <= len(value) <= self.most or not value.isprintable():
             raise WireError(f"{what} has to be text of {self.least} to {self.most} printable characters")
         return value
 
     def cut(self, value: str) -> str:
-        """The text with blanks for what cannot be printed, and no longer than it may be."""
+        """Return the text with blanks for unprintable characters, cut to `most` characters."""
         if not value.isprintable():
             value = "".join(each if each.isprintable() else " " for each in value)
         return value[: self.most]
@@ -105,7 +105,7 @@ class OneWord:
     words: tuple[str, ...]
 
     def __call__(self, what: str, value: object) -> str:
-        """This word. Raises WireError."""
+        """Return the checked value. Raises WireError."""
         if not isinstance(value, str) or value not in self.words:
             raise WireError(f"{what} has to be one of {', '.join(self.words)}")
         return value
@@ -116,7 +116,7 @@ class Flag:
     """True or False."""
 
     def __call__(self, what: str, value: object) -> bool:
-        """This. Raises WireError."""
+        """Return the checked value. Raises WireError."""
         if not isinstance(value, bool):
             raise WireError(f"{what} has to be true or false")
         return value
@@ -124,13 +124,13 @@ class Flag:
 
 @dataclass(frozen=True, slots=True)
 class OneOf:
-    """One of a few whole numbers, as the type `kind` has it."""
+    """One of a few whole numbers, converted by `kind`."""
 
     numbers: tuple[int, ...]
     kind: Callable[[int], Any] = int
 
     def __call__(self, what: str, value: object) -> Any:
-        """This number, as `kind`. Raises WireError."""
+        """Return the checked value. Raises WireError."""
         if isinstance(value, bool) or not isinstance(value, int) or value not in self.numbers:
             raise WireError(f"{what} has to be one of {', '.join(str(each) for each in self.numbers)}")
         return self.kind(value)
@@ -138,24 +138,24 @@ class OneOf:
 
 @dataclass(frozen=True, slots=True)
 class OrNone:
-    """Null, or what another check lets pass."""
+    """Null, or a value that another check accepts."""
 
     check: Check
 
     def __call__(self, what: str, value: object) -> Any:
-        """None, or what the other check made of it. Raises WireError."""
+        """Return the checked value. Raises WireError."""
         return None if value is None else self.check(what, value)
 
 
 @dataclass(frozen=True, slots=True)
 class ManyOf:
-    """A list of up to `most`, each of which passes another check."""
+    """List of up to `most` values that another check accepts."""
 
     check: Check
     most: int
 
     def __call__(self, what: str, value: object) -> tuple[Any, ...]:
-        """All of them. Raises WireError."""
+        """Return the checked value. Raises WireError."""
         if not isinstance(value, list | tuple) or len(value) > self.most:
             raise WireError(f"{what} has to be a list of up to {self.most}")
         return tuple(self.check(what, each) for each in value)
@@ -163,19 +163,19 @@ class ManyOf:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """A list of a fixed length, each place with its own check."""
+    """List of fixed length with a check for each place."""
 
     checks: tuple[Check, ...]
 
     def __call__(self, what: str, value: object) -> tuple[Any, ...]:
-        """All of them. Raises WireError."""
+        """Return the checked value. Raises WireError."""
         if not isinstance(value, list | tuple) or len(value) != len(self.checks):
             raise WireError(f"{what} has to be a list of {len(self.checks)}")
         return tuple(check(what, each) for check, each in zip(self.checks, value, strict=True))
 
 
 class _NoTags(Mapping[int, Any]):
-    """Decoders for tagged values: cbor2 asks here before it looks into one, and builds none of its own objects."""
+    """Decoders of tagged values that refuse all tags before cbor2 builds an object."""
 
     def __getitem__(self, tag: int) -> NoReturn:
         raise WireError(f"tag {tag}: tagged values are not taken")
@@ -188,10 +188,15 @@ class _NoTags(Mapping[int, Any]):
 
 
 def decode_strictly(payload: bytes, *, most_bytes: int, most_depth: int, text_keys: bool = True) -> Any:
-    """One CBOR item: null, bool, int, float, text, bytes, and lists and maps of these, each key once.
+    """Return one CBOR item: null, bool, int, float, text, bytes, and lists and maps of these, each key once.
 
-    Tags, indefinite lengths, further bytes behind it and nesting beyond `most_depth` are refused; keys that are neither
-    text nor bytes only where `text_keys` says so. Raises WireError.
+    Raises WireError for tags, indefinite lengths and trailing bytes too.
+
+    Args:
+        payload: Encoded item.
+        most_bytes: Largest size in bytes.
+        most_depth: Deepest nesting of lists and maps.
+        text_keys: Whether to refuse keys that are neither text nor bytes.
     """
     if len(payload) > most_bytes:
         raise WireError(f"{len(payload)} bytes are too many; {most_bytes} are taken")
@@ -215,6 +220,6 @@ def decode_strictly(payload: bytes, *, most_bytes: int, most_depth: int, text_ke
 
 
 def encode_plainly(item: object) -> bytes:
-    """CBOR of null, bool, int, float, text, bytes, lists and maps of these; nothing else has a place on the wire."""
+    """Return the CBOR of null, bool, int, float, text, bytes, or lists and maps of these."""
     encoded: bytes = cbor2.dumps(item)
     return encoded

@@ -15,23 +15,23 @@ class TaskName:
 
     name: str
     what: str
-    """In one sentence, for the teacher."""
+    """Sentence on the task for the teacher."""
 
 
 @dataclass(frozen=True, slots=True)
 class SimulationView:
-    """The simulated world and task, and those to choose from."""
+    """Simulated world and task, and those to choose from."""
 
     world: str
-    """As it was chosen: `a`, `rooms-7`, a path."""
+    """World as chosen: `a`, `rooms-7`, a path."""
     task: str
     worlds: tuple[str, ...]
     """Worlds by name; `rooms-N` and `streets-N` are made for any whole number N."""
     tasks: tuple[TaskName, ...]
     speed: int = 1
-    """Robot seconds in one second, as chosen."""
+    """Chosen number of robot seconds in one second."""
     reached: float = 1.0
-    """The same as measured over the last second."""
+    """Measured number of robot seconds in the last second."""
     progress: float = 0.0
     """Progress of the robot with its task since the run began, in `unit`."""
     unit: str = ""

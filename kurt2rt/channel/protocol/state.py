@@ -1,4 +1,4 @@
-"""What the robot tells its teachers, 20 times a second."""
+"""State of the robot, published 20 times a second."""
 
 from dataclasses import dataclass
 
@@ -12,68 +12,67 @@ from kurt2rt.core.teaching.question import FeatureDifference
 
 @dataclass(frozen=True, slots=True)
 class MidState:
-    """What the mid level wants of the basic one, and why."""
+    """Command of the mid level to the basic level, with its reason."""
 
     behaviour: str
-    """The taught behaviour that is followed now."""
+    """Taught behaviour that is followed."""
     rla: int | None
-    """Mid-level RLA that commands; None while it asks, or a teacher or nobody has said what to follow."""
+    """Mid-level RLA that commands; None while the level asks, under an override, or before the first command."""
     nearest: int | None
-    """Mid-level RLA nearest to what the robot has come by; None before the first."""
+    """Mid-level RLA nearest to the situation; None before the first."""
     nearest_behaviour: str | None
     distance: float
-    """Of the nearest one, such as how many symbols differ; infinite without one."""
+    """Distance of the nearest RLA, such as the number of differing symbols; infinite without RLA."""
     radius: float
     taught_by: str
-    """Who taught the nearest one's behaviour; empty without one."""
+    """Teacher of the nearest RLA's behaviour; empty without RLA."""
     taught_at: str
-    """When, UTC, ISO 8601; empty without one, or while it is not durable yet."""
+    """Time of that lesson, UTC, ISO 8601; empty without RLA, or while the lesson is not durable."""
     asks: bool
-    """Whether the robot stands because the mid level does not know what to follow."""
+    """True while the robot stands because the mid level does not know its situation."""
     overridden: bool
-    """Whether a teacher's choice counts in its place, until the behaviour has finished."""
+    """True while a teacher's choice overrides the level, until the behaviour has finished."""
     here: tuple[str, ...]
-    """The mid level's situation in words, the newest symbol first; empty words are none yet."""
+    """Situation of the mid level in words, the newest symbol first; empty words: no symbol yet."""
     there: tuple[str, ...]
-    """The nearest one's condition, word by word beside it; empty without one."""
+    """Condition of the nearest RLA in words, in the same order; empty without RLA."""
 
 
 @dataclass(frozen=True, slots=True)
 class SurpriseState:
-    """Something else came than an RLA has learnt to expect."""
+    """Situation that differs from the learnt expectation of an RLA."""
 
     tick: int
-    """When."""
     level: str
     rla: int
-    """Whose expectation it was."""
+    """RLA with the expectation."""
     follow_up: int
-    """The RLA that took over."""
+    """RLA that followed it."""
     times: float
-    """Distance of what came from what was expected, in its usual ones: 1 is usual."""
+    """Distance from the expectation, in multiples of its usual distance."""
     new: bool
-    """Whether this RLA had never been followed by that one."""
+    """True if `follow_up` had never followed `rla` before."""
 
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """One picture of the robot. What a teacher does is told with the tick of the picture he did it on."""
+    """State of the robot at one tick. Commands name the tick of the state that the teacher saw."""
 
     boot: bytes
     """Four random bytes of this start of the robot program."""
     tick: int
     phase: int
     infrared_counts: tuple[int, ...]
-    """In the order of the sensor table; high is near."""
+    """Counts in the order of the sensor table; high is near."""
     infrared_age_s: float
-    """Infinite before the first frame."""
+    """Age of the readings in seconds; infinite before the first frame."""
     bumpers: int
     """Bit n set: bumper n is pressed."""
     left_m_s: float
     """Set points that went out, after the guard."""
     right_m_s: float
     cause: str
-    """Who moves the wheels, or why they stand: a value of kurt2rt.core.decision.decision.Cause."""
+    """Mover of the wheels, or reason of the standstill: a value of kurt2rt.core.decision.decision.Cause."""
     action: str | None
     """Action that drives; None while the robot stands."""
     rla: int | None
@@ -82,79 +81,77 @@ class State:
     """RLA nearest to the situation; None before the first lesson."""
     nearest_action: str | None
     distance: float
-    """Of the nearest RLA; infinite without one."""
+    """Distance of the nearest RLA; infinite without RLA."""
     radius: float
     taught_by: str
-    """Who taught the nearest RLA's action; empty without one."""
+    """Teacher of the nearest RLA's action; empty without RLA."""
     taught_at: str
-    """When, UTC, ISO 8601; empty without one, or while it is not durable yet."""
+    """Time of that lesson, UTC, ISO 8601; empty without RLA, or while the lesson is not durable."""
     question: tuple[FeatureDifference, ...]
-    """While the robot asks: the features that differ most from the nearest RLA, most first."""
+    """Features that differ most from the nearest RLA, largest first; empty unless the robot asks."""
     teacher: str | None
-    """Who teaches; None while nobody does."""
+    """Present teacher; None without teacher."""
     by_hand: bool
-    """Whether that one drives by hand or runs a behaviour just now."""
+    """True while the teacher drives by hand or runs an action."""
     stopped: ActiveStop | None
-    """The stop that holds until Go; None while none does."""
+    """Stop that holds until GO; None without stop."""
     rlas: int
     lessons: int
-    """Lessons that stand, rewards among them."""
+    """Number of lessons that stand, rewards included."""
     unsaved: int
-    """Lessons that are not durable yet."""
+    """Number of lessons that are not durable yet."""
     session: str | None
-    """Name of the session that is on."""
+    """Name of the present session; None without session."""
     clock_s: float
-    """Teaching time of that session, or of the last one."""
+    """Teaching time of the present session, or of the last one, in seconds."""
     guard: tuple[str, ...]
-    """Why the guard let through less than was wanted."""
+    """Reasons why the guard reduced the wanted speeds."""
     trouble: str
-    """What is wrong with disk or bus, in a line; empty when nothing is."""
+    """Fault of disk or bus in a line; empty without fault."""
     late_p99_ms: float
-    """How late ticks begin, 99th percentile of the last minute."""
+    """Lateness of ticks, 99th percentile of the last minute, in milliseconds."""
     missed_ticks: int
     place: SimulatedPlace | None
     behaviour: str = ""
-    """The taught behaviour that is wanted; empty where the task has only one."""
+    """Selected taught behaviour; empty if the task has only one."""
     value: float | None = None
-    """What the action of the RLA that drives is worth, as rewards have taught; None while none drives."""
+    """Learnt value of the driving RLA's action; None while no RLA drives."""
     opinion: int | None = None
-    """What the critic thinks of this situation: -1, 0 or +1; None where it has no opinion."""
+    """Critic's appraisal of this situation: -1, 0 or +1; None without one."""
     opinion_of: int | None = None
-    """The appraisal RLA that thinks so."""
+    """Appraisal RLA behind the opinion."""
     agreement: float | None = None
-    """Share of the teacher's latest signals that the critic had thought, too; None while too few were heard."""
+    """Fraction of the teacher's latest rewards that the critic agreed with; None while there are too few."""
     trusted: bool = False
-    """Whether the critic agrees well enough to act in phase 5."""
+    """True if the critic agrees well enough to act in phase 5."""
     role: str = "listens"
-    """What the critic does: a value of kurt2rt.core.critic.state.CriticState."""
+    """State of the critic: a value of kurt2rt.core.critic.state.CriticState."""
     bad_share: float | None = None
-    """Share of the driven time that it found bad lately; None while it only listens."""
+    """Fraction of the driven time that the critic found bad lately; None while it only listens."""
     signals_missing: tuple[int, int] = (0, 0)
-    """How many bad and how many good signals the teacher still has to give before agreement is known."""
+    """Numbers of -1 and +1 rewards that are missing before the agreement is known."""
     asks_at: str = BASIC
-    """The level that does not know its situation, where one does not: BASIC or MID. Nearest, distance and radius are of
-    that level.
-    """
+    """Level that does not know its situation, BASIC or MID; nearest, distance and radius are of that level."""
     mid: MidState | None = None
-    """None where the robot has no mid level."""
+    """None if the robot has no mid level."""
     surprise: SurpriseState | None = None
-    """The latest one that is worth telling; None before the first."""
+    """Latest surprise; None before the first."""
     goal: str = ""
-    """What the robot seeks, in words; empty while it seeks nothing."""
+    """Goal in words; empty without goal."""
     plan: tuple[str, ...] = ()
-    """The behaviours that lead there, the next one first."""
+    """Behaviours that lead to the goal, the next one first."""
     plan_says: str = ""
-    """How far the plan is, or why there is none, in a line; empty without a goal."""
+    """Status of the plan in a line; empty without goal."""
     nearest_value: float | None = None
     """Value of the nearest RLA when its action was withdrawn; None if it has its action."""
     progress: Progress = NO_PROGRESS
-    """Share driven by the robot itself, and its questions, in the last minute."""
+    """Fraction driven by RLAs, and the questions, in the last minute."""
     standing: Standing | None = None
-    """None from a robot that is too old to tell."""
+    """None from a robot of an older version."""
 
     @property
     def stands(self) -> Standing:
-        """Whether the robot drives, and if not why."""
+        """Standing of the robot: driving, or the reason of the standstill."""
         if self.standing is not None:
             return self.standing
         if self.action is not None and (self.by_hand or self.stopped is None):

@@ -5,7 +5,7 @@ from typing import Final
 
 
 class TroubleCode(StrEnum):
-    """Kind of a trouble; each member says which name and numbers a trouble of its kind has."""
+    """Kind of a trouble; each member names the values that its trouble carries."""
 
     SENSORS_UNHEARD = "sensors unheard"
     """Name: kind of sensor."""
@@ -18,7 +18,7 @@ class TroubleCode(StrEnum):
     BUS_ALARM = "bus alarm"
     """Line: the driver's."""
     CAN_JUNK = "can junk"
-    """Numbers: frames in the last minute; so for the other counters of the bus."""
+    """Numbers: frames in the last minute, as for the other counters of the bus."""
     CAN_ERROR_FRAMES = "can error frames"
     SEND_FAILURES = "send failures"
     RECEIVE_FAILURES = "receive failures"
@@ -40,7 +40,7 @@ class TroubleCode(StrEnum):
     PROGRAM = "program"
     """Name: part of the program. Line: its own."""
     OTHER = "other"
-    """A kind of another version of kurt2rt. Name: subject. Line: its text."""
+    """Kind of another version of kurt2rt. Name: subject. Line: its text."""
 
     @property
     def about(self) -> str:

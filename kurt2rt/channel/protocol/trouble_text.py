@@ -1,4 +1,4 @@
-"""Texts of the troubles in a health report: what is wrong, and what to do."""
+"""Texts of the troubles in a health report: fault and remedy."""
 
 from collections.abc import Sequence
 from string import Formatter
@@ -22,8 +22,8 @@ _TEXTS: Final[dict[TroubleCode, tuple[str, str]]] = {
     TroubleCode.SEND_FAILURES: ("{0:.0f} CONTROL frames that the bus did not take in the last minute", _CHECK_CABLE),
     TroubleCode.RECEIVE_FAILURES: ("{0:.0f} times that the bus could not be read in the last minute", _CHECK_CABLE),
     TroubleCode.FOREIGN_CONTROL: (
-        "{0:.0f} CONTROL frames of somebody else in the last minute",
-        "find the other sender and end it",
+        "{0:.0f} CONTROL frames of another sender in the last minute",
+        "find that sender and end it",
     ),
     TroubleCode.LESSONS_UNSAVED: _LINE,
     TroubleCode.SLOW_DISK: (
@@ -47,13 +47,13 @@ _TEXTS: Final[dict[TroubleCode, tuple[str, str]]] = {
 
 
 def numbers_of(code: TroubleCode) -> int:
-    """Return how many numbers the text of a code needs."""
+    """Return the count of numbers that the text of a code needs."""
     fields = (field for _, field, _, _ in Formatter().parse(_TEXTS[code][0]))
     return sum(field is not None and field.isdigit() for field in fields)
 
 
 def trouble_text(code: TroubleCode, name: str, numbers: Sequence[float], line: str) -> tuple[str, str]:
-    """Return what is wrong and what to do, which is empty if nothing helps.
+    """Return the fault and the remedy, which is empty if only waiting helps.
 
     Args:
         code: kind of the trouble.

@@ -1,4 +1,4 @@
-"""The simulated world as a teacher's device sees it from above."""
+"""Simulated world for a teacher's device, seen from above."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -15,10 +15,10 @@ _CORNERS = ManyOf(Row((_METRES, _METRES)), most=1000)
 
 @dataclass(frozen=True, slots=True)
 class WorldView:
-    """Walls and obstacles; all in metres, with the names of the wire."""
+    """Walls and obstacles in metres, with the names of the wire."""
 
     version: int
-    """Grows when something is moved."""
+    """Version, which grows when a wall or an obstacle is moved."""
     name: str
     size: tuple[float, float]
     outline: tuple[tuple[float, float], ...]
@@ -27,7 +27,7 @@ class WorldView:
 
 
 def world_of(body: Mapping[str, Any]) -> WorldView:
-    """The world in a decoded body. Raises WireError."""
+    """Return the world in a decoded body. Raises WireError."""
     try:
         walls = ManyOf(Row((_NAME, _CORNERS)), most=1000)("walls", body["walls"])
         posts = ManyOf(Row((_NAME, _METRES, _METRES, _METRES)), most=1000)("round", body["round"])

@@ -88,7 +88,7 @@ class OscoreContext(oscore.FilesystemSecurityContext):  # type: ignore[misc]  # 
 
     @property
     def closed(self) -> bool:
-        """Whether `close` or `abandon` was called; it protects no messages then."""
+        """True after `close` or `abandon`; it protects no messages then."""
         return self._closed
 
     @property

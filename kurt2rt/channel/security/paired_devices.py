@@ -65,7 +65,7 @@ class Teachers:
 
     @property
     def only_local(self) -> bool:
-        """Whether all pairings are this machine's own, so that loopback suffices."""
+        """True if all pairings are this machine's own, so that loopback suffices."""
         return OF_THIS_MACHINE.issuperset(self._held)
 
     @property

@@ -66,8 +66,8 @@ class TaskProgress(Protocol):
     """Progress of a simulated robot with its task."""
 
     @property
-    def progress(self) -> float:  # unit: `unit`
-        """Progress since the run began, in `unit`."""
+    def progress(self) -> float:
+        """Progress since the run began, in laps, rounds, eights or m as `unit` tells."""
         ...
 
     @property

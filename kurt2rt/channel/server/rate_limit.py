@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 
 class TokenBucket:
-    """Up to `capacity` tokens, full at the beginning; `rate_per_s` new ones come each second."""
+    """Bucket of up to `capacity` tokens, full at the beginning, refilled by `rate_per_s` tokens a second."""
 
     __slots__ = ("_capacity", "_now", "_rate_per_s", "_since_s", "_tokens")
 

@@ -70,7 +70,7 @@ class Answer:
     """Robot's answer to a command or a request, or its refusal."""
 
     accepted: bool
-    """Whether the command was carried out; a lesson is durable then."""
+    """True if the command was carried out; a lesson is durable then."""
     why: str
     """Kind of a refusal, a word of the wire contract such as "stale" or "held"; empty if accepted."""
     text: str

@@ -214,7 +214,7 @@ class TeacherClient:
 
     @property
     def stop_pending(self) -> bool:
-        """Whether an unanswered stop is still being sent: until its answer, `resume`, `run` or a press."""
+        """True while an unanswered stop is being sent: until its answer, `resume`, `run` or a press."""
         return self._open.stops.pending
 
     async def resume(self) -> Answer:
@@ -236,7 +236,7 @@ class TeacherClient:
 
     @property
     def watching(self) -> bool:
-        """Whether the teacher looks at the robot; only then is it told that the teacher is there."""
+        """True while the teacher looks at the robot; only then is the robot told that its teacher is there."""
         return self._drive.watching
 
     @watching.setter
@@ -245,7 +245,7 @@ class TeacherClient:
 
     @property
     def pressing(self) -> bool:
-        """Whether a press is on."""
+        """True while a press is on."""
         return self._drive.press_id is not None
 
     @property
@@ -303,7 +303,7 @@ class TeacherClient:
 
         Args:
             features: Values by the name of the feature, in its unit.
-            tolerance: Largest difference of each, in the feature's unit.
+            tolerance: Largest difference of each value, in the feature's unit (m, rad, counts or 0 to 1).
         """
         return await self._move(
             "a goal", requests.SeekLikeRequest, features=tuple(features.items()), tolerance=tolerance

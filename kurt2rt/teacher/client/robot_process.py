@@ -72,6 +72,7 @@ class RobotProcess:
 
         Raises:
             ChannelError: The process ended or made no pairing within 30 s.
+            RuntimeError: It was started already.
         """
         if self._process is not None:
             raise RuntimeError("this RobotProcess runs already; end it first")

@@ -27,7 +27,7 @@ class StopSender:
 
     @property
     def pending(self) -> bool:
-        """Whether a stop that was not answered in time is still being sent."""
+        """True while a stop that was not answered in time is being sent."""
         return self._resending is not None
 
     async def stop(self) -> Answer:

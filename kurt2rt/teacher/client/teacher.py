@@ -100,6 +100,7 @@ class Teacher:
         Raises:
             CredentialsError: The pairing is missing, damaged, or used by another program.
             NoAnswerError: No robot answers within `connect_s`.
+            RuntimeError: It is open already.
         """
         if self._robot is not None:
             raise RuntimeError(f"{self._folder}: this Teacher is open already; close it first")

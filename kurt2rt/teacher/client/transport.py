@@ -57,7 +57,7 @@ class Response:
 
     @property
     def successful(self) -> bool:
-        """Whether the request was carried out (class 2)."""
+        """True if the request was carried out (code class 2)."""
         return self.code.startswith("2.")
 
 
