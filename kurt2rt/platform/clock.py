@@ -1,4 +1,4 @@
-"""What a clock is, and the simulated one."""
+"""Clock of the runtime, and the simulated clock of lockstep."""
 
 from collections.abc import Callable
 from typing import Protocol
@@ -10,7 +10,7 @@ class Clock(Protocol):
     """Time of the runtime. Seconds from an arbitrary start, never backwards."""
 
     def now_s(self) -> float:
-        """The present."""
+        """Return the present time in s."""
         ...
 
     async def wait_until(self, deadline_s: float) -> None:
@@ -21,8 +21,8 @@ class Clock(Protocol):
 class LockstepClock:
     """Simulated time: waiting makes it pass, as fast as the processor allows.
 
-    Before each deadline the world takes its step, so that world and runtime alternate. The event loop gets a turn only
-    every so often: a checkpoint costs as much as a fifth of a tick.
+    Before each deadline the world takes its step, so that world and runtime alternate. The event loop gets one turn
+    per `steps_per_checkpoint` steps: a checkpoint costs as much as a fifth of a tick.
     """
 
     def __init__(self, step_world: Callable[[], None], *, steps_per_checkpoint: int = 100) -> None:
@@ -32,7 +32,7 @@ class LockstepClock:
         self._now_s = 0.0
 
     def now_s(self) -> float:
-        """Simulated time."""
+        """Return simulated time in s."""
         return self._now_s
 
     async def wait_until(self, deadline_s: float) -> None:

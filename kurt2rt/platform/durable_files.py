@@ -1,4 +1,4 @@
-"""What has to survive a power cut."""
+"""Files and folders that survive a power cut."""
 
 import os
 import shutil
@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def fsync_folder(folder: Path) -> None:
-    """Make the names in a folder durable: what was made, renamed or deleted in it. Raises OSError."""
+    """Make the names in a folder durable after files were made, renamed or deleted. Raises OSError."""
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         os.fsync(descriptor)
@@ -15,9 +15,9 @@ def fsync_folder(folder: Path) -> None:
 
 
 def make_private_folder(folder: Path) -> list[Path]:
-    """Make a folder, and those above it that are missing, for this user alone: what was taught and keys go there.
+    """Make a folder and its missing parents for this user alone, for knowledge and keys.
 
-    Returns those that were made, the innermost first; one that was there keeps its mode. Raises OSError.
+    Returns the folders that were made, the innermost first; an existing folder keeps its mode. Raises OSError.
     """
     missing = [each for each in (folder, *folder.parents) if not each.exists()]
     for each in reversed(missing):
@@ -40,7 +40,7 @@ def free_bytes(path: Path) -> int:
 
 
 def fsync_file(path: Path) -> None:
-    """Make durable what any program wrote to a file. Raises OSError."""
+    """Make the content of a file durable, whichever program wrote it. Raises OSError."""
     descriptor = os.open(path, os.O_RDWR)
     try:
         os.fsync(descriptor)
@@ -49,7 +49,7 @@ def fsync_file(path: Path) -> None:
 
 
 def write_durably(path: Path, text: str) -> None:
-    """A file that is there whole after a power cut, or as it was before. Raises OSError."""
+    """Write a file that is whole after a power cut, or as it was before. Raises OSError."""
     make_folder(path.parent)
     fresh = path.with_name(path.name + ".new")
     with fresh.open("w", encoding="utf-8") as file:

@@ -9,9 +9,9 @@ class FilePart(NamedTuple):
     """Consecutive bytes of a file."""
 
     size_bytes: int
-    """Of the whole file."""
+    """Size of the whole file."""
     content: bytes
-    """Empty at or after the end of the file."""
+    """Empty from the end of the file on."""
 
 
 def read_part(path: Path, offset: int, most_bytes: int) -> FilePart:

@@ -1,4 +1,4 @@
-"""How long the disk takes to keep something."""
+"""Latency of fsync on a disk."""
 
 import os
 import time
@@ -8,7 +8,7 @@ _PAGE_BYTES = 4096
 
 
 def fsync_ns(file: BinaryIO) -> int:
-    """Nanoseconds until one more page of an unbuffered file is durable."""
+    """Return the ns until one more page of an unbuffered file is durable. Raises OSError."""
     file.write(bytes(_PAGE_BYTES))
     begun_ns = time.perf_counter_ns()
     os.fsync(file.fileno())

@@ -1,4 +1,4 @@
-"""No garbage collection while it must not stall a tick."""
+"""Garbage collection between ticks only."""
 
 import gc
 from collections.abc import Iterator
@@ -7,9 +7,9 @@ from contextlib import contextmanager
 
 @contextmanager
 def gc_frozen() -> Iterator[None]:
-    """Collect now, then not again until the end; what exists is set aside until then, so that no collection walks it.
+    """Collect now, then not again in the block; freeze the objects that exist, so that no collection walks them.
 
-    Reference counting goes on: only cycles wait.
+    Reference counting goes on: only cycles stay until the end of the block.
     """
     was_enabled = gc.isenabled()
     frozen_before = gc.get_freeze_count()
@@ -19,15 +19,15 @@ def gc_frozen() -> Iterator[None]:
     try:
         yield
     finally:
-        if frozen_before == 0:  # an outer one keeps what it set aside
+        if frozen_before == 0:  # an outer block keeps its frozen objects
             gc.unfreeze()
         if was_enabled:
             gc.enable()
 
 
 def collect_young() -> None:
-    """Collect the cycles among what was made lately; a fraction of a millisecond, for between two ticks.
+    """Collect the cycles among the youngest objects, in a fraction of a millisecond; call it between two ticks.
 
-    Network libraries leave cycles behind with each message. What was set aside by `gc_frozen` is not walked.
+    Network libraries leave cycles with each message. Objects frozen by `gc_frozen` are not walked.
     """
     gc.collect(1)

@@ -1,4 +1,4 @@
-"""The ledger of time: where each tick's time went, kept in memory that does not grow."""
+"""Time of each tick by stage, in memory of constant size."""
 
 import time
 from array import array
@@ -10,7 +10,7 @@ import numpy as np
 
 
 class Stage(IntEnum):
-    """The stages of a tick, in order."""
+    """Stages of a tick, in order."""
 
     SENSE = 0
     PERCEIVE = 1
@@ -22,7 +22,7 @@ class Stage(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Percentiles:
-    """Microseconds that something took, over the ticks kept."""
+    """Percentiles of durations in µs, over the ticks kept."""
 
     median_us: float
     p99_us: float
@@ -30,7 +30,7 @@ class Percentiles:
 
 
 def percentiles_of(took_ns: Sequence[int] | np.ndarray[tuple[int, ...], np.dtype[np.int64]]) -> Percentiles:
-    """Median, p99 and worst of times in nanoseconds; zeros where there are none."""
+    """Return median, p99 and maximum of durations in ns, shape (n,); zeros if n is 0."""
     if len(took_ns) == 0:
         return Percentiles(0.0, 0.0, 0.0)
     median, p99, worst = np.percentile(took_ns, (50, 99, 100)) / 1000.0
@@ -38,7 +38,7 @@ def percentiles_of(took_ns: Sequence[int] | np.ndarray[tuple[int, ...], np.dtype
 
 
 class TickTimer:
-    """Time per stage and per tick, lateness and missed ticks, of the last `capacity` ticks."""
+    """Timer of the last `capacity` ticks: time per stage and per tick, lateness, missed ticks."""
 
     def __init__(self, capacity: int = 6000) -> None:
         self._capacity = capacity
@@ -50,35 +50,35 @@ class TickTimer:
         self.missed_ticks = 0
 
     def begin(self, lateness_s: float) -> None:
-        """A tick begins, so late against its deadline."""
+        """Begin a tick that starts `lateness_s` seconds after its deadline."""
         self._lateness[self._row] = int(lateness_s * 1e9)
         self._last_ns = time.perf_counter_ns()
 
     def lap(self, stage: Stage) -> None:
-        """`stage` has ended just now."""
+        """End `stage`; the next stage begins."""
         now_ns = time.perf_counter_ns()
         self._stages[stage][self._row] = now_ns - self._last_ns
         self._last_ns = now_ns
 
     def end(self) -> None:
-        """The tick is over."""
+        """End the tick."""
         self.ticks += 1
         self._row = self.ticks % self._capacity
 
     def stage(self, stage: Stage) -> Percentiles:
-        """What one stage took."""
+        """Return the time of one stage."""
         return self._share(np.array(self._stages[stage]))
 
     def tick(self) -> Percentiles:
-        """What all stages together took."""
+        """Return the time of all stages together."""
         return self._share(np.sum([np.array(column) for column in self._stages], axis=0))
 
     def lateness(self) -> Percentiles:
-        """How late ticks began."""
+        """Return the lateness of the ticks against their deadlines."""
         return self._share(np.array(self._lateness))
 
     def lateness_of_last(self, ticks: int) -> Percentiles:
-        """How late the last so many ticks began, those that are kept and over."""
+        """Return the lateness of the last `ticks` finished ticks, as far as they are kept."""
         kept = min(ticks, self.ticks, self._capacity)
         rows = np.arange(self.ticks - kept, self.ticks) % self._capacity
         return percentiles_of(np.array(self._lateness)[rows])

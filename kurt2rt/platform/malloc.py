@@ -1,18 +1,18 @@
-"""Memory that was needed once goes back to the machine, and does not become gaps."""
+"""Return of large freed blocks from glibc's heap to the operating system."""
 
 import ctypes
 
 _M_MMAP_THRESHOLD = -3
-"""Of malloc.h."""
+"""M_MMAP_THRESHOLD of glibc's malloc.h."""
 _LARGE_BYTES = 128 * 1024
 
 
 def pin_mmap_threshold() -> None:
-    """Let what is taken in a piece of 128 kB or more leave no gap when it is no more needed, for the whole program.
+    """Pin glibc's mmap threshold at 128 kB, so that freed large blocks return to the operating system.
 
-    So the C library begins, too. But with the first large piece that is given back it raises its bound up to that
-    size: whatever reads knowledge at the start then makes gaps between what stays, for as long as the program runs.
+    128 kB is glibc's default, but the first large block that is freed raises the threshold to its size. Reading
+    knowledge at the start would then fragment the heap for as long as the program runs. No-op on other libcs.
     """
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)
-    if mallopt is not None:  # others than glibc have no such bound
+    if mallopt is not None:  # missing in libcs other than glibc
         mallopt(_M_MMAP_THRESHOLD, _LARGE_BYTES)

@@ -1,4 +1,4 @@
-"""Real-time priority for the loop, and above it for those that must overtake a loop that hangs."""
+"""Real-time priority of the loop, and a higher one of the threads that must preempt a loop that hangs."""
 
 import os
 import threading
@@ -10,10 +10,13 @@ UNIT_PRIORITY: Final = 20
 
 
 def set_sched_fifo(priority: int, guards: Iterable[threading.Thread] = ()) -> str:
-    """Run this thread under SCHED_FIFO, with 0 as any other; says what came of it.
+    """Run this thread under SCHED_FIFO; return the result in a line for the log.
 
-    `guards`: threads that get one more than this one. All others of the program, those too that it starts later, and
-    all programs that it starts, are as any other. A robot also runs without, only less punctual.
+    Other threads, and programs started later, keep the normal scheduling. Without permission the loop runs as before.
+
+    Args:
+        priority: 1 to 99; 0: normal scheduling.
+        guards: threads that get one more than `priority`.
     """
     threads = [(each.native_id, priority and priority + 1) for each in guards if each.native_id is not None]
     try:
@@ -28,10 +31,9 @@ def set_sched_fifo(priority: int, guards: Iterable[threading.Thread] = ()) -> st
 
 
 def _schedule(native_id: int, priority: int) -> None:
-    # The flag: what a thread starts is as any other. Without it every thread would get the loop's own priority, and
-    # keep it when the loop gives it up.
+    # Without the flag every thread that the loop starts would inherit its priority, and keep it afterwards.
     policy = (os.SCHED_FIFO if priority else os.SCHED_OTHER) | os.SCHED_RESET_ON_FORK
     try:
         os.sched_setscheduler(native_id, policy, os.sched_param(priority))
-    except ProcessLookupError:  # it has ended: the heartbeat looks after that
+    except ProcessLookupError:  # the thread has ended; the heartbeat reports that
         return

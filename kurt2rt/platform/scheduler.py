@@ -1,4 +1,4 @@
-"""Scheduler of the 100 Hz tick: one call per period, late ones skipped whole."""
+"""Scheduler of the 100 Hz tick: one call per period, late ticks skipped whole."""
 
 from collections.abc import Callable
 from typing import Generic, TypeVar
@@ -32,13 +32,13 @@ class Scheduler(Generic[RecordT]):
         self._ending = True
 
     async def run(self, ticks: int | None, after_tick: Callable[[RecordT], None]) -> None:
-        """Run until `end` is called, or for so many ticks of the clock, missed ones included.
+        """Run until `end` is called, or for `ticks` periods of the clock, missed ticks included.
 
-        `after_tick` sees each record when the wheels have been told; it counts against the period.
+        `after_tick` gets each record as soon as the wheels have their set points; its time counts against the period.
         """
         clock, period_s = self._clock, self._period_s
         last = None if ticks is None else self._number + ticks
-        # Deadlines are multiples of the period from here, computed anew each time: no rounding error adds up.
+        # Deadlines are multiples of the period from here, computed from the tick number: no rounding error adds up.
         origin_s = clock.now_s() - self._number * period_s
         while not self._ending and (last is None or self._number < last):
             self._number += 1

@@ -1,4 +1,4 @@
-"""Who hears signals for a while, and gives them back."""
+"""Temporary signal handlers, restored afterwards."""
 
 import signal
 from collections.abc import Callable, Mapping
@@ -6,12 +6,11 @@ from types import FrameType, TracebackType
 from typing import Self
 
 Handler = Callable[[int, FrameType | None], object] | signal.Handlers
-"""What Python calls in the main thread, between two of its steps: it may come at any place of it, and while it is busy
-with one before."""
+"""Handler that Python calls in the main thread, between two bytecodes, even while an earlier handler runs."""
 
 
 class SignalHandlers:
-    """Has signals handled otherwise, as a context manager; at its end they are handled as they were before."""
+    """Context manager that installs signal handlers and restores the previous ones at its end."""
 
     def __init__(self, handlers: Mapping[signal.Signals, Handler]) -> None:
         self._handlers = handlers
@@ -27,12 +26,12 @@ class SignalHandlers:
         self.restore()
 
     def install(self) -> None:
-        """Begin to. Raises ValueError outside the main thread."""
+        """Install the handlers. Raises ValueError outside the main thread."""
         for number, handler in self._handlers.items():
-            # None is a handler that is not Python's: it cannot be given back.
+            # None stands for a handler that Python did not install: it cannot be restored.
             self._before[number] = signal.signal(number, handler) or signal.SIG_DFL
 
     def restore(self) -> None:
-        """Hear nothing any more, from now on; also out of a handler, so that the next signal is handled as before."""
+        """Restore the previous handlers; may be called from a handler."""
         for number, before in self._before.items():
             signal.signal(number, before)

@@ -8,18 +8,18 @@ _MEASURED_OVER_S = 1.0
 
 
 class HeldWorld(Protocol):
-    """A world that goes on by itself in real time, or is held and stepped."""
+    """World that runs in real time in its own thread, or is held and stepped."""
 
     def hold(self) -> None:
-        """Step no more by itself."""
+        """Stop the world's own thread from stepping."""
         ...
 
     def step(self) -> None:
-        """One cycle, while held."""
+        """Step one cycle of a held world."""
         ...
 
     def go_on(self) -> None:
-        """Go on by itself."""
+        """Let the world's own thread step again."""
         ...
 
 
@@ -28,21 +28,21 @@ class Speed(Protocol):
 
     @property
     def wanted(self) -> int:
-        """Robot seconds in one second, as chosen."""
+        """Return the chosen ratio of robot time to real time."""
         ...
 
     @property
     def reached(self) -> float:
-        """Robot seconds in one second, as measured over the last second."""
+        """Return the ratio of robot time to real time, measured over the last second."""
         ...
 
     def set(self, times: int) -> None:
-        """Choose another speed, 1 to the fastest one, from the next tick on."""
+        """Choose a ratio from 1 to the fastest, from the next tick on. Raises ValueError."""
         ...
 
 
 class SimulatedClock:
-    """Clock with a speed.
+    """Clock whose robot time may pass faster than real time.
 
     At speed 1 it is the real clock, and the world goes on in its own thread. At any other speed robot time passes tick
     by tick: the world takes one step before each, and real time only says when. A computer that cannot keep up makes
@@ -50,15 +50,15 @@ class SimulatedClock:
     """
 
     def __init__(self, real: Clock, world: HeldWorld, fastest: int) -> None:
-        """`fastest`: highest speed, in robot seconds per second."""
+        """`fastest`: highest ratio of robot time to real time."""
         self._real = real
         self._world = world
         self._fastest = fastest
         self._speed = self._wanted = 1
         self._ahead_s = 0.0
-        """Robot time is ahead of the real clock by this, at speed 1."""
+        """Offset of robot time from the real clock at speed 1, in s."""
         self._now_s = 0.0
-        """Robot time at any other speed."""
+        """Robot time at speeds other than 1, in s."""
         self._due_s = 0.0
         """Due time of the newest tick, by the real clock."""
         self._measured_from_s = real.now_s(), real.now_s()
@@ -67,26 +67,26 @@ class SimulatedClock:
 
     @property
     def wanted(self) -> int:
-        """Robot seconds in one second, as chosen."""
+        """Return the chosen ratio of robot time to real time."""
         return self._wanted
 
     @property
     def reached(self) -> float:
-        """Robot seconds in one second, as measured over the last second."""
+        """Return the ratio of robot time to real time, measured over the last second."""
         return self._reached
 
     def set(self, times: int) -> None:
-        """Choose another speed from the next tick on. Raises ValueError."""
+        """Choose a ratio from the next tick on. Raises ValueError outside 1 to the fastest."""
         if not 1 <= times <= self._fastest:
             raise ValueError(f"speed: {times} is not possible; give 1 to {self._fastest}")
         self._wanted = times
 
     def now_s(self) -> float:
-        """Robot time."""
+        """Return robot time in s."""
         return self._real.now_s() + self._ahead_s if self._speed == 1 else self._now_s
 
     async def wait_until(self, deadline_s: float) -> None:
-        """Return at the deadline, in robot time; at a speed other than 1 with one step of the world taken."""
+        """Return at the deadline in robot time; at a speed other than 1, step the world once."""
         if self._wanted != self._speed:
             self._change()
         self._measure()
@@ -94,7 +94,7 @@ class SimulatedClock:
             await self._real.wait_until(deadline_s - self._ahead_s)
             return
         pause_s = max(0.0, deadline_s - self._now_s) / self._speed
-        # What was lost is not caught up.
+        # Lost time is not caught up.
         self._due_s = max(self._due_s + pause_s, self._real.now_s())
         await self._real.wait_until(self._due_s)
         self._world.step()

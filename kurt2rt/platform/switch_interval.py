@@ -1,16 +1,16 @@
-"""Threads of this process wait for one another only for moments."""
+"""Switch interval of the interpreter that suits a 10 ms tick."""
 
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 _TURN_S = 0.0005
-"""The interpreter's own 5 ms are half a tick: so long a thread that computes could keep the loop waiting."""
+"""The default of 5 ms is half a tick: a thread that computes could delay the loop by that."""
 
 
 @contextmanager
 def short_switch_interval() -> Iterator[None]:
-    """Let the interpreter change threads more often than it would."""
+    """Set the switch interval to 0.5 ms in the block."""
     before_s = sys.getswitchinterval()
     sys.setswitchinterval(_TURN_S)
     try:

@@ -169,15 +169,15 @@ def _flattened(parts: Iterable[RenderableType]) -> Iterator[TextTable | Text]:
 
 
 def _named(name: str, cell: Text, indent: int, width: int) -> Iterator[Text]:
-    """Yield the lines of one cell of a block, below each other if the value has no room next to its name."""
+    """Yield the lines of one cell of a block; the value stands below its name if it has no room next to it."""
     room = width - indent
-    beside = cell_len(name) <= indent and _longest_word(cell) <= room
-    if not beside:
+    same_line = cell_len(name) <= indent and _longest_word(cell) <= room
+    if not same_line:
         indent = min(indent, _GAP)
         if name:
             yield from wrapped(Text(name.rstrip(), "bold"), width)
     for number, piece in enumerate(wrapped(cell, width - indent)):
-        begin = Text(name, "bold") if beside and not number else Text()
+        begin = Text(name, "bold") if same_line and not number else Text()
         yield begin + Text(" " * (indent - cell_len(begin.plain))) + piece
 
 

@@ -49,13 +49,13 @@ class TimerfdClock:
         os.close(self._fd)
 
     def now_s(self) -> float:
-        """Monotonic time in seconds."""
+        """Return monotonic time in s."""
         return time.monotonic()
 
     async def wait_until(self, deadline_s: float) -> None:
-        """Return at the deadline, some 0.1 ms late; at once when it has passed."""
+        """Return at the deadline, some 0.1 ms late; at once if it has passed. Raises OSError."""
         if deadline_s <= time.monotonic():
-            # Still a turn for the others: a loop that is always late must not starve the teacher.
+            # One turn for other tasks: a loop that is always late must not starve the channel.
             await asyncio.sleep(0)
             return
         assert self._loop is not None
@@ -70,6 +70,6 @@ class TimerfdClock:
         try:
             os.read(self._fd, 8)
         except BlockingIOError:
-            return  # re-armed between the wake-up and this call
+            return  # armed again between the wake-up and this call
         if self._fired is not None and not self._fired.done():
             self._fired.set_result(None)

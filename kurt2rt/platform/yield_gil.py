@@ -1,4 +1,4 @@
-"""Long work in a thread beside the robot's loop, in small bites."""
+"""Long work of another thread in slices, so that the robot's loop gets the GIL."""
 
 import threading
 import time
@@ -7,22 +7,22 @@ from typing import TypeVar
 
 SLICE_S = 0.0005
 PAUSE_S = 0.0005
-"""Long enough for the loop to wake and take over; Python by itself hands over every 5 ms only, half a tick."""
+"""Long enough for the loop to wake up; the interpreter switches threads only every 5 ms, half a tick."""
 
 _Item = TypeVar("_Item")
 
 
 def yield_gil(items: Iterable[_Item]) -> Iterator[_Item]:
-    """The same items, with a pause after each bite: the loop's thread is not kept waiting for the interpreter.
+    """Yield the items and sleep after each slice, so that the loop's thread gets the GIL.
 
-    The loop has the main thread: who works there keeps nobody waiting, and makes no pauses.
+    The main thread, which runs the loop, does not sleep.
     """
     if threading.current_thread() is threading.main_thread():
         yield from items
         return
-    bite_ends = time.perf_counter() + SLICE_S
+    slice_ends = time.perf_counter() + SLICE_S
     for item in items:
         yield item
-        if time.perf_counter() >= bite_ends:
+        if time.perf_counter() >= slice_ends:
             time.sleep(PAUSE_S)
-            bite_ends = time.perf_counter() + SLICE_S
+            slice_ends = time.perf_counter() + SLICE_S

@@ -1,8 +1,8 @@
-"""Names in place of a bus and of a wire, in a module without imports: the command line offers them before any other."""
+"""Names that stand for a bus or a wire; without imports, because the command line reads them first."""
 
 SIMULATED = "sim"
-"""In place of a bus: a simulated robot in the same program."""
+"""Bus name of a robot simulated in the same program."""
 NO_WIRE = "none"
-"""In place of a simulated wire: frames take no time, and nothing goes wrong."""
+"""Wire name of ideal transport: frames arrive at once, none is lost."""
 SHARED = "shared:"
-"""Begins the name of a bus between programs of one user on this machine, where kurt2rt sim plays the robot."""
+"""Prefix of a bus between programs of one user on this machine, such as kurt2rt sim and kurt2rt run."""

@@ -1,4 +1,4 @@
-"""Programs that run beside the robot's: the teacher's page, the scripted teacher."""
+"""Child processes of the robot program: the teacher's page, the scripted teacher."""
 
 import os
 import subprocess
@@ -12,79 +12,86 @@ from typing import Self
 from kurt2rt.service.systemd.installation import start_command
 
 POLL_S = 1.0
-"""Between two looks whether they are there, and before one that ended is started anew."""
+"""Period of the checks whether children run, and first delay of a restart, in s."""
 LONGEST_PAUSE_S = 30.0
-"""That is twice as long each time, up to this, and as at first after one that lasted longer."""
+"""Longest delay of a restart, in s. Each delay is twice the one before, unless the child ran longer than this."""
 _ENDING_S = 5.0
 _LAST_LINES_S = 0.5
-"""For what one that ended had still printed."""
+"""Time to read the last lines of a child that ended, in s."""
 
 
 @dataclass
 class _Companion:
-    """One of them."""
+    """One child process and its restart."""
 
     name: str
     command: tuple[str, ...]
     restarts: bool
-    """It has no end of its own: one that ended is started anew."""
+    """True if it is started again if it ends."""
     process: "subprocess.Popen[bytes]"
     started_s: float
     pause_s: float
     on_line: Callable[[str], None]
-    """Takes each line that it prints; from a thread."""
+    """Gets each line that it prints, from a thread."""
     reader: threading.Thread
     restart_at_s: float | None = None
-    """When to start it anew; None while it runs, or has ended for good."""
+    """Time of the next restart, monotonic s; None while it runs, or if it is not restarted."""
     trouble: str = ""
 
 
 class ChildProcesses:
-    """Starts kurt2rt commands as processes of their own, looks after them and ends them with this one.
+    """Child processes that run kurt2rt commands, restarted if they fail and ended with this process.
 
-    In sessions of their own, so that Ctrl-C reaches the robot first. Their standard input is a pipe from here: it ends
-    when this process is gone, however that came, and so do they. What they print is a pipe to here, for the terminal
-    has lines that stay in place.
+    Each has a session of its own, so that Ctrl-C reaches the robot first. Its standard input is a pipe from this
+    process: it ends with this process, and so does the child. Its output is a pipe to this process, because the
+    terminal has lines that stay in place.
     """
 
     def __init__(
         self,
         settings: str,
-        patience_s: Callable[[float], float] = lambda most_s: most_s,
-        tell: Callable[[str], None] = lambda _: None,
+        remaining_s: Callable[[float], float] = lambda most_s: most_s,
+        log: Callable[[str], None] = lambda _: None,
         start: tuple[str, ...] | None = None,
-        look_s: float = POLL_S,
+        poll_s: float = POLL_S,
     ) -> None:
-        """`settings`: runtime settings, as given on the command line.
+        """Start no process yet.
 
-        `patience_s`: how long they may be waited for at the end, of what they would like. `tell` takes a line when one
-        ends; from a thread. `start`: the words that start kurt2rt; those of this installation unless given. `look_s`:
-        between two looks, and before a first new start.
+        Args:
+            settings: runtime settings, as given on the command line.
+            remaining_s: returns the time that is left for a wait of the given length, in s.
+            log: gets a line if a child ends, from a thread.
+            start: words that start kurt2rt; None: those of this installation.
+            poll_s: period of the checks, and first delay of a restart, in s.
         """
-        self._remaining_s = patience_s
+        self._remaining_s = remaining_s
         self._settings = settings
-        self._log = tell
+        self._log = log
         self._program = start_command() if start is None else start
-        self._poll_s = look_s
+        self._poll_s = poll_s
         self._children: list[_Companion] = []
         self._ends = threading.Event()
-        # A daemon, for a fork may hang with the disk.
+        # A daemon, because a fork may hang with the disk.
         self._looking = threading.Thread(target=self._poll_all, name="companions", daemon=True)
 
     @property
     def trouble(self) -> str:
-        """Who of them is not there, and what becomes of it, in a line; empty while all are."""
+        """Return the children that do not run and what happens next, in a line; empty while all run."""
         return ", ".join(each.trouble for each in self._children if each.trouble)
 
-    def start(self, name: str, *words: str, lasts: bool, hear: Callable[[str], None] | None = None) -> None:
-        """Start `kurt2rt WORDS`. `lasts`: it has no end of its own, so it is started again when it ended.
+    def start(self, name: str, *words: str, restarts: bool, on_line: Callable[[str], None] | None = None) -> None:
+        """Start `kurt2rt WORDS`.
 
-        `hear` takes each line that it prints, from a thread; such a line is told unless that is given.
+        Args:
+            name: name of the child in the log.
+            words: command and options.
+            restarts: whether it is started again if it ends.
+            on_line: gets each line that it prints, from a thread; None: the log gets them.
         """
         command = (*self._program, *words, "--settings", self._settings, "--while-stdin")
-        process, heard = _started(command), hear or self._log
-        reader = _read(process, heard)
-        companion = _Companion(name, command, lasts, process, time.monotonic(), self._poll_s, heard, reader)
+        process, read_line = _started(command), on_line or self._log
+        reader = _read(process, read_line)
+        companion = _Companion(name, command, restarts, process, time.monotonic(), self._poll_s, read_line, reader)
         self._children.append(companion)
 
     def __enter__(self) -> Self:
@@ -129,7 +136,7 @@ class ChildProcesses:
             if now_s - companion.started_s > LONGEST_PAUSE_S:
                 companion.pause_s = self._poll_s
             companion.restart_at_s = now_s + companion.pause_s
-            companion.trouble = f"{ended}; it is started anew in {companion.pause_s:g} s"
+            companion.trouble = f"{ended}; it is started again in {companion.pause_s:g} s"
             companion.pause_s = min(2 * companion.pause_s, LONGEST_PAUSE_S)
         self._log(companion.trouble)
 

@@ -1,4 +1,4 @@
-"""Settings that are read anew while the robot runs."""
+"""Reload of the settings while the robot runs."""
 
 import asyncio
 import time
@@ -10,32 +10,39 @@ from hal.settings import SettingsError
 from kurt2rt.service.settings import ServiceSettings, reloaded_settings
 from kurt2rt.service.systemd.notifier import Notifier
 
-Tell = Callable[[str], None]
-"""Takes a line for the log; may not wait."""
+Log = Callable[[str], None]
+"""Gets a line for the log; may not wait."""
 
 
 class ConfigReloader:
-    """Reads the settings when it is asked to; takes what may change, and says of the rest that it waits for a start."""
+    """Reads the settings on request, applies those that may change, and logs which wait for the next start."""
 
     def __init__(
-        self, read: Callable[[], ServiceSettings], current: ServiceSettings, notifier: Notifier, tell: Tell
+        self, read: Callable[[], ServiceSettings], current: ServiceSettings, notifier: Notifier, log: Log
     ) -> None:
-        """`read`: as at the start; it may wait for the disk. Raises SettingsError, OSError, which are told."""
+        """Keep the reader and the present settings.
+
+        Args:
+            read: reads the settings as at the start, in a thread; its SettingsError and OSError are logged.
+            current: settings of the running service.
+            notifier: gets the begin and the end of each reload.
+            log: gets a line with the result.
+        """
         self._read = read
         self._current = current
         self._notifier = notifier
-        self._log = tell
+        self._log = log
         self._requested = False
         self._wake: Callable[[], object] | None = None
 
     def request(self) -> None:
-        """Read the settings soon; from any thread."""
+        """Request a reload; may be called from any thread."""
         self._requested = True
         if self._wake is not None:
             self._wake()
 
-    async def serve(self, take: Callable[[ServiceSettings], None]) -> None:
-        """Read whenever it was asked for, before too, until it is cancelled. `take` is called in the loop."""
+    async def serve(self, apply: Callable[[ServiceSettings], None]) -> None:
+        """Reload after each request, earlier ones too, until cancelled; call `apply` with the result, in the loop."""
         loop, awake = asyncio.get_running_loop(), asyncio.Event()
         self._wake = lambda: loop.call_soon_threadsafe(awake.set)
         try:
@@ -43,12 +50,12 @@ class ConfigReloader:
                 awake.clear()
                 if self._requested:
                     self._requested = False
-                    await self._reload(take)
+                    await self._reload(apply)
                 await awake.wait()
         finally:
             self._wake = None
 
-    async def _reload(self, take: Callable[[ServiceSettings], None]) -> None:
+    async def _reload(self, apply: Callable[[ServiceSettings], None]) -> None:
         self._notifier.reloading(time.monotonic_ns() // 1000)
         try:
             reloaded = reloaded_settings(self._current, await anyio.to_thread.run_sync(self._read))
@@ -56,7 +63,7 @@ class ConfigReloader:
             self._log(f"settings stay as they were: {error}")
         else:
             self._current = reloaded.settings
-            take(reloaded.settings)
+            apply(reloaded.settings)
             if reloaded.applied:
                 self._log(f"settings taken: {', '.join(reloaded.applied)}")
             if reloaded.postponed:

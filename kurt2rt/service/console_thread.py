@@ -1,4 +1,4 @@
-"""Prints outside the loop: a terminal that blocks must not hold up a tick."""
+"""Thread that prints, because a terminal that blocks must not delay a tick."""
 
 import queue
 import threading
@@ -11,17 +11,17 @@ _LAST_LINES_S = 1.0
 
 
 class ConsoleThread:
-    """A thread that runs what it is given, in order. When it cannot keep up, what comes is dropped and counted."""
+    """Thread that runs submitted jobs in order; drops and counts jobs while its queue is full."""
 
-    def __init__(self, patience_s: Callable[[float], float] = lambda most_s: most_s) -> None:
-        """`patience_s`: how long it may be waited for at the end, of what it would like."""
-        self._remaining_s = patience_s
+    def __init__(self, remaining_s: Callable[[float], float] = lambda most_s: most_s) -> None:
+        """`remaining_s`: returns the time that is left for a wait of the given length, in s."""
+        self._remaining_s = remaining_s
         self._jobs: queue.Queue[Callable[[], None] | None] = queue.Queue(_CAPACITY)
         self._thread = threading.Thread(target=self._run, name="printer", daemon=True)
         self.dropped = 0
 
     def submit(self, job: Callable[[], None]) -> None:
-        """Run `job` soon; never waits."""
+        """Queue `job`, or drop it if the queue is full; never waits."""
         try:
             self._jobs.put_nowait(job)
         except queue.Full:
@@ -37,7 +37,7 @@ class ConsoleThread:
         try:
             self._jobs.put(None, timeout=self._remaining_s(_LAST_LINES_S))
         except queue.Full:
-            return  # whoever reads the terminal has stopped reading; the thread ends with the process
+            return  # the terminal blocks; the thread ends with the process
         self._thread.join(timeout=self._remaining_s(_LAST_LINES_S))
 
     def _run(self) -> None:

@@ -1,4 +1,4 @@
-"""An exam of the knowledge of a robot that runs: another process drives it, at a lower priority than the robot's."""
+"""Exam of a running robot's knowledge, driven by another process at a lower priority."""
 
 import json
 import subprocess
@@ -15,24 +15,24 @@ from kurt2rt.channel.protocol.schema import WireError
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 Command = Callable[[Path, Path], Sequence[str]]
-"""The words that start an exam of a knowledge file, with the path of its picture."""
+"""Returns the words that start an exam of a knowledge file, with the path of its picture."""
 
 
 class LiveExam:
-    """One exam at a time. A thread reads what its process says, a line of JSON (`exam_standing.EXAM`) at a time."""
+    """One exam at a time; a thread reads the status that its process prints as lines of JSON (`exam_status.EXAM`)."""
 
     def __init__(self, command: Command) -> None:
-        """`command` starts a process that ends by itself when its standard input does."""
+        """`command`: its process ends by itself as soon as its standard input does."""
         self._command = command
         self._process: subprocess.Popen[bytes] | None = None
         self._reading: threading.Thread | None = None
         self._lock = threading.Lock()
         self._closed = False
         self.status = NO_EXAM
-        """Replaced whole by the thread that reads."""
+        """Status, replaced by the thread that reads."""
 
     def begin(self, knowledge: Path, picture: Path) -> None:
-        """Examine a copy of the knowledge, which is deleted at the end. Raises KnowledgeError while an exam runs."""
+        """Start an exam of a copy of the knowledge, deleted at the end. Raises KnowledgeError while one runs."""
         with self._lock:
             if self._closed or self.status.running:
                 knowledge.unlink(missing_ok=True)
@@ -77,18 +77,18 @@ class LiveExam:
         verdict: ExamStatus | None = None
         try:
             for line in process.stdout:
-                with suppress(WireError, ValueError):  # what a library prints between is no news of the exam
-                    told = EXAM.read(json.loads(line))
-                    if told.running:
-                        self.status = told
+                with suppress(WireError, ValueError):  # a line that a library printed
+                    status = EXAM.read(json.loads(line))
+                    if status.running:
+                        self.status = status
                     else:
-                        verdict = told
+                        verdict = status
             code = process.wait()
         finally:
             process.stdin.close()
             process.stdout.close()
             knowledge.unlink(missing_ok=True)
-        # At once with its picture: pages do not ask again once the exam is over.
+        # Verdict and picture together: pages do not ask again after the exam.
         if verdict is None:
             trouble = f"the exam ended without a verdict (code {code}); examine again"
             self.status = replace(self.status, running=False, trouble=trouble)

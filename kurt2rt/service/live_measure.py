@@ -15,14 +15,14 @@ from kurt2rt.core.teaching.system_events import RobotRepositioned
 from kurt2rt.core.tick import TickRecord
 
 _MEASURED_LIVE: Final = (LapsSettings, RoundsSettings, EightsSettings)
-"""Courses that only watch. Others say which behaviour is wanted next, and here the teacher says so."""
+"""Metrics that only observe. Other metrics choose the next behaviour, which the teacher does here."""
 _WAY: Final = WaySettings(kind="way")
 _FOLLOW_EVERY: Final = 5
-"""Ticks from one look at the pose to the next: 3 cm at 0.6 m/s."""
+"""Ticks between two readings of the pose: 3 cm at 0.6 m/s."""
 
 
 class LiveMeasure:
-    """The course of the task on the robot that is taught, or metres of way where that course measures no such drive."""
+    """Metric of the task for the robot that is taught; metres of way if that metric does not only observe."""
 
     def __init__(self, task: TaskSettings, simulation: Simulation) -> None:
         self._task = task
@@ -31,19 +31,19 @@ class LiveMeasure:
 
     @property
     def progress(self) -> float:
-        """Progress of the robot since its run began, in `unit`."""
+        """Return the progress since the run began, a count in `unit`."""
         return self._course.progress
 
     @property
     def unit(self) -> str:
-        """Unit of `progress`: laps, rounds, eights, m."""
+        """Return the unit of `progress`: laps, rounds, eights or m."""
         return self._course.unit
 
     def on_tick(self, record: TickRecord) -> None:
-        """Look at the robot, once in a few ticks; call it after each tick."""
+        """Update the metric every 5 ticks; call it after each tick."""
         if any(isinstance(each, RobotRepositioned) for each in record.commands):
             self._course.put(self._simulation.pose)
-        # The simulation counts laps by itself, and the distance to the wall is not told.
+        # The simulation counts laps itself; the distance to the wall is not needed.
         elif record.tick % _FOLLOW_EVERY == 0 and not isinstance(self._task.course, LapsSettings):
             self._course.follow(self._simulation.pose)
 

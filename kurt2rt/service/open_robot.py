@@ -1,4 +1,4 @@
-"""The composition root: the one place that knows which robot is there, the simulated or the real one."""
+"""Composition root: the only place that knows whether the robot is simulated or real."""
 
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
@@ -14,27 +14,27 @@ from kurt2rt.service.bus_names import NO_WIRE, SIMULATED
 
 
 class OpenedRobot(NamedTuple):
-    """A robot, and the ground it stands on where that is simulated."""
+    """Robot, with its world if it is simulated."""
 
     robot: Kurt2
     simulated_world: SimulatedWorld | None
     is_alive: Callable[[], bool]
-    """Whether the simulator still runs; always so where there is none."""
+    """Returns whether the simulator still runs; always true for a real robot."""
     held_world: HeldWorld | None = None
-    """Of a simulated robot whose time may pass faster than real time."""
+    """World of a simulated robot whose time may pass faster than real time."""
     simulation: Simulation | None = None
-    """The simulated robot seen from above, for measures."""
+    """Simulation with the true pose, for metrics; None for a real robot."""
     require_world: Callable[[str], None] | None = None
     """Raises SettingsError unless the simulator can load the world of that name; None for a real robot."""
 
 
 class RobotOpener(Protocol):
-    """Gives a robot for as long as it is needed; `open_robot` is one."""
+    """Opener of a robot; `open_robot` is one."""
 
     def __call__(
         self, settings: RobotSettings, bus: str, world: str, seed: int, tap: Tap | None = None, wire: str = NO_WIRE
     ) -> AbstractContextManager[OpenedRobot]:
-        """The robot on a bus. Raises BusError, SettingsError."""
+        """Return a context manager that opens the robot on a bus. Raises BusError, SettingsError."""
         ...
 
 
@@ -42,10 +42,10 @@ class RobotOpener(Protocol):
 def open_robot(
     settings: RobotSettings, bus: str, world: str, seed: int, tap: Tap | None = None, wire: str = NO_WIRE
 ) -> Iterator[OpenedRobot]:
-    """The robot for a run in real time, its second guard awake: the simulated one for `sim`, else the one on `bus`.
+    """Open the robot for a run in real time, with its watchdog: the simulated robot for `sim`, else the one on `bus`.
 
-    `tap` looks on at the runtime's end of the bus. `wire` is the simulated robot's (config/wires).
-    Raises BusError, SettingsError, and on leaving whatever ended the simulation.
+    `tap` sees each frame at the runtime's end of the bus; `wire` is the simulated robot's (config/wires).
+    Raises BusError and SettingsError, and at the end the error that ended the simulation.
     """
     if bus == SIMULATED:
         # Here, because a robot carries no simulator: the packages it needs are an extra.

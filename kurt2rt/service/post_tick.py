@@ -35,9 +35,9 @@ class ProgramStatus:
     trouble: str | None
     """Reason why lessons cannot be saved; None if they can."""
     channel_trouble: str
-    """What is wrong with the teachers' channel; empty if nothing is, or there is no channel."""
+    """Error of the teachers' channel; empty if there is none."""
     recording_trouble: str = ""
-    """What is wrong with the recording; empty if nothing is, or there is no recording."""
+    """Error of the recording; empty if there is none."""
 
 
 @dataclass(frozen=True, slots=True)

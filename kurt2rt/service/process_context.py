@@ -1,4 +1,4 @@
-"""What keeps the program up and ends it well, for whoever serves."""
+"""Context of the process around the service: signals, service manager, threads."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -11,15 +11,15 @@ from kurt2rt.service.systemd.notifier import Notifier
 
 @dataclass(frozen=True, slots=True)
 class ProcessContext:
-    """Made by the program around its service."""
+    """Parts of the process that the service uses."""
 
     shutdown: ShutdownHandler
     notifier: Notifier
     reloader: ConfigReloader | None = None
-    """None: settings stay as they were at the start."""
+    """None: settings are not reloaded."""
     liveness: Mapping[str, Callable[[], bool]] = field(default_factory=dict)
-    """What has to be alive beside the loop, by name."""
+    """Checks of what must be alive for the heartbeat, without the loop, by name."""
     guard_threads: Callable[[], Iterable[Thread]] = tuple
-    """Threads that have to overtake the loop."""
+    """Returns the threads that must preempt the loop."""
     log: Callable[[str], None] = lambda _: None
-    """Takes what whoever reads the log should know. Called from the loop: it may not wait."""
+    """Gets a line for the log. The loop calls it: it may not wait."""

@@ -67,23 +67,23 @@ class RunOptions:
     settings: str = "default"
     """Name or path of the runtime settings, for the child processes."""
     as_service: bool = False
-    """Whether a service manager started the program."""
+    """True if a service manager started the program."""
     attended: bool = True
-    """Whether teachers come over the channel."""
+    """True if teachers come over the channel."""
     stopped: bool = False
-    """Whether the robot stands until its teacher says resume."""
+    """True if the robot stands until its teacher says resume."""
     behaviour: str = ""
     """Behaviour at the start; empty: the first of the task."""
     page: bool = False
     phones: bool = False
-    """Whether the page is open to the network while a device is paired."""
+    """True if the page is open to the network while a device is paired."""
     scripted_teacher: bool = False
     page_port: int | None = None
     """TCP port of the page; None: as the settings say."""
     can_log: Path | None = None
     """New file for all frames; None: frames are not logged."""
     record: bool = True
-    """Whether the run is recorded to the folder that the settings name."""
+    """True if the run is recorded to the folder that the settings name."""
     live_view: tuple[str, int] | None = None
     """Host and port of the live view; None: no live view."""
     seconds: float | None = None
@@ -98,7 +98,7 @@ class ProgramEnvironment:
 
     open_robot: RobotOpener = open_robot
     on_timeout: Callable[[ShutdownStage], None] | None = force_exit
-    """As in `ShutdownHandler`."""
+    """Gets the stage of a program that does not end in time, as in `ShutdownHandler`."""
     retry_s: float = RETRY_S
     """Time between two attempts to find what is missing, in s."""
 
@@ -369,10 +369,10 @@ class RobotProgram:
         if options.page:
             phones = ("--phone",) if options.phones else ()
             words = ("teach", "--pages-as-json", *phones, "--port", port, *at)
-            self._children.start("the teacher's page", *words, lasts=True, hear=self._on_page_line)
+            self._children.start("the teacher's page", *words, restarts=True, on_line=self._on_page_line)
         if options.scripted_teacher:
             words = ("teach", "--auto", "--port", port, "--task", self._service.task)
-            self._children.start("the scripted teacher", *words, lasts=False)
+            self._children.start("the scripted teacher", *words, restarts=False)
 
     def _liveness(self) -> dict[str, Callable[[], bool]]:
         """Return the checks of what must be alive, without the parts that the service checks."""

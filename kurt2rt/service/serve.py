@@ -84,7 +84,7 @@ class ServeOptions:
     duration_s: float | None = None
     """Length of the run in s; None: until a signal ends it."""
     stopped: bool = False
-    """Whether the robot stands until its teacher says resume."""
+    """True if the robot stands until its teacher says resume."""
     behaviour: str = ""
     """Behaviour at the start; empty: the first of the task."""
     probes: Probes = field(default_factory=Probes)
@@ -96,7 +96,7 @@ class ServeOptions:
     recording: Recording | None = None
     """Destination of the recording; None: the run is not recorded."""
     tolerates_stalls: bool = False
-    """Whether the robot stalls with this program, as a robot simulated in it does."""
+    """True if the robot stalls with this program, as a robot simulated in it does."""
 
 
 async def serve(

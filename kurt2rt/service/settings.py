@@ -8,7 +8,7 @@ from hal.settings import Settings, find_config, load_settings
 from kurt2rt.platform.realtime_priority import UNIT_PRIORITY
 
 WHILE_RUNNING: Final = "may change while the robot runs"
-"""Stands beside the keys that SIGHUP takes; all others are taken at the next start."""
+"""Mark of the keys that SIGHUP applies; other keys wait for the next start."""
 AUTO: Final = "auto"
 _HIGHEST_PRIORITY = 80
 
@@ -41,23 +41,23 @@ class ServiceSettings(Settings):
 
     @property
     def priority(self) -> int:
-        """Real-time priority of the loop; 0: none."""
+        """Return the real-time priority of the loop; 0: none."""
         return 0 if self.real_time_priority == AUTO else self.real_time_priority
 
 
 class Reloaded(NamedTuple):
-    """What comes of settings that were read while the robot runs."""
+    """Result of a reload while the robot runs."""
 
     settings: ServiceSettings
-    """As before, with what may change as it was read."""
+    """Settings with the applied keys."""
     applied: tuple[str, ...]
-    """Keys that changed."""
+    """Changed keys that apply at once."""
     postponed: tuple[str, ...]
-    """Keys that say something else in the file, and go on as they were."""
+    """Changed keys that wait for the next start."""
 
 
 def load_service(name_or_path: str = "default") -> ServiceSettings:
-    """Settings of a shipped file by name, or of a file by path. Raises hal.settings.SettingsError."""
+    """Return the settings of a shipped file by name, or of a file by path. Raises SettingsError."""
     return load_settings(find_config("runtime", name_or_path), ServiceSettings)
 
 
@@ -69,7 +69,7 @@ def with_unit_priority(settings: ServiceSettings) -> ServiceSettings:
 
 
 def reloaded_settings(current: ServiceSettings, read: ServiceSettings) -> Reloaded:
-    """Take over what may change while the robot runs."""
+    """Return `current` with those changes of `read` that may apply while the robot runs."""
     fields = ServiceSettings.model_fields
     changed = [key for key in fields if getattr(current, key) != getattr(read, key)]
     taken = tuple(key for key in changed if WHILE_RUNNING in fields[key].metadata)

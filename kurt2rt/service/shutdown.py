@@ -1,4 +1,4 @@
-"""The end of a program that drives a robot: the signals that ask for it, the wheels first, over within a second."""
+"""Shutdown of the robot program on a signal: the wheels first, over within a second."""
 
 import math
 import os
@@ -16,13 +16,13 @@ from typing import Final, Self
 from kurt2rt.platform.signal_handlers import SignalHandlers
 
 SHUTDOWN_SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP)
-"""Ctrl-\\ and Ctrl-Z among them: a program that is stopped or dies on the spot does not brake."""
+"""Ctrl-\\ and Ctrl-Z, too: a program that is stopped or killed on the spot does not brake."""
 
 LONGEST_S = 1.0
-"""From the signal to the end of the process, whatever hangs."""
+"""Longest time from the signal to the end of the process, in s."""
 _GIVES_UP_S = 0.9
 _KEPT_BACK_S = 0.2
-"""Of that for what comes after the one who is patient."""
+"""Reserve for the stages after a wait, in s."""
 _LAST_WORD_S = 0.05
 _STDERR = 2
 
@@ -55,10 +55,9 @@ _STAGES: Final = {
 
 
 class ShutdownHandler:
-    """Hears signals in a thread of its own: also while the loop, or whatever it waits for, hangs.
+    """Thread that receives the signals, also while the loop or a disk hangs; a context manager of the main thread.
 
-    At the first signal that ends the program it does what `first` was given, then gives the rest its time. Use it in
-    the main thread, as a context manager.
+    At the first signal that ends the program it runs the callbacks of `on_shutdown`. The rest then has 0.9 s.
     """
 
     def __init__(
@@ -67,9 +66,11 @@ class ShutdownHandler:
         others: Mapping[signal.Signals, Callback] | None = None,
         on_timeout: Callable[[ShutdownStage], None] | None = None,
     ) -> None:
-        """`others`: what other signals ask for, done in this thread, too; they end nothing.
+        """Install no handler yet.
 
-        `on_timeout` ends the process when the time is over; it takes the stage that did not end. None: wait for ever.
+        Args:
+            others: callbacks of signals that do not end the program, run in this thread.
+            on_timeout: ends the process; gets the stage that did not end in time. None: the end may last.
         """
         self._others: dict[int, Callback] = {int(number): act for number, act in (others or {}).items()}
         self._on_timeout = on_timeout
@@ -77,46 +78,44 @@ class ShutdownHandler:
         self._failures: list[Exception] = []
         self._deadline_s = math.inf
         self._lock = threading.Lock()
-        self._handlers = SignalHandlers(
-            dict.fromkeys((*SHUTDOWN_SIGNALS, *map(signal.Signals, self._others)), _is_heard_elsewhere)
-        )
+        self._handlers = SignalHandlers(dict.fromkeys((*SHUTDOWN_SIGNALS, *map(signal.Signals, self._others)), _ignore))
         self._wakeup_before = -1
         self._wakeup_send, self._wakeup_recv = socket.socketpair()
         self._wakeup_send.setblocking(False)
         self._thread = threading.Thread(target=self._listen, name="ending", daemon=True)
         self.stage = ShutdownStage.START
-        """Part of the program at work, for the last word when the time is over."""
+        """Stage of the program, for the last line if the end takes too long."""
 
     @property
     def thread(self) -> threading.Thread:
-        """Who hears."""
+        """Return the signal thread, to be given real-time priority."""
         return self._thread
 
     @property
     def requested(self) -> bool:
-        """Whether the program was told to end."""
+        """Return whether a signal has asked the program to end."""
         return self._deadline_s < math.inf
 
-    def remaining_s(self, most_s: float) -> float:
-        """How long somebody may be waited for who would like `most_s`: less when the program was told to end."""
-        return max(0.0, min(most_s, self._deadline_s - _KEPT_BACK_S - time.monotonic()))
+    def remaining_s(self, wanted_s: float) -> float:
+        """Return the seconds that a wait of `wanted_s` may last: less after a signal has asked the program to end."""
+        return max(0.0, min(wanted_s, self._deadline_s - _KEPT_BACK_S - time.monotonic()))
 
     @contextmanager
-    def on_shutdown(self, *acts: Callback) -> Iterator[None]:
-        """What to do at once when the program is told to end while the block runs, in this order; none may wait.
+    def on_shutdown(self, *callbacks: Callback) -> Iterator[None]:
+        """Run the callbacks in this order as soon as a signal asks the program to end during the block; none may wait.
 
-        Done by the thread that hears, or here where it was told so before.
+        The signal thread runs them, or this thread if the signal came before.
         """
         with self._lock:
-            self._callbacks += acts
+            self._callbacks += callbacks
             late = self.requested
         if late:
-            self._run_callbacks(acts)
+            self._run_callbacks(callbacks)
         try:
             yield
         finally:
             with self._lock:
-                self._callbacks = [each for each in self._callbacks if each not in acts]
+                self._callbacks = [each for each in self._callbacks if each not in callbacks]
 
     def __enter__(self) -> Self:
         self._wakeup_before = signal.set_wakeup_fd(self._wakeup_send.fileno(), warn_on_full_buffer=False)
@@ -128,7 +127,7 @@ class ShutdownHandler:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         if self.requested and self._on_timeout is not None:
-            return  # the interpreter's own end may hang as well
+            return  # the interpreter's own end may hang, too
         self._handlers.restore()
         signal.set_wakeup_fd(self._wakeup_before)
         self._wakeup_send.close()
@@ -160,32 +159,32 @@ class ShutdownHandler:
         elif number in SHUTDOWN_SIGNALS and not self.requested:
             with self._lock:
                 self._deadline_s = time.monotonic() + _GIVES_UP_S
-                acts = tuple(self._callbacks)
+                callbacks = tuple(self._callbacks)
             if self._on_timeout is not None:
-                # Of the kernel, for an interpreter that hangs as a whole.
+                # The kernel's own deadline, if the interpreter hangs as a whole.
                 signal.setitimer(signal.ITIMER_REAL, LONGEST_S)
-            self._run_callbacks(acts)
+            self._run_callbacks(callbacks)
 
-    def _run_callbacks(self, acts: tuple[Callback, ...]) -> None:
-        for act in acts:
+    def _run_callbacks(self, callbacks: tuple[Callback, ...]) -> None:
+        for callback in callbacks:
             try:
-                act()
-            except Exception as error:  # noqa: BLE001  # the next ones are done all the same; raised at the end
+                callback()
+            except Exception as error:  # noqa: BLE001  # the other callbacks run all the same; raised at the end
                 self._failures.append(error)
 
 
 def timeout_message(stage: ShutdownStage) -> str:
-    """Return the line for the log of a program whose end took too long."""
+    """Return the last line of a program whose end took too long."""
     return f"kurt2rt: ended without {_STAGES[stage]}, which did not end in time; look at disk and network"
 
 
 def force_exit(stage: ShutdownStage) -> None:
-    """End this process now, whatever hangs, with a last word and exit code 2. What was acknowledged is on the disk."""
-    # A terminal may hang as well; one that takes something takes a short line.
+    """End this process at once with a last line and exit code 2; acknowledged lessons are on the disk."""
+    # A terminal may hang, too; one that is writable takes a short line.
     if select.select([], [_STDERR], [], _LAST_WORD_S)[1]:
         os.write(_STDERR, f"{timeout_message(stage)}\n".encode())
     os._exit(2)
 
 
-def _is_heard_elsewhere(_number: int, _frame: FrameType | None) -> None:
-    """Python wants a handler; the number goes to the thread that listens before this is called."""
+def _ignore(_number: int, _frame: FrameType | None) -> None:
+    """Do nothing: Python needs a handler, and the number reached the thread before this call."""

@@ -45,12 +45,12 @@ class SimulatedRun:
     world: str
     task: TaskSettings
     task_name: str
-    """As it was chosen: a name, or a path that the command line gave."""
+    """Name as chosen, or a path that the command line gave."""
     knowledge: Path
     fresh: bool = False
-    """Whether what stands at `knowledge` is set aside first."""
+    """True if the file at `knowledge` is archived first."""
     loaded: Path | None = None
-    """Knowledge file that comes to `knowledge` then."""
+    """Knowledge file that is moved to `knowledge` then; None: a new file."""
     teacher: TeacherNow | None = None
     """Teacher of the run before, who teaches on; None in the first run."""
 
@@ -102,7 +102,7 @@ class SimulatedRuns:
         return self._view
 
     async def prepare(self, world: str | None, task: str | None, fresh: bool, teacher: TeacherNow) -> str:
-        """Look whether the next run can be so, and keep it. Raises ValueError in one line."""
+        """Check and keep the next run; return what to tell the teacher. Raises ValueError in one line."""
         if self._taught_by_script:
             raise ValueError(_BY_SCRIPT)
         view = await self.view()
@@ -117,9 +117,9 @@ class SimulatedRuns:
         return f"world {self.next.world}, task {self.next.task_name}: the robot stands until Go"
 
     def advance(self) -> str:
-        """Make the next run the present one, before it begins; what to tell of its knowledge file, or nothing.
+        """Make the next run the present one, before it begins; return what to log of its knowledge file, or "".
 
-        Raises KnowledgeError where the present knowledge cannot be set aside; then the next run goes on with it.
+        Raises KnowledgeError if the present knowledge cannot be archived; then the next run goes on with it.
         """
         assert self.next is not None
         self.present, self.next, self._view = self.next, None, None
@@ -134,7 +134,7 @@ class SimulatedRuns:
         return "" if kept is None else f"the knowledge up to now is kept as {kept}"
 
     async def load(self, content: bytes, teacher: TeacherNow) -> str:
-        """Look at knowledge that the next run is to begin with, and keep it. Raises ValueError in one line."""
+        """Check and keep the knowledge that the next run begins with. Raises ValueError in one line."""
         if self._taught_by_script:
             raise ValueError(_BY_SCRIPT)
         try:
@@ -173,18 +173,18 @@ class SimulatedRuns:
         self._require_world(where)
         knowledge = self._files.get(name, present.knowledge.with_name(f"{settings.name}.knowledge"))
         if knowledge != present.knowledge and knowledge.exists():
-            # Looked at as the next run opens it, so that another program that writes it is found out now.
+            # Opened as the next run opens it, so that another program that writes it is found now.
             if fresh:
                 journal_file.lock_for_writing(knowledge).close()
             else:
                 self._check_knowledge(knowledge, settings)
         if knowledge == present.knowledge and name != present.task_name and not fresh:
-            # This very program writes it, for the present task.
+            # This program writes it, for the present task.
             _require_able(read_lessons(knowledge, self._robot, settings, in_writer_process=True), self._robot, settings)
         return SimulatedRun(where, settings, name, knowledge, fresh, teacher=teacher)
 
     def _check_knowledge(self, path: Path, task: TaskSettings) -> int:
-        """Open it as the next run does; how many lessons it holds.
+        """Open a knowledge file as the next run does; return its number of lessons.
 
         Raises KnowledgeError; UnknownActionError or UnknownBehaviourError for knowledge that cannot act here.
         """
@@ -200,7 +200,7 @@ class SimulatedRuns:
 
 
 def _require_able(events: Iterable[TeachingEvent], robot: RobotSettings, task: TaskSettings) -> None:
-    """Raises UnknownActionError or UnknownBehaviourError, as the next run would, and that one ends the program."""
+    """Require knowledge that the next run can act with. Raises UnknownActionError, UnknownBehaviourError."""
     mid = None if task.mid is None else load_mid_level(task.mid)
     definition = load_situation(task.situation, robot.infrared.names)
     system = empty_system(task, definition, load_critic(task.critic), mid)

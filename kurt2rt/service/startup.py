@@ -1,4 +1,4 @@
-"""The start in whatever order bus, disk and network come: until all of them are there, the robot stands."""
+"""Start of the service: the robot stands until bus, disk and network are there, in any order."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -18,82 +18,90 @@ from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.service.systemd.notifier import Notifier
 
 RETRY_S = 1.0
-"""Between two looks at what is not there."""
+"""Time between two checks of a missing dependency, in s."""
 HOLD_S = 0.05
-"""Between two brakes of a robot that waits; its controller forgets after 0.2 s."""
+"""Time between two brake commands while the robot waits, in s; its controller stops by itself after 0.2 s."""
 
 
 class StartError(UserError):
-    """Something that the program needs is not there yet."""
+    """A dependency of the program is missing."""
 
 
-_COMES_LATER = (StartError, BusError, KnowledgeError, ChannelError, CredentialsError, RecordingError, OSError)
+_RETRIED = (StartError, BusError, KnowledgeError, ChannelError, CredentialsError, RecordingError, OSError)
 
 
 @dataclass(frozen=True, slots=True)
 class Dependency:
-    """One thing that the program cannot do without."""
+    """Dependency that the program cannot start without."""
 
     name: str
     check: Callable[[], object]
-    """Takes it, or raises one line that says what is missing. Called outside the loop, again and again."""
+    """Opens the dependency, or raises what is missing. Called in a thread, again and again."""
 
 
 class StartupGate:
-    """Waits for all needs at once. Meanwhile it has the robot stand, pings, and tells what it waits for."""
+    """Gate that waits for all dependencies at once; meanwhile the robot is braked and the service manager pinged."""
 
     def __init__(
         self,
-        needs: Sequence[Dependency],
+        dependencies: Sequence[Dependency],
         notifier: Notifier,
-        tell: Callable[[str], None],
+        log: Callable[[str], None],
         hold: Callable[[], None],
-        again_s: float = RETRY_S,
+        retry_s: float = RETRY_S,
     ) -> None:
-        """`tell`: a line for the log. `hold` has the robot stand, if it is there. Both are called in the loop."""
-        self._dependencies = needs
+        """Check nothing yet.
+
+        Args:
+            dependencies: what has to be there.
+            notifier: gets pings and the status.
+            log: gets a line if the reason changes; called in the loop.
+            hold: brakes the robot if it is there; called in the loop.
+            retry_s: time between two checks of a missing dependency, in s.
+        """
+        self._dependencies = dependencies
         self._notifier = notifier
-        self._log = tell
+        self._log = log
         self._hold = hold
-        self._retry_s = again_s
-        self._missing = {each.name: "" for each in needs}
-        self._available = {each.name: anyio.Event() for each in needs}
+        self._retry_s = retry_s
+        self._missing = {each.name: "" for each in dependencies}
+        self._available = {each.name: anyio.Event() for each in dependencies}
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """What is not there, each with the reason once it is known."""
+        """Return the missing dependencies, each with the reason once it is known."""
         return tuple(f"{name}: {why}" if why else name for name, why in self._missing.items())
 
     @property
     def waits_for(self) -> str:
-        """What is known to be missing and why, in a line; of what is only being looked for, the names."""
+        """Return the missing dependencies with a known reason, in a line; else the names of all missing ones."""
         return "; ".join([each for each in self.missing if ": " in each] or self.missing)
 
     async def wait_for(self, name: str) -> None:
-        """Return when one of the needs is there."""
+        """Return as soon as one dependency is there."""
         await self._available[name].wait()
 
     async def wait_for_all(self) -> None:
-        """Return when all is there. Raises what no waiting mends."""
+        """Return as soon as all dependencies are there. Raises errors that waiting does not cure."""
         async with anyio.create_task_group() as standing:
             standing.start_soon(self._hold_still)
             async with anyio.create_task_group() as looking:
-                for need in self._dependencies:
-                    looking.start_soon(self._check, need)
+                for dependency in self._dependencies:
+                    looking.start_soon(self._check, dependency)
             standing.cancel_scope.cancel()
 
-    async def _check(self, need: Dependency) -> None:
+    async def _check(self, dependency: Dependency) -> None:
         while True:
             try:
-                await anyio.to_thread.run_sync(need.check, abandon_on_cancel=True)
-            except _COMES_LATER as error:
-                self._report_missing(need.name, str(error))
+                await anyio.to_thread.run_sync(dependency.check, abandon_on_cancel=True)
+            except _RETRIED as error:
+                self._report_missing(dependency.name, str(error))
             else:
                 break
             await anyio.sleep(self._retry_s)
-        if self._missing.pop(need.name):
-            self._log(f"{need.name} is there")
-        self._available[need.name].set()
+        if self._missing.pop(dependency.name):
+            self._log(f"{dependency.name} is there")
+        self._available[dependency.name].set()
         self._publish_status()
 
     def _report_missing(self, name: str, why: str) -> None:
@@ -118,9 +126,9 @@ class StartupGate:
 
 
 def require_folder(folder: Path) -> None:
-    """A folder of the program's own is made; one elsewhere has to be there: its disk may come late. Raises StartError.
+    """Make a folder with a relative path; require one with an absolute path, whose disk may be mounted later.
 
-    To begin anew on the place where a disk is going to be mounted would hide all that was taught.
+    A new folder at a mount point would hide the knowledge on the disk. Raises StartError.
     """
     if not folder.is_absolute():
         make_private_folder(folder)

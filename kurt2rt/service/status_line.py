@@ -1,4 +1,4 @@
-"""The line that tells once a second how the robot's program is."""
+"""Status line of the robot program, once a second."""
 
 from hal.health import Health
 from kurt2rt.core.decision.standing_text import short_text
@@ -33,7 +33,7 @@ def _clock_s(status: ProgramStatus) -> float:
 
 
 def format_activity(status: ProgramStatus) -> str:
-    """What drives the wheels and why, or why the robot stands."""
+    """Return what drives the wheels and why, or why the robot stands."""
     record = status.record
     decision, match, stands = record.decision, record.decision.match, short_text(record.standing)
     near = "" if match is None else f" at {match.distance:.0f} of R {match.radius:.0f}"
@@ -55,12 +55,12 @@ def format_activity(status: ProgramStatus) -> str:
 
 
 def format_problems(status: ProgramStatus, health: Health) -> list[str]:
-    """What is wrong, each part in words; empty when nothing is."""
+    """Return what is wrong, each part in words; empty if nothing is."""
     return [*format_guard(status), *format_alarms(status, health)]
 
 
 def format_guard(status: ProgramStatus) -> list[str]:
-    """Return what the guard changed in this tick, in words; empty when it let through what was decided."""
+    """Return what the guard changed in this tick, in words; empty if it changed nothing."""
     reasons = status.record.guard_result.reasons
     return ["guard: " + ", ".join(reasons)] if reasons else []
 

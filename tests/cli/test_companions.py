@@ -54,7 +54,7 @@ def births(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Births]:
 
 
 def companions(told: Told, script: str) -> ChildProcesses:
-    return ChildProcesses("default", tell=told.put, start=(sys.executable, "-c", script), look_s=LOOK_S)
+    return ChildProcesses("default", log=told.put, start=(sys.executable, "-c", script), poll_s=LOOK_S)
 
 
 def is_there(process: int) -> bool:
@@ -64,7 +64,7 @@ def is_there(process: int) -> bool:
 def test_one_that_is_killed_is_told_and_started_anew_each_time_later(births: Births) -> None:
     told = Told()
     with companions(told, SAYS_ITS_ID) as beside:
-        beside.start("the page", "teach", lasts=True)
+        beside.start("the page", "teach", restarts=True)
         for pause_s in ("0.01", "0.02", "0.04"):
             os.kill(births.next(), signal.SIGKILL)
             assert told.next() == f"the page ended (signal 9); it is started anew in {pause_s} s"
@@ -78,7 +78,7 @@ def test_it_is_a_trouble_while_it_is_not_there() -> None:
     told = Told()
     with companions(told, "raise SystemExit(3)") as beside:
         assert beside.trouble == ""
-        beside.start("the scripted teacher", "teach", "--auto", lasts=False)
+        beside.start("the scripted teacher", "teach", "--auto", restarts=False)
         line = told.next()
         assert line == "the scripted teacher ended (exit code 3); start it again by hand"
         assert beside.trouble == line
@@ -88,9 +88,9 @@ def test_it_is_a_trouble_while_it_is_not_there() -> None:
 def test_one_that_is_done_is_no_trouble(births: Births) -> None:
     told = Told()
     with companions(told, SAYS_ITS_ID.replace("sys.stdin.read()", "")) as beside:
-        beside.start("the scripted teacher", "teach", "--auto", lasts=False)
+        beside.start("the scripted teacher", "teach", "--auto", restarts=False)
         births.next()
-        beside.start("the page", "teach", lasts=True)
+        beside.start("the page", "teach", restarts=True)
         births.next()
         assert told.next().startswith("the page ended (exit code 0); ")
         assert "scripted teacher" not in beside.trouble
@@ -100,10 +100,10 @@ def test_what_one_prints_is_told_or_heard_by_whom_it_is_for() -> None:
     told, heard = Told(), Told()
     says = "import sys; print('out', flush=True); print('err', file=sys.stderr, flush=True); sys.exit(3)"
     with companions(told, says) as beside:
-        beside.start("the scripted teacher", "teach", "--auto", lasts=False)
+        beside.start("the scripted teacher", "teach", "--auto", restarts=False)
         assert {told.next(), told.next()} == {"out", "err"}
         assert told.next() == "the scripted teacher ended (exit code 3); start it again by hand"
-        beside.start("the page", "teach", lasts=False, hear=heard.put)
+        beside.start("the page", "teach", restarts=False, on_line=heard.put)
         assert {heard.next(), heard.next()} == {"out", "err"}
         assert told.next() == "the page ended (exit code 3); start it again by hand"
     assert told.empty()
@@ -114,7 +114,7 @@ def test_modules_are_not_looked_for_in_the_present_folder(tmp_path: Path, monkey
     (tmp_path / "kurt2rt" / "__init__.py").write_text("raise SystemExit(7)", encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     told = Told()
-    with ChildProcesses("default", tell=told.put, look_s=LOOK_S) as beside:
-        beside.start("pairing", "pair", lasts=True)  # which does not know all these words, and starts soonest
+    with ChildProcesses("default", log=told.put, poll_s=LOOK_S) as beside:
+        beside.start("pairing", "pair", restarts=True)  # which does not know all these words, and starts soonest
         assert told.next() == "kurt2rt: No such option: --while-stdin; see kurt2rt pair --help"
         assert told.next().startswith("pairing ended (exit code 2)")

@@ -1,1 +1,1 @@
-"""How well the robot's program, its bus, its disk and its machine are."""
+"""Health of the robot program, its bus, its disk and its machine."""

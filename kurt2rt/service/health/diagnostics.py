@@ -1,4 +1,4 @@
-"""Judgement of health reports: their troubles, and how long each has lasted."""
+"""Diagnosis of health reports: troubles, and the time that each has lasted."""
 
 import math
 from collections import deque
@@ -11,13 +11,11 @@ from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.service.health.snapshot import Snapshot
 
 LATELY_S = 60
-"""Counters are judged by how they grew in so many seconds, one report each."""
+"""Window over which counters are judged, in s; one report per second."""
 LATE_SHARE = 0.2
-"""Of a period: ticks that begin later than that are late, 2 ms at 100 Hz."""
+"""Fraction of a period by which a tick is late, 2 ms at 100 Hz."""
 TOLERATED_SHARE = 0.1
-"""Of the ticks of the last minute: fewer missed ones are no trouble where the robot stalls with the program, for it
-then still drives as it was taught.
-"""
+"""Fraction of missed ticks in the last minute that is no trouble if the robot stalls with the program."""
 SLOW_WRITE_S = 0.5
 LITTLE_ROOM_BYTES = 500 * 10**6
 NO_ROOM_BYTES = 50 * 10**6
@@ -40,31 +38,31 @@ class _Found(NamedTuple):
 
 
 class Counted:
-    """How counters grew in the last minute."""
+    """Growth of counters in the last minute."""
 
     def __init__(self) -> None:
-        self._past: deque[Mapping[str, int]] = deque([{}], maxlen=LATELY_S + 1)  # all begin at nothing
+        self._past: deque[Mapping[str, int]] = deque([{}], maxlen=LATELY_S + 1)  # all begin at 0
         self._now: Mapping[str, int] = {}
 
     def update(self, counters: Mapping[str, int]) -> None:
-        """Their values, once a second."""
+        """Add the values of the counters; call it once a second."""
         self._now = counters
         self._past.append(counters)
 
     def growth(self, name: str) -> int:
-        """How much one grew; nothing for one that is not counted."""
+        """Return the growth of one counter; 0 if it is not counted."""
         return self._now.get(name, 0) - self._past[0].get(name, 0)
 
 
 class _Writes:
-    """The slowest write of lessons in the last minute."""
+    """Slowest write of lessons in the last minute."""
 
     def __init__(self) -> None:
         self._newest_s: float | None = None
         self._slow: deque[tuple[float, float]] = deque()
 
     def update(self, now_s: float, last_write_s: float | None) -> None:
-        """What the newest one took; a value that is there still is of the same write."""
+        """Add the duration of the newest write; an unchanged value belongs to the write before."""
         if last_write_s != self._newest_s:
             self._newest_s = last_write_s
             if last_write_s is not None and last_write_s > SLOW_WRITE_S:
@@ -74,15 +72,15 @@ class _Writes:
 
     @property
     def slowest_s(self) -> float | None:
-        """None when all were quick."""
+        """Return the longest duration in s; None if all writes were quick."""
         return max((took_s for _, took_s in self._slow), default=None)
 
 
 class Diagnostics:
-    """Finds what is wrong in each report, and remembers since when."""
+    """Diagnosis of each report, with the time since when each trouble exists."""
 
     def __init__(self, settings: RobotSettings, *, tolerates_stalls: bool = False) -> None:
-        """`tolerates_stalls`: of a robot that stalls with this program; late ticks are then no trouble."""
+        """`tolerates_stalls`: whether the robot stalls with this program, so that late ticks are no trouble."""
         self._settings = settings
         self._tolerates_stalls = tolerates_stalls
         self._since_s: dict[tuple[str, str], float] = {}
@@ -96,7 +94,7 @@ class Diagnostics:
         machine: MachineHealth,
         counted: Counted,
     ) -> tuple[Trouble, ...]:
-        """The troubles of one report: the urgent ones first, then those that have lasted longest."""
+        """Return the troubles of one report: urgent ones first, then by the time that they have lasted."""
         self._writes.update(snapshot.now_s, snapshot.last_write_s)
         found = [
             *self._of_senses(snapshot),

@@ -1,4 +1,4 @@
-"""How much room is on the disks, looked at where a disk that hangs holds up nothing else."""
+"""Free space of the disks, read by one thread each, so that a disk that hangs delays nothing else."""
 
 import threading
 import time
@@ -15,10 +15,10 @@ _ANSWERS_WITHIN_S = 4.0
 
 
 class DiskMonitor:
-    """A thread that looks once a second. What a disk said last counts for some seconds."""
+    """Threads that read the free space once a second; an answer counts for 4 s."""
 
     def __init__(self, folders: Mapping[str, Path], now: Callable[[], float] = time.monotonic) -> None:
-        """`folders` by what is kept there; `now`: a clock in s."""
+        """`folders`: by the name of their content; `now`: a clock in s."""
         self._folders = dict(folders)
         self._now = now
         self._said: dict[str, tuple[float, int]] = {}
@@ -28,15 +28,15 @@ class DiskMonitor:
         ]
 
     def poll(self, of: str) -> None:
-        """Ask one disk, and wait for it; what the thread does again and again."""
+        """Read the free space of one disk; may wait for the disk."""
         try:
             found = free_bytes(self._folders[of])
         except OSError:
-            return  # told as a disk that does not answer
+            return  # reported as a disk that does not answer
         self._said[of] = self._now(), found
 
     def spaces(self) -> tuple[DiskSpace, ...]:
-        """What is free as far as it is known; never waits."""
+        """Return the free space of each disk, None if it does not answer; never waits."""
         now_s = self._now()
         found = []
         for of in self._folders:
@@ -52,7 +52,7 @@ class DiskMonitor:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._ending.set()  # not joined: one that hangs would hang us
+        self._ending.set()  # not joined: a disk that hangs would hang the end
 
     def _run(self, of: str) -> None:
         self.poll(of)

@@ -1,4 +1,4 @@
-"""What the machine tells of itself and of this program."""
+"""Memory, processor and battery of the machine."""
 
 import threading
 import time
@@ -12,17 +12,17 @@ _POWER = Path("/sys/class/power_supply")
 
 
 class MachineMonitor:
-    """Looks at memory, processor and battery; each look takes some hundred microseconds."""
+    """Monitor of memory, processor and battery."""
 
     def __init__(self, power: Path = _POWER) -> None:
-        """`power`: where the kernel tells of batteries."""
+        """`power`: folder in which the kernel lists batteries."""
         self._power = power
         self._process = psutil.Process()
         self._looked_at_s = time.monotonic()
         self._used_s = time.process_time()
 
     def poll(self) -> MachineHealth:
-        """As it is now."""
+        """Return the present values; takes some 100 µs."""
         now_s, used_s = time.monotonic(), time.process_time()
         share = (used_s - self._used_s) / max(now_s - self._looked_at_s, 1e-3)
         self._looked_at_s, self._used_s = now_s, used_s
@@ -38,7 +38,7 @@ class MachineMonitor:
 
 
 def battery_of(power: Path) -> tuple[float | None, bool]:
-    """Charge of the machine's battery, 0 to 1, and whether it is being used up; of several the emptiest counts."""
+    """Return the charge of the emptiest battery, 0 to 1, and whether it is discharging; None and False without one."""
     found = []
     for supply in sorted(power.glob("*")):
         # Mice and keyboards have batteries as well, with the scope Device.

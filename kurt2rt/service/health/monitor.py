@@ -1,4 +1,4 @@
-"""Makes the health report, once a second, beside the tick."""
+"""Health report of the program, once a second."""
 
 import queue
 import threading
@@ -25,8 +25,9 @@ _ENDS_WITHIN_S = 0.2
 
 
 class HealthMonitor:
-    """Reads the program between two ticks, once a second; a thread makes a report of it, for percentiles cost more than
-    a tick.
+    """Monitor that takes a snapshot once a second, between two ticks.
+
+    A thread makes the report of it, because percentiles cost more than a tick.
     """
 
     def __init__(
@@ -40,7 +41,17 @@ class HealthMonitor:
         now: Callable[[], float] = time.monotonic,
         tolerates_stalls: bool = False,
     ) -> None:
-        """`boot`: random letters of this start; `knowledge`: where lessons are kept; `now`: a clock in s."""
+        """Start no thread yet.
+
+        Args:
+            runtime: runtime of the robot.
+            keeping: statistics of the journal.
+            instruments: other parts of the program.
+            boot: id of this start, hexadecimal.
+            knowledge: path of the knowledge file.
+            now: clock in s.
+            tolerates_stalls: whether the robot stalls with this program.
+        """
         self._runtime = runtime
         self._keeping = keeping
         folders = {"knowledge": knowledge.parent, **instruments.folders}
@@ -56,7 +67,7 @@ class HealthMonitor:
         self._ticks = 0
         self.newest: HealthReport | None = None
         """None in the first second."""
-        # Of the thread, or of whoever calls `report`.
+        # Used by the thread only, or by a test that calls `report`.
         self._disks = DiskMonitor(self._instruments.folders)
         self._machine = MachineMonitor()
         self._counted = Counted()
@@ -71,7 +82,7 @@ class HealthMonitor:
         drops: Mapping[str, Callable[[], int]] | None = None,
         errors: Mapping[str, Callable[[], str]] | None = None,
     ) -> None:
-        """Read these of the program's parts as well, from now on: a channel opens when the network is there."""
+        """Add parts of the program to the report, such as a channel that opened later."""
         self._instruments = self._instruments.with_more(drops, errors)
 
     def add_listener(self, listener: Callable[[HealthReport], None]) -> None:
@@ -79,7 +90,7 @@ class HealthMonitor:
         self._listeners.append(listener)
 
     def after_tick(self, record: TickRecord) -> None:
-        """After each tick; never waits."""
+        """Take a snapshot once a second and publish a new report; call it after each tick, it never waits."""
         self._ticks += 1
         if self._ticks % self._every_ticks == 0 and self._waiting.empty():
             self._waiting.put(self.snapshot(record))
@@ -90,11 +101,11 @@ class HealthMonitor:
                 listener(made)
 
     def snapshot(self, record: TickRecord) -> Snapshot:
-        """The program as it is after a tick."""
+        """Return the program's values after a tick."""
         return take_snapshot(self._runtime, record, self._keeping, self._instruments, self._now())
 
     def report(self, snapshot: Snapshot) -> HealthReport:
-        """The report of one snapshot, once a second: what grew lately is counted by reports. Takes about 1 ms."""
+        """Return the report of one snapshot, in about 1 ms; call it once a second, for growth is counted by reports."""
         self._counted.update(_counters(snapshot))
         punctuality = self._punctuality(snapshot)
         disks, machine = self._disks.spaces(), self._machine.poll()

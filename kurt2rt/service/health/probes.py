@@ -1,4 +1,4 @@
-"""What the health report reads of a robot's program. Nothing here waits."""
+"""Parts of a robot program that the health report reads. Nothing here waits."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -9,43 +9,43 @@ from hal.health import Health
 
 
 class JournalStats(Protocol):
-    """Where lessons are kept; kurt2rt.knowledge.journal.writer.JournalWriter is one."""
+    """Statistics of the journal; kurt2rt.knowledge.journal.writer.JournalWriter is one."""
 
     @property
     def unwritten(self) -> int:
-        """Lessons that are not durable yet."""
+        """Return the number of lessons that are not durable yet."""
         ...
 
     @property
     def error(self) -> str | None:
-        """Why lessons cannot be saved, and what to do; None when they can."""
+        """Return why lessons cannot be saved and what to do; None if they can."""
         ...
 
     @property
     def last_write_s(self) -> float | None:
-        """How long the disk took to keep the last ones; None before the first."""
+        """Return the duration of the last write in s; None before the first."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Probes:
-    """The parts of a program that are no part of its runtime."""
+    """Parts of a program outside its runtime."""
 
     bus: Callable[[], Health] | None = None
-    """Counters of the robot's bus; None where there is none."""
+    """Returns the counters of the robot's bus; None: no bus."""
     drops: Mapping[str, Callable[[], int]] = field(default_factory=dict)
-    """By queue, how much it threw away so far."""
+    """Number of dropped items so far, by queue."""
     errors: Mapping[str, Callable[[], str]] = field(default_factory=dict)
-    """By part, what is wrong with it and what to do, in a line; empty when nothing is."""
+    """Error and cure of each part, in a line; empty if nothing is wrong."""
     folders: Mapping[str, Path] = field(default_factory=dict)
-    """What is kept, and in which folder there has to be room for it."""
+    """Folders that need free space, by the name of their content."""
     pages: Callable[[], tuple[str, ...]] = tuple
-    """Links to the teacher's page, with their tokens; none where this program serves no page."""
+    """Returns the links to the teacher's page, with their tokens; empty if no page is served."""
 
     def with_more(
         self,
         drops: Mapping[str, Callable[[], int]] | None = None,
         errors: Mapping[str, Callable[[], str]] | None = None,
     ) -> "Probes":
-        """These and others."""
+        """Return these probes with more counters and errors."""
         return replace(self, drops={**self.drops, **(drops or {})}, errors={**self.errors, **(errors or {})})

@@ -1,4 +1,4 @@
-"""What is read of the program in its loop, between two ticks; what costs more is worked out of it elsewhere."""
+"""Values of the program, read in its loop between two ticks."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,11 +14,11 @@ from kurt2rt.service.health.probes import JournalStats, Probes
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """The program after one tick."""
+    """Values of the program after one tick."""
 
     tick: int
     now_s: float
-    """Of the clock that tells since when something is wrong."""
+    """Time of the clock that dates troubles, in s."""
     infrared_age_s: float
     encoder_age_s: float
     bumper_age_s: float
@@ -29,7 +29,7 @@ class Snapshot:
     last_write_s: float | None
     drops: Mapping[str, int]
     errors: Mapping[str, str]
-    """Lines of trouble that are not empty, by part."""
+    """Error of each part with an error, in a line."""
     ticks: int
     missed_ticks: int
     rlas: int
@@ -41,7 +41,7 @@ class Snapshot:
 def take_snapshot(
     runtime: Runtime, record: TickRecord, keeping: JournalStats, instruments: Probes, now_s: float
 ) -> Snapshot:
-    """Read everything; some ten microseconds, and nothing waits."""
+    """Return the snapshot; takes some 10 µs and never waits."""
     senses, system, ledger = record.senses, runtime.level.system, runtime.timer
     errors = {part: error() for part, error in instruments.errors.items()}
     errors["teaching"] = runtime.handler.updater.error

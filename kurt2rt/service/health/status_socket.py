@@ -1,4 +1,4 @@
-"""The health report for other programs of this machine: a socket beside the knowledge file, one line a second."""
+"""Health report for other programs of this machine: a socket next to the knowledge file, one line a second."""
 
 import json
 import os
@@ -31,31 +31,37 @@ class StatusError(UserError):
 
 
 def status_socket_path(knowledge: Path) -> Path:
-    """Where the program that teaches on in a knowledge file tells how it is; there is one such program at most."""
+    """Return the path of the status socket of the program that writes a knowledge file."""
     return knowledge.with_name(f"{knowledge.name}.status")
 
 
 class StatusSocket:
-    """Tells every reader each report. One that does not read is left."""
+    """Socket that sends every reader each report; disconnects a reader that does not read for 2 s."""
 
     def __init__(self, watch: HealthMonitor, path: Path, pages: Callable[[], tuple[str, ...]] = tuple) -> None:
-        """`path`: of the socket; users who may write it may read the status, and the links of `pages` with it."""
+        """Listen for reports; `serve` opens the socket.
+
+        Args:
+            watch: monitor that makes the reports.
+            path: path of the socket; users who may write it may read the status and the links.
+            pages: returns the links to the teacher's page.
+        """
         self._pages = pages
         self._watch = watch
         self._path = path
         self._news = anyio.Event()
         self._readers = 0
         self.trouble = ""
-        """Why nobody can read; empty while somebody could."""
+        """Reason why no program can read; empty if programs can."""
         watch.add_listener(self._wake)
 
     async def serve(self) -> None:
-        """Until cancelled. A place where no socket can be made is told, and nothing else ends."""
+        """Serve until cancelled; if the socket cannot be made, set `trouble` and return."""
         try:
             async with _listener(self._path) as listener:
                 await listener.serve(self._tell)
         except OSError as error:
-            self.trouble = f"{self._path}: no status is told there ({error.strerror}); give a file in another folder"
+            self.trouble = f"{self._path}: no status is served there ({error.strerror}); give a file in another folder"
 
     def _wake(self, _: HealthReport) -> None:
         self._news.set()
@@ -75,24 +81,24 @@ class StatusSocket:
                             await reader.send(json.dumps({**plain_of(report), _PAGES: self._pages()}).encode() + b"\n")
                     await news.wait()
         except (anyio.BrokenResourceError, anyio.ClosedResourceError, TimeoutError):
-            return  # gone, or too slow
+            return  # gone or slow
         finally:
             self._readers -= 1
 
 
 async def serve_waiting(path: Path, waits_for: Callable[[], str]) -> None:
-    """Tell every reader what the program still waits for, until cancelled; its status then takes the socket's place.
+    """Send every reader what the program still waits for, until cancelled; its status socket then replaces this one.
 
-    `waits_for`: in a line with what to do.
+    `waits_for`: returns what is missing and what to do, in a line.
     """
 
     async def tell(reader: SocketStream) -> None:
         async with reader:
-            with suppress(anyio.BrokenResourceError, anyio.ClosedResourceError, TimeoutError):  # gone, or too slow
+            with suppress(anyio.BrokenResourceError, anyio.ClosedResourceError, TimeoutError):  # gone or slow
                 with anyio.fail_after(_TAKEN_WITHIN_S):
                     await reader.send(json.dumps({_WAITS_FOR: waits_for()}).encode() + b"\n")
 
-    with suppress(OSError):  # the status will tell why nothing is told there
+    with suppress(OSError):  # the status socket will say why it cannot be made
         with short_name(path) as short:
             listener = await anyio.create_unix_listener(short, mode=0o600)
         async with listener:
@@ -100,10 +106,10 @@ async def serve_waiting(path: Path, waits_for: Callable[[], str]) -> None:
 
 
 def read_reports(path: Path, patience_s: float) -> Iterator[HealthReport]:
-    """Each report of the program that tells at `path`, the newest first; waits for each, so not in a loop of events.
+    """Yield each report of the program that serves `path`, the newest first; blocks, so not for an event loop.
 
-    Raises StatusError when none runs, when it still waits for something, when nothing comes for `patience_s`, or for
-    another version's words.
+    Raises StatusError if no program runs, if it still waits for something, if no report comes for `patience_s`
+    seconds, or if the program is of another version.
     """
     with socket.socket(socket.AF_UNIX) as reader, reader.makefile("rb") as lines:
         reader.settimeout(patience_s)
@@ -123,7 +129,7 @@ def read_reports(path: Path, patience_s: float) -> Iterator[HealthReport]:
             except TimeoutError as error:
                 raise StatusError(
                     f"the robot program at {path} has said nothing for {patience_s:g} s",
-                    do="it hangs or was stopped: end it and start it anew",
+                    do="it hangs or was stopped: end it and start it again",
                 ) from error
             except OSError as error:
                 raise StatusError(f"the robot program ended ({error})", where=path) from error
@@ -148,27 +154,27 @@ def _links_in(told: Mapping[str, object]) -> tuple[str, ...]:
 @asynccontextmanager
 async def _listener(path: Path) -> "AsyncIterator[Listener[SocketStream]]":
     with short_name(path) as short:
-        # It takes the place of one that a killed program left: the knowledge file is ours alone.
+        # Replaces the socket of a killed program: this program alone writes the knowledge file.
         listener = await anyio.create_unix_listener(short, mode=0o600)
     try:
         async with listener:
             yield listener
     finally:
-        # A disk that hangs must not hold up the end of the program.
+        # A disk that hangs must not delay the end of the program.
         removing = threading.Thread(target=_remove, args=(path,), name="end of status", daemon=True)
         removing.start()
         removing.join(_REMOVED_WITHIN_S)
 
 
 def _remove(path: Path) -> None:
-    # The next program takes the place of a socket that is left on a read-only disk.
+    # The next program replaces a socket that stays on a read-only disk.
     with suppress(OSError):
         path.unlink(missing_ok=True)
 
 
 @contextmanager
 def short_name(path: Path) -> Iterator[str]:
-    """Another name of the same file, as long as the folder is open: the kernel takes no more than 107 bytes."""
+    """Yield a short name of the file, valid in the block: names of sockets have 107 bytes at most. Raises OSError."""
     folder = os.open(path.parent, os.O_PATH | os.O_DIRECTORY)
     try:
         yield f"/proc/self/fd/{folder}/{path.name}"

@@ -1,4 +1,4 @@
-"""What the service's own user, a stranger to this machine, can get at from within the unit."""
+"""File access of the unit's own user."""
 
 import os
 import stat
@@ -16,34 +16,34 @@ _ELSEWHERE = "in a virtual environment in /opt/kurt2rt, for instance"
 
 @dataclass(frozen=True, slots=True)
 class RequiredAccess:
-    """What the settings name beside this installation and the unit's own folder."""
+    """Files and folders of the settings, without this installation and the unit's own folder."""
 
     files: tuple[Path, ...] = ()
-    """That it reads; absolute."""
+    """Absolute paths that the service reads."""
     folders: tuple[Path, ...] = ()
-    """That it writes; absolute, and there later perhaps, when their disk is."""
+    """Absolute paths that the service writes; their disk may be mounted later."""
 
 
 def needs_home_access() -> bool:
-    """Whether the unit lets its program see homes, for this installation is in one."""
+    """Return whether the unit needs access to homes, because this installation is in one."""
     return any(_is_within(path, _HOMES) for path in required_paths())
 
 
-def private_paths(wanted: RequiredAccess) -> tuple[str, ...]:
-    """Why the service's own user could not start, a line for each reason with what to do; empty when he can."""
+def private_paths(required: RequiredAccess) -> tuple[str, ...]:
+    """Return each path that the unit's user cannot reach, in a line with the cure; empty if it can start."""
     installation = (
         _unreadable(path, f"install kurt2rt where everybody may read, {_ELSEWHERE}") for path in required_paths()
     )
-    files = (_unreadable(path, _to_copy(path)) or _hidden(path, _to_copy(path)) for path in wanted.files)
-    folders = (_hidden(path, "name a folder elsewhere") or _impassable(path) for path in wanted.folders)
+    files = (_unreadable(path, _to_copy(path)) or _hidden(path, _to_copy(path)) for path in required.files)
+    folders = (_hidden(path, "name a folder elsewhere") or _impassable(path) for path in required.folders)
     return tuple(dict.fromkeys(line for line in (*installation, *files, *folders) if line))
 
 
-def paths_to_chown(user: str, wanted: RequiredAccess) -> tuple[str, ...]:
-    """Folders that are there and that `user`, who may not be there yet, may not write; a line each, with what to do."""
+def paths_to_chown(user: str, required: RequiredAccess) -> tuple[str, ...]:
+    """Return each existing folder that `user` may not write, in a line with the cure; `user` need not exist yet."""
     return tuple(
         f"{folder}: belongs to {_owner(folder)}; say: sudo chown {user}: {quote(str(folder))}"
-        for folder in wanted.folders
+        for folder in required.folders
         if folder.is_dir() and _owner(folder) != user and not folder.stat().st_mode & stat.S_IWOTH
     )
 
@@ -82,7 +82,7 @@ def _to_copy(path: Path) -> str:
 def _owner(path: Path) -> str:
     try:
         return path.owner()
-    except KeyError:  # nobody of this machine
+    except KeyError:  # no user of this machine
         return str(path.stat().st_uid)
 
 
@@ -91,5 +91,5 @@ def _is_within(path: Path, folders: Iterable[Path]) -> bool:
 
 
 def _both(path: Path) -> tuple[Path, Path]:
-    """Where it is said to be, and where it is behind all links."""
+    """Return the absolute path, and the path without symbolic links."""
     return path.absolute(), Path(os.path.realpath(path))

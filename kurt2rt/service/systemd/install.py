@@ -1,4 +1,4 @@
-"""The unit is put in its place and taken away again."""
+"""Installation and removal of the unit."""
 
 import pwd
 import subprocess
@@ -15,22 +15,22 @@ CommandRunner = Callable[[Sequence[str]], None]
 
 @dataclass(frozen=True, slots=True)
 class InstallPaths:
-    """Where systemd looks for its files."""
+    """Folders of systemd's files."""
 
     units: Path = Path("/etc/systemd/system")
     users: Path = Path("/etc/sysusers.d")
     others: tuple[Path, ...] = tuple(
         map(Path, ("/run/systemd/system", "/usr/local/lib/systemd/system", "/usr/lib/systemd/system"))
     )
-    """Of units of other programs, which one of ours must not hide."""
+    """Folders of other programs' units, which our unit must not hide."""
 
     def files(self, name: str) -> tuple[Path, Path]:
-        """Of a unit and its user."""
+        """Return the files of a unit and of its user."""
         return self.units / f"{name}.service", self.users / f"{name}.conf"
 
 
 def run_command(command: Sequence[str]) -> None:
-    """Run a command of systemd. Raises UnitError when it fails or is not there."""
+    """Run a command of systemd. Raises UnitError if it fails or is missing."""
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=False)
     except FileNotFoundError as error:
@@ -40,7 +40,7 @@ def run_command(command: Sequence[str]) -> None:
 
 
 def require_free(name: str, places: InstallPaths | None = None) -> None:
-    """Raises UnitError for a name that a unit, or a user, of another program has."""
+    """Require a name that no unit and no user of another program has. Raises UnitError."""
     require_name(name)
     places = places or InstallPaths()
     to_do = "give another --name"
@@ -56,7 +56,7 @@ def require_free(name: str, places: InstallPaths | None = None) -> None:
 
 
 def install(unit: Unit, run: CommandRunner = run_command, places: InstallPaths | None = None) -> tuple[Path, ...]:
-    """Write the unit and make its user; starts nothing. Returns the files. Raises UnitError."""
+    """Write the unit and make its user, without starting it; return the files. Raises UnitError."""
     places = places or InstallPaths()
     require_free(unit.name, places)
     files = places.files(unit.name)
@@ -71,7 +71,7 @@ def install(unit: Unit, run: CommandRunner = run_command, places: InstallPaths |
 
 
 def uninstall(name: str, run: CommandRunner = run_command, places: InstallPaths | None = None) -> tuple[Path, ...]:
-    """End and disable the unit and remove its files; what was taught and its user stay. Raises UnitError."""
+    """Stop and disable the unit and remove its files; knowledge and user stay. Returns the files. Raises UnitError."""
     require_name(name)
     places = places or InstallPaths()
     files = tuple(each for each in places.files(name) if _is_there(each))
@@ -91,7 +91,7 @@ def uninstall(name: str, run: CommandRunner = run_command, places: InstallPaths 
 
 
 def _is_there(path: Path) -> bool:
-    return path.is_symlink() or path.exists()  # a link to nowhere is somebody's as well
+    return path.is_symlink() or path.exists()  # a dangling link belongs to another program
 
 
 def _is_ours(path: Path) -> bool:

@@ -1,4 +1,4 @@
-"""This very installation of kurt2rt: what starts it, and where it is."""
+"""Start command and paths of this installation of kurt2rt."""
 
 import sys
 from pathlib import Path
@@ -7,7 +7,7 @@ from hal.settings import SHIPPED_DIR
 
 
 def start_command() -> tuple[str, ...]:
-    """The words that start it, absolute."""
+    """Return the words that start kurt2rt, with absolute paths."""
     script = Path(sys.executable).with_name("kurt2rt")
     if script.is_file():
         return (str(script),)
@@ -16,5 +16,5 @@ def start_command() -> tuple[str, ...]:
 
 
 def required_paths() -> tuple[Path, ...]:
-    """Files and folders that it does not run without."""
+    """Return the files and folders that kurt2rt needs."""
     return (Path(start_command()[0]), Path(sys.prefix), Path(sys.base_prefix), SHIPPED_DIR)

@@ -1,4 +1,4 @@
-"""The unit of systemd, filled in for this installation."""
+"""Unit of systemd for this installation."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -11,11 +11,11 @@ from hal.settings import SHIPPED_DIR
 from kurt2rt.service.systemd.access import needs_home_access
 
 MARK = "# Made by kurt2rt service install:"
-"""How our files begin; others are not touched."""
+"""First words of our files; other files are not touched."""
 USER = "KURT2 robot"
-"""What the user of each of our units is called in full."""
+"""Full name of the user of each of our units."""
 STATE = Path("/var/lib")
-"""Each unit keeps what is its own there, in a folder of its name, and is started in it."""
+"""Folder of the units' state: each unit has a folder of its name, which is its working directory."""
 _TEMPLATES = SHIPPED_DIR / "service"
 _NAME = re.compile(r"[a-z][a-z0-9-]{0,30}")
 _PLAIN = re.compile(r"[\w@+,./:=-]+")
@@ -27,10 +27,10 @@ class UnitError(UserError):
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """What is put on the disk."""
+    """Files of one unit."""
 
     name: str
-    """Of the unit and of its user."""
+    """Name of the unit and of its user."""
     service: str
     """Text of NAME.service."""
     sysusers: str
@@ -38,9 +38,9 @@ class Unit:
 
 
 def build_unit(name: str, bus: str, command: Sequence[str], folders: Iterable[Path] = ()) -> Unit:
-    """The unit that runs `command`, whose first word is an absolute path.
+    """Return the unit that runs `command`, whose first word is an absolute path.
 
-    `folders`: beyond its own state it writes there, too. Raises UnitError for a name that is none, or words that
+    `folders`: folders outside the unit's state that it writes. Raises UnitError for an invalid name, or words that
     cannot stand in a unit.
     """
     require_name(name)
@@ -57,7 +57,7 @@ def build_unit(name: str, bus: str, command: Sequence[str], folders: Iterable[Pa
 
 
 def require_name(name: str) -> None:
-    """Raises UnitError for what is no name of a unit and of its user."""
+    """Require a valid name of a unit and of its user. Raises UnitError."""
     if not _NAME.fullmatch(name):
         raise UnitError(
             "is no name for a unit and its user",
@@ -67,7 +67,7 @@ def require_name(name: str) -> None:
 
 
 def quoted(word: str) -> str:
-    """A word of a unit's command line or list of paths, as systemd.syntax(7) reads it back."""
+    """Return a word quoted for a unit's command line or list of paths, as systemd.syntax(7) reads it back."""
     free = _specifier_free(word)
     if _PLAIN.fullmatch(word):
         return free

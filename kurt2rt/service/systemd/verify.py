@@ -1,4 +1,4 @@
-"""The unit, looked at by systemd's own tools: does it load, and how much of the system is the service exposed to?"""
+"""Verification of a unit by systemd's own tools: whether it loads, and its exposure."""
 
 import re
 import shutil
@@ -11,7 +11,7 @@ from kurt2rt.service.systemd.unit import Unit, UnitError
 
 TOOL = "systemd-analyze"
 MOST_EXPOSURE = 2.0
-"""Of 10, by `systemd-analyze security`: what needs no CAN, network and real-time priority is shut."""
+"""Highest exposure of 10 by `systemd-analyze security`; the unit needs CAN, network and real-time priority."""
 _LONGEST_S = 60.0
 _OVERALL = re.compile(r"Overall exposure level.*: ([\d.]+)")
 _OPEN = re.compile(r"^✗ (\S+)\s+(.*?)\s+([\d.]+)\s*$", re.MULTILINE)
@@ -19,28 +19,28 @@ _OPEN = re.compile(r"^✗ (\S+)\s+(.*?)\s+([\d.]+)\s*$", re.MULTILINE)
 
 @dataclass(frozen=True, slots=True)
 class UnitVerification:
-    """What the tools found."""
+    """Result of systemd's tools."""
 
     complaints: tuple[str, ...]
-    """Of `systemd-analyze verify`, as it says them; empty when the unit loads."""
+    """Lines of `systemd-analyze verify`; empty if the unit loads."""
     exposure: float
-    """0 to 10, smaller is safer."""
+    """Exposure, 0 to 10; smaller is safer."""
     open: tuple[str, ...]
-    """What is not shut, the setting, its meaning and its share of the exposure in a line each."""
+    """Settings that leave something open, each in a line with its meaning and share of the exposure."""
 
     @property
     def passed(self) -> bool:
-        """Whether it loads and is shut enough."""
+        """Return whether the unit loads and its exposure is low enough."""
         return not self.complaints and self.exposure <= MOST_EXPOSURE
 
 
 def has_tool() -> bool:
-    """Whether this machine has systemd's tools."""
+    """Return whether this machine has systemd's tools."""
     return shutil.which(TOOL) is not None
 
 
 def verify(unit: Unit) -> UnitVerification:
-    """Have the unit looked at; nothing is installed or started. Raises UnitError where the tool is missing."""
+    """Verify the unit without installing or starting it. Raises UnitError if the tool is missing."""
     tool = shutil.which(TOOL)
     if tool is None:
         raise UnitError(f"{TOOL} is not on this machine", do="on Debian: apt-get install systemd")
