@@ -67,7 +67,7 @@ def test_one_that_is_killed_is_told_and_started_anew_each_time_later(births: Bir
         beside.start("the page", "teach", restarts=True)
         for pause_s in ("0.01", "0.02", "0.04"):
             os.kill(births.next(), signal.SIGKILL)
-            assert told.next() == f"the page ended (signal 9); it is started anew in {pause_s} s"
+            assert told.next() == f"the page ended (signal 9); it is started again in {pause_s} s"
         last = births.next()
         assert is_there(last)
     assert not is_there(last)

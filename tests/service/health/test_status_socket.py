@@ -184,7 +184,7 @@ async def test_where_no_socket_can_be_made_the_rest_goes_on(tmp_path: Path) -> N
     path.mkdir()
     async with serving(Watch(), path) as status:
         await until(lambda: bool(status.trouble))
-    assert "no status is told there" in status.trouble
+    assert "no status is served there" in status.trouble
 
 
 async def test_a_socket_on_a_read_only_disk_is_left_without_a_word(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -56,7 +56,7 @@ def test_a_part_that_died_is_named_and_ends_the_pings(systemd: Manager, notifier
     alive["knowledge journal"] = False
     ticks(heartbeat, 1.5, 5.0)
     (said,) = systemd.heard()
-    assert said == "STATUS=not well: knowledge journal ended; the service manager starts the program anew"
+    assert said == "STATUS=not well: knowledge journal ended; the service manager starts the program again"
 
 
 def test_nobody_listens_and_nothing_is_said(systemd: Manager) -> None:
