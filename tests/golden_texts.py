@@ -40,6 +40,7 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
         "complaints of fault drill and soak": complaints.complaints,
         "checks of a soak": complaints.soak_checks,
         "conflicts of a merge": merging.conflicts,
+        "errors of knowledge": merging.knowledge_errors,
         "findings of the doctor": doctor.findings,
     },
     "studies": {

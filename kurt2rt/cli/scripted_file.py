@@ -6,7 +6,8 @@ from pathlib import Path
 
 import typer
 
-from kurt2rt.cli.knowledge.people import read_teachers
+from kurt2rt.knowledge.journal.loading import read_teachers
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 _SUFFIX = ".auto"
@@ -34,5 +35,5 @@ def people_agree(where: str, people: Sequence[str], instead: str) -> bool:
     taught = f"{where}: {' and '.join(people)} taught in it"
     # Python has no standard input where it was closed.
     if sys.stdin is None or not sys.stdin.isatty():
-        raise KnowledgeError(f"{taught}, and a scripted teacher would change it", do=instead)
+        raise KnowledgeError(KnowledgeCode.TAUGHT_BY_PEOPLE, where=where, people=" and ".join(people), instead=instead)
     return typer.confirm(f"{taught}. Let the scripted teacher change it?", err=True)

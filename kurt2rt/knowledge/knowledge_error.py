@@ -1,39 +1,54 @@
-"""Errors of knowledge files, and the advice for each of SQLite's error codes."""
+"""Errors of knowledge: a code per condition with its fields, and the code for each of SQLite's errors."""
 
 import sqlite3
 from pathlib import Path
 
 from hal.errors import UserError
+from kurt2rt.knowledge.knowledge_code import TEXTS, KnowledgeCode
 
 
 class KnowledgeError(UserError):
-    """Knowledge cannot be read or written."""
+    """Error of knowledge that cannot be read or written."""
+
+    def __init__(self, code: KnowledgeCode, *, where: object = "", **fields: object) -> None:
+        """Fill the code's text with `fields`; `where` names the file, with the row if it is about one."""
+        what, do = TEXTS[code]
+        # Texts of exceptions only: the error crosses processes, and not every exception can.
+        self.fields = {key: str(each) if isinstance(each, BaseException) else each for key, each in fields.items()}
+        super().__init__(what.format_map(self.fields), where=where, do=do.format_map(self.fields))
+        self.code = code
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Return code, place and fields, from which another process builds the error."""
+        return _rebuild, (type(self), self.code, self.where, self.fields)
 
 
 class ReconnectRequiredError(KnowledgeError):
-    """SQLite cannot recover on this connection, even when the disk does; open a new connection."""
+    """Error from which SQLite recovers on a new connection only, even when the disk does earlier."""
 
 
-_ADVICE = {
-    sqlite3.SQLITE_PROTOCOL: "its locks are stuck; look at the disk's health, and start the robot program anew",
-    sqlite3.SQLITE_FULL: "the disk is full; make room on it",
-    sqlite3.SQLITE_IOERR: "the disk fails; look at its health and room, and keep a copy of the file",
-    sqlite3.SQLITE_BUSY: "another program holds it locked; close that program",
-    sqlite3.SQLITE_LOCKED: "another program holds it locked; close that program",
-    sqlite3.SQLITE_READONLY: "it may not be written; give write permission for the file and its folder",
-    sqlite3.SQLITE_PERM: "it may not be written; give write permission for the file and its folder",
-    sqlite3.SQLITE_CANTOPEN: "it cannot be opened; look at permissions and room of its folder",
-    sqlite3.SQLITE_CORRUPT: "the file is damaged; keep it, and go on with a backup copy",
-    sqlite3.SQLITE_NOTADB: "the file is damaged; keep it, and go on with a backup copy",
+def _rebuild(kind: type[KnowledgeError], code: KnowledgeCode, where: str, fields: dict[str, object]) -> KnowledgeError:
+    return kind(code, where=where, **fields)
+
+
+_CODES = {
+    sqlite3.SQLITE_PROTOCOL: KnowledgeCode.LOCKS_STUCK,
+    sqlite3.SQLITE_FULL: KnowledgeCode.DISK_FULL,
+    sqlite3.SQLITE_IOERR: KnowledgeCode.DISK_FAILS,
+    sqlite3.SQLITE_BUSY: KnowledgeCode.DATABASE_LOCKED,
+    sqlite3.SQLITE_LOCKED: KnowledgeCode.DATABASE_LOCKED,
+    sqlite3.SQLITE_READONLY: KnowledgeCode.READ_ONLY,
+    sqlite3.SQLITE_PERM: KnowledgeCode.READ_ONLY,
+    sqlite3.SQLITE_CANTOPEN: KnowledgeCode.NOT_OPENED,
+    sqlite3.SQLITE_CORRUPT: KnowledgeCode.PAGES_DAMAGED,
+    sqlite3.SQLITE_NOTADB: KnowledgeCode.PAGES_DAMAGED,
 }
 
 
 def from_sqlite(error: sqlite3.Error, path: Path) -> KnowledgeError:
     """Return the error with file, advice and SQLite's own message, which a search engine finds."""
-    code: int | None = getattr(error, "sqlite_errorcode", None)  # absent where Python itself raised the error
-    primary = None if code is None else code & 0xFF  # the upper bits tell which read, write or sync it was
-    advice = "SQLite refuses it; keep the file, and go on with a backup copy"
-    if primary is not None:
-        advice = _ADVICE.get(primary, advice)
-    kind = ReconnectRequiredError if primary == sqlite3.SQLITE_PROTOCOL else KnowledgeError
-    return kind(f"{advice} (SQLite: {error})", where=path)
+    number: int | None = getattr(error, "sqlite_errorcode", None)  # absent if Python itself raised the error
+    primary = None if number is None else number & 0xFF  # the upper bits tell which read, write or sync it was
+    code = KnowledgeCode.SQLITE_REFUSES if primary is None else _CODES.get(primary, KnowledgeCode.SQLITE_REFUSES)
+    kind = ReconnectRequiredError if code is KnowledgeCode.LOCKS_STUCK else KnowledgeError
+    return kind(code, where=path, error=error)

@@ -1,4 +1,4 @@
-"""Builds the repertoire of a task, with the actions in it that were taught themselves."""
+"""Repertoire of a task, with the actions in it that were taught."""
 
 from pathlib import Path
 
@@ -20,15 +20,15 @@ from kurt2rt.knowledge.taught_actions import build_taught_system
 
 
 def load_task_repertoire(task: TaskSettings, robot: RobotSettings) -> dict[str, Behaviour]:
-    """The actions that RLAs of a task may have, each an instance of its own. Raises SettingsError."""
-    return _Building(robot, ()).load(task.repertoire)
+    """Return the actions that RLAs of a task may have, each a new instance. Raises SettingsError."""
+    return _RepertoireLoader(robot, ()).load(task.repertoire)
 
 
-class _Building:
-    """Builds taught actions; those have repertoires of their own, with taught actions again."""
+class _RepertoireLoader:
+    """Builder of taught actions, whose repertoires may contain taught actions again."""
 
     def __init__(self, robot: RobotSettings, inside: tuple[Path, ...]) -> None:
-        """`inside`: files of the repertoires that this one is a part of, the outermost first."""
+        """Prepare; `inside` are the files of the repertoires that this one is a part of, the outermost first."""
         self._robot = robot
         self._inside = inside
 
@@ -38,33 +38,33 @@ class _Building:
     def _build(self, action: TaughtAction | TaskAction, repertoire: Path) -> Behaviour:
         here = repertoire.resolve()
         if here in self._inside:
-            way = " -> ".join(path.name for path in (*self._inside, here))
+            chain = " -> ".join(path.name for path in (*self._inside, here))
             raise SettingsError(
-                f"a repertoire cannot be a part of itself: {way}", do="give that task another repertoire"
+                f"a repertoire cannot be a part of itself: {chain}", do="give that task another repertoire"
             )
         task = load_task(action.task)
-        wanted, mid = ActiveBehaviour(task.behaviours), None
+        active, mid = ActiveBehaviour(task.behaviours), None
         if isinstance(action, TaughtAction):
             try:
-                wanted.select(action.behaviour)
+                active.select(action.behaviour)
             except CommandRefusedError as error:
                 raise ValueError(text_of(error.outcome)) from error
         elif task.mid is not None:
             mid = load_mid_level(task.mid)
             if isinstance(mid.situation, PlaceSettings):
                 raise SettingsError(
-                    f"the mid level of the task {task.name} goes by places, and an action does not know at "
-                    "which one it begins",
+                    f"the mid level of the task {task.name} goes by places, and an action does not know its place "
+                    "at the start",
                     do="give a task whose mid level goes by a history",
                 )
         elif len(task.behaviours) > 1:
             raise SettingsError(
-                f"the task {task.name} has no mid level that says which of {', '.join(task.behaviours)} is wanted",
+                f"the task {task.name} has no mid level that selects one of {', '.join(task.behaviours)}",
                 do="give one of them as an action of kind taught",
             )
-        inner = _Building(self._robot, (*self._inside, here)).load(task.repertoire)
+        inner = _RepertoireLoader(self._robot, (*self._inside, here)).load(task.repertoire)
         lessons = _lessons(action, repertoire, self._robot, task)
-        return build_taught_system(task, self._robot, lessons, inner, wanted, mid)
+        return build_taught_system(task, self._robot, lessons, inner, active, mid)
 
 
 def _lessons(

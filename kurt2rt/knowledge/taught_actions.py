@@ -1,4 +1,4 @@
-"""Puts a taught system together: as the runtime does for the one that is taught, but nothing teaches this one."""
+"""Assembly of a taught system that acts as one action, and is not taught further."""
 
 from collections.abc import Iterable
 
@@ -27,11 +27,20 @@ def build_taught_system(
     wanted: ActiveBehaviour,
     mid: MidSettings | None,
 ) -> TaughtSystem:
-    """What `lessons` have taught of a task, as one action.
+    """Return the system that `lessons` of a task make, as one action.
 
-    `repertoire`: of the task, for this system alone. `wanted`: of the task's behaviours the one to follow, unless
-    there is a `mid` level, which says so. Raises SettingsError; UnknownActionError or UnknownBehaviourError for
-    knowledge that cannot act here.
+    Args:
+        task: of the lessons.
+        robot: that it acts on.
+        lessons: all teaching events, in order.
+        repertoire: of the task, used by this system only.
+        wanted: selects one of the task's behaviours.
+        mid: the level that changes `wanted`; None: it stays.
+
+    Raises:
+        SettingsError: settings of the task cannot be loaded.
+        UnknownActionError: an RLA has an action that the repertoire lacks.
+        UnknownBehaviourError: an RLA has a behaviour that the task lacks.
     """
     sensors, period_s = robot.infrared.names, robot.can.cycle_s
     definition = load_situation(task.situation, sensors)
@@ -41,7 +50,7 @@ def build_taught_system(
     others = {} if mid is None else {MID: mid.space}
     system = RlaSystem(definition.dimensions, learning.radius, weights, others=others)
     system.apply_all(lessons)
-    # Nothing is learnt here: among equals the newest answers, which was tried because those before it had sunk.
+    # Nothing is learnt here: of several RLAs on one condition the newest answers.
     settings = task.reinforcement
     choice = EpsilonGreedy(lambda _: 0.0, epsilon=0.0, hold_ticks=round(settings.hold_s / period_s), seed=settings.seed)
     perception = Perception(definition, sensors)

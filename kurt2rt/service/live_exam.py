@@ -12,6 +12,7 @@ from typing import Self
 
 from kurt2rt.channel.protocol.exam_status import EXAM, NO_EXAM, ExamStatus
 from kurt2rt.channel.protocol.schema import WireError
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 Command = Callable[[Path, Path], Sequence[str]]
@@ -36,7 +37,7 @@ class LiveExam:
         with self._lock:
             if self._closed or self.status.running:
                 knowledge.unlink(missing_ok=True)
-                raise KnowledgeError("an exam is under way", do="wait for its end")
+                raise KnowledgeError(KnowledgeCode.EXAM_RUNS)
             try:
                 self._process = subprocess.Popen(
                     self._command(knowledge, picture),
@@ -46,7 +47,7 @@ class LiveExam:
                 )
             except OSError as error:
                 knowledge.unlink(missing_ok=True)
-                raise KnowledgeError(f"the exam cannot be started ({error})", do="install kurt2rt whole") from error
+                raise KnowledgeError(KnowledgeCode.EXAM_NOT_STARTED, error=error) from error
             self.status = ExamStatus(True, 0.0, "the exam begins")
             self._reading = threading.Thread(
                 target=self._read, args=(self._process, knowledge, picture), name="exam", daemon=True

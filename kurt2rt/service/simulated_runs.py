@@ -28,6 +28,7 @@ from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.knowledge.journal import journal_file
 from kurt2rt.knowledge.journal.loading import open_for_teaching, read_lessons
 from kurt2rt.knowledge.journal.writer import utc_now
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.runtime import empty_system
@@ -161,7 +162,7 @@ class SimulatedRuns:
                 text = str(error)
                 for path in (brought.resolve(), loaded.resolve(), brought, loaded):
                     text = text.replace(str(path), "the uploaded file")
-                raise KnowledgeError(text) from error
+                raise KnowledgeError(KnowledgeCode.UPLOAD_REFUSED, reason=text) from error
             loaded.rename(kept)
         return replace(present, fresh=True, loaded=kept, teacher=teacher), lessons
 

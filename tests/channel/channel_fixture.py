@@ -31,6 +31,7 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.tick import EventStore, InMemoryEventStore, TickRecord
 from kurt2rt.knowledge.files.atomic_write import SavedCopy
 from kurt2rt.knowledge.journal.writer import Acknowledgement
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.clock import LockstepClock
 from kurt2rt.platform.file_part import FilePart
@@ -84,16 +85,16 @@ class Shelf:
     async def examine(self) -> None:
         await self.may_finish.wait()
         if self.problem:
-            raise KnowledgeError(self.problem)
+            raise KnowledgeError(KnowledgeCode.NOT_DURABLE, reason=self.problem)
         self.examined += 1
 
     async def settle(self) -> None:
         if self.problem:
-            raise KnowledgeError(self.problem)
+            raise KnowledgeError(KnowledgeCode.NOT_DURABLE, reason=self.problem)
 
     async def read(self, name: str, offset: int, most_bytes: int) -> FilePart:
         if name not in self.files:
-            raise KnowledgeError(f"{name}: is no copy of this run of the program; save or export again")
+            raise KnowledgeError(KnowledgeCode.UNKNOWN_COPY, where=name)
         content = self.files[name]
         return FilePart(len(content), content[offset : offset + most_bytes])
 
@@ -101,7 +102,7 @@ class Shelf:
         self.labels.append(label)
         await self.may_finish.wait()
         if self.problem:
-            raise KnowledgeError(self.problem)
+            raise KnowledgeError(KnowledgeCode.NOT_DURABLE, reason=self.problem)
         return SavedCopy(name, "ab" * 32, 4096)
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.cli import main
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.cli.helpers import CommandLine
 
@@ -13,7 +14,7 @@ from tests.cli.helpers import CommandLine
 def test_the_job_stands_before_what_is_wrong(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    trouble = KnowledgeError("the disk is full")
+    trouble = KnowledgeError(KnowledgeCode.NOT_DURABLE, reason="the disk is full")
     group = ExceptionGroup("of a task group", [trouble])
     group.add_note("circle, seed 3")
 
@@ -29,8 +30,9 @@ def test_the_job_stands_before_what_is_wrong(
 def test_what_ended_several_tasks_is_said_once_each(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    not_saved = KnowledgeError(KnowledgeCode.NOT_DURABLE, reason="not saved")
     full = OSError(errno.EROFS, "Read-only file system")
-    group = ExceptionGroup("tasks", [KnowledgeError("not saved"), full, KnowledgeError("not saved")])
+    group = ExceptionGroup("tasks", [not_saved, full, not_saved])
 
     def command_line(_words: object) -> object:
         raise group

@@ -5,13 +5,12 @@ from pathlib import Path
 import pytest
 
 from hal.robot_settings import load_robot
-from kurt2rt.cli.knowledge.people import read_teachers
 from kurt2rt.cli.scripted_file import own_file, people_agree
 from kurt2rt.core.rla.programs import AUTO
 from kurt2rt.core.rla.rla import Origin, Phase, SessionBegun
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.journal.entry import JournalEntry
-from kurt2rt.knowledge.journal.loading import open_knowledge
+from kurt2rt.knowledge.journal.loading import open_knowledge, read_teachers
 from kurt2rt.knowledge.journal.writer import utc_now
 from tests.cli.helpers import CommandLine
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.writer import JournalWriter, RetryDelays, utc_now
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.knowledge.lessons import BINDING, created
 
@@ -28,7 +29,7 @@ def teach(path: Path) -> None:
             writer.submit(created(number))
             writer.submit_statistics(Statistics({1: number}, {(1, 2): number}))
             if not writer.flush(LONGEST_S):
-                raise KnowledgeError(f"{writer.error}; waited in vain")
+                raise KnowledgeError(KnowledgeCode.NOT_DURABLE, reason=writer.error)
             for acknowledgement in writer.acknowledged():
                 os.write(1, f"row {acknowledgement.sequence} {acknowledgement.command_id}\n".encode())
 

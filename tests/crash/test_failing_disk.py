@@ -10,6 +10,7 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError, ReconnectRequiredError
 from tests.crash.lessons_on_disk import require_kept
 from tests.crash.restarts import LESSONS, LONGEST_S, SOON, a_lesson_at_a_time, with_patience
@@ -67,14 +68,14 @@ class StuckJournal(Journal):
 
     def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
         if self.stuck:
-            raise ReconnectRequiredError(f"{self.path}: its locks are stuck")
+            raise ReconnectRequiredError(KnowledgeCode.LOCKS_STUCK, where=self.path, error="")
         return super().append(entries)
 
     def reconnect(self) -> None:
         self.tries += 1
         super().reconnect()
         if self.tries < 3:
-            raise KnowledgeError(f"{self.path}: cannot be opened")
+            raise KnowledgeError(KnowledgeCode.NOT_OPENED, where=self.path, error="")
         self.stuck = False
 
 

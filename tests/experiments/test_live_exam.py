@@ -13,8 +13,9 @@ from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus
 from kurt2rt.cli import exam_process
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.journal.loading import open_knowledge
-from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.service.live_exam import LiveExam
+from tests.knowledge.refusals import refused
 
 OVER = ExamStatus(False, 1.0, "Passed in 0 of 1 worlds.")
 
@@ -74,7 +75,7 @@ def test_a_process_that_dies_is_told_as_trouble(copy: Path, tmp_path: Path) -> N
 def test_one_exam_at_a_time_and_the_end_of_the_program_ends_it(copy: Path, tmp_path: Path) -> None:
     exam = saying(after="time.sleep(60)")
     exam.begin(copy, tmp_path / "exam.png")
-    with pytest.raises(KnowledgeError, match="an exam is under way"):
+    with refused(KnowledgeCode.EXAM_RUNS):
         exam.begin(tmp_path / "second.knowledge", tmp_path / "second.png")
     exam.close()
     assert not exam.status.running
@@ -124,6 +125,6 @@ def test_exam_process_with_a_policy_that_gets_nowhere_does_not_judge(
 def test_knowledge_of_another_task_is_told_in_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     knowledge = tmp_path / "eight.knowledge"
     open_knowledge(knowledge, load_robot(), load_task("eight")).close()
-    with pytest.raises(KnowledgeError, match="taught for the task"):
+    with refused(KnowledgeCode.OTHER_TASK_GIVEN):
         exam_process._examine(knowledge, tmp_path / "exam.png", "kurt2", "wall_following", 1)
     assert capsys.readouterr().out == ""

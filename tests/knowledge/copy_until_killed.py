@@ -7,7 +7,7 @@ import sys
 from itertools import count
 from pathlib import Path
 
-from kurt2rt.knowledge.files.copy import save_copy
+from kurt2rt.knowledge.files.backup import save_copy
 
 
 def copy(path: Path, folder: Path, stamp: str) -> None:

@@ -1,12 +1,44 @@
-"""Listing of the texts of `kurt2rt knowledge merge`."""
+"""Listings of the texts of `kurt2rt knowledge merge`, and of the errors of knowledge."""
 
 from collections.abc import Iterator
+from dataclasses import replace
+from string import Formatter
 
-from kurt2rt.cli.knowledge.merge import reason_of
-from kurt2rt.knowledge.versions.merge import Conflict, ConflictCode
+from kurt2rt.cli.knowledge.merge import format_left_out, format_reason, format_state
+from kurt2rt.core.rla.lesson_history import LessonRecord
+from kurt2rt.core.rla.rla import ASK
+from kurt2rt.knowledge.knowledge_code import TEXTS, KnowledgeCode
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.versions.merge import Conflict, ConflictCode, NameState, RlaState
+from kurt2rt.knowledge.versions.merge_writer import LeftOutCode, LeftOutReward
+from tests.knowledge.lessons import created, rewarded
+
+RLA = created(4, action="left").rla
 
 
 def conflicts() -> Iterator[tuple[str, str]]:
-    """Yield the reason of each conflict."""
+    """Yield the reason of each conflict, the states, and the rewards that are left out."""
+    state = RlaState(4, RLA)
     for code in ConflictCode:
-        yield code, reason_of(Conflict("RLA 4 says left", "RLA 4 says right", code, 2.0, 0.2))
+        yield code, format_reason(Conflict(state, state, code, 2.0, 0.2))
+    states: dict[str, RlaState | NameState] = {
+        "lives": state,
+        "withdrawn": RlaState(4, replace(RLA, action=ASK)),
+        "gone": RlaState(4, None),
+        "left out": RlaState(None, None),
+        "name given": NameState("door", given=True),
+        "name not given": NameState("door", given=False),
+    }
+    for label, each in states.items():
+        yield f"state {label}", format_state(each)
+    record = LessonRecord(rewarded(7))
+    for left_out in LeftOutCode:
+        yield left_out, format_left_out(LeftOutReward(left_out, record, "right", RLA))
+
+
+def knowledge_errors() -> Iterator[tuple[str, str]]:
+    """Yield the error of each code, with names of its fields for their values."""
+    for code in KnowledgeCode:
+        names = {name for text in TEXTS[code] for _, name, _, _ in Formatter().parse(text) if name}
+        fields = {name: 14.2 if name == "at_s" else name.upper() for name in names}
+        yield code, str(KnowledgeError(code, where="mine.knowledge", **fields))

@@ -1,18 +1,14 @@
-"""`kurt2rt knowledge ...`: one file per command."""
+"""`kurt2rt knowledge ...`: commands on knowledge files."""
 
 import typer
 
-from kurt2rt.cli.knowledge.branch import branch
-from kurt2rt.cli.knowledge.check import check
 from kurt2rt.cli.knowledge.compact import compact
 from kurt2rt.cli.knowledge.diff import diff
-from kurt2rt.cli.knowledge.export import export, import_, key
+from kurt2rt.cli.knowledge.export import export, import_, key, table
 from kurt2rt.cli.knowledge.graph import graph
-from kurt2rt.cli.knowledge.lessons import lessons
 from kurt2rt.cli.knowledge.listing import list_files
-from kurt2rt.cli.knowledge.merge import merge
-from kurt2rt.cli.knowledge.show import show
-from kurt2rt.cli.knowledge.table import table
+from kurt2rt.cli.knowledge.merge import branch, merge
+from kurt2rt.cli.knowledge.show import check, lessons, show
 from kurt2rt.cli.knowledge.undo import redo, undo
 
 knowledge = typer.Typer(

@@ -17,12 +17,11 @@ def compact(
     recordings: Recordings = Path("var/runs"),
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Only tell what would be deleted.")] = False,
 ) -> None:
-    """Delete the RLAs that no recorded decision needs, when a replay has proved it.
+    """Delete the RLAs that no recorded decision needs, if a replay proves it.
 
-    All decisions of all runs must come out the same without them. It proves what
-    was driven there, no more: an RLA for a place where the robot has not driven
-    since recording began looks as if nobody needed it. Deletions are lessons that
-    can be undone.
+    All decisions of all runs must be the same without them. Only recorded drives
+    count: an RLA for a place where the robot has not driven since recording began
+    is deleted, too. Deletions are lessons that can be undone.
 
     For example:
 

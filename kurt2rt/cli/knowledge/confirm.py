@@ -1,4 +1,4 @@
-"""What an undo or a redo would change is shown, and at a terminal the user is asked, before anything is changed."""
+"""Preview and confirmation of an undo or redo, before anything is changed."""
 
 import sys
 from collections.abc import Iterator
@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from kurt2rt.cli.knowledge.shared import replaying, say
+from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.knowledge.versions.editing import require_no_robot
 from kurt2rt.knowledge.versions.undo import UndoPlan
@@ -26,27 +27,37 @@ NoPreview = Annotated[bool, typer.Option("--no-preview", help="Replay nothing, a
 DryRun = Annotated[bool, typer.Option("--dry-run", help="Only show what it would change.")]
 Yes = Annotated[bool, typer.Option("--yes", "-y", help="Do not ask; nor does it where there is no terminal.")]
 
-_STRETCHES = 8
-"""Of each run so many are told, the longest."""
+_MOST_STRETCHES = 8
+"""Number of stretches shown of each run, the longest."""
 
 
-def agreed(
+def confirmed(
     planned: UndoPlan, what: str, become: str, runs: Path | None, *, no_preview: bool, dry_run: bool, yes: bool
 ) -> bool:
-    """Show what it would change; whether to go on with it, False where the user only wanted to look.
+    """Show what the plan would change; return whether to write it, False with --dry-run.
 
-    `what`: undo or redo; `become`: what the lessons would be by it. Raises KnowledgeError, before anything is
-    replayed, where a robot runs on the file; ends the program, with 1, where the user says no.
+    Args:
+        planned: the plan.
+        what: undo or redo.
+        become: state of the lessons after it.
+        runs: folder of recorded runs, or one run, to replay; None: the newest run of the service.
+        no_preview: replay nothing, ask nothing.
+        dry_run: only show.
+        yes: do not ask.
+
+    Raises:
+        KnowledgeError: a robot runs on the file; raised before anything is replayed.
+        typer.Exit: code 1, the user says no.
     """
-    # Python has no standard input where it was closed.
+    # sys.stdin is None if standard input was closed.
     asks = not (dry_run or yes or no_preview) and sys.stdin is not None and sys.stdin.isatty()
     if not dry_run and not no_preview:
         require_no_robot(planned.path)
     if dry_run or asks:
         for record in planned.lessons:
-            say(f"{planned.path}: would be {become}: {told(record)}")
-        for reason in planned.stay:
-            say(f"would stay as it is: {reason}")
+            say(f"{planned.path}: would be {become}: {format_lesson(record)}")
+        for refusal in planned.stay:
+            say(f"would stay as it is: {text_of(refusal)}")
     if not no_preview:
         _show(planned, runs)
     if dry_run:
@@ -58,8 +69,8 @@ def agreed(
     return True
 
 
-def told(record: LessonRecord) -> str:
-    """A lesson in a few words, with its id."""
+def format_lesson(record: LessonRecord) -> str:
+    """Return a lesson in a few words, with its id."""
     origin = record.event.origin
     return f"{record.text} (lesson {origin.command_id} by {origin.teacher})"
 
@@ -100,7 +111,7 @@ def _changes(tried: TrialResult) -> Iterator[str]:
     )
     kinds = ", ".join(f"{count} times {what}" for count, what in counts if count)
     yield f"{tried.run}: of {decisions}: {kinds}; the longest:"
-    longest = sorted(found.stretches, key=lambda each: -each.ticks)[:_STRETCHES]
+    longest = sorted(found.stretches, key=lambda each: -each.ticks)[:_MOST_STRETCHES]
     for each in sorted(longest, key=lambda each: each.from_s):
         change = f"{format_answer(each.would_be)}, instead of {format_answer(each.was)}"
         yield f"  {each.from_s:7.2f} to {each.to_s:7.2f} s  {change}"

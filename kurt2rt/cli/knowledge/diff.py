@@ -13,7 +13,7 @@ from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.rla import Rla
 from kurt2rt.knowledge.journal.binding import require_compatible
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.versions.diff import KnowledgeDiff, difference
+from kurt2rt.knowledge.versions.diff import KnowledgeDiff, compare
 from kurt2rt.knowledge.versions.lesson_identity import read_content
 
 
@@ -30,7 +30,7 @@ def diff(
     """
     with Journal.read_only(file) as a, Journal.read_only(other) as b:
         require_compatible(b.binding, a.binding, other, b.has_lessons_at)
-        found = difference(read_content(a), read_content(b))
+        found = compare(read_content(a), read_content(b))
     if as_json:
         typer.echo(json.dumps(_as_json(found), indent=2))
         return
@@ -40,7 +40,7 @@ def diff(
 
 def _lines(found: KnowledgeDiff, a: str, b: str) -> Iterable[str]:
     yield f"both begin with the same {found.common_rows} rows"
-    if found.none:
+    if found.is_empty:
         yield "and know the same"
     for path, lessons in ((a, found.lessons_a), (b, found.lessons_b)):
         if lessons:

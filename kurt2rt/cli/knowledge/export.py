@@ -1,4 +1,4 @@
-"""`kurt2rt knowledge export`, `import` and `key`."""
+"""`kurt2rt knowledge export`, `import`, `key` and `table`."""
 
 from pathlib import Path
 from typing import Annotated
@@ -6,12 +6,15 @@ from typing import Annotated
 import typer
 
 from hal.robot_settings import load_robot
+from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
 from kurt2rt.cli.options import RobotName, TaskOfTheFile, task_option
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.exchange.package import export_knowledge, import_knowledge, read_package
 from kurt2rt.knowledge.exchange.signing import fingerprint, make_key, read_private_key, read_public_key
+from kurt2rt.knowledge.files.table import export_table
 from kurt2rt.knowledge.files.task_of_file import task_of_file
+from kurt2rt.knowledge.journal import journal_file
 from kurt2rt.knowledge.journal.writer import utc_now
 
 
@@ -56,13 +59,13 @@ def import_(
     """
     public = None if trusted is None else read_public_key(trusted)
     robot, task = load_robot(robot_name), load_task(task_name or read_package(file).task)
-    taken = import_knowledge(file, into, robot, task, public, stamp=utc_now())
-    given = taken.given
-    signer = "not signed" if given.signed_by is None else f"signed by {fingerprint(given.signed_by)}"
-    vouched = "" if given.signed_by is None or public is not None else ", whom nobody vouched for (--trusted)"
-    say(f"import  {into}: {len(given.lessons)} rows of {given.binding.system}, {signer}{vouched}")
-    if taken.other_settings:
-        say(f"settings that are otherwise here: {', '.join(taken.other_settings)}")
+    imported = import_knowledge(file, into, robot, task, public, stamp=utc_now())
+    package = imported.package
+    signer = "not signed" if package.signed_by is None else f"signed by {fingerprint(package.signed_by)}"
+    vouched = "" if package.signed_by is None or public is not None else ", a signer that was not checked (--trusted)"
+    say(f"import  {into}: {len(package.lessons)} rows of {package.binding.system}, {signer}{vouched}")
+    if imported.differing_settings:
+        say(f"settings that differ here: {', '.join(imported.differing_settings)}")
 
 
 def key(
@@ -77,3 +80,26 @@ def key(
     public = make_key(file)
     say(f"key  {file}: keep it to yourself")
     say(f"public key  {public}: {fingerprint(read_public_key(public))}")
+
+
+def table(
+    file: KnowledgeFile,
+    out: Annotated[Path, typer.Option(help="Folder for the table; made where it is missing.")] = Path("results/export"),
+    as_json: AsJson = False,
+) -> None:
+    """Write the RLAs as a table (CSV): one row each, with condition, teacher and use.
+
+    Numbers are exact. A text that a spreadsheet would run as a formula gets an
+    apostrophe before it.
+
+    For example:
+
+        kurt2rt knowledge table var/wall_following.knowledge --out results/export
+    """
+    journal_file.require_ours(file)
+    saved = export_table(file, out, utc_now())
+    if as_json:
+        print_json({"table": out / saved.name, "sha256": saved.sha256})
+        return
+    say(f"table  {out / saved.name}")
+    say(f"sha256  {saved.sha256}")

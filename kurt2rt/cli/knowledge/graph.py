@@ -10,7 +10,7 @@ from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.knowledge.graph.file import FORMATS, write_network
 from kurt2rt.knowledge.graph.graph import drop_rare_edges, read_network
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.show.table_cells import plain
+from kurt2rt.knowledge.show.table_cells import printable
 
 
 def graph(
@@ -37,7 +37,7 @@ def graph(
         whole = read_network(journal, level=level, behaviour=behaviour)
     shown = drop_rare_edges(whole, at_least)
     what = " of ".join(part for part in (f"{len(shown)} RLAs", behaviour) if part)
-    title = f"{plain(file.stem)}, level {level}: {what}; numbers: what followed, in % (from {at_least:g} %)"
+    title = f"{printable(file.stem)}, level {level}: {what}; numbers: what followed, in % (from {at_least:g} %)"
     write_network(shown, title, out)
     edges = f"{shown.number_of_edges()} of {whole.number_of_edges()} edges"
     say(f"network  {out}: {len(shown)} of {len(whole)} RLAs, {edges}")

@@ -10,8 +10,9 @@ from kurt2rt.cli.knowledge.shared import say
 from kurt2rt.cli.tables import console_of
 from kurt2rt.knowledge.exchange.package import IMPORTED_FROM
 from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.show.table_cells import plain
+from kurt2rt.knowledge.show.table_cells import printable
 from kurt2rt.knowledge.versions.branch import branch_origin
 from kurt2rt.knowledge.versions.lesson_identity import read_content
 from kurt2rt.platform.text_table import TextTable, print_whole
@@ -29,9 +30,7 @@ def list_files(
         kurt2rt knowledge list results
     """
     if not place.exists():
-        raise KnowledgeError(
-            "is not there", where=place, do="give the folder that your knowledge files are in, or one of them"
-        )
+        raise KnowledgeError(KnowledgeCode.NO_SUCH_FOLDER, where=place)
     paths = sorted(place.rglob("*.knowledge")) if place.is_dir() else [place]
     rows: dict[Path, tuple[str, str, str, str, str]] = {}
     unreadable: dict[Path, str] = {}
@@ -60,18 +59,22 @@ def list_files(
     for heading in ("file", "task", "RLAs", "lessons", "newest (UTC)", "came from"):
         table.add_column(heading, number=heading in ("RLAs", "lessons"), whole=heading in ("file", "newest (UTC)"))
     for path, row in rows.items():
-        table.add_row(plain(str(path)), *map(plain, row))
+        table.add_row(printable(str(path)), *map(printable, row))
     if table.row_count:
         print_whole(console_of(), table)
     elif not unreadable:
         say(f"{place}: holds no knowledge file (*.knowledge)")
-    print_whole(console_of(), *(plain(f"cannot be read: {why}") for why in unreadable.values()))
+    print_whole(console_of(), *(printable(f"cannot be read: {why}") for why in unreadable.values()))
 
 
 def _row(path: Path) -> tuple[str, str, str, str, str]:
     with Journal.read_only(path) as journal:
-        taught, origin, imported = read_content(journal), branch_origin(journal), journal.notes().get(IMPORTED_FROM, "")
-    newest = taught.entries[-1].stamped_at[:19].replace("T", " ") if taught.entries else ""
+        content, origin, imported = (
+            read_content(journal),
+            branch_origin(journal),
+            journal.notes().get(IMPORTED_FROM, ""),
+        )
+    newest = content.entries[-1].stamped_at[:19].replace("T", " ") if content.entries else ""
     came = imported if origin is None else f"{origin.file}, {origin.rows} rows"
-    system = taught.system
+    system = content.system
     return journal.binding.system, str(len(system)), str(system.standing_lessons), newest, came

@@ -1,4 +1,4 @@
-"""What the commands of `kurt2rt knowledge` share."""
+"""Options, progress bar and output shared by the commands of `kurt2rt knowledge`."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,17 +13,15 @@ from kurt2rt.runs.replay.trial import Report
 
 WIDE = 140
 TEACHER = "command line"
-"""Who changes a file from here, as its lessons tell."""
+"""Teacher of the lessons that these commands write."""
 
 KnowledgeFile = Annotated[Path, typer.Argument(help="Knowledge file, as kurt2rt lesson or kurt2rt run leaves it.")]
-Recordings = Annotated[
-    Path, typer.Option("--runs", help="Folder of recorded runs, or one run of it: they are what it is tried on.")
-]
+Recordings = Annotated[Path, typer.Option("--runs", help="Folder of recorded runs, or one run of it, to try it on.")]
 
 
 @contextmanager
 def replaying() -> Iterator[Report]:
-    """A bar on standard error, while it lasts and where that is a terminal: which run is replayed, and how far."""
+    """Show the progress of a replay on standard error, if that is a terminal."""
     columns = (
         TextColumn("replaying {task.description}"),
         BarColumn(bar_width=20),
@@ -37,5 +35,5 @@ def replaying() -> Iterator[Report]:
 
 
 def say(text: str) -> None:
-    """A line on standard output, as it is."""
+    """Print a line to standard output, without markup."""
     Console(highlight=False).print(text, markup=False, soft_wrap=True)

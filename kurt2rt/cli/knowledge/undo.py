@@ -4,8 +4,9 @@ from typing import Annotated
 
 import typer
 
-from kurt2rt.cli.knowledge.confirm import DryRun, NoPreview, Runs, Yes, agreed, told
+from kurt2rt.cli.knowledge.confirm import DryRun, NoPreview, Runs, Yes, confirmed, format_lesson
 from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, say
+from kurt2rt.core.outcome_text import text_of
 from kurt2rt.knowledge.journal.writer import utc_now
 from kurt2rt.knowledge.versions.undo import apply_plan, plan_redo, plan_undo
 
@@ -27,9 +28,8 @@ def undo(
 ) -> None:
     """Undo a lesson, or all of one teacher: what it changed is as it was before.
 
-    First it replays the newest recorded run of this knowledge, and shows what
-    the robot would have decided otherwise without the lesson. At a terminal it
-    then asks.
+    It first replays the newest recorded run of this knowledge, and shows the
+    decisions that differ without the lesson. At a terminal it then asks.
 
     For example:
 
@@ -38,11 +38,11 @@ def undo(
     """
     _require_one_of(lesson, of)
     planned = plan_undo(file, lesson, of, teacher=TEACHER)
-    if not agreed(planned, "undo", "undone", runs, no_preview=no_preview, dry_run=dry_run, yes=yes):
+    if not confirmed(planned, "undo", "undone", runs, no_preview=no_preview, dry_run=dry_run, yes=yes):
         return
     apply_plan(planned, utc_now())
     for record in planned.lessons:
-        say(f"{file}: undone: {told(record)}")
+        say(f"{file}: undone: {format_lesson(record)}")
     if of is not None:
         say(f"{file}: {len(planned.lessons)} lessons of {of} undone")
 
@@ -63,7 +63,7 @@ def redo(
 ) -> None:
     """Redo a lesson that was undone, or all of one teacher, if its RLA is as the lesson found it.
 
-    It shows first what the robot would have decided otherwise, and asks, as undo.
+    It first shows the decisions that differ with the lesson, and asks, as undo.
 
     For example:
 
@@ -72,13 +72,13 @@ def redo(
     """
     _require_one_of(lesson, of)
     planned = plan_redo(file, lesson, of, teacher=TEACHER)
-    if not agreed(planned, "redo", "standing again", runs, no_preview=no_preview, dry_run=dry_run, yes=yes):
+    if not confirmed(planned, "redo", "standing again", runs, no_preview=no_preview, dry_run=dry_run, yes=yes):
         return
     apply_plan(planned, utc_now())
     for record in planned.lessons:
-        say(f"{file}: stands again: {told(record)}")
-    for reason in planned.stay:
-        say(f"stays undone: {reason}")
+        say(f"{file}: stands again: {format_lesson(record)}")
+    for refusal in planned.stay:
+        say(f"stays undone: {text_of(refusal)}")
     if of is not None:
         stay = f", {len(planned.stay)} do not" if planned.stay else ""
         say(f"{file}: {len(planned.lessons)} lessons of {of} stand again{stay}")

@@ -1,4 +1,4 @@
-"""Files that came with something from elsewhere: which names they may have, and how they are laid out in a folder."""
+"""Files from a foreign package or recording: the names that are safe, and their extraction as settings."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -10,7 +10,7 @@ from hal.settings import settings_override
 
 MOST_FILES = 1000
 LARGEST_BYTES = 256_000_000
-"""All of them together: ten times what some 10 000 lessons and their counts take."""
+"""Allowed sum of their sizes: ten times that of 10 000 lessons and their counts."""
 
 _LONGEST_NAME, _LONGEST_PART = 1000, 255
 _DRIVE = re.compile(r"[A-Za-z]:")
@@ -18,9 +18,9 @@ _DEVICE = re.compile(r"(con|prn|aux|nul|(com|lpt)[0-9])(\..*)?", re.IGNORECASE)
 
 
 def unsafe_reason(sizes: Mapping[str, int]) -> str:
-    """Why files of these names and sizes in bytes are not taken, in a few words; empty where they are.
+    """Return why files of these names and sizes in bytes are refused, in a few words; empty if they are safe.
 
-    Whoever made them may mean ill: no name may lead out of the folder that they are laid out in.
+    Their author may mean harm: no name may lead out of the folder of the extraction.
     """
     if len(sizes) > MOST_FILES:
         return f"holds {len(sizes)} files, {MOST_FILES} are taken at most"
@@ -37,15 +37,15 @@ def unsafe_reason(sizes: Mapping[str, int]) -> str:
 
 @contextmanager
 def extracted_settings(files: Mapping[str, bytes]) -> Iterator[None]:
-    """While it lasts all settings are those among these files, by name, and no others.
+    """Load settings only from these files, by name, as long as the context lasts.
 
-    Of files that `unsafe_reason` has nothing against. Raises OSError where there is no room for them.
+    The files must be safe, as `unsafe_reason` tells. Raises OSError if there is no room for them.
     """
     with TemporaryDirectory(prefix="kurt2rt-kept-") as folder:
         for name, data in files.items():
             path = Path(folder, name)
             path.parent.mkdir(parents=True, exist_ok=True)
-            with path.open("xb") as file:  # never another one's content
+            with path.open("xb") as file:  # refuses to replace a file of another name
                 file.write(data)
         with settings_override(Path(folder, "settings")):
             yield

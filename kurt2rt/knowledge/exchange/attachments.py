@@ -1,4 +1,4 @@
-"""What a replay needs beside the ticks: the settings of a run, and what was known at its start, as files within it."""
+"""Attachments of a run or package: its settings and the knowledge at its start, as files that a replay needs."""
 
 import base64
 import hashlib
@@ -22,12 +22,12 @@ from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 ROBOT, TASK = "settings/robot.json", "settings/task.json"
-"""As they were in force, whatever file or option said so."""
+"""Settings as they were in force, from files and options."""
 KNOWLEDGE, STATISTICS = "knowledge.jsonl", "statistics.json"
 SETTINGS = "settings/"
-"""All that a loader of settings looks for begins so."""
+"""Prefix of the files that loaders of settings look for."""
 _ABSENT = (None, [""])
-"""What stands for a key that was left out: nothing, and the one behaviour without a name."""
+"""Values of a key that was left out: nothing, and the one behaviour without a name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +36,7 @@ class KnownLesson:
 
     event: TeachingEvent
     stamped_at: str
-    """UTC, ISO 8601; empty where nobody knows."""
+    """UTC, ISO 8601; empty if it is unknown."""
 
 
 def collect_attachments(
@@ -45,7 +45,7 @@ def collect_attachments(
     entries: Iterable[StoredEntry | KnownLesson] = (),
     saved: Statistics | None = None,
 ) -> dict[str, bytes]:
-    """All attachments of a run, by name: take them before the first tick. Raises SettingsError, KnowledgeError."""
+    """Return all attachments of a run by name; call it before the first tick. Raises SettingsError, KnowledgeError."""
     attached = {
         ROBOT: _in_force(robot),
         TASK: _in_force(task),
@@ -59,12 +59,12 @@ def collect_attachments(
 
 
 def hash_attachments(attached: Mapping[str, bytes]) -> dict[str, str]:
-    """SHA-256 of each attachment, hexadecimal."""
+    """Return the SHA-256 of each attachment, hexadecimal."""
     return {name: hashlib.sha256(data).hexdigest() for name, data in attached.items()}
 
 
 def decode_lessons(data: bytes) -> list[KnownLesson]:
-    """What `knowledge.jsonl` says. Raises ValueError in a sentence."""
+    """Return the lessons in `knowledge.jsonl`. Raises ValueError, which names that file."""
     lessons = []
     try:
         for number, line in enumerate(data.decode().splitlines(), start=1):
@@ -77,7 +77,7 @@ def decode_lessons(data: bytes) -> list[KnownLesson]:
 
 
 def encode_statistics(statistics: Statistics) -> bytes:
-    """JSON, exact to the last bit."""
+    """Return the statistics as JSON, exact to the last bit."""
     return json.dumps(
         {
             "uses": list(statistics.uses.items()),
@@ -94,7 +94,7 @@ def encode_statistics(statistics: Statistics) -> bytes:
 
 
 def decode_statistics(data: bytes) -> Statistics:
-    """What `encode_statistics` wrote. Raises ValueError in a sentence."""
+    """Return the statistics that `encode_statistics` wrote. Raises ValueError, which names the file."""
     try:
         content: dict[str, Any] = json.loads(data)
         return Statistics(
@@ -121,7 +121,7 @@ def decode_statistics(data: bytes) -> Statistics:
 
 
 def _encode_lessons(entries: Iterable[StoredEntry | KnownLesson]) -> bytes:
-    """One by one: all lines at once, before they are joined, would be the most memory that a run ever takes."""
+    """Encode lesson by lesson: a list of all lines before they are joined would be a run's peak of memory."""
     lines = bytearray()
     for each in entries:
         line = json.dumps({"stamped_at": each.stamped_at, "event": json.loads(encode_event(each.event))})
@@ -130,34 +130,34 @@ def _encode_lessons(entries: Iterable[StoredEntry | KnownLesson]) -> bytes:
 
 
 def _in_force(settings: Settings) -> bytes:
-    """JSON, with every value that comes from a default: another kurt2rt may have other ones."""
+    """Return settings as JSON, with all defaults: another kurt2rt may have other defaults."""
     every = settings.model_dump(mode="json", serialize_as_any=True)
-    told = settings.model_dump(mode="json", serialize_as_any=True, exclude_unset=True)
-    return json.dumps(_without_absent(every, told)).encode()
+    given = settings.model_dump(mode="json", serialize_as_any=True, exclude_unset=True)
+    return json.dumps(_without_absent(every, given)).encode()
 
 
-def _without_absent(every: Any, told: Any) -> Any:
-    """`every` value, but for those that only say that nobody has `told` one: files leave such a key out."""
+def _without_absent(every: Any, given: Any) -> Any:
+    """Return `every` value except absent ones that are not `given`: files leave such a key out."""
     match every:
         case dict():
-            said = told if isinstance(told, dict) else {}
+            keys = given if isinstance(given, dict) else {}
             return {
-                key: _without_absent(value, said.get(key))
+                key: _without_absent(value, keys.get(key))
                 for key, value in every.items()
-                if key in said or value not in _ABSENT
+                if key in keys or value not in _ABSENT
             }
         case list():
-            parts = told if isinstance(told, list) else [None] * len(every)
+            parts = given if isinstance(given, list) else [None] * len(every)
             return [_without_absent(*each) for each in zip(every, parts, strict=True)]
     return every
 
 
 def _used_by(task: TaskSettings, seen: set[tuple[str, str]]) -> Iterator[tuple[str, str, bytes]]:
-    """Kind, name and content of every file that the runtime of a task reads by itself."""
+    """Yield kind, name and content of every file that the runtime of a task reads."""
     named: list[tuple[str, object]] = [("situations", task.situation), ("repertoires", task.repertoire)]
     named += [("critics", task.critic), ("mid_levels", task.mid)]
     for kind, name in named:
-        if not isinstance(name, str) or (kind, name) in seen:  # settings that stand in the task are in its own file
+        if not isinstance(name, str) or (kind, name) in seen:  # settings within the task are in its own file
             continue
         seen.add((kind, name))
         path = find_config(kind, name)
@@ -167,7 +167,7 @@ def _used_by(task: TaskSettings, seen: set[tuple[str, str]]) -> Iterator[tuple[s
 
 
 def _used_by_actions(repertoire: Path, seen: set[tuple[str, str]]) -> Iterator[tuple[str, str, bytes]]:
-    """The same of the actions that were taught themselves, and what is known of them."""
+    """Yield the same for the actions of a repertoire that were taught, and their knowledge files."""
     for action in load_settings(repertoire, RepertoireSettings).actions:
         if isinstance(action, TaughtAction | TaskAction):
             yield "tasks", action.task, find_config("tasks", action.task).read_bytes()

@@ -1,4 +1,4 @@
-"""Which features differ between what knowledge was taught with and what is here, by their names."""
+"""Difference between the features that knowledge was taught with and those of this robot, by name."""
 
 from collections.abc import Iterator, Mapping
 
@@ -15,9 +15,9 @@ _MOST = 6
 
 
 def differing_features(settings: Mapping[str, bytes], robot: RobotSettings, task: TaskSettings) -> str:
-    """In a few words what of the basic situation differs, there against here; empty where nothing does.
+    """Return the differences of the basic situation, there against here, in a few words; empty if there are none.
 
-    `settings`: files as `kurt2rt.knowledge.exchange.attachments` makes them. What this program cannot read differs.
+    `settings`: files as `kurt2rt.knowledge.exchange.attachments` makes them. Unreadable settings count as different.
     """
     try:
         there_robot = RobotSettings.model_validate_json(settings[ROBOT])

@@ -1,4 +1,4 @@
-"""Values of JSON that somebody else wrote: of the right type, and such that a knowledge file can hold them."""
+"""Checks of JSON values from a foreign file: of the right type, and such that a knowledge file can hold them."""
 
 import math
 
@@ -6,7 +6,7 @@ _HIGHEST = 2**63 - 1
 
 
 def require_text(value: object) -> str:
-    """A text. Raises ValueError."""
+    """Return the value if it is a text that UTF-8 can encode. Raises ValueError."""
     if not isinstance(value, str):
         raise ValueError(f"{_shown(value)} stands where a text should")  # noqa: TRY004 - all problems are of one type
     value.encode()  # half a surrogate pair is fine for JSON alone; UnicodeEncodeError is a ValueError
@@ -14,14 +14,14 @@ def require_text(value: object) -> str:
 
 
 def require_int(value: object, least: int = 0) -> int:
-    """A whole number of 63 bits. Raises ValueError."""
+    """Return the value if it is a whole number from `least` that fits into 63 bits. Raises ValueError."""
     if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= _HIGHEST:
         raise ValueError(f"{_shown(value)} stands where a whole number from {least} should")
     return value
 
 
 def require_number(value: object) -> float:
-    """A number, which may be infinite. Raises ValueError, also for NaN."""
+    """Return the value as a number without unit, which may be infinite. Raises ValueError, also for NaN."""
     try:
         number = math.nan if not isinstance(value, (int, float)) or isinstance(value, bool) else float(value)
     except OverflowError:

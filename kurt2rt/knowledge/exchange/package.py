@@ -1,4 +1,4 @@
-"""Knowledge to be given away, and taken again: all that a file holds, bit for bit, and the settings it needs."""
+"""Export and import of knowledge: all that a file holds, bit for bit, and the settings it needs."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -24,9 +24,8 @@ from kurt2rt.knowledge.exchange.attachments import (
     decode_statistics,
 )
 from kurt2rt.knowledge.exchange.feature_diff import differing_features
-from kurt2rt.knowledge.exchange.manifest import read_manifest
+from kurt2rt.knowledge.exchange.manifest import read_manifest, require_expectations, require_times
 from kurt2rt.knowledge.exchange.signing import fingerprint
-from kurt2rt.knowledge.exchange.validation import require_fitting, require_times
 from kurt2rt.knowledge.files.atomic_write import SavedCopy, plain_part, stamp_part, write_new, write_numbered
 from kurt2rt.knowledge.files.create import create_knowledge
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible
@@ -34,6 +33,7 @@ from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import binding_for
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 IMPORTED_FROM = "imported from"
@@ -42,7 +42,7 @@ IMPORTED_FROM = "imported from"
 
 @dataclass(frozen=True)
 class KnowledgePackage:
-    """What is in an exported file."""
+    """Content of an exported file."""
 
     path: Path
     binding: KnowledgeBinding
@@ -53,18 +53,18 @@ class KnowledgePackage:
     exported_at: str
     """UTC, ISO 8601."""
     signed_by: bytes | None
-    """Raw public key of who signed it; the signature fits."""
+    """Raw public key of the signer, whose signature was verified; None: not signed."""
     settings: Mapping[str, bytes]
     """Settings files in it, by name."""
 
 
 @dataclass(frozen=True, slots=True)
 class ImportResult:
-    """What an import has done."""
+    """Result of an import."""
 
-    given: KnowledgePackage
-    other_settings: tuple[str, ...]
-    """Settings files that are otherwise here: the same RLAs may have other borders."""
+    package: KnowledgePackage
+    differing_settings: tuple[str, ...]
+    """Settings files that differ here: the same RLAs may answer within other distances."""
 
 
 def export_knowledge(
@@ -76,9 +76,18 @@ def export_knowledge(
     *,
     stamp: str,
 ) -> int:
-    """Write what the file at `path` holds to a new file `out`; returns its size in bytes. Raises KnowledgeError.
+    """Write a package of the knowledge file at `path` to a new file `out`; return its size in bytes.
 
-    `task` and `robot`: those it was taught with; their settings go with it.
+    Args:
+        path: of the knowledge file.
+        out: of the package.
+        robot: that it was taught with; its settings are in the package.
+        task: that it was taught for; its settings are in the package.
+        key: that signs the package; None: not signed.
+        stamp: of the export, UTC, ISO 8601.
+
+    Raises:
+        KnowledgeError: the file does not belong to `task` and `robot`, or one of both files fails.
     """
     with Journal.read_only(path) as journal:
         content = _package(journal, robot, task, key, stamp)
@@ -87,9 +96,9 @@ def export_knowledge(
 
 
 def package_knowledge(path: Path, folder: Path, stamp: str, *, robot: RobotSettings, task: TaskSettings) -> SavedCopy:
-    """Save `<task>-<stamp>.zip`, the archive of `export_knowledge`, not signed, while this process writes `path`.
+    """Save the package of `export_knowledge` as `<task>-<stamp>.zip`, not signed, while this process writes `path`.
 
-    Waits and raises as `kurt2rt.knowledge.files.copy.save_copy`.
+    Waits and raises as `kurt2rt.knowledge.files.backup.save_copy`.
     """
     with Journal.in_writer_process(path) as journal:
         content = _package(journal, robot, task, None, stamp)
@@ -116,71 +125,82 @@ def _package(
         "lessons": system.standing_lessons,
     }
     files = collect_attachments(robot, task, entries, statistics)
-    trouble = unsafe_reason({name: len(data) for name, data in files.items()})
-    if trouble:  # nobody could take it
-        raise KnowledgeError(f"cannot be exported: it {trouble}", where=path, do="name its settings otherwise")
+    reason = unsafe_reason({name: len(data) for name, data in files.items()})
+    if reason:  # every import would refuse it
+        raise KnowledgeError(KnowledgeCode.NOT_EXPORTABLE, where=path, reason=reason)
     return pack(about, files, key)
 
 
 def read_package(path: Path) -> KnowledgePackage:
-    """Read an exported file whole. Raises KnowledgeError."""
+    """Read and check an exported file. Raises KnowledgeError."""
     archive = unpack(path)
     try:
-        return _given(path, archive)
+        return _content(path, archive)
     except KeyError as error:
-        raise KnowledgeError(f"has no {error}", where=path, do="export it anew") from error
+        raise KnowledgeError(KnowledgeCode.PACKAGE_PART_MISSING, where=path, name=error) from error
     except ValueError as error:
-        raise KnowledgeError(
-            f"cannot be understood ({' '.join(str(error).split())})", where=path, do="export it anew"
-        ) from error
+        one_line = " ".join(str(error).split())
+        raise KnowledgeError(KnowledgeCode.PACKAGE_INVALID, where=path, error=one_line) from error
 
 
 def import_knowledge(
     path: Path, into: Path, robot: RobotSettings, task: TaskSettings, trusted: bytes | None, *, stamp: str
 ) -> ImportResult:
-    """Make the knowledge file `into` from an exported one; nothing may be there yet. Raises KnowledgeError.
+    """Make the knowledge file `into`, where no file may be, from a package.
 
-    `trusted`: raw public key of the only one whose knowledge is taken; None: anybody's, signed or not.
+    Args:
+        path: of the package.
+        into: knowledge file to make.
+        robot: that will use it.
+        task: that it will be used for.
+        trusted: raw public key of the only accepted signer; None: any package, signed or not.
+        stamp: of the import, UTC, ISO 8601.
+
+    Raises:
+        KnowledgeError: the package is damaged, not signed by `trusted`, or of other features or another task.
     """
-    given = read_package(path)
-    if trusted is not None and given.signed_by != trusted:
-        by = "by nobody" if given.signed_by is None else f"by {fingerprint(given.signed_by)}"
-        raise KnowledgeError(f"is signed {by}, not by {fingerprint(trusted)}", where=path, do="nothing was imported")
+    package = read_package(path)
+    if trusted is not None and package.signed_by != trusted:
+        signed = "not signed" if package.signed_by is None else f"signed by {fingerprint(package.signed_by)}"
+        raise KnowledgeError(KnowledgeCode.OTHER_SIGNER, where=path, signed=signed, trusted=fingerprint(trusted))
     here = binding_for(robot, task)
-    if given.binding.feature_hash != here.feature_hash:
-        differing = differing_features(given.settings, robot, task) or "in what its settings do not tell"
-        raise KnowledgeError(
-            f"was taught with other features: {differing}",
-            where=path,
-            do=("import it with the task and robot settings that it was taught with (--task, --robot-settings)"),
-        )
-    levels = {getattr(each.event, "level", "") for each in given.lessons}
-    levels |= {each.event.rla.level for each in given.lessons if hasattr(each.event, "rla")}
-    require_compatible(given.binding, here, path, lambda level: level in levels)
-    entries = [JournalEntry(each.event, each.stamped_at) for each in given.lessons]
-    note = f"{path.name}, exported {given.exported_at}, imported {stamp}"
-    create_knowledge(into, given.binding, entries, given.statistics, {IMPORTED_FROM: note}, source=path)
-    return ImportResult(given, _otherwise_here(given, robot, task))
+    if package.binding.feature_hash != here.feature_hash:
+        difference = differing_features(package.settings, robot, task) or "not visible in its settings"
+        raise KnowledgeError(KnowledgeCode.PACKAGE_OTHER_FEATURES, where=path, difference=difference)
+    levels = {getattr(each.event, "level", "") for each in package.lessons}
+    levels |= {each.event.rla.level for each in package.lessons if hasattr(each.event, "rla")}
+    require_compatible(package.binding, here, path, lambda level: level in levels)
+    entries = [JournalEntry(each.event, each.stamped_at) for each in package.lessons]
+    note = f"{path.name}, exported {package.exported_at}, imported {stamp}"
+    create_knowledge(into, package.binding, entries, package.statistics, {IMPORTED_FROM: note}, source=path)
+    return ImportResult(package, _differing_settings(package, robot, task))
 
 
-def _otherwise_here(given: KnowledgePackage, robot: RobotSettings, task: TaskSettings) -> tuple[str, ...]:
+def _differing_settings(package: KnowledgePackage, robot: RobotSettings, task: TaskSettings) -> tuple[str, ...]:
     here = collect_attachments(robot, task)
-    return tuple(name for name, content in given.settings.items() if here.get(name) != content)
+    return tuple(name for name, content in package.settings.items() if here.get(name) != content)
 
 
 def _features(features: LevelFeatures) -> dict[str, Any]:
     return {"hash": features.feature_hash, "names": list(features.feature_names)}
 
 
-def _given(path: Path, archive: Archive) -> KnowledgePackage:
-    """Raises KeyError for a file that is not in it, ValueError."""
+def _content(path: Path, archive: Archive) -> KnowledgePackage:
+    """Return the content of an archive. Raises KeyError for a file that is not in it, ValueError."""
     manifest = read_manifest(archive.manifest)
     binding = manifest.binding
     lessons = tuple(decode_lessons(archive.files[KNOWLEDGE]))
     statistics = decode_statistics(archive.files[STATISTICS])
     require_times(lessons)
-    require_fitting(statistics, lessons, binding)
+    require_expectations(statistics, lessons, binding)
     settings = {name: content for name, content in archive.files.items() if name.startswith(SETTINGS)}
     return KnowledgePackage(
-        path, binding, lessons, statistics, manifest.task, manifest.exported_at, archive.signed_by, settings
+        path,
+        binding,
+        lessons,
+        statistics,
+        task=manifest.task,
+        exported_at=manifest.exported_at,
+        signed_by=archive.signed_by,
+        settings=settings,
     )

@@ -1,4 +1,4 @@
-"""Ed25519 keys of those who give knowledge away, as PEM files."""
+"""Ed25519 keys that sign packages of knowledge, as PEM files."""
 
 import hashlib
 import os
@@ -15,6 +15,7 @@ from cryptography.hazmat.primitives.serialization import (
     load_pem_public_key,
 )
 
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.durable_files import fsync_folder
 
@@ -22,19 +23,20 @@ PUBLIC_KEY_BYTES = 32
 
 
 def make_key(path: Path) -> Path:
-    """Make a key at `path`, for its owner alone, and its public half beside it; returns where that is.
+    """Make a private key at `path`, readable by its owner only, and its public half next to it; return that path.
 
-    Raises KnowledgeError, also where one of both is there already, and leaves nothing: a lost key cannot be made again.
+    Raises:
+        KnowledgeError: one of both files exists, or none can be made; no file is left or changed then.
     """
     if not path.name:
-        raise KnowledgeError("is a folder", where=path, do="give the key file to make")
+        raise KnowledgeError(KnowledgeCode.KEY_IS_FOLDER, where=path)
     key, public = Ed25519PrivateKey.generate(), path.with_name(path.name + ".pub")
     secret = key.private_bytes(Encoding.PEM, PrivateFormat.PKCS8, NoEncryption())
     open_half = key.public_key().public_bytes(Encoding.PEM, PublicFormat.SubjectPublicKeyInfo)
     written = list[Path]()
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        # The public half first: where one is there already, nothing secret is left lying about.
+        # The public half first: if that file exists, no secret was written yet.
         for place, content, mode in ((public, open_half, 0o644), (path, secret, 0o600)):
             with os.fdopen(os.open(place, os.O_WRONLY | os.O_CREAT | os.O_EXCL, mode), "wb") as file:
                 written.append(place)
@@ -45,47 +47,39 @@ def make_key(path: Path) -> Path:
     except OSError as error:
         for place in written:
             place.unlink(missing_ok=True)
-        raise KnowledgeError(
-            f"no key can be made there ({error})", where=path, do="give the path of a new file"
-        ) from error
+        raise KnowledgeError(KnowledgeCode.KEY_NOT_MADE, where=path, error=error) from error
     return public
 
 
 def read_private_key(path: Path) -> Ed25519PrivateKey:
-    """The key in a PEM file. Raises KnowledgeError."""
+    """Return the private key in a PEM file. Raises KnowledgeError."""
     try:
         key = load_pem_private_key(path.read_bytes(), password=None)
     except (OSError, ValueError, TypeError, UnsupportedAlgorithm) as error:
-        raise KnowledgeError(
-            f"is no key that can sign ({error})", where=path, do="kurt2rt knowledge key makes one"
-        ) from error
+        raise KnowledgeError(KnowledgeCode.NO_PRIVATE_KEY, where=path, error=error) from error
     if not isinstance(key, Ed25519PrivateKey):
-        raise KnowledgeError("is a key of another kind than Ed25519", where=path, do="kurt2rt knowledge key makes one")
+        raise KnowledgeError(KnowledgeCode.NO_PRIVATE_KEY, where=path, error="another kind of key")
     return key
 
 
 def read_public_key(path: Path) -> bytes:
-    """The public half in a PEM file, raw. Raises KnowledgeError."""
+    """Return the public key in a PEM file, 32 raw bytes. Raises KnowledgeError."""
     try:
         key = load_pem_public_key(path.read_bytes())
     except (OSError, ValueError, UnsupportedAlgorithm) as error:
-        raise KnowledgeError(
-            f"is no public key ({error})", where=path, do="give the .pub file of whom you trust"
-        ) from error
+        raise KnowledgeError(KnowledgeCode.NO_PUBLIC_KEY, where=path, error=error) from error
     if not isinstance(key, Ed25519PublicKey):
-        raise KnowledgeError(
-            "is a public key of another kind than Ed25519", where=path, do="give the .pub file of a signer"
-        )
+        raise KnowledgeError(KnowledgeCode.NO_PUBLIC_KEY, where=path, error="another kind of key")
     return key.public_bytes_raw()
 
 
 def signature_of(content: bytes, key: Ed25519PrivateKey) -> tuple[bytes, bytes]:
-    """The public key, raw, and the signature."""
+    """Return the raw public key and the signature of `content`."""
     return key.public_key().public_bytes_raw(), key.sign(content)
 
 
 def is_signed(content: bytes, public_key: bytes, signature: bytes) -> bool:
-    """Whether the owner of that key has signed exactly this."""
+    """Return whether the owner of `public_key` (raw) signed exactly this content."""
     try:
         Ed25519PublicKey.from_public_bytes(public_key).verify(signature, content)
     except (InvalidSignature, ValueError):
@@ -94,5 +88,5 @@ def is_signed(content: bytes, public_key: bytes, signature: bytes) -> bool:
 
 
 def fingerprint(public_key: bytes) -> str:
-    """What people compare: the first 64 bits of the SHA-256 of a raw public key, hexadecimal."""
+    """Return the first 64 bits of the SHA-256 of a raw public key, hexadecimal, for people to compare."""
     return hashlib.sha256(public_key).hexdigest()[:16]

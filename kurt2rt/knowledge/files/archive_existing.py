@@ -1,4 +1,4 @@
-"""Makes room for new knowledge where earlier knowledge stands, without losing any of it."""
+"""Archiving of an existing knowledge file, to make room for a new one at its path."""
 
 from pathlib import Path
 
@@ -6,9 +6,10 @@ from kurt2rt.knowledge.journal import journal_file
 
 
 def archive_existing(path: Path) -> Path | None:
-    """Give what stands at `path` a name with a number of its own, and return it; None where nothing stands.
+    """Rename the file at `path` to `<name>.<number>` and return that; None if there is no file.
 
-    Raises KnowledgeError while another program writes the file.
+    Raises:
+        KnowledgeError: another program writes the file.
     """
     if not path.exists():
         return None
@@ -18,7 +19,7 @@ def archive_existing(path: Path) -> Path | None:
             number += 1
         log = journal_file.log_of(path)
         path.rename(kept)
-        # After a crash the newest lessons stand in the log alone.
+        # After a crash only the log holds the newest lessons.
         if log.exists():
             log.rename(journal_file.log_of(kept))
     return kept

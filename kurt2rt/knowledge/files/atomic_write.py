@@ -1,4 +1,4 @@
-"""A file that is saved under a name made here: whole or not there at all, and never in the place of another one."""
+"""Atomic writing of new files: whole or not there, and never in the place of another file."""
 
 import hashlib
 import os
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
 
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.durable_files import fsync_folder
 
@@ -16,7 +17,7 @@ _LONGEST_PART = 32
 
 @dataclass(frozen=True, slots=True)
 class SavedCopy:
-    """What was saved."""
+    """File that was saved."""
 
     name: str
     """File name, without its folder."""
@@ -26,65 +27,60 @@ class SavedCopy:
 
 
 def write_numbered(content: bytes, folder: Path, parts: tuple[str, ...], ending: str) -> SavedCopy:
-    """Save `content` in `folder`, which is made where it is missing, durable on return.
+    """Save `content` in `folder`, which is made if it is missing; durable on return.
 
-    The name is made of `parts`, as far as they have letters, and `ending`, with a number where such a file is there
-    already. Raises KnowledgeError.
+    The name joins those `parts` that are not empty, then `ending`; it gets a number if such a file is there already.
+    Raises KnowledgeError.
     """
     stem = "-".join(part for part in parts if part)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for number in count(1):
             name = f"{stem}{ending}" if number == 1 else f"{stem}-{number}{ending}"
-            if _is_born(content, folder, name):
+            if _write_if_free(content, folder, name):
                 break
         fsync_folder(folder)
     except OSError as error:
-        raise KnowledgeError(
-            f"nothing can be saved there ({error})", where=folder, do="give a folder that may be written and has room"
-        ) from error
+        raise KnowledgeError(KnowledgeCode.FOLDER_NOT_WRITABLE, where=folder, error=error) from error
     return SavedCopy(name, hashlib.sha256(content).hexdigest(), len(content))
 
 
 def write_new(content: bytes, path: Path) -> None:
-    """Save `content` at `path`, where nothing may be yet; durable on return. Raises KnowledgeError.
+    """Save `content` at `path`, where no file may be yet; durable on return.
 
-    What a program that was killed began there is in nobody's way: nothing but a whole file ever has the name.
+    The temporary file of a program that was killed is removed. Raises KnowledgeError.
     """
-    unborn = path.parent / _unborn(path.name)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        unborn.unlink(missing_ok=True)
-        born = _is_born(content, path.parent, path.name)
+        (path.parent / _temporary_name(path.name)).unlink(missing_ok=True)
+        written = _write_if_free(content, path.parent, path.name)
         fsync_folder(path.parent)
     except OSError as error:
-        raise KnowledgeError(
-            f"cannot be saved ({error})", where=path, do="give a path in a folder that may be written and has room"
-        ) from error
-    if not born:
-        raise KnowledgeError("is there already", where=path, do="give the path of a new file")
+        raise KnowledgeError(KnowledgeCode.NOT_SAVED, where=path, error=error) from error
+    if not written:
+        raise KnowledgeError(KnowledgeCode.ALREADY_THERE, where=path)
 
 
 def plain_part(text: str) -> str:
-    """What of a text may stand in a file name: a-z, 0-9 and single hyphens, at most 32; may be empty."""
+    """Return the part of a text that may stand in a file name: a-z, 0-9, single hyphens, at most 32; may be empty."""
     letters = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().lower()
     return re.sub(r"[^a-z0-9]+", "-", letters).strip("-")[:_LONGEST_PART].rstrip("-")
 
 
 def stamp_part(stamp: str) -> str:
-    """A stamp (UTC, ISO 8601) to the second, as it may stand in a file name: 20040426T100000."""
+    """Return a stamp (UTC, ISO 8601) to the second, as it may stand in a file name: 20040426T100000."""
     return re.sub(r"[^0-9T]", "", stamp[:19])
 
 
-def _unborn(name: str) -> str:
+def _temporary_name(name: str) -> str:
     return f".{name}.unborn"
 
 
-def _is_born(content: bytes, folder: Path, name: str) -> bool:
-    """Save under exactly this name; False where it is taken."""
-    path, unborn = folder / name, folder / _unborn(name)
+def _write_if_free(content: bytes, folder: Path, name: str) -> bool:
+    """Save under exactly this name; return False if it is taken."""
+    path, temporary = folder / name, folder / _temporary_name(name)
     try:
-        file = unborn.open("xb")  # as long as it is there the name is ours: renaming would replace another's file
+        file = temporary.open("xb")  # reserves the name while it is there: renaming replaces another's file
     except FileExistsError:
         return False
     try:
@@ -94,7 +90,7 @@ def _is_born(content: bytes, folder: Path, name: str) -> bool:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())
-        unborn.rename(path)
+        temporary.rename(path)
     finally:
-        unborn.unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
     return True

@@ -1,10 +1,11 @@
-"""The task of a knowledge file: what it was taught for, checked against a task that is asked for."""
+"""Task of a knowledge file, checked against a task that an option names."""
 
 from pathlib import Path
 
 from hal.settings import SettingsError
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 
@@ -22,20 +23,12 @@ def task_of_file(path: Path, given: str | None = None) -> str:
     with Journal.read_only(path) as journal:
         taught = journal.binding.system
     if given is not None:
-        asked = load_task(given).system_name
-        if asked != taught:
-            raise KnowledgeError(
-                f"was taught for the task {taught!r}, not for {asked!r}",
-                where=path,
-                do="leave out --task, or give another knowledge file",
-            )
+        wanted = load_task(given).system_name
+        if wanted != taught:
+            raise KnowledgeError(KnowledgeCode.OTHER_TASK_GIVEN, where=path, taught=taught, wanted=wanted)
         return given
     try:
         load_task(taught)
     except SettingsError as error:
-        raise KnowledgeError(
-            f"was taught for the task {taught!r}, whose settings are not found ({error})",
-            where=path,
-            do="give them: --task PATH.yaml",
-        ) from error
+        raise KnowledgeError(KnowledgeCode.TASK_NOT_FOUND, where=path, taught=taught, error=error) from error
     return taught

@@ -1,4 +1,4 @@
-"""The RLA network as a directed graph of networkx: nodes are RLAs, edges what followed them, with percentages."""
+"""RLA network as a directed graph of networkx: nodes are RLAs, edges their successors, with percentages."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -12,6 +12,7 @@ from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics, follow_ups
 from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 RlaNetwork: TypeAlias = "nx.DiGraph[int]"
@@ -19,7 +20,7 @@ RlaNetwork: TypeAlias = "nx.DiGraph[int]"
 
 
 def read_network(journal: Journal, *, level: str = BASIC, behaviour: str | None = None) -> RlaNetwork:
-    """The network of one level in a knowledge file. Raises KnowledgeError, also where nothing was taught there."""
+    """Return the network of one level in a knowledge file. Raises KnowledgeError, also if it has no RLA."""
     # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
     entries = journal.entries()
     system = fold_entries(journal, entries, radius=math.inf)
@@ -38,11 +39,11 @@ def build_network(
     behaviour: str | None = None,
     features: Iterable[str] = (),
 ) -> RlaNetwork:
-    """All living RLAs of a level, or of one behaviour of it, and how they followed each other.
+    """Return the living RLAs of a level, or of one behaviour of it, and how often they followed each other.
 
-    A node's attributes: `level`, `behaviour`, `action`, `uses`; where it was seen to end `ends` (how often) and `ticks`
-    (how long it drives); where `features` name a place, `x_m` and `y_m`. `percent` of an edge is its share of all that
-    followed, also of RLAs that are not shown.
+    A node has the attributes `level`, `behaviour`, `action` and `uses`; if an end of it was observed, also `ends`
+    (their number) and `ticks` (mean duration); if `features` name a place, also `x_m` and `y_m`. An edge has `times`
+    and `percent`, its share of all successors, those that are not in the network included.
     """
     network: RlaNetwork = nx.DiGraph()
     place = _place_in(tuple(features))
@@ -63,12 +64,12 @@ def build_network(
             x, y = place
             network.add_node(rla.rla_id, x_m=rla.condition[x], y_m=rla.condition[y])
     for before, shares in follow_ups(statistics).items():
-        _add_ways(network, before, shares, statistics.transitions)
+        _add_edges(network, before, shares, statistics.transitions)
     return network
 
 
 def drop_rare_edges(network: RlaNetwork, at_least_percent: float) -> RlaNetwork:
-    """The same without edges of a smaller share, and without RLAs that are then alone and were never used."""
+    """Return a copy without edges of a smaller share, and without RLAs that have no edge then and no use."""
     kept: RlaNetwork = nx.DiGraph()
     edges = [edge for edge in network.edges(data=True) if edge[2]["percent"] >= at_least_percent]
     linked = {end for edge in edges for end in edge[:2]}
@@ -81,7 +82,7 @@ def drop_rare_edges(network: RlaNetwork, at_least_percent: float) -> RlaNetwork:
     return kept
 
 
-def _add_ways(
+def _add_edges(
     network: RlaNetwork, before: int, shares: Mapping[int, float], times: Mapping[tuple[int, int], int]
 ) -> None:
     if before not in network:
@@ -92,7 +93,7 @@ def _add_ways(
 
 
 def _place_in(features: tuple[str, ...]) -> tuple[int, int] | None:
-    """Which values of a condition say where it is; None where none do."""
+    """Return the indices of x and y in a condition; None if it has none."""
     if "x_m" in features and "y_m" in features:
         return features.index("x_m"), features.index("y_m")
     return None
@@ -101,12 +102,7 @@ def _place_in(features: tuple[str, ...]) -> tuple[int, int] | None:
 def _refuse(journal: Journal, system: RlaSystem, level: str, behaviour: str | None) -> NoReturn:
     levels = [each for each in (BASIC, *journal.binding.levels) if system.rlas_at(each)]
     if level not in levels:
-        raise KnowledgeError(
-            f"holds no RLA of the level {level!r}",
-            where=journal.path,
-            do=f"it has RLAs of: {', '.join(levels) or 'none'}",
-        )
-    taught = sorted({rla.behaviour or "one without a name" for rla in system.rlas_at(level)})
-    raise KnowledgeError(
-        f"holds no RLA of the behaviour {behaviour!r}", where=journal.path, do=f"it has: {', '.join(taught)}"
-    )
+        found = ", ".join(levels) or "none"
+        raise KnowledgeError(KnowledgeCode.NO_RLA_AT_LEVEL, where=journal.path, level=level, found=found)
+    found = ", ".join(sorted({rla.behaviour or "one without a name" for rla in system.rlas_at(level)}))
+    raise KnowledgeError(KnowledgeCode.NO_RLA_OF_BEHAVIOUR, where=journal.path, behaviour=behaviour, found=found)

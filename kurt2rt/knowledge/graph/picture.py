@@ -1,4 +1,4 @@
-"""The RLA network as a picture: nodes coloured by action, as large as they are often used, edges with percentages."""
+"""Picture of the RLA network: nodes coloured by action, with an area by uses; edges with percentages."""
 
 import math
 from collections.abc import Mapping
@@ -23,13 +23,13 @@ _EDGE = "#404850"
 _SMALLEST, _LARGEST = 130.0, 620.0
 """Areas of nodes, in square points."""
 _LABELLED_PERCENT = 10.0
-"""Rarer edges are drawn, and not labelled: with 130 RLAs nobody could read anything."""
+"""Rarer edges have no label: with 130 RLAs the labels would cover each other."""
 
 
 def draw_network(network: RlaNetwork, title: str, path: Path) -> None:
-    """Write a picture, SVG or PNG as the file's name ends.
+    """Write a picture, SVG or PNG by the file's ending.
 
-    Each behaviour has a panel: from one to the other it is commands that lead, so there are no edges between them.
+    Each behaviour has a panel: commands lead from one to another, so there are no edges between panels.
     """
     parts = _parts(network)
     laid = [compute_layout(part) for part in parts.values()]
@@ -56,7 +56,7 @@ def draw_network(network: RlaNetwork, title: str, path: Path) -> None:
                 axes.set_title(f"{name}: {len(part)} RLAs", fontsize=12, y=1.0, pad=-10.0)
     figure.suptitle(title, y=1 - 0.15 / height, va="top", fontsize=13)
     _legend(figure, colours)
-    # Text stays text: it can be searched, and the file is a third as large.
+    # Text as text: it can be searched, and the file is a third as large.
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "kurt2rt"}):
         figure.savefig(path, dpi=130, metadata={"Date": None} if path.suffix == ".svg" else None)
 
@@ -65,7 +65,7 @@ def _draw_part(axes: Axes, part: RlaNetwork, places: Places, colours: Mapping[st
     axes.set_axis_off()
     ids = list(part)
     areas = [_area(part.nodes[rla_id]["uses"], most) for rla_id in ids]
-    # The frequent ones last, on top of the others.
+    # Frequent edges last, on top of the others.
     percents = sorted((float(part.edges[edge]["percent"]), *edge) for edge in part.edges)
     for bend in (_STRAIGHT, _ARC):
         of_bend = [each for each in percents if _bend(part, *each[1:]) == bend]
@@ -133,12 +133,12 @@ def _draw_edges(
 
 
 def _bend(part: RlaNetwork, before: int, after: int) -> str:
-    """Two that follow each other have an arc each, so that neither label hides the other."""
+    """Return the style of an edge: an arc if there is one back, so that neither label hides the other."""
     return _ARC if part.has_edge(after, before) else _STRAIGHT
 
 
 def _parts(network: RlaNetwork) -> dict[str, RlaNetwork]:
-    """The network of each behaviour."""
+    """Return the network of each behaviour."""
     members: dict[str, list[int]] = {}
     for rla_id in network:
         members.setdefault(network.nodes[rla_id]["behaviour"], []).append(rla_id)
@@ -152,7 +152,7 @@ def _area(uses: int, most: int) -> float:
 def _colours(network: RlaNetwork) -> dict[str, str]:
     actions = sorted({network.nodes[rla_id]["action"] for rla_id in network})
     palette = mpl.colormaps["tab20"]
-    # Strong colours first, their pale twins behind.
+    # Strong colours first, then their pale variants.
     order = [*range(0, 20, 2), *range(1, 20, 2)]
     return {action: to_hex(palette(order[place % 20])) for place, action in enumerate(actions)}
 
@@ -169,7 +169,7 @@ def _legend(figure: Figure, colours: Mapping[str, str]) -> None:
 
 
 def _extent(places: Places) -> tuple[float, float]:
-    """Width and height of a panel in inches."""
+    """Return width and height of a panel in inches."""
     (low_x, high_x), (low_y, high_y) = span(places)
     return (
         max(_LEAST_INCHES, _INCHES_PER_UNIT * (high_x - low_x + 2 * _MARGIN)),

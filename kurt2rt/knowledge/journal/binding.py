@@ -1,10 +1,11 @@
-"""What knowledge is bound to: the features it was taught with, and the task."""
+"""Binding of knowledge: the features it was taught with, and the task."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from kurt2rt.core.rla.feature_set import LevelFeatures
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 
@@ -19,7 +20,7 @@ class KnowledgeBinding:
     system: str
     """Name of the RLA system that was taught: the task's, or one that several tasks share."""
     robot: str
-    """Robot that it was first taught on; told, not compared: the features decide whether another one can use it."""
+    """Robot that it was first taught on; shown, not compared: the features decide whether another one can use it."""
     levels: Mapping[str, LevelFeatures] = field(default_factory=dict)
     """Features of further levels than the basic one, by the level's name."""
 
@@ -27,51 +28,38 @@ class KnowledgeBinding:
 def require_compatible(
     taught: KnowledgeBinding, wanted: KnowledgeBinding, path: Path, has_lessons: Callable[[str], bool]
 ) -> None:
-    """Refuse knowledge of other features or of another task: raises KnowledgeError that names the difference.
+    """Refuse knowledge of other features or of another task.
 
-    A level that only one of the two has is no difference: it is added, or left alone. Nor is one that was never taught
-    anything, as `has_lessons` tells: it is bound anew.
+    A level that only one of the two has is no difference: it is added, or left alone. A level without lessons, as
+    `has_lessons` tells, is none either: it is bound again.
+
+    Raises:
+        KnowledgeError: names the difference.
     """
     here = LevelFeatures(wanted.feature_hash, wanted.feature_names)
     there = LevelFeatures(taught.feature_hash, taught.feature_names)
     if there != here:
         difference = _difference(there, here, "scales, history or the robot's sensor order differ")
-        raise KnowledgeError(
-            f"taught with other features: {difference}",
-            where=path,
-            do="use the situation definition and robot it was taught with, or give another knowledge file",
-        )
+        raise KnowledgeError(KnowledgeCode.OTHER_FEATURES, where=path, difference=difference)
     if taught.system != wanted.system:
-        raise KnowledgeError(
-            f"taught for the task {taught.system!r}, not for {wanted.system!r}",
-            where=path,
-            do="start that task, or give another knowledge file",
-        )
+        raise KnowledgeError(KnowledgeCode.OTHER_TASK, where=path, taught=taught.system, wanted=wanted.system)
     for level, features in wanted.levels.items():
         of_file = taught.levels.get(level, features)
         if of_file != features and has_lessons(level):
             difference = _difference(of_file, features, "what they are made from differs")
-            raise KnowledgeError(
-                f"its level {level} was taught with other features: {difference}",
-                where=path,
-                do=f"use the {level} settings it was taught with, or give another knowledge file",
-            )
+            raise KnowledgeError(KnowledgeCode.OTHER_LEVEL_FEATURES, where=path, level=level, difference=difference)
 
 
 def _difference(taught: LevelFeatures, wanted: LevelFeatures, unseen: str) -> str:
-    """How two that are not the same differ; `unseen`: what it is where the names do not show it."""
+    """Return the difference of two feature sets in words; `unseen` is the text if their names are equal."""
     if taught.feature_names == wanted.feature_names:
         return f"the names are the same, but {unseen}"
     only_taught = [name for name in taught.feature_names if name not in wanted.feature_names]
     only_wanted = [name for name in wanted.feature_names if name not in taught.feature_names]
     if not only_taught and not only_wanted:
         return "the same names in another order or number"
-    parts = []
-    if only_taught:
-        parts.append(f"only the file has {_few(only_taught)}")
-    if only_wanted:
-        parts.append(f"only the robot has {_few(only_wanted)}")
-    return ", ".join(parts)
+    owners = (("file", only_taught), ("robot", only_wanted))
+    return ", ".join(f"only the {owner} has {_few(names)}" for owner, names in owners if names)
 
 
 def _few(names: list[str], shown: int = 4) -> str:

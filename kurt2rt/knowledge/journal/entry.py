@@ -1,10 +1,11 @@
-"""Rows of the journal: a lesson before it is written, as it stands there, and the receipt for it."""
+"""Rows of the journal: a lesson before it is written, a lesson that was written, and the receipt for it."""
 
 import zlib
 from dataclasses import dataclass
 
 from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.knowledge.journal.event_codec import decode_event
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 
@@ -29,7 +30,7 @@ class StoredEntry:
 
 @dataclass(frozen=True, slots=True)
 class Receipt:
-    """Where a lesson stands in the journal."""
+    """Place of a lesson in the journal."""
 
     command_id: str
     sequence: int
@@ -42,18 +43,20 @@ class Receipt:
 
 
 def checksum(command_id: str, stamped_at: str, text: str) -> int:
-    """CRC-32 of a row: a worn flash disk may turn one digit into another, and SQLite would not see it."""
+    """Return the CRC-32 of a row: a worn flash disk may turn one digit into another, which SQLite does not notice."""
     return zlib.crc32("\n".join((command_id, stamped_at, text)).encode(errors="surrogateescape"))
 
 
 def read_row(row: tuple[int, str, str, str, int], where: str) -> StoredEntry:
-    """A row (sequence, command id, stamp, event, checksum) as an entry. Raises KnowledgeError that begins `where`."""
+    """Return the entry in a row (sequence, command id, stamp, event, checksum).
+
+    Raises:
+        KnowledgeError: the row is damaged; its place is `where`.
+    """
     sequence, command_id, stamped_at, text, written_checksum = row
-    # A page of zeros has rows, too: of nothing.
+    # A page of zeros has rows, too, with empty columns.
     if all(isinstance(part, str) for part in row[1:4]):
         event = decode_event(text, where)
         if checksum(command_id, stamped_at, text) == written_checksum and event.origin.command_id == command_id:
             return StoredEntry(sequence, event, stamped_at)
-    raise KnowledgeError(
-        "was changed after it was written (checksum)", where=where, do="keep the file, and go on with a backup copy"
-    )
+    raise KnowledgeError(KnowledgeCode.ROW_CHANGED, where=where)

@@ -25,6 +25,7 @@ from kurt2rt.core.rla.rla import (
     SituationNamed,
     TeachingEvent,
 )
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 EVENT_VERSION = 6
@@ -43,10 +44,10 @@ _ADDED: tuple[tuple[int, str, str, object], ...] = (
     (4, "rewarded", "credits", []),
     (4, "rewarded", "said", None),
 )
-"""Since which version an event of a kind has a field, and what that field is in older ones."""
+"""(version, kind, field, value): the field came with the version; in older events it has the value."""
 
 _SINCE = {"named": 5, "redone": 6, "merged": 6}
-"""Since which version there are events of a kind that older programs cannot read."""
+"""Version that a kind of event came with; older programs cannot read it."""
 
 _ORIGIN = ("command_id", "teacher", "phase", "tick")
 _FIELDS = {
@@ -66,23 +67,43 @@ _FIELDS = {
 
 
 def encode_event(event: TeachingEvent) -> str:
-    """JSON text of an event. Raises KnowledgeError for one that could not be read back: NaN, infinity, wrong types."""
+    """Return the JSON text of an event.
+
+    Raises:
+        KnowledgeError: the event could not be read back: NaN, infinity, wrong types.
+    """
     content = {"version": EVENT_VERSION, **_content(event)}
     try:
-        _event(content)  # what would be refused on reading must never be written
+        _event(content)  # an event that is refused on reading is never written
         return json.dumps(content, allow_nan=False, separators=(",", ":"))
     except (TypeError, ValueError, OverflowError) as error:
-        name = event.origin.command_id
-        raise KnowledgeError(f"command {name!r}: cannot be written: {error}", do="teach it again") from error
+        where = f"command {event.origin.command_id!r}"
+        raise KnowledgeError(KnowledgeCode.EVENT_NOT_WRITABLE, where=where, **_fields(error)) from error
 
 
 def decode_event(text: str, where: str) -> TeachingEvent:
-    """The event that a JSON text stands for. Raises KnowledgeError that begins with `where` (file and row)."""
+    """Return the event in a JSON text; `where` is its place (file and row).
+
+    Raises:
+        KnowledgeError: the text is no teaching event; field `key` names the wrong one, empty if there is none.
+    """
     try:
         return _event(json.loads(text))
     except (ValueError, OverflowError, RecursionError) as error:
-        problem = f"{where}: not a teaching event: {error}"
-        raise KnowledgeError(str(problem), do="keep the file, and go on with a backup copy") from error
+        raise KnowledgeError(KnowledgeCode.NOT_AN_EVENT, where=where, **_fields(error)) from error
+
+
+class _FieldError(ValueError):
+    """Error of one field of an event."""
+
+    def __init__(self, key: str, problem: str) -> None:
+        super().__init__(problem)
+        self.key = key
+
+
+def _fields(error: Exception) -> dict[str, object]:
+    """Return the fields of a KnowledgeError that `error` is the cause of."""
+    return {"error": error, "key": error.key if isinstance(error, _FieldError) else ""}
 
 
 def _content(event: TeachingEvent) -> dict[str, Any]:
@@ -136,20 +157,22 @@ def _event(content: object) -> TeachingEvent:
         raise ValueError(f"a JSON {type(content).__name__} is no object")  # noqa: TRY004 - all problems are of one type
     version = _whole(content, "version", least=1)
     if version > EVENT_VERSION:
-        raise ValueError(f"its version {version} is of a newer kurt2rt, this one reads up to {EVENT_VERSION}")
+        raise _FieldError(
+            "version", f"its version {version} is of a newer kurt2rt, this one reads up to {EVENT_VERSION}"
+        )
     kind = _text(content, "kind")
     if version < _SINCE.get(kind, 1):
-        raise ValueError(f"there was no {kind} in version {version}")
+        raise _FieldError("version", f"there was no {kind} in version {version}")
     content = _as_of_now(content, kind, version)
     if kind not in _FIELDS:
-        raise ValueError(f"kind is {kind!r}, known are {', '.join(_FIELDS)}")
+        raise _FieldError("kind", f"kind is {kind!r}, known are {', '.join(_FIELDS)}")
     foreign = sorted(content.keys() - {"version", "kind", *_FIELDS[kind]})
     if foreign:
-        raise ValueError(f"{kind} has no {', '.join(map(repr, foreign))}")
+        raise _FieldError(foreign[0], f"{kind} has no {', '.join(map(repr, foreign))}")
     origin = Origin(
         _text(content, "command_id"),
         _word(content, "teacher"),
-        Phase(_whole(content, "phase", least=1)),
+        _phase(content),
         _whole(content, "tick", least=0),
     )
     match kind:
@@ -175,12 +198,12 @@ def _event(content: object) -> TeachingEvent:
 
 
 def _as_of_now(content: dict[str, Any], kind: str, version: int) -> dict[str, Any]:
-    """The fields that this version knows, of an event that an older one wrote."""
+    """Return the fields of an event that an older version wrote, completed as this version knows them."""
     content = dict(content)
     for since, of_kind, field, default in _ADDED:
         if version < since and kind == of_kind:
             if field in content:
-                raise ValueError(f"{kind} has no {field!r} in version {version}")
+                raise _FieldError(field, f"{kind} has no {field!r} in version {version}")
             content[field] = default
     return content
 
@@ -201,7 +224,7 @@ def _about_an_rla(kind: str, content: dict[str, Any], origin: Origin) -> Teachin
         case "rewarded":
             value = _whole(content, "value", least=-1)
             if value not in (1, -1):
-                raise ValueError(f"value must be 1 or -1, not {value}")
+                raise _FieldError("value", f"value must be 1 or -1, not {value}")
             meant = _whole(content, "decided_at_tick", least=0)
             said = None if _value(content, "said") is None else _opinion(content, "said")
             return RlaRewarded(rla_id, value, meant, origin, _credits(content), said)
@@ -212,7 +235,7 @@ def _about_an_rla(kind: str, content: dict[str, Any], origin: Origin) -> Teachin
 def _credits(content: dict[str, Any]) -> tuple[Credit, ...]:
     rows = _value(content, "credits")
     if not isinstance(rows, list) or not all(isinstance(row, list) and len(row) in (2, 3) for row in rows):
-        raise ValueError("credits must be a list of pairs of an RLA's id and a number, or with the id of one before it")
+        raise _FieldError("credits", "credits must be a list of (RLA's id, number) or (RLA's id, number, id before it)")
     return tuple(
         Credit(_id_of_credit(rla_id), _number(change, "credits"), *map(_id_of_credit, before))
         for rla_id, change, *before in rows
@@ -220,19 +243,19 @@ def _credits(content: dict[str, Any]) -> tuple[Credit, ...]:
 
 
 def _id_of_credit(value: object) -> int:
-    return _whole({"rla_id of a credit": value}, "rla_id of a credit", least=1)
+    return _whole({"credits": value}, "credits", least=1)
 
 
 def _opinion(content: dict[str, Any], key: str) -> int:
     value = _whole(content, key, least=-1)
     if value > 1:
-        raise ValueError(f"{key} must be -1, 0 or 1, not {value}")
+        raise _FieldError(key, f"{key} must be -1, 0 or 1, not {value}")
     return value
 
 
 def _value(content: dict[str, Any], key: str) -> object:
     if key not in content:
-        raise ValueError(f"{key} is missing")
+        raise _FieldError(key, f"{key} is missing")
     value: object = content[key]
     return value
 
@@ -240,13 +263,16 @@ def _value(content: dict[str, Any], key: str) -> object:
 def _text(content: dict[str, Any], key: str) -> str:
     value = _value(content, key)
     if not isinstance(value, str):
-        raise ValueError(f"{key} must be a text")  # noqa: TRY004
-    value.encode()  # half a surrogate pair is fine for JSON, not for SQLite; UnicodeEncodeError is a ValueError
+        raise _FieldError(key, f"{key} must be a text")
+    try:
+        value.encode()  # half a surrogate pair is fine for JSON, not for SQLite
+    except UnicodeEncodeError as error:
+        raise _FieldError(key, f"{key}: {error}") from error
     return value
 
 
 def _word(content: dict[str, Any], key: str) -> str:
-    """A text that many events have, which is then held once."""
+    """Return a text that many events have: interned, so that memory holds it once."""
     value = _text(content, key)
     return sys.intern(value) if type(value) is str else value
 
@@ -254,18 +280,33 @@ def _word(content: dict[str, Any], key: str) -> str:
 def _whole(content: dict[str, Any], key: str, least: int) -> int:
     value = _value(content, key)
     if not isinstance(value, int) or isinstance(value, bool) or value < least:
-        raise ValueError(f"{key} must be a whole number from {least}")
+        raise _FieldError(key, f"{key} must be a whole number from {least}")
     return value
+
+
+def _phase(content: dict[str, Any]) -> Phase:
+    number = _whole(content, "phase", least=1)
+    try:
+        return Phase(number)
+    except ValueError as error:
+        raise _FieldError("phase", str(error)) from error
 
 
 def _numbers(content: dict[str, Any], key: str) -> tuple[float, ...]:
     values = _value(content, key)
     if not isinstance(values, list):
-        raise ValueError(f"{key} must be a list of numbers")  # noqa: TRY004
+        raise _FieldError(key, f"{key} must be a list of numbers")
     return tuple(_number(each, key) for each in values)
 
 
 def _number(value: object, key: str) -> float:
-    if not isinstance(value, (int, float)) or isinstance(value, bool) or not math.isfinite(value):
-        raise ValueError(f"{key} must be made of finite numbers")
+    if not isinstance(value, (int, float)) or isinstance(value, bool) or not _is_finite(value):
+        raise _FieldError(key, f"{key} must be made of finite numbers")
     return float(value)
+
+
+def _is_finite(value: float) -> bool:
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # an integer beyond the range of float
+        return False

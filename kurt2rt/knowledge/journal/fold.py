@@ -1,4 +1,4 @@
-"""From the journal to the RLA system that it is the history of."""
+"""Fold of the journal: the RLA system that its lessons make."""
 
 from collections.abc import Container, Iterable
 
@@ -8,16 +8,26 @@ from kurt2rt.core.rla.rla_system import EventFault, InvalidEventError, RlaSystem
 from kurt2rt.core.rla.space import Space
 from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 
 def fold_journal(journal: Journal, radius: float) -> RlaSystem:
-    """The RLA system that all lessons together make. Raises KnowledgeError that names file and row of an unfit one."""
+    """Return the RLA system that all lessons make; arguments and errors as of `fold_entries`."""
     return fold_entries(journal, journal.entries(), radius)
 
 
 def fold_entries(journal: Journal, entries: Iterable[StoredEntry], radius: float) -> RlaSystem:
-    """The RLA system that entries read from the journal make, all its levels with that radius. Raises as above."""
+    """Return the RLA system that entries of the journal make.
+
+    Args:
+        journal: gives features and levels.
+        entries: from the first row on, without gaps.
+        radius: R of all levels, in the distance unit of a task; 0.0 or infinity if the fold is not matched against.
+
+    Raises:
+        KnowledgeError: a lesson does not fit those before it; names file and row.
+    """
     binding = journal.binding
     others = {level: Space(len(features.feature_names), radius) for level, features in binding.levels.items()}
     system = RlaSystem(len(binding.feature_names), radius, others=others)
@@ -29,28 +39,24 @@ def fold_entries(journal: Journal, entries: Iterable[StoredEntry], radius: float
                 _require_level(f"the situation {entry.event.name!r}", entry.event.level, others)
             system.apply(entry.event)
         except InvalidEventError as error:
-            raise KnowledgeError(
-                f"row {entry.sequence}: does not fit the lessons before it: {event_error_text(error)}",
-                where=journal.path,
-                do="keep the file, and go on with a backup copy",
-            ) from error
+            where = f"{journal.path}: row {entry.sequence}"
+            raise KnowledgeError(KnowledgeCode.LESSON_MISFIT, where=where, error=event_error_text(error)) from error
     return system
 
 
-def check_knowledge(journal: Journal) -> list[str]:
-    """Everything that would keep a robot from using the file, one line each: damage, and lessons that do not fit."""
-    problems = journal.check()
-    if problems:
-        return problems
-    try:
-        fold_journal(journal, radius=0.0)
-    except KnowledgeError as error:
-        return [str(error)]
-    return []
+def check_knowledge(journal: Journal) -> list[KnowledgeError]:
+    """Return everything that keeps a robot from using the file: damage, else the first lesson that does not fit."""
+    errors = journal.check()
+    if not errors:
+        try:
+            fold_journal(journal, radius=0.0)
+        except KnowledgeError as error:
+            return [error]
+    return errors
 
 
-def _require_level(what: str, level: str, levels: Container[str]) -> None:
+def _require_level(title: str, level: str, levels: Container[str]) -> None:
     if level != BASIC and level not in levels:
         raise InvalidEventError(
-            EventFault.NO_LEVEL, f"{what} is of the level {level!r}, of which the file does not name the features"
+            EventFault.NO_LEVEL, f"{title} is of the level {level!r}, of which the file does not name the features"
         )

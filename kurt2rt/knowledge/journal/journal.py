@@ -1,4 +1,4 @@
-"""The journal: every teaching act, appended once, durable before it is acknowledged (design, Knowledge)."""
+"""Journal of one knowledge file: each teaching event, appended once, durable before it is acknowledged."""
 
 import os
 import sqlite3
@@ -14,7 +14,8 @@ from kurt2rt.knowledge.journal import journal_file
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible
 from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt, StoredEntry, checksum, read_row
 from kurt2rt.knowledge.journal.event_codec import decode_event, encode_event
-from kurt2rt.knowledge.journal.statistics_tables import Change, changes, read_statistics
+from kurt2rt.knowledge.journal.statistics_tables import TableChange, changes, read_statistics
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError, from_sqlite
 
 _NOTE = "note "
@@ -33,11 +34,11 @@ class Journal:
         self._lock = lock
         self._files = journal_file.identities(path)
         self._written: Statistics | None = None
-        """The statistics as they stand in the file, where this journal wrote them last: it is their only writer."""
+        """Statistics as they stand in the file; None until this journal, their only writer, has written them."""
 
     @classmethod
     def open(cls, path: Path, binding: KnowledgeBinding) -> Self:
-        """Open the journal at `path` as its only writer, or begin one there. An error leaves every file as it was."""
+        """Open the journal at `path` as its only writer, or make one there. An error leaves every file as it was."""
         path = Path(os.path.realpath(path))
         if journal_file.is_there(path):
             journal_file.require_ours(path)
@@ -63,10 +64,9 @@ class Journal:
 
     @classmethod
     def read_only(cls, path: Path) -> Self:
-        """Open to look at it, also while another process writes it. What is read then may be a lesson behind.
+        """Open for reading, also while another process writes the file; it may be read one lesson behind.
 
-        Beside a file that had no log there is none after closing; a log that is there stays, a robot's or of one that
-        was killed.
+        A log next to the file stays if one is there, of a robot that runs or was killed; none is left otherwise.
         """
         path = Path(os.path.realpath(path))
         journal_file.require_ours(path)
@@ -74,13 +74,13 @@ class Journal:
 
     @classmethod
     def in_writer_process(cls, path: Path) -> Self:
-        """Open to look at a file that this very process may be writing.
+        """Open for reading a file that this very process may be writing.
 
-        Nothing but SQLite opens it here: closing a handle that SQLite does not know of would silently drop the locks
-        of the writer, and another program could then take its log away.
+        Only SQLite opens it here: closing any other handle would silently drop the writer's locks, and another program
+        could then remove its log.
         """
         path = Path(os.path.realpath(path))
-        connection = journal_file.connect_to_look(path)
+        connection = journal_file.connect_read_only(path)
         try:
             return cls(path, connection)
         except BaseException:
@@ -88,16 +88,19 @@ class Journal:
             raise
 
     def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
-        """Write lessons, all or none, durable on return; a known command id is not written twice. One receipt each."""
+        """Write lessons, all or none, durable on return; return a receipt each.
+
+        A known command id is not written twice.
+        """
         with self._transaction():
             return [self._append(entry) for entry in entries]
 
     def append_and_checkpoint(self, entries: Sequence[JournalEntry], statistics: Statistics) -> list[Receipt]:
-        """Write lessons, and what the statistics become by them, in one transaction."""
-        differences = self._differences(statistics)
+        """Write lessons, and the statistics after them, in one transaction; return a receipt for each lesson."""
+        changed = self._changes_to(statistics)
         with self._writing(statistics):
             receipts = [self._append(entry) for entry in entries]
-            self._carry_out(differences)
+            self._execute(changed)
         return receipts
 
     def _append(self, entry: JournalEntry) -> Receipt:
@@ -114,44 +117,45 @@ class Journal:
             (command_id, entry.stamped_at, text, checksum(command_id, entry.stamped_at, text)),
         )
         if cursor.lastrowid is None:
-            raise KnowledgeError(f"SQLite gave no row for command {command_id!r}", where=self.path, do="teach it again")
+            raise KnowledgeError(KnowledgeCode.ROW_NOT_GIVEN, where=self.path, command_id=command_id)
         return Receipt(command_id, cursor.lastrowid, entry.stamped_at, new=True, agrees=True)
 
-    def _differences(self, statistics: Statistics) -> list[Change]:
+    def _changes_to(self, statistics: Statistics) -> list[TableChange]:
         return changes(self._written or self.statistics(), statistics)
 
     @contextmanager
     def _writing(self, statistics: Statistics) -> Iterator[None]:
-        """A transaction after which these statistics stand in the file; what stands there after an error is read."""
+        """Run a transaction after which these statistics stand in the file; after an error they are read again."""
         self._written = None
         with self._transaction():
             yield
         self._written = statistics
 
-    def _carry_out(self, differences: list[Change]) -> None:
-        for statement, rows in differences:
+    def _execute(self, changed: list[TableChange]) -> None:
+        for statement, rows in changed:
             self._connection.executemany(statement, rows)
 
     def reconnect(self) -> None:
-        """Let SQLite begin anew with the same files, as their only writer still; not used before this succeeds.
+        """Open a new SQLite connection to the same files, still as their only writer.
 
-        Raises KnowledgeError.
+        Raises:
+            KnowledgeError: SQLite cannot; the journal is not usable until a later call succeeds.
         """
         self._require_in_place()
         with self._reading():
             self._connection.close()  # all its locks go with it
-        # Whoever closes last merges the log and removes it.
+        # The last connection that closes merges the log and removes it.
         self._files = (self._files[0], journal_file.identities(self.path)[1])
         self._connection = journal_file.connect(self.path, "mode=rw")
         journal_file.make_durable(self._connection, self.path)
         self._files = (self._files[0], journal_file.identities(self.path)[1])
 
     def entries(self) -> list[StoredEntry]:
-        """All lessons in the order of writing. Raises KnowledgeError that names file and row of a damaged one."""
+        """Return all lessons in the order of writing. Raises KnowledgeError, naming file and row of a damaged one."""
         return list(self.iter_entries())
 
     def read_all(self) -> tuple[list[StoredEntry], Statistics]:
-        """Lessons and statistics of one and the same moment, also while a robot writes both. Raises as `entries`."""
+        """Return lessons and statistics of one moment, also while a robot writes both. Raises as `entries`."""
         with self._reading():
             self._connection.execute("BEGIN")
             try:
@@ -161,76 +165,78 @@ class Journal:
                     self._connection.execute("COMMIT")
 
     def iter_entries(self) -> Iterator[StoredEntry]:
-        """The same one by one, all of one moment. Raises as `entries`."""
+        """Yield all lessons in the order of writing, of one moment. Raises as `entries`."""
         with self._reading():
             for row in self._connection.execute(_ROWS):
                 yield read_row(row, self._where(row))
 
     def has_lessons_at(self, level: str) -> bool:
-        """Whether anything was ever taught at a level other than the basic one, or named there."""
+        """Return whether a lesson is about `level`, other than basic. Raises KnowledgeError."""
         return journal_file.has_lessons(self._connection, self.path, level)
 
     def events(self) -> list[TeachingEvent]:
-        """All teaching events in order: what an RLA system is the fold of."""
+        """Return all teaching events in order, which an RLA system is the fold of. Raises as `entries`."""
         return [entry.event for entry in self.entries()]
 
     def image(self) -> bytes:
-        """All of the file as it stands at one moment, SQLite's log folded in, as bytes that are a file by themselves.
+        """Return the bytes of a knowledge file with all that this one holds at one moment, SQLite's log folded in.
 
-        Does not keep the one who writes it waiting.
+        The writer does not wait for it.
         """
         with self._reading(), closing(sqlite3.connect(":memory:")) as copy:
             self._connection.backup(copy)
             return journal_file.without_log(copy.serialize())
 
     def checkpoint(self, statistics: Statistics) -> None:
-        """Replace the statistics, in one transaction, in which nothing is written that did not change."""
-        differences = self._differences(statistics)
-        if differences:
+        """Replace the statistics in one transaction; write only what has changed."""
+        changed = self._changes_to(statistics)
+        if changed:
             with self._writing(statistics):
-                self._carry_out(differences)
+                self._execute(changed)
 
     def statistics(self) -> Statistics:
-        """The statistics of the last checkpoint."""
+        """Return the statistics of the last checkpoint."""
         with self._reading():
             return read_statistics(self._connection)
 
-    def integrity_errors(self) -> list[str]:
-        """What SQLite finds wrong with the file's pages, one line each: lessons may be missing without a trace."""
+    def integrity_errors(self) -> list[KnowledgeError]:
+        """Return what SQLite finds wrong with the file's pages: lessons may be missing without a trace."""
         try:
             lines = [line for (line,) in self._connection.execute("PRAGMA integrity_check")]
         except sqlite3.Error as error:
-            return [str(from_sqlite(error, self.path))]
-        return [f"{self.path}: {each}" for line in lines if line != "ok" for each in line.splitlines()]
+            return [from_sqlite(error, self.path)]
+        wrong = [each for line in lines if line != "ok" for each in line.splitlines()]
+        return [KnowledgeError(KnowledgeCode.INTEGRITY, where=self.path, line=each) for each in wrong]
 
-    def check(self) -> list[str]:
-        """Everything that is wrong with the file, one line each; empty when it is sound."""
-        problems = self.integrity_errors()
+    def check(self) -> list[KnowledgeError]:
+        """Return everything that is wrong with pages and rows."""
+        errors = self.integrity_errors()
         try:
             for expected, row in enumerate(self._connection.execute(_ROWS), start=1):
                 if row[0] != expected:
-                    problems.append(f"{self._where(row)}: stands where row {expected} should; keep the file")
+                    where = self._where(row)
+                    errors.append(KnowledgeError(KnowledgeCode.ROW_MISPLACED, where=where, expected=expected))
                 try:
                     read_row(row, self._where(row))
                 except KnowledgeError as error:
-                    problems.append(str(error))
+                    errors.append(error)
         except sqlite3.Error as error:
-            problems.append(str(from_sqlite(error, self.path)))
-        return problems
+            errors.append(from_sqlite(error, self.path))
+        return errors
 
     def note(self, name: str, text: str) -> None:
-        """Write down something about the file as a whole, in the place of what that note said before."""
+        """Write a note about the file as a whole; it replaces an earlier one of this name."""
         with self._transaction():
             self._connection.execute("INSERT OR REPLACE INTO binding VALUES (?, ?)", (f"{_NOTE}{name}", text))
 
     def notes(self) -> dict[str, str]:
-        """What was noted about the file as a whole, by name."""
+        """Return the notes about the file as a whole, by name."""
         with self._reading():
             rows = self._connection.execute("SELECT key, value FROM binding ORDER BY key")
             return {key.removeprefix(_NOTE): value for key, value in rows if key.startswith(_NOTE)}
 
     def close(self) -> None:
-        """Give the file back; the last one out merges SQLite's log into it."""
+        """Close the file and release its lock; the last connection merges the log into it. Raises KnowledgeError."""
         try:
             with self._reading():
                 self._connection.close()
@@ -239,9 +245,7 @@ class Journal:
                 try:
                     self._lock.close()
                 except OSError as error:
-                    raise KnowledgeError(
-                        f"its lock cannot be given back ({error})", where=self.path, do="it ends with this program"
-                    ) from error
+                    raise KnowledgeError(KnowledgeCode.LOCK_NOT_RELEASED, where=self.path, error=error) from error
 
     def __enter__(self) -> Self:
         return self
@@ -270,13 +274,9 @@ class Journal:
         self._require_in_place()
 
     def _require_in_place(self) -> None:
-        # SQLite goes on writing into a file that was deleted under it, and all would be gone at the end.
+        # SQLite goes on writing into a deleted file, whose content is gone once it is closed.
         if journal_file.identities(self.path) != self._files:
-            raise KnowledgeError(
-                "it or its log was moved, deleted or replaced while in use",
-                where=self.path,
-                do="put the same files back, or stop the robot and give a knowledge file",
-            )
+            raise KnowledgeError(KnowledgeCode.MOVED_IN_USE, where=self.path)
 
     @contextmanager
     def _reading(self) -> Iterator[None]:
@@ -287,7 +287,7 @@ class Journal:
 
 
 def _as_written_now(text: str) -> str | None:
-    """An event's text as this version writes it; None for one that cannot be read."""
+    """Return an event's text as this version writes it; None for one that cannot be read."""
     try:
         return encode_event(decode_event(text, "row"))
     except KnowledgeError:

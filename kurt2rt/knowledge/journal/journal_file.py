@@ -1,4 +1,4 @@
-"""The journal's file: how it is born, recognised, locked against a second writer and connected to."""
+"""File of the journal: creation, recognition, the lock against a second writer, and connections."""
 
 import fcntl
 import json
@@ -20,11 +20,12 @@ from kurt2rt.knowledge.journal.journal_schema import (
     require_our_schema,
 )
 from kurt2rt.knowledge.journal.statistics_tables import LATER_TABLES, has_table
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError, from_sqlite
 from kurt2rt.platform.durable_files import fsync_file, fsync_folder
 
 BUSY_TIMEOUT_S = 0.2
-"""How long SQLite itself waits for another program's lock; after that the writer says so and tries again."""
+"""SQLite waits so long for another program's lock; then the writer reports it and tries again."""
 _CACHE_KIB = 128
 
 _MAGIC = b"SQLite format 3\x00"
@@ -38,44 +39,41 @@ _LEVEL_KEYS = ("feature_hash", "feature_names")
 
 
 def lock_for_writing(path: Path) -> BinaryIO:
-    """Hold the one writer's lock of a knowledge file until the result is closed, or the process is gone.
+    """Take the writer's lock of a knowledge file; it is held until the result is closed, or the process ends.
 
-    Two writers would both give the next RLA the same id. The lock sits on a file beside: closing any second handle of
-    the database itself would silently drop SQLite's own locks. Raises KnowledgeError.
+    Two writers would both give the next RLA the same id. The lock is on a file of its own: closing a second handle of
+    the database itself would silently drop SQLite's own locks.
+
+    Raises:
+        KnowledgeError: another process holds it, or the folder or disk cannot hold a lock.
     """
     try:
         lock = _lock_of(path).open("ab")
     except OSError as error:
-        raise KnowledgeError(
-            f"cannot be locked ({error})", where=path, do="give a path in a folder that exists and may be written"
-        ) from error
+        raise KnowledgeError(KnowledgeCode.FOLDER_NOT_LOCKABLE, where=path, error=error) from error
     try:
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError as error:
         lock.close()
-        raise KnowledgeError(
-            f"another kurt2rt is writing it ({error})", where=path, do="stop that one, or give another knowledge file"
-        ) from error
+        raise KnowledgeError(KnowledgeCode.ANOTHER_WRITER, where=path, error=error) from error
     except OSError as error:
         lock.close()
-        raise KnowledgeError(f"cannot be locked ({error})", where=path, do="give a path on a local disk") from error
+        raise KnowledgeError(KnowledgeCode.DISK_WITHOUT_LOCKS, where=path, error=error) from error
     return lock
 
 
 def require_no_writer(path: Path) -> None:
-    """Raises KnowledgeError while somebody holds the writer's lock; puts none there, for a lock's file stays."""
+    """Raise KnowledgeError while a process holds the writer's lock; makes no lock file, because it would stay."""
     if is_there(_lock_of(path)):
         lock_for_writing(path).close()
     elif not os.access(path.parent, os.W_OK):
-        raise KnowledgeError(
-            "cannot be locked", where=path, do="give a path in a folder that exists and may be written"
-        )
+        raise KnowledgeError(KnowledgeCode.FOLDER_NOT_LOCKABLE, where=path, error="no write permission")
 
 
 def create(path: Path, binding: KnowledgeBinding) -> None:
-    """Put an empty journal at `path`, where nothing is, under the writer's lock. Raises KnowledgeError.
+    """Make an empty journal at `path`, where no file is, under the writer's lock. Raises KnowledgeError.
 
-    It is born whole: built in memory, written beside, synced, then renamed, so that a crash never leaves half a file.
+    It is built in memory, written to a temporary file, synced and renamed: a crash never leaves half a file.
     """
     orphan = log_of(path)
     try:
@@ -83,13 +81,9 @@ def create(path: Path, binding: KnowledgeBinding) -> None:
     except FileNotFoundError:
         size = 0
     except OSError as error:
-        raise KnowledgeError(f"cannot be looked at ({error})", where=orphan, do="look at the disk's health") from error
+        raise KnowledgeError(KnowledgeCode.STATUS_UNREADABLE, where=orphan, error=error) from error
     if size > 0:  # SQLite would mix its lessons into the new file
-        raise KnowledgeError(
-            f"is gone, but its log {orphan.name} is still there and may hold lessons",
-            where=path,
-            do="put the file back beside it, or move the log away",
-        )
+        raise KnowledgeError(KnowledgeCode.FILE_GONE, where=path, log=orphan.name)
     with closing(new_database()) as connection:
         meaning = {
             "feature_hash": binding.feature_hash,
@@ -100,22 +94,20 @@ def create(path: Path, binding: KnowledgeBinding) -> None:
         }
         connection.executemany("INSERT INTO binding VALUES (?, ?)", meaning.items())
         image = connection.serialize()
-    unborn = path.with_name(f".{path.name}.unborn")
+    temporary = path.with_name(f".{path.name}.unborn")
     try:
-        with unborn.open("wb") as file:
+        with temporary.open("wb") as file:
             file.write(image)
             file.flush()
             os.fsync(file.fileno())
-        unborn.rename(path)
+        temporary.rename(path)
         fsync_folder(path.parent)
     except OSError as error:
-        raise KnowledgeError(
-            f"cannot be created ({error})", where=path, do="give a path in a folder that may be written and has room"
-        ) from error
+        raise KnowledgeError(KnowledgeCode.NOT_CREATED, where=path, error=error) from error
 
 
 def is_there(path: Path) -> bool:
-    """Whether anything is at `path`; also true where that cannot be told, so that nothing is begun on top of it."""
+    """Return whether anything is at `path`; True if that is unknown, so that no file is made in its place."""
     try:
         path.lstat()
     except FileNotFoundError:
@@ -126,33 +118,27 @@ def is_there(path: Path) -> bool:
 
 
 def require_ours(path: Path) -> None:
-    """Look at the header, before SQLite may touch the file. Raises KnowledgeError if it is no knowledge file."""
-    what_to_do = "give the path of a kurt2rt knowledge file, or of a new one"
+    """Check status and header before SQLite opens the file. Raises KnowledgeError if it is no knowledge file."""
     try:
         status = path.stat()
         if not stat.S_ISREG(status.st_mode):
-            raise KnowledgeError("is a folder or device, not a file", where=path, do=what_to_do)
-        # SQLite's log lies next to one name. A writer under another name does not see the lessons in it, and both
+            raise KnowledgeError(KnowledgeCode.NOT_A_FILE, where=path)
+        # SQLite's log is next to one name. A writer under another name does not see the lessons in it, and both
         # writers overwrite each other's pages.
         if status.st_nlink > 1:
-            raise KnowledgeError(
-                f"has {status.st_nlink} names (hard links), allowed is 1: lessons that a robot writes under "
-                "one name are lost under the other",
-                where=path,
-                do="make a copy (cp), then remove the other names",
-            )
+            raise KnowledgeError(KnowledgeCode.HARD_LINKS, where=path, names=status.st_nlink)
         with path.open("rb") as file:
             header = file.read(_HEADER_BYTES)
     except OSError as error:
-        raise KnowledgeError(f"cannot be read ({error})", where=path, do=what_to_do) from error
+        raise KnowledgeError(KnowledgeCode.UNREADABLE, where=path, error=error) from error
     if not header.startswith(_MAGIC):
-        raise KnowledgeError("is not a knowledge file (no SQLite file)", where=path, do=what_to_do)
+        raise KnowledgeError(KnowledgeCode.NO_SQLITE_FILE, where=path)
     if int.from_bytes(header[_APPLICATION_ID_AT : _APPLICATION_ID_AT + 4], "big") != APPLICATION_ID:
-        raise KnowledgeError("is an SQLite file of another program", where=path, do=what_to_do)
+        raise KnowledgeError(KnowledgeCode.OTHER_PROGRAM, where=path)
 
 
 def without_log(image: bytes) -> bytes:
-    """The same database, marked as one that has no write-ahead log beside it (SQLite's file format, offset 18)."""
+    """Return the bytes of a database, marked as one without a write-ahead log (SQLite's file format, offset 18)."""
     header = bytearray(image[:_HEADER_BYTES])
     header[_LOG_VERSIONS_AT] = b"\x01\x01"
     return bytes(header) + image[_HEADER_BYTES:]
@@ -165,7 +151,7 @@ def connect(path: Path, options: str) -> sqlite3.Connection:
     """
     connection: sqlite3.Connection | None = None
     try:
-        # One thread uses it at a time: the one that opens it reads the lessons, then the writer's thread takes over.
+        # One thread uses it at a time: the opening thread reads the lessons, then the writer's thread takes over.
         connection = sqlite3.connect(
             f"{path.absolute().as_uri()}?{options}",
             uri=True,
@@ -173,11 +159,11 @@ def connect(path: Path, options: str) -> sqlite3.Connection:
             isolation_level=None,
             check_same_thread=False,
         )
-        # A damaged byte must not hide in which row it is: it is kept, and what reads the row refuses it.
+        # A damaged byte is kept as a surrogate: the check of the row then refuses it by number.
         connection.text_factory = lambda text: text.decode(errors="surrogateescape")
-        # Lessons are read once and appended to: SQLite's own 2 MB of cache would keep what nobody reads again.
+        # Lessons are read once, then appended to: SQLite's default cache of 2 MB would hold pages without use.
         connection.execute(f"PRAGMA cache_size = {-_CACHE_KIB}")
-        connection.execute("PRAGMA trusted_schema = OFF")  # a schema calls no function that has a side effect
+        connection.execute("PRAGMA trusted_schema = OFF")  # a schema may call no function with a side effect
         (version,) = connection.execute("PRAGMA user_version").fetchone()
     except sqlite3.Error as error:
         if connection is not None:
@@ -193,14 +179,14 @@ def connect(path: Path, options: str) -> sqlite3.Connection:
     return connection
 
 
-def connect_to_look(path: Path) -> sqlite3.Connection:
-    """Connect to a file that is ours, to read alone. Raises KnowledgeError."""
+def connect_read_only(path: Path) -> sqlite3.Connection:
+    """Connect to a knowledge file for reading. Raises KnowledgeError."""
     if is_there(log_of(path)):
         return connect(path, "mode=ro")
     if not (os.access(path, os.W_OK) and os.access(path.parent, os.W_OK)):
         return connect(path, "mode=ro&immutable=1")  # SQLite cannot put a log there, and without a log needs none
-    # Even to read, SQLite puts a log beside the file; who may not write there cannot take it away again. Whether a
-    # robot has begun meanwhile only SQLite can tell: it removes the log when the last one closes.
+    # SQLite makes a log next to the file even to read. Only SQLite knows whether a robot has started meanwhile: it
+    # removes the log when the last connection closes.
     connection = connect(path, "mode=rw")
     try:
         connection.execute("PRAGMA query_only = ON")
@@ -215,59 +201,54 @@ def _lock_of(path: Path) -> Path:
 
 
 def log_of(path: Path) -> Path:
-    """SQLite's write-ahead log beside the file: the newest lessons stand in it until it is merged."""
+    """Return the path of SQLite's write-ahead log, which holds the newest lessons until it is merged."""
     return path.with_name(path.name + "-wal")
 
 
 def identities(path: Path) -> tuple[tuple[int, int] | None, ...]:
-    """Which files (device, inode) stand at the place of journal and log; None: none does. Raises KnowledgeError."""
+    """Return (device, inode) of journal and log; None for a file that is not there. Raises KnowledgeError."""
     found: list[tuple[int, int] | None] = []
     for each in (path, log_of(path)):
         try:
             status = each.stat()
         except FileNotFoundError:
             found.append(None)
-        except OSError as error:  # not knowing is not the same as knowing that it is gone
-            raise KnowledgeError(
-                f"cannot be looked at ({error})", where=each, do="look at the disk's health"
-            ) from error
+        except OSError as error:  # an unknown state does not mean that it is gone
+            raise KnowledgeError(KnowledgeCode.STATUS_UNREADABLE, where=each, error=error) from error
         else:
             found.append((status.st_dev, status.st_ino))
     return tuple(found)
 
 
 def make_durable(connection: sqlite3.Connection, path: Path) -> None:
-    """What stands there is on the disk, and every commit when it returns, from now on.
+    """Sync the content of the file to the disk, and have every later commit synced before it returns.
 
-    Raises KnowledgeError if the file cannot do that.
+    Raises:
+        KnowledgeError: the disk is read-only, full, or cannot hold a write-ahead log.
     """
     try:
         (mode,) = connection.execute("PRAGMA journal_mode = WAL").fetchone()
         connection.execute("PRAGMA synchronous = FULL")
         connection.execute("BEGIN IMMEDIATE")  # finds a read-only or full disk now, not at the first lesson
         connection.execute("ROLLBACK")
-        # What a program wrote that was killed before it was synced is shown by the kernel, and lost if the power goes:
-        # what is found here counts as saved, so it is written to the disk anew.
+        # A killed program may have left pages that the kernel shows and no disk has. Lessons found here count as
+        # saved, so they are synced again.
         busy, in_log, merged = connection.execute("PRAGMA wal_checkpoint(PASSIVE)").fetchone()
-        if busy or merged < in_log:  # somebody reads in it, and what he does not see yet stays in the log
+        if busy or merged < in_log:  # a reader of older pages keeps the rest in the log
             fsync_file(log_of(path))
             fsync_folder(path.parent)
     except sqlite3.Error as error:
         raise from_sqlite(error, path) from error
     except OSError as error:
-        raise KnowledgeError(
-            f"its log cannot be synced ({error})", where=path, do="look at the disk's health"
-        ) from error
+        raise KnowledgeError(KnowledgeCode.LOG_NOT_SYNCED, where=path, error=error) from error
     if mode != "wal":
-        raise KnowledgeError(
-            f"its disk cannot hold an SQLite log (mode {mode})", where=path, do="give a path on a local disk"
-        )
+        raise KnowledgeError(KnowledgeCode.NO_WRITE_AHEAD_LOG, where=path, mode=mode)
 
 
 def complete(connection: sqlite3.Connection, path: Path, levels: Mapping[str, LevelFeatures]) -> None:
-    """Add what a file lacks that was begun by an earlier kurt2rt, or without these levels. Raises KnowledgeError.
+    """Add the tables of a newer kurt2rt and the levels that the file lacks. Raises KnowledgeError.
 
-    Levels that it has with other features are bound anew: nothing must have been taught there.
+    A level that the file has with other features is bound to these; no lesson may be about it.
     """
     known = read_binding(connection, path).levels
     missing = {level: features for level, features in levels.items() if known.get(level) != features}
@@ -290,7 +271,7 @@ def complete(connection: sqlite3.Connection, path: Path, levels: Mapping[str, Le
 
 
 def has_lessons(connection: sqlite3.Connection, path: Path, level: str) -> bool:
-    """Whether any lesson, of those that were undone too, is about a level other than basic. Raises KnowledgeError."""
+    """Return whether any lesson, undone ones included, is about `level`, other than basic. Raises KnowledgeError."""
     about = f'"level":{json.dumps(level)}'  # as events are written; within a name its quotes would be escaped
     try:
         found = connection.execute("SELECT 1 FROM lesson WHERE instr(event, ?) LIMIT 1", (about,)).fetchone()
@@ -300,7 +281,7 @@ def has_lessons(connection: sqlite3.Connection, path: Path, level: str) -> bool:
 
 
 def read_binding(connection: sqlite3.Connection, path: Path) -> KnowledgeBinding:
-    """Read what the file is bound to. Raises KnowledgeError."""
+    """Return what the file is bound to. Raises KnowledgeError."""
     try:
         meaning: dict[str, str] = dict(connection.execute("SELECT key, value FROM binding"))
         names = json.loads(meaning["feature_names"])
@@ -310,9 +291,7 @@ def read_binding(connection: sqlite3.Connection, path: Path) -> KnowledgeBinding
     except sqlite3.Error as error:
         raise from_sqlite(error, path) from error
     except (KeyError, TypeError, ValueError, RecursionError) as error:
-        raise KnowledgeError(
-            f"table binding is damaged ({error!r})", where=path, do="keep the file, and go on with a backup copy"
-        ) from error
+        raise KnowledgeError(KnowledgeCode.BINDING_DAMAGED, where=path, error=repr(error)) from error
 
 
 def _level_rows(levels: Mapping[str, LevelFeatures]) -> dict[str, str]:

@@ -7,6 +7,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from kurt2rt.knowledge.journal.statistics_tables import LATER_TABLES
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError, from_sqlite
 
 APPLICATION_ID = 0x4B525432
@@ -41,19 +42,13 @@ def require_our_mark(connection: sqlite3.Connection, path: Path) -> None:
     except sqlite3.Error as error:
         raise from_sqlite(error, path) from error
     if application_id != APPLICATION_ID:
-        raise KnowledgeError(
-            "is an SQLite file of another program", where=path, do="give the path of a kurt2rt knowledge file"
-        )
+        raise KnowledgeError(KnowledgeCode.OTHER_PROGRAM, where=path)
 
 
 def require_known_version(version: int, path: Path) -> None:
     """Raise KnowledgeError for a format that only a newer kurt2rt reads."""
     if version > FORMAT_VERSION:
-        raise KnowledgeError(
-            f"has format {version} of a newer kurt2rt, this one knows up to {FORMAT_VERSION}",
-            where=path,
-            do="update kurt2rt",
-        )
+        raise KnowledgeError(KnowledgeCode.NEWER_FORMAT, where=path, version=version, allowed=FORMAT_VERSION)
 
 
 def require_our_schema(connection: sqlite3.Connection, path: Path) -> None:
@@ -76,11 +71,7 @@ def require_our_schema(connection: sqlite3.Connection, path: Path) -> None:
         else:
             foreign = kind != "table" or not text.upper().startswith("CREATE TABLE ")
         if foreign:
-            raise KnowledgeError(
-                f"holds a {kind} {name!r} that kurt2rt did not make",
-                where=path,
-                do="it may be damaged or meant to harm: go on with a backup copy",
-            )
+            raise KnowledgeError(KnowledgeCode.FOREIGN_SCHEMA, where=path, kind=kind, name=name)
 
 
 @lru_cache(maxsize=1)

@@ -1,4 +1,4 @@
-"""Opens the knowledge of a task on a robot."""
+"""Loading of the knowledge of a task on a robot."""
 
 import math
 from dataclasses import dataclass
@@ -8,6 +8,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.definition import load_situation
+from kurt2rt.core.rla.programs import PROGRAMS
 from kurt2rt.core.rla.rla import CRITIC, MID, TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
@@ -16,13 +17,14 @@ from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatib
 from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.durable_files import make_folder
 
 
 @dataclass(frozen=True, slots=True)
 class OpenedKnowledge:
-    """A journal to teach on with, and what it holds already."""
+    """A journal open for teaching, and what it holds already."""
 
     journal: Journal
     entries: tuple[StoredEntry, ...]
@@ -34,37 +36,36 @@ class OpenedKnowledge:
 
     @property
     def events(self) -> list[TeachingEvent]:
-        """What the RLA system is the fold of."""
+        """Return the teaching events that the RLA system is the fold of."""
         return [entry.event for entry in self.entries]
 
     @property
     def stamps(self) -> dict[str, str]:
-        """When each command was written, UTC, ISO 8601, by command id."""
+        """Return the stamp of each row (UTC, ISO 8601) by command id."""
         return {entry.event.origin.command_id: entry.stamped_at for entry in self.entries}
 
 
 def open_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> Journal:
-    """The journal at `path`, made when there is none, with its folder.
+    """Open the journal at `path`, or make one there, with its folder.
 
-    Raises KnowledgeError for one that does not belong here, or where none can be made.
+    Raises:
+        KnowledgeError: the journal belongs to other features or another task, or none can be made.
     """
     binding = binding_for(settings, task)
     try:
         make_folder(path.parent)
     except OSError as error:
-        raise KnowledgeError(
-            f"cannot be made ({error})", where=path.parent, do="give a file in another folder"
-        ) from error
+        raise KnowledgeError(KnowledgeCode.FOLDER_NOT_MADE, where=path.parent, error=error) from error
     return Journal.open(path, binding)
 
 
 def open_for_teaching(path: Path, settings: RobotSettings, task: TaskSettings) -> OpenedKnowledge:
-    """The journal at `path`, what it holds already, and its counts to count on from. Raises as `open_knowledge`."""
+    """Open the journal at `path` with its lessons and counts; raises as `open_knowledge`, also for a damaged file."""
     journal = open_knowledge(path, settings, task)
     try:
-        _require_sound(journal)
+        _require_integrity(journal)
         entries, saved = tuple(journal.entries()), journal.statistics()
-        fold_entries(journal, entries, radius=math.inf)  # one that does not fold is refused, with file and row
+        fold_entries(journal, entries, radius=math.inf)  # refuses lessons that do not fold, with file and row
     except BaseException:
         journal.close()
         raise
@@ -72,30 +73,41 @@ def open_for_teaching(path: Path, settings: RobotSettings, task: TaskSettings) -
     return OpenedKnowledge(journal, entries, counter, saved)
 
 
-def _require_sound(journal: Journal) -> None:
-    integrity_errors = journal.integrity_errors()
-    if integrity_errors:  # a page that stands in another's place hides lessons, and nothing else would tell
-        first = integrity_errors[0].removeprefix(f"{journal.path}: ")
-        raise KnowledgeError(
-            f"the file is damaged ({first})", where=journal.path, do="keep it, and go on with a backup copy"
-        )
+def _require_integrity(journal: Journal) -> None:
+    errors = journal.integrity_errors()
+    if errors:  # a page in another's place hides lessons, which no later check notices
+        raise errors[0]
 
 
 def read_lessons(
     path: Path, settings: RobotSettings, task: TaskSettings, *, in_writer_process: bool = False
 ) -> list[TeachingEvent]:
-    """All teaching events of the file at `path`, also while a robot writes it. Raises KnowledgeError.
+    """Return all teaching events of the file at `path`, also while a robot writes it.
 
-    `in_writer_process`: it may be this very process that writes it.
+    Args:
+        path: of the knowledge file.
+        settings: of the robot.
+        task: of the robot.
+        in_writer_process: this very process may be the one that writes it.
+
+    Raises:
+        KnowledgeError: the file cannot be read, or belongs to other features or another task.
     """
     with Journal.in_writer_process(path) if in_writer_process else Journal.read_only(path) as journal:
         return _read_fitting(journal, path, settings, task)[0]
 
 
 def read_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> tuple[list[TeachingEvent], Statistics]:
-    """The same with the statistics of the same moment. Raises KnowledgeError."""
+    """Return teaching events and statistics of one moment; raises as `read_lessons`."""
     with Journal.read_only(path) as journal:
         return _read_fitting(journal, path, settings, task)
+
+
+def read_teachers(path: Path) -> tuple[str, ...]:
+    """Return the names of the people who taught in the file at `path`, the first one first. Raises KnowledgeError."""
+    with Journal.read_only(path) as journal:
+        names = dict.fromkeys(event.origin.teacher for event in journal.events())
+    return tuple(name for name in names if name not in PROGRAMS)
 
 
 def _read_fitting(
@@ -108,7 +120,7 @@ def _read_fitting(
 
 
 def binding_for(settings: RobotSettings, task: TaskSettings) -> KnowledgeBinding:
-    """What knowledge of a task on a robot is bound to. Raises hal.settings.SettingsError."""
+    """Return what knowledge of a task on a robot is bound to. Raises hal.settings.SettingsError."""
     sensors = settings.infrared.names
     definition = load_situation(task.situation, sensors)
     levels = {CRITIC: load_critic(task.critic).level_features}

@@ -1,4 +1,4 @@
-"""The statistics' tables in a knowledge file, and what to write where they have changed."""
+"""Tables of the statistics in a knowledge file, and the statements that write changes of them."""
 
 import sqlite3
 from collections.abc import Mapping, Sequence
@@ -18,40 +18,40 @@ LATER_TABLES = {
         mean BLOB NOT NULL, squares BLOB NOT NULL
     ) STRICT""",
 }
-"""Tables that files of an earlier kurt2rt lack: there they are read as empty. An earlier one leaves them alone."""
+"""Tables that files of an earlier kurt2rt lack, which are read as empty then; an earlier kurt2rt ignores them."""
 
 
-class Change(NamedTuple):
-    """A statement, and the rows that it is carried out for."""
+class TableChange(NamedTuple):
+    """SQL statement, and the rows that it is executed for."""
 
     statement: str
     rows: Sequence[tuple[float | str | bytes, ...]]
 
 
 class _Table(NamedTuple):
-    """One value behind its key."""
+    """Table of one value per key."""
 
     name: str
     columns: tuple[str, ...]
-    """Its key, the value behind it."""
+    """Those of the key, then the one of the value."""
 
     def read(self, connection: sqlite3.Connection) -> dict[Any, Any]:
-        """Its content, by an RLA's id, a pair of two or a name; empty where a file lacks it that may."""
+        """Return the content by key (RLA id, pair of RLA ids, or name); empty if the file lacks a later table."""
         if self.name in LATER_TABLES and not has_table(connection, self.name):
             return {}
         columns, keys = ", ".join(self.columns), ", ".join(self.columns[:-1])
         rows = connection.execute(f"SELECT {columns} FROM {self.name} ORDER BY {keys}")
         return {key[0] if len(key) == 1 else tuple(key): value for *key, value in rows}
 
-    def changes(self, before: Mapping[Any, float], after: Mapping[Any, float]) -> list[Change]:
-        """Statements that make the one content out of the other, none where they are the same."""
+    def changes(self, before: Mapping[Any, float], after: Mapping[Any, float]) -> list[TableChange]:
+        """Return the statements that turn the content `before` into `after`."""
         keys = " AND ".join(f"{column} = ?" for column in self.columns[:-1])
         marks = ", ".join("?" for _ in self.columns)
         gone = [_key(key) for key in before.keys() - after.keys()]
         written = [(*_key(key), value) for key, value in after.items() if before.get(key) != value]
         both = [
-            Change(f"DELETE FROM {self.name} WHERE {keys}", gone),
-            Change(f"INSERT OR REPLACE INTO {self.name} VALUES ({marks})", written),
+            TableChange(f"DELETE FROM {self.name} WHERE {keys}", gone),
+            TableChange(f"INSERT OR REPLACE INTO {self.name} VALUES ({marks})", written),
         ]
         return [change for change in both if change.rows]
 
@@ -64,7 +64,7 @@ _NUMBERS = _Table("number", ("name", "value"))
 
 
 def read_statistics(connection: sqlite3.Connection) -> Statistics:
-    """The statistics as they stand in the file. Raises sqlite3.Error."""
+    """Return the statistics as they stand in the file. Raises sqlite3.Error."""
     return Statistics(
         _USES.read(connection),
         _TRANSITIONS.read(connection),
@@ -75,8 +75,8 @@ def read_statistics(connection: sqlite3.Connection) -> Statistics:
     )
 
 
-def changes(before: Statistics, after: Statistics) -> list[Change]:
-    """What makes the one out of the other: only rows that differ, to spare the flash disk."""
+def changes(before: Statistics, after: Statistics) -> list[TableChange]:
+    """Return the statements that turn `before` into `after`: only rows that differ, to spare the flash disk."""
     return [
         *_USES.changes(before.uses, after.uses),
         *_TRANSITIONS.changes(before.transitions, after.transitions),
@@ -88,7 +88,7 @@ def changes(before: Statistics, after: Statistics) -> list[Change]:
 
 
 def has_table(connection: sqlite3.Connection, name: str) -> bool:
-    """Whether the file has that table. Raises sqlite3.Error."""
+    """Return whether the file has the table. Raises sqlite3.Error."""
     found = connection.execute("SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = ?", (name,))
     return found.fetchone() is not None
 
@@ -104,8 +104,8 @@ def _read_expectations(connection: sqlite3.Connection) -> dict[int, Expectation]
     return {rla_id: Expectation(*values) for rla_id, *values in rows}
 
 
-def _expectation_changes(before: Mapping[int, Expectation], after: Mapping[int, Expectation]) -> list[Change]:
-    """Whose expectation is the same object has not changed: so a large table is gone through in microseconds."""
+def _expectation_changes(before: Mapping[int, Expectation], after: Mapping[int, Expectation]) -> list[TableChange]:
+    """Return the changes; an expectation that is the same object is skipped, so a large table takes microseconds."""
     gone = [(rla_id,) for rla_id in before.keys() - after.keys()]
     written = [
         (rla_id, each.lesson, each.count, each.ticks, each.packed_mean, each.packed_squares)
@@ -113,7 +113,7 @@ def _expectation_changes(before: Mapping[int, Expectation], after: Mapping[int, 
         if before.get(rla_id) is not each and before.get(rla_id) != each
     ]
     both = [
-        Change("DELETE FROM expectation WHERE rla_id = ?", gone),
-        Change("INSERT OR REPLACE INTO expectation VALUES (?, ?, ?, ?, ?, ?)", written),
+        TableChange("DELETE FROM expectation WHERE rla_id = ?", gone),
+        TableChange("INSERT OR REPLACE INTO expectation VALUES (?, ?, ?, ?, ?, ?)", written),
     ]
     return [change for change in both if change.rows]

@@ -1,4 +1,4 @@
-"""The journal's writer: a thread that makes lessons durable while the tick goes on."""
+"""Writer of the journal: a thread that makes lessons durable while the tick goes on."""
 
 import math
 import queue
@@ -15,33 +15,34 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
 from kurt2rt.knowledge.journal.event_codec import encode_event
 from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError, ReconnectRequiredError
 
 HANGS_AFTER_S = 3.0
-"""A disk that has lessons to keep and makes no headway for so long hangs."""
+"""A disk hangs if lessons wait and none was written for so long."""
 
 
 @dataclass(frozen=True, slots=True)
 class Acknowledgement:
-    """What became of a submitted lesson: durable at `sequence`, or never to be written because of `error`."""
+    """Result of a submitted lesson: durable at `sequence`, or never to be written because of `error`."""
 
     command_id: str
     sequence: int | None
     error: str | None
     stamped_at: str
-    """When its row was written, UTC, ISO 8601; empty where there is an error."""
+    """Stamp of its row, UTC, ISO 8601; empty if there is an error."""
 
 
 @dataclass(frozen=True, slots=True)
 class RetryDelays:
-    """How long the writer waits before it tries a failing disk again: doubled each time, up to the longest."""
+    """Delays before the writer tries a failing disk again: doubled each time, up to the longest."""
 
     first_s: float = 0.1
     longest_s: float = 2.0
 
 
 class _Flush:
-    """Queue token: somebody waits until what came before it is durable, or never will be."""
+    """Queue token: a thread waits until what came before it is durable, or never will be."""
 
     def __init__(self) -> None:
         self.durable = False
@@ -49,19 +50,19 @@ class _Flush:
 
 
 class _Stop:
-    """Queue token: no more comes."""
+    """Queue token: the last item."""
 
 
 def utc_now() -> str:
-    """The wall clock as UTC in ISO 8601, to the millisecond."""
+    """Return the wall clock as UTC in ISO 8601, to the millisecond."""
     return datetime.now(UTC).isoformat(timespec="milliseconds")
 
 
 class JournalWriter:
-    """Owns a journal from now on, and closes it. Lessons are written in the order of `submit`; none is ever dropped.
+    """Owner of a journal, which writes lessons in the order of `submit`, drops none, and closes the journal.
 
-    On a failing disk the lessons wait, `trouble` says why (the robot must stand meanwhile), and the writer tries again
-    until it succeeds.
+    On a failing disk the lessons wait, `trouble` tells the cause (the robot must stand meanwhile), and the writer tries
+    again until it succeeds.
     """
 
     def __init__(
@@ -71,12 +72,12 @@ class JournalWriter:
         retry: RetryDelays | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """`now` stamps the rows; `clock`, in seconds, tells when a write hangs."""
+        """Start the thread; `now` stamps the rows, `clock` (seconds) tells whether a write hangs."""
         self._failure: str | None = None
         self._journal = journal
         self._now = now
         self._clock = clock
-        self._headway_at_s = -math.inf
+        self._progress_at_s = -math.inf
         self._retry = retry or RetryDelays()
         # SimpleQueue.put never waits for the thread at the other end; a lock of our own could make the tick wait.
         self._inbox: queue.SimpleQueue[TeachingEvent | Statistics | _Flush | _Stop] = queue.SimpleQueue()
@@ -86,47 +87,47 @@ class JournalWriter:
         self._submitted = 0
         self._settled = 0
         self.last_write_s: float | None = None
-        """How long the disk took to keep the last lessons; None before the first."""
-        # The worker's own, from here on.
+        """Duration of the last write of lessons in seconds; None before the first."""
+        # From here on, only the thread uses these.
         self._waiting: list[JournalEntry] = []
         self._statistics: Statistics | None = None
         self._flushes: list[_Flush] = []
-        self._stuck = False
+        self._reconnects = False
         self._thread = threading.Thread(target=self._run, name="knowledge journal", daemon=True)
         self._thread.start()
 
     @property
     def error(self) -> str | None:
-        """One line: what, where, what to do; None while lessons become durable."""
-        if self._failure is None and self.unwritten and self._clock() - self._headway_at_s > HANGS_AFTER_S:
+        """Return one line (where, what is wrong, what to do); None while lessons become durable."""
+        if self._failure is None and self.unwritten and self._clock() - self._progress_at_s > HANGS_AFTER_S:
             return f"{self._journal.path}: the disk does not answer; {self.unwritten} lessons wait; look at its health"
         return self._failure
 
     @property
     def unwritten(self) -> int:
-        """Lessons submitted and not yet settled."""
+        """Return the number of lessons submitted and not yet acknowledged."""
         return self._submitted - self._settled
 
     @property
     def is_alive(self) -> bool:
-        """Whether its thread still works; one that ended keeps nothing more."""
+        """Return whether the thread still runs."""
         return self._thread.is_alive()
 
     def submit(self, event: TeachingEvent) -> None:
-        """Hand over a lesson; never waits. Raises KnowledgeError after `close`."""
+        """Queue a lesson; never waits. Raises KnowledgeError after `close`."""
         self._require_open()
         if not self.unwritten:
-            self._headway_at_s = self._clock()
+            self._progress_at_s = self._clock()
         self._submitted += 1
         self._inbox.put(event)
 
     def submit_statistics(self, statistics: Statistics) -> None:
-        """Hand over statistics; never waits. Only the newest that wait are written."""
+        """Queue statistics; never waits. Only the newest that wait are written. Raises KnowledgeError after `close`."""
         self._require_open()
         self._inbox.put(statistics)
 
     def acknowledged(self) -> list[Acknowledgement]:
-        """What was settled since the last call, in the order of `submit`; never waits."""
+        """Return the acknowledgements since the last call, in the order of `submit`; never waits."""
         settled: list[Acknowledgement] = []
         while True:
             try:
@@ -135,18 +136,19 @@ class JournalWriter:
                 return settled
 
     def flush(self, timeout_s: float) -> bool:
-        """Wait until everything handed over before is durable; False when it is not after `timeout_s`."""
+        """Wait until everything queued before is durable; return False if it is not after `timeout_s`."""
         flush = _Flush()
         self._inbox.put(flush)
-        # Put first, then look: a writer that ends after this look still finds it in the inbox.
+        # Queued before the check: a writer that ends after the check still finds it in the inbox.
         if not self._ended:
             flush.settled.wait(timeout_s)
         return flush.durable
 
     def close(self, timeout_s: float = 10.0) -> None:
-        """Flush, then close the journal; waits so long for the disk, all in all.
+        """Flush, then close the journal; waits at most `timeout_s` for the disk.
 
-        Raises KnowledgeError that says why and how many lessons were not written.
+        Raises:
+            KnowledgeError: lessons were not written; field `count` is their number, `reason` the cause.
         """
         if not self._accepting:
             return
@@ -156,8 +158,8 @@ class JournalWriter:
         self._inbox.put(_Stop())
         self._thread.join(max(0.0, until_s - time.monotonic()))
         if self.error is not None or self._thread.is_alive():
-            why = self.error or f"{self._journal.path}: the disk does not answer; look at its health"
-            raise KnowledgeError(why, do=f"closed with {self.unwritten} lessons not written")
+            reason = self.error or f"{self._journal.path}: the disk does not answer; look at its health"
+            raise KnowledgeError(KnowledgeCode.LESSONS_NOT_WRITTEN, reason=reason, count=self.unwritten)
 
     def __enter__(self) -> Self:
         return self
@@ -169,15 +171,13 @@ class JournalWriter:
 
     def _require_open(self) -> None:
         if not self._accepting:
-            raise KnowledgeError("its writer is closed", where=self._journal.path, do="open the journal again to teach")
+            raise KnowledgeError(KnowledgeCode.WRITER_CLOSED, where=self._journal.path)
 
     def _run(self) -> None:
         try:
             self._work()
         except BaseException as error:
-            self._failure = (
-                f"{self._journal.path}: its writer ended by {error!r}; stop the robot program, start it anew"
-            )
+            self._failure = f"{self._journal.path}: its writer ended by {error!r}; restart the robot program"
             raise
         finally:
             self._end()
@@ -198,15 +198,15 @@ class JournalWriter:
     def _work(self) -> None:
         pause_s = 0.0
         while True:
-            stop = self._take_in(pause_s)
+            stop = self._receive(pause_s)
             try:
-                if self._stuck:
+                if self._reconnects:
                     self._journal.reconnect()
-                    self._stuck = False
+                    self._reconnects = False
                 self._write()
             except KnowledgeError as error:
                 self._failure = str(error)
-                self._stuck = self._stuck or isinstance(error, ReconnectRequiredError)
+                self._reconnects = self._reconnects or isinstance(error, ReconnectRequiredError)
                 pause_s = min(max(2 * pause_s, self._retry.first_s), self._retry.longest_s)
             else:
                 self._failure = None
@@ -214,8 +214,8 @@ class JournalWriter:
             if stop:
                 return
 
-    def _take_in(self, pause_s: float) -> bool:
-        """Take everything that was handed over; wait for something to come, or while the disk fails, all the pause."""
+    def _receive(self, pause_s: float) -> bool:
+        """Sort everything queued and return whether to stop; wait for the next item, or the whole pause."""
         until_s = time.monotonic() + pause_s
         item = self._inbox.get() if pause_s == 0.0 else None
         while True:
@@ -229,17 +229,17 @@ class JournalWriter:
                 case None:  # only at the start of a pause
                     pass
                 case _:
-                    self._take_event(item)
+                    self._receive_event(item)
             try:
                 item = self._inbox.get(timeout=max(0.0, until_s - time.monotonic()))
             except queue.Empty:
                 return False
 
-    def _take_event(self, event: TeachingEvent) -> None:
+    def _receive_event(self, event: TeachingEvent) -> None:
         try:
             encode_event(event)
-        except KnowledgeError as error:  # trying again would not help, and hold up all that come after
-            self._settle(_refused(event.origin.command_id, str(error)))
+        except KnowledgeError as error:  # another try would fail too, and delay all later lessons
+            self._acknowledge(_refused(event.origin.command_id, str(error)))
         else:
             self._waiting.append(JournalEntry(event, self._now()))
 
@@ -250,7 +250,7 @@ class JournalWriter:
             self.last_write_s = self._clock() - begun_s
             self._waiting = []
             for receipt in receipts:
-                self._settle(_acknowledgement(receipt))
+                self._acknowledge(_acknowledgement(receipt))
         if self._statistics is not None:
             self._journal.checkpoint(self._statistics)
             self._statistics = None
@@ -259,9 +259,9 @@ class JournalWriter:
             flush.settled.set()
         self._flushes = []
 
-    def _settle(self, acknowledgement: Acknowledgement) -> None:
+    def _acknowledge(self, acknowledgement: Acknowledgement) -> None:
         self._acknowledged.put(acknowledgement)
-        self._headway_at_s = self._clock()
+        self._progress_at_s = self._clock()
         self._settled += 1
 
 

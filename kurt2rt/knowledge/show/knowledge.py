@@ -1,4 +1,4 @@
-"""What `kurt2rt knowledge show` prints: every RLA with who taught it, when, instead of what, and how it is used."""
+"""Output of `kurt2rt knowledge show` and `lessons`: RLAs and lessons as tables and for JSON."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -27,22 +27,28 @@ from kurt2rt.core.rla.statistics import Statistics, follow_ups
 from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.show.level import level_table
-from kurt2rt.knowledge.show.mid import mid_table, named_table
-from kurt2rt.knowledge.show.table_cells import answer, appraised, instead_of, plain, stamp_and_teacher, valued
+from kurt2rt.knowledge.show.level_tables import level_table, mid_table, named_table
+from kurt2rt.knowledge.show.table_cells import (
+    format_action,
+    format_rewards,
+    format_value,
+    printable,
+    replaced_action,
+    stamp_and_teacher,
+)
 from kurt2rt.platform.text_table import TextTable
 
 TICK_S = 0.01
-"""The KURT2's cycle: a knowledge file counts in ticks and does not say how long they last."""
+"""Cycle of the KURT2: a knowledge file counts ticks and does not hold their duration."""
 
-_TELLING_FEATURES = 3
+_LARGEST_FEATURES = 3
 _FOLLOW_UPS = 3
 
 
 def render_knowledge(journal: Journal, limit: int | None = None, *, wide: bool = True) -> RenderableType:
-    """Binding, summary and a table of the RLAs, oldest first, at most `limit` of them. Raises KnowledgeError.
+    """Return binding, summary and a table of the RLAs, oldest first, at most `limit` of them. Raises KnowledgeError.
 
-    `wide` also shows each RLA's largest features and what follows it, for which 80 columns are too few.
+    `wide` adds each RLA's largest features and its successors, for which 80 columns are too few.
     """
     # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
     entries = journal.entries()
@@ -58,22 +64,22 @@ def render_knowledge(journal: Journal, limit: int | None = None, *, wide: bool =
         entry = taught[rla.origin.command_id]
         cells: list[str | Text] = [
             str(rla.rla_id),
-            *((plain(rla.behaviour),) if named else ()),
-            answer(rla),
-            instead_of(entry),
+            *((printable(rla.behaviour),) if named else ()),
+            format_action(rla),
+            replaced_action(entry),
             stamp_and_teacher(entry.stamped_at, rla.origin.teacher),
             f"{rla.origin.phase.value}",
             *((str(rla.origin.tick),) if wide or not any_value else ()),
             str(statistics.uses.get(rla.rla_id, 0)),
-            appraised(system.appraisal(rla.rla_id)),
-            *((valued(statistics.values.get(rla.rla_id)),) if any_value else ()),
+            format_rewards(system.appraisal(rla.rla_id)),
+            *((format_value(statistics.values.get(rla.rla_id)),) if any_value else ()),
         ]
         if wide:
-            cells.append(plain(_telling(rla, journal.binding.feature_names)))
+            cells.append(printable(_largest_features(rla, journal.binding.feature_names)))
             cells.append(_followed_by(shares.get(rla.rla_id, {})))
         table.add_row(*cells)
     hidden = len(rlas) - table.row_count
-    parts: list[RenderableType] = [plain(_bound_to(journal)), plain(_summary(entries, system)), table]
+    parts: list[RenderableType] = [printable(_bound_to(journal)), printable(_summary(entries, system)), table]
     if hidden:
         parts.append(Text(f"and {hidden} more RLAs"))
     for level, features in journal.binding.levels.items():
@@ -92,7 +98,7 @@ def render_knowledge(journal: Journal, limit: int | None = None, *, wide: bool =
 
 
 def render_lessons(journal: Journal, limit: int | None = None, taught_by: str | None = None) -> RenderableType:
-    """All lessons, newest first, at most `limit` of them, with the ids that an undo takes. Raises KnowledgeError.
+    """Return a table of all lessons, newest first, at most `limit` of them, with their ids. Raises KnowledgeError.
 
     `taught_by`: only those of that teacher.
     """
@@ -109,10 +115,10 @@ def render_lessons(journal: Journal, limit: int | None = None, taught_by: str | 
     for record in records[::-1][:limit]:
         origin = record.event.origin
         table.add_row(
-            plain(record.text),
-            plain(origin.command_id),
+            printable(record.text),
+            printable(origin.command_id),
             stamp_and_teacher(stamps[origin.command_id], origin.teacher),
-            plain(undone_by[origin.command_id] if record.undone else ""),
+            printable(undone_by[origin.command_id] if record.undone else ""),
         )
     hidden = len(records) - table.row_count
     return Group(table, Text(f"and {hidden} older lessons")) if hidden else table
@@ -161,7 +167,7 @@ def _rla_as_data(
         "behaviour": rla.behaviour,
         "action": rla.action,
         "asks": rla.is_withdrawn,
-        "instead_of": instead_of(entry).plain,
+        "instead_of": replaced_action(entry).plain,
         "teacher": rla.origin.teacher,
         "phase": rla.origin.phase.value,
         "tick": rla.origin.tick,
@@ -268,13 +274,13 @@ def _how_many(system: RlaSystem) -> str:
     )
 
 
-def _telling(rla: Rla, feature_names: tuple[str, ...]) -> str:
-    """The recent features farthest from 0: a high count is a near obstacle, a wheel speed may be negative."""
+def _largest_features(rla: Rla, feature_names: tuple[str, ...]) -> str:
+    """Return the recent features farthest from 0: a high count is a near obstacle, a wheel speed may be negative."""
     recent = [
         feature for feature in zip(feature_names, rla.condition, strict=True) if not feature[0].endswith(AVERAGED)
     ]
     features = sorted(recent, key=lambda feature: -abs(feature[1]))
-    return ", ".join(f"{name} {value:.0f}" for name, value in features[:_TELLING_FEATURES])
+    return ", ".join(f"{name} {value:.0f}" for name, value in features[:_LARGEST_FEATURES])
 
 
 def _followed_by(shares: Mapping[int, float]) -> str:

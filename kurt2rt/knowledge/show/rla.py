@@ -1,4 +1,4 @@
-"""One RLA, whole: condition, action, and what is expected to follow it (paper, III.A), for `knowledge show --rla`."""
+"""View of one RLA: condition, action and expectation (paper, III.A), for `knowledge show --rla`."""
 
 import math
 from typing import Any
@@ -10,34 +10,28 @@ from kurt2rt.core.expectations.expectations import is_valid_for
 from kurt2rt.core.perception.definition import AVERAGED
 from kurt2rt.core.rla.expectation import Expectation
 from kurt2rt.core.rla.rla import BASIC, Rla
-from kurt2rt.core.rla.statistics import follow_ups
+from kurt2rt.core.rla.statistics import Statistics, follow_ups
 from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.show.knowledge import TICK_S
-from kurt2rt.knowledge.show.table_cells import plain
+from kurt2rt.knowledge.show.table_cells import printable
 from kurt2rt.platform.text_table import TextTable
 
 
 def render_rla(journal: Journal, rla_id: int, limit: int | None = None) -> RenderableType:
-    """What one RLA says, and what followed it: the features that change most come first, at most `limit` of them.
+    """Return one RLA and what followed it, features with the largest change first, at most `limit` of them.
 
-    Raises KnowledgeError where no such RLA lives.
+    Raises KnowledgeError if no such RLA lives.
     """
-    # Lessons first: statistics read later may know more RLAs than are shown, never fewer.
-    system = fold_entries(journal, journal.entries(), radius=math.inf)
-    rla = system.get(rla_id)
-    if rla is None:
-        raise KnowledgeError(f"holds no RLA {rla_id}", where=journal.path, do="kurt2rt knowledge show lists them")
-    statistics = journal.statistics()
-    binding = journal.binding
-    names = binding.feature_names if rla.level == BASIC else binding.levels[rla.level].feature_names
-    known = statistics.expectations.get(rla_id)
-    expectation = known if known is not None and is_valid_for(system, rla_id, known, rla.level) else None
+    rla, names, statistics, expectation = _read(journal, rla_id)
     origin = rla.origin
     uses = statistics.uses.get(rla_id, 0)
     parts: list[RenderableType] = [
-        plain(f"{rla.title}: {rla.action}, taught by {origin.teacher} in phase {origin.phase.value}, used {uses} times")
+        printable(
+            f"{rla.title}: {rla.action}, taught by {origin.teacher} in phase {origin.phase.value}, used {uses} times"
+        )
     ]
     shares = follow_ups(statistics).get(rla_id, {})
     if shares:
@@ -56,27 +50,39 @@ def expectation_data(journal: Journal, rla_id: int) -> dict[str, Any] | None:
 
     Raises KnowledgeError if no such RLA lives.
     """
+    _, names, _, expectation = _read(journal, rla_id)
+    if expectation is None:
+        return None
+    return {
+        "ends_seen": expectation.count,
+        "after_s": expectation.ticks * TICK_S,
+        "mean": dict(zip(names, expectation.mean.tolist(), strict=True)),
+        "spread": dict(zip(names, expectation.spread.tolist(), strict=True)),
+    }
+
+
+def _read(journal: Journal, rla_id: int) -> tuple[Rla, tuple[str, ...], Statistics, Expectation | None]:
+    """Return an RLA, the names of its features, the statistics, and its expectation; KnowledgeError if it is gone."""
+    # Lessons first: statistics read later may know more RLAs than the fold, never fewer.
     system = fold_entries(journal, journal.entries(), radius=math.inf)
     rla = system.get(rla_id)
     if rla is None:
-        raise KnowledgeError(f"holds no RLA {rla_id}", where=journal.path, do="kurt2rt knowledge show lists them")
-    binding = journal.binding
+        raise KnowledgeError(KnowledgeCode.NO_SUCH_RLA, where=journal.path, rla_id=rla_id)
+    statistics, binding = journal.statistics(), journal.binding
     names = binding.feature_names if rla.level == BASIC else binding.levels[rla.level].feature_names
-    known = journal.statistics().expectations.get(rla_id)
-    if known is None or not is_valid_for(system, rla_id, known, rla.level):
-        return None
-    return {
-        "ends_seen": known.count,
-        "after_s": known.ticks * TICK_S,
-        "mean": dict(zip(names, known.mean.tolist(), strict=True)),
-        "spread": dict(zip(names, known.spread.tolist(), strict=True)),
-    }
+    known = statistics.expectations.get(rla_id)
+    return (
+        rla,
+        names,
+        statistics,
+        known if known is not None and is_valid_for(system, rla_id, known, rla.level) else None,
+    )
 
 
 def _features(rla: Rla, names: tuple[str, ...], expectation: Expectation | None, limit: int | None) -> RenderableType:
     mean = None if expectation is None else expectation.mean.tolist()
     spread = None if expectation is None else expectation.spread.tolist()
-    # Averages over seconds say little of what one RLA changed.
+    # Averages over seconds hardly show what one RLA changed: they come last.
     farthest = rla.condition if mean is None else [then - now for then, now in zip(mean, rla.condition, strict=True)]
     order = sorted(range(len(names)), key=lambda place: (names[place].endswith(AVERAGED), -abs(farthest[place])))
     table = TextTable()
@@ -86,11 +92,11 @@ def _features(rla: Rla, names: tuple[str, ...], expectation: Expectation | None,
         cells = [_number(rla.condition[place])]
         if mean is not None and spread is not None:
             cells += [_number(mean[place]), f"±{_number(spread[place])}"]
-        table.add_row(plain(names[place]), *cells)
+        table.add_row(printable(names[place]), *cells)
     hidden = len(names) - table.row_count
     return Group(table, Text(f"and {hidden} more features")) if hidden else table
 
 
 def _number(value: float) -> str:
-    """Counts whole, metres and shares with their decimals."""
+    """Format a count as a whole number, metres and fractions with two decimals."""
     return f"{value:.0f}" if abs(value) >= 10 else f"{value:.2f}".rstrip("0").rstrip(".")

@@ -1,4 +1,4 @@
-"""Cells of the tables in which knowledge is shown."""
+"""Cells of the tables that show knowledge."""
 
 from rich.text import Text
 
@@ -9,34 +9,34 @@ from kurt2rt.knowledge.journal.entry import StoredEntry
 _ASKS = "asks again"
 
 
-def plain(text: str) -> Text:
-    """Names are shown as they are: neither rich's markup nor a terminal's escape sequences act."""
+def printable(text: str) -> Text:
+    """Return the text without markup; characters that are not printable, as in escape sequences, are replaced."""
     return Text("".join(character if character.isprintable() else "\N{REPLACEMENT CHARACTER}" for character in text))
 
 
 def stamp_and_teacher(stamped_at: str, teacher: str) -> Text:
-    """To the second."""
-    return plain(f"{stamped_at[:19].replace('T', ' ')}, {teacher}")
+    """Return a stamp to the second, and the teacher."""
+    return printable(f"{stamped_at[:19].replace('T', ' ')}, {teacher}")
 
 
-def answer(rla: Rla) -> Text:
-    """Its action, or that it was withdrawn."""
-    return plain(_ASKS if rla.is_withdrawn else rla.action)
+def format_action(rla: Rla) -> Text:
+    """Return the RLA's action, or that it was withdrawn."""
+    return printable(_ASKS if rla.is_withdrawn else rla.action)
 
 
-def instead_of(entry: StoredEntry) -> Text:
-    """The action before that of the entry that an RLA's present action is from; empty for its first one."""
+def replaced_action(entry: StoredEntry) -> Text:
+    """Return the action that an RLA's present action replaced; empty for its first one. `entry` set the present one."""
     before = entry.event.instead_of if isinstance(entry.event, ActionReplaced | ActionWithdrawn) else ""
-    return plain(before)
+    return printable(before)
 
 
-def appraised(appraisal: Appraisal) -> str:
-    """Such as +3 -1; nothing where nobody said anything."""
+def format_rewards(appraisal: Appraisal) -> str:
+    """Return counts of rewards such as +3 -1; empty if there are none."""
     return " ".join(
         f"{sign}{count}" for sign, count in (("+", appraisal.rewards), ("-", appraisal.punishments)) if count
     )
 
 
-def valued(value: float | None) -> str:
-    """The value that rewards made; nothing where there is none."""
+def format_value(value: float | None) -> str:
+    """Return a value of rewards, which has no unit, with two decimals; empty if there is none."""
     return "" if value is None else f"{value:.2f}"

@@ -1,4 +1,4 @@
-"""Which RLA of some file answers where one of another file does: what would contradict it."""
+"""Contradictions between RLAs of two files: different actions at nearly the same condition."""
 
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
@@ -17,24 +17,26 @@ from kurt2rt.core.task_settings import TaskSettings
 
 
 class Radii(NamedTuple):
-    """How near two conditions are the same, in the distances of a task."""
+    """Distances of a task within which two conditions count as the same."""
 
     spaces: Mapping[str, Space]
     """By level."""
     fractions: Mapping[str, float]
-    """By level: within this share of R a correction replaces, and does not insert."""
+    """Fraction of R within which a correction replaces an RLA and does not insert one, by level."""
 
 
 class Overlap(NamedTuple):
-    """An RLA, and how far it is."""
+    """An RLA that is near a condition."""
 
     rla: Rla
     distance: float
+    """From the condition, in the distance unit of the task."""
     radius: float
+    """R of the RLA, in the same unit."""
 
 
 def load_radii(task: TaskSettings, robot: RobotSettings) -> Radii:
-    """Those of a task on a robot. Raises hal.settings.SettingsError."""
+    """Return the radii of a task on a robot. Raises hal.settings.SettingsError."""
     definition = load_situation(task.situation, robot.infrared.names)
     changed = ((each.features, each.weight) for each in task.learning.weights)
     weights = feature_weights(definition, changed, task.learning.past_weight, task.name)
@@ -52,23 +54,23 @@ def load_radii(task: TaskSettings, robot: RobotSettings) -> Radii:
 
 
 class Contradictions:
-    """RLAs of one file, asked which of them says something else at the condition of another file's RLA."""
+    """Search for RLAs of one file that contradict an RLA of another file."""
 
-    def __init__(self, rlas: Iterable[Rla], borders: Radii) -> None:
-        """Of levels that the task does not have nothing is near. RLAs that ask contradict nobody."""
-        self._shares = borders.fractions
-        basic = borders.spaces[BASIC]
-        self._system = RlaSystem(basic.dimensions, basic.radius, basic.weights, others=borders.spaces)
+    def __init__(self, rlas: Iterable[Rla], radii: Radii) -> None:
+        """Index the RLAs; those that are withdrawn, or of a level that the task does not have, contradict none."""
+        self._fractions = radii.fractions
+        basic = radii.spaces[BASIC]
+        self._system = RlaSystem(basic.dimensions, basic.radius, basic.weights, others=radii.spaces)
         for rla in sorted(rlas, key=lambda each: each.rla_id):
             if not rla.is_withdrawn:
                 self._system.apply(RlaCreated(rla))
 
-    def of(self, rla: Rla) -> Overlap | None:
-        """The nearest to its condition, if it lies within the share of R there and has another action."""
-        share = self._shares.get(rla.level)
-        if share is None:
+    def find(self, rla: Rla) -> Overlap | None:
+        """Return the RLA nearest to the condition of `rla`, if it is within the fraction of R and acts differently."""
+        fraction = self._fractions.get(rla.level)
+        if fraction is None:
             return None
         match = self._system.match(np.array(rla.condition), rla.behaviour, rla.level)
-        if match is None or match.distance > share * match.radius or match.rla.action == rla.action:
+        if match is None or match.distance > fraction * match.radius or match.rla.action == rla.action:
             return None
         return Overlap(match.rla, match.distance, match.radius)

@@ -1,4 +1,4 @@
-"""Changes a knowledge file that no robot runs on: opened again, and written together with what its RLAs are worth."""
+"""Edits of a knowledge file that no robot runs on: events from outside, with the values after them."""
 
 import math
 import os
@@ -19,26 +19,26 @@ from kurt2rt.knowledge.journal.journal_file import require_no_writer
 
 
 def open_for_editing(path: Path) -> Journal:
-    """To write in a file that is there, whatever task it belongs to. Raises KnowledgeError, also while a robot runs."""
-    with Journal.read_only(path) as look:
-        binding = look.binding
+    """Open an existing file for writing, whatever its task. Raises KnowledgeError, also while a robot runs on it."""
+    with Journal.read_only(path) as journal:
+        binding = journal.binding
     return Journal.open(path, binding)
 
 
 def require_no_robot(path: Path) -> None:
-    """Raises KnowledgeError while a robot runs on the file, before a user waits for what comes first."""
+    """Raise KnowledgeError while a robot runs on the file; call it before a user waits for a long preparation."""
     require_no_writer(Path(os.path.realpath(path)))
 
 
-def new_origin(what: str, teacher: str) -> Origin:
-    """Of a change from outside: no robot runs, so there is no tick; to mend what was taught is a correction."""
-    return Origin(f"{what}-{uuid.uuid4().hex}", teacher, Phase.CORRECTIONS, tick=0)
+def new_origin(kind: str, teacher: str) -> Origin:
+    """Return the origin of an event from outside: no robot runs, so its tick is 0; its phase is that of corrections."""
+    return Origin(f"{kind}-{uuid.uuid4().hex}", teacher, Phase.CORRECTIONS, tick=0)
 
 
-def write(journal: Journal, entries: Sequence[JournalEntry], saved: Statistics | None = None) -> None:
-    """Append events that fit, and what values become by them, in one transaction. Raises KnowledgeError.
+def append_with_values(journal: Journal, entries: Sequence[JournalEntry], saved: Statistics | None = None) -> None:
+    """Append events that fit, and the values after them, in one transaction. Raises KnowledgeError.
 
-    `saved`: the statistics to go on from; those of the file unless given.
+    `saved`: the statistics to go on from; None: those of the file.
     """
     before, saved = journal.events(), saved or journal.statistics()
     after = statistics_after(before, [entry.event for entry in entries], saved, len(journal.binding.feature_names))
@@ -48,13 +48,20 @@ def write(journal: Journal, entries: Sequence[JournalEntry], saved: Statistics |
 def statistics_after(
     before: Sequence[TeachingEvent], new: Sequence[TeachingEvent], saved: Statistics, dimensions: int
 ) -> Statistics:
-    """What the statistics become, by the same account as a robot keeps."""
+    """Return the statistics after `new` events, computed as a robot does.
+
+    Args:
+        before: events that `saved` is about.
+        new: events that follow them.
+        saved: statistics after `before`.
+        dimensions: number of features of the basic level.
+    """
     if not saved.values and VALUES_INCLUDE not in saved.numbers:
         return saved  # credits of another rule
     first_value = saved.numbers.get(FIRST_VALUE, TaughtValues().first_value)
     settings = ReinforcementSettings(with_teacher=TaughtValues(first_value=first_value, highest_value=None))
     account = Reinforcement(RlaSystem(dimensions, math.inf), DecisionHistory(dimensions), settings, period_s=0.01)
-    # An earlier kurt2rt did not say how many rows the values include: all that there were.
+    # An earlier kurt2rt did not save how many rows the values include: all rows of that time.
     numbers = {VALUES_INCLUDE: float(len(before)), **saved.numbers}
     account.restore([*before, *new], replace(saved, numbers=numbers))
     return account.snapshot()

@@ -1,4 +1,4 @@
-"""Two knowledge files that began as one: which lesson of the one is which of the other."""
+"""Identity of lessons across knowledge files that began as one."""
 
 import json
 import math
@@ -18,24 +18,25 @@ from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal
 
 StackKey = tuple[str, str] | tuple[str, int, int]
-"""A pile in whichever file: a level and a name, or what created its RLA, and the how manieth of such it was."""
+"""Key of a lesson stack in any file: (level, name) of a situation, or, of the lesson that created the RLA,
+(command id, content CRC-32, occurrence index from 0)."""
 
 NO_STACK: StackKey = ("", "")
-"""Of events that are no lessons."""
+"""Key of events that are no lessons."""
 
 
 class LessonKey(NamedTuple):
-    """Which event it is, in whichever file, and however it is called there."""
+    """Key of an event in any file, whatever its command id there."""
 
     command_id: str
-    """The one that it was taught under."""
+    """The one that it was first taught under."""
     content: int
-    """CRC-32 of what it says, without ids that are of its file."""
+    """CRC-32 of its content, without ids that belong to one file."""
     stack: StackKey
     is_reward: bool
 
-    def name(self, taken: Container[str]) -> str:
-        """Command id for it in a file where those are taken."""
+    def free_command_id(self, taken: Container[str]) -> str:
+        """Return a command id for the event in a file that uses those in `taken`."""
         name, other, number = self.command_id, f"{self.command_id}~{self.content:08x}", 0
         while name in taken:
             number += 1
@@ -45,23 +46,23 @@ class LessonKey(NamedTuple):
 
 @dataclass(frozen=True)
 class KnowledgeContent:
-    """What one file holds, read once."""
+    """Content of one file, read once."""
 
     journal: Journal
-    """Closed, maybe: only its path and binding count."""
+    """May be closed: only path and binding are used."""
     entries: tuple[StoredEntry, ...]
     system: RlaSystem
-    """The fold of all entries; nothing is within reach or out of it there."""
+    """Fold of all entries with an infinite R."""
 
     @property
     def records(self) -> Mapping[str, LessonRecord]:
-        """All lessons by their command id."""
+        """Return all lessons by command id."""
         return {record.event.origin.command_id: record for record in self.system.lessons}
 
     @cached_property
     def lesson_keys(self) -> Mapping[str, LessonKey]:
-        """Of all lessons, in their order, by the command id that they have here."""
-        lesson_keys, created = dict[str, LessonKey](), Counter[tuple[str, int]]()
+        """Return the keys of all lessons, in their order, by command id in this file."""
+        keys, created = dict[str, LessonKey](), Counter[tuple[str, int]]()
         of_rla = dict[LessonStack, StackKey]()
         for record in self.system.lessons:
             lesson = record.event
@@ -71,44 +72,45 @@ class KnowledgeContent:
                 of_rla[stack] = (first, content, created[first, content])
                 created[first, content] += 1
             key = stack if isinstance(stack, tuple) else of_rla[stack]
-            lesson_keys[lesson.origin.command_id] = LessonKey(first, content, key, isinstance(lesson, RlaRewarded))
-        return lesson_keys
+            keys[lesson.origin.command_id] = LessonKey(first, content, key, isinstance(lesson, RlaRewarded))
+        return keys
 
     @cached_property
     def stacks(self) -> Mapping[StackKey, LessonStack]:
-        """All piles that ever were, in their order."""
-        return {
-            self.lesson_keys[record.event.origin.command_id].stack: lesson_stack(record.event)
-            for record in self.system.lessons
-        }
+        """Return all stacks that ever were, in their order."""
+        return {self.key_of(record).stack: lesson_stack(record.event) for record in self.system.lessons}
 
     @cached_property
     def rla_keys(self) -> Mapping[int, StackKey]:
-        """Of all RLAs that ever lived, by their ids here."""
+        """Return the stack keys of all RLAs that ever lived, by RLA id in this file."""
         return {stack: key for key, stack in self.stacks.items() if isinstance(stack, int)}
+
+    def key_of(self, record: LessonRecord) -> LessonKey:
+        """Return the key of a lesson of this file."""
+        return self.lesson_keys[record.event.origin.command_id]
 
 
 def read_content(journal: Journal) -> KnowledgeContent:
-    """Read a file whole. Raises KnowledgeError."""
+    """Read all entries of a file and fold them. Raises KnowledgeError."""
     entries = tuple(journal.entries())
     return KnowledgeContent(journal, entries, fold_entries(journal, entries, radius=math.inf))
 
 
 def event_key(event: TeachingEvent) -> LessonKey:
-    """Of an event that is no lesson."""
+    """Return the key of an event that is no lesson."""
     return LessonKey(*_as_first_taught(event), NO_STACK, is_reward=False)
 
 
-def named(event: TeachingEvent, command_id: str) -> TeachingEvent:
-    """The same event by another command id."""
+def with_command_id(event: TeachingEvent, command_id: str) -> TeachingEvent:
+    """Return a copy of the event with another command id."""
     origin = replace(event.origin, command_id=command_id)
     if isinstance(event, RlaCreated):
         return RlaCreated(replace(event.rla, origin=origin))
     return replace(event, origin=origin)
 
 
-def common_rows(one: Sequence[StoredEntry], other: Sequence[StoredEntry]) -> int:
-    """How many rows both begin with; when each was written does not matter."""
+def count_common_rows(one: Sequence[StoredEntry], other: Sequence[StoredEntry]) -> int:
+    """Return the number of rows that both begin with, whatever their stamps."""
     same = 0
     for mine, theirs in zip(one, other, strict=False):
         if mine.event != theirs.event:
@@ -120,7 +122,7 @@ def common_rows(one: Sequence[StoredEntry], other: Sequence[StoredEntry]) -> int
 def standing_stacks(
     lessons: Iterable[LessonRecord], lesson_keys: Mapping[str, LessonKey]
 ) -> dict[StackKey, tuple[LessonKey, ...]]:
-    """The lessons that stand, by what they are about; the order in which each was put on the other."""
+    """Return the lessons that stand, by stack, the undermost first."""
     stacks = dict[StackKey, tuple[LessonKey, ...]]()
     for record in lessons:
         if not record.undone:
@@ -129,17 +131,17 @@ def standing_stacks(
     return stacks
 
 
-def lessons_up_to(taught: KnowledgeContent, rows: int) -> tuple[LessonRecord, ...]:
-    """The lessons as they were when the file had that many rows."""
-    if rows == len(taught.entries):
-        return taught.system.lessons
-    system = RlaSystem(taught.system.dimensions, math.inf)
-    system.apply_all(entry.event for entry in taught.entries[:rows])
+def lessons_up_to(content: KnowledgeContent, rows: int) -> tuple[LessonRecord, ...]:
+    """Return the lessons as they were after the first `rows` rows."""
+    if rows == len(content.entries):
+        return content.system.lessons
+    system = RlaSystem(content.system.dimensions, math.inf)
+    system.apply_all(entry.event for entry in content.entries[:rows])
     return system.lessons
 
 
 def _as_first_taught(event: TeachingEvent) -> tuple[str, int]:
-    """Command id that an event was taught under, before it was brought anywhere, and the CRC-32 of its content."""
+    """Return the command id of an event before any merge renamed it, and the CRC-32 of its content."""
     first = event.origin.command_id
     content = _content(event, first)
     while "~" in first:

@@ -1,7 +1,8 @@
-"""When two knowledge files last knew of each other: what changed since then changed on one side, or on both."""
+"""Merge base of two knowledge files, and a three-way comparison of each lesson stack."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import Literal
 
 from kurt2rt.core.rla.rla import KnowledgeMerged, LessonRedone, LessonUndone
@@ -10,37 +11,44 @@ from kurt2rt.knowledge.versions.lesson_identity import (
     KnowledgeContent,
     LessonKey,
     StackKey,
-    common_rows,
+    count_common_rows,
     lessons_up_to,
     standing_stacks,
 )
 
 Side = Literal["mine", "theirs"]
-Resolution = Literal["stays", "as there", "both"]
-"""What becomes of a pile here; both: it changed on both sides."""
+
+
+class Resolution(StrEnum):
+    """Result of the comparison of one stack."""
+
+    KEEP_MINE = "keep mine"
+    TAKE_THEIRS = "take theirs"
+    CONFLICT = "conflict"
+    """Both files changed it."""
 
 
 @dataclass(frozen=True, slots=True)
 class MergeBase:
-    """A moment at which one of them took account of all that the other one held."""
+    """A moment at which one of both files contained all that the other one held."""
 
     mine: int
-    """Rows of mine then, what was brought in among them."""
+    """Rows of mine then, those that the merge wrote included."""
     theirs: int
     seen_in: Side
-    """Whose lessons the other one saw."""
+    """File whose lessons the other one saw."""
 
     def is_after(self, other: "MergeBase") -> bool:
-        """Whether it knew all that was known at the other one."""
+        """Return whether all that was known at `other` was known here."""
         return self != other and self.mine >= other.mine and self.theirs >= other.theirs
 
 
 @dataclass(frozen=True)
 class BaseState:
-    """What both knew at a meeting."""
+    """Knowledge that both files had at a merge base."""
 
     stacks: Mapping[StackKey, tuple[LessonKey, ...]]
-    """As they stood in the file that was shown."""
+    """As they stood in the file that was seen."""
     undone_here: frozenset[LessonKey]
     """Lessons that were undone in mine after it."""
     undone_there: frozenset[LessonKey]
@@ -48,25 +56,25 @@ class BaseState:
 
 @dataclass(frozen=True, slots=True)
 class StackPair:
-    """One pile as it stands in both files."""
+    """One stack as it stands in both files."""
 
     mine: tuple[LessonKey, ...]
     theirs: tuple[LessonKey, ...]
 
     @property
     def without_rewards(self) -> "StackPair":
-        """Praise and blame left out."""
-        return StackPair(lessons_of(self.mine), lessons_of(self.theirs))
+        """Return the pair without rewards."""
+        return StackPair(without_rewards(self.mine), without_rewards(self.theirs))
 
 
-def lessons_of(stack: Sequence[LessonKey]) -> tuple[LessonKey, ...]:
-    """The lessons of a pile that are neither praise nor blame: those whose order matters."""
+def without_rewards(stack: Sequence[LessonKey]) -> tuple[LessonKey, ...]:
+    """Return the lessons of a stack that are no rewards: only their order matters."""
     return tuple(key for key in stack if not key.is_reward)
 
 
 def find_merge_bases(mine: Sequence[StoredEntry], theirs: Sequence[StoredEntry]) -> tuple[MergeBase, ...]:
-    """Where they parted, or the last merge of one into the other; two where each was merged into an older other."""
-    common = common_rows(mine, theirs)
+    """Return the last common row or merge; two bases if each file was merged into an older state of the other."""
+    common = count_common_rows(mine, theirs)
     found = [MergeBase(common, common, "mine")]
     for row, seen in _merges(mine, theirs):
         found.append(MergeBase(max(row, common), max(seen, common), "theirs"))
@@ -77,7 +85,7 @@ def find_merge_bases(mine: Sequence[StoredEntry], theirs: Sequence[StoredEntry])
 
 
 def _merges(into: Sequence[StoredEntry], other: Sequence[StoredEntry]) -> list[tuple[int, int]]:
-    """Rows of `into` that say that `other` was brought in there, and how many rows that had."""
+    """Return (row of `into`, rows of `other` then) for each merge of `other` into `into`."""
     return [
         (row, entry.event.rows)
         for row, entry in enumerate(into, start=1)
@@ -87,88 +95,93 @@ def _merges(into: Sequence[StoredEntry], other: Sequence[StoredEntry]) -> list[t
     ]
 
 
-def base_state(meeting: MergeBase, mine: KnowledgeContent, theirs: KnowledgeContent) -> BaseState:
-    """What both knew at that meeting."""
-    here, there = lessons_up_to(mine, meeting.mine), lessons_up_to(theirs, meeting.theirs)
+def base_state(base: MergeBase, mine: KnowledgeContent, theirs: KnowledgeContent) -> BaseState:
+    """Return what both files knew at a merge base."""
+    here, there = lessons_up_to(mine, base.mine), lessons_up_to(theirs, base.theirs)
     on_mine, on_theirs = standing_stacks(here, mine.lesson_keys), standing_stacks(there, theirs.lesson_keys)
     return BaseState(
-        on_mine if meeting.seen_in == "mine" else on_theirs,
-        undone_here=_undone_since(meeting.mine, mine),
-        undone_there=_undone_since(meeting.theirs, theirs),
+        on_mine if base.seen_in == "mine" else on_theirs,
+        undone_here=_undone_since(base.mine, mine),
+        undone_there=_undone_since(base.theirs, theirs),
     )
 
 
-def _undone_since(rows: int, taught: KnowledgeContent) -> frozenset[LessonKey]:
-    later = taught.entries[rows:]
-    return frozenset(taught.lesson_keys[entry.event.lesson] for entry in later if isinstance(entry.event, LessonUndone))
+def _undone_since(rows: int, content: KnowledgeContent) -> frozenset[LessonKey]:
+    later = content.entries[rows:]
+    return frozenset(
+        content.lesson_keys[entry.event.lesson] for entry in later if isinstance(entry.event, LessonUndone)
+    )
 
 
 class ThreeWayDiff:
-    """How both went on since they met."""
+    """Changes of both files since their merge bases."""
 
     def __init__(self, mine: KnowledgeContent, theirs: KnowledgeContent) -> None:
         self._bases = [base_state(each, mine, theirs) for each in find_merge_bases(mine.entries, theirs.entries)]
         self._here, self._there = frozenset(mine.lesson_keys.values()), frozenset(theirs.lesson_keys.values())
-        heard = max(
-            [common_rows(mine.entries, theirs.entries), *(rows for _, rows in _merges(mine.entries, theirs.entries))]
-        )
+        merged = (rows for _, rows in _merges(mine.entries, theirs.entries))
+        seen = max([count_common_rows(mine.entries, theirs.entries), *merged])
         self._news = frozenset(
             theirs.lesson_keys[name]
-            for entry in theirs.entries[heard:]
+            for entry in theirs.entries[seen:]
             for name in (
                 entry.event.lesson if isinstance(entry.event, LessonRedone) else entry.event.origin.command_id,
             )
             if name in theirs.lesson_keys
         )
-        """Lessons that were taught there, or stand there again, and of which mine did not hear yet."""
-        self._taken_back = _undone_since(heard, theirs)
-        """Lessons that were undone there, of which mine did not hear yet."""
+        """Lessons taught or redone there after the last row that mine has seen."""
+        self._undone_unseen = _undone_since(seen, theirs)
+        """Lessons undone there after the last row that mine has seen."""
 
     def resolve(self, stack: StackKey, sides: StackPair) -> Resolution:
-        """Who changed the lessons of a pile, praise and blame apart."""
+        """Return what becomes of a stack here, by its lessons without rewards."""
         sides = sides.without_rewards
-        found = {self._side_resolution(lessons_of(base.stacks.get(stack, ())), base, sides) for base in self._bases}
-        return found.pop() if len(found) == 1 else "both"
+        found = {self._since(without_rewards(base.stacks.get(stack, ())), base, sides) for base in self._bases}
+        return found.pop() if len(found) == 1 else Resolution.CONFLICT
 
     def new_rewards(self, sides: StackPair) -> tuple[LessonKey, ...]:
-        """Praise and blame that are new there, or stand there again."""
+        """Return the rewards that are new or redone there."""
         rewards = [key for key in sides.theirs if key.is_reward and key not in sides.mine]
-        return tuple(key for key in rewards if all(self._came(key, base) for base in self._bases))
+        return tuple(key for key in rewards if all(self._is_new(key, base) for base in self._bases))
 
     def withdrawn_rewards(self, sides: StackPair) -> tuple[LessonKey, ...]:
-        """Praise and blame that stand here and were taken back there."""
-        rewards = [key for key in sides.mine if key.is_reward and key not in sides.theirs and key in self._taken_back]
+        """Return the rewards that stand here and were undone there."""
+        rewards = [
+            key for key in sides.mine if key.is_reward and key not in sides.theirs and key in self._undone_unseen
+        ]
         return tuple(
             key
             for key in rewards
             if any(key in base.stacks.get(key.stack, ()) or key in base.undone_there for base in self._bases)
         )
 
-    def _came(self, key: LessonKey, base: BaseState) -> bool:
+    def _is_new(self, key: LessonKey, base: BaseState) -> bool:
         if key in base.stacks.get(key.stack, ()):
-            return False  # it was undone here since, or left out
+            return False  # undone here since, or left out
         if key not in self._here:
             return True
-        # Of one that came here on another way the undo counts; one that they kept although it was undone is not new.
+        # An undo counts also for a lesson that came here by a third file. A lesson that they kept, although it was
+        # undone here, is not new.
         return key not in base.undone_here and key in self._news
 
-    def _side_resolution(self, before: tuple[LessonKey, ...], base: BaseState, sides: StackPair) -> Resolution:
+    def _since(self, before: tuple[LessonKey, ...], base: BaseState, sides: StackPair) -> Resolution:
+        """Return the resolution of a stack that was `before` at one base."""
         mine, theirs = sides.mine, sides.theirs
         if mine == theirs:
-            return "stays"
-        # A lesson that came on another way than this meeting, and was undone since, was changed although nothing shows.
+            return Resolution.KEEP_MINE
+        # A lesson that came by a third file and was undone since is a change that the stacks do not show.
         undone_there = base.undone_there & (set(mine) - set(theirs))
         undone_here = base.undone_here & (set(theirs) - set(mine))
         if theirs == before and not undone_there:
-            return "stays"
+            return Resolution.KEEP_MINE
         if mine == before and not undone_here:
-            return "as there"
-        if _goes_on(theirs, mine, self._here | frozenset(before)):
-            return "as there"
-        return "stays" if _goes_on(mine, theirs, self._there | frozenset(before)) else "both"
+            return Resolution.TAKE_THEIRS
+        if _extends(theirs, mine, self._here | frozenset(before)):
+            return Resolution.TAKE_THEIRS
+        return Resolution.KEEP_MINE if _extends(mine, theirs, self._there | frozenset(before)) else Resolution.CONFLICT
 
 
-def _goes_on(longer: tuple[LessonKey, ...], shorter: tuple[LessonKey, ...], known: frozenset[LessonKey]) -> bool:
-    """Whether one is the other and more, of which that one's file never heard."""
+def _extends(longer: tuple[LessonKey, ...], shorter: tuple[LessonKey, ...], known: frozenset[LessonKey]) -> bool:
+    """Return whether `longer` is `shorter` with further lessons on top, none of them `known` to the other file."""
     size = len(shorter)
     return longer[:size] == shorter and not known.intersection(longer[size:])

@@ -1,7 +1,8 @@
-"""Makes piles of one knowledge file what a merge wants them to be: undos, lessons that stand again, and new ones."""
+"""Journal rows (undo, redo, new lessons) that apply a merge plan to one knowledge file."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 
 from kurt2rt.core.outcome_text import event_error_text
 from kurt2rt.core.rla.credit import Credit
@@ -11,6 +12,7 @@ from kurt2rt.core.rla.rla import (
     Lesson,
     LessonRedone,
     LessonUndone,
+    Rla,
     RlaCreated,
     RlaDeleted,
     RlaRewarded,
@@ -21,14 +23,22 @@ from kurt2rt.core.rla.rla import (
 )
 from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
 from kurt2rt.knowledge.journal.entry import JournalEntry
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.versions.editing import new_origin
-from kurt2rt.knowledge.versions.lesson_identity import NO_STACK, KnowledgeContent, LessonKey, StackKey, event_key, named
+from kurt2rt.knowledge.versions.lesson_identity import (
+    NO_STACK,
+    KnowledgeContent,
+    LessonKey,
+    StackKey,
+    event_key,
+    with_command_id,
+)
 
 
 @dataclass(frozen=True, slots=True)
 class TargetStack:
-    """One pile: what stands on it here, and what shall."""
+    """One stack: the lessons that stand on it here, and those that shall."""
 
     stack: StackKey
     now: tuple[LessonKey, ...]
@@ -36,21 +46,44 @@ class TargetStack:
 
     @property
     def same(self) -> int:
-        """How many lessons at the bottom stay as they are."""
+        """Return the number of lessons at the bottom that stay as they are."""
         for place, (now, then) in enumerate(zip(self.now, self.then, strict=False)):
             if now != then:
                 return place
         return min(len(self.now), len(self.then))
 
 
+class LeftOutCode(StrEnum):
+    """Reason why a merge leaves a reward as it is."""
+
+    RLA_GONE = "rla gone"
+    """The rewarded RLA is not in this file."""
+    OTHER_ACTION = "other action"
+    """The RLA has another action here than the rewarded one."""
+    BURIED = "buried"
+    """The reward was undone there, but lessons taught here since lie on it."""
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOutReward:
+    """Reward that a merge neither brings nor undoes."""
+
+    code: LeftOutCode
+    record: LessonRecord
+    action: str | None = None
+    """Action that the reward was given for; None if it is unknown."""
+    rla: Rla | None = None
+    """The RLA as it is in this file, for OTHER_ACTION."""
+
+
 class MergeWriter:
-    """Finds the rows that a merge writes; applies them to the fold of mine, and changes neither file."""
+    """Collector of the rows that a merge writes; applies them to the fold of mine, and changes neither file."""
 
     def __init__(self, mine: KnowledgeContent, theirs: KnowledgeContent, *, teacher: str, stamp: str) -> None:
-        """`teacher` and `stamp` of what is undone or redone by it; lessons keep those that they have."""
+        """Prepare; `teacher` and `stamp` are those of undos and redos, lessons keep their own."""
         self.entries: list[JournalEntry] = []
-        self.left_out: list[str] = []
-        """Praise and blame that is not brought, in words."""
+        self.left_out: list[LeftOutReward] = []
+        """Rewards of theirs that are not brought."""
         self.new_ids: dict[int, int] = {}
         """RLA id there -> here, of the RLAs that it creates."""
         self._mine, self._theirs = mine, theirs
@@ -65,44 +98,43 @@ class MergeWriter:
             self._names[key].append(name)
         self._stamps = {entry.event.origin.command_id: entry.stamped_at for entry in theirs.entries}
         self._own_stamps = {entry.event.origin.command_id: entry.stamped_at for entry in mine.entries}
+        self._own = {mine.key_of(record): record.event for record in mine.system.lessons}
+        self._standing = {theirs.key_of(record): record for record in theirs.system.lessons if not record.undone}
+        self._actions = _actions_when_rewarded(theirs)
 
     @property
     def rlas(self) -> Mapping[int, int]:
-        """RLA id there -> here, of all that are in both."""
+        """Return RLA id there -> here, of all that are in both."""
         return self._rlas
 
     def name_of(self, key: LessonKey) -> str | None:
-        """Command id of a lesson here, the newest where it was brought again; None where it is not here."""
+        """Return the newest command id of a lesson in this file; None if it is not here."""
         names = self._names.get(key)
         return names[-1] if names else None
 
     def write(self, wanted: Sequence[TargetStack], deletions: Iterable[int]) -> None:
-        """Undos, the newest lesson first, deletions, then lessons in the order in which they were taught there.
+        """Add undos, newest lesson first, then deletions, then lessons in the order in which they were taught there.
 
-        Raises KnowledgeError where they do not fit.
+        Raises:
+            KnowledgeError: one of them does not fit.
         """
-        own = {self._mine.lesson_keys[name]: record.event for name, record in _by_name(self._mine)}
         place = {name: number for number, name in enumerate(self._mine.lesson_keys)}
-        taken_off = [self._standing(key) for each in wanted for key in each.now[each.same :]]
-        for name in sorted(taken_off, key=lambda name: -place[name]):
+        removed = [self._standing_name(key) for each in wanted for key in each.now[each.same :]]
+        for name in sorted(removed, key=lambda name: -place[name]):
             self._add(LessonUndone(name, new_origin("undo", self._teacher)), self._stamp)
         for rla_id in dict.fromkeys(deletions):
             self._add(RlaDeleted(rla_id, new_origin("delete", self._teacher)), self._stamp)
         queues = {each.stack: list(each.then[each.same :]) for each in wanted}
-        standing = {
-            self._theirs.lesson_keys[name]: record for name, record in _by_name(self._theirs) if not record.undone
-        }
-        actions = _actions_when_rewarded(self._theirs)
-        for key in list(standing):
+        for key in list(self._standing):
             queue = queues.get(key.stack, [])
-            while key in queue:  # one that was put in before it goes first
-                self._put(queue.pop(0), standing, own, actions)
+            while key in queue:  # lessons beneath it go first
+                self._restore(queue.pop(0))
         for queue in queues.values():
             for key in queue:
-                self._put(key, standing, own, actions)
+                self._restore(key)
 
     def write_sessions(self) -> None:
-        """Sessions and agreements that are not here."""
+        """Add sessions and agreements that are not here."""
         kinds = SessionBegun | SessionEnded | Appraised
         here = {event_key(entry.event) for entry in self._mine.entries if isinstance(entry.event, kinds)}
         for entry in self._theirs.entries:
@@ -110,37 +142,31 @@ class MergeWriter:
                 key = event_key(entry.event)
                 if key not in here:
                     assert key.stack == NO_STACK
-                    self._add(named(entry.event, key.name(self._taken)), entry.stamped_at)
+                    self._add(with_command_id(entry.event, key.free_command_id(self._taken)), entry.stamped_at)
 
-    def _put(
-        self,
-        key: LessonKey,
-        standing: Mapping[LessonKey, LessonRecord],
-        own: Mapping[LessonKey, Lesson],
-        actions: Mapping[str, Mapping[int, str]],
-    ) -> None:
-        """Let a lesson stand on its pile: again, where that can be, else as a new one."""
+    def _restore(self, key: LessonKey) -> None:
+        """Put a lesson on its stack: redo it if that is possible, else add it as a new lesson."""
         for name in reversed(self._names.get(key, [])):
             if self._system.why_not_redo(name) is None:
                 self._add(LessonRedone(name, new_origin("redo", self._teacher)), self._stamp)
                 return
-        name = key.name(self._taken)
-        if key in own and not (key.is_reward and key in standing):
-            before = own[key]
-            self._add(named(before, name), self._own_stamps[before.origin.command_id])
+        name = key.free_command_id(self._taken)
+        if key in self._own and not (key.is_reward and key in self._standing):
+            before = self._own[key]
+            self._add(with_command_id(before, name), self._own_stamps[before.origin.command_id])
         else:
-            record = standing[key]
-            lesson = self._here(record.event, actions)
+            record = self._standing[key]
+            lesson = self._translate(record.event)
             if lesson is None:
-                self.left_out.append(self._why_left_out(record, actions))
+                self.left_out.append(self._left_out(record))
                 return
-            self._add(named(lesson, name), self._stamps[record.event.origin.command_id])
+            self._add(with_command_id(lesson, name), self._stamps[record.event.origin.command_id])
         self._names.setdefault(key, []).append(name)
 
-    def _here(self, lesson: Lesson, actions: Mapping[str, Mapping[int, str]]) -> Lesson | None:
-        """A lesson of theirs as it is here; None for praise or blame of another action than the RLA has here.
+    def _translate(self, lesson: Lesson) -> Lesson | None:
+        """Return a lesson of theirs with RLA ids of this file; None for a reward of an action the RLA has not here.
 
-        Credits of RLAs that are not here, or have another action, are left out likewise.
+        Credits of RLAs that are not here, or have another action here, are left out.
         """
         match lesson:
             case RlaCreated(rla):
@@ -149,32 +175,32 @@ class MergeWriter:
             case SituationNamed():
                 return lesson
             case RlaRewarded(rla_id, credits=credits_):
-                then = actions[lesson.origin.command_id]
-                if not self._says_still(rla_id, then):
+                then = self._actions[lesson.origin.command_id]
+                if not self._has_action(rla_id, then):
                     return None
                 kept = tuple(
                     Credit(self._rlas[each.rla_id], each.change, each.before and self._rlas[each.before])
                     for each in credits_
-                    if self._says_still(each.rla_id, then)
-                    and (each.before is None or self._says_still(each.before, then))
+                    if self._has_action(each.rla_id, then)
+                    and (each.before is None or self._has_action(each.before, then))
                 )
                 return replace(lesson, rla_id=self._rlas[rla_id], credits=kept)
             case _:
                 return replace(lesson, rla_id=self._rlas[lesson.rla_id])
 
-    def _says_still(self, rla_id: int, then: Mapping[int, str]) -> bool:
+    def _has_action(self, rla_id: int, then: Mapping[int, str]) -> bool:
         here = self._system.get(self._rlas.get(rla_id, 0))
         return here is not None and here.action == then.get(rla_id)
 
-    def _why_left_out(self, record: LessonRecord, actions: Mapping[str, Mapping[int, str]]) -> str:
+    def _left_out(self, record: LessonRecord) -> LeftOutReward:
         lesson = record.event
         assert isinstance(lesson, RlaRewarded)
-        meant = actions[lesson.origin.command_id].get(lesson.rla_id)
+        action = self._actions[lesson.origin.command_id].get(lesson.rla_id)
         here = self._system.get(self._rlas.get(lesson.rla_id, 0))
-        says = "is gone here" if here is None else f"is {here.title} here and says {here.action}"
-        return f"{record.text} there by {lesson.origin.teacher} for {meant}; it {says}"
+        code = LeftOutCode.RLA_GONE if here is None else LeftOutCode.OTHER_ACTION
+        return LeftOutReward(code, record, action, here)
 
-    def _standing(self, key: LessonKey) -> str:
+    def _standing_name(self, key: LessonKey) -> str:
         for name in self._names[key]:
             record = self._system.lesson(name)
             if record is not None and not record.undone:
@@ -185,23 +211,18 @@ class MergeWriter:
         try:
             self._system.apply(event)
         except InvalidEventError as error:
+            into, where = self._mine.journal.path.name, self._theirs.journal.path
             raise KnowledgeError(
-                f"cannot be brought into {self._mine.journal.path.name}: {event_error_text(error)}",
-                where=self._theirs.journal.path,
-                do="undo there what is in the way, or go on in one of them",
+                KnowledgeCode.MERGE_MISFIT, where=where, into=into, error=event_error_text(error)
             ) from error
         self._taken.add(event.origin.command_id)
         self.entries.append(JournalEntry(event, stamp))
 
 
-def _by_name(taught: KnowledgeContent) -> list[tuple[str, LessonRecord]]:
-    return [(record.event.origin.command_id, record) for record in taught.system.lessons]
-
-
-def _actions_when_rewarded(taught: KnowledgeContent) -> dict[str, dict[int, str]]:
-    """What the RLAs said that praise or blame was meant for, by its command id and theirs."""
-    system, found = RlaSystem(taught.system.dimensions, 0.0), dict[str, dict[int, str]]()
-    for entry in taught.entries:
+def _actions_when_rewarded(content: KnowledgeContent) -> dict[str, dict[int, str]]:
+    """Return the actions of the RLAs that each reward was about, by its command id and RLA id."""
+    system, found = RlaSystem(content.system.dimensions, 0.0), dict[str, dict[int, str]]()
+    for entry in content.entries:
         event = entry.event
         if isinstance(event, RlaRewarded):
             meant = [event.rla_id]

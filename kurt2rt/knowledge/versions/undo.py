@@ -1,4 +1,4 @@
-"""Takes lessons back, or lets them stand again, in a knowledge file that no robot runs on."""
+"""Undo and redo of lessons in a knowledge file that no robot runs on."""
 
 import math
 from collections.abc import Callable, Iterable, Sequence
@@ -15,88 +15,109 @@ from kurt2rt.knowledge.journal.binding import KnowledgeBinding
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import fold_entries, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.versions.editing import new_origin, open_for_editing, write
+from kurt2rt.knowledge.versions.editing import append_with_values, new_origin, open_for_editing
 
 
 @dataclass(frozen=True)
 class UndoPlan:
-    """An undo or a redo that can be made, and is not made yet."""
+    """An undo or redo that is possible, and not made yet."""
 
     path: Path
     changes: tuple[LessonUndone | LessonRedone, ...]
-    """What is to be written, in this order."""
+    """Events to write, in this order."""
     lessons: tuple[LessonRecord, ...]
-    """The lessons that it is about, in the same order, as they are afterwards."""
-    stay: tuple[str, ...]
-    """Why other lessons of the same teacher stay as they are, a sentence each."""
+    """Their lessons, in the same order, as they are afterwards."""
+    stay: tuple[Outcome, ...]
+    """Refusals of other lessons of the same teacher, which stay as they are."""
     binding: KnowledgeBinding
     events: tuple[TeachingEvent, ...]
     """All that was taught before."""
     statistics: Statistics
 
 
-def plan_undo(path: Path, lesson: str | None = None, of: str | None = None, *, teacher: str) -> UndoPlan:
-    """To take back the lesson of that command id, None: the last that stands; or all of the teacher `of`, newest first.
+def plan_undo(path: Path, lesson: str | None = None, taught_by: str | None = None, *, teacher: str) -> UndoPlan:
+    """Plan the undo of one lesson, or of all lessons of a teacher that stand, newest first; only reads the file.
 
-    Reads only; it is `teacher` who undoes. Raises KnowledgeError where there is no such lesson, or a newer one stands
-    in its way.
+    Args:
+        path: of the knowledge file.
+        lesson: command id of the lesson; None: the last that stands.
+        taught_by: the teacher of all lessons to undo; None: one lesson.
+        teacher: who undoes.
+
+    Raises:
+        KnowledgeError: there is no such lesson, or a newer lesson has to be undone first.
     """
     reading = _read(path)
     system = reading.system
-    if of is not None:
-        command_ids = _lessons_to_undo(system, of, path)
+    if taught_by is not None:
+        command_ids = _lessons_to_undo(system, taught_by, path)
     else:
-        nothing = "stands; there is nothing to undo"
-        command_ids = [_lesson_meant(path, lesson, system.last_standing_lesson, system.why_not_undo, nothing)]
+        state = "stands; there is nothing to undo"
+        command_ids = [_select(path, lesson, system.last_standing_lesson, system.why_not_undo, state)]
     changes = [LessonUndone(command_id, new_origin("undo", teacher)) for command_id in command_ids]
     _apply(system, changes, f"{path}: nothing was undone")
     return reading.planned(changes)
 
 
-def plan_redo(path: Path, lesson: str | None = None, of: str | None = None, *, teacher: str) -> UndoPlan:
-    """To let the lesson of that command id stand again, None: the one undone last; or all undone of the teacher `of`.
+def plan_redo(path: Path, lesson: str | None = None, taught_by: str | None = None, *, teacher: str) -> UndoPlan:
+    """Plan the redo of one lesson, or of all undone lessons of a teacher, the last undo first; only reads the file.
 
-    Those go the one undone last first; one in whose place something else stands stays undone. Reads only; it is
-    `teacher` who does it. Raises KnowledgeError where there is no such lesson, or none that can stand again.
+    Of a teacher's lessons, those in whose place another lesson stands stay undone.
+
+    Args:
+        path: of the knowledge file.
+        lesson: command id of the lesson; None: the one undone last.
+        taught_by: the teacher of all lessons to redo; None: one lesson.
+        teacher: who redoes.
+
+    Raises:
+        KnowledgeError: there is no such lesson, or none that can stand again.
     """
     reading = _read(path)
     system = reading.system
-    changes, reasons = list[LessonRedone](), list[str]()
-    if of is not None:
-        command_ids = _undone_by_time(reading, of)
+    changes, refusals = list[LessonRedone](), list[Outcome]()
+    if taught_by is not None:
+        command_ids = _undone_by_time(reading, taught_by)
     else:
-        nothing = "was undone; there is nothing to redo"
-        command_ids = [_lesson_meant(path, lesson, system.last_undone_lesson, system.why_not_redo, nothing)]
+        state = "was undone; there is nothing to redo"
+        command_ids = [_select(path, lesson, system.last_undone_lesson, system.why_not_redo, state)]
     for command_id in command_ids:
-        problem = system.why_not_redo(command_id)
-        if problem is not None:
-            reasons.append(text_of(problem))
+        refusal = system.why_not_redo(command_id)
+        if refusal is not None:
+            refusals.append(refusal)
             continue
         changes.append(LessonRedone(command_id, new_origin("redo", teacher)))
         system.apply(changes[-1])
     if not changes:
-        why = f": {reasons[0]}" if reasons else ""
-        raise KnowledgeError(f"holds no undone lesson by {of} that can stand again{why}", where=path)
-    return reading.planned(changes, reasons)
+        reason = f": {text_of(refusals[0])}" if refusals else ""
+        raise KnowledgeError(KnowledgeCode.NO_UNDONE_LESSON_BY, where=path, teacher=taught_by, reason=reason)
+    return reading.planned(changes, refusals)
 
 
 def apply_plan(planned: UndoPlan, stamp: str) -> None:
-    """Make what was planned, all or nothing; durable on return.
+    """Write a plan, all or nothing; durable on return.
 
-    Values become what a robot would make of it: those whom a reward was given lose its credits, and an RLA that gets
-    its former action back is worth what that one had earned, as far as the journal tells; a reward that stands again
-    is worth what it was worth then. Weights of edges follow when a robot starts next. Raises KnowledgeError, and
-    changes nothing, where a robot runs on the file, or has changed it since so that it does not fit any more.
+    Values become as a robot computes them: RLAs lose the credits of an undone reward, and an RLA with its former action
+    has the value earned with that action, as far as the journal shows. A redone reward counts as it did. Weights of
+    edges follow when a robot starts next.
+
+    Args:
+        planned: of `plan_undo` or `plan_redo`.
+        stamp: of the rows, UTC, ISO 8601.
+
+    Raises:
+        KnowledgeError: a robot runs on the file, or has changed it so that the plan does not fit; nothing is changed.
     """
     with open_for_editing(planned.path) as journal:
         _apply(fold_journal(journal, radius=math.inf), planned.changes, f"{planned.path}: nothing was changed")
-        write(journal, [JournalEntry(event, stamp) for event in planned.changes])
+        append_with_values(journal, [JournalEntry(event, stamp) for event in planned.changes])
 
 
 @dataclass(frozen=True)
 class _Reading:
-    """What is in a file, and its fold, to plan on."""
+    """Content of a file, and its fold, to plan on."""
 
     path: Path
     binding: KnowledgeBinding
@@ -104,8 +125,8 @@ class _Reading:
     statistics: Statistics
     system: RlaSystem
 
-    def planned(self, changes: Sequence[LessonUndone | LessonRedone], stay: Sequence[str] = ()) -> UndoPlan:
-        """These changes, which `system` has taken already."""
+    def planned(self, changes: Sequence[LessonUndone | LessonRedone], stay: Sequence[Outcome] = ()) -> UndoPlan:
+        """Return the plan of these changes, which were applied to `system`."""
         records = tuple(_record(self.system, change.lesson) for change in changes)
         return UndoPlan(self.path, tuple(changes), records, tuple(stay), self.binding, self.events, self.statistics)
 
@@ -117,32 +138,35 @@ def _read(path: Path) -> _Reading:
         return _Reading(path, journal.binding, tuple(entry.event for entry in entries), statistics, system)
 
 
-def _lesson_meant(
-    path: Path, lesson: str | None, last: str | None, why_not: Callable[[str], Outcome | None], nothing: str
+def _select(
+    path: Path, lesson: str | None, last: str | None, why_not: Callable[[str], Outcome | None], state: str
 ) -> str:
-    """The command id that was given, else the `last` one. Raises KnowledgeError where it cannot be done with that."""
+    """Return the command id `lesson`, by default `last`; KnowledgeError if there is none or `why_not` refuses it."""
     command_id = lesson if lesson is not None else last
     if command_id is None:
-        raise KnowledgeError(f"holds no lesson that {nothing}", where=path)
-    problem = why_not(command_id)
-    if problem is not None:
-        raise KnowledgeError(text_of(problem), where=path, do="kurt2rt knowledge lessons shows their ids")
+        raise KnowledgeError(KnowledgeCode.NO_LESSON, where=path, state=state)
+    _require_possible(why_not(command_id), path)
     return command_id
 
 
+def _require_possible(refusal: Outcome | None, where: object) -> None:
+    if refusal is not None:
+        raise KnowledgeError(KnowledgeCode.LESSON_REFUSED, where=where, reason=text_of(refusal), outcome=refusal.code)
+
+
 def _lessons_to_undo(system: RlaSystem, taught_by: str, path: Path) -> list[str]:
-    """Command ids of all standing lessons of a teacher, newest first."""
+    """Return the command ids of all standing lessons of a teacher, newest first."""
     standing = [record for record in system.lessons if not record.undone]
     own = [record.event.origin.command_id for record in standing if record.event.origin.teacher == taught_by]
     if not own:
         teachers = ", ".join(sorted({record.event.origin.teacher for record in standing}))
         others = f"those that stand are by {teachers}" if teachers else "there is nothing to undo"
-        raise KnowledgeError(f"holds no lesson by {taught_by} that stands", where=path, do=others)
+        raise KnowledgeError(KnowledgeCode.NO_LESSON_BY, where=path, teacher=taught_by, others=others)
     return own[::-1]
 
 
 def _undone_by_time(reading: _Reading, taught_by: str) -> list[str]:
-    """Command ids of a teacher's lessons that do not stand, the one undone last first: as they came off, they go on."""
+    """Return the command ids of a teacher's undone lessons, the last undo first: the reverse of their undos."""
     undone = dict[str, None]()
     for event in reading.events:
         if isinstance(event, LessonUndone):
@@ -156,13 +180,11 @@ def _undone_by_time(reading: _Reading, taught_by: str) -> list[str]:
     ]
 
 
-def _apply(system: RlaSystem, changes: Iterable[LessonUndone | LessonRedone], refusal: str) -> None:
-    """Raises KnowledgeError, which begins with `refusal`, at the first one that does not fit."""
+def _apply(system: RlaSystem, changes: Iterable[LessonUndone | LessonRedone], where: str) -> None:
+    """Apply changes in order; raise KnowledgeError at `where` for the first one that does not fit."""
     for change in changes:
-        undoes = isinstance(change, LessonUndone)
-        problem = system.why_not_undo(change.lesson) if undoes else system.why_not_redo(change.lesson)
-        if problem is not None:
-            raise KnowledgeError(text_of(problem), where=refusal)
+        why_not = system.why_not_undo if isinstance(change, LessonUndone) else system.why_not_redo
+        _require_possible(why_not(change.lesson), where)
         system.apply(change)
 
 

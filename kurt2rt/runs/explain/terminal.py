@@ -7,7 +7,7 @@ from rich.text import Text
 
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.knowledge.show.table_cells import plain
+from kurt2rt.knowledge.show.table_cells import printable
 from kurt2rt.platform.text_table import TextTable
 from kurt2rt.runs.explain.attribution import contrast_attribution, distance_attribution
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual
@@ -38,9 +38,9 @@ def render_why(
     `found`: changes of one reading that would have changed it. `where`: run and time. `words`: for the robot's sensors.
     """
     parts: list[RenderableType] = [Text.assemble((where, "dim")), Text(headline(facts), style="bold")]
-    parts += [plain(line) for line in format_reasons(facts)]
+    parts += [printable(line) for line in format_reasons(facts)]
     if format_guard(facts):
-        parts.append(plain(format_guard(facts)))
+        parts.append(printable(format_guard(facts)))
     if facts.asks_at == MID and facts.mid is not None and facts.mid.nearest is not None:
         parts += _of_level(facts.mid, None, words)
     else:
@@ -48,13 +48,13 @@ def render_why(
     changes = format_counterfactuals(found)
     if changes:
         parts.append(Text("\nWhat would have changed it, one reading alone:", style="bold"))
-        parts += [plain(f"  {line}") for line in changes]
+        parts += [printable(f"  {line}") for line in changes]
     if format_held(facts):
-        parts.append(plain(format_held(facts)))
+        parts.append(printable(format_held(facts)))
     above = format_mid_level(facts)
     if above:
         parts.append(Text(""))
-        parts += [plain(line) for line in above]
+        parts += [printable(line) for line in above]
     return Group(*parts)
 
 
@@ -63,9 +63,9 @@ def _of_level(level: LevelFacts, driver: RlaFacts | None, words: SensorWords) ->
     rla = driver or level.nearest
     if rla is None:
         return []
-    parts: list[RenderableType] = [plain(line) for line in format_runner_up(level)]
+    parts: list[RenderableType] = [printable(line) for line in format_runner_up(level)]
     parts.append(_differences(level, rla, words))
-    parts += [Text("Taught", style="bold"), plain(format_teaching(rla)), plain(format_usage(rla))]
+    parts += [Text("Taught", style="bold"), printable(format_teaching(rla)), printable(format_usage(rla))]
     if len(rla.acts) > 1:
         parts.append(_history(rla))
     return parts
@@ -86,7 +86,7 @@ def _differences(level: LevelFacts, rla: RlaFacts, words: SensorWords) -> Render
         table.add_column("speaks for")
     for share in found[:_FEATURES]:
         cells: list[str | Text] = [
-            plain(words.place(share.name)),
+            printable(words.place(share.name)),
             *(words.reading(share.name, each) for each in (share.here, share.there)),
         ]
         cells.append(f"{100 * share.share:3.0f} % {'█' * round(_BAR * share.share)}")
@@ -111,7 +111,7 @@ def _history(rla: RlaFacts) -> TextTable:
         table.add_column(heading)
     for act in rla.acts:
         text = f"{act.text} (taken back)" if act.undone else act.text
-        table.add_row(plain(format_stamp(act)), plain(act.teacher), str(act.phase), plain(text))
+        table.add_row(printable(format_stamp(act)), printable(act.teacher), str(act.phase), printable(text))
     return table
 
 
@@ -153,7 +153,9 @@ def render_timeline(timeline: Timeline, where: str, most: int) -> RenderableType
         told.add_column("at s", number=True)
         told.add_column("what happened")
         for note in notes:
-            told.add_row(f"{note.at_s:.2f}", plain(f"{note.kind}: {note.text}" if note.kind == "alarm" else note.text))
+            told.add_row(
+                f"{note.at_s:.2f}", printable(f"{note.kind}: {note.text}" if note.kind == "alarm" else note.text)
+            )
         parts.append(told)
         if len(timeline.notes) > most:
             parts.append(Text(f"and {len(timeline.notes) - most} more"))

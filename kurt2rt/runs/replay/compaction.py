@@ -10,8 +10,9 @@ from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import fold_entries
 from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
-from kurt2rt.knowledge.versions.editing import new_origin, open_for_editing, statistics_after, write
+from kurt2rt.knowledge.versions.editing import append_with_values, new_origin, open_for_editing, statistics_after
 from kurt2rt.runs.replay.run import Run
 from kurt2rt.runs.replay.trial import Report, TrialKnowledge, compatible_runs, format_answers, replay_answers
 
@@ -66,7 +67,7 @@ def compact(path: Path, recordings: Path, *, stamp: str, dry_run: bool, report: 
     with open_for_editing(path) as journal:
         compaction, deletions = _plan(journal, recordings, report)
         if deletions:
-            write(journal, [JournalEntry(event, stamp) for event in deletions])
+            append_with_values(journal, [JournalEntry(event, stamp) for event in deletions])
     return compaction
 
 
@@ -77,11 +78,7 @@ def _plan(journal: Journal, recordings: Path, report: Report) -> tuple[Compactio
     now = TrialKnowledge(tuple(entry.event for entry in entries), statistics)
     coverage = _replay_runs(system, tried.runs, now, report)
     if not coverage.driven_ticks:
-        raise KnowledgeError(
-            f"in none of its {len(tried.runs)} runs of such knowledge anything drove (0 s)",
-            where=recordings,
-            do="they prove nothing, and nothing was deleted: record a run in which the robot drives",
-        )
+        raise KnowledgeError(KnowledgeCode.NOTHING_DROVE, where=recordings, runs=len(tried.runs))
     rlas = system.rlas_at(BASIC)
     unneeded = tuple(rla for rla in rlas if rla.behaviour in coverage.behaviours and rla.rla_id not in coverage.needed)
     deletions = [RlaDeleted(rla.rla_id, new_origin("compact", TEACHER)) for rla in unneeded]
@@ -121,9 +118,10 @@ def _require_unchanged(runs: Sequence[Run], before: TrialKnowledge, after: Trial
     for run in runs:
         for record, (old, new) in replay_answers(run, (before, after), report):
             if old != new:
-                change = f"{format_answers(new)}, and not {format_answers(old)}"
                 raise KnowledgeError(
-                    f"at {record.now_s:.2f} s the robot would do something else: {change}",
+                    KnowledgeCode.DECISION_WOULD_CHANGE,
                     where=run.name,
-                    do="nothing was deleted",
+                    at_s=record.now_s,
+                    new=format_answers(new),
+                    old=format_answers(old),
                 )

@@ -11,6 +11,7 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible
 from kurt2rt.knowledge.journal.loading import binding_for
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_folder import runs_in, segments_in
@@ -56,9 +57,7 @@ def compatible_runs(folder: Path, binding: KnowledgeBinding) -> RecentRuns:
     """
     paths = _recorded_in(folder) or [folder]
     if not folder.exists() or (folder.is_dir() and paths == [folder] and not segments_in(folder)):
-        raise KnowledgeError(
-            "holds no recorded run", where=folder, do="kurt2rt run makes them, --runs says where they are"
-        )
+        raise KnowledgeError(KnowledgeCode.NO_RECORDED_RUN, where=folder)
     runs, left_out = list[Run](), list[str]()
     for path in paths:
         try:
@@ -71,7 +70,7 @@ def compatible_runs(folder: Path, binding: KnowledgeBinding) -> RecentRuns:
         else:
             left_out.append(reason)
     if not runs:
-        raise KnowledgeError(f"none of its runs can be tried: {left_out[0]}", where=folder)
+        raise KnowledgeError(KnowledgeCode.NO_RUN_FITS, where=folder, reason=left_out[0])
     return RecentRuns(tuple(runs), tuple(left_out))
 
 

@@ -7,7 +7,8 @@ import pytest
 from kurt2rt.checks.bench.lesson import measure_lessons
 from kurt2rt.checks.bench.robot_under_test import BenchFixture
 from kurt2rt.knowledge.journal.loading import open_knowledge
-from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
+from tests.knowledge.refusals import refused
 
 
 async def test_every_lesson_that_was_timed_is_in_the_file(subject: BenchFixture, tmp_path: Path) -> None:
@@ -28,5 +29,5 @@ async def test_a_disk_that_fails_ends_the_run_and_says_why(subject: BenchFixture
     def take_the_file_away(_: float) -> None:
         (tmp_path / "lesson.knowledge").unlink()
 
-    with pytest.raises(KnowledgeError, match="moved, deleted or replaced"):
+    with refused(KnowledgeCode.MOVED_IN_USE):
         await measure_lessons(subject, tmp_path, 3, take_the_file_away, patience_s=0.5)

@@ -11,6 +11,7 @@ from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import read_lessons
 from kurt2rt.knowledge.journal.writer import JournalWriter
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.experiments.helpers import ROBOT, Taught, short_task, teach
 
@@ -117,7 +118,7 @@ def test_a_robot_that_is_held_at_a_bumper_is_set_down_elsewhere(tmp_path: Path) 
 
 def test_lessons_that_cannot_be_saved_are_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def on_a_dead_disk(self: Journal, entries: object) -> object:  # noqa: ARG001
-        raise KnowledgeError(f"{self.path}: the disk is full; make room on it")
+        raise KnowledgeError(KnowledgeCode.DISK_FULL, where=self.path, error="")
 
     def without_patience(self: JournalWriter, timeout_s: float) -> bool:  # noqa: ARG001
         return flush(self, 0.05)

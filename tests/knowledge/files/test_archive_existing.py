@@ -1,13 +1,12 @@
 import shutil
 from pathlib import Path
 
-import pytest
-
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.journal_file import log_of
-from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from tests.knowledge.lessons import BINDING, begun, created, entry
+from tests.knowledge.refusals import refused
 
 
 def killed(path: Path, lessons: int) -> Path:
@@ -43,7 +42,7 @@ def test_lessons_of_a_killed_program_go_along(path: Path) -> None:
 
 def test_knowledge_in_use_is_left_where_it_is(path: Path) -> None:
     with Journal.open(begun(path), BINDING):
-        with pytest.raises(KnowledgeError, match="another kurt2rt is writing it"):
+        with refused(KnowledgeCode.ANOTHER_WRITER):
             archive_existing(path)
         assert path.exists()
 

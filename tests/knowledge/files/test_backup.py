@@ -8,8 +8,9 @@ from kurt2rt.knowledge.files.atomic_write import SavedCopy
 from kurt2rt.knowledge.files.backup import BackupService
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.writer import JournalWriter
-from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from tests.knowledge.lessons import BINDING, STAMP, created
+from tests.knowledge.refusals import refused
 
 
 def never(path: Path, folder: Path, stamp: str) -> SavedCopy:
@@ -26,6 +27,6 @@ async def test_lessons_are_durable_once_settled_and_a_failing_disk_is_told_at_on
         await safe.settle()
         assert writer.unwritten == 0
         monkeypatch.setattr(JournalWriter, "trouble", property(lambda _: "the disk is full"))
-        with pytest.raises(KnowledgeError, match="the disk is full"):
+        with refused(KnowledgeCode.NOT_DURABLE, reason="the disk is full"):
             await safe.settle()
         monkeypatch.undo()

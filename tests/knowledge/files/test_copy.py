@@ -10,16 +10,17 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.core.rla.statistics import Statistics
-from kurt2rt.knowledge.files.copy import save_copy
+from kurt2rt.knowledge.files.backup import save_copy
 from kurt2rt.knowledge.files.table import export_table
 from kurt2rt.knowledge.journal import journal_file
 from kurt2rt.knowledge.journal.fold import check_knowledge
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.writer import JournalWriter
-from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from tests.cli.helpers import ROOT, started
 from tests.knowledge.journal.test_writer import largest_file
 from tests.knowledge.lessons import BINDING, STAMP, begun, created, entry, tamper
+from tests.knowledge.refusals import refused
 
 
 def names(folder: Path) -> list[str]:
@@ -131,7 +132,7 @@ def test_a_name_that_is_taken_is_never_overwritten(path: Path, tmp_path: Path) -
 def test_a_disk_without_room_keeps_no_half_copy(path: Path, tmp_path: Path) -> None:
     folder = tmp_path / "saved"
     size = begun(path, lessons=300).stat().st_size
-    with largest_file(size - 1), pytest.raises(KnowledgeError, match=r"saved: nothing can be saved there .*; give a"):
+    with largest_file(size - 1), refused(KnowledgeCode.FOLDER_NOT_WRITABLE):
         save_copy(path, folder, "x", STAMP)
 
     assert names(folder) == []
@@ -140,20 +141,18 @@ def test_a_disk_without_room_keeps_no_half_copy(path: Path, tmp_path: Path) -> N
 def test_a_folder_that_cannot_be_is_refused(path: Path, tmp_path: Path) -> None:
     (tmp_path / "saved").write_text("in the way")
 
-    with pytest.raises(
-        KnowledgeError, match=r"saved: nothing can be saved there .*; give a folder that may be written"
-    ):
+    with refused(KnowledgeCode.FOLDER_NOT_WRITABLE):
         save_copy(begun(path), tmp_path / "saved", "x", STAMP)
 
 
 def test_what_is_no_knowledge_is_not_copied(path: Path, tmp_path: Path) -> None:
-    with pytest.raises(KnowledgeError, match="it cannot be opened"):
+    with refused(KnowledgeCode.NOT_OPENED):
         save_copy(path, tmp_path / "saved", "x", STAMP)
     tamper(path, "CREATE TABLE bookmark (url TEXT)")
-    with pytest.raises(KnowledgeError, match="is an SQLite file of another program"):
+    with refused(KnowledgeCode.OTHER_PROGRAM):
         save_copy(path, tmp_path / "saved", "x", STAMP)
     path.write_text("Dear diary,\n" * 1000)
-    with pytest.raises(KnowledgeError, match="the file is damaged"):
+    with refused(KnowledgeCode.PAGES_DAMAGED):
         save_copy(path, tmp_path / "saved", "x", STAMP)
 
     assert not (tmp_path / "saved").exists()

@@ -14,9 +14,10 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.graph.file import write_network
 from kurt2rt.knowledge.graph.graph import RlaNetwork, build_network, drop_rare_edges, read_network
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from tests.core.rla.helpers import created
 from tests.knowledge.lessons import begun
+from tests.knowledge.refusals import refused
 
 ENDS = Expectation("lesson-1", 7, 25.0, pack(np.zeros(2)), pack(np.zeros(2)))
 DROVE = Statistics(
@@ -112,9 +113,9 @@ def test_rlas_that_never_drove_are_a_picture_too(tmp_path: Path) -> None:
 def test_a_file_without_such_rlas_is_refused(path: Path) -> None:
     with Journal.read_only(begun(path)) as journal:
         assert sorted(read_network(journal)) == [1, 2, 3]
-        with pytest.raises(KnowledgeError, match="no RLA of the level 'mid'; it has RLAs of: basic"):
+        with refused(KnowledgeCode.NO_RLA_AT_LEVEL, level="mid", found="basic"):
             read_network(journal, level=MID)
-        with pytest.raises(KnowledgeError, match="no RLA of the behaviour 'left'; it has: one without a name"):
+        with refused(KnowledgeCode.NO_RLA_OF_BEHAVIOUR, behaviour="left"):
             read_network(journal, behaviour="left")
 
 

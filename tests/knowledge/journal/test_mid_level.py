@@ -4,8 +4,6 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
-import pytest
-
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.rla.rla import CRITIC, MID, Rla, RlaCreated, SituationNamed, TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
@@ -13,10 +11,11 @@ from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_for_teaching, open_knowledge, read_lessons
-from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.show.knowledge import render_knowledge, render_lessons
 from tests.experiments.helpers import ROBOT
 from tests.knowledge.lessons import BINDING, STAMP, created, origin, replaced, undone
+from tests.knowledge.refusals import refused
 from tests.knowledge.show.test_knowledge import printed, rows
 
 STREETS = load_task("streets")
@@ -68,15 +67,15 @@ def test_a_route_that_nobody_taught_yet_leaves_the_file_free_for_places(path: Pa
     with open_for_teaching(path, ROBOT, ERRANDS).journal as journal:
         assert journal.binding.levels[MID] == load_mid_level("places").level_features
         assert journal.events() == [basic(1), place]
-    with pytest.raises(KnowledgeError, match="its level mid was taught with other features"):
+    with refused(KnowledgeCode.OTHER_LEVEL_FEATURES, level=MID):
         open_knowledge(path, ROBOT, ROUTE)
 
 
 def test_a_way_that_was_undone_still_was_taught_in_its_features(path: Path) -> None:
     write(path, basic(1), way(2, 1), undone("create-2"))
-    with pytest.raises(KnowledgeError, match="its level mid was taught with other features"):
+    with refused(KnowledgeCode.OTHER_LEVEL_FEATURES, level=MID):
         open_knowledge(path, ROBOT, ERRANDS)
-    with pytest.raises(KnowledgeError, match="its level mid was taught with other features"):
+    with refused(KnowledgeCode.OTHER_LEVEL_FEATURES, level=MID):
         read_lessons(path, ROBOT, ERRANDS)
 
 
@@ -84,7 +83,7 @@ def test_ways_are_not_told_from_other_junctions(path: Path) -> None:
     write(path, way(1, 1))
     junctions = TURNS.junctions.model_copy(update={"wall_m": 0.3})
     other = ROUTE.model_copy(update={"mid": TURNS.model_copy(update={"junctions": junctions})})
-    with pytest.raises(KnowledgeError, match=r"its level mid was taught with other features: the names are the same, "):
+    with refused(KnowledgeCode.OTHER_LEVEL_FEATURES, level=MID):
         open_for_teaching(path, ROBOT, other)
 
 
@@ -98,7 +97,7 @@ def test_another_radius_or_distance_is_no_other_situation(path: Path) -> None:
 
 def test_knowledge_of_a_task_that_names_no_system_stays_that_task_s_own(path: Path) -> None:
     open_knowledge(path, ROBOT, STREETS).close()
-    with pytest.raises(KnowledgeError, match=r"taught for the task 'streets', not for 'lanes'"):
+    with refused(KnowledgeCode.OTHER_TASK, taught="streets", wanted="lanes"):
         open_knowledge(path, ROBOT, STREETS.model_copy(update={"name": "lanes"}))
 
 

@@ -3,15 +3,15 @@
 from pathlib import Path
 
 import numpy as np
-import pytest
 from rich.console import Console
 
 from kurt2rt.core.rla.expectation import Expectation, pack
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.show.rla import render_rla
 from tests.knowledge.lessons import BINDING, begun
+from tests.knowledge.refusals import refused
 
 
 def shown(path: Path, rla_id: int, limit: int | None = None) -> str:
@@ -56,5 +56,5 @@ def test_what_was_expected_of_another_action_is_not_shown(path: Path) -> None:
 
 
 def test_an_rla_that_is_not_there_is_refused(path: Path) -> None:
-    with pytest.raises(KnowledgeError, match="holds no RLA 9; kurt2rt knowledge show lists them"):
+    with refused(KnowledgeCode.NO_SUCH_RLA, rla_id=9):
         shown(begun(path), 9)

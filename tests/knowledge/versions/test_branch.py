@@ -10,9 +10,10 @@ from kurt2rt.core.rla.statistics import FIRST_VALUE, VALUES_INCLUDE, Statistics
 from kurt2rt.knowledge.journal.entry import JournalEntry, StoredEntry
 from kurt2rt.knowledge.journal.fold import check_knowledge
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.versions.branch import BranchOrigin, BranchResult, branch, branch_origin
 from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, replaced
+from tests.knowledge.refusals import refused
 
 LATER = "2004-04-26T11:00:00.000+00:00"
 NOW = "2026-11-22T03:10:05.000+00:00"
@@ -73,7 +74,7 @@ def test_where_the_clock_was_set_back_a_branch_ends_with_the_first_later_date_an
 def test_a_date_that_is_none_is_told(taught: Path, tmp_path: Path) -> None:
     with Journal.open(taught, BINDING) as journal:
         journal.append([JournalEntry(created(4), "yesterday")])
-    with pytest.raises(KnowledgeError, match="the stamp of a lesson is no time"):
+    with refused(KnowledgeCode.STAMP_INVALID):
         branch(taught, tmp_path / "b", "2004-04-26T10:30+00:00", stamp=NOW)
 
 
@@ -97,9 +98,7 @@ def test_what_is_taught_while_a_branch_is_made_is_in_it_whole_or_not_at_all(
 def test_a_file_whose_lessons_do_not_fit_is_not_branched(taught: Path, tmp_path: Path) -> None:
     with Journal.open(taught, BINDING) as journal:
         journal.append([JournalEntry(deleted(77), LATER)])
-    with pytest.raises(
-        KnowledgeError, match=r"knowledge\.db: no knowledge file can be made of it: row 5: does not fit"
-    ):
+    with refused(KnowledgeCode.NOT_BUILT, taught, cause=KnowledgeCode.LESSON_MISFIT):
         branch(taught, tmp_path / "b", None, stamp=NOW)
     assert not (tmp_path / "b").exists()
 
@@ -109,12 +108,12 @@ def test_before_the_first_lesson_nothing_is_known(taught: Path, tmp_path: Path) 
 
 
 def test_nothing_is_overwritten_and_nonsense_is_refused(taught: Path, tmp_path: Path) -> None:
-    with pytest.raises(KnowledgeError, match="is there already; give the path of a new file"):
+    with refused(KnowledgeCode.ALREADY_THERE):
         branch(taught, taught, None, stamp=NOW)
-    with pytest.raises(KnowledgeError, match="holds no lesson 'create-9', and that is no time either"):
+    with refused(KnowledgeCode.NO_SUCH_POINT, taught, given="create-9"):
         branch(taught, tmp_path / "b", "create-9", stamp=NOW)
     (tmp_path / "c-wal").write_bytes(b"lessons")
-    with pytest.raises(KnowledgeError, match="a log c-wal of another file is beside it"):
+    with refused(KnowledgeCode.FOREIGN_LOG, log="c-wal"):
         branch(taught, tmp_path / "c", None, stamp=NOW)
     assert not (tmp_path / "b").exists()
     assert not (tmp_path / "c").exists()
@@ -138,5 +137,5 @@ def test_what_a_killed_program_left_half_is_in_nobodys_way(taught: Path, tmp_pat
 
 def test_a_branch_where_nothing_can_be_written_is_refused_in_a_sentence(taught: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_bytes(b"")
-    with pytest.raises(KnowledgeError, match="cannot be made"):
+    with refused(KnowledgeCode.FOLDER_NOT_MADE):
         branch(taught, tmp_path / "file" / "b", None, stamp=NOW)

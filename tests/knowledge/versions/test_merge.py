@@ -27,12 +27,14 @@ from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.versions.branch import branch
 from kurt2rt.knowledge.versions.contradictions import Radii
-from kurt2rt.knowledge.versions.diff import difference
+from kurt2rt.knowledge.versions.diff import compare
 from kurt2rt.knowledge.versions.lesson_identity import read_content
-from kurt2rt.knowledge.versions.merge import ConflictCode, MergePlan, Side, merge
+from kurt2rt.knowledge.versions.merge import Conflict, ConflictCode, MergePlan, RlaState, Side, merge
+from kurt2rt.knowledge.versions.merge_writer import LeftOutCode
 from tests.examples import examples
 from tests.knowledge.journal.test_writer import largest_file
 from tests.knowledge.lessons import (
@@ -48,6 +50,7 @@ from tests.knowledge.lessons import (
     session,
     undone,
 )
+from tests.knowledge.refusals import refused
 
 BORDERS = Radii({BASIC: Space(4, 10.0)}, {BASIC: 0.2})
 FAR = 1000.0
@@ -75,6 +78,15 @@ def theirs(mine: Path, tmp_path: Path) -> Path:
     return tmp_path / "branch.knowledge"
 
 
+def states(conflict: Conflict) -> list[tuple[int | None, str | None]]:
+    """Return the id of the RLA and its action, if it lives, in mine and in theirs."""
+    found = list[tuple[int | None, str | None]]()
+    for state in (conflict.mine, conflict.theirs):
+        assert isinstance(state, RlaState)
+        found.append((state.rla_id, None if state.rla is None else state.rla.action))
+    return found
+
+
 def merge_files(mine: Path, theirs: Path, prefer: Side | None = None, *, dry_run: bool = False) -> MergePlan:
     return merge(mine, theirs, BORDERS, prefer, teacher="command line", stamp=STAMP, dry_run=dry_run)
 
@@ -96,7 +108,7 @@ def events(path: Path) -> list[TeachingEvent]:
 
 def the_same(one: Path, other: Path) -> bool:
     with Journal.read_only(one) as a, Journal.read_only(other) as b:
-        return difference(read_content(a), read_content(b)).none
+        return compare(read_content(a), read_content(b)).is_empty
 
 
 def test_what_was_taught_there_comes_with_new_ids_and_its_own_teacher(mine: Path, theirs: Path) -> None:
@@ -158,7 +170,7 @@ def test_an_rla_that_both_changed_is_a_conflict(mine: Path, theirs: Path, prefer
     before = events(mine)
     merged = merge_files(mine, theirs, prefer)
     (conflict,) = merged.conflicts
-    assert (conflict.mine, conflict.theirs) == ("RLA 2 says left", "RLA 2 says right")
+    assert states(conflict) == [(2, "left"), (2, "right")]
     assert actions(mine)[2] == action
     if prefer is None:
         assert events(mine) == before
@@ -181,7 +193,7 @@ def test_another_action_at_nearly_the_same_place_is_a_conflict(mine: Path, their
     append(mine, at(4, FAR, "left", "mine-4"))
     append(theirs, at(4, FAR + 2.0, "right", "theirs-4"), at(5, FAR + 2.1, "right", "theirs-5"))
     (conflict,) = merge_files(mine, theirs, prefer).conflicts
-    assert (conflict.mine, conflict.theirs) == ("RLA 4 says left", "RLA 4 says right")
+    assert states(conflict) == [(4, "left"), (4, "right")]
     assert conflict.code is ConflictCode.NEAR
     assert conflict.distance == pytest.approx(2.0)
     assert conflict.radius_fraction == 0.2
@@ -258,11 +270,11 @@ def test_another_kind_of_features_a_running_robot_and_a_dry_run_change_nothing(
 ) -> None:
     append(theirs, at(4, FAR))
     before = events(mine)
-    with Journal.open(mine, BINDING), pytest.raises(KnowledgeError, match="another kurt2rt is writing it"):
+    with Journal.open(mine, BINDING), refused(KnowledgeCode.ANOTHER_WRITER):
         merge_files(mine, theirs)
     assert merge_files(mine, theirs, dry_run=True).lessons == 1
     Journal.open(tmp_path / "other", replace(BINDING, feature_hash="another")).close()
-    with pytest.raises(KnowledgeError, match="other: taught with other features"):
+    with refused(KnowledgeCode.OTHER_FEATURES):
         merge_files(mine, tmp_path / "other")
     assert events(mine) == before
 
@@ -327,7 +339,7 @@ def test_what_came_by_way_of_a_third_file_and_was_undone_here_is_a_conflict(
     merge_files(theirs, third)
     append(mine, undone("mine-4"))
     (conflict,) = merge_files(mine, theirs).conflicts
-    assert (conflict.mine, conflict.theirs) == ("RLA 4 is gone", "RLA 5 says left")
+    assert states(conflict) == [(4, None), (5, "left")]
     assert 4 not in actions(mine)
 
 
@@ -374,8 +386,8 @@ def test_praise_under_a_correction_of_mine_stays_and_that_is_told(mine: Path, tm
     branch(mine, theirs, None, stamp=STAMP)
     append(mine, replaced(1, "left", "forward"))
     append(theirs, undone("old"))
-    (told,) = merge_files(mine, theirs).left_out
-    assert told == "RLA 1 rewarded by Hertha was taken back there, and stays under what came here since"
+    (reward,) = merge_files(mine, theirs).left_out
+    assert (reward.code, reward.record.event) == (LeftOutCode.BURIED, rewarded(1, 1, "old"))
     assert merge_files(mine, theirs).left_out == ()
 
 
@@ -384,7 +396,10 @@ def test_blame_of_the_old_action_is_not_put_on_the_corrected_one(mine: Path, the
     of_another = RlaRewarded(2, -1, 390, origin("of-2"), (Credit(2, -0.5), Credit(1, -0.25)))
     append(theirs, rewarded(1, -1, "of-1"), of_another)
     merged = merge_files(mine, theirs)
-    assert merged.left_out == ("RLA 1 punished there by Hertha for forward; it is RLA 1 here and says left",)
+    (reward,) = merged.left_out
+    assert (reward.code, reward.action) == (LeftOutCode.OTHER_ACTION, "forward")
+    assert reward.rla is not None
+    assert reward.rla.action == "left"
     system = folded(mine)
     assert (system.appraisal(1), system.appraisal(2)) == ((0, 0), (0, 1))
     record = system.lesson("of-2")

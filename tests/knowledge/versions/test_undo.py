@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.lesson_history import LessonRecord
@@ -15,11 +16,12 @@ from kurt2rt.knowledge.journal.binding import KnowledgeBinding
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
-from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.versions.undo import apply_plan, plan_redo, plan_undo
 from tests.core.reinforcement.helpers import SIGNALS_ONLY, Track
 from tests.core.rla.helpers import created as known_at
 from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, origin, replaced, rewarded
+from tests.knowledge.refusals import refused
 from tests.teacher.helpers import teach
 
 
@@ -36,8 +38,8 @@ def undo(path: Path, lesson: str | None = None) -> LessonRecord:
     return record
 
 
-def undo_all_of(path: Path, of: str) -> tuple[LessonRecord, ...]:
-    planned = plan_undo(path, of=of, teacher="command line")
+def undo_all_of(path: Path, teacher: str) -> tuple[LessonRecord, ...]:
+    planned = plan_undo(path, taught_by=teacher, teacher="command line")
     apply_plan(planned, STAMP)
     return planned.lessons
 
@@ -59,7 +61,7 @@ def test_the_last_lesson_that_stands_is_undone_and_the_one_before_it_next(path: 
     assert undo(path) == LessonRecord(created(2), undone=True)
     assert undo(path) == LessonRecord(created(1), undone=True)
     assert rlas(path) == ()
-    with pytest.raises(KnowledgeError, match=f"^{path}: holds no lesson that stands; there is nothing to undo$"):
+    with refused(KnowledgeCode.NO_LESSON, path):
         undo(path)
 
 
@@ -75,7 +77,7 @@ def test_what_was_undone_last_is_redone_first_with_what_its_reward_was_worth(pat
     assert redo(path) == LessonRecord(blame)
     with Journal.read_only(path) as journal:
         assert journal.statistics().values == {1: 0.25}
-    with pytest.raises(KnowledgeError, match=f"^{path}: holds no lesson that was undone; there is nothing to redo$"):
+    with refused(KnowledgeCode.NO_LESSON, path):
         redo(path)
 
 
@@ -87,13 +89,13 @@ def test_a_lesson_whose_place_is_taken_is_not_redone(path: Path) -> None:
     undo(path)
     with Journal.open(path, BINDING) as journal:
         journal.append([JournalEntry(replaced(1, "right", "forward"), STAMP)])
-    for lesson, why in {
-        "replace-1-left": "'replace-1-right' came in the place of 'replace-1-left' .*; undo that one first; kurt2rt",
-        "create-1": "lesson 'create-1' stands; there is nothing to redo; kurt2rt knowledge lessons shows their ids",
+    for lesson, outcome in {
+        "replace-1-left": RefusalCode.TAUGHT_INSTEAD,
+        "create-1": RefusalCode.STANDS_ALREADY,
     }.items():
-        with pytest.raises(KnowledgeError, match=why):
+        with refused(KnowledgeCode.LESSON_REFUSED, path, outcome=outcome):
             redo(path, lesson)
-    with Journal.open(path, BINDING), pytest.raises(KnowledgeError, match="another kurt2rt is writing it"):
+    with Journal.open(path, BINDING), refused(KnowledgeCode.ANOTHER_WRITER):
         redo(path, "create-3")
 
 
@@ -105,13 +107,13 @@ def test_what_was_planned_is_made_as_it_was_planned_or_not_at_all(path: Path) ->
         journal.append([JournalEntry(created(3), STAMP)])
     apply_plan(planned, STAMP)  # not the lesson that came meanwhile
     assert rlas(path) == (created(1).rla, created(3).rla)
-    with pytest.raises(KnowledgeError, match=f"^{path}: nothing was changed: lesson 'create-2' was undone already"):
+    with refused(KnowledgeCode.LESSON_REFUSED, outcome=RefusalCode.UNDONE_ALREADY):
         apply_plan(planned, STAMP)
     assert rlas(path) == (created(1).rla, created(3).rla)
 
 
-def redo_all_of(path: Path, of: str) -> tuple[tuple[LessonRecord, ...], tuple[str, ...]]:
-    planned = plan_redo(path, of=of, teacher="command line")
+def redo_all_of(path: Path, teacher: str) -> tuple[tuple[LessonRecord, ...], tuple[Outcome, ...]]:
+    planned = plan_redo(path, taught_by=teacher, teacher="command line")
     apply_plan(planned, STAMP)
     return planned.lessons, planned.stay
 
@@ -132,7 +134,7 @@ def test_all_that_was_undone_of_one_teacher_stands_again(path: Path) -> None:
     assert [record.event for record in redone] == [*(created(number) for number in (1, 2, 3)), *taught]
     assert reasons == ()
     assert rlas(path) == before
-    with pytest.raises(KnowledgeError, match=r"holds no undone lesson by Hertha that can stand again$"):
+    with refused(KnowledgeCode.NO_UNDONE_LESSON_BY, teacher="Hertha"):
         redo_all_of(path, "Hertha")
 
 
@@ -147,8 +149,8 @@ def test_what_came_in_the_place_of_an_undone_lesson_stays_there(path: Path) -> N
         journal.append([JournalEntry(instead, STAMP)])
     redone, (reason,) = redo_all_of(path, "Hertha")
     assert [record.event for record in redone] == [created(2)]
-    assert reason.startswith("lesson 'instead' came in the place of 'replace-1-left'")
-    with pytest.raises(KnowledgeError, match="holds no undone lesson by Hertha that can stand again: lesson 'instead'"):
+    assert reason.code == RefusalCode.TAUGHT_INSTEAD
+    with refused(KnowledgeCode.NO_UNDONE_LESSON_BY, teacher="Hertha"):
         redo_all_of(path, "Hertha")
 
 
@@ -178,11 +180,8 @@ def test_a_lesson_that_cannot_be_undone_is_refused_and_nothing_is_written(path: 
     begun(path)
     with Journal.open(path, BINDING) as journal:
         journal.append([JournalEntry(replaced(1, "left", "forward"), STAMP)])
-    for lesson, why in {
-        "create-1": "'replace-1-left' came after 'create-1' .*; undo that one first; kurt2rt knowledge lessons shows",
-        "create-9": "there is no lesson 'create-9'; kurt2rt knowledge lessons shows their ids",
-    }.items():
-        with pytest.raises(KnowledgeError, match=why):
+    for lesson, outcome in {"create-1": RefusalCode.TAUGHT_AFTER, "create-9": RefusalCode.NO_SUCH_LESSON}.items():
+        with refused(KnowledgeCode.LESSON_REFUSED, path, outcome=outcome):
             undo(path, lesson)
     with Journal.read_only(path) as journal:
         assert len(journal.events()) == 4
@@ -190,7 +189,7 @@ def test_a_lesson_that_cannot_be_undone_is_refused_and_nothing_is_written(path: 
 
 def test_nothing_is_undone_under_a_running_robot(path: Path) -> None:
     begun(path)
-    with Journal.open(path, BINDING), pytest.raises(KnowledgeError, match="another kurt2rt is writing it"):
+    with Journal.open(path, BINDING), refused(KnowledgeCode.ANOTHER_WRITER):
         undo(path)
 
 
@@ -222,7 +221,7 @@ def test_all_of_the_critic_is_undone_newest_first_and_what_teachers_taught_stays
         undos = [event for event in journal.events() if isinstance(event, LessonUndone)]
         assert [event.lesson for event in undos] == [record.event.origin.command_id for record in told]
         assert len({event.origin.command_id for event in undos}) == 4
-    with pytest.raises(KnowledgeError, match=r"holds no lesson by critic that stands; those that stand are by Hertha$"):
+    with refused(KnowledgeCode.NO_LESSON_BY, teacher=CRITIC):
         undo_all_of(path, CRITIC)
 
 
@@ -288,10 +287,7 @@ def test_where_somebody_elses_later_lesson_stands_in_the_way_nothing_is_undone(p
     with Journal.open(with_a_critics_work(path), BINDING) as journal:
         journal.append([JournalEntry(rewarded(1, 1, "praise-of-hertha"), STAMP)])
         before = journal.events(), journal.statistics()
-    with pytest.raises(
-        KnowledgeError,
-        match=f"^{path}: nothing was undone: lesson 'praise-of-hertha' came after 'blame-1' .*; undo that one first",
-    ):
+    with refused(KnowledgeCode.LESSON_REFUSED, outcome=RefusalCode.TAUGHT_AFTER):
         undo_all_of(path, CRITIC)
     with Journal.read_only(path) as journal:
         assert (journal.events(), journal.statistics()) == before
@@ -299,5 +295,5 @@ def test_where_somebody_elses_later_lesson_stands_in_the_way_nothing_is_undone(p
 
 def test_in_a_file_without_lessons_there_is_nothing_to_undo_of_anybody(path: Path) -> None:
     Journal.open(path, BINDING).close()
-    with pytest.raises(KnowledgeError, match=r"holds no lesson by Ann that stands; there is nothing to undo$"):
+    with refused(KnowledgeCode.NO_LESSON_BY, teacher="Ann"):
         undo_all_of(path, "Ann")

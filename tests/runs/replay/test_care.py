@@ -26,7 +26,7 @@ from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import check_knowledge, fold_journal
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.loading import open_knowledge
-from kurt2rt.knowledge.knowledge_error import KnowledgeError
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.versions.undo import apply_plan, plan_redo, plan_undo
 from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.recording.recover import _copy as copy_records
@@ -42,6 +42,7 @@ from kurt2rt.runs.replay.trial import TrialKnowledge, compatible_runs, newest_co
 from kurt2rt.runs.replay.undo_preview import preview, preview_on_newest
 from kurt2rt.teacher.scripted.teacher import view_of_tick
 from tests.cli.helpers import CommandLine
+from tests.knowledge.refusals import refused
 from tests.runs.replay.stories import NAME, Scene, record_story
 
 STAMP = "2026-11-22T03:10:05.000+00:00"
@@ -129,7 +130,7 @@ def test_what_no_decision_needs_is_deleted_and_every_decision_comes_out_the_same
 
     again = compacted(knowledge, recordings)
     assert (again.deleted, again.kept) == ((), done.kept)
-    apply_plan(plan_undo(knowledge, of=TEACHER, teacher="command line"), STAMP)
+    apply_plan(plan_undo(knowledge, taught_by=TEACHER, teacher="command line"), STAMP)
     assert folded(knowledge).rlas == before.rlas
 
 
@@ -147,7 +148,7 @@ def test_a_robot_that_only_stood_proves_nothing(knowledge: Path, recordings: Pat
     folder = tmp_path / "runs"
     stood = record_story("walls", folder, seconds=1, other=nobody)
     stood.rename(folder / "20260320T084640Z-wall_following")
-    with pytest.raises(KnowledgeError, match=r"in none of its 1 runs .* anything drove \(0 s\).* nothing was deleted"):
+    with refused(KnowledgeCode.NOTHING_DROVE, runs=1):
         compacted(knowledge, folder)
     assert folded(knowledge).rlas == before.rlas
 
@@ -163,13 +164,13 @@ def test_a_robot_that_runs_and_a_folder_without_runs_change_nothing(
 ) -> None:
     with Journal.read_only(knowledge) as look:
         binding = look.binding
-    with Journal.open(knowledge, binding), pytest.raises(KnowledgeError, match="another kurt2rt is writing it"):
+    with Journal.open(knowledge, binding), refused(KnowledgeCode.ANOTHER_WRITER):
         compacted(knowledge, recordings)
     for folder in (tmp_path, tmp_path / "nowhere"):
-        with pytest.raises(KnowledgeError, match="holds no recorded run"):
+        with refused(KnowledgeCode.NO_RECORDED_RUN):
             compacted(knowledge, folder)
     other = replace(binding, feature_hash="another")
-    with pytest.raises(KnowledgeError, match=r"none of its runs can be tried: .* other features"):
+    with refused(KnowledgeCode.NO_RUN_FITS):
         compatible_runs(recordings, other)
     with Journal.read_only(knowledge) as journal:
         assert not any(isinstance(event, RlaDeleted) for event in journal.events())
@@ -186,7 +187,7 @@ def test_an_undo_is_tried_before_it_is_made(knowledge: Path, recordings: Path, l
     assert preview_on_newest(planned, recordings, quietly) == shown
 
     first = next(event for event in lessons if isinstance(event, RlaCreated))
-    planned = plan_undo(knowledge, of=first.origin.teacher, teacher="Ann")
+    planned = plan_undo(knowledge, taught_by=first.origin.teacher, teacher="Ann")
     assert len(planned.lessons) == len(lessons)
     (tried,) = preview(planned, recordings, quietly).runs
     # nothing would be left but what is far off
@@ -194,11 +195,11 @@ def test_an_undo_is_tried_before_it_is_made(knowledge: Path, recordings: Path, l
     assert 0 < tried.found.would_ask <= tried.found.decided
     assert any(each.was.rla == folded(knowledge).get(first.rla.rla_id) for each in tried.found.stretches)
     assert folded(knowledge).rlas == before.rlas
-    with pytest.raises(KnowledgeError, match="there is no lesson 'far-9'"):
+    with refused(KnowledgeCode.LESSON_REFUSED):
         plan_undo(knowledge, "far-9", teacher="Ann")
 
     apply_plan(planned, STAMP)
-    (back,) = preview(plan_redo(knowledge, of=first.origin.teacher, teacher="Ann"), recordings, quietly).runs
+    (back,) = preview(plan_redo(knowledge, taught_by=first.origin.teacher, teacher="Ann"), recordings, quietly).runs
     assert (back.found.would_ask, back.found.would_drive) == (0, tried.found.would_ask)
 
 
@@ -240,7 +241,7 @@ def test_a_run_of_another_kurt2rt_stands_in_no_undos_way(knowledge: Path, runs: 
 
 
 def test_of_a_long_run_the_end_is_tried_and_of_a_very_long_one_nothing(knowledge: Path, recordings: Path) -> None:
-    planned = plan_undo(knowledge, of="scripted teacher", teacher="Ann")
+    planned = plan_undo(knowledge, taught_by="scripted teacher", teacher="Ann")
     (whole,) = preview(planned, recordings, quietly).runs
     (end,) = preview_on_newest(planned, recordings, quietly, last_s=1.0).runs
     assert end.from_s == pytest.approx(3.99)
@@ -281,7 +282,7 @@ def read_anew(run: Path, reader: Callable[[Path], SegmentReader]) -> None:
 
 
 def test_of_a_run_with_a_gap_the_end_before_it_is_tried_and_the_rest_is_told(knowledge: Path, runs: Path) -> None:
-    planned = plan_undo(knowledge, of="scripted teacher", teacher="Ann")
+    planned = plan_undo(knowledge, taught_by="scripted teacher", teacher="Ann")
     (whole,) = preview(planned, runs, quietly).runs
     (run,) = runs.iterdir()
     read_anew(run, lambda path: Lossy(path, range(401, 451)))
@@ -483,7 +484,7 @@ def test_an_undo_that_is_not_agreed_to_leaves_nothing_beside_the_knowledge(
 def test_of_a_run_without_a_gap_each_tick_is_decoded_once(
     knowledge: Path, runs: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    planned = plan_undo(knowledge, of="scripted teacher", teacher="Ann")
+    planned = plan_undo(knowledge, taught_by="scripted teacher", teacher="Ann")
     decoded = list[int]()
 
     def decode_and_count(data: bytes) -> TickEntry:
@@ -507,6 +508,6 @@ def test_an_undo_where_nothing_can_be_written_is_refused_before_it_is_tried(
     given.parent.mkdir()
     shutil.copy(knowledge, given)
     monkeypatch.setattr(os, "access", lambda path, _: Path(path) != given.parent.resolve())  # root may write anywhere
-    assert f"{given.resolve()}: cannot be locked; give a path in a folder" in kurt2rt.refused(
+    assert f"{given.resolve()}: cannot be locked (no write permission); give a path in a folder" in kurt2rt.refused(
         "knowledge", "undo", given
     )

@@ -1,4 +1,4 @@
-"""The mid level as tables: which taught behaviour is to be followed where, who taught it; and what has a name."""
+"""Tables of the RLAs of further levels, and of named situations."""
 
 from collections.abc import Iterable, Mapping
 
@@ -6,9 +6,9 @@ from hal.settings import shipped_names
 from kurt2rt.core.mid.settings import MidSettings, load_mid_level
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.feature_set import LevelFeatures
-from kurt2rt.core.rla.rla import Rla
+from kurt2rt.core.rla.rla import CRITIC, Rla
 from kurt2rt.knowledge.journal.entry import StoredEntry
-from kurt2rt.knowledge.show.table_cells import answer, instead_of, plain, stamp_and_teacher
+from kurt2rt.knowledge.show.table_cells import format_action, printable, replaced_action, stamp_and_teacher
 from kurt2rt.platform.text_table import TextTable
 
 _FOLLOW_UPS = 3
@@ -21,9 +21,16 @@ def mid_table(
     uses: Mapping[int, int],
     follow_ups: Mapping[int, Mapping[int, float]],
 ) -> TextTable:
-    """A row per RLA. `taught`: the entry of each command id; `follow_ups`: shares in percent, most frequent first.
+    """Return the table of mid-level RLAs, a row each.
 
-    A history is told in words, the newest symbol first, where its settings are shipped; else in numbers.
+    A history is shown in words, the newest symbol first, if its settings are shipped; else in numbers.
+
+    Args:
+        rlas: of the mid level.
+        features: of the mid level.
+        taught: entry of each command id.
+        uses: by RLA id.
+        follow_ups: shares of an RLA's successors in percent, most frequent first.
     """
     settings = _shipped_mid(features.feature_hash)
     table = TextTable()
@@ -38,24 +45,24 @@ def mid_table(
         following = list(follow_ups.get(rla.rla_id, {}).items())[:_FOLLOW_UPS]
         table.add_row(
             str(rla.rla_id),
-            answer(rla),
-            instead_of(entry),
+            format_action(rla),
+            replaced_action(entry),
             stamp_and_teacher(entry.stamped_at, rla.origin.teacher),
             str(uses.get(rla.rla_id, 0)),
-            plain(_where(rla.condition, settings, features.feature_names)),
+            printable(_where(rla.condition, settings, features.feature_names)),
             ", ".join(f"{rla_id} ({percent:.0f} %)" for rla_id, percent in following),
         )
     return table
 
 
 def named_table(named: Mapping[str, Condition], features: LevelFeatures) -> TextTable:
-    """The situations that have a name, in the order of the alphabet; in words or numbers as above."""
+    """Return the table of named situations in alphabetical order, in words or numbers as `mid_table` has them."""
     settings = _shipped_mid(features.feature_hash)
     table = TextTable()
     for heading in ("named", "where: the newest first"):
         table.add_column(heading)
     for name in sorted(named):
-        table.add_row(plain(name), plain(_where(named[name], settings, features.feature_names)))
+        table.add_row(printable(name), printable(_where(named[name], settings, features.feature_names)))
     return table
 
 
@@ -75,3 +82,31 @@ def _where(situation: Condition, settings: MidSettings | None, feature_names: tu
         named = zip(feature_names, situation, strict=True)
         words = [f"{name} {value:.3g}" for name, value in named if value]
     return ", ".join(words) or "at the beginning"
+
+
+def level_table(
+    level: str, rlas: Iterable[Rla], feature_names: tuple[str, ...], taught: Mapping[str, StoredEntry]
+) -> TextTable:
+    """Return the table of RLAs of a level, a row each; `taught` has the entry of each command id."""
+    of_critic = level == CRITIC
+    table = TextTable()
+    table.add_column("appraisal RLA" if of_critic else f"{level} RLA", number=True)
+    table.add_column("says" if of_critic else "action")
+    for heading in ("instead of", "taught (UTC), by", "circumstances" if of_critic else "features"):
+        table.add_column(heading)
+    for rla in rlas:
+        entry = taught[rla.origin.command_id]
+        table.add_row(
+            str(rla.rla_id),
+            format_action(rla),
+            replaced_action(entry),
+            stamp_and_teacher(entry.stamped_at, rla.origin.teacher),
+            printable(_circumstances(rla, feature_names)),
+        )
+    return table
+
+
+def _circumstances(rla: Rla, feature_names: tuple[str, ...]) -> str:
+    """Return the features that are not 0, by name."""
+    named = zip(feature_names, rla.condition, strict=True)
+    return ", ".join(f"{name} {value:.2f}" for name, value in named if value) or "all 0"
