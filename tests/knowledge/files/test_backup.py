@@ -26,7 +26,7 @@ async def test_lessons_are_durable_once_settled_and_a_failing_disk_is_told_at_on
         writer.submit(created(1))
         await safe.settle()
         assert writer.unwritten == 0
-        monkeypatch.setattr(JournalWriter, "trouble", property(lambda _: "the disk is full"))
+        monkeypatch.setattr(JournalWriter, "error", property(lambda _: "the disk is full"))
         with refused(KnowledgeCode.NOT_DURABLE, reason="the disk is full"):
             await safe.settle()
         monkeypatch.undo()
