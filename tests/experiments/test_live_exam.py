@@ -125,6 +125,6 @@ def test_exam_process_with_a_policy_that_gets_nowhere_does_not_judge(
 def test_knowledge_of_another_task_is_told_in_a_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     knowledge = tmp_path / "eight.knowledge"
     open_knowledge(knowledge, load_robot(), load_task("eight")).close()
-    with refused(KnowledgeCode.OTHER_TASK_GIVEN):
+    with refused(KnowledgeCode.OTHER_TASK):
         exam_process._examine(knowledge, tmp_path / "exam.png", "kurt2", "wall_following", 1)
     assert capsys.readouterr().out == ""
