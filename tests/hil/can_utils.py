@@ -26,7 +26,7 @@ def candump(bus: str, frames: int) -> str:
 
 
 def lines_of(log: str) -> list[Line]:
-    """What candump wrote."""
+    """Return the lines of a candump log."""
     lines = []
     for line in log.splitlines():
         stamp, _, frame = line.split()[:3]
@@ -42,7 +42,7 @@ def cansend(bus: str, frame: str) -> None:
 
 @contextmanager
 def doing(*words: str) -> Iterator["subprocess.Popen[bytes]"]:
-    """A program that runs meanwhile; ended at the end."""
+    """Run a program in the background; end it at the end."""
     with subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as process:
         try:
             yield process
@@ -51,7 +51,7 @@ def doing(*words: str) -> Iterator["subprocess.Popen[bytes]"]:
 
 
 def cantools_decode(log: str) -> str:
-    """What `cantools decode` says of candump's lines, with the project's database."""
+    """Return the output of `cantools decode` for a candump log, with the project's database."""
     dbc: Path = CONFIG_DIR / "can" / "kurt2.dbc"
     return _said(sys.executable, "-m", "cantools", "decode", "--single-line", str(dbc), typed=log)
 

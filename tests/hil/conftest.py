@@ -23,7 +23,7 @@ def vcan0() -> str:
 
 @pytest.fixture
 def link(vcan0: str) -> Iterator[Link]:
-    """The same interface, to be set; afterwards it is as it was."""
+    """Return the interface for a test that changes it; restore it afterwards."""
     assert vcan0 == NAME
     link = Link()
     yield link
@@ -32,7 +32,7 @@ def link(vcan0: str) -> Iterator[Link]:
 
 @pytest.fixture
 def drive(vcan0: str) -> Iterator[Drive]:
-    """A robot that drives over it."""
+    """Return a robot that drives over vcan0."""
     with Drive(vcan0) as drive:
         drive.until_it_drives()
         yield drive

@@ -50,11 +50,11 @@ class Drive:
 
     @property
     def health(self) -> Health:
-        """What the runtime says of its robot."""
+        """Health of the runtime's robot."""
         return self.kurt2.health
 
     def tick(self, wanted: WheelSpeeds = FORWARD) -> GuardResult:
-        """The robot's cycle, then the runtime's."""
+        """Run the robot's cycle, then the runtime's; return the guard's result."""
         # Where ticks follow each other without a pause, the kernel's own thread that delivers frames waits its turn.
         time.sleep(_PAUSE_S)
         self.simulated.step()
@@ -70,9 +70,9 @@ class Drive:
         return self.grant
 
     def until_it_drives(self) -> None:
-        """On until the wheels are granted and obey what is wanted.
+        """Tick until the guard lets the wanted speeds pass and the wheels obey.
 
-        A machine that was held up for a moment lets readings grow old: the robot stands, and begins anew.
+        A machine that was held up for a moment lets readings grow old: the robot stands, and starts again.
         """
         for _ in range(_MOST_TICKS):
             if self.tick().wheel_speeds == FORWARD and self.simulated.wheel_speeds.left_m_s > 0.25:
@@ -80,7 +80,7 @@ class Drive:
         raise AssertionError(f"it does not drive: {self.grant}, {self.health}")
 
     def until_fresh(self) -> None:
-        """On until readings of this very cycle come again."""
+        """Tick until readings of the present cycle come again."""
         for _ in range(_MOST_TICKS):
             self.tick()
             if self.senses.infrared_age_s < self._cycle_s:
@@ -88,7 +88,7 @@ class Drive:
         raise AssertionError(f"no readings come: {self.senses}, {self.health}")
 
     def until_it_stands(self) -> None:
-        """On until the wheels stand still."""
+        """Tick until the wheels stand still."""
         for _ in range(_MOST_TICKS):
             self.tick()
             if self.simulated.wheel_speeds == (0.0, 0.0):

@@ -24,7 +24,7 @@ class Link:
         _do("ip", "link", "del", NAME)
 
     def make(self) -> None:
-        """Make it anew, and set it up."""
+        """Create the interface again, and set it up."""
         _do("ip", "link", "add", "dev", NAME, "type", "vcan")
         self.up()
 
@@ -46,11 +46,11 @@ class Link:
         self.lose_what_waits()
 
     def lose_what_waits(self) -> None:
-        """Be as quick as ever; what waits is lost, and nobody is told."""
+        """Remove the queueing rules: waiting frames are lost without an error."""
         subprocess.run(["tc", "qdisc", "del", "dev", NAME, "root"], capture_output=True, check=False)
 
     def restore(self) -> None:
-        """As every test finds it."""
+        """Restore the interface to its state before the test."""
         if not Path(f"/sys/class/net/{NAME}").exists():
             self.make()
         self.lose_what_waits()

@@ -1,4 +1,4 @@
-"""What an adapter reports of the bus reaches the robot as error frames, through its receive filter."""
+"""Error frames of an adapter reach the robot through its receive filter."""
 
 import can
 import pytest

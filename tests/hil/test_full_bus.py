@@ -19,7 +19,7 @@ pytestmark = pytest.mark.hil
 
 @contextmanager
 def listener(vcan0: str) -> Iterator[CanBus]:
-    """A third end, which hears CONTROL alone."""
+    """Return a third interface that receives CONTROL alone."""
     bus = open_bus(vcan0)
     bus.set_id_filter({0x01})
     yield bus

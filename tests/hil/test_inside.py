@@ -56,7 +56,7 @@ def test_output_goes_to_files_where_the_order_says_so(tmp_path: Path) -> None:
     assert both.read_text() == "one\ntwo\nthree\n"
 
 
-# Both end only because nobody is left who holds the output open.
+# Both end only because no process is left that holds the output open.
 def test_a_command_that_takes_too_long_is_ended_with_all_it_started() -> None:
     done = run("sh", "-c", "sleep 1000 & wait", limit_s=0.3)
     assert (done.returncode, done.stderr) == (124, "machine: time limit of 0.3 s\n")

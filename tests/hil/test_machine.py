@@ -135,7 +135,7 @@ def test_ten_minutes_pass_at_once_in_simulated_time_and_every_run_sees_the_same_
 
 
 def command_lines() -> list[str]:
-    """Of all processes that run here."""
+    """Return the command lines of all processes here."""
     lines = []
     for path in Path("/proc").glob("[0-9]*/cmdline"):
         try:

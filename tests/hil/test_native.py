@@ -1,4 +1,4 @@
-"""Where the kernel has vcan, a machine is a namespace of its own, for root and for anybody else."""
+"""Native machine: a namespace of its own on a kernel with vcan, for root and for other users."""
 
 import os
 import shutil
@@ -11,13 +11,13 @@ import pytest
 pytestmark = pytest.mark.hil
 
 ROOT = Path(__file__).parents[2]
-# The virtual environment's interpreter may lie in somebody's home.
+# The virtual environment's interpreter may lie in a user's home.
 SYSTEM_PYTHON = shutil.which("python3", path="/usr/local/bin:/usr/bin") or "python3"
 AS_NOBODY = ("setpriv", "--reuid=65534", "--regid=65534", "--clear-groups")
 
 
 def others_exist() -> bool:
-    """Whether this process could become somebody else: in a user namespace it is alone."""
+    """Return whether this process could become another user; in a user namespace there is none."""
     return os.geteuid() == 0 and int(Path("/proc/self/uid_map").read_text().split()[2]) > 65534
 
 

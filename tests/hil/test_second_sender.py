@@ -1,4 +1,4 @@
-"""Somebody else sends CONTROL: the robot stops in the same tick and says so."""
+"""Another node sends CONTROL: the robot stops in the same tick and says why."""
 
 import pytest
 

@@ -60,7 +60,7 @@ def ends(vcan0: str) -> Iterator[Ends]:
 
 @pytest.fixture
 def passing_interface() -> Iterator[str]:
-    """An interface that a test may delete."""
+    """Return an interface that a test may delete."""
     name = "vcan77"
     link("add", "dev", name, "type", "vcan")
     link("set", name, "up")

@@ -19,7 +19,7 @@ from tests.hil.machine.trouble import MachineError
 from tests.hil.machine.uml import Uml
 
 _TOOLS = {"ip": "iproute2", "tc": "iproute2", "candump": "can-utils"}
-"""What commands in the machine count on."""
+"""Tools that commands in the machine need, and their Debian packages."""
 _SIMULATED_TIME = ("time-travel=inf-cpu", "time-travel-start=1700000000000000000")
 """The clock jumps to the next timer whenever all sleep, work takes no time, every run begins at the same instant."""
 _INTERFACE_NAME = re.compile(r"[A-Za-z0-9_-]{1,15}")
@@ -70,7 +70,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _find(order: Order, way: str, *, install: bool) -> tuple[str, Callable[[], int]]:
-    """What runs the order, and its name. Raises MachineError."""
+    """Return the name of the machine and the function that runs the order. Raises MachineError."""
     need(_TOOLS, install=install)
     why_not_native = ""
     if way == "native" or (way == "auto" and order.kernel is None and not order.systemd):

@@ -1,6 +1,6 @@
 """The native way: this machine's own kernel makes the interfaces, in a network namespace of their own.
 
-So no vcan0 that somebody uses is taken down by a test, and nothing is left to clean up.
+So no test takes down a vcan0 that is in use, and nothing is left to clean up.
 """
 
 import os
@@ -56,7 +56,7 @@ class Native:
 
 
 def find_native(order: Order) -> Native:
-    """The first way that works here for such an order. Raises MachineError that says why none does."""
+    """Return the first way that works here for an order. Raises MachineError with the reasons if none does."""
     if program("ip") is None or program("unshare") is None:
         raise MachineError("no native machine: ip or unshare is missing; Debian packages: iproute2 util-linux")
     _load_vcan(order)

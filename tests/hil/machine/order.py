@@ -1,4 +1,4 @@
-"""What a machine is wanted for."""
+"""Order: a command to run in a machine, and the machine that it needs."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +15,7 @@ class Order:
     """Frames come back to this machine's own listeners by the driver, after the queue discipline, as with an adapter.
     Without it they take a short cut: `tc` delays nothing, and a sender hears at once what the bus has yet to carry."""
     limit_s: int = 900
-    """How long the command may take: seconds of the machine, in simulated time simulated ones."""
+    """Time limit of the command: seconds of the machine, in simulated time simulated seconds."""
     shared: tuple[Path, ...] = ()
     """Directories that the command may write to, besides the current one. The rest of what it writes is lost (uml)."""
     memory_mib: int = 1024
@@ -26,5 +26,4 @@ class Order:
     """A User-Mode Linux kernel with CAN built in; None takes Debian's with its modules."""
     kernel_arguments: tuple[str, ...] = ()
     systemd: bool = False
-    """Whether systemd is the first process of a uml machine, as of a robot's computer; else a script that does no more
-    than it must."""
+    """True makes systemd the first process of a uml machine, as on a robot's computer; else a minimal script is."""

@@ -36,7 +36,7 @@ def need(packages_by_sign: Mapping[str, str], *, install: bool) -> None:
 
 
 def as_root() -> list[str]:
-    """What to put before a command that needs root."""
+    """Return the prefix of a command that needs root."""
     return [] if os.geteuid() == 0 else ["sudo", "-n"]
 
 

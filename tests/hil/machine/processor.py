@@ -8,7 +8,7 @@ _LOOK_S = 0.1
 
 
 def least_busy() -> int:
-    """Number of the processor that idled most just now, of those this process may use.
+    """Return the number of the processor that idled most just now, among those this process may use.
 
     Each system call inside a uml machine is a hand-over between two processes of this one, three times cheaper
     when both stay on one processor.

@@ -33,7 +33,7 @@ _LOG_LINES = 20
 
 
 def small_kernel(*, install: bool = False) -> Path:
-    """The kernel of this configuration and patch: from the cache, or built now, in three minutes on two processors.
+    """Return the kernel of this configuration and patch: from the cache, or built in three minutes on two processors.
 
     Raises MachineError that names missing packages or says why it cannot be built; OSError.
     """
@@ -52,7 +52,7 @@ def small_kernel(*, install: bool = False) -> Path:
 
 
 def _cached(cache: Path) -> Path | None:
-    """The kernel of the source that is installed; where none is, the newest: a cache that was handed on will do."""
+    """Return the cached kernel of the installed source, or the newest one if no source is installed."""
     source = _newest_source()
     if source is not None:
         kernel = _place(cache, source)
@@ -65,7 +65,7 @@ def _newest_source() -> Path | None:
 
 
 def _place(cache: Path, source: Path) -> Path:
-    """Where the kernel of a source, this configuration and this patch lies."""
+    """Return the path of the kernel of a source, this configuration and this patch."""
     package = source.name.removesuffix(".tar.xz")
     try:
         told = subprocess.run(
@@ -81,7 +81,7 @@ def _fingerprint() -> str:
 
 
 def _build(source: Path, kernel: Path) -> None:
-    """Build beside its place and move it there whole, so that what lies there is always complete."""
+    """Build in a temporary folder, then move the complete kernel to its place."""
     if shutil.disk_usage(kernel.parent).free < _BUILD_BYTES:
         raise MachineError(f"building the small kernel takes {_BUILD_BYTES >> 30} GiB under {kernel.parent} meanwhile")
     print(f"machine: building {kernel}, once, about 3 minutes on two processors", file=sys.stderr, flush=True)

@@ -1,4 +1,4 @@
-"""What the machine's user is told when there is none."""
+"""Error for users if no machine can be had."""
 
 
 class MachineError(Exception):

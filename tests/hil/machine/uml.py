@@ -26,15 +26,15 @@ _INIT = Path(__file__).with_name("init.sh")
 _DEBIAN_KERNEL = "linux.uml"
 _SYSTEMD = "/lib/systemd/systemd"
 _CONTROL_INSIDE = "/run/machine"
-"""Where the machine finds the control directory."""
+"""Path of the control directory inside the machine."""
 _SPARE_S = 30.0
-"""How much longer than its time limit a machine may take in this machine's time: booting, and clocks that differ."""
+"""Extra time in this machine's time: booting, and clocks that differ."""
 _PATIENCE_S = 5.0
 _LOOK_S = 0.05
 _SHARED_MEMORY = Path("/dev/shm")
 _LOG_LINES = 15
 _TRACE = "[<"
-"""In lines of the kernel log that list a stack."""
+"""Mark of kernel log lines that list a stack."""
 
 
 class Uml:
@@ -111,7 +111,7 @@ class Uml:
 
     @contextlib.contextmanager
     def _booted(self, control: Path, log: Path) -> Iterator["subprocess.Popen[bytes]"]:
-        """The machine as a process; ended with all its helper processes, whatever happens."""
+        """Run the machine as a process; end it with all its helper processes in every case."""
         cpu = least_busy() if self._order.cpu is None else self._order.cpu
         words = [
             # Should this program be killed, the machine ends, too.
@@ -145,7 +145,7 @@ class Uml:
             machine.wait()
 
     def _memory_folder(self, control: Path) -> Path:
-        """Where the file lies that is the machine's memory: it is sparse, and mapped executable.
+        """Return the folder of the file that is the machine's memory: it is sparse, and mapped executable.
 
         A container's /dev/shm may be too small or noexec for it; on a disk it is slower.
         """
@@ -195,6 +195,6 @@ class _Relay:
 
 
 def _same_file(one: int, other: int) -> bool:
-    """True when two descriptors lead to the same place; then the order of what is written matters."""
+    """Return whether two descriptors lead to the same file; then the order of writes matters."""
     first, second = os.fstat(one), os.fstat(other)
     return (first.st_dev, first.st_ino) == (second.st_dev, second.st_ino)

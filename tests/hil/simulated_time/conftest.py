@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[3]
 
 @pytest.fixture
 def play(tmp_path: Path) -> Callable[[Story], Played]:
-    """Puts a story on in a machine of its own. Fails where none can be had."""
+    """Return a function that runs a story in a machine of its own. Fails if no machine can be had."""
 
     def play(story: Story) -> Played:
         folder = tmp_path / f"story-{len(list(tmp_path.iterdir()))}"

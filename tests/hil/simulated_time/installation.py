@@ -22,7 +22,7 @@ def install_for_everybody() -> Path:
     python = _in_parts("python", Path(sys.base_prefix)) / "bin" / f"python3.{sys.version_info.minor}"
     packages = _in_parts("environment", Path(sys.prefix)) / "lib" / python.name / "site-packages"
     project = _in_parts("project", CONFIG_DIR.parent)
-    # A shared libpython would be found where it was built for; and each start would compile all anew.
+    # A shared libpython would be found where it was built for; and each start would compile all files again.
     given = {"LD_LIBRARY_PATH": f"{python.parents[1]}/lib", "PYTHONPYCACHEPREFIX": str(_BYTECODE)}
     words = [f"{name}={value}" for name, value in given.items()]
     _do("systemctl", "set-environment", *words)

@@ -1,4 +1,4 @@
-"""What candump heard, frame by frame, with the kernel's stamps."""
+"""Log of candump, frame by frame, with the kernel's stamps."""
 
 import re
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ class Turned(NamedTuple):
 
     at_us: int
     ticks: int
-    """Of both sides, whichever way they turned."""
+    """Sum of both sides, in either direction."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Log:
 
     told: tuple[Told, ...]
     infrared_us: tuple[int, ...]
-    """When readings came."""
+    """Times of the readings."""
     turned: tuple[Turned, ...]
 
 

@@ -110,7 +110,7 @@ async def test_an_emergency_stop_by_cansend_is_obeyed_by_robot_and_runtime(vcan0
 
 
 async def _stopped_by_cansend(bus: str, we: TeacherClient) -> State:
-    """Tried anew where something else was quicker to stop it: a machine that has much to do, for instance."""
+    """Stop the robot by cansend; try again if a busy machine stopped it first."""
     while True:
         await until_it_drives(we, "spin_left")
         await anyio.to_thread.run_sync(cansend, bus, STOP)
@@ -189,7 +189,7 @@ class Recorded(NamedTuple):
     counts: set[tuple[int, ...]]
     """Readings of all sensors after each frame."""
     ticks: tuple[int, int]
-    """Of the encoders, altogether."""
+    """Total encoder ticks of each side."""
 
 
 @pytest.fixture
@@ -209,7 +209,7 @@ def recorded(vcan0: str, tmp_path: Path) -> Recorded:
 
 
 def counts_in(lines: list[Line]) -> Iterator[tuple[int, ...]]:
-    """Readings of all sensors, in the order of the sensor table, after each frame."""
+    """Yield the readings of all sensors, in the order of the sensor table, after each frame."""
     channels = dict.fromkeys((sensor.channel for sensor in ROBOT.infrared.sensors), 0)
     yield tuple(channels.values())
     for line in lines:

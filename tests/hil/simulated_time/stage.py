@@ -21,7 +21,7 @@ _STARTING_S = 0.5
 
 @dataclass(frozen=True)
 class Story:
-    """What happens. Seconds count from the start of the robot."""
+    """Events of a story; seconds count from the start of the robot."""
 
     seconds: float
     by_command: bool = False
@@ -36,9 +36,9 @@ class Story:
     """Forward, or back where negative."""
     runtime_killed_s: float | None = None
     runtime_stopped_s: float | None = None
-    """By SIGSTOP, for a second."""
+    """Time of a SIGSTOP for one second."""
     robot_stopped_s: float | None = None
-    """By SIGSTOP, for good."""
+    """Time of a SIGSTOP without an end."""
 
 
 class Stage:
@@ -64,7 +64,7 @@ class Stage:
 
 
 def sleep_until(at_s: float) -> None:
-    """Until a time of the monotonic clock."""
+    """Sleep until a time of the monotonic clock."""
     time.sleep(max(0.0, at_s - time.monotonic()))
 
 
@@ -113,7 +113,7 @@ def main() -> None:
 
 
 def order(folder: Path, story: Story) -> list[str]:
-    """The command that puts a story on."""
+    """Return the command that runs a story."""
     return [sys.executable, "-m", "tests.hil.simulated_time.stage", str(folder), json.dumps(asdict(story))]
 
 

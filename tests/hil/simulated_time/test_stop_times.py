@@ -1,4 +1,4 @@
-"""From a cause to the frame on the bus that stops the robot, by the kernel's own stamps."""
+"""Time from a cause to the frame that stops the robot, by the kernel's own stamps."""
 
 from collections.abc import Callable
 from itertools import pairwise
@@ -17,7 +17,7 @@ CYCLE_US = 10_000
 JITTER_US = 100
 """Work takes no time here, but each look at the clock takes a little."""
 DRIVES_TICKS = 340
-"""Of both sides in a cycle, at the 0.3 m/s that the teacher's policy likes."""
+"""Ticks of both sides in a cycle, at the 0.3 m/s of the teacher's policy."""
 
 
 def slows(turned: Turned) -> bool:

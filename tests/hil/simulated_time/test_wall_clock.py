@@ -1,4 +1,4 @@
-"""Somebody sets the clock on which the kernel stamps frames, between a frame and the tick that takes it."""
+"""Set wall clock, from which the kernel stamps frames, between a frame and its tick."""
 
 from collections.abc import Callable
 

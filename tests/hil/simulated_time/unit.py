@@ -16,15 +16,15 @@ class Unit:
     """kurt2rt.service. Each word raises subprocess.CalledProcessError when systemd refuses."""
 
     def start(self) -> None:
-        """Returns when the program has told that it is ready."""
+        """Start the unit; return when its program is ready."""
         _do("systemctl", "start", NAME)
 
     def stop(self) -> None:
-        """Returns when it has ended."""
+        """Stop the unit; return when its program has ended."""
         _do("systemctl", "stop", NAME)
 
     def reload(self) -> None:
-        """Returns when the program has told that it did."""
+        """Reload the unit; return when its program has done so."""
         _do("systemctl", "reload", NAME)
 
     def kill(self, signal: str) -> None:
@@ -32,36 +32,36 @@ class Unit:
         _do("systemctl", "kill", "--kill-whom=main", f"--signal={signal}", NAME)
 
     def shows(self, name: str) -> str:
-        """A property, as `systemctl show` says it."""
+        """Return a property, as `systemctl show` prints it."""
         return _do("systemctl", "show", "--property", name, "--value", NAME).strip()
 
     @property
     def pid(self) -> int:
-        """Of its main process; 0 while there is none."""
+        """Process id of the main process; 0 while there is none."""
         return int(self.shows("MainPID"))
 
     def journal(self, pid: int | None = None) -> str:
-        """What was said since the machine began: by a process, or by all of the unit and of it."""
+        """Return the journal since the machine's start: of a process, or of the whole unit."""
         which = ("--unit", NAME) if pid is None else (f"_PID={pid}",)
         return _do("journalctl", "--quiet", "--no-pager", "--output", "cat", *which)
 
     def said_at_s(self, beginning: str) -> float:
-        """When the newest line that begins so was said, on the clock that does not jump."""
+        """Return the time of the newest line with this beginning, in seconds of the monotonic clock."""
         lines = _do("journalctl", "--quiet", "--output", "json", "--unit", NAME).splitlines()
         entries = [entry for entry in map(json.loads, lines) if entry["MESSAGE"].startswith(beginning)]
         return int(entries[-1]["__MONOTONIC_TIMESTAMP"]) / 1e6
 
     def wait_until_said(self, text: str) -> int:
-        """Until the program that runs now, or the next one, has said that; returns its process."""
+        """Wait until the present or the next program has logged a text; return its process id."""
         self._wait(lambda: (pid := self.pid) != 0 and text in self.journal(pid), f"{text!r} is said")
         return self.pid
 
     def wait_for_another(self, pid: int) -> None:
-        """Until it has a main process that is not that one."""
+        """Wait until the unit has another main process."""
         self._wait(lambda: self.pid not in (0, pid), f"another process than {pid} is there")
 
     def wait_for_status(self, text: str) -> None:
-        """Until the status that the program told holds that."""
+        """Wait until the status text of the program contains a text."""
         self._wait(lambda: text in self.shows("StatusText"), f"the status says {text!r}")
 
     def _wait(self, is_so: Callable[[], bool], what: str) -> None:

@@ -31,7 +31,7 @@ PORT = 5683
 SYS_NICE = 1 << 23
 LISTENS = f"teachers are listened to on UDP port {PORT}"
 START_LIMIT = 5
-"""After so many falls within 10 s systemd leaves an ordinary unit dead."""
+"""Number of failures within 10 s after which systemd gives an ordinary unit up."""
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +41,7 @@ def kurt2rt() -> Path:
 
 @pytest.fixture(scope="module")
 def settings() -> Path:
-    """Where the service may read them, as delivered."""
+    """Write the shipped settings where the service may read them; return the path."""
     path = Path("/etc/kurt2rt/runtime.yaml")
     path.parent.mkdir()
     write_settings(path)
@@ -71,7 +71,7 @@ def robot(folder: Path) -> Iterator[Running]:
 
 @asynccontextmanager
 async def teacher() -> AsyncIterator[TeacherClient]:
-    """With the key of this machine's own programs, which root may read."""
+    """Connect a teacher with the key of this machine's own programs, which root may read."""
     async with TeacherClient(STATE / "var/devices/local", port=PORT) as we:
         assert (await we.take()).accepted
         yield we
@@ -133,7 +133,7 @@ def may_do_little(pid: int) -> None:
 
 
 def seen_from(pid: int, *words: str) -> str:
-    """What a command of root says in the service's view of the files."""
+    """Return the output of a command of root in the service's view of the files."""
     done = subprocess.run(
         ["nsenter", "--target", str(pid), "--mount", *words], capture_output=True, text=True, check=False
     )
@@ -141,7 +141,7 @@ def seen_from(pid: int, *words: str) -> str:
 
 
 def status_of(kurt2rt: Path) -> dict[str, dict[str, float]]:
-    """As docs/run-as-a-service.md says how to ask for it."""
+    """Return the status by the command of docs/run-as-a-service.md."""
     done = subprocess.run(
         ["setpriv", f"--reuid={NAME}", f"--regid={NAME}", "--clear-groups", kurt2rt, "status", "--json"],
         cwd=STATE,
