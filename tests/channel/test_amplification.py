@@ -67,7 +67,7 @@ def test_discovery_answers_at_most_three_times_the_bytes(tmp_path: Path, kind: A
     run_jumping(story)
 
 
-def test_whatever_strangers_send_they_get_at_most_three_times_the_bytes(tmp_path: Path) -> None:
+def test_strangers_get_at_most_three_times_their_bytes(tmp_path: Path) -> None:
     async def story() -> None:
         async with robot_at_work(tmp_path) as at_work:
             chance, hostile = random.Random(2004), HostileDatagrams(2004, lambda: (b"boot", 0))

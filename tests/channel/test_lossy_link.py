@@ -67,7 +67,7 @@ def close(mailbox: Mailbox) -> None:
     mailbox.transport.close()
 
 
-async def test_in_fair_weather_everything_passes_both_ways_and_clients_stay_apart(robot: Mailbox) -> None:
+async def test_lossy_link_good_weather_passes_all_both_ways(robot: Mailbox) -> None:
     async with LossyLink(robot.port) as link:
         ann, ben = await client_of(link), await client_of(link)
         ann.send(b"a", b"b")
@@ -119,7 +119,7 @@ async def test_late_ones_are_overtaken(robot: Mailbox) -> None:
         close(client)
 
 
-async def test_what_is_held_back_comes_in_the_end(robot: Mailbox) -> None:
+async def test_lossy_link_delayed_datagram_arrives(robot: Mailbox) -> None:
     async with LossyLink(robot.port, up=Weather(held_back=1.0, held_back_s=0.1)) as link:
         client = await client_of(link)
         client.send(b"old")

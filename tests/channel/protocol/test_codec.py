@@ -212,7 +212,7 @@ def test_any_bytes_are_a_valid_answer_or_are_refused(payload: bytes) -> None:
 
 
 @given(st.sampled_from(sorted(cbor2.loads(encode_state(state())))), ANYTHING)
-def test_a_state_with_anything_in_one_place_is_valid_or_is_refused(key: str, anything: object) -> None:
+def test_state_with_any_value_is_valid_or_refused(key: str, anything: object) -> None:
     picture = cbor2.loads(encode_state(state())) | {key: anything}
     try:
         decoded = decode_state(cbor2.dumps(picture))
@@ -239,7 +239,7 @@ def refusal(path: str, payload: bytes) -> str:
     return str(refused.value)
 
 
-def test_what_is_not_one_flat_list_of_plain_values_is_refused() -> None:
+def test_request_not_flat_list_is_refused() -> None:
     good = cbor2.dumps([ID, None])
     assert "not the CBOR" in refusal("/stop", b"")
     assert "not the CBOR" in refusal("/stop", good[:-1])
@@ -324,7 +324,7 @@ def test_the_bodies_are_the_lists_of_the_contract() -> None:
     assert cbor2.loads(encode_request(LessonsRequest(10))) == [10]
 
 
-def test_a_device_of_version_2_knows_no_levels_and_teaches_the_basic_one() -> None:
+def test_request_of_version_2_without_level_is_basic() -> None:
     lesson = [BOOT, ID, 90, "forward", 88]
     assert decode_request("/answer", cbor2.dumps(lesson)) == AnswerRequest(BOOT, ID, 90, "forward", 88, BASIC, False)
     assert decode_request("/correct", cbor2.dumps(lesson)) == CorrectRequest(BOOT, ID, 90, "forward", 88, BASIC)
@@ -350,7 +350,7 @@ def test_words_of_the_levels_are_cut_and_tidied_too() -> None:
     assert picture.plan == ("straight_on",) * 32
 
 
-def test_a_line_break_in_a_text_does_not_cost_the_teacher_the_picture() -> None:
+def test_state_line_break_in_text_is_made_blank() -> None:
     untidy = state(trouble="disk full\n\tat " + "x" * 600, guard=("held\nback",), session="a\x00b")
     picture = decode_state(encode_state(untidy))
     assert picture.trouble == "disk full  at " + "x" * 498

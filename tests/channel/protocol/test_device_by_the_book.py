@@ -81,7 +81,7 @@ def test_it_says_hello_looks_teaches_and_stops(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("confirms", [True, False])
-def test_who_only_looks_goes_on_as_long_as_it_confirms(
+def test_device_by_the_book_confirms_and_keeps_observing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, confirms: bool
 ) -> None:
     if not confirms:
@@ -102,7 +102,7 @@ def test_who_only_looks_goes_on_as_long_as_it_confirms(
     run_jumping(story)
 
 
-def test_after_each_start_of_the_robot_it_answers_one_challenge_and_goes_on(tmp_path: Path) -> None:
+def test_device_by_the_book_answers_challenge_after_restart(tmp_path: Path) -> None:
     numbers: list[int] = []
 
     async def story() -> None:

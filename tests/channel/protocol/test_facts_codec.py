@@ -31,7 +31,7 @@ def test_the_facts_of_a_robot_survive_the_wire(lesson: Lesson) -> None:
     assert facts_of_plain(told["why"]) == lesson.facts
 
 
-def test_what_is_not_finite_survives_as_null() -> None:
+def test_facts_codec_not_finite_is_null() -> None:
     place = story(12, (0.0, 1.0), "turn_left", math.inf)
     lost = replace(level((math.nan, 1.0), place), driver=None, level=MID)
     asks = replace(with_mid(facts(level((1.0,)), "unknown", None), lost), asks_at=MID, infrared_age_s=math.inf)
@@ -41,14 +41,14 @@ def test_what_is_not_finite_survives_as_null() -> None:
     assert repr(again) == repr(asks)
 
 
-def test_of_many_rlas_the_nearest_are_told_and_how_many_there_are() -> None:
+def test_facts_codec_keeps_nearest_rlas_and_count() -> None:
     crowd = level((0.0,), *(story(rla_id, (float(rla_id),), "back", float(rla_id)) for rla_id in range(1, 50)))
     again = facts_of_plain(plain_of_facts(facts(crowd)))
     assert [each.rla_id for each in again.basic.others] == list(range(2, 2 + MOST_OTHERS))
     assert again.basic.count == 49
 
 
-def test_what_is_not_as_it_should_be_is_refused() -> None:
+def test_facts_codec_malformed_is_refused() -> None:
     plain = plain_of_facts(facts(level((1.0,), story(1, (1.0,), "back", 0.0))))
     for damage in ({"cause": "whim"}, {"basic": None}, {"decided": [1.0]}, {"tick": "soon"}):
         with pytest.raises(WireError):

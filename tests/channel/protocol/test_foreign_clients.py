@@ -59,9 +59,7 @@ def address(at_work: RobotAtWork, path: str) -> str:
     return f"coap://127.0.0.1:{at_work.port}{path}"
 
 
-async def test_a_stranger_discovers_what_there_is_and_is_refused_everywhere_else(
-    coap_client: str, tmp_path: Path
-) -> None:
+async def test_aiocoap_stranger_discovers_and_is_refused(coap_client: str, tmp_path: Path) -> None:
     async with robot_at_work(tmp_path) as at_work:
         links, _ = await said(coap_client, address(at_work, "/.well-known/core"))
         assert {link.split(">")[0] for link in links.strip().split(",")} == {f"<{path}" for path in ("/state", *PATHS)}
@@ -92,7 +90,7 @@ async def _aiocoap_client(at_work: RobotAtWork, pairing: Pairing) -> AsyncIterat
         keys._destroy()  # else it writes when it is collected, to a folder that has gone
 
 
-async def test_the_oscore_client_of_aiocoap_looks_observes_and_commands(tmp_path: Path) -> None:
+async def test_aiocoap_oscore_client_observes_and_commands(tmp_path: Path) -> None:
     async with robot_at_work(tmp_path) as at_work, _aiocoap_client(at_work, at_work.pairing) as client:
         with anyio.fail_after(20.0):
             response = await client.request(aiocoap.Message(code=aiocoap.GET, uri=address(at_work, "/state"))).response

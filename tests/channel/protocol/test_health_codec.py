@@ -21,7 +21,7 @@ def test_it_comes_back_as_it_went(report: HealthReport) -> None:
     assert report_of(decode_answer(encode_answer({"health": plain_of(report)}))["health"]) == report
 
 
-def test_what_a_newer_robot_tells_besides_is_left_out() -> None:
+def test_health_codec_drops_unknown_keys() -> None:
     plain = plain_of(WELL)
     assert report_of({**plain, "mood": "good", "ages": {**plain["ages"], "lidar_s": 1.0}}) == WELL
 
@@ -32,7 +32,7 @@ def test_report_of_a_robot_without_progress_is_understood() -> None:
     assert report_of(plain) == WELL
 
 
-def test_an_error_message_of_any_shape_costs_nobody_the_report() -> None:
+def test_health_codec_any_error_text_stays_readable() -> None:
     odd = Trouble(TroubleCode.PROGRAM, 1.0, False, "channel", (), "first line\nsecond\t" + "x" * 1000)
     told = report_of(plain_of(replace(ILL, troubles=(odd,) * 40)))
     assert len(told.troubles) == MOST_ROWS
@@ -69,6 +69,6 @@ def test_report_of_too_few_numbers_keeps_the_text() -> None:
         {**plain_of(WELL), "troubles": [{"what": "no more"}]},
     ],
 )
-def test_what_is_no_report_is_refused_in_a_sentence(broken: Any) -> None:
+def test_health_codec_malformed_report_is_refused(broken: Any) -> None:
     with pytest.raises(WireError, match="has"):
         report_of(broken)

@@ -46,7 +46,7 @@ def test_progress_row_tells_share_and_questions(progress: Progress, words: str) 
     assert rows["progress"] == words
 
 
-def test_what_is_not_there_is_said_so() -> None:
+def test_health_text_missing_values_are_named() -> None:
     rows = {row.name: row.text for row in rows_of(replace(ILL, bus=None))}
     assert "bus" not in rows
     assert rows["sensors"].endswith("bumpers never heard")

@@ -8,7 +8,7 @@ from kurt2rt.channel.protocol.requests import LONGEST_TEXT, MOST_SITUATIONS
 from kurt2rt.channel.protocol.schema import WireError
 
 
-def test_as_many_as_are_told_fit_into_an_answer_however_long_their_names() -> None:
+def test_situations_longest_list_fits_into_answer() -> None:
     names = ("😀" * LONGEST_TEXT,) * MOST_SITUATIONS
     assert situations_of(decode_answer(encode_answer({"situations": names}))) == names
 

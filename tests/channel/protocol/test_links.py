@@ -390,7 +390,7 @@ def report() -> Iterator[list[Told]]:
 
 
 @pytest.mark.parametrize("link", _FEW, ids=lambda link: link.name)
-def test_over_a_bad_link_lessons_count_once_and_silence_stops_the_wheels(link: BadLink, tmp_path: Path) -> None:
+def test_bad_link_lessons_count_once_and_silence_stops(link: BadLink, tmp_path: Path) -> None:
     _must_be_good(_tell(link, tmp_path, SHORT), tmp_path)
 
 
@@ -415,7 +415,7 @@ async def _must_stand_from(at_work: RobotAtWork, tick: int) -> None:
 
 
 @pytest.mark.deep
-async def test_a_program_that_hangs_or_is_killed_leaves_a_robot_that_stands(tmp_path: Path) -> None:
+async def test_hung_or_killed_client_leaves_robot_standing(tmp_path: Path) -> None:
     async with robot_at_work(tmp_path) as at_work:
         async with _driver(at_work) as process:
             process.send_signal(signal.SIGSTOP)

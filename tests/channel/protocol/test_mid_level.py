@@ -58,7 +58,7 @@ async def test_the_robot_introduces_its_mid_level(desk: ChannelFixture) -> None:
     assert (without["mid"], without["seeks"]) == (None, False)
 
 
-async def test_it_asks_which_way_is_answered_and_says_why_it_goes_there(desk: ChannelFixture) -> None:
+async def test_mid_level_asks_and_follows_the_answer(desk: ChannelFixture) -> None:
     told = picture(desk)
     assert (told.cause, told.asks_at, told.question) == ("unknown", MID, ())
     assert (told.nearest, told.radius, told.distance) == (None, 6.0, math.inf)
@@ -89,7 +89,7 @@ async def test_it_asks_which_way_is_answered_and_says_why_it_goes_there(desk: Ch
     assert lessons[0][1] == "mid-level RLA 1 taught: turn_left"
 
 
-async def test_a_device_that_knows_no_levels_teaches_the_basic_one_only(desk: ChannelFixture) -> None:
+async def test_mid_level_device_without_levels_teaches_basic(desk: ChannelFixture) -> None:
     reply = await desk.ask(desk.answer("forward"))
     assert outcome_of(reply) == Outcome.of(ResultCode.RLA_TAUGHT, rla=1, behaviour="straight_on", action="forward")
     told = picture(desk)
@@ -97,7 +97,7 @@ async def test_a_device_that_knows_no_levels_teaches_the_basic_one_only(desk: Ch
     assert told.mid.asks
 
 
-async def test_the_mid_level_is_corrected_and_what_else_is_possible_stands_beside(desk: ChannelFixture) -> None:
+async def test_mid_level_correction_and_alternative_are_taught(desk: ChannelFixture) -> None:
     await teach(desk, "turn_left")
     reply = await desk.ask(desk.command(CorrectRequest, "straight_on", None, MID))
     assert outcome_of(reply) == Outcome.of(
@@ -128,7 +128,7 @@ async def test_a_teacher_overrides_it_until_the_behaviour_has_finished(desk: Cha
     )
 
 
-async def test_lessons_of_a_level_that_is_not_there_or_of_a_way_that_is_not_taught_are_refused(
+async def test_mid_level_unknown_level_or_behaviour_is_refused(
     desk: ChannelFixture,
 ) -> None:
     refused = await desk.ask(desk.command(AnswerRequest, "forward", None, MID, False))
@@ -153,7 +153,7 @@ async def test_lessons_of_a_level_that_is_not_there_or_of_a_way_that_is_not_taug
     assert picture(plain).mid is None
 
 
-async def test_situations_get_names_that_are_listed_sought_and_taken_back(desk: ChannelFixture) -> None:
+async def test_situations_are_named_listed_sought_and_undone(desk: ChannelFixture) -> None:
     await teach(desk, "turn_left")
     assert (await desk.ask(SituationsRequest())).body == {"situations": []}
     reply = await desk.ask(desk.command(NameRequest, "door", None))
@@ -187,7 +187,7 @@ async def test_situations_get_names_that_are_listed_sought_and_taken_back(desk: 
     assert (await desk.ask(SituationsRequest())).body == {"situations": []}
 
 
-async def test_the_latest_surprise_is_told_whichever_picture_it_falls_between(desk: ChannelFixture) -> None:
+async def test_surprise_between_states_is_told(desk: ChannelFixture) -> None:
     assert picture(desk).surprise is None
     usual = Surprise(MID, 1, 2, 1.0, 1.0, 9, 4, False)
     far = Surprise(MID, 1, 3, 6.0, 2.0, 9, 0, True)
@@ -197,7 +197,7 @@ async def test_the_latest_surprise_is_told_whichever_picture_it_falls_between(de
     assert picture(desk).surprise == SurpriseState(desk.tick - 3, MID, 1, 3, 3.0, True)
 
 
-async def test_a_hand_that_puts_the_robot_elsewhere_has_it_forget_how_it_came_there(desk: ChannelFixture) -> None:
+async def test_reposition_resets_the_mid_level(desk: ChannelFixture) -> None:
     mid = desk.runtime.mid
     assert mid is not None
     mid.situation.vector[0] = 2.0  # as if it had turned left somewhere
@@ -209,7 +209,7 @@ async def test_a_hand_that_puts_the_robot_elsewhere_has_it_forget_how_it_came_th
     assert told.here == NOTHING_YET
 
 
-async def test_a_robot_that_does_not_know_where_it_is_still_shows_itself() -> None:
+async def test_mid_level_without_place_still_has_state() -> None:
     desk = ChannelFixture(behaviours=TURNS, mid="places", ground=Yard())
     for way in TURNS[:2]:
         await teach(desk, way, beside=True)

@@ -53,7 +53,7 @@ def test_every_key_of_the_picture_is_explained() -> None:
 
 
 @pytest.mark.parametrize("key", ["mid", "su", "sd"])
-def test_the_rows_of_the_picture_have_the_places_that_are_written(key: str) -> None:
+def test_wire_page_rows_have_the_documented_places(key: str) -> None:
     row = cbor2.loads(encode_state(state(mid=COMMANDS, surprise=SURPRISED, standing=Standing())))[key]
     written = re.search(rf"`{key}` is `\[(.*?)\]`", PICTURE)
     assert written is not None

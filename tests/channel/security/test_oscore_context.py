@@ -53,7 +53,7 @@ class SlowDisk:
                 thread.join(timeout=10)
 
 
-def test_a_request_is_read_by_the_other_side_and_names_the_teacher(pairing: Pairing) -> None:
+def test_context_request_is_unprotected_with_teacher_name(pairing: Pairing) -> None:
     device, robot = OscoreContext(pairing.device.folder), OscoreContext(pairing.teacher)
     answer_challenge(device, robot)
     assert ask(device, robot, "forward") == "forward"
@@ -62,7 +62,7 @@ def test_a_request_is_read_by_the_other_side_and_names_the_teacher(pairing: Pair
     robot.close()
 
 
-def test_while_it_is_in_use_the_file_holds_a_reservation_and_no_replay_window(pairing: Pairing) -> None:
+def test_context_in_use_stores_reservation_without_window(pairing: Pairing) -> None:
     robot = opened(pairing.teacher, chunk=100)
     assert json.loads(sequence_of(pairing.teacher)) == {"next-to-send": 100, "received": "unknown"}
     robot.close()
@@ -148,7 +148,7 @@ def test_killed_over_and_over_it_never_uses_a_number_twice(pairing: Pairing, kil
     robot.close()
 
 
-def test_a_killed_robot_lets_nobody_replay_and_goes_on_after_one_challenge(pairing: Pairing) -> None:
+def test_context_after_kill_refuses_replay_until_challenge(pairing: Pairing) -> None:
     device = OscoreContext(pairing.device.folder)
     robot = OscoreContext(pairing.teacher)
     answer_challenge(device, robot)
@@ -170,7 +170,7 @@ def test_a_closed_context_sends_nothing_more(pairing: Pairing) -> None:
         context.new_sequence_number()
 
 
-def test_what_an_old_pairing_stores_does_not_get_into_the_renewed_one(pairing: Pairing, tmp_path: Path) -> None:
+def test_context_of_old_pairing_writes_not_into_renewed(pairing: Pairing, tmp_path: Path) -> None:
     old = OscoreContext(pairing.teacher, chunk=10)
     renewed = renew(tmp_path / "teachers", tmp_path / "devices", "phone")
     before = sequence_of(renewed.teacher)

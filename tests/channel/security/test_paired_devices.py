@@ -56,7 +56,7 @@ def test_a_request_finds_the_keys_of_its_device(house: House) -> None:
         assert teachers.find(header_of(house.device(name))).authenticated_claims == [name]
 
 
-async def test_a_folder_with_the_critics_name_lets_nobody_in_and_is_told_of(house: House) -> None:
+async def test_pairing_with_critics_name_is_refused_and_reported(house: House) -> None:
     house.pair("phone")
     (house.teachers / "phone").rename(house.teachers / "critic")
     house.pair("tablet")
@@ -81,7 +81,7 @@ def test_strangers_find_nothing(house: House) -> None:
             teachers.find(header)
 
 
-async def test_a_device_that_is_paired_while_the_robot_runs_is_taken_up(house: House) -> None:
+async def test_device_paired_at_run_time_is_accepted(house: House) -> None:
     teachers = house.start()
     assert teachers.names == ()
     house.pair("phone")
@@ -91,7 +91,7 @@ async def test_a_device_that_is_paired_while_the_robot_runs_is_taken_up(house: H
     assert await teachers.refresh() == PairingChange(added=(), removed=())
 
 
-async def test_a_device_that_is_revoked_while_the_robot_runs_is_refused(house: House) -> None:
+async def test_device_revoked_at_run_time_is_refused(house: House) -> None:
     house.pair("phone")
     house.pair("tablet")
     teachers = house.start()
@@ -126,7 +126,7 @@ async def test_renewed_and_revoked_between_two_looks_it_is_gone(house: House) ->
     assert await teachers.refresh() == PairingChange(added=(), removed=("phone",))
 
 
-async def test_a_damaged_pairing_keeps_nobody_else_out_and_is_told(house: House) -> None:
+async def test_channel_damaged_pairing_is_reported_and_others_work(house: House) -> None:
     house.pair("phone")
     house.pair("tablet")
     (house.teachers / "tablet" / "sequence.json").write_text("", encoding="utf-8")
@@ -147,16 +147,14 @@ def test_two_robot_programs_cannot_share_a_folder(house: House) -> None:
     assert "another program uses this pairing" in second.trouble[0]
 
 
-async def test_a_teachers_folder_that_is_deleted_lets_nobody_in(house: House, tmp_path: Path) -> None:
+async def test_teachers_folder_deleted_refuses_all(house: House, tmp_path: Path) -> None:
     house.pair("phone")
     teachers = house.start()
     house.teachers.rename(tmp_path / "away")
     assert (await teachers.refresh()).removed == ("phone",)
 
 
-async def test_a_disk_that_cannot_be_read_costs_nobody_his_teacher(
-    house: House, monkeypatch: pytest.MonkeyPatch
-) -> None:
+async def test_teachers_unreadable_disk_keeps_contexts(house: House, monkeypatch: pytest.MonkeyPatch) -> None:
     house.pair("phone")
     teachers = house.start()
 
@@ -172,7 +170,7 @@ async def test_a_disk_that_cannot_be_read_costs_nobody_his_teacher(
     assert teachers.trouble == ()
 
 
-async def test_the_list_tells_to_the_minute_when_a_device_was_last_heard(house: House) -> None:
+async def test_list_pairings_has_last_use_to_the_minute(house: House) -> None:
     house.pair("phone")
     teachers = house.start()
     device = house.device("phone")
@@ -193,7 +191,7 @@ async def test_the_list_tells_to_the_minute_when_a_device_was_last_heard(house: 
         assert (noted_at != datetime.fromtimestamp(1e9, UTC)) is noted
 
 
-def test_with_this_machines_own_teachers_alone_nobody_is_paired(house: House) -> None:
+def test_only_local_with_own_pairings_is_true(house: House) -> None:
     teachers = house.start()
     assert teachers.only_local
     teachers.close()

@@ -34,7 +34,7 @@ def understood(teacher: Path, device: Path) -> bool:
         with_robot.close()
 
 
-def test_a_pairing_makes_both_sides_and_they_understand_each_other(teachers: Path, devices: Path) -> None:
+def test_pair_makes_both_sides_that_understand_each_other(teachers: Path, devices: Path) -> None:
     pairing = pair(teachers, devices, "anna-phone", host="10.0.0.7", port=6000)
     assert pairing.name == "anna-phone"
     assert pairing.teacher == teachers / "anna-phone"
@@ -45,7 +45,7 @@ def test_a_pairing_makes_both_sides_and_they_understand_each_other(teachers: Pat
     assert understood(pairing.teacher, pairing.device.folder)
 
 
-def test_nobody_else_on_the_machine_reads_a_secret(teachers: Path, devices: Path) -> None:
+def test_pair_secrets_are_readable_by_owner_only(teachers: Path, devices: Path) -> None:
     before = os.umask(0)
     try:
         pair(teachers, devices, "phone")
@@ -81,7 +81,7 @@ def test_an_id_that_is_taken_is_drawn_again(teachers: Path, devices: Path, monke
 @pytest.mark.parametrize(
     "name", ["", "Anna", "anna phone", "../x", ".", "a" * 25, "ann\N{LATIN SMALL LETTER A}\n", "é"]
 )
-def test_what_is_no_name_is_refused(teachers: Path, devices: Path, name: str) -> None:
+def test_pair_invalid_name_is_refused(teachers: Path, devices: Path, name: str) -> None:
     for change in (pair, renew, revoke):
         with pytest.raises(CredentialsError, match="give 1 to 24 of a-z, 0-9 and -"):
             change(teachers, devices, name)
@@ -94,7 +94,7 @@ def test_the_names_of_this_machine_are_not_paired(teachers: Path, devices: Path,
         pair(teachers, devices, name)
 
 
-def test_the_critics_name_is_neither_paired_nor_renewed_but_revoked(teachers: Path, devices: Path) -> None:
+def test_pair_critics_name_can_only_be_revoked(teachers: Path, devices: Path) -> None:
     for change in (pair, renew):
         with pytest.raises(CredentialsError, match="critic: is the name of the robot's own critic; choose another one"):
             change(teachers, devices, "critic")
@@ -120,9 +120,7 @@ def test_a_device_that_was_moved_away_is_still_paired(teachers: Path, devices: P
     assert understood(pairing.teacher, moved)
 
 
-def test_renewed_it_has_other_keys_and_the_old_device_is_not_understood(
-    teachers: Path, devices: Path, tmp_path: Path
-) -> None:
+def test_renew_replaces_keys_and_refuses_old_device(teachers: Path, devices: Path, tmp_path: Path) -> None:
     old = pair(teachers, devices, "phone")
     kept = old.device.folder.rename(tmp_path / "kept")
     new = renew(teachers, devices, "phone")
@@ -147,7 +145,7 @@ class OscoreSides:
             context.close()
 
 
-def test_revoked_both_sides_are_gone_whoever_uses_them(teachers: Path, devices: Path) -> None:
+def test_revoke_deletes_both_sides_in_use(teachers: Path, devices: Path) -> None:
     pairing = pair(teachers, devices, "phone")
     robot = OscoreContext(pairing.teacher)
     revoke(teachers, devices, "phone")
@@ -237,7 +235,7 @@ def test_this_machine_needs_no_pairing(teachers: Path, devices: Path) -> None:
 
 
 @pytest.mark.parametrize("lost", ["teachers/local", "devices/local"])
-def test_this_machines_pairing_is_made_anew_when_a_side_is_lost(teachers: Path, devices: Path, lost: str) -> None:
+def test_local_pairing_is_made_again_if_a_side_is_lost(teachers: Path, devices: Path, lost: str) -> None:
     local_pairing(teachers, devices)
     (teachers.parent / lost).rename(teachers.parent / "lost")
     made = local_pairing(teachers, devices)

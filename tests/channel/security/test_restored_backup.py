@@ -113,7 +113,7 @@ def test_a_clock_that_is_set_back_uses_no_number_twice(pairing: Pairing) -> None
 
 
 @pytest.mark.parametrize("years", [20.0, 1e6])
-def test_a_clock_that_is_decades_ahead_leaves_half_of_all_numbers(pairing: Pairing, years: float) -> None:
+def test_context_clock_decades_ahead_leaves_half_the_numbers(pairing: Pairing, years: float) -> None:
     paired_s = _paired_s(pairing.teacher)
     for _ in range(2):
         context = OscoreContext(pairing.teacher, now=_at(paired_s + years * 365 * 86_400.0))
@@ -121,7 +121,7 @@ def test_a_clock_that_is_decades_ahead_leaves_half_of_all_numbers(pairing: Pairi
         context.close()
 
 
-def test_put_back_a_robot_carries_out_no_request_that_was_recorded(pairing: Pairing, tmp_path: Path) -> None:
+def test_restored_robot_executes_no_recorded_request(pairing: Pairing, tmp_path: Path) -> None:
     device, robot = OscoreContext(pairing.device.folder), OscoreContext(pairing.teacher)
     answer_challenge(device, robot)
     robot.close()
@@ -146,7 +146,7 @@ def test_put_back_a_robot_carries_out_no_request_that_was_recorded(pairing: Pair
     robot.close()
 
 
-def test_a_pairing_is_stamped_and_begins_at_its_number_of_milliseconds(pairing: Pairing) -> None:
+def test_pairing_time_sets_first_number(pairing: Pairing) -> None:
     stamps = {_paired_s(folder) for folder in (pairing.teacher, pairing.device.folder)}
     assert len(stamps) == 1
     context = OscoreContext(pairing.teacher, now=_at(stamps.pop() + 12.5))

@@ -32,7 +32,7 @@ def untroubled(at_work: RobotAtWork) -> bool:
 
 
 @pytest.mark.parametrize("end", [revoke, renew], ids=["revoked", "renewed"])
-def test_a_device_that_looks_sees_nothing_more_and_leaves_no_trouble(
+def test_revoked_observer_gets_no_state_and_no_trouble(
     tmp_path: Path, end: Callable[[Path, Path, str], object]
 ) -> None:
     async def story() -> None:
@@ -56,7 +56,7 @@ def test_a_device_that_looks_sees_nothing_more_and_leaves_no_trouble(
     run_jumping(story)
 
 
-def test_the_teacher_who_is_revoked_leaves_a_robot_that_stands_and_can_be_taken(tmp_path: Path) -> None:
+def test_revoked_teacher_leaves_robot_standing_and_free(tmp_path: Path) -> None:
     async def story() -> None:
         async with robot_at_work(tmp_path) as at_work:
             async with Device(await phone_in(tmp_path), at_work.port) as device:

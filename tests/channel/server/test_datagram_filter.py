@@ -25,7 +25,7 @@ class Door:
         return sum(self.gate.accepts(data, sender(number)) for _ in range(tries))
 
 
-def test_strangers_share_one_rate_however_many_addresses_they_forge() -> None:
+def test_filter_forged_addresses_share_strangers_rate() -> None:
     door = Door(Limits(strangers_at_once=40, strangers_per_s=40))
     assert sum(door.let_in(number, tries=1) for number in range(1000)) == 40
     assert door.counters == Counters(received=1000, dropped_by_bucket=960)
@@ -33,14 +33,14 @@ def test_strangers_share_one_rate_however_many_addresses_they_forge() -> None:
     assert sum(door.let_in(number, tries=1) for number in range(1000)) == 40
 
 
-def test_who_proved_himself_is_let_in_while_strangers_flood() -> None:
+def test_filter_proven_sender_passes_during_flood() -> None:
     door = Door(Limits(strangers_at_once=40, proven_at_once=200))
     door.gate.mark_proven(sender(1))
     door.let_in(2, tries=1000)
     assert door.let_in(1, tries=150) == 150
 
 
-def test_who_proved_himself_may_not_flood_either() -> None:
+def test_filter_proven_sender_has_limited_rate() -> None:
     door = Door(Limits(proven_at_once=200, proven_per_s=200))
     door.gate.mark_proven(sender(1))
     assert door.let_in(1, tries=1000) == 200
@@ -50,7 +50,7 @@ def test_who_proved_himself_may_not_flood_either() -> None:
     assert door.let_in(1, tries=1000) == 100
 
 
-def test_of_too_many_the_one_not_heard_for_longest_is_a_stranger_again() -> None:
+def test_filter_too_many_proven_drops_longest_silent() -> None:
     door = Door(Limits(strangers_at_once=0, strangers_per_s=0, proven_senders=3))
     for number in (1, 2, 3):
         door.gate.mark_proven(sender(number))
@@ -60,7 +60,7 @@ def test_of_too_many_the_one_not_heard_for_longest_is_a_stranger_again() -> None
     assert [door.let_in(number, tries=1) for number in (1, 2, 3, 4)] == [1, 0, 1, 1]
 
 
-def test_junk_takes_nobodys_turn() -> None:
+def test_filter_junk_costs_no_token() -> None:
     door = Door(Limits(strangers_at_once=1))
     assert door.let_in(1, tries=1000, data=b"hello robot") == 0
     assert door.counters == Counters(received=1000, junk=1000)

@@ -65,7 +65,7 @@ def test_a_fresh_socket_is_let_in_while_strangers_flood(door: Door) -> None:
     assert door.gate.accepts(door.stop(), stranger(9000))
 
 
-def test_a_key_that_nobody_has_takes_no_strangers_turn(door: Door) -> None:
+def test_filter_unknown_key_costs_no_strangers_token(door: Door) -> None:
     assert door.admitted(door.forged(b"\x01\x02\x03", 5), senders=2000) == 0
     assert door.counters == Counters(received=2000, forged=2000)
     assert door.admitted(bytes([0x50, aiocoap.POST, 0, 1]), senders=50) == 40
@@ -78,14 +78,14 @@ def test_a_copied_key_id_buys_nothing(door: Door) -> None:
     assert door.gate.accepts(door.stop(), stranger(9000))
 
 
-def test_a_copied_datagram_has_the_strangers_rate_and_not_the_keys(door: Door) -> None:
+def test_filter_copied_datagram_has_strangers_rate(door: Door) -> None:
     captured = door.stop()
     assert door.gate.accepts(captured, HOME)
     assert door.admitted(captured, senders=300) == 40
     assert all(door.gate.accepts(door.stop(), stranger(9000 + number)) for number in range(150))
 
 
-def test_the_devices_own_address_forged_does_not_keep_the_device_out(door: Door) -> None:
+def test_filter_forged_device_address_keeps_device_in(door: Door) -> None:
     door.gate.mark_proven(HOME)
     captured = door.stop()
     flood = [captured, door.forged(door.robot.recipient_id, 2**31), bytes([0x50, aiocoap.POST, 0, 1]), ACK]
@@ -103,7 +103,7 @@ def test_copied_key_ids_and_seals_cost_an_address_nothing(door: Door) -> None:
     assert sum(door.gate.accepts(ACK, HOME) for _ in range(250)) == 200
 
 
-def test_who_holds_the_key_may_not_flood_either(door: Door) -> None:
+def test_filter_key_holder_has_limited_rate(door: Door) -> None:
     assert sum(door.gate.accepts(door.stop(), stranger(number)) for number in range(300)) == 200
     door.clock.now_s += 0.1
     assert sum(door.gate.accepts(door.stop(), stranger(number)) for number in range(50)) == 20
@@ -145,7 +145,7 @@ def test_keys_that_were_paired_over_and_over_leave_no_memory(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("per_s", [4_000, 10_000])
-def test_a_stop_is_let_in_within_half_a_second_of_a_flood_with_its_key_id(door: Door, per_s: int) -> None:
+def test_filter_stop_passes_within_half_a_second_of_flood(door: Door, per_s: int) -> None:
     """A stop is sent again every 0.1 s from a socket that the robot never heard of; time is the gate's own."""
     chance = random.Random(per_s)
     forged = door.forged(door.robot.recipient_id, 2**31)

@@ -178,7 +178,7 @@ async def test_closed_the_port_is_free_again() -> None:
         ("::", 70000, "UDP port 70000 at :: cannot be opened"),
     ],
 )
-async def test_what_cannot_be_opened_is_told_in_one_line(host: str, port: int, why: str) -> None:
+async def test_endpoint_unusable_address_raises_one_line(host: str, port: int, why: str) -> None:
     with pytest.raises(ChannelError, match=why) as refused:
         await open_endpoint(Site(), host, port)
     assert "\n" not in str(refused.value)
@@ -215,7 +215,7 @@ async def test_no_datagram_brings_it_down(make: Callable[[random.Random], bytes]
         assert robot.endpoint.newest_failure == ""
 
 
-async def test_strangers_share_one_rate_and_the_known_teacher_does_not_feel_it() -> None:
+async def test_endpoint_flood_of_strangers_leaves_teacher_alone() -> None:
     clock = Clock()
     async with robot_at(limits=Limits(strangers_at_once=3, strangers_per_s=1), now=clock) as robot:
         teacher, one, other = await robot.sender(), await robot.sender(), await robot.sender()
@@ -272,7 +272,7 @@ async def test_of_a_request_without_an_answer_nothing_is_left() -> None:
         assert [request for request in robot.site.requests if request() is not None] == []
 
 
-async def test_a_sender_who_is_gone_before_the_answer_disturbs_nobody() -> None:
+async def test_endpoint_sender_gone_before_answer_is_ignored() -> None:
     async with robot_at("::") as robot:
         for host in ("127.0.0.1", "::1"):
             robot.site.may_answer.clear()
@@ -290,7 +290,7 @@ async def test_a_sender_who_is_gone_before_the_answer_disturbs_nobody() -> None:
         assert robot.endpoint.counters.failed == 0
 
 
-async def test_what_fails_inside_the_library_is_counted_and_the_next_datagram_is_read(
+async def test_endpoint_library_error_is_counted_and_next_is_read(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def wrong(*_: object) -> None:

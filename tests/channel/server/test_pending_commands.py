@@ -7,7 +7,7 @@ from kurt2rt.channel.server.reply import done, refusal
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 
 
-async def test_a_command_under_way_has_a_reply_to_come_and_then_that_reply_for_good() -> None:
+async def test_pending_command_resolves_to_its_reply() -> None:
     outcomes = PendingCommands()
     assert outcomes.get("x") is None
     waiting = outcomes.begin("x")
@@ -26,7 +26,7 @@ async def test_the_first_reply_stands() -> None:
     assert waiting.result() == done(7)
 
 
-async def test_what_did_not_come_over_the_network_is_nothing_to_settle() -> None:
+async def test_pending_settle_of_unknown_command_is_ignored() -> None:
     outcomes = PendingCommands()
     outcomes.settle("of the scripted teacher", done(7))
     assert outcomes.get("of the scripted teacher") is None
@@ -43,14 +43,14 @@ async def test_the_oldest_settled_one_makes_room(capacity: int) -> None:
     assert kept == list(range(5 - capacity, 5))
 
 
-async def test_what_is_under_way_is_never_forgotten() -> None:
+async def test_pending_command_is_never_dropped() -> None:
     outcomes = PendingCommands(3)
     for number in range(6):
         outcomes.begin(f"{number}")
     assert all(outcomes.get(f"{number}") is not None for number in range(6))
 
 
-async def test_one_that_waits_for_the_disk_does_not_keep_all_that_came_after_it() -> None:
+async def test_pending_slow_command_does_not_block_eviction() -> None:
     outcomes = PendingCommands(3)
     outcomes.begin("waits")
     for number in range(100):
@@ -60,7 +60,7 @@ async def test_one_that_waits_for_the_disk_does_not_keep_all_that_came_after_it(
     assert outcomes.get("waits") is not None
 
 
-async def test_when_much_has_settled_at_last_memory_is_given_back() -> None:
+async def test_pending_settled_commands_are_evicted() -> None:
     outcomes = PendingCommands(3)
     for number in range(50):
         outcomes.begin(f"{number}")

@@ -128,7 +128,7 @@ def test_every_path_has_a_rule_here() -> None:
 # Streams.
 
 
-async def test_a_press_reaches_the_wheels_in_the_next_tick_and_is_answered_at_once(desk: ChannelFixture) -> None:
+async def test_press_drives_in_next_tick_and_is_answered_at_once(desk: ChannelFixture) -> None:
     reply = await desk.stream(desk.press())
     assert reply == Reply(ReplyStatus.DONE, {"t": desk.tick})
     assert desk.run().decision.cause is Cause.TEACHER
@@ -149,7 +149,7 @@ async def test_a_stream_is_good_for_forty_ticks_and_not_for_the_future(
     assert why(await desk.stream(desk.watch(age=age) if kind == "watch" else desk.press(age=age))) == answer
 
 
-async def test_an_old_picture_does_not_move_the_robot_though_it_is_accepted(desk: ChannelFixture) -> None:
+async def test_press_on_old_state_is_accepted_but_does_not_drive(desk: ChannelFixture) -> None:
     """Accepted up to 40 ticks, good for 35: what comes between counts as an answered message and no more."""
     assert why(await desk.stream(desk.press(age=STREAM_TICKS))) == ""
     assert desk.run().decision.cause is not Cause.TEACHER
@@ -173,18 +173,18 @@ async def test_each_device_counts_for_itself(desk: ChannelFixture) -> None:
     assert why(await desk.stream(desk.watch(), "ben", number=1)) == ""
 
 
-async def test_a_renewed_pairing_begins_to_count_anew(desk: ChannelFixture) -> None:
+async def test_stream_renewed_pairing_restarts_numbers(desk: ChannelFixture) -> None:
     await desk.stream(desk.watch(), number=1000)
     assert why(await desk.stream(desk.watch(), number=1, pairing=b"renewed")) == ""
     assert why(await desk.stream(desk.watch(), number=1, pairing=b"renewed")) == "old"
 
 
-async def test_a_message_that_was_refused_as_stale_says_nothing_about_the_next_one(desk: ChannelFixture) -> None:
+async def test_stream_stale_message_leaves_order_unchanged(desk: ChannelFixture) -> None:
     assert why(await desk.stream(desk.watch(age=STREAM_TICKS + 1), number=7)) == "stale"
     assert why(await desk.stream(desk.watch(), number=6)) == ""
 
 
-async def test_a_copy_of_a_stop_that_comes_late_is_not_taken_for_the_newest_message(desk: ChannelFixture) -> None:
+async def test_stop_late_copy_does_not_count_as_newest(desk: ChannelFixture) -> None:
     await desk.stream(desk.watch(), number=20)
     stop = await desk.send(desk.stop(), number=12)
     desk.run()
@@ -193,7 +193,7 @@ async def test_a_copy_of_a_stop_that_comes_late_is_not_taken_for_the_newest_mess
     assert why(await desk.stream(desk.watch(), number=21)) == ""
 
 
-async def test_what_was_sent_before_a_stop_and_comes_after_it_does_not_drive(desk: ChannelFixture) -> None:
+async def test_stream_sent_before_stop_does_not_drive_after_it(desk: ChannelFixture) -> None:
     """The first message of a press may be overtaken by the stop that ended it."""
     stop = await desk.send(desk.stop(), number=12)
     assert why(await desk.stream(desk.press(hold=1), number=11)) == "old"
@@ -202,7 +202,7 @@ async def test_what_was_sent_before_a_stop_and_comes_after_it_does_not_drive(des
     assert why(await desk.stream(desk.press(hold=2), number=13)) == ""
 
 
-async def test_a_press_that_a_stop_ended_is_told_so_and_a_new_one_drives(desk: ChannelFixture) -> None:
+async def test_press_ended_by_stop_is_refused_and_next_one_drives(desk: ChannelFixture) -> None:
     await desk.stream(desk.press(hold=1))
     desk.run()
     await desk.ask(desk.stop())
@@ -221,7 +221,7 @@ async def test_after_another_ones_stop_the_driver_has_to_say_resume(desk: Channe
     assert why(await desk.stream(desk.press(hold=2))) == ""
 
 
-async def test_who_is_not_the_teacher_is_told_who_is(desk: ChannelFixture) -> None:
+async def test_stream_of_another_device_is_held_with_teacher_name(desk: ChannelFixture) -> None:
     await desk.stream(desk.press(), "ann")
     desk.run()
     for request in (desk.press(), desk.watch()):
@@ -230,7 +230,7 @@ async def test_who_is_not_the_teacher_is_told_who_is(desk: ChannelFixture) -> No
         assert outcome_of(refused) == Outcome.of(RefusalCode.ANOTHER_TEACHES, teacher="ann")
 
 
-async def test_a_full_inbox_refuses_what_comes_and_forgets_nothing_of_what_waits(desk: ChannelFixture) -> None:
+async def test_inbox_full_refuses_new_commands_and_keeps_old(desk: ChannelFixture) -> None:
     waiting = 0
     while why(await desk.stream(desk.watch())) == "":
         waiting += 1
@@ -255,7 +255,7 @@ async def test_a_command_for_another_start_of_the_program_is_refused(
 
 
 @pytest.mark.parametrize("kind", COMMANDS)
-async def test_how_old_the_picture_of_a_command_may_be(kind: type[CommandRequest]) -> None:
+async def test_command_state_age_limit_depends_on_kind(kind: type[CommandRequest]) -> None:
     desk = ChannelFixture(ground=Yard())
     longest = MOVING_TICKS if kind in MOVING else COMMAND_TICKS
     for age in (longest + 1, -1):
@@ -300,13 +300,13 @@ async def test_a_lesson_is_answered_only_when_it_is_durable(desk: ChannelFixture
     assert reply == done(desk.tick, Outcome.of(ResultCode.RLA_TAUGHT, rla=1, action="forward"), row=1)
 
 
-async def test_what_changes_nothing_needs_no_disk(desk: ChannelFixture) -> None:
+async def test_command_without_change_is_answered_without_disk(desk: ChannelFixture) -> None:
     await desk.ask(desk.answer())
     reply = await desk.ask(desk.answer(), write=False)
     assert outcome_of(reply) == Outcome.of(ResultCode.RLA_AGREES, rla=1, action="forward")
 
 
-async def test_sent_again_while_it_is_under_way_it_gets_the_one_reply_and_counts_once(desk: ChannelFixture) -> None:
+async def test_command_repeated_while_pending_counts_once(desk: ChannelFixture) -> None:
     request = desk.answer()
     first = await desk.send(request)
     again = await desk.send(request)
@@ -322,14 +322,14 @@ async def test_sent_again_while_it_is_under_way_it_gets_the_one_reply_and_counts
     assert len(desk.notebook.events) == 1
 
 
-async def test_a_copy_that_comes_when_its_picture_is_old_gets_the_reply_as_well(desk: ChannelFixture) -> None:
+async def test_command_copy_with_old_state_gets_same_reply(desk: ChannelFixture) -> None:
     request = desk.answer()
     first = await desk.ask(request)
     desk.run(COMMAND_TICKS + 100)
     assert await reply_of(await desk.send(request)) == first
 
 
-async def test_a_command_of_an_earlier_start_that_counted_is_told_so_and_not_that_it_was_refused(
+async def test_command_of_earlier_start_is_answered_as_repeated(
     desk: ChannelFixture,
 ) -> None:
     request = desk.command(AnswerRequest, "forward", None, boot=LAST_START)
@@ -344,7 +344,7 @@ async def test_the_same_id_of_two_devices_is_two_commands(desk: ChannelFixture) 
     assert why(await desk.ask(request, "ben")) == "held"
 
 
-async def test_a_refusal_of_the_robot_is_told_in_its_words_and_stays_the_reply(desk: ChannelFixture) -> None:
+async def test_command_refusal_is_kept_as_reply(desk: ChannelFixture) -> None:
     request = desk.command(DeleteRequest, 1)
     refused = await desk.ask(request)
     assert (why(refused), outcome_of(refused)) == ("refused", Outcome.of(RefusalCode.NO_RLA, rla=1))
@@ -361,7 +361,7 @@ async def test_a_lesson_that_can_never_be_written_is_told_as_unsaved(desk: Chann
     assert (reply.status, why(reply), reply.body["text"]) == (ReplyStatus.UNSAVED, "unsaved", "the disk is full")
 
 
-async def test_a_lesson_that_is_not_durable_in_time_is_told_as_unsaved_and_counts_when_it_is() -> None:
+async def test_lesson_not_durable_in_time_is_unsaved_and_counts_later() -> None:
     desk = ChannelFixture(longest_wait_s=0.0)
     request = desk.answer()
     reply = await desk.ask(request, write=False)
@@ -385,7 +385,7 @@ async def test_one_who_hangs_up_does_not_cost_the_next_copy_its_reply(desk: Chan
         assert (await reply_of(again)).status is ReplyStatus.DONE
 
 
-async def test_a_take_is_refused_while_the_other_one_drives_and_not_after(desk: ChannelFixture) -> None:
+async def test_take_is_refused_only_while_another_drives_by_hand(desk: ChannelFixture) -> None:
     await desk.stream(desk.press(), "ann")
     desk.run()
     refused = await desk.ask(desk.command(TakeRequest), "ben")
@@ -394,7 +394,7 @@ async def test_a_take_is_refused_while_the_other_one_drives_and_not_after(desk: 
     assert outcome_of(await desk.ask(desk.command(TakeRequest), "ben")) == Outcome.of(ResultCode.TAKEN, teacher="ben")
 
 
-async def test_a_reward_and_a_correction_mean_the_decision_of_the_picture(desk: ChannelFixture) -> None:
+async def test_reward_and_correction_apply_to_decision_of_tick(desk: ChannelFixture) -> None:
     await desk.ask(desk.answer("forward"))
     await desk.stream(desk.watch())
     meant = desk.run(counts=100).tick
@@ -432,7 +432,7 @@ async def test_each_request_becomes_its_command(
 # Stop.
 
 
-async def test_a_stop_needs_neither_start_nor_picture_nor_to_be_the_teacher(desk: ChannelFixture) -> None:
+async def test_stop_needs_no_start_no_state_and_no_charge(desk: ChannelFixture) -> None:
     await desk.ask(desk.command(TakeRequest), "ann")
     reply = await desk.ask(desk.stop(), "ben")
     assert outcome_of(reply) == Outcome(ResultCode.STOPPED)
@@ -463,7 +463,7 @@ async def test_a_stop_among_much_else_is_handed_to_the_next_tick(desk: ChannelFi
 # Copies of the knowledge.
 
 
-async def test_a_copy_is_made_once_and_answered_with_its_name_and_fingerprint(desk: ChannelFixture) -> None:
+async def test_save_repeated_makes_one_copy_with_name_and_hash(desk: ChannelFixture) -> None:
     request = desk.command(SaveRequest, "before lunch")
     desk.shelf.may_finish.clear()
     first, again = await desk.send(request), await desk.send(request)
@@ -485,7 +485,7 @@ async def test_a_copy_is_made_once_and_answered_with_its_name_and_fingerprint(de
     assert desk.shelf.labels == ["before lunch"]
 
 
-async def test_an_export_likewise(desk: ChannelFixture) -> None:
+async def test_export_writes_one_file(desk: ChannelFixture) -> None:
     reply = await desk.ask(desk.command(ExportRequest))
     assert (reply.status, reply.body["name"]) == (ReplyStatus.DONE, "lessons.csv")
 
@@ -505,15 +505,13 @@ async def test_a_file_is_read_in_parts_and_an_unknown_one_is_refused(desk: Chann
 
 
 @pytest.mark.parametrize("kind", [SaveRequest, ExportRequest])
-async def test_a_copy_that_the_disk_does_not_take_is_told_with_the_reason(
-    desk: ChannelFixture, kind: type[CommandRequest]
-) -> None:
+async def test_save_on_failing_disk_is_unsaved_with_reason(desk: ChannelFixture, kind: type[CommandRequest]) -> None:
     desk.shelf.problem = "saved: nothing can be saved there; give a folder that has room"
     reply = await desk.ask(desk.command(kind, *COMMANDS[kind]))
     assert (reply.status, reply.body["text"]) == (ReplyStatus.UNSAVED, desk.shelf.problem)
 
 
-async def test_a_copy_that_takes_long_goes_on_and_is_told_to_whoever_asks_again() -> None:
+async def test_save_slow_copy_goes_on_and_answers_repetition() -> None:
     desk = ChannelFixture(longest_wait_s=0.0)
     desk.shelf.may_finish.clear()
     request = desk.command(SaveRequest, "")
@@ -582,7 +580,7 @@ async def test_no_next_run_begins_while_lessons_cannot_be_saved(monkeypatch: pyt
     assert not desk.simulation.prepared
 
 
-async def test_at_another_speed_the_teachers_leases_are_as_many_times_longer_in_robot_time() -> None:
+async def test_speed_scales_leases_in_robot_time() -> None:
     desk = ChannelFixture(ground=Yard())
     assert why(await desk.ask(desk.command(SpeedRequest, 4))) == "held"
     await desk.ask(desk.command(TakeRequest))
@@ -601,7 +599,7 @@ async def test_at_another_speed_the_teachers_leases_are_as_many_times_longer_in_
     assert (told.speed, told.reached) == (4, 1.0)
 
 
-async def test_back_to_the_start_is_refused_after_a_stop_as_any_place_is() -> None:
+async def test_put_back_is_refused_after_stop_like_place() -> None:
     yard = Yard()
     desk = ChannelFixture(ground=yard)
     await desk.ask(desk.command(TakeRequest))
@@ -612,7 +610,7 @@ async def test_back_to_the_start_is_refused_after_a_stop_as_any_place_is() -> No
     assert yard.changes == [("start",)]
 
 
-async def test_a_file_is_uploaded_by_the_teacher_in_parts_and_loaded_once(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_upload_in_parts_is_loaded_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("kurt2rt.channel.server.off_tick_requests.LAST_ANSWER_S", 0.0)
     desk, content, upload = ChannelFixture(ground=Yard()), b"PK" + bytes(1000), b"12345678"
     monkeypatch.setattr(desk.runtime.scheduler, "end", lambda: None)
@@ -656,7 +654,7 @@ async def test_hello_tells_what_robot_this_is_and_survives_the_wire(desk: Channe
     assert told["period_s"] == 0.01
 
 
-async def test_health_is_the_report_of_the_last_second_and_anybody_with_a_key_may_ask(desk: ChannelFixture) -> None:
+async def test_health_returns_last_report_to_any_device(desk: ChannelFixture) -> None:
     assert (await desk.ask(HealthRequest())).body == {"health": None}
     desk.health = ILL
     for device in ("ann", "bob"):
@@ -664,7 +662,7 @@ async def test_health_is_the_report_of_the_last_second_and_anybody_with_a_key_ma
         assert report_of(told["health"]) == ILL
 
 
-async def test_who_asks_why_all_the_time_is_told_ten_times_a_second(desk: ChannelFixture) -> None:
+async def test_why_is_limited_to_ten_a_second(desk: ChannelFixture) -> None:
     """An answer takes a millisecond of the loop, so nobody may have as many as he likes."""
     desk.run(1)
     at_once = [(await desk.ask(WhyRequest(), "bob")).status for _ in range(20)]
@@ -678,7 +676,7 @@ async def test_who_asks_why_all_the_time_is_told_ten_times_a_second(desk: Channe
     assert answered == 10
 
 
-async def test_anybody_with_a_key_may_ask_why_the_robot_does_what_it_does(desk: ChannelFixture) -> None:
+async def test_why_returns_facts_to_any_device(desk: ChannelFixture) -> None:
     await desk.ask(desk.answer("forward"))
     told = decode_answer(encode_answer((await desk.ask(WhyRequest(), "bob")).body))
     facts = facts_of_plain(told["why"])
@@ -688,7 +686,7 @@ async def test_anybody_with_a_key_may_ask_why_the_robot_does_what_it_does(desk: 
     assert (taught.text, taught.teacher, taught.stamp) == ("RLA 1 taught: forward", "ann", STAMP)
 
 
-async def test_the_newest_lessons_come_first_with_who_when_and_whether_they_stand(desk: ChannelFixture) -> None:
+async def test_lessons_are_listed_newest_first_with_origin(desk: ChannelFixture) -> None:
     assert (await desk.ask(LessonsRequest(20))).body == {"lessons": []}
     await desk.ask(desk.answer("forward"))
     taught_at = desk.tick
@@ -736,7 +734,7 @@ async def test_a_simulated_world_is_told_and_changed() -> None:
     assert yard.changes == [("box", 0.5, -0.25), (1.0, 2.0, 0.5)]
 
 
-async def test_a_change_of_the_world_that_cannot_be_is_refused_in_the_worlds_words() -> None:
+async def test_move_wall_impossible_is_refused_with_reason() -> None:
     desk = ChannelFixture(ground=Yard())
     for request in (
         desk.command(MoveWallRequest, "tree", 0.5, 0.0),
@@ -788,7 +786,7 @@ def opinion_at(desk: ChannelFixture, counts: int) -> int | None:
 # Several taught behaviours.
 
 
-async def test_the_robot_tells_what_it_can_follow_and_follows_what_it_is_told() -> None:
+async def test_pursue_selects_one_of_the_behaviours() -> None:
     desk = ChannelFixture(behaviours=("straight_on", "turn_left"))
     assert (await desk.ask(HelloRequest())).body["behaviours"] == ["straight_on", "turn_left"]
     reply = await desk.ask(desk.command(PursueRequest, "turn_left"))
@@ -804,7 +802,7 @@ async def test_the_robot_tells_what_it_can_follow_and_follows_what_it_is_told() 
     assert desk.runtime.active_behaviour.behaviour == "turn_left"
 
 
-async def test_what_was_asked_for_before_a_stop_or_before_another_behaviour_and_comes_late_is_refused() -> None:
+async def test_pursue_before_stop_or_other_behaviour_is_refused() -> None:
     desk = ChannelFixture(behaviours=("straight_on", "turn_left"))
     older = desk.command(PursueRequest, "straight_on")
     desk.run(5)
@@ -819,7 +817,7 @@ async def test_what_was_asked_for_before_a_stop_or_before_another_behaviour_and_
     assert desk.runtime.active_behaviour.behaviour == "turn_left"
 
 
-async def test_a_lesson_on_an_old_picture_is_listed_under_what_was_wanted_then() -> None:
+async def test_lesson_on_old_state_counts_for_old_behaviour() -> None:
     desk = ChannelFixture(behaviours=("straight_on", "turn_left"))
     seen = desk.tick
     await desk.ask(desk.command(PursueRequest, "turn_left"))
@@ -832,7 +830,7 @@ async def test_a_lesson_on_an_old_picture_is_listed_under_what_was_wanted_then()
     ]
 
 
-async def test_a_copy_of_a_stop_on_its_way_when_go_is_said_lets_the_robot_drive_all_the_same() -> None:
+async def test_stop_copy_sent_before_resume_does_not_stop() -> None:
     desk = ChannelFixture()
     stop = desk.stop()
     answered = await desk.ask(stop, "ann")
@@ -843,7 +841,7 @@ async def test_a_copy_of_a_stop_on_its_way_when_go_is_said_lets_the_robot_drive_
     assert desk.run().decision.cause is not Cause.STOPPED
 
 
-async def test_a_robot_that_was_stopped_is_set_down_by_nothing_that_was_said_before() -> None:
+async def test_place_sent_before_stop_is_refused() -> None:
     yard = Yard()
     desk = ChannelFixture(ground=yard)
     before = desk.command(PlaceRequest, 1.0, 2.0, 0.5)

@@ -184,7 +184,7 @@ async def test_an_observation_without_keys_is_refused(school: School) -> None:
     assert school.site.observers == 0
 
 
-async def test_an_id_that_nobody_has_meets_silence(school: School, tmp_path: Path) -> None:
+async def test_site_unknown_key_id_gets_silence(school: School, tmp_path: Path) -> None:
     stranger = pair(tmp_path / "others", tmp_path / "other-devices", "mallory")
     keys = OscoreContext(stranger.device.folder)
     protected, _ = keys.protect(plain("/hello", payload=cbor2.dumps([])))
@@ -205,7 +205,7 @@ async def test_every_bit_that_is_changed_on_the_way_meets_silence(school: School
     assert school.desk.run().decision.cause is Cause.UNKNOWN
 
 
-async def test_the_id_of_one_device_with_the_keys_of_another_meets_silence(school: School) -> None:
+async def test_site_key_id_of_another_device_gets_silence(school: School) -> None:
     ann, ben = school.keys("ann"), school.keys("ben")
     ann.sender_id = ben.sender_id
     protected, _ = ann.protect(plain("/hello", payload=cbor2.dumps([])))
@@ -259,7 +259,7 @@ async def test_every_path_takes_post_alone(school: School, code: Any) -> None:
 
 
 @pytest.mark.parametrize("code", CODES, ids=str)
-async def test_what_is_not_there_is_not_found(school: School, code: Any) -> None:
+async def test_site_unknown_path_is_not_found(school: School, code: Any) -> None:
     phone = school.phone()
     for segments in ((), ("nothing", "here"), ("hello", "there"), ("world", ""), ("", "hello")):
         message = aiocoap.Message(code=code)
@@ -268,7 +268,7 @@ async def test_what_is_not_there_is_not_found(school: School, code: Any) -> None
 
 
 @pytest.mark.parametrize("payload", [b"", b"\xff", b"\x81", cbor2.dumps({}), cbor2.dumps([1] * 9), bytes(2000)])
-async def test_what_is_not_understood_is_told_in_a_sentence(school: School, payload: bytes) -> None:
+async def test_site_malformed_request_is_bad_request(school: School, payload: bytes) -> None:
     phone = school.phone()
     for path in PATHS:
         answer = await phone.call(plain(path, payload=payload))
@@ -279,7 +279,7 @@ async def test_what_is_not_understood_is_told_in_a_sentence(school: School, payl
     assert school.desk.runtime.inbox.pop_all() == ()
 
 
-async def test_a_refusal_has_the_code_of_a_conflict_and_a_world_that_is_not_there_that_of_nothing(
+async def test_site_reply_status_sets_coap_code(
     school: School,
 ) -> None:
     phone = school.phone()
@@ -290,7 +290,7 @@ async def test_a_refusal_has_the_code_of_a_conflict_and_a_world_that_is_not_ther
     assert decode_answer(nothing.payload)["code"] == RefusalCode.NOT_SIMULATED
 
 
-async def test_a_fault_of_ours_is_counted_and_answered_and_the_next_request_is_fine(
+async def test_site_internal_error_is_counted_and_next_request_works(
     school: School, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def fail(_: object) -> None:
@@ -304,7 +304,7 @@ async def test_a_fault_of_ours_is_counted_and_answered_and_the_next_request_is_f
     assert (await phone.post(LessonsRequest(3))).code == aiocoap.CHANGED
 
 
-async def test_who_proves_his_key_is_told_to_the_doorkeeper_and_nobody_else(school: School) -> None:
+async def test_site_authentic_request_marks_sender_proven(school: School) -> None:
     class Doorkeeper:
         proofs = 0
 
@@ -356,7 +356,7 @@ def show(school: School, tick: int) -> None:
     school.site.publish(encode_state(state(tick=tick)))
 
 
-async def test_an_observer_gets_the_present_picture_and_each_one_that_follows(school: School) -> None:
+async def test_observer_gets_present_state_and_each_later_one(school: School) -> None:
     show(school, 5)
     observer = Observer(school.phone(), look())
     assert await observer.ticks() == [5]
@@ -376,7 +376,7 @@ async def test_an_observer_who_is_early_waits_for_the_first_picture(school: Scho
     await observer.removed()
 
 
-async def test_an_observer_who_is_slow_gets_the_newest_one_and_no_older_one_after_it(school: School) -> None:
+async def test_observer_slow_gets_newest_state_and_none_older(school: School) -> None:
     show(school, 5)
     observer = Observer(school.phone(), look())
     assert await observer.ticks() == [5]
@@ -389,7 +389,7 @@ async def test_an_observer_who_is_slow_gets_the_newest_one_and_no_older_one_afte
     assert school.site.states_skipped == skipped  # also of those who are gone
 
 
-async def test_a_picture_that_comes_just_as_the_one_before_is_taken_is_not_lost(school: School) -> None:
+async def test_observer_state_during_send_is_not_lost(school: School) -> None:
     show(school, 5)
     observer = Observer(school.phone(), look())
     assert await observer.ticks() == [5]
@@ -410,7 +410,7 @@ async def test_everyone_who_looks_gets_it(school: School) -> None:
 
 
 @pytest.mark.parametrize("observe", [None, 1])
-async def test_who_wants_one_picture_gets_one(school: School, observe: int | None) -> None:
+async def test_state_get_without_observe_returns_one_state(school: School, observe: int | None) -> None:
     show(school, 5)
     answer = await school.phone().call(look(observe=observe))
     assert (answer.code, answer.opt.content_format) == (aiocoap.CONTENT, CONTENT_FORMAT)
@@ -418,7 +418,7 @@ async def test_who_wants_one_picture_gets_one(school: School, observe: int | Non
     assert school.site.observers == 0
 
 
-async def test_who_wants_one_picture_before_there_is_any_waits_for_it(school: School) -> None:
+async def test_state_get_before_first_state_waits(school: School) -> None:
     call = asyncio.create_task(school.phone().call(look(observe=None)))
     await turns()
     assert not call.done()
@@ -442,7 +442,7 @@ async def test_numbers_of_pictures_differ_and_stay_within_24_bits(school: School
     await observer.removed()
 
 
-async def test_an_observer_who_is_silent_for_a_second_is_asked_whether_he_is_there(
+async def test_observer_silent_for_a_second_gets_confirmable_state(
     school: School, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     loop = asyncio.get_running_loop()
@@ -470,7 +470,7 @@ async def test_an_observer_who_is_silent_for_a_second_is_asked_whether_he_is_the
     await observer.removed()
 
 
-async def test_a_device_that_is_revoked_gets_no_picture_any_more_and_is_no_observer(school: School) -> None:
+async def test_observer_revoked_device_is_removed(school: School) -> None:
     show(school, 5)
     observer = Observer(school.phone(), look())
     assert await observer.ticks() == [5]
@@ -593,7 +593,7 @@ async def test_a_stranger_at_the_socket_is_told_that_he_is_one(tmp_path: Path) -
         assert b"</state>" in (await robot.line.plain(CORE, aiocoap.GET)).payload
 
 
-async def test_forged_messages_are_not_answered_and_leave_nothing_behind(tmp_path: Path) -> None:
+async def test_site_forged_messages_get_silence_and_leave_nothing(tmp_path: Path) -> None:
     async with on_line(tmp_path) as robot:
         await robot.call(HelloRequest())
         counters = robot.channel.endpoint.counters
@@ -605,14 +605,14 @@ async def test_forged_messages_are_not_answered_and_leave_nothing_behind(tmp_pat
         assert counters.failed == 0
 
 
-async def test_a_channel_with_a_paired_device_listens_to_more_than_this_machine(tmp_path: Path) -> None:
+async def test_channel_with_paired_device_listens_everywhere(tmp_path: Path) -> None:
     async with on_line(tmp_path) as robot:
         (tokens,) = robot.channel.endpoint._context.request_interfaces
         transport = tokens.token_interface.message_interface.transport
         assert transport.get_extra_info("socket").getsockname()[0] == "::"
 
 
-async def test_with_nobody_paired_it_listens_on_this_machine_alone(tmp_path: Path) -> None:
+async def test_channel_without_paired_device_listens_on_loopback(tmp_path: Path) -> None:
     local_pairing(tmp_path / "teachers", tmp_path / "devices")
     teachers = Teachers(tmp_path / "teachers")
     desk = ChannelFixture()
@@ -626,7 +626,7 @@ async def test_with_nobody_paired_it_listens_on_this_machine_alone(tmp_path: Pat
     teachers.close()
 
 
-async def test_a_damaged_pairing_keeps_nobody_else_out_and_is_told(tmp_path: Path) -> None:
+async def test_channel_damaged_pairing_is_reported_and_others_work(tmp_path: Path) -> None:
     local_pairing(tmp_path / "teachers", tmp_path / "devices")
     damaged = pair(tmp_path / "teachers", tmp_path / "devices", "bob").teacher / "secret.json"
     damaged.write_text("{}", encoding="utf-8")

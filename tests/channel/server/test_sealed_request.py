@@ -72,7 +72,7 @@ def aiocoap_takes(robot: OscoreContext, data: bytes) -> bool:
     token=st.binary(max_size=8),
     payload=st.binary(max_size=400),
 )
-def test_what_a_device_protects_fits_its_key(
+def test_sealed_request_of_device_fits_its_key(
     sides: Sides, observe: int | None, host: str | None, token: bytes, payload: bytes
 ) -> None:
     message = aiocoap.Message(code=aiocoap.GET, uri_path=("state",), payload=payload)
@@ -123,7 +123,7 @@ def test_changed_datagrams_pass_only_with_a_whole_seal(sides: Sides, draws: int)
         ("93190005ff00", "a key context that is longer than the option"),
     ],
 )
-def test_what_is_no_whole_oscore_request_is_none(rest: str, why: str) -> None:
+def test_sealed_request_incomplete_is_none(rest: str, why: str) -> None:
     assert SealedRequest.parse(bytes((0x50, 2, 0, 1)) + bytes.fromhex(rest)) is None, why
 
 

@@ -47,7 +47,7 @@ def picture(desk: ChannelFixture) -> State:
     return told
 
 
-def test_lateness_is_the_health_reports_which_spares_the_loop_its_percentiles(desk: ChannelFixture) -> None:
+def test_lateness_is_taken_from_health_report(desk: ChannelFixture) -> None:
     assert picture(desk).late_p99_ms == 0.0
     desk.health = WELL
     assert [picture(desk).late_p99_ms for _ in range(9)] == [0.0] * 9  # looked up once a second, with 20 pictures
@@ -55,7 +55,7 @@ def test_lateness_is_the_health_reports_which_spares_the_loop_its_percentiles(de
     assert later[-1] == WELL.punctuality.p99_ms
 
 
-def test_what_is_urgent_in_the_health_report_is_told_as_trouble_unless_there_is_worse(desk: ChannelFixture) -> None:
+def test_urgent_trouble_of_health_is_state_trouble(desk: ChannelFixture) -> None:
     full = Trouble(TroubleCode.LITTLE_ROOM, 3.0, True, "knowledge", (20.0,))
     desk.health = replace(ILL, troubles=(*ILL.troubles, full))
     assert picture(desk).trouble == f"{full.what}; {full.to_do}"
@@ -117,7 +117,7 @@ async def test_a_robot_that_drives_by_what_it_was_taught(desk: ChannelFixture) -
     assert (told.rlas, told.lessons, told.unsaved, told.by_hand) == (1, 1, 0, False)
 
 
-async def test_a_lesson_has_no_time_and_counts_as_unsaved_until_it_is_durable(desk: ChannelFixture) -> None:
+async def test_lesson_is_unsaved_without_time_until_durable(desk: ChannelFixture) -> None:
     task = await desk.send(desk.answer())
     desk.run()
     assert (picture(desk).taught_at, picture(desk).unsaved) == ("", 1)
@@ -185,7 +185,7 @@ def test_trouble_with_the_disk_goes_before_trouble_with_the_bus(desk: ChannelFix
     assert picture(desk).trouble == "the disk is full"
 
 
-def test_what_the_robot_could_not_learn_is_told(desk: ChannelFixture) -> None:
+def test_learning_error_is_state_trouble(desk: ChannelFixture) -> None:
     desk.runtime.handler.updater.error = "1 change was skipped"
     assert picture(desk).trouble == "1 change was skipped"
 
@@ -200,11 +200,11 @@ def test_blind_bumped_and_held_by_the_guard(desk: ChannelFixture) -> None:
     assert told.cause == "blind"
 
 
-def test_where_a_simulated_robot_is() -> None:
+def test_simulated_robot_has_place() -> None:
     assert picture(ChannelFixture(ground=Yard())).place == SimulatedPlace(1.0, 2.0, 0.5, 0.25, 3, 0)
 
 
-def test_lateness_is_looked_at_once_a_second_and_missed_ticks_always(desk: ChannelFixture) -> None:
+def test_lateness_is_computed_once_a_second(desk: ChannelFixture) -> None:
     first = picture(desk)
     ledger = desk.runtime.timer
     for _ in range(200):
@@ -216,7 +216,7 @@ def test_lateness_is_looked_at_once_a_second_and_missed_ticks_always(desk: Chann
     assert picture(desk).late_p99_ms == pytest.approx(4.0)
 
 
-async def test_it_tells_which_behaviour_is_wanted_and_what_the_robot_knows_of_it() -> None:
+async def test_state_names_selected_behaviour_and_its_rlas() -> None:
     desk = ChannelFixture(behaviours=("straight_on", "turn_left"))
     await desk.ask(desk.answer("forward"))
     told = picture(desk)
@@ -234,7 +234,7 @@ async def drives(desk: ChannelFixture) -> None:
     assert picture(desk).cause == "rla"
 
 
-async def test_it_tells_what_the_critic_thinks_and_how_many_signals_are_missing(desk: ChannelFixture) -> None:
+async def test_state_tells_opinion_and_missing_rewards(desk: ChannelFixture) -> None:
     await drives(desk)
     assert (picture(desk).opinion, picture(desk).opinion_of) == (None, None)
     reply = await desk.ask(desk.command(AppraiseRequest, "bad", None))
@@ -286,7 +286,7 @@ async def test_worth_of_an_rla_whose_action_was_withdrawn_is_told(desk: ChannelF
     assert told.nearest_value < 0
 
 
-async def test_where_an_action_was_withdrawn_it_asks_again(desk: ChannelFixture) -> None:
+async def test_withdrawn_action_makes_robot_ask(desk: ChannelFixture) -> None:
     await drives(desk)
     while picture(desk).cause == "rla":
         for _ in range(10):

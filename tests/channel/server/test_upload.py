@@ -28,7 +28,7 @@ def test_parts_in_order_make_the_file_and_copies_change_nothing() -> None:
     assert refused.value.outcome == Outcome(RefusalCode.UPLOAD_INCOMPLETE)
 
 
-def test_what_does_not_fit_is_refused_with_the_reason() -> None:
+def test_upload_unfit_part_is_refused_with_code() -> None:
     upload = Upload(most_bytes=4)
     assert add(upload, 2, b"c") == Outcome(RefusalCode.UPLOAD_UNKNOWN)
     assert add(upload, 0, b"ab") is None

@@ -156,18 +156,14 @@ async def test_it_takes_its_name_from_the_pairing_and_sees_the_robot(
     assert client.restarts == 0
 
 
-async def test_a_pairing_without_a_note_of_the_robot_has_the_name_of_its_folder(
-    pairing: Pairing, robot: StandInRobot
-) -> None:
+async def test_client_without_device_file_uses_folder_name(pairing: Pairing, robot: StandInRobot) -> None:
     (pairing.device.folder / "device.json").unlink()
     async with TeacherClient(pairing.device.folder, "127.0.0.1", robot.port) as client:
         await first_state(client)
         assert client.name == "phone"
 
 
-async def test_a_pairing_that_is_in_use_or_not_there_is_refused_in_a_sentence(
-    client: TeacherClient, pairing: Pairing, tmp_path: Path
-) -> None:
+async def test_client_pairing_in_use_or_missing_raises(client: TeacherClient, pairing: Pairing, tmp_path: Path) -> None:
     assert client.state is not None
     with pytest.raises(CredentialsError, match="another program uses this pairing"):
         await TeacherClient(pairing.device.folder).__aenter__()
@@ -180,9 +176,7 @@ def test_a_client_that_is_not_open_says_how_to_open_it(pairing: Pairing) -> None
         TeacherClient(pairing.device.folder).press(0.1, 0.1)
 
 
-async def test_a_slow_reader_gets_the_newest_picture_and_misses_those_between(
-    client: TeacherClient, robot: StandInRobot
-) -> None:
+async def test_states_slow_reader_gets_newest_only(client: TeacherClient, robot: StandInRobot) -> None:
     robot.showing = False
     states = client.states()
     first = await anext(states)
@@ -231,7 +225,7 @@ async def test_it_asks_what_robot_this_is(client: TeacherClient, robot: StandInR
 
 
 @pytest.mark.parametrize(("version", "older"), [(VERSION - 1, "the robot's"), (VERSION + 1, "this device's")])
-async def test_a_robot_of_another_version_is_not_understood_and_it_is_said_what_to_do(
+async def test_hello_of_other_version_raises_with_remedy(
     client: TeacherClient, robot: StandInRobot, version: int, older: str
 ) -> None:
     async def speaks_otherwise(_: Request) -> Reply:
@@ -389,7 +383,7 @@ async def test_a_refusal_is_an_answer(client: TeacherClient, robot: StandInRobot
     assert await client.answer("forward") == answer
 
 
-async def test_what_the_robot_could_not_take_is_refused_here(client: TeacherClient, robot: StandInRobot) -> None:
+async def test_command_invalid_value_is_refused_locally(client: TeacherClient, robot: StandInRobot) -> None:
     answer = await client.reward(3)
     assert (answer.accepted, answer.why, answer.text) == (False, "malformed", "value has to be one of 1, -1")
     assert robot.orders() == []
@@ -418,9 +412,7 @@ async def test_while_answers_are_lost_the_same_command_is_sent_again(pairing: Pa
         assert set(copies) == {copies[0]}
 
 
-async def test_at_30_percent_loss_each_way_every_reward_arrives_and_is_answered(
-    pairing: Pairing, robot: StandInRobot
-) -> None:
+async def test_reward_at_30_percent_loss_is_answered(pairing: Pairing, robot: StandInRobot) -> None:
     bad = Weather(loss=0.3, delay_s=0.005, jitter_s=0.005, doubled=0.05, overtaken=0.05)
     async with (
         LossyLink(robot.port, up=bad, down=bad) as link,
@@ -440,9 +432,7 @@ async def test_at_30_percent_loss_each_way_every_reward_arrives_and_is_answered(
     assert len({each.command_id for each in robot.all_of(RewardRequest)}) == 36
 
 
-async def test_without_an_answer_it_is_not_known_whether_it_counted_and_nothing_is_left_behind(
-    pairing: Pairing, robot: StandInRobot
-) -> None:
+async def test_command_without_answer_raises_and_leaves_nothing(pairing: Pairing, robot: StandInRobot) -> None:
     clock = Clock()
     async with (
         LossyLink(robot.port) as link,
@@ -489,9 +479,7 @@ async def test_without_a_robot_it_says_what_the_network_says(pairing: Pairing) -
 # Presence
 
 
-async def test_while_in_charge_and_watching_it_says_so_40_times_a_second(
-    client: TeacherClient, robot: StandInRobot
-) -> None:
+async def test_presence_in_charge_is_sent_40_times_a_second(client: TeacherClient, robot: StandInRobot) -> None:
     await seen(client, lambda: client.state == robot.state)
     assert robot.heard == []
     await be_in_charge(client, robot)
@@ -505,7 +493,7 @@ async def test_while_in_charge_and_watching_it_says_so_40_times_a_second(
     assert client.link.rtt_ms > 0.0
 
 
-async def test_who_looks_away_or_hands_over_says_nothing(client: TeacherClient, robot: StandInRobot) -> None:
+async def test_presence_is_not_sent_without_charge_or_watching(client: TeacherClient, robot: StandInRobot) -> None:
     async def says_nothing() -> None:
         await client.stop()  # once it is answered, all that was said before it has been heard
         told = len(robot.all_of(WatchRequest))
@@ -557,9 +545,7 @@ MOVING: dict[str, tuple[type[CommandRequest], Callable[[TeacherClient], Awaitabl
 
 
 @pytest.mark.parametrize("what", MOVING)
-async def test_a_stop_ends_what_would_move_the_robot_and_is_not_answered_yet(
-    client: TeacherClient, robot: StandInRobot, what: str
-) -> None:
+async def test_stop_ends_moving_commands_under_way(client: TeacherClient, robot: StandInRobot, what: str) -> None:
     kind, say = MOVING[what]
 
     async def hears_only_stops(request: Request) -> Reply:
@@ -611,9 +597,7 @@ async def test_a_stop_leaves_a_lesson_that_is_under_way(client: TeacherClient, r
     assert answers[0].accepted
 
 
-async def test_go_right_after_a_stop_says_that_the_teacher_knows_of_that_stop(
-    client: TeacherClient, robot: StandInRobot
-) -> None:
+async def test_resume_after_own_stop_names_the_stops_tick(client: TeacherClient, robot: StandInRobot) -> None:
     robot.showing = False
     picture = robot.show()
     await seen(client, lambda: client.state == picture)
@@ -633,7 +617,7 @@ async def test_go_right_after_a_stop_says_that_the_teacher_knows_of_that_stop(
     assert robot.all_of(AnswerRequest)[0].seen == stopped_tick + 20
 
 
-async def test_ticks_that_an_earlier_start_of_the_robot_told_count_for_nothing(pairing: Pairing) -> None:
+async def test_ticks_of_earlier_start_do_not_count(pairing: Pairing) -> None:
     teachers = pairing.teacher.parent
     clock = Clock()
 
@@ -656,7 +640,7 @@ async def test_ticks_that_an_earlier_start_of_the_robot_told_count_for_nothing(p
                 assert max(resume.seen, answer.seen) < 1_000_000
 
 
-async def test_a_stop_that_nobody_answers_is_sent_on_until_it_is(pairing: Pairing, robot: StandInRobot) -> None:
+async def test_stop_unanswered_is_resent_until_answered(pairing: Pairing, robot: StandInRobot) -> None:
     async with (
         LossyLink(robot.port) as link,
         TeacherClient(pairing.device.folder, port=link.port, patience_s=0.15) as client,
@@ -677,7 +661,7 @@ async def test_a_stop_that_nobody_answers_is_sent_on_until_it_is(pairing: Pairin
         await eventually(lambda: len(asyncio.all_tasks()) <= tasks_before)
 
 
-async def test_of_a_stop_that_is_never_answered_only_some_copies_are_remembered(
+async def test_stop_unanswered_keeps_limited_copies(
     pairing: Pairing, robot: StandInRobot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("kurt2rt.teacher.client.request_sender.RESEND_S", 0.001)
@@ -696,7 +680,7 @@ async def test_of_a_stop_that_is_never_answered_only_some_copies_are_remembered(
 
 
 @pytest.mark.parametrize("wish", ["resume", "run", "press"])
-async def test_a_later_wish_ends_a_stop_that_nobody_answered(pairing: Pairing, robot: StandInRobot, wish: str) -> None:
+async def test_stop_unanswered_is_superseded_by_later_command(pairing: Pairing, robot: StandInRobot, wish: str) -> None:
     async def does_not_hear_stops(request: Request) -> Reply:
         if isinstance(request, HelloRequest):
             return Reply(ReplyStatus.DONE, HELLO)
@@ -760,9 +744,7 @@ async def test_a_press_drives_until_it_is_let_go_and_then_stops(client: TeacherC
     assert await client.let_go() is None
 
 
-async def test_who_lets_go_has_let_go_before_he_is_answered_and_may_press_anew(
-    client: TeacherClient, robot: StandInRobot
-) -> None:
+async def test_let_go_ends_press_before_its_answer(client: TeacherClient, robot: StandInRobot) -> None:
     async def does_not_answer_stops(request: Request) -> Reply:
         return await (never_answers if isinstance(request, StopRequest) else agrees)(request)
 
@@ -787,9 +769,7 @@ async def test_who_lets_go_has_let_go_before_he_is_answered_and_may_press_anew(
     assert robot.all_of(StopRequest)[-1].press_id is None
 
 
-async def test_a_block_that_ends_after_its_press_was_stopped_leaves_the_next_press_alone(
-    client: TeacherClient, robot: StandInRobot
-) -> None:
+async def test_driving_block_after_stop_leaves_next_press_alone(client: TeacherClient, robot: StandInRobot) -> None:
     async with client.driving() as wheel:
         assert wheel.set(0.2, 0.2)
         await client.stop()
@@ -799,7 +779,7 @@ async def test_a_block_that_ends_after_its_press_was_stopped_leaves_the_next_pre
     await client.let_go()
 
 
-async def test_the_next_press_has_a_larger_number_also_after_a_restart_of_the_device_and_new_keys(
+async def test_press_id_grows_across_restarts_and_renewals(
     pairing: Pairing,
 ) -> None:
     teachers, devices = pairing.teacher.parent, pairing.device.folder.parent
@@ -847,7 +827,7 @@ async def test_a_driving_block_that_fails_ends_with_a_stop_too(client: TeacherCl
     assert isinstance(robot.heard[-1], StopRequest)
 
 
-async def test_who_is_cancelled_while_driving_still_stops(client: TeacherClient, robot: StandInRobot) -> None:
+async def test_driving_block_cancelled_stops(client: TeacherClient, robot: StandInRobot) -> None:
     async def drive() -> None:
         async with client.driving() as wheel:
             wheel.set(0.2, 0.2)
@@ -892,9 +872,7 @@ async def test_a_refused_press_ends_and_says_why(client: TeacherClient, robot: S
     assert robot.all_of(StopRequest) == []
 
 
-async def test_a_press_goes_on_when_only_a_message_that_was_late_is_refused(
-    client: TeacherClient, robot: StandInRobot
-) -> None:
+async def test_press_continues_if_only_late_message_is_refused(client: TeacherClient, robot: StandInRobot) -> None:
     late = anyio.Event()
 
     async def refuses_the_first_one_late(request: Request) -> Reply:
@@ -941,7 +919,7 @@ async def test_speeds_that_no_robot_takes_are_an_error_of_the_program(client: Te
 # The robot and the link
 
 
-async def test_after_a_restart_of_the_robot_it_proves_itself_and_goes_on(pairing: Pairing) -> None:
+async def test_client_after_robot_restart_proves_itself_and_goes_on(pairing: Pairing) -> None:
     teachers = pairing.teacher.parent
     clock = Clock()
     async with AsyncExitStack() as first_start:
@@ -961,9 +939,7 @@ async def test_after_a_restart_of_the_robot_it_proves_itself_and_goes_on(pairing
                 assert all(each.boot == b"boot" for each in robot.all_of(DriveRequest))
 
 
-async def test_after_a_pause_of_the_link_it_observes_anew_and_the_robot_shows_to_one_only(
-    pairing: Pairing, robot: StandInRobot
-) -> None:
+async def test_subscription_after_link_pause_is_renewed_once(pairing: Pairing, robot: StandInRobot) -> None:
     clock = Clock()
     async with (
         LossyLink(robot.port) as link,
@@ -981,7 +957,7 @@ async def test_after_a_pause_of_the_link_it_observes_anew_and_the_robot_shows_to
         await eventually(lambda: robot.site.observers == 1)
 
 
-async def test_a_robot_that_does_not_know_the_device_is_told_apart_from_silence(tmp_path: Path) -> None:
+async def test_robot_without_pairing_is_told_from_silence(tmp_path: Path) -> None:
     stranger = pair(tmp_path / "others", tmp_path / "strangers", "phone")
     async with (
         forger(unauthorised) as port,
@@ -994,7 +970,7 @@ async def test_a_robot_that_does_not_know_the_device_is_told_apart_from_silence(
 @pytest.mark.parametrize(
     "option", [b"", b"\x01", b"\x01\x05", b"\x07" + b"\xff" * 7, b"\x10", b"\x18", b"\x20", b"\x29\x01", b"\xe0"]
 )
-async def test_a_forged_answer_is_none_and_hurts_nobody(tmp_path: Path, option: bytes) -> None:
+async def test_forged_answer_is_dropped(tmp_path: Path, option: bytes) -> None:
     pairing = pair(tmp_path / "teachers", tmp_path / "devices", "phone")
     async with (
         forger(lambda request: changed(request, option)) as port,

@@ -124,7 +124,7 @@ async def test_copies_come_over_a_bad_link_whole(tmp_path: Path) -> None:
     assert len(given.lessons) == 1
 
 
-async def test_the_hand_drives_while_it_presses_and_the_robot_stands_when_it_lets_go(tmp_path: Path) -> None:
+async def test_drive_moves_robot_only_while_pressed(tmp_path: Path) -> None:
     device = paired(tmp_path).device
     with rig() as live:
         async with (
