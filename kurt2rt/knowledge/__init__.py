@@ -1,1 +1,1 @@
-"""What was taught: an append-only journal of teaching events that never loses an acknowledged lesson."""
+"""Knowledge: an append-only journal of teaching events that never loses an acknowledged lesson."""

@@ -299,4 +299,4 @@ TEXTS: Mapping[KnowledgeCode, tuple[str, str]] = {
     KnowledgeCode.EXAM_NOT_STARTED: ("the exam cannot be started ({error})", "install kurt2rt whole"),
     KnowledgeCode.UPLOAD_REFUSED: ("{reason}", ""),
 }
-"""What is wrong, and what to do, with the error's fields in braces."""
+"""(fault, remedy) of each code, with the error's fields in braces."""

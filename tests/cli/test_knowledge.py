@@ -22,9 +22,7 @@ def folded(knowledge: Path) -> RlaSystem:
         return fold_journal(journal, radius=1.0)
 
 
-def test_the_last_lesson_is_undone_and_then_another_one_by_its_id(
-    kurt2rt: CommandLine, tmp_path: Path, lessons: Path
-) -> None:
+def test_undo_last_lesson_then_one_by_id(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
     mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
     before = folded(mine)
     last = before.last_standing_lesson
@@ -60,7 +58,7 @@ def test_the_last_lesson_is_undone_and_then_another_one_by_its_id(
     ],
     ids=" ".join,
 )
-def test_who_only_looks_leaves_nothing_behind(
+def test_reading_commands_leave_no_files(
     kurt2rt: CommandLine, tmp_path: Path, lessons: Path, words: tuple[str, ...]
 ) -> None:
     mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
@@ -70,7 +68,7 @@ def test_who_only_looks_leaves_nothing_behind(
     assert mine.read_bytes() == lessons.read_bytes()
 
 
-def test_all_that_the_critic_did_is_listed_and_taken_back(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
+def test_undo_all_of_the_critic(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
     mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
     before = folded(mine)
     first, second = before.rlas[:2]
@@ -109,9 +107,7 @@ def _by_critic(command_id: str) -> Origin:
     return Origin(command_id, CRITIC, Phase.AUTONOMOUS, tick=100)
 
 
-def test_the_table_goes_where_it_is_wanted_and_never_over_another_one(
-    kurt2rt: CommandLine, tmp_path: Path, lessons: Path
-) -> None:
+def test_table_folder_is_made_and_nothing_overwritten(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
     for _ in range(2):
         said = kurt2rt("knowledge", "table", lessons, "--out", tmp_path / "tables")
         assert said.exit_code == 0
@@ -122,14 +118,14 @@ def test_the_table_goes_where_it_is_wanted_and_never_over_another_one(
     assert len(list((tmp_path / "tables").iterdir())) == 2
 
 
-def test_a_table_that_cannot_be_written_is_refused(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
+def test_table_unwritable_folder_is_refused(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
     (tmp_path / "tables").write_text("in the way", encoding="utf-8")
     assert "tables: nothing can be saved there" in kurt2rt.refused(
         "knowledge", "table", lessons, "--out", tmp_path / "tables"
     )
 
 
-def test_a_lesson_is_undone_and_stands_again(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
+def test_undo_then_redo_restores_the_lesson(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
     mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
     before = folded(mine)
     kurt2rt("knowledge", "undo", mine)
@@ -139,7 +135,7 @@ def test_a_lesson_is_undone_and_stands_again(kurt2rt: CommandLine, tmp_path: Pat
     assert "command line" not in kurt2rt("knowledge", "lessons", mine, "--limit", "1").out
 
 
-def test_a_branch_is_listed_taught_on_compared_and_merged(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
+def test_branch_is_listed_taught_compared_and_merged(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
     mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
     count = len(folded(mine))
     first = folded(mine).lessons[0].event.origin.command_id
@@ -166,9 +162,7 @@ def test_a_branch_is_listed_taught_on_compared_and_merged(kurt2rt: CommandLine, 
     assert "know the same" in kurt2rt("knowledge", "diff", mine, "late.knowledge").out
 
 
-def test_a_branch_tells_of_lessons_that_a_clock_set_back_put_behind_later_ones(
-    kurt2rt: CommandLine, tmp_path: Path, lessons: Path
-) -> None:
+def test_branch_clock_set_back_is_reported(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
     mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
     with Journal.read_only(mine) as look:
         binding, entries = look.binding, look.entries()
@@ -181,9 +175,7 @@ def test_a_branch_tells_of_lessons_that_a_clock_set_back_put_behind_later_ones(
     assert f"the first {len(entries)} rows of mine.knowledge\n1 later rows bear dates before that, too" in said
 
 
-def test_a_conflict_is_told_and_settled_by_whom_one_prefers(
-    kurt2rt: CommandLine, tmp_path: Path, lessons: Path
-) -> None:
+def test_merge_conflict_is_settled_by_prefer(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
     mine = Path(shutil.copy(lessons, tmp_path / "mine.knowledge"))
     kurt2rt("knowledge", "branch", mine, "other.knowledge")
     for path, action in ((mine, "left"), (tmp_path / "other.knowledge", "right")):
@@ -204,15 +196,13 @@ def test_a_conflict_is_told_and_settled_by_whom_one_prefers(
     assert rla.action == "right"
 
 
-def test_in_an_empty_folder_nothing_is_listed(kurt2rt: CommandLine, tmp_path: Path) -> None:
+def test_list_empty_folder_is_empty(kurt2rt: CommandLine, tmp_path: Path) -> None:
     assert "holds no knowledge file" in kurt2rt("knowledge", "list", tmp_path).out
     (tmp_path / "broken.knowledge").write_text("nonsense", encoding="utf-8")
     assert "cannot be read" in " ".join(kurt2rt("knowledge", "list", tmp_path).out.split())
 
 
-def test_one_file_is_listed_by_itself_and_a_place_that_is_not_there_is_refused(
-    kurt2rt: CommandLine, tmp_path: Path, lessons: Path
-) -> None:
+def test_list_one_file_or_missing_folder(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
     mine = Path(shutil.copy(lessons, tmp_path / "mine.db"))
     listed = " ".join(kurt2rt("knowledge", "list", mine).out.split())
     assert f"wall_following {len(folded(mine))} " in listed
@@ -221,7 +211,7 @@ def test_one_file_is_listed_by_itself_and_a_place_that_is_not_there_is_refused(
     assert "nonsense: is not a knowledge file" in kurt2rt.refused("knowledge", "list", tmp_path / "nonsense")
 
 
-def test_knowledge_is_given_away_signed_and_taken(kurt2rt: CommandLine, lessons: Path) -> None:
+def test_export_signed_is_imported(kurt2rt: CommandLine, lessons: Path) -> None:
     made = kurt2rt("knowledge", "key", "ann").out
     print_of = made.splitlines()[1].rpartition(" ")[2]
     given = kurt2rt("knowledge", "export", lessons, "out.zip", "--sign", "ann")

@@ -5,5 +5,5 @@ import pytest
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    """Where a knowledge file may be begun."""
+    """Return a path for a new knowledge file."""
     return tmp_path / "knowledge.db"

@@ -1,4 +1,4 @@
-"""Copies a knowledge file without end: the child of test_copy.py, which kills it.
+"""Copy a knowledge file without end: the child of test_copy.py, which kills it.
 
 Prints the name of each copy once it is there: `python -m tests.knowledge.copy_until_killed FILE FOLDER STAMP`.
 """

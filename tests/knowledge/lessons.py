@@ -50,7 +50,7 @@ def created(rla_id: int, command_id: str | None = None, action: str = "forward")
 
 
 def appraisal(rla_id: int, condition: tuple[float, ...] = (0.4, 0.2, 0.0), action: str = "good") -> RlaCreated:
-    """An RLA of the critic."""
+    """Return the creation of an RLA of the critic."""
     taught = origin(f"appraise-{rla_id}", rla_id, Phase.CRITIC)
     return RlaCreated(Rla(rla_id, condition, action, None, taught, level=CRITIC))
 
@@ -84,14 +84,14 @@ def entry(rla_id: int) -> JournalEntry:
 
 
 def begun(path: Path, lessons: int = 3) -> Path:
-    """A knowledge file with some lessons, closed."""
+    """Make a knowledge file with some lessons, closed; return its path."""
     with Journal.open(path, BINDING) as journal:
         journal.append([entry(number) for number in range(1, lessons + 1)])
     return path
 
 
 def as_written_by(version: int, event: TeachingEvent) -> str:
-    """An event's text as an older kurt2rt wrote it."""
+    """Return an event's text as an older kurt2rt wrote it."""
     content = json.loads(encode_event(event)) | {"version": version}
     for field, since in {"behaviour": 3, "level": 4, "credits": 4, "said": 4}.items():
         if version < since:
@@ -100,7 +100,7 @@ def as_written_by(version: int, event: TeachingEvent) -> str:
 
 
 def tamper(path: Path, *statements: str) -> None:
-    """What no kurt2rt does: change a knowledge file behind its back."""
+    """Execute SQL statements on a knowledge file, as no kurt2rt does."""
     with closing(sqlite3.connect(path)) as connection, connection:
         for statement in statements:
             connection.execute(statement)

@@ -1,7 +1,7 @@
-"""Stories of files that are taught and merged at random, and a model of what each must know: who decided what, last.
+"""Random stories of files that are taught and merged, and a model of what each file must hold.
 
-The model knows nothing of rows, piles and ids: of each lesson only the last decision that it stand or not, and of each
-file which decisions came to it. Lessons are told apart by their ticks.
+The model has no rows, stacks or ids: of each lesson only the last decision that it stands or not, and of each file the
+decisions that it has seen. Ticks identify lessons.
 """
 
 import math
@@ -49,7 +49,7 @@ KINDS = (
 
 
 class Decision(NamedTuple):
-    """Somebody wanted a lesson to stand, or not to."""
+    """Decision of a teacher that a lesson stands, or does not."""
 
     number: int
     stands: bool
@@ -153,23 +153,23 @@ class Story:
                 assert (tick in stands) == wanted, f"lesson {tick} should {'stand' if wanted else 'not stand'}"
         if planned.entries:
             here = {record.event.origin.tick for record in after.system.lessons}
-            self._heard(file, other, stands, here, rewards, settled=bool(planned.conflicts))
+            self._add_decisions(file, other, stands, here, rewards, settled=bool(planned.conflicts))
         return planned
 
     def _plan(self, mine: KnowledgeContent, theirs: KnowledgeContent, prefer: Side | None) -> MergePlan:
         merging = Merger(mine, theirs, BORDERS, teacher="command line", stamp=STAMP)
         return merging.plan(Statistics(), Statistics(), prefer)
 
-    def _heard(
+    def _add_decisions(
         self, file: File, other: File, stands: set[int], here: set[int], rewards: set[int], *, settled: bool
     ) -> None:
-        """What was decided there, and what by the merge itself, is known here from now on."""
+        """Add the decisions of `other`, and those of the merge itself, to `file`."""
         for tick in {*file.decisions, *other.decisions}:
             stood = tick in stands
             theirs, mine = other.decisions.get(tick), file.decisions.get(tick)
             decided = settled and tick not in rewards  # one that stays under a correction is no decision, and is told
             if tick not in here and tick in rewards:
-                continue  # left out: nobody said that it shall not stand there
+                continue  # left out: no decision that it shall not stand there
             if theirs is not None and theirs.stands == stood and theirs.number not in file.heard_of:
                 file.decisions[tick] = theirs
             elif mine is None or mine.stands != stood or (decided and theirs is not None and theirs.stands != stood):
@@ -182,7 +182,7 @@ class Story:
         return Decision(self._count, stands)
 
     def _anything(self, system: RlaSystem) -> TeachingEvent | None:
-        """An act that fits, or nothing where none of that kind does."""
+        """Return a random event that fits, or None if none of its kind does."""
         chance = self._random
         self._count += 1
         # Some command ids come twice, in different files.
@@ -222,7 +222,7 @@ class Story:
 
 
 def _wanted(file: File, other: File, tick: int) -> bool | None:
-    """Whether a lesson shall stand here; None where each side decided without the other."""
+    """Return whether a lesson shall stand here; None if each side decided without the other."""
     theirs, mine = other.decisions.get(tick), file.decisions.get(tick)
     if theirs is None or theirs.number in file.heard_of:
         return file.stands(tick)
@@ -242,7 +242,7 @@ def _rewards(system: RlaSystem) -> set[int]:
 
 
 def _piles(system: RlaSystem) -> dict[int, object]:
-    """What each lesson is about, by its tick: a name, or the tick of the lesson that created its RLA."""
+    """Return what each lesson is about, by its tick: a name, or the tick of the lesson that created its RLA."""
     created = {
         record.event.rla.rla_id: record.event.origin.tick
         for record in system.lessons
@@ -255,7 +255,7 @@ def _piles(system: RlaSystem) -> dict[int, object]:
 
 
 def _outcomes(system: RlaSystem) -> Mapping[object, object]:
-    """What the robot makes of each pile: the action of an RLA, the place of a name."""
+    """Return the result of each stack: the action of an RLA, the place of a name."""
     about, outcomes = _piles(system), dict[object, object]()
     for record in system.lessons:
         pile = lesson_stack(record.event)

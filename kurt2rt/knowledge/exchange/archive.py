@@ -36,7 +36,7 @@ class Archive:
 
     manifest: Mapping[str, Any]
     files: Mapping[str, bytes]
-    """By name."""
+    """Content by name."""
     signed_by: bytes | None
     """Raw public key, 32 bytes; None: not signed."""
 

@@ -21,7 +21,7 @@ def require_int(value: object, least: int = 0) -> int:
 
 
 def require_number(value: object) -> float:
-    """Return the value as a number without unit, which may be infinite. Raises ValueError, also for NaN."""
+    """Return the value as a dimensionless number, which may be infinite. Raises ValueError, also for NaN."""
     try:
         number = math.nan if not isinstance(value, (int, float)) or isinstance(value, bool) else float(value)
     except OverflowError:

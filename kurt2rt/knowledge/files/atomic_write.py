@@ -22,7 +22,7 @@ class SavedCopy:
     name: str
     """File name, without its folder."""
     sha256: str
-    """Of the file's bytes, hexadecimal."""
+    """Hexadecimal, of the file's bytes."""
     size_bytes: int
 
 

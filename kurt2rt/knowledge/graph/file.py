@@ -1,4 +1,4 @@
-"""The RLA network as a file: a picture, or GraphML, which networkx and other programs read back."""
+"""File of the RLA network: a picture, or GraphML, which networkx and other programs read."""
 
 from pathlib import Path
 
@@ -8,11 +8,11 @@ from kurt2rt.knowledge.graph.graph import RlaNetwork
 
 GRAPHML = ".graphml"
 FORMATS = (".svg", ".png", GRAPHML)
-"""What a file's name may end with."""
+"""Allowed endings of a file's name."""
 
 
 def write_network(network: RlaNetwork, title: str, path: Path) -> None:
-    """Write it as the file's name ends, one of FORMATS; the folder is made. Raises OSError."""
+    """Write the network in the format of the file's ending, one of FORMATS; make the folder. Raises OSError."""
     path.parent.mkdir(parents=True, exist_ok=True)
     if path.suffix == GRAPHML:
         network.graph["title"] = title

@@ -13,7 +13,7 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 
 
 def fold_journal(journal: Journal, radius: float) -> RlaSystem:
-    """Return the RLA system that all lessons make; arguments and errors as of `fold_entries`."""
+    """Return the RLA system that all lessons make; `radius` (dimensionless) and errors as `fold_entries`."""
     return fold_entries(journal, journal.entries(), radius)
 
 
@@ -23,7 +23,7 @@ def fold_entries(journal: Journal, entries: Iterable[StoredEntry], radius: float
     Args:
         journal: gives features and levels.
         entries: from the first row on, without gaps.
-        radius: R of all levels, in the distance unit of a task; 0.0 or infinity if the fold is not matched against.
+        radius: R of all levels, dimensionless; 0.0 or infinity for a fold without matches.
 
     Raises:
         KnowledgeError: a lesson does not fit those before it; names file and row.

@@ -28,7 +28,7 @@ class OpenedKnowledge:
 
     journal: Journal
     entries: tuple[StoredEntry, ...]
-    """In the order of writing."""
+    """All rows, in the order of writing."""
     counter: StatisticsCounter
     """Goes on from the counts of the last checkpoint."""
     saved: Statistics

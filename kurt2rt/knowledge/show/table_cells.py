@@ -38,5 +38,5 @@ def format_rewards(appraisal: Appraisal) -> str:
 
 
 def format_value(value: float | None) -> str:
-    """Return a value of rewards, which has no unit, with two decimals; empty if there is none."""
+    """Return a value of rewards (dimensionless) with two decimals; empty if there is none."""
     return "" if value is None else f"{value:.2f}"

@@ -20,7 +20,7 @@ class Radii(NamedTuple):
     """Distances of a task within which two conditions count as the same."""
 
     spaces: Mapping[str, Space]
-    """By level."""
+    """Space of each level."""
     fractions: Mapping[str, float]
     """Fraction of R within which a correction replaces an RLA and does not insert one, by level."""
 
@@ -30,7 +30,7 @@ class Overlap(NamedTuple):
 
     rla: Rla
     distance: float
-    """From the condition, in the distance unit of the task."""
+    """Distance from the condition, in the unit of the task."""
     radius: float
     """R of the RLA, in the same unit."""
 

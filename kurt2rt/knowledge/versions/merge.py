@@ -52,7 +52,7 @@ class RlaState:
     """State of an RLA in one file."""
 
     rla_id: int | None
-    """In that file; None if the file left the RLA out in an earlier merge."""
+    """Id in that file; None if the file left the RLA out in an earlier merge."""
     rla: Rla | None
     """None if it does not live."""
 
@@ -73,7 +73,7 @@ class Conflict:
     theirs: RlaState | NameState
     code: ConflictCode
     distance: float | None = None
-    """Between the conditions of the RLAs, for NEAR."""
+    """Distance of the RLAs' conditions, for NEAR."""
     radius_fraction: float | None = None
     """Fraction of R within which a correction replaces, for NEAR."""
 

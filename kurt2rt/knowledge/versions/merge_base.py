@@ -48,7 +48,7 @@ class BaseState:
     """Knowledge that both files had at a merge base."""
 
     stacks: Mapping[StackKey, tuple[LessonKey, ...]]
-    """As they stood in the file that was seen."""
+    """Stacks as they stood in the file that was seen."""
     undone_here: frozenset[LessonKey]
     """Lessons that were undone in mine after it."""
     undone_there: frozenset[LessonKey]

@@ -1,4 +1,4 @@
-"""Files from elsewhere stay in the folder that they are laid out in."""
+"""Files of a foreign package stay in the folder of their extraction."""
 
 from pathlib import Path
 
@@ -31,11 +31,11 @@ from kurt2rt.knowledge.exchange.attachment_files import LARGEST_BYTES, MOST_FILE
         "x/" * 600 + "x",
     ],
 )
-def test_a_name_that_leads_elsewhere_is_told(name: str) -> None:
+def test_unsafe_reason_escaping_names_are_refused(name: str) -> None:
     assert "which is none that kurt2rt gives" in unsafe_reason({"settings/task.json": 1, name: 1})
 
 
-def test_too_much_is_told() -> None:
+def test_unsafe_reason_limits_are_kept() -> None:
     assert "files, 1000 are taken at most" in unsafe_reason(
         {f"settings/{number}": 1 for number in range(MOST_FILES + 1)}
     )
@@ -44,7 +44,7 @@ def test_too_much_is_told() -> None:
     assert unsafe_reason({"settings/situations/Ann's own é.yaml": LARGEST_BYTES}) == ""
 
 
-def test_while_they_are_laid_out_nothing_else_is_found() -> None:
+def test_extracted_settings_are_found_until_the_context_ends() -> None:
     with extracted_settings({"settings/tasks/mine.yaml": b"name: mine\n", "settings/files/x": b""}):
         path = find_config("tasks", "mine")
         assert path.read_bytes() == b"name: mine\n"

@@ -1,4 +1,4 @@
-"""What a replay needs stands in the run: settings as they were in force, and what was known."""
+"""Attachments of a run: settings as they were in force, and the knowledge at its start."""
 
 import json
 from pathlib import Path
@@ -30,7 +30,7 @@ TASKS = sorted(path.stem for path in (CONFIG_DIR / "tasks").glob("*.yaml"))
 
 
 @pytest.mark.parametrize("task", TASKS)
-def test_a_task_comes_back_as_it_was_in_force(task: str) -> None:
+def test_collect_attachments_task_is_read_back(task: str) -> None:
     settings = load_task(task, changes={"learning.radius": "123.25"})
     robot = load_robot()
     attached = collect_attachments(robot, settings)
@@ -38,8 +38,8 @@ def test_a_task_comes_back_as_it_was_in_force(task: str) -> None:
     assert RobotSettings.model_validate_json(attached[ROBOT]) == robot
 
 
-def test_values_that_come_from_a_default_are_in_force_too() -> None:
-    """Or a replay by a kurt2rt with other defaults would go by those."""
+def test_collect_attachments_defaults_are_included() -> None:
+    """A replay by a kurt2rt with other defaults would use those otherwise."""
     task = load_task("wall_following")
     assert {"reinforcement", "critic", "mid", "behaviours"}.isdisjoint(task.model_fields_set)
     kept = json.loads(collect_attachments(load_robot(), task)[TASK])
@@ -48,7 +48,7 @@ def test_values_that_come_from_a_default_are_in_force_too() -> None:
     assert kept.keys().isdisjoint({"mid", "behaviours"})  # which must not be there where they mean nothing
 
 
-def test_settings_are_found_where_the_run_has_kept_them_and_nowhere_else(tmp_path: Path) -> None:
+def test_settings_override_finds_only_attachments(tmp_path: Path) -> None:
     for name, data in collect_attachments(load_robot(), load_task("errands")).items():
         path = tmp_path / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -60,7 +60,7 @@ def test_settings_are_found_where_the_run_has_kept_them_and_nowhere_else(tmp_pat
     assert find_config("mid_levels", "places").is_relative_to(CONFIG_DIR)
 
 
-def test_a_file_that_a_task_names_by_its_path_is_kept_under_a_name_of_its_own(tmp_path: Path) -> None:
+def test_collect_attachments_path_gets_a_safe_name(tmp_path: Path) -> None:
     mine = tmp_path / "basic.yaml"
     mine.write_bytes(find_config("situations", "basic").read_bytes())
     task = load_task("wall_following").model_copy(update={"situation": str(mine)})
@@ -76,7 +76,7 @@ def test_a_file_that_a_task_names_by_its_path_is_kept_under_a_name_of_its_own(tm
 @pytest.mark.parametrize(
     "name", ["", ".", "..", "../../secret", "/etc/secret", "~/secret", "a/b", "/etc/secret.yaml", "x/"]
 )
-def test_whatever_a_recording_names_is_looked_for_in_its_own_folder(name: str) -> None:
+def test_kept_name_stays_in_its_folder(name: str) -> None:
     kept = kept_name(name)
     assert "/" not in kept
     assert kept not in (".", "..")
@@ -84,7 +84,7 @@ def test_whatever_a_recording_names_is_looked_for_in_its_own_folder(name: str) -
     assert kept_name("walls") == "walls.yaml"
 
 
-def test_lessons_come_back_with_their_stamps() -> None:
+def test_decode_lessons_have_their_stamps() -> None:
     origin = Origin("ann-1", "Ann", Phase.SUPERVISED, 7)
     lesson = KnownLesson(RlaCreated(Rla(1, (0.1, 1 / 3), "forward", None, origin)), "2026-11-22T03:00:00Z")
     attached = collect_attachments(load_robot(), load_task("wall_following"), [lesson])
@@ -93,7 +93,7 @@ def test_lessons_come_back_with_their_stamps() -> None:
         decode_lessons(attached[KNOWLEDGE][:-9])
 
 
-def test_statistics_come_back_to_the_last_bit_and_in_their_order() -> None:
+def test_decode_statistics_are_exact_and_in_order() -> None:
     expectation = Expectation("ann-1", 3, 0.1, b"\x00\xff", b"")
     saved = Statistics({7: 1, 2: 3}, {(7, 2): 1}, {2: 1 / 3}, {(2, 7): -0.1}, {"best score": 0.3}, {2: expectation})
     again = decode_statistics(encode_statistics(saved))
@@ -102,7 +102,7 @@ def test_statistics_come_back_to_the_last_bit_and_in_their_order() -> None:
         decode_statistics(b"{}")
 
 
-def test_a_head_comes_back_and_one_of_a_newer_program_is_refused() -> None:
+def test_decode_head_newer_version_is_refused() -> None:
     head = RunHead(
         "0.1", "00ff", "2026-11-22T03:00:00Z", "wall_following", "kurt2", "sim", "", True, True, "", "", {"a": "b"}
     )
@@ -117,5 +117,5 @@ def test_a_head_comes_back_and_one_of_a_newer_program_is_refused() -> None:
         decode_head({key: value for key, value in metadata.items() if key != "boot"})
 
 
-def test_fingerprints_tell_contents_apart() -> None:
+def test_hash_attachments_differs_by_content() -> None:
     assert hash_attachments({"a": b"1"})["a"] != hash_attachments({"a": b"2"})["a"]

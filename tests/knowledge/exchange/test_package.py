@@ -1,4 +1,4 @@
-"""Knowledge is given away as one file, and taken as it was or not at all."""
+"""Export and import of knowledge: equal bit for bit, or refused."""
 
 import json
 import shutil
@@ -59,7 +59,7 @@ def export(path: Path, out: Path, key: Path | None = None) -> Path:
     return out
 
 
-def take(path: Path, into: Path, task: TaskSettings = TASK, trusted: Path | None = None) -> ImportResult:
+def import_from(path: Path, into: Path, task: TaskSettings = TASK, trusted: Path | None = None) -> ImportResult:
     return import_knowledge(path, into, ROBOT, task, None if trusted is None else read_public_key(trusted), stamp=NOW)
 
 
@@ -70,9 +70,9 @@ def exported(taught: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return export(taught, folder / "mine.zip", folder / "ann")
 
 
-def test_there_and_back_all_is_the_same_to_the_last_bit(taught: Path, exported: Path, tmp_path: Path) -> None:
-    taken = take(exported, tmp_path / "theirs.knowledge")
-    assert taken.differing_settings == ()
+def test_import_knowledge_of_an_export_is_equal_bit_for_bit(taught: Path, exported: Path, tmp_path: Path) -> None:
+    imported = import_from(exported, tmp_path / "theirs.knowledge")
+    assert imported.differing_settings == ()
     with Journal.read_only(taught) as old, Journal.read_only(tmp_path / "theirs.knowledge") as new:
         assert new.entries() == old.entries()
         assert repr(new.statistics()) == repr(old.statistics())
@@ -83,7 +83,7 @@ def test_there_and_back_all_is_the_same_to_the_last_bit(taught: Path, exported: 
     assert (tmp_path / "again.zip").read_bytes() == exported.read_bytes()
 
 
-def test_any_zip_program_shows_what_is_in_it(exported: Path) -> None:
+def test_export_knowledge_is_a_zip_with_manifest(exported: Path) -> None:
     with zipfile.ZipFile(exported) as archive:
         manifest = json.loads(archive.read(MANIFEST))
         assert {"knowledge.jsonl", "statistics.json", "settings/task.json", SIGNATURE} <= set(archive.namelist())
@@ -91,7 +91,7 @@ def test_any_zip_program_shows_what_is_in_it(exported: Path) -> None:
     assert manifest["features"]["names"][0] == "s1"
 
 
-def test_a_file_that_was_cut_or_changed_is_refused_or_says_the_same(exported: Path, tmp_path: Path) -> None:
+def test_read_package_cut_or_changed_is_refused_or_equal(exported: Path, tmp_path: Path) -> None:
     whole, unchanged = exported.read_bytes(), read_package(exported)
     other = tmp_path / "other.zip"
     for place in range(0, len(whole), 97):
@@ -108,14 +108,14 @@ def test_a_file_that_was_cut_or_changed_is_refused_or_says_the_same(exported: Pa
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.binary(max_size=300))
-def test_nonsense_is_refused_in_one_line(tmp_path: Path, nonsense: bytes) -> None:
+def test_read_package_nonsense_is_refused_in_one_line(tmp_path: Path, nonsense: bytes) -> None:
     (tmp_path / "nonsense.zip").write_bytes(nonsense)
     with refused(KnowledgeCode.PACKAGE_DAMAGED, tmp_path / "nonsense.zip"):
         read_package(tmp_path / "nonsense.zip")
 
 
 def rewritten(exported: Path, out: Path, **changes: bytes | None) -> Path:
-    """The archive with other files in it, its sums of ZIP in order."""
+    """Write a copy of the archive with other files, whose ZIP checksums are right, and return its path."""
     with zipfile.ZipFile(exported) as archive, zipfile.ZipFile(out, "w") as other:
         content: dict[str, bytes | None] = {name: archive.read(name) for name in archive.namelist()}
         for name, data in (content | {each.replace("__", "/"): data for each, data in changes.items()}).items():
@@ -124,7 +124,7 @@ def rewritten(exported: Path, out: Path, **changes: bytes | None) -> Path:
     return out
 
 
-def test_what_somebody_changed_on_purpose_is_named(exported: Path, tmp_path: Path) -> None:
+def test_read_package_forged_parts_are_refused_by_code(exported: Path, tmp_path: Path) -> None:
     manifest = unpack(exported).manifest
     cases: tuple[tuple[dict[str, bytes | None], KnowledgeCode], ...] = (
         ({"knowledge.jsonl": b""}, KnowledgeCode.PACKAGE_PART_CHANGED),
@@ -149,7 +149,7 @@ def test_what_somebody_changed_on_purpose_is_named(exported: Path, tmp_path: Pat
 def made_over(
     exported: Path, out: Path, files: Mapping[str, bytes] | None = None, about: Mapping[str, object] | None = None
 ) -> Path:
-    """An archive of somebody who means ill, or whose program is another: all its sums are in order."""
+    """Write a copy of the archive with a matching manifest, as a hostile author can, and return its path."""
     whole = unpack(exported)
     manifest = {name: value for name, value in whole.manifest.items() if name not in ("format", "files")}
     out.write_bytes(pack({**manifest, **(about or {})}, {**whole.files, **(files or {})}, None))
@@ -159,15 +159,15 @@ def made_over(
 @pytest.mark.parametrize(
     "name", ["settings/../../escaped", "/escaped", "settings\\..\\escaped", "settings/task.json/x"]
 )
-def test_what_would_be_written_elsewhere_is_not_even_read(exported: Path, tmp_path: Path, name: str) -> None:
+def test_import_knowledge_escaping_names_are_refused(exported: Path, tmp_path: Path, name: str) -> None:
     other = {"features": {**unpack(exported).manifest["features"], "hash": "another"}}
     evil = made_over(exported, tmp_path / "evil.zip", {name: b"!"}, other)
     with refused(KnowledgeCode.PACKAGE_UNSAFE, evil):
-        take(evil, tmp_path / "k")
+        import_from(evil, tmp_path / "k")
     assert [each.name for each in tmp_path.iterdir()] == ["evil.zip"]
 
 
-def test_an_archive_that_would_fill_the_memory_is_not_unpacked(tmp_path: Path) -> None:
+def test_read_package_bomb_is_not_unpacked(tmp_path: Path) -> None:
     bomb = tmp_path / "bomb.zip"
     quick, megabyte = zipfile.ZipFile(bomb, "w", zipfile.ZIP_DEFLATED, compresslevel=1), bytes(10**6)
     with quick as archive, archive.open("manifest.json", "w") as part:
@@ -189,7 +189,7 @@ def test_an_archive_that_would_fill_the_memory_is_not_unpacked(tmp_path: Path) -
         read_package(tmp_path)
 
 
-def test_lessons_that_do_not_fit_are_not_taken(exported: Path, tmp_path: Path) -> None:
+def test_import_knowledge_misfit_lessons_are_refused(exported: Path, tmp_path: Path) -> None:
     lines = unpack(exported).files["knowledge.jsonl"].decode().splitlines()
     stranger = json.dumps({"stamped_at": STAMP, "event": json.loads(encode_event(deleted(77)))})
     short = json.loads(lines[0])
@@ -202,7 +202,7 @@ def test_lessons_that_do_not_fit_are_not_taken(exported: Path, tmp_path: Path) -
     for rows, cause in cases:
         unfit = made_over(exported, tmp_path / "unfit.zip", {"knowledge.jsonl": "\n".join(rows).encode()})
         with refused(KnowledgeCode.NOT_BUILT, unfit, cause=cause):
-            take(unfit, tmp_path / "k")
+            import_from(unfit, tmp_path / "k")
     assert [each.name for each in tmp_path.iterdir()] == ["unfit.zip"]
 
 
@@ -229,7 +229,7 @@ NOTHING: dict[str, object] = {
         {**NOTHING, "expectations": [[1, "create-1", 1, 0.5, "AAAA", ""]]},
     ],
 )
-def test_counts_of_a_wrong_type_are_refused(exported: Path, tmp_path: Path, counts: object) -> None:
+def test_read_package_wrong_types_of_counts_are_refused(exported: Path, tmp_path: Path, counts: object) -> None:
     odd = made_over(exported, tmp_path / "odd.zip", {"statistics.json": json.dumps(counts).encode()})
     with refused(KnowledgeCode.PACKAGE_INVALID, odd, mentions="statistics.json"):
         read_package(odd)
@@ -246,21 +246,23 @@ def test_counts_of_a_wrong_type_are_refused(exported: Path, tmp_path: Path, coun
         {"system": "\ud800"},
     ],
 )
-def test_a_manifest_of_a_wrong_type_is_refused(exported: Path, tmp_path: Path, about: Mapping[str, object]) -> None:
+def test_read_package_wrong_manifest_types_are_refused(
+    exported: Path, tmp_path: Path, about: Mapping[str, object]
+) -> None:
     (key,) = about
     with refused(KnowledgeCode.PACKAGE_INVALID, mentions=f"manifest: {key}"):
         read_package(made_over(exported, tmp_path / "odd.zip", None, about))
 
 
 @pytest.mark.parametrize("stamp", [5, None, "", "yesterday", "2026-11-22T03:10:05"])
-def test_a_lesson_without_a_time_is_refused(exported: Path, tmp_path: Path, stamp: object) -> None:
+def test_read_package_lesson_without_time_is_refused(exported: Path, tmp_path: Path, stamp: object) -> None:
     lines = unpack(exported).files["knowledge.jsonl"].decode().splitlines()
     lesson = json.dumps({**json.loads(lines[0]), "stamped_at": stamp})
     with refused(KnowledgeCode.PACKAGE_INVALID, mentions="knowledge.jsonl"):
         read_package(made_over(exported, tmp_path / "odd.zip", {"knowledge.jsonl": lesson.encode()}))
 
 
-def test_json_that_nests_without_end_is_refused(exported: Path, tmp_path: Path) -> None:
+def test_read_package_endless_nesting_is_refused(exported: Path, tmp_path: Path) -> None:
     deep = b"[" * 100_000
     for name, code in ((MANIFEST, KnowledgeCode.MANIFEST_DAMAGED), (SIGNATURE, KnowledgeCode.SIGNATURE_DAMAGED)):
         with refused(code):
@@ -270,7 +272,7 @@ def test_json_that_nests_without_end_is_refused(exported: Path, tmp_path: Path) 
             read_package(made_over(exported, tmp_path / "deep.zip", {name: deep}))
 
 
-def test_lessons_and_counts_of_an_export_are_of_one_moment(
+def test_export_knowledge_while_written_is_of_one_moment(
     taught: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = Path(shutil.copy(taught, tmp_path / "mine.knowledge"))
@@ -293,18 +295,18 @@ def test_lessons_and_counts_of_an_export_are_of_one_moment(
     )
 
 
-def test_only_whom_one_trusts_is_believed(exported: Path, taught: Path, tmp_path: Path) -> None:
+def test_import_knowledge_other_signer_is_refused(exported: Path, taught: Path, tmp_path: Path) -> None:
     make_key(tmp_path / "bob")
     unsigned = export(taught, tmp_path / "unsigned.zip")
     with refused(KnowledgeCode.OTHER_SIGNER):
-        take(exported, tmp_path / "k", trusted=tmp_path / "bob.pub")
+        import_from(exported, tmp_path / "k", trusted=tmp_path / "bob.pub")
     with refused(KnowledgeCode.OTHER_SIGNER, signed="not signed"):
-        take(unsigned, tmp_path / "k", trusted=tmp_path / "bob.pub")
+        import_from(unsigned, tmp_path / "k", trusted=tmp_path / "bob.pub")
     assert not (tmp_path / "k").exists()
-    take(exported, tmp_path / "k", trusted=exported.parent / "ann.pub")
+    import_from(exported, tmp_path / "k", trusted=exported.parent / "ann.pub")
 
 
-def test_a_key_is_for_its_owner_alone_and_is_never_overwritten(tmp_path: Path) -> None:
+def test_make_key_is_private_and_overwrites_nothing(tmp_path: Path) -> None:
     make_key(tmp_path / "keys" / "ann")
     assert (tmp_path / "keys" / "ann").stat().st_mode & 0o777 == 0o600
     with refused(KnowledgeCode.KEY_NOT_MADE):
@@ -324,7 +326,7 @@ def test_a_key_is_for_its_owner_alone_and_is_never_overwritten(tmp_path: Path) -
         read_public_key(tmp_path / "keys" / "ann")
 
 
-def test_other_features_are_refused_by_their_names(exported: Path, tmp_path: Path) -> None:
+def test_import_knowledge_other_features_are_named(exported: Path, tmp_path: Path) -> None:
     basic = yaml.safe_load((CONFIG_DIR / "situations" / "basic.yaml").read_text(encoding="utf-8"))
     basic["history_steps"] = 500
     basic["features"][18]["sensors"] = ["s9", "s10"]
@@ -332,33 +334,33 @@ def test_other_features_are_refused_by_their_names(exported: Path, tmp_path: Pat
     other.write_text(yaml.safe_dump(basic), encoding="utf-8")
     difference = "maximum front (made of other sensors), all (10 s average): over 1000 steps there, 500 here"
     with refused(KnowledgeCode.PACKAGE_OTHER_FEATURES, difference=difference):
-        take(exported, tmp_path / "k", TASK.model_copy(update={"situation": str(other)}))
+        import_from(exported, tmp_path / "k", TASK.model_copy(update={"situation": str(other)}))
     del basic["features"][0]
     other.write_text(yaml.safe_dump(basic), encoding="utf-8")
     with refused(KnowledgeCode.PACKAGE_OTHER_FEATURES):
-        take(exported, tmp_path / "k", TASK.model_copy(update={"situation": str(other)}))
+        import_from(exported, tmp_path / "k", TASK.model_copy(update={"situation": str(other)}))
     with refused(KnowledgeCode.OTHER_TASK, taught="wall_following", wanted="eight"):
-        take(exported, tmp_path / "k", load_task("eight"))
+        import_from(exported, tmp_path / "k", load_task("eight"))
     assert not (tmp_path / "k").exists()
 
 
-def test_other_settings_round_the_same_features_are_told(exported: Path, tmp_path: Path) -> None:
+def test_import_knowledge_differing_settings_are_named(exported: Path, tmp_path: Path) -> None:
     wider = load_task("wall_following", changes={"learning.radius": "800.0"})
-    assert take(exported, tmp_path / "k", wider).differing_settings == ("settings/task.json",)
+    assert import_from(exported, tmp_path / "k", wider).differing_settings == ("settings/task.json",)
 
 
-def test_nothing_is_overwritten(exported: Path, taught: Path, tmp_path: Path) -> None:
+def test_export_and_import_existing_file_is_refused(exported: Path, taught: Path, tmp_path: Path) -> None:
     there = Path(shutil.copy(taught, tmp_path / "there"))
     with refused(KnowledgeCode.ALREADY_THERE):
-        take(exported, there)
+        import_from(exported, there)
     with refused(KnowledgeCode.ALREADY_THERE):
         export(taught, exported)
 
 
-def test_on_a_disk_without_room_there_is_a_whole_file_or_none(taught: Path, exported: Path, tmp_path: Path) -> None:
+def test_export_and_import_full_disk_leave_no_file(taught: Path, exported: Path, tmp_path: Path) -> None:
     for room in range(0, exported.stat().st_size, 1000):
         with largest_file(room), pytest.raises(KnowledgeError):
             export(taught, tmp_path / "out.zip")
         with largest_file(room), pytest.raises(KnowledgeError):
-            take(exported, tmp_path / "k")
+            import_from(exported, tmp_path / "k")
     assert [each.name for each in tmp_path.iterdir() if not each.name.endswith(".lock")] == []

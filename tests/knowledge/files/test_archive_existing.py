@@ -10,7 +10,7 @@ from tests.knowledge.refusals import refused
 
 
 def killed(path: Path, lessons: int) -> Path:
-    """A knowledge file as a killed program leaves it: the lessons stand in SQLite's log alone."""
+    """Make a knowledge file as a killed program leaves it, with the lessons only in SQLite's log; return its path."""
     with Journal.open(path, BINDING) as journal:
         journal.append([entry(number) for number in range(1, lessons + 1)])
         shutil.copy(path, path.with_name("crashed"))
@@ -27,26 +27,26 @@ def stored(path: Path) -> int:
         return len(journal.events())
 
 
-def test_knowledge_stays_under_a_number_of_its_own(path: Path) -> None:
+def test_archive_existing_numbers_each_file(path: Path) -> None:
     for lessons in (1, 2, 3):
         archive_existing(begun(path, lessons))
         assert not path.exists()
     assert [stored(path.with_name(f"{path.name}.{number}")) for number in (1, 2, 3)] == [1, 2, 3]
 
 
-def test_lessons_of_a_killed_program_go_along(path: Path) -> None:
+def test_archive_existing_moves_the_log(path: Path) -> None:
     archive_existing(killed(path, lessons=4))
     assert stored(begun(path, lessons=1)) == 1
     assert stored(path.with_name(f"{path.name}.1")) == 4
 
 
-def test_knowledge_in_use_is_left_where_it_is(path: Path) -> None:
+def test_archive_existing_file_in_use_is_refused(path: Path) -> None:
     with Journal.open(begun(path), BINDING):
         with refused(KnowledgeCode.ANOTHER_WRITER):
             archive_existing(path)
         assert path.exists()
 
 
-def test_where_nothing_is_nothing_is_done(path: Path) -> None:
+def test_archive_existing_without_a_file_does_nothing(path: Path) -> None:
     archive_existing(path)
     assert list(path.parent.iterdir()) == []

@@ -1,4 +1,4 @@
-"""What waits for the disk before a run may end."""
+"""Wait for the disk before a run may end."""
 
 from pathlib import Path
 
@@ -17,9 +17,7 @@ def never(path: Path, folder: Path, stamp: str) -> SavedCopy:
     raise AssertionError((path, folder, stamp))
 
 
-async def test_lessons_are_durable_once_settled_and_a_failing_disk_is_told_at_once(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+async def test_settle_failing_disk_is_refused_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "a.knowledge"
     with JournalWriter(Journal.open(path, BINDING), lambda: STAMP) as writer:
         safe = BackupService(path, writer, never)

@@ -27,7 +27,7 @@ def names(folder: Path) -> list[str]:
     return sorted(each.name for each in folder.iterdir())
 
 
-def test_a_copy_holds_all_that_was_acknowledged_and_stands_by_itself(path: Path, tmp_path: Path) -> None:
+def test_save_copy_holds_all_acknowledged_lessons(path: Path, tmp_path: Path) -> None:
     folder = tmp_path / "saved"
     with Journal.open(path, BINDING) as journal:
         journal.append([entry(number) for number in range(1, 61)])
@@ -52,7 +52,7 @@ def test_a_copy_holds_all_that_was_acknowledged_and_stands_by_itself(path: Path,
         assert taught_on.check() == []
 
 
-def test_every_copy_made_while_lessons_come_is_whole(path: Path, tmp_path: Path) -> None:
+def test_save_copy_while_lessons_come_is_whole(path: Path, tmp_path: Path) -> None:
     with JournalWriter(Journal.open(path, BINDING), now=lambda: STAMP) as writer:
         for number in range(1, 121):
             writer.submit(created(number))
@@ -76,8 +76,8 @@ connection.close()
 @pytest.mark.parametrize(
     "take", [lambda path, to: save_copy(path, to, "", STAMP), lambda path, to: export_table(path, to, STAMP)]
 )
-def test_the_writer_in_the_same_process_keeps_its_locks(path: Path, tmp_path: Path, take: object) -> None:
-    """Without them the last program to leave takes the log away, and with it the lessons that come after."""
+def test_save_copy_writer_in_the_process_keeps_its_locks(path: Path, tmp_path: Path, take: object) -> None:
+    """The last program that closes would remove the log otherwise, and later lessons with it."""
     assert callable(take)
     with Journal.open(path, BINDING) as journal:
         journal.append([entry(1)])
@@ -102,21 +102,21 @@ def test_the_writer_in_the_same_process_keeps_its_locks(path: Path, tmp_path: Pa
         ("x" * 1000, "-" + "x" * 32),
     ],
 )
-def test_the_name_is_made_here_whatever_the_label(path: Path, tmp_path: Path, label: str, part: str) -> None:
+def test_save_copy_name_is_safe_for_any_label(path: Path, tmp_path: Path, label: str, part: str) -> None:
     saved = save_copy(begun(path), tmp_path / "saved", label, STAMP)
 
     assert saved.name == f"wall-following-20040426T100000{part}.knowledge"
     assert names(tmp_path / "saved") == [saved.name]
 
 
-def test_neither_task_nor_stamp_leads_out_of_the_folder(path: Path, tmp_path: Path) -> None:
+def test_save_copy_task_and_stamp_stay_in_the_folder(path: Path, tmp_path: Path) -> None:
     Journal.open(path, replace(BINDING, system="../A/B")).close()
 
     assert save_copy(path, tmp_path / "saved", "c", "../..T1").name == "a-b-T1-c.knowledge"
     assert names(tmp_path / "saved") == ["a-b-T1-c.knowledge"]
 
 
-def test_a_name_that_is_taken_is_never_overwritten(path: Path, tmp_path: Path) -> None:
+def test_save_copy_taken_name_gets_a_number(path: Path, tmp_path: Path) -> None:
     folder = tmp_path / "saved"
     first = save_copy(begun(path), folder, "x", STAMP)
     (folder / "wall-following-20040426T100000-x-2.knowledge").symlink_to("nowhere")
@@ -129,7 +129,7 @@ def test_a_name_that_is_taken_is_never_overwritten(path: Path, tmp_path: Path) -
     assert (folder / "wall-following-20040426T100000-x-2.knowledge").is_symlink()
 
 
-def test_a_disk_without_room_keeps_no_half_copy(path: Path, tmp_path: Path) -> None:
+def test_save_copy_full_disk_leaves_no_file(path: Path, tmp_path: Path) -> None:
     folder = tmp_path / "saved"
     size = begun(path, lessons=300).stat().st_size
     with largest_file(size - 1), refused(KnowledgeCode.FOLDER_NOT_WRITABLE):
@@ -138,14 +138,14 @@ def test_a_disk_without_room_keeps_no_half_copy(path: Path, tmp_path: Path) -> N
     assert names(folder) == []
 
 
-def test_a_folder_that_cannot_be_is_refused(path: Path, tmp_path: Path) -> None:
+def test_save_copy_impossible_folder_is_refused(path: Path, tmp_path: Path) -> None:
     (tmp_path / "saved").write_text("in the way")
 
     with refused(KnowledgeCode.FOLDER_NOT_WRITABLE):
         save_copy(begun(path), tmp_path / "saved", "x", STAMP)
 
 
-def test_what_is_no_knowledge_is_not_copied(path: Path, tmp_path: Path) -> None:
+def test_save_copy_other_files_are_refused(path: Path, tmp_path: Path) -> None:
     with refused(KnowledgeCode.NOT_OPENED):
         save_copy(path, tmp_path / "saved", "x", STAMP)
     tamper(path, "CREATE TABLE bookmark (url TEXT)")
@@ -158,7 +158,7 @@ def test_what_is_no_knowledge_is_not_copied(path: Path, tmp_path: Path) -> None:
     assert not (tmp_path / "saved").exists()
 
 
-def test_a_kill_leaves_no_half_copy(path: Path, tmp_path: Path) -> None:
+def test_save_copy_kill_leaves_whole_copies(path: Path, tmp_path: Path) -> None:
     begun(path, lessons=500)
     folder = tmp_path / "saved"
     told = []
@@ -175,7 +175,7 @@ def test_a_kill_leaves_no_half_copy(path: Path, tmp_path: Path) -> None:
         assert len(look.events()) == 500
 
 
-def test_a_copy_is_no_log_and_needs_none(path: Path, tmp_path: Path) -> None:
+def test_save_copy_is_no_log_and_needs_none(path: Path, tmp_path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         journal.append([entry(1)])
         saved = save_copy(path, tmp_path / "saved", "", STAMP)

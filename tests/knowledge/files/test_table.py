@@ -38,7 +38,7 @@ def exported(path: Path, folder: Path) -> list[list[str]]:
         return list(csv.reader(file))
 
 
-def test_a_row_for_each_rla_that_stands(path: Path, tmp_path: Path) -> None:
+def test_export_table_has_a_row_per_living_rla(path: Path, tmp_path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         events: list[TeachingEvent] = [
             *(created(number) for number in (1, 2, 3, 4)),
@@ -70,7 +70,7 @@ def test_a_row_for_each_rla_that_stands(path: Path, tmp_path: Path) -> None:
     ]
 
 
-def test_numbers_and_names_come_back_exactly(path: Path, tmp_path: Path) -> None:
+def test_export_table_numbers_and_names_are_exact(path: Path, tmp_path: Path) -> None:
     condition = (0.1 + 0.2, 1 / 3, -0.0, 5e-324)
     rla = replace(created(1).rla, condition=condition, action='left, "hard"\n;', radius=1e300)
     with Journal.open(path, BINDING) as journal:
@@ -82,13 +82,13 @@ def test_numbers_and_names_come_back_exactly(path: Path, tmp_path: Path) -> None
     assert row[14] == "-0.0"
 
 
-def test_where_nothing_was_taught_there_is_a_heading(path: Path, tmp_path: Path) -> None:
+def test_export_table_without_lessons_has_a_heading(path: Path, tmp_path: Path) -> None:
     Journal.open(path, BINDING).close()
 
     assert len(exported(path, tmp_path)) == 1
 
 
-def test_where_taught_behaviours_have_names_there_is_a_column_for_them(path: Path, tmp_path: Path) -> None:
+def test_export_table_named_behaviours_have_a_column(path: Path, tmp_path: Path) -> None:
     left = RlaCreated(replace(created(2).rla, behaviour="turn_left"))
     with Journal.open(path, BINDING) as journal:
         journal.append([entry(1), JournalEntry(left, STAMP)])
@@ -99,7 +99,7 @@ def test_where_taught_behaviours_have_names_there_is_a_column_for_them(path: Pat
     assert (first[column], second[column]) == ("", "turn_left")
 
 
-def test_appraisal_rlas_come_behind_the_others_with_columns_of_their_own(path: Path, tmp_path: Path) -> None:
+def test_export_table_appraisal_rlas_have_own_columns(path: Path, tmp_path: Path) -> None:
     with Journal.open(path, WITH_CRITIC) as journal:
         journal.append([entry(1)])
         assert len(exported(path, tmp_path / "before")[0]) == len(exported(path, tmp_path / "again")[1])
@@ -117,7 +117,7 @@ def test_appraisal_rlas_come_behind_the_others_with_columns_of_their_own(path: P
 
 
 @pytest.mark.parametrize("begin", ["=", "+", "-", "@", "\t", "\r", "\uff1d"])
-def test_text_that_begins_as_a_formula_is_quoted(path: Path, tmp_path: Path, begin: str) -> None:
+def test_export_table_formula_text_is_quoted(path: Path, tmp_path: Path, begin: str) -> None:
     rla = replace(created(1).rla, action=f"{begin}HYPERLINK(A1)", behaviour=f"{begin}1+1")
     with Journal.open(path, BINDING) as journal:
         journal.append([JournalEntry(RlaCreated(rla), STAMP)])
@@ -128,7 +128,7 @@ def test_text_that_begins_as_a_formula_is_quoted(path: Path, tmp_path: Path, beg
     assert row[-1] == "-5.0"
 
 
-def test_text_that_is_a_number_is_not_quoted(path: Path, tmp_path: Path) -> None:
+def test_export_table_number_text_is_not_quoted(path: Path, tmp_path: Path) -> None:
     rla = replace(created(1).rla, action="-1.5e3")
     with Journal.open(path, BINDING) as journal:
         journal.append([JournalEntry(RlaCreated(rla), STAMP)])

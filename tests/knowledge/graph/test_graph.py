@@ -41,12 +41,12 @@ def edges(network: RlaNetwork) -> dict[tuple[int, int], tuple[int, float]]:
     return {edge: (each["times"], each["percent"]) for edge, each in found.items()}
 
 
-def test_edges_have_the_share_of_all_that_followed() -> None:
+def test_build_network_edges_have_shares_of_all_successors() -> None:
     network = build_network(system(), DROVE)
     assert edges(network) == {(1, 2): (9, 90.0), (1, 3): (1, 10.0), (2, 1): (8, 80.0), (3, 3): (1, 100.0)}
 
 
-def test_a_node_says_what_the_rla_does_how_often_and_for_how_long() -> None:
+def test_build_network_node_has_action_uses_and_duration() -> None:
     network = build_network(system(), DROVE)
     assert network.nodes[1] == {
         "level": BASIC,
@@ -59,24 +59,24 @@ def test_a_node_says_what_the_rla_does_how_often_and_for_how_long() -> None:
     assert "ends" not in network.nodes[2]  # of another lesson: it has another action by now
 
 
-def test_one_behaviour_is_shown_with_shares_among_all() -> None:
+def test_build_network_one_behaviour_has_shares_of_all() -> None:
     network = build_network(system(), DROVE, behaviour="left")
     assert edges(network) == {(1, 2): (9, 90.0), (2, 1): (8, 80.0)}
 
 
-def test_a_level_is_shown_by_itself_with_the_places_it_is_about() -> None:
+def test_build_network_mid_level_has_places() -> None:
     network = build_network(system(), Statistics(transitions={(5, 6): 2}), level=MID, features=("x_m", "y_m"))
     assert edges(network) == {(5, 6): (2, 100.0)}
     assert [(network.nodes[rla_id]["x_m"], network.nodes[rla_id]["y_m"]) for rla_id in network] == [(3, 4), (5, 4)]
 
 
-def test_what_is_rare_can_be_left_out_and_with_it_who_never_drove() -> None:
+def test_drop_rare_edges_drops_unused_rlas() -> None:
     network = drop_rare_edges(build_network(system(), DROVE), 20.0)
     assert edges(network) == {(1, 2): (9, 90.0), (2, 1): (8, 80.0), (3, 3): (1, 100.0)}
     assert sorted(network) == [1, 2, 3]
 
 
-def test_graphml_is_read_back_as_it_was(tmp_path: Path) -> None:
+def test_write_network_graphml_is_read_back(tmp_path: Path) -> None:
     network = build_network(system(), DROVE)
     write_network(network, "a title", tmp_path / "made" / "network.graphml")
     again = nx.read_graphml(tmp_path / "made" / "network.graphml", node_type=int)
@@ -88,7 +88,7 @@ def test_graphml_is_read_back_as_it_was(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("kind", ["svg", "png"])
-def test_the_picture_is_the_same_each_time(tmp_path: Path, kind: str) -> None:
+def test_write_network_picture_is_reproducible(tmp_path: Path, kind: str) -> None:
     pictures = [tmp_path / f"{name}.{kind}" for name in ("first", "second")]
     for picture in pictures:
         write_network(build_network(system(), DROVE), "RLAs", picture)
@@ -97,7 +97,7 @@ def test_the_picture_is_the_same_each_time(tmp_path: Path, kind: str) -> None:
     assert len(first) > 5000
 
 
-def test_the_picture_has_a_panel_for_each_behaviour_percentages_and_the_actions(tmp_path: Path) -> None:
+def test_write_network_picture_has_panels_and_labels(tmp_path: Path) -> None:
     write_network(build_network(system(), DROVE), "the title", tmp_path / "network.svg")
     text = (tmp_path / "network.svg").read_text(encoding="utf-8")
     for shown in ("the title", "left: 2 RLAs", "right: 2 RLAs", ">90<", ">80<", ">forward<", ">4<"):
@@ -105,21 +105,15 @@ def test_the_picture_has_a_panel_for_each_behaviour_percentages_and_the_actions(
     assert ">10<" not in text  # from the one behaviour to the other a command led
 
 
-def test_rlas_that_never_drove_are_a_picture_too(tmp_path: Path) -> None:
+def test_write_network_without_uses_is_a_picture(tmp_path: Path) -> None:
     write_network(build_network(system(), Statistics()), "just taught", tmp_path / "network.svg")
     assert ">3<" in (tmp_path / "network.svg").read_text(encoding="utf-8")
 
 
-def test_a_file_without_such_rlas_is_refused(path: Path) -> None:
+def test_read_network_without_rlas_is_refused(path: Path) -> None:
     with Journal.read_only(begun(path)) as journal:
         assert sorted(read_network(journal)) == [1, 2, 3]
         with refused(KnowledgeCode.NO_RLA_AT_LEVEL, level="mid", found="basic"):
             read_network(journal, level=MID)
         with refused(KnowledgeCode.NO_RLA_OF_BEHAVIOUR, behaviour="left"):
             read_network(journal, behaviour="left")
-
-
-@pytest.fixture
-def path(tmp_path: Path) -> Path:
-    """Where a knowledge file may be begun."""
-    return tmp_path / "knowledge.db"

@@ -1,4 +1,4 @@
-"""Where RLAs stand in the picture of their network."""
+"""Places of RLAs in the picture of their network."""
 
 import itertools
 import math
@@ -26,30 +26,30 @@ def nearest(places: Places) -> float:
     return min(math.dist(one, other) for one, other in itertools.combinations(places.values(), 2))
 
 
-def test_who_follows_another_stands_beside_it() -> None:
+def test_compute_layout_successors_are_neighbours() -> None:
     chain = network(*((rla_id, rla_id + 1, 100.0) for rla_id in range(1, 9)))
     places = compute_layout(chain)
     assert between(places, 1, 2) < between(places, 1, 5) < between(places, 1, 9)
     assert between(places, 1, 9) == pytest.approx(8 * 1.4, rel=0.1)  # a chain is drawn as one
 
 
-def test_frequent_follow_ups_stand_nearer() -> None:
+def test_compute_layout_frequent_successors_are_nearer() -> None:
     places = compute_layout(network((1, 2, 95.0), (1, 3, 5.0)))
     assert between(places, 1, 2) < between(places, 1, 3)
 
 
-def test_no_two_stand_on_each_other_also_in_a_dense_network() -> None:
+def test_compute_layout_dense_network_keeps_distances() -> None:
     dense = network(*((one, other, 5.0) for one in range(40) for other in range(40) if (7 * one + other) % 5 == 0))
     assert nearest(compute_layout(dense)) > 0.95 * APART
 
 
-def test_parts_without_an_edge_between_them_stand_apart() -> None:
+def test_compute_layout_separate_parts_are_apart() -> None:
     places = compute_layout(network((1, 2, 100.0), (3, 4, 100.0), alone=5))
     assert len(places) == 9
     assert nearest(places) > 0.95 * APART
 
 
-def test_places_are_laid_out_where_they_are() -> None:
+def test_compute_layout_known_places_are_kept() -> None:
     streets = network((1, 2, 100.0), (2, 3, 100.0))
     for rla_id, x_m, y_m in ((1, 0.0, 0.0), (2, 1.8, 0.0), (3, 1.8, 1.8)):
         streets.add_node(rla_id, x_m=x_m, y_m=y_m)

@@ -82,7 +82,7 @@ def bits(numbers: Condition) -> bytes:
 
 
 @given(events)
-def test_an_event_comes_back_exactly_as_it_was(event: TeachingEvent) -> None:
+def test_encode_event_is_decoded_exactly(event: TeachingEvent) -> None:
     text = encode_event(event)
     again = decode_event(text, "here")
 
@@ -93,7 +93,7 @@ def test_an_event_comes_back_exactly_as_it_was(event: TeachingEvent) -> None:
         assert bits(again.rla.condition) == bits(event.rla.condition)  # also the sign of a zero
 
 
-def test_a_condition_straight_from_numpy_comes_back_too() -> None:
+def test_encode_event_numpy_condition_is_decoded() -> None:
     condition = tuple(np.array([0.1, 1 / 3, -0.0, 5e-324]))
     event = RlaCreated(Rla(1, condition, "forward", None, Origin("c", "t", Phase.SUPERVISED, 0)))
 
@@ -101,7 +101,7 @@ def test_a_condition_straight_from_numpy_comes_back_too() -> None:
 
 
 @given(st.text() | st.recursive(st.none() | st.booleans() | st.integers() | st.text(), st.lists).map(json.dumps))
-def test_foreign_text_is_refused_with_its_place(text: str) -> None:
+def test_decode_event_foreign_text_is_refused_with_place(text: str) -> None:
     with refused(KnowledgeCode.NOT_AN_EVENT, "k.db: row 7"):
         decode_event(text, "k.db: row 7")
 
@@ -190,7 +190,7 @@ def test_decode_event_field_newer_than_its_version_is_named(event: TeachingEvent
 
 @pytest.mark.parametrize("version", [1, 2, 3])
 @pytest.mark.parametrize("event", [created(1), replaced(1, "left", "forward"), deleted(1), rewarded(1, -1)])
-def test_the_events_of_older_versions_are_still_read(event: TeachingEvent, version: int) -> None:
+def test_decode_event_versions_1_to_3_are_read(event: TeachingEvent, version: int) -> None:
     text = as_written_by(version, event)
     assert ("behaviour" in text) == (version == 3 and isinstance(event, RlaCreated))
     assert not any(field in text for field in ("level", "credits", "said"))
@@ -199,11 +199,11 @@ def test_the_events_of_older_versions_are_still_read(event: TeachingEvent, versi
 
 
 @pytest.mark.parametrize("event", [created(1), replaced(1, "left", "forward"), deleted(1), rewarded(1, -1)])
-def test_the_events_of_version_4_are_read_as_they_are(event: TeachingEvent) -> None:
+def test_decode_event_version_4_is_read(event: TeachingEvent) -> None:
     assert decode_event(as_written_by(4, event), "row 1") == event
 
 
-def test_what_an_rla_belongs_to_is_kept() -> None:
+def test_decode_event_behaviour_and_level_are_kept() -> None:
     event = RlaCreated(replace(created(1).rla, behaviour="turn_left", level=CRITIC))
 
     assert decode_event(encode_event(event), "here") == event
@@ -216,7 +216,7 @@ def test_what_an_rla_belongs_to_is_kept() -> None:
         *(undone("create-1"), REDONE, MERGED, NAMED, *session(10)),
     ],
 )
-def test_a_missing_field_is_named(event: TeachingEvent) -> None:
+def test_decode_event_missing_field_is_named(event: TeachingEvent) -> None:
     whole = json.loads(encode_event(event))
     for key in whole:
         part = {name: value for name, value in whole.items() if name != key}
@@ -225,7 +225,7 @@ def test_a_missing_field_is_named(event: TeachingEvent) -> None:
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), "1", None])
-def test_what_could_not_be_read_back_is_never_written(value: float) -> None:
+def test_encode_event_unreadable_number_is_refused(value: float) -> None:
     event = RlaCreated(Rla(1, (0.0, value), "forward", None, Origin("c-9", "t", Phase.SUPERVISED, 0)))
     reward = RlaRewarded(1, 1, 5, Origin("c-10", "t", Phase.REINFORCEMENT, 9), (Credit(1, value),))
 

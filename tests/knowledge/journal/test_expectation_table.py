@@ -17,7 +17,7 @@ def expectation(count: int = 7) -> Expectation:
     return Expectation("create-1", count, 12.5, pack(MEAN), pack(MEAN * MEAN))
 
 
-def test_expectations_are_read_as_they_were_saved(path: Path) -> None:
+def test_statistics_expectations_are_read_as_saved(path: Path) -> None:
     saved = Statistics(expectations={1: expectation(), 7: expectation(8)})
     with Journal.open(path, BINDING) as journal:
         journal.checkpoint(saved)
@@ -26,7 +26,7 @@ def test_expectations_are_read_as_they_were_saved(path: Path) -> None:
         assert journal.statistics().expectations[1].mean.tolist() == MEAN.tolist()
 
 
-def test_only_what_has_changed_is_written() -> None:
+def test_checkpoint_only_changed_expectations_are_written() -> None:
     before = Statistics(expectations={1: expectation(), 2: expectation(), 3: expectation()})
     kept = before.expectations[1]
     after = Statistics(expectations={1: kept, 2: expectation(8)})
@@ -36,7 +36,7 @@ def test_only_what_has_changed_is_written() -> None:
     assert changes(after, after) == []
 
 
-def test_a_file_of_an_earlier_kurt2rt_expects_nothing_and_learns_to(path: Path) -> None:
+def test_open_file_without_expectations_gets_their_table(path: Path) -> None:
     Journal.open(path, BINDING).close()
     tamper(path, "DROP TABLE expectation")
     with Journal.read_only(path) as journal:

@@ -31,7 +31,7 @@ from tests.knowledge.lessons import (
 from tests.knowledge.refusals import refused
 
 
-def test_what_was_taught_is_there_after_closing(path: Path) -> None:
+def test_append_lessons_are_there_after_close(path: Path) -> None:
     lessons: list[TeachingEvent] = [created(1), created(2), replaced(1, "left", instead_of="forward"), deleted(2)]
     with Journal.open(path, BINDING) as journal:
         receipts = journal.append([JournalEntry(lesson, STAMP) for lesson in lessons])
@@ -45,7 +45,7 @@ def test_what_was_taught_is_there_after_closing(path: Path) -> None:
         assert journal.binding == BINDING
 
 
-def test_a_command_that_comes_twice_is_written_once(path: Path) -> None:
+def test_append_repeated_command_is_written_once(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         journal.append([entry(1)])
         again, fresh, twice = journal.append([entry(1), entry(2), entry(2)])
@@ -56,7 +56,7 @@ def test_a_command_that_comes_twice_is_written_once(path: Path) -> None:
         assert journal.events() == [created(1), created(2)]
 
 
-def test_another_lesson_under_a_known_command_is_not_passed_off_as_written(path: Path) -> None:
+def test_append_other_lesson_of_known_command_disagrees(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         journal.append([entry(1)])
         (receipt,) = journal.append([JournalEntry(created(2, command_id="create-1"), STAMP)])
@@ -65,7 +65,7 @@ def test_another_lesson_under_a_known_command_is_not_passed_off_as_written(path:
         assert journal.events() == [created(1)]
 
 
-def test_a_receipt_tells_the_stamp_of_the_row_not_that_of_a_command_that_comes_again(path: Path) -> None:
+def test_receipt_repeated_command_has_the_stamp_of_its_row(path: Path) -> None:
     later = "2004-04-27T08:00:00.000+00:00"
     with Journal.open(begun(path, lessons=1), BINDING) as journal:
         known, fresh = journal.append([JournalEntry(created(1), later), JournalEntry(created(2), later)])
@@ -74,7 +74,7 @@ def test_a_receipt_tells_the_stamp_of_the_row_not_that_of_a_command_that_comes_a
         assert (fresh.stamped_at, fresh.new, fresh.agrees) == (later, True, True)
 
 
-def test_a_command_that_an_older_kurt2rt_wrote_is_not_written_twice(path: Path) -> None:
+def test_append_command_of_an_older_version_is_written_once(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         written_as_version_1(journal, created(1))
         again, another = journal.append([entry(1), JournalEntry(created(2, command_id="create-1"), STAMP)])
@@ -83,7 +83,7 @@ def test_a_command_that_an_older_kurt2rt_wrote_is_not_written_twice(path: Path) 
         assert (another.sequence, another.new, another.agrees) == (1, False, False)
 
 
-def test_an_old_journal_is_read_and_taught_on_with(path: Path) -> None:
+def test_open_old_journal_is_read_and_appended_to(path: Path) -> None:
     left = RlaCreated(replace(created(4).rla, behaviour="turn_left"))
     with Journal.open(path, BINDING) as journal:
         written_as_version_1(journal, created(1))
@@ -103,19 +103,19 @@ def test_an_old_journal_is_read_and_taught_on_with(path: Path) -> None:
 
 
 def written_as_version_1(journal: Journal, event: TeachingEvent) -> None:
-    """A row as the first kurt2rt wrote it."""
+    """Write a row as the first kurt2rt did."""
     written_by(1, journal, event)
 
 
 def written_by(version: int, journal: Journal, event: TeachingEvent) -> None:
-    """A row as an older kurt2rt wrote it."""
+    """Write a row as an older kurt2rt did."""
     text = as_written_by(version, event)
     command_id = event.origin.command_id
     row = (command_id, STAMP, text, checksum(command_id, STAMP, text))
     journal._connection.execute("INSERT INTO lesson (command_id, stamped_at, event, checksum) VALUES (?, ?, ?, ?)", row)
 
 
-def test_a_batch_is_written_whole_or_not_at_all(path: Path) -> None:
+def test_append_batch_is_all_or_nothing(path: Path) -> None:
     unwritable = replace(created(2).rla, condition=(float("nan"),))
     with Journal.open(path, BINDING) as journal:
         with refused(KnowledgeCode.EVENT_NOT_WRITABLE):
@@ -126,13 +126,13 @@ def test_a_batch_is_written_whole_or_not_at_all(path: Path) -> None:
         assert journal.events() == [created(1)]
 
 
-def test_every_commit_is_synced_to_the_disk(path: Path) -> None:
+def test_open_every_commit_is_synced(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         assert journal._connection.execute("PRAGMA synchronous").fetchone() == (2,)
         assert journal._connection.execute("PRAGMA journal_mode").fetchone() == ("wal",)
 
 
-def test_lessons_are_neither_changed_nor_deleted(path: Path) -> None:
+def test_lesson_table_refuses_changes_and_deletions(path: Path) -> None:
     begun(path)
     for statement in ("DELETE FROM lesson", "UPDATE lesson SET stamped_at = ''"):
         with pytest.raises(sqlite3.IntegrityError, match="lessons are never"):
@@ -152,7 +152,7 @@ def test_statistics_are_those_of_the_last_checkpoint(path: Path) -> None:
         assert journal.statistics() == second
 
 
-def test_the_tables_are_not_read_again_for_each_checkpoint(path: Path) -> None:
+def test_checkpoint_writes_only_changed_rows_without_reading(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         journal.checkpoint(Statistics({1: 5}, numbers={BEST_SCORE: 0.25}))
         statements: list[str] = []
@@ -162,7 +162,7 @@ def test_the_tables_are_not_read_again_for_each_checkpoint(path: Path) -> None:
         assert statements == ["BEGIN IMMEDIATE", "INSERT OR REPLACE INTO uses VALUES (1, 6)", "COMMIT"]
 
 
-def test_what_a_checkpoint_could_not_write_is_written_by_the_next_one(path: Path) -> None:
+def test_checkpoint_after_a_failed_one_writes_all(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         journal.checkpoint(Statistics({1: 5}))
         journal._connection.execute("PRAGMA query_only = ON")
@@ -173,7 +173,7 @@ def test_what_a_checkpoint_could_not_write_is_written_by_the_next_one(path: Path
         assert journal.statistics() == Statistics({1: 6})
 
 
-def test_lessons_and_what_the_statistics_become_by_them_are_written_together(path: Path) -> None:
+def test_append_and_checkpoint_is_one_transaction(path: Path) -> None:
     unwritable = replace(created(2).rla, condition=(float("nan"),))
     with Journal.open(path, BINDING) as journal:
         with refused(KnowledgeCode.EVENT_NOT_WRITABLE):
@@ -186,12 +186,12 @@ def test_lessons_and_what_the_statistics_become_by_them_are_written_together(pat
 
 
 def before_phase_3(path: Path) -> Path:
-    """A knowledge file as a kurt2rt wrote it that learnt nothing from rewards and had no critic."""
+    """Make a knowledge file of a kurt2rt without values and critic; return its path."""
     tamper(begun(path), *(f"DROP TABLE {name}" for name in LATER_TABLES), "INSERT INTO uses VALUES (1, 5)")
     return path
 
 
-def test_a_file_from_before_values_is_read_as_having_none_and_gets_them_when_it_is_taught_on_with(path: Path) -> None:
+def test_open_file_without_later_tables_gets_them(path: Path) -> None:
     with Journal.read_only(before_phase_3(path)) as look:
         assert look.statistics() == Statistics({1: 5})
         assert check_knowledge(look) == []
@@ -205,13 +205,13 @@ def test_a_file_from_before_values_is_read_as_having_none_and_gets_them_when_it_
         assert (look.statistics(), look.binding) == (learnt, WITH_CRITIC)
 
 
-def test_a_missing_table_that_every_file_had_is_damage(path: Path) -> None:
+def test_statistics_missing_first_table_is_refused(path: Path) -> None:
     tamper(begun(path), "DROP TABLE uses")
     with Journal.read_only(path) as look, refused(KnowledgeCode.SQLITE_REFUSES):
         look.statistics()
 
 
-def test_a_look_at_the_file_while_the_robot_writes_it(path: Path) -> None:
+def test_read_only_sees_lessons_while_a_robot_writes(path: Path) -> None:
     with Journal.open(path, BINDING) as journal, Journal.read_only(path) as look:
         assert look.binding == BINDING
         journal.append([entry(1)])
@@ -227,7 +227,7 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {each.name: each.read_bytes() for each in folder.iterdir()}
 
 
-def test_a_look_leaves_nothing_behind_and_changes_nothing(path: Path) -> None:
+def test_read_only_leaves_folder_unchanged(path: Path) -> None:
     before = contents(begun(path).parent)
     with Journal.read_only(path) as look, Journal.read_only(path) as another:
         assert look.check() == []
@@ -237,7 +237,7 @@ def test_a_look_leaves_nothing_behind_and_changes_nothing(path: Path) -> None:
     assert contents(path.parent) == before
 
 
-def test_a_look_leaves_the_log_of_a_robot_and_of_one_that_was_killed(tmp_path: Path, path: Path) -> None:
+def test_read_only_leaves_the_log_of_a_killed_robot(tmp_path: Path, path: Path) -> None:
     killed = tmp_path / "killed"
     with Journal.open(path, BINDING) as journal:
         journal.append([entry(1)])
@@ -254,7 +254,7 @@ def test_a_look_leaves_the_log_of_a_robot_and_of_one_that_was_killed(tmp_path: P
         assert after[each] == before[each]
 
 
-def test_a_robot_that_begins_and_ends_while_somebody_looks_loses_nothing(path: Path) -> None:
+def test_read_only_robot_starts_and_ends_keeps_lessons(path: Path) -> None:
     with Journal.read_only(begun(path)) as look:
         with Journal.open(path, BINDING) as journal:
             journal.append([entry(4)])
@@ -264,26 +264,26 @@ def test_a_robot_that_begins_and_ends_while_somebody_looks_loses_nothing(path: P
         assert len(journal.events()) == 4
 
 
-def seen_by_nobody(path: Path) -> tuple[str, str]:
-    """What one who has no rights is told, and of what went wrong."""
-    with started("tests.knowledge.look_as_nobody", str(path), folder=ROOT) as look:
+def read_without_rights(path: Path) -> tuple[str, str]:
+    """Return the standard output and error of a reader without rights."""
+    with started("tests.knowledge.read_without_rights", str(path), folder=ROOT) as look:
         return look.communicate()
 
 
-def test_a_look_at_a_file_in_a_folder_that_may_not_be_written() -> None:
-    with TemporaryDirectory() as folder:  # not tmp_path: its parents let nobody else in
+def test_read_only_without_rights_in_the_folder_is_read() -> None:
+    with TemporaryDirectory() as folder:  # not tmp_path: its parents are private
         path = begun(Path(folder) / "knowledge.db")
         Path(folder).chmod(0o555)
-        assert seen_by_nobody(path) == ("3\n", "")
+        assert read_without_rights(path) == ("3\n", "")
         Path(folder).chmod(0o755)
         assert set(contents(Path(folder))) == {path.name, f"{path.name}.lock"}
 
 
-def test_a_look_at_a_file_that_may_not_be_written_in_a_folder_that_may() -> None:
+def test_read_only_without_rights_on_the_file_is_read() -> None:
     with TemporaryDirectory() as folder:
         path = begun(Path(folder) / "knowledge.db")
         Path(folder).chmod(0o777)
         path.chmod(0o444)
         before = contents(Path(folder))
-        assert seen_by_nobody(path) == ("3\n", "")
+        assert read_without_rights(path) == ("3\n", "")
         assert contents(Path(folder)) == before

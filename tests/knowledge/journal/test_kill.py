@@ -56,10 +56,10 @@ def kill_over_and_over(path: Path, kills: int, seed: int) -> None:
     assert acknowledged != []
 
 
-def test_no_acknowledged_lesson_is_lost_in_five_kills(path: Path) -> None:
+def test_kill_five_times_keeps_acknowledged_lessons(path: Path) -> None:
     kill_over_and_over(path, kills=5, seed=2004)
 
 
 @pytest.mark.deep
-def test_no_acknowledged_lesson_is_lost_in_a_hundred_kills(path: Path) -> None:
+def test_kill_a_hundred_times_keeps_acknowledged_lessons(path: Path) -> None:
     kill_over_and_over(path, kills=100, seed=1)

@@ -38,7 +38,7 @@ from tests.knowledge.refusals import refused
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    """All files of a folder but the empty ones of writers' locks."""
+    """Return all files of a folder except the empty ones of writers' locks."""
     return {each.name: each.read_bytes() for each in folder.iterdir() if each.is_file() and each.suffix != ".lock"}
 
 
@@ -50,32 +50,32 @@ def require_refused(path: Path, code: KnowledgeCode, binding: KnowledgeBinding =
     assert contents(path.parent) == before
 
 
-def test_a_new_file_is_begun_where_there_was_none(path: Path) -> None:
+def test_open_missing_file_is_made(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         assert journal.events() == []
         assert journal.check() == []
     assert contents(path.parent).keys() == {"knowledge.db"}
 
 
-def test_a_birth_that_a_crash_cut_short_does_not_matter(path: Path) -> None:
+def test_open_ignores_temporary_file_of_a_crash(path: Path) -> None:
     path.with_name(".knowledge.db.unborn").write_bytes(b"SQLite format 3\x00 and then the battery was empty")
 
     assert Journal.read_only(begun(path)).events() == [created(1), created(2), created(3)]
 
 
-def test_files_that_are_no_knowledge_are_refused_and_left_alone(path: Path) -> None:
+def test_open_other_kinds_of_files_are_refused(path: Path) -> None:
     path.write_text("Dear diary,\n")
     require_refused(path, KnowledgeCode.NO_SQLITE_FILE)
     path.write_bytes(b"")
     require_refused(path, KnowledgeCode.NO_SQLITE_FILE)
 
 
-def test_the_file_of_another_program_is_refused_and_left_alone(path: Path) -> None:
+def test_open_sqlite_file_of_another_program_is_refused(path: Path) -> None:
     tamper(path, "CREATE TABLE bookmark (url TEXT)")
     require_refused(path, KnowledgeCode.OTHER_PROGRAM)
 
 
-def test_places_that_hold_no_file(tmp_path: Path) -> None:
+def test_open_places_without_a_file_are_refused(tmp_path: Path) -> None:
     require_refused(tmp_path, KnowledgeCode.NOT_A_FILE)
     (tmp_path / "loop").symlink_to("loop")
     os.mkfifo(tmp_path / "pipe")
@@ -90,7 +90,7 @@ def test_places_that_hold_no_file(tmp_path: Path) -> None:
         Journal.read_only(tmp_path / "knowledge.db")
 
 
-def test_a_newer_format_is_refused(path: Path) -> None:
+def test_open_newer_format_is_refused(path: Path) -> None:
     tamper(begun(path), "PRAGMA user_version = 2")
     require_refused(path, KnowledgeCode.NEWER_FORMAT, version=2)
 
@@ -108,14 +108,12 @@ def test_a_newer_format_is_refused(path: Path) -> None:
         (BINDING.feature_names, "the names are the same, but scales, history or the robot's sensor order differ"),
     ],
 )
-def test_knowledge_of_other_features_is_refused_and_the_difference_named(
-    path: Path, names: tuple[str, ...], difference: str
-) -> None:
+def test_open_other_features_are_refused_with_difference(path: Path, names: tuple[str, ...], difference: str) -> None:
     other = replace(BINDING, feature_hash="fedcba9876543210", feature_names=names)
     require_refused(begun(path), KnowledgeCode.OTHER_FEATURES, other, difference=difference)
 
 
-def test_a_level_that_a_file_lacks_is_added_and_one_that_the_robot_lacks_is_left_alone(path: Path) -> None:
+def test_open_missing_level_is_added_and_extra_level_kept(path: Path) -> None:
     with Journal.open(begun(path), WITH_CRITIC) as journal:
         assert journal.binding == WITH_CRITIC
         journal.append([JournalEntry(appraisal(4), STAMP)])
@@ -136,7 +134,7 @@ def test_a_level_that_a_file_lacks_is_added_and_one_that_the_robot_lacks_is_left
         (LevelFeatures("fedcba", CIRCUMSTANCES.feature_names[::-1]), "the same names in another order or number"),
     ],
 )
-def test_a_level_of_other_features_is_refused_and_the_difference_named(
+def test_open_other_level_features_are_refused_with_difference(
     path: Path, features: LevelFeatures, difference: str
 ) -> None:
     with Journal.open(path, WITH_CRITIC) as journal:
@@ -145,7 +143,7 @@ def test_a_level_of_other_features_is_refused_and_the_difference_named(
     require_refused(path, KnowledgeCode.OTHER_LEVEL_FEATURES, other, level=CRITIC, difference=difference)
 
 
-def test_a_level_that_nothing_was_taught_at_is_bound_anew(path: Path) -> None:
+def test_open_level_without_lessons_is_bound_again(path: Path) -> None:
     Journal.open(path, WITH_CRITIC).close()
     other = replace(BINDING, levels={CRITIC: LevelFeatures("0", ("left_m", "speed_m_s"))})
     with Journal.open(path, other) as journal:
@@ -154,7 +152,7 @@ def test_a_level_that_nothing_was_taught_at_is_bound_anew(path: Path) -> None:
     require_refused(path, KnowledgeCode.OTHER_LEVEL_FEATURES, WITH_CRITIC, level=CRITIC)
 
 
-def test_an_rla_of_a_level_that_the_file_does_not_know_is_found(path: Path) -> None:
+def test_check_rla_of_an_unknown_level_is_found(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         journal.append([JournalEntry(appraisal(1), STAMP)])
         (error,) = check_knowledge(journal)
@@ -162,7 +160,7 @@ def test_an_rla_of_a_level_that_the_file_does_not_know_is_found(path: Path) -> N
     assert (error.code, error.where) == (KnowledgeCode.LESSON_MISFIT, f"{path}: row 1")
 
 
-def test_a_name_given_at_a_level_that_the_file_does_not_know_is_found(path: Path) -> None:
+def test_check_name_at_an_unknown_level_is_found(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         journal.append([JournalEntry(SituationNamed("door", (1.0,), MID, origin("name-1", 9)), STAMP)])
         (error,) = check_knowledge(journal)
@@ -170,20 +168,20 @@ def test_a_name_given_at_a_level_that_the_file_does_not_know_is_found(path: Path
     assert (error.code, error.where) == (KnowledgeCode.LESSON_MISFIT, f"{path}: row 1")
 
 
-def test_knowledge_of_another_task_is_refused_but_not_that_of_another_robot(path: Path) -> None:
+def test_open_other_task_is_refused_other_robot_is_not(path: Path) -> None:
     other = replace(BINDING, system="door passing")
     require_refused(begun(path), KnowledgeCode.OTHER_TASK, other, wanted="door passing")
     with Journal.open(path, replace(BINDING, robot="kurt2-in-simulation")) as journal:
         assert journal.binding.robot == "kurt2"
 
 
-def test_only_one_robot_writes_a_file(path: Path) -> None:
+def test_open_second_writer_is_refused(path: Path) -> None:
     with Journal.open(path, BINDING), refused(KnowledgeCode.ANOTHER_WRITER):
         Journal.open(path, BINDING)
     Journal.open(path, BINDING).close()
 
 
-def test_lessons_in_the_log_survive_a_crash_and_a_look(tmp_path: Path, path: Path) -> None:
+def test_log_lessons_survive_a_crash(tmp_path: Path, path: Path) -> None:
     crashed = tmp_path / "crashed"
     crashed.mkdir()
     with Journal.open(path, BINDING) as journal:
@@ -198,7 +196,7 @@ def test_lessons_in_the_log_survive_a_crash_and_a_look(tmp_path: Path, path: Pat
         assert again.events() == [created(1), created(2)]
 
 
-def test_a_torn_log_costs_only_what_was_never_acknowledged(tmp_path: Path, path: Path) -> None:
+def test_log_truncated_keeps_acknowledged_lessons(tmp_path: Path, path: Path) -> None:
     crashed = tmp_path / "crashed"
     crashed.mkdir()
     with Journal.open(path, BINDING) as journal:
@@ -214,7 +212,7 @@ def test_a_torn_log_costs_only_what_was_never_acknowledged(tmp_path: Path, path:
             assert look.check() == []
 
 
-def test_the_log_of_a_lost_file_is_not_mixed_into_a_new_one(tmp_path: Path, path: Path) -> None:
+def test_open_log_of_a_lost_file_is_refused(tmp_path: Path, path: Path) -> None:
     lost = tmp_path / "lost" / path.name
     lost.parent.mkdir()
     with Journal.open(path, BINDING) as journal:
@@ -224,7 +222,7 @@ def test_the_log_of_a_lost_file_is_not_mixed_into_a_new_one(tmp_path: Path, path
     require_refused(lost, KnowledgeCode.FILE_GONE, log="knowledge.db-wal")
 
 
-def test_damage_is_found_and_its_row_named(path: Path) -> None:
+def test_check_damaged_rows_are_named(path: Path) -> None:
     tamper(
         begun(path, lessons=5),
         "DROP TRIGGER lesson_stands",
@@ -256,14 +254,14 @@ def errors(path: Path) -> list[KnowledgeError]:
         return [error]
 
 
-def test_no_page_of_rubble_goes_unseen(path: Path) -> None:
+def test_check_each_overwritten_page_is_found(path: Path) -> None:
     whole = begun(path, lessons=40).read_bytes()
     for page in range(1, len(whole) // 4096):
         path.write_bytes(whole[: page * 4096] + b"\xa5" * 4096 + whole[(page + 1) * 4096 :])
         assert errors(path) != []
 
 
-def test_lessons_that_do_not_fit_together_are_found(path: Path) -> None:
+def test_check_misfit_lesson_is_found(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         journal.append([entry(2), entry(1)])
         (error,) = check_knowledge(journal)
@@ -271,7 +269,7 @@ def test_lessons_that_do_not_fit_together_are_found(path: Path) -> None:
     assert (error.code, error.where) == (KnowledgeCode.LESSON_MISFIT, f"{path}: row 2")
 
 
-def test_an_undo_that_does_not_fit_is_found(path: Path) -> None:
+def test_check_misfit_undo_is_found(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         journal.append([entry(1), *(JournalEntry(event, STAMP) for event in (rewarded(1), undone("create-1")))])
         (error,) = check_knowledge(journal)
@@ -279,7 +277,7 @@ def test_an_undo_that_does_not_fit_is_found(path: Path) -> None:
     assert (error.code, error.where) == (KnowledgeCode.LESSON_MISFIT, f"{path}: row 3")
 
 
-def test_teaching_goes_on_from_what_is_there_and_from_when_it_was_taught(path: Path) -> None:
+def test_open_for_teaching_has_lessons_stamps_and_counts(path: Path) -> None:
     task = short_task()
     with open_knowledge(path, ROBOT, task) as journal:
         assert journal.binding.system == task.name
@@ -301,7 +299,7 @@ def test_teaching_goes_on_from_what_is_there_and_from_when_it_was_taught(path: P
         assert opened.saved == saved
 
 
-def test_lessons_that_do_not_fit_together_are_not_taught_on_with_and_the_file_is_free_again(path: Path) -> None:
+def test_open_for_teaching_misfit_lesson_frees_the_lock(path: Path) -> None:
     task = short_task()
     with open_knowledge(path, ROBOT, task) as journal:
         journal.append([JournalEntry(undone("create-1"), STAMP)])
@@ -310,20 +308,20 @@ def test_lessons_that_do_not_fit_together_are_not_taught_on_with_and_the_file_is
             open_for_teaching(path, ROBOT, task)
 
 
-def test_a_damaged_binding_is_refused(path: Path) -> None:
+def test_open_damaged_binding_is_refused(path: Path) -> None:
     with closing(sqlite3.connect(begun(path))) as connection, connection:
         connection.execute("DELETE FROM binding WHERE key = 'system'")
     require_refused(path, KnowledgeCode.BINDING_DAMAGED, error="KeyError('system')")
 
 
-def test_a_damaged_binding_of_a_level_is_refused(path: Path) -> None:
+def test_open_damaged_level_binding_is_refused(path: Path) -> None:
     Journal.open(path, WITH_CRITIC).close()
     tamper(path, "DELETE FROM binding WHERE key = 'level critic feature_names'")
     error = "KeyError('level critic feature_names')"
     require_refused(path, KnowledgeCode.BINDING_DAMAGED, WITH_CRITIC, error=error)
 
 
-def test_lessons_and_counts_of_a_robot_that_runs_are_of_one_moment(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_read_knowledge_while_written_is_of_one_moment(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     task = short_task()
     with open_knowledge(path, ROBOT, task) as journal:
         zeros = (0.0,) * len(journal.binding.feature_names)

@@ -1,4 +1,4 @@
-"""Whatever teachers do to their branches, and in whatever order these are merged: what stands is what was meant."""
+"""Merges at random, compared with the model of tests.knowledge.merge_story."""
 
 from pathlib import Path
 
@@ -27,12 +27,12 @@ def tell(seeds: range, journal: Journal, files: str) -> None:
 
 
 @pytest.mark.parametrize(("files", "seeds"), [("ab", range(18)), ("abc", range(9))])
-def test_some_stories_end_as_the_model_says(journal: Journal, files: str, seeds: range) -> None:
+def test_merge_some_stories_agree_with_the_model(journal: Journal, files: str, seeds: range) -> None:
     tell(seeds, journal, files)
 
 
 @pytest.mark.deep
 @pytest.mark.parametrize("part", range(10))
 @pytest.mark.parametrize("files", ["ab", "abc"])
-def test_many_stories_end_as_the_model_says(journal: Journal, files: str, part: int) -> None:
+def test_merge_many_stories_agree_with_the_model(journal: Journal, files: str, part: int) -> None:
     tell(range(1000 * part, 1000 * part + 1000), journal, files)

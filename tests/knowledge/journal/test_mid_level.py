@@ -28,8 +28,8 @@ def basic(rla_id: int) -> RlaCreated:
     return RlaCreated(Rla(rla_id, (0.0,) * 72, "forward", None, origin(f"create-{rla_id}"), "turn_left"))
 
 
-def way(rla_id: int, *symbols: int, action: str = "turn_left") -> RlaCreated:
-    """After these symbols, the newest first."""
+def mid_rla(rla_id: int, *symbols: int, action: str = "turn_left") -> RlaCreated:
+    """Return an RLA for the situation after these symbols, the newest first."""
     condition = tuple(map(float, symbols)) + (0.0,) * (12 - len(symbols))
     return RlaCreated(Rla(rla_id, condition, action, None, origin(f"create-{rla_id}"), level=MID))
 
@@ -39,26 +39,26 @@ def write(path: Path, *events: TeachingEvent) -> None:
         journal.append([JournalEntry(event, STAMP) for event in events])
 
 
-def test_knowledge_of_the_streets_is_gone_on_with_on_a_route(path: Path) -> None:
+def test_open_streets_knowledge_for_a_route_adds_the_level(path: Path) -> None:
     with open_knowledge(path, ROBOT, STREETS) as journal:
         assert journal.binding.levels.keys() == {CRITIC}
         journal.append([JournalEntry(basic(1), STAMP)])
     assert read_lessons(path, ROBOT, ROUTE) == [basic(1)]
-    write(path, way(2, 1))
+    write(path, mid_rla(2, 1))
     with Journal.read_only(path) as journal:
         assert journal.binding.system == "streets"
         assert journal.binding.levels[MID] == TURNS.level_features
 
 
-def test_knowledge_of_a_route_is_good_for_the_streets(path: Path) -> None:
-    write(path, basic(1), way(2, 1, 2))
+def test_open_route_knowledge_for_the_streets_keeps_the_level(path: Path) -> None:
+    write(path, basic(1), mid_rla(2, 1, 2))
     opened = open_for_teaching(path, ROBOT, STREETS)
     with opened.journal as journal:
-        assert opened.events == [basic(1), way(2, 1, 2)]
+        assert opened.events == [basic(1), mid_rla(2, 1, 2)]
         assert journal.binding.levels[MID] == TURNS.level_features  # stays for who comes with a mid level
 
 
-def test_a_route_that_nobody_taught_yet_leaves_the_file_free_for_places(path: Path) -> None:
+def test_open_untaught_level_takes_other_features(path: Path) -> None:
     write(path, basic(1))
     assert read_lessons(path, ROBOT, ERRANDS) == [basic(1)]
     place = RlaCreated(Rla(2, (0.0,) * 6, "turn_left", None, origin("create-2"), level=MID))
@@ -71,40 +71,40 @@ def test_a_route_that_nobody_taught_yet_leaves_the_file_free_for_places(path: Pa
         open_knowledge(path, ROBOT, ROUTE)
 
 
-def test_a_way_that_was_undone_still_was_taught_in_its_features(path: Path) -> None:
-    write(path, basic(1), way(2, 1), undone("create-2"))
+def test_open_undone_lesson_still_binds_its_level(path: Path) -> None:
+    write(path, basic(1), mid_rla(2, 1), undone("create-2"))
     with refused(KnowledgeCode.OTHER_LEVEL_FEATURES, level=MID):
         open_knowledge(path, ROBOT, ERRANDS)
     with refused(KnowledgeCode.OTHER_LEVEL_FEATURES, level=MID):
         read_lessons(path, ROBOT, ERRANDS)
 
 
-def test_ways_are_not_told_from_other_junctions(path: Path) -> None:
-    write(path, way(1, 1))
+def test_open_other_junctions_are_refused(path: Path) -> None:
+    write(path, mid_rla(1, 1))
     junctions = TURNS.junctions.model_copy(update={"wall_m": 0.3})
     other = ROUTE.model_copy(update={"mid": TURNS.model_copy(update={"junctions": junctions})})
     with refused(KnowledgeCode.OTHER_LEVEL_FEATURES, level=MID):
         open_for_teaching(path, ROBOT, other)
 
 
-def test_another_radius_or_distance_is_no_other_situation(path: Path) -> None:
-    write(path, way(1, 1))
+def test_read_lessons_other_radius_or_distance_is_compatible(path: Path) -> None:
+    write(path, mid_rla(1, 1))
     situation = TURNS.situation.model_copy(update={"distance": "edit"})
     learning = TURNS.learning.model_copy(update={"radius": 0.0})
     other = TURNS.model_copy(update={"situation": situation, "learning": learning})
-    assert read_lessons(path, ROBOT, ROUTE.model_copy(update={"mid": other})) == [way(1, 1)]
+    assert read_lessons(path, ROBOT, ROUTE.model_copy(update={"mid": other})) == [mid_rla(1, 1)]
 
 
-def test_knowledge_of_a_task_that_names_no_system_stays_that_task_s_own(path: Path) -> None:
+def test_open_task_without_system_has_its_own_knowledge(path: Path) -> None:
     open_knowledge(path, ROBOT, STREETS).close()
     with refused(KnowledgeCode.OTHER_TASK, taught="streets", wanted="lanes"):
         open_knowledge(path, ROBOT, STREETS.model_copy(update={"name": "lanes"}))
 
 
-def test_ways_are_shown_apart_in_words_with_who_taught_them_and_what_follows(path: Path) -> None:
+def test_render_mid_level_has_words_teachers_and_successors(path: Path) -> None:
     write(
         path,
-        *(basic(1), way(2), way(3, 2, 1), way(4, 3, 3, 4, action="straight_on")),
+        *(basic(1), mid_rla(2), mid_rla(3, 2, 1), mid_rla(4, 3, 3, 4, action="straight_on")),
         replaced(4, "turn_right", instead_of="straight_on"),
     )
     with open_for_teaching(path, ROBOT, ROUTE).journal as journal:
@@ -123,8 +123,8 @@ def test_ways_are_shown_apart_in_words_with_who_taught_them_and_what_follows(pat
     assert "mid-level RLA 4 corrected: turn_right instead of straight_on" in lessons
 
 
-def test_a_way_that_was_taken_back_is_shown_no_more_and_listed_as_undone(path: Path) -> None:
-    write(path, basic(1), way(2, 1), undone("create-2"))
+def test_render_undone_mid_level_rla_is_only_listed(path: Path) -> None:
+    write(path, basic(1), mid_rla(2, 1), undone("create-2"))
     with Journal.read_only(path) as journal:
         shown = "\n".join(printed(render_knowledge(journal)))
         (listed,) = (line for line in printed(render_lessons(journal)) if "mid-level" in line)
@@ -132,7 +132,7 @@ def test_a_way_that_was_taken_back_is_shown_no_more_and_listed_as_undone(path: P
     assert listed.rstrip().endswith("Joachim")
 
 
-def test_situations_that_have_a_name_are_shown_with_what_they_mean_now(path: Path) -> None:
+def test_render_named_situations_have_present_meanings(path: Path) -> None:
     def named(name: str, *symbols: float, as_lesson: str) -> SituationNamed:
         return SituationNamed(name, symbols + (0.0,) * (12 - len(symbols)), MID, origin(as_lesson))
 
@@ -148,10 +148,10 @@ def test_situations_that_have_a_name_are_shown_with_what_they_mean_now(path: Pat
     assert not any("yard" in line for line in cells)
 
 
-def test_ways_in_features_that_nobody_here_knows_are_shown_in_numbers(path: Path) -> None:
+def test_render_unknown_features_are_numbers(path: Path) -> None:
     with Journal.open(
         path, replace(BINDING, levels={MID: replace(TURNS.level_features, feature_hash="0123")})
     ) as journal:
-        journal.append([JournalEntry(event, STAMP) for event in (created(1), way(2, 3, 1))])
+        journal.append([JournalEntry(event, STAMP) for event in (created(1), mid_rla(2, 3, 1))])
         lines = printed(render_knowledge(journal, wide=False))
     assert any(re.search(r"^ +2 +turn_left .* symbol 1 3, symbol 2 1\s*$", line) for line in lines)

@@ -27,13 +27,13 @@ def writer_of(path: Path) -> JournalWriter:
 
 
 def settled(writer: JournalWriter) -> list[Acknowledgement]:
-    """Acknowledgements of all that was submitted."""
+    """Return the acknowledgements of all that was submitted."""
     assert writer.flush(timeout_s=60)
     return writer.acknowledged()
 
 
-def wait_for_trouble(writer: JournalWriter) -> str:
-    """The line that the tick reads, and the robot stands; the suite's own time limit ends a wait in vain."""
+def wait_for_error(writer: JournalWriter) -> str:
+    """Return the error once there is one; the time limit of the test suite ends a wait in vain."""
     while writer.error is None:
         writer.flush(timeout_s=0.001)
     return writer.error
@@ -45,7 +45,7 @@ def stored(path: Path) -> list[RlaCreated]:
         return [event for event in journal.events() if isinstance(event, RlaCreated)]
 
 
-def test_lessons_are_acknowledged_in_order_when_they_are_durable(path: Path) -> None:
+def test_acknowledged_durable_lessons_come_in_order(path: Path) -> None:
     lessons = [created(number) for number in range(1, 31)]
     with writer_of(path) as writer:
         for lesson in lessons:
@@ -68,7 +68,7 @@ class HangingJournal(Journal):
         return super().append(entries)
 
 
-def test_a_write_that_hangs_is_trouble_until_it_comes_back(path: Path) -> None:
+def test_error_hanging_write_is_told_until_it_ends(path: Path) -> None:
     journal = HangingJournal.open(path, BINDING)
     journal.let_go = threading.Event()
     now_s = 100.0
@@ -89,7 +89,7 @@ def test_a_write_that_hangs_is_trouble_until_it_comes_back(path: Path) -> None:
         assert writer.error is None
 
 
-def test_every_lesson_is_stamped_with_the_wall_clock_it_is_given(path: Path) -> None:
+def test_stamp_is_the_wall_clock_at_submit(path: Path) -> None:
     ticking = count(1)
     with JournalWriter(Journal.open(path, BINDING), now=lambda: f"stamp {next(ticking)}") as writer:
         writer.submit(created(1))
@@ -99,7 +99,7 @@ def test_every_lesson_is_stamped_with_the_wall_clock_it_is_given(path: Path) -> 
     assert utc_now().endswith("+00:00")
 
 
-def test_an_acknowledgement_tells_when_the_lesson_was_first_written_not_when_it_came_again(path: Path) -> None:
+def test_acknowledged_repeated_lesson_has_its_first_stamp(path: Path) -> None:
     later = "2004-04-27T08:00:00.000+00:00"
     with JournalWriter(Journal.open(begun(path, lessons=1), BINDING), now=lambda: later) as writer:
         writer.submit(created(1))
@@ -107,7 +107,7 @@ def test_an_acknowledgement_tells_when_the_lesson_was_first_written_not_when_it_
         assert [each.stamped_at for each in settled(writer)] == [STAMP, later]
 
 
-def test_every_kind_of_event_is_written(path: Path) -> None:
+def test_submit_every_kind_of_event_is_written(path: Path) -> None:
     events: list[TeachingEvent] = [created(1), rewarded(1), undone("reward-1"), *session(6000)]
     with writer_of(path) as writer:
         for event in events:
@@ -117,14 +117,14 @@ def test_every_kind_of_event_is_written(path: Path) -> None:
         assert journal.events() == events
 
 
-def test_a_command_sent_again_is_acknowledged_again_with_its_row(path: Path) -> None:
+def test_submit_repeated_command_is_acknowledged_with_its_row(path: Path) -> None:
     with writer_of(begun(path, lessons=2)) as writer:
         writer.submit(created(2))
         assert settled(writer) == [Acknowledgement("create-2", 2, None, STAMP)]
     assert stored(path) == [created(1), created(2)]
 
 
-def test_a_lesson_that_can_never_be_written_does_not_hold_up_the_others(path: Path) -> None:
+def test_submit_unwritable_lesson_does_not_delay_others(path: Path) -> None:
     broken = RlaCreated(replace(created(1).rla, condition=(float("nan"),)))
     with writer_of(path) as writer:
         writer.submit(broken)
@@ -141,7 +141,7 @@ def test_a_lesson_that_can_never_be_written_does_not_hold_up_the_others(path: Pa
     assert stored(path) == [created(1, command_id="once more")]
 
 
-def test_a_full_disk_makes_lessons_wait_in_order_until_there_is_room(path: Path) -> None:
+def test_submit_full_disk_lessons_wait_in_order(path: Path) -> None:
     connection = journal_file.connect(begun(path), "mode=rw")
     journal_file.make_durable(connection, path)
     (pages,) = connection.execute("PRAGMA page_count").fetchone()
@@ -175,7 +175,7 @@ def test_a_full_disk_makes_lessons_wait_in_order_until_there_is_room(path: Path)
 
 @contextmanager
 def largest_file(size_bytes: int) -> Iterator[None]:
-    """No file of this process may grow beyond: writes fail for real (EFBIG), as they do on a broken disk."""
+    """Limit the size of files of this process: larger writes fail with EFBIG, as on a broken disk."""
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size_bytes, hard))
     try:
@@ -184,7 +184,7 @@ def largest_file(size_bytes: int) -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
-def test_a_failing_disk_makes_lessons_wait_in_order_until_it_works(path: Path) -> None:
+def test_submit_failing_disk_lessons_wait_in_order(path: Path) -> None:
     with writer_of(path) as writer:
         writer.submit(created(1))
         assert len(settled(writer)) == 1
@@ -192,37 +192,37 @@ def test_a_failing_disk_makes_lessons_wait_in_order_until_it_works(path: Path) -
         with largest_file(log.stat().st_size):
             for number in range(2, 20):
                 writer.submit(created(number))
-            trouble = wait_for_trouble(writer)
+            error = wait_for_error(writer)
         acknowledged = settled(writer)
         assert writer.error is None
 
-    assert trouble.startswith(f"{path}: the disk fails; look at its health and room")
+    assert error.startswith(f"{path}: the disk fails; look at its health and room")
     assert [each.sequence for each in acknowledged] == list(range(2, 20))
     assert stored(path) == [created(number) for number in range(1, 20)]
 
 
-def test_a_locked_file_makes_lessons_wait_until_it_is_free(path: Path) -> None:
+def test_submit_locked_file_lessons_wait(path: Path) -> None:
     with writer_of(path) as writer, closing(sqlite3.connect(path, isolation_level=None)) as other:
         other.execute("BEGIN IMMEDIATE")
         writer.submit(created(1))
-        assert wait_for_trouble(writer).startswith(f"{path}: another program holds it locked; close that program")
+        assert wait_for_error(writer).startswith(f"{path}: another program holds it locked; close that program")
         other.execute("ROLLBACK")
         assert settled(writer) == [Acknowledgement("create-1", 1, None, STAMP)]
 
 
-def test_nothing_is_acknowledged_into_a_file_that_was_moved_away(path: Path) -> None:
+def test_acknowledged_moved_file_is_empty_until_it_is_back(path: Path) -> None:
     aside = path.with_name("aside.db")
     with writer_of(path) as writer:
         path.rename(aside)
         writer.submit(created(1))
-        assert "was moved, deleted or replaced while in use; put the same files back" in wait_for_trouble(writer)
+        assert "was moved, deleted or replaced while in use; put the same files back" in wait_for_error(writer)
         assert writer.acknowledged() == []
         aside.rename(path)
         assert settled(writer) == [Acknowledgement("create-1", 1, None, STAMP)]
     assert stored(path) == [created(1)]
 
 
-def test_of_statistics_that_wait_the_newest_is_written(path: Path) -> None:
+def test_submit_statistics_only_the_newest_is_written(path: Path) -> None:
     with writer_of(path) as writer:
         for uses in range(1, 50):
             writer.submit_statistics(Statistics({1: uses}, {(1, 1): uses}))
@@ -230,7 +230,7 @@ def test_of_statistics_that_wait_the_newest_is_written(path: Path) -> None:
         assert journal.statistics() == Statistics({1: 49}, {(1, 1): 49})
 
 
-def test_closing_says_when_lessons_could_not_be_written(path: Path) -> None:
+def test_close_unwritten_lessons_are_counted(path: Path) -> None:
     writer = writer_of(path)
     with closing(sqlite3.connect(path, isolation_level=None)) as other:
         other.execute("BEGIN IMMEDIATE")
@@ -245,13 +245,13 @@ def test_closing_says_when_lessons_could_not_be_written(path: Path) -> None:
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
-def test_a_writer_that_dies_says_so(path: Path) -> None:
+def test_error_dead_thread_is_told(path: Path) -> None:
     def stopped_clock() -> str:
         raise OSError("no clock")
 
     writer = JournalWriter(Journal.open(path, BINDING), now=stopped_clock)
     writer.submit(created(1))
-    assert "its writer ended by OSError('no clock'); restart the robot program" in wait_for_trouble(writer)
+    assert "its writer ended by OSError('no clock'); restart the robot program" in wait_for_error(writer)
     assert not writer.flush(timeout_s=60)
     with refused(KnowledgeCode.LESSONS_NOT_WRITTEN, count=1):
         writer.close()

@@ -38,7 +38,7 @@ def rows(lines: list[str]) -> list[list[str]]:
     return [re.split(r"\s{2,}", line.strip()) for line in lines if re.match(r"\s+\d+ ", line)]
 
 
-def test_every_rla_is_shown_with_who_taught_it_when_and_instead_of_what(path: Path) -> None:
+def test_render_knowledge_has_teacher_time_and_former_action(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         lessons: list[TeachingEvent] = [
             created(1),
@@ -68,7 +68,7 @@ def test_every_rla_is_shown_with_who_taught_it_when_and_instead_of_what(path: Pa
     assert second[:7] == ["2", "left", "forward", when, "2", "200", "7"]
 
 
-def test_rewards_undone_lessons_and_sessions_are_shown(path: Path) -> None:
+def test_render_knowledge_counts_rewards_undos_and_sessions(path: Path) -> None:
     events: list[TeachingEvent] = [
         *session(6000, "morning"),
         *(created(number) for number in (1, 2, 3, 4)),
@@ -92,7 +92,7 @@ def test_rewards_undone_lessons_and_sessions_are_shown(path: Path) -> None:
     assert [row[6] for row in rows(lines)[:2]] == ["+2 -1", "-1"]
 
 
-def test_withdrawn_actions_values_and_appraisals_are_shown(path: Path) -> None:
+def test_render_knowledge_has_withdrawals_values_appraisals(path: Path) -> None:
     critics = replace(rewarded(1, -1), origin=replace(rewarded(1).origin, teacher=CRITIC))
     events: list[TeachingEvent] = [
         *(created(number) for number in (1, 2, 3)),
@@ -145,7 +145,7 @@ def narrow(journal: Journal) -> tuple[str, list[str]]:
     return " ".join(" ".join(lines[headings : headings + 2]).split()), row
 
 
-def test_a_narrow_screen_shows_every_column_that_counts(path: Path) -> None:
+def test_render_knowledge_narrow_keeps_important_columns(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         journal.append([JournalEntry(event, STAMP) for event in (created(1, action="spin_right"), rewarded(1))])
         headings, row = narrow(journal)
@@ -158,7 +158,7 @@ def test_a_narrow_screen_shows_every_column_that_counts(path: Path) -> None:
     assert (valued_row[1], valued_row[-2:]) == ("spin_right", ["+1", "0.50"])
 
 
-def test_lessons_are_listed_newest_first_with_their_ids_and_who_undid_them(path: Path) -> None:
+def test_render_lessons_newest_first_with_ids_and_undoers(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         events = (created(1), replaced(1, "left", "forward"), *session(10), created(2), undone("create-2"))
         journal.append([JournalEntry(event, STAMP) for event in events])
@@ -170,7 +170,7 @@ def test_lessons_are_listed_newest_first_with_their_ids_and_who_undid_them(path:
     assert lines[-1] == ["and 1 older lessons"]
 
 
-def test_the_rest_is_counted_where_a_limit_is_given(path: Path) -> None:
+def test_render_knowledge_limit_counts_the_rest(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         journal.append([JournalEntry(created(number), STAMP) for number in range(1, 6)])
         lines = printed(render_knowledge(journal, limit=2))
@@ -179,12 +179,12 @@ def test_the_rest_is_counted_where_a_limit_is_given(path: Path) -> None:
     assert lines[-1] == "and 3 more RLAs"
 
 
-def test_nothing_was_taught_yet(path: Path) -> None:
+def test_render_knowledge_without_lessons(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         assert printed(render_knowledge(journal))[1] == "Nothing was taught yet."
 
 
-def test_names_cannot_command_the_terminal(path: Path) -> None:
+def test_render_knowledge_names_cannot_control_the_terminal(path: Path) -> None:
     with Journal.open(path, BINDING) as journal:
         journal.append([JournalEntry(created(1, action="\x1b[2J[red]forward[/]"), STAMP)])
         text = "\n".join(printed(render_knowledge(journal)))
@@ -201,7 +201,7 @@ def test_follow_ups_are_shares_of_the_transitions() -> None:
     assert sum(shares[1].values()) == pytest.approx(100)
 
 
-def test_averages_are_not_among_the_telling_features(path: Path) -> None:
+def test_render_knowledge_averages_are_no_largest_features(path: Path) -> None:
     binding = replace(BINDING, feature_names=("s1", "s2", "s1 (10 s average)", "s2 (10 s average)"))
     with Journal.open(path, binding) as journal:
         journal.append([JournalEntry(created(1), STAMP)])
@@ -211,7 +211,7 @@ def test_averages_are_not_among_the_telling_features(path: Path) -> None:
     assert "average" not in row[-1]
 
 
-def test_where_taught_behaviours_have_names_there_is_a_column_for_them(path: Path) -> None:
+def test_render_knowledge_named_behaviours_have_a_column(path: Path) -> None:
     left = RlaCreated(replace(created(1).rla, behaviour="turn_left"))
     with Journal.open(path, BINDING) as journal:
         journal.append([JournalEntry(left, STAMP), JournalEntry(deleted(1), STAMP), JournalEntry(created(2), STAMP)])

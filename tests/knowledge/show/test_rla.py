@@ -30,7 +30,7 @@ def taught(path: Path, lesson: str = "create-1") -> Path:
     return path
 
 
-def test_what_it_says_what_followed_and_what_is_expected(path: Path) -> None:
+def test_render_rla_has_action_successors_and_expectation(path: Path) -> None:
     text = shown(taught(path), 1)
     assert "RLA 1: forward, taught by Hertha in phase 1, used 5 times" in text
     assert "followed by 2 (75 %), 3 (25 %)" in text
@@ -40,21 +40,21 @@ def test_what_it_says_what_followed_and_what_is_expected(path: Path) -> None:
     assert ["wheel", "speed", "left", "-5", "-5", "±0"] in rows
 
 
-def test_the_features_that_change_most_come_first(path: Path) -> None:
+def test_render_rla_largest_changes_come_first(path: Path) -> None:
     text = shown(taught(path), 1, limit=1)
     assert "s2" in text
     assert "s1" not in text
     assert "and 3 more features" in text
 
 
-def test_one_that_never_ended_expects_nothing_yet(path: Path) -> None:
+def test_render_rla_without_ends_has_no_expectation(path: Path) -> None:
     assert "Nothing is expected yet" in shown(taught(path), 2)
 
 
-def test_what_was_expected_of_another_action_is_not_shown(path: Path) -> None:
+def test_render_rla_expectation_of_old_action_is_left_out(path: Path) -> None:
     assert "Nothing is expected yet" in shown(taught(path, lesson="of its first action"), 1)
 
 
-def test_an_rla_that_is_not_there_is_refused(path: Path) -> None:
+def test_render_rla_unknown_id_is_refused(path: Path) -> None:
     with refused(KnowledgeCode.NO_SUCH_RLA, rla_id=9):
         shown(begun(path), 9)

@@ -35,7 +35,7 @@ def taught(path: Path) -> Path:
     return path
 
 
-def test_a_branch_of_all_holds_the_same_lessons_and_counts(taught: Path, tmp_path: Path) -> None:
+def test_branch_whole_file_has_equal_lessons_and_counts(taught: Path, tmp_path: Path) -> None:
     told = branch(taught, tmp_path / "b.knowledge", None, stamp=NOW).origin
     with Journal.read_only(taught) as old, Journal.read_only(tmp_path / "b.knowledge") as new:
         assert new.entries() == old.entries()
@@ -47,7 +47,7 @@ def test_a_branch_of_all_holds_the_same_lessons_and_counts(taught: Path, tmp_pat
 
 
 @pytest.mark.parametrize("at", ["create-2", "2004-04-26T10:30+00:00"])
-def test_a_branch_ends_with_a_lesson_or_at_a_time(taught: Path, tmp_path: Path, at: str) -> None:
+def test_branch_ends_with_a_lesson_or_at_a_time(taught: Path, tmp_path: Path, at: str) -> None:
     rows = 2 if at == "create-2" else 3
     branch(taught, tmp_path / "b", at, stamp=NOW)
     with Journal.read_only(tmp_path / "b") as new:
@@ -58,9 +58,7 @@ def test_a_branch_ends_with_a_lesson_or_at_a_time(taught: Path, tmp_path: Path, 
     assert counted == replace(Statistics(), uses=uses, numbers={FIRST_VALUE: 0.5})
 
 
-def test_where_the_clock_was_set_back_a_branch_ends_with_the_first_later_date_and_tells_of_the_others(
-    taught: Path, tmp_path: Path
-) -> None:
+def test_branch_clock_set_back_ends_at_first_later_stamp(taught: Path, tmp_path: Path) -> None:
     with Journal.open(taught, BINDING) as journal:
         journal.append([JournalEntry(created(4), "2004-04-26T10:01:00.000+00:00"), JournalEntry(created(5), LATER)])
     made = branch(taught, tmp_path / "b", "2004-04-26T10:30+00:00", stamp=NOW)
@@ -71,16 +69,14 @@ def test_where_the_clock_was_set_back_a_branch_ends_with_the_first_later_date_an
     )
 
 
-def test_a_date_that_is_none_is_told(taught: Path, tmp_path: Path) -> None:
+def test_branch_invalid_stamp_is_refused(taught: Path, tmp_path: Path) -> None:
     with Journal.open(taught, BINDING) as journal:
         journal.append([JournalEntry(created(4), "yesterday")])
     with refused(KnowledgeCode.STAMP_INVALID):
         branch(taught, tmp_path / "b", "2004-04-26T10:30+00:00", stamp=NOW)
 
 
-def test_what_is_taught_while_a_branch_is_made_is_in_it_whole_or_not_at_all(
-    taught: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_branch_while_written_is_of_one_moment(taught: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with Journal.open(taught, BINDING) as robot:
 
         def taught_meanwhile(journal: Journal) -> Iterator[StoredEntry]:
@@ -95,7 +91,7 @@ def test_what_is_taught_while_a_branch_is_made_is_in_it_whole_or_not_at_all(
         assert (len(new.entries()), new.statistics()) == (4, COUNTED)
 
 
-def test_a_file_whose_lessons_do_not_fit_is_not_branched(taught: Path, tmp_path: Path) -> None:
+def test_branch_misfit_lessons_are_refused(taught: Path, tmp_path: Path) -> None:
     with Journal.open(taught, BINDING) as journal:
         journal.append([JournalEntry(deleted(77), LATER)])
     with refused(KnowledgeCode.NOT_BUILT, taught, cause=KnowledgeCode.LESSON_MISFIT):
@@ -103,11 +99,11 @@ def test_a_file_whose_lessons_do_not_fit_is_not_branched(taught: Path, tmp_path:
     assert not (tmp_path / "b").exists()
 
 
-def test_before_the_first_lesson_nothing_is_known(taught: Path, tmp_path: Path) -> None:
+def test_branch_before_the_first_lesson_is_empty(taught: Path, tmp_path: Path) -> None:
     assert branch(taught, tmp_path / "b", "1999-12-31", stamp=NOW).origin.rows == 0
 
 
-def test_nothing_is_overwritten_and_nonsense_is_refused(taught: Path, tmp_path: Path) -> None:
+def test_branch_existing_file_or_unknown_point_is_refused(taught: Path, tmp_path: Path) -> None:
     with refused(KnowledgeCode.ALREADY_THERE):
         branch(taught, taught, None, stamp=NOW)
     with refused(KnowledgeCode.NO_SUCH_POINT, taught, given="create-9"):
@@ -119,7 +115,7 @@ def test_nothing_is_overwritten_and_nonsense_is_refused(taught: Path, tmp_path: 
     assert not (tmp_path / "c").exists()
 
 
-def test_a_branch_is_made_while_a_robot_runs_on_the_file_and_can_be_taught_on(taught: Path, tmp_path: Path) -> None:
+def test_branch_under_a_running_robot_can_be_taught(taught: Path, tmp_path: Path) -> None:
     with Journal.open(taught, BINDING):
         branch(taught, tmp_path / "b", None, stamp=NOW)
     with Journal.open(tmp_path / "b", BINDING) as journal:
@@ -127,7 +123,7 @@ def test_a_branch_is_made_while_a_robot_runs_on_the_file_and_can_be_taught_on(ta
         assert len(journal.events()) == 5
 
 
-def test_what_a_killed_program_left_half_is_in_nobodys_way(taught: Path, tmp_path: Path) -> None:
+def test_branch_removes_temporary_file_of_a_kill(taught: Path, tmp_path: Path) -> None:
     (tmp_path / ".b.unborn").write_bytes(b"half a file")
     branch(taught, tmp_path / "b", None, stamp=NOW)
     assert not (tmp_path / ".b.unborn").exists()
@@ -135,7 +131,7 @@ def test_what_a_killed_program_left_half_is_in_nobodys_way(taught: Path, tmp_pat
         assert check_knowledge(journal) == []
 
 
-def test_a_branch_where_nothing_can_be_written_is_refused_in_a_sentence(taught: Path, tmp_path: Path) -> None:
+def test_branch_unwritable_folder_is_refused(taught: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_bytes(b"")
     with refused(KnowledgeCode.FOLDER_NOT_MADE):
         branch(taught, tmp_path / "file" / "b", None, stamp=NOW)

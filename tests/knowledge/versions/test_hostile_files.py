@@ -46,9 +46,7 @@ DEEP = "[" * 100_000
     ],
     ids=["endless lessons", "endless binding", "foreign trigger", "changed trigger", "index", "virtual table"],
 )
-def test_a_foreign_schema_is_refused_on_reading_and_writing(
-    path: Path, statements: tuple[str, ...], kind: str, name: str
-) -> None:
+def test_open_foreign_schema_is_refused(path: Path, statements: tuple[str, ...], kind: str, name: str) -> None:
     tamper(begun(path), *statements)
     with refused(KnowledgeCode.FOREIGN_SCHEMA, kind=kind, name=name):
         Journal.open(path, BINDING)
@@ -56,28 +54,28 @@ def test_a_foreign_schema_is_refused_on_reading_and_writing(
         Journal.read_only(path)
 
 
-def test_a_table_of_a_newer_kurt2rt_is_left_alone(path: Path) -> None:
+def test_open_table_of_a_newer_kurt2rt_is_ignored(path: Path) -> None:
     tamper(begun(path, lessons=1), "CREATE TABLE route (name TEXT PRIMARY KEY) STRICT, WITHOUT ROWID")
     with Journal.open(path, BINDING) as journal:
         journal.append([entry(2)])
         assert len(journal.events()) == 2
 
 
-def test_a_deeply_nested_binding_is_refused(path: Path) -> None:
+def test_open_deeply_nested_binding_is_refused(path: Path) -> None:
     tamper(begun(path), f"UPDATE binding SET value = '{DEEP}' WHERE key = 'feature_names'")
     with refused(KnowledgeCode.BINDING_DAMAGED):
         Journal.read_only(path)
 
 
 @pytest.mark.parametrize("note", [DEEP, "3", '["a", "b", "c", "d"]'], ids=["nested", "number", "no row"])
-def test_a_damaged_note_on_the_branch_is_told(path: Path, note: str) -> None:
+def test_branch_origin_damaged_note_is_refused(path: Path, note: str) -> None:
     with Journal.open(begun(path), BINDING) as journal:
         journal.note("branch of", note)
         with refused(KnowledgeCode.BRANCH_NOTE_DAMAGED):
             branch_origin(journal)
 
 
-def test_a_second_name_of_a_file_in_use_is_refused_and_no_lesson_is_lost(path: Path) -> None:
+def test_open_hard_link_is_refused(path: Path) -> None:
     second = path.with_name("second.knowledge")
     with Journal.open(path, BINDING) as journal:
         journal.append([entry(1)])

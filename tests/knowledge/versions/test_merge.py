@@ -1,4 +1,4 @@
-"""What was taught in a branch is brought in: once, all or nothing, and nobody's word is overruled unasked."""
+"""Merge of a branch: once, all or nothing, and conflicts are reported."""
 
 import math
 from collections.abc import Iterable
@@ -57,7 +57,7 @@ FAR = 1000.0
 
 
 def at(rla_id: int, x: float, action: str = "forward", command_id: str | None = None) -> RlaCreated:
-    """A new RLA in one dimension."""
+    """Return the creation of an RLA in one dimension."""
     event = created(rla_id, command_id, action)
     return RlaCreated(replace(event.rla, condition=(x, 0.0, 0.0, 0.0)))
 
@@ -111,7 +111,7 @@ def the_same(one: Path, other: Path) -> bool:
         return compare(read_content(a), read_content(b)).is_empty
 
 
-def test_what_was_taught_there_comes_with_new_ids_and_its_own_teacher(mine: Path, theirs: Path) -> None:
+def test_merge_new_lessons_get_ids_and_keep_teachers(mine: Path, theirs: Path) -> None:
     append(mine, at(4, FAR, "left", "mine-4"))
     append(theirs, at(4, 2 * FAR, "right", "theirs-4"), replaced(4, "back", "right"), replaced(2, "left", "forward"))
     merged = merge_files(mine, theirs)
@@ -126,7 +126,7 @@ def test_what_was_taught_there_comes_with_new_ids_and_its_own_teacher(mine: Path
     assert record.event.origin.teacher == "Hertha"
 
 
-def test_merged_twice_is_merged_once_and_what_comes_later_is_brought_later(mine: Path, theirs: Path) -> None:
+def test_merge_again_brings_only_later_lessons(mine: Path, theirs: Path) -> None:
     append(theirs, at(4, FAR, "left", "theirs-4"), *session(100))
     merge_files(mine, theirs)
     once = events(mine)
@@ -140,7 +140,7 @@ def test_merged_twice_is_merged_once_and_what_comes_later_is_brought_later(mine:
     assert the_same(mine, theirs)
 
 
-def test_after_it_was_merged_there_and_back_both_know_the_same(mine: Path, theirs: Path) -> None:
+def test_merge_both_ways_makes_files_equal(mine: Path, theirs: Path) -> None:
     append(mine, at(4, FAR, "left", "mine-4"), deleted(1))
     append(theirs, at(4, 2 * FAR, "right", "theirs-4"))
     merge_files(mine, theirs)
@@ -149,7 +149,7 @@ def test_after_it_was_merged_there_and_back_both_know_the_same(mine: Path, their
     assert actions(theirs) == {2: "forward", 3: "forward", 4: "right", 5: "left"}
 
 
-def test_what_was_undone_there_is_undone_here_and_redone_again(mine: Path, theirs: Path) -> None:
+def test_merge_undo_and_redo_there_follow_here(mine: Path, theirs: Path) -> None:
     append(theirs, undone("create-2"))
     assert merge_files(mine, theirs).undone == 1
     assert actions(mine) == {1: "forward", 3: "forward"}
@@ -158,13 +158,13 @@ def test_what_was_undone_there_is_undone_here_and_redone_again(mine: Path, their
     assert actions(mine) == {1: "forward", 2: "forward", 3: "forward"}
 
 
-def test_what_was_taught_and_taken_back_there_is_not_brought(mine: Path, theirs: Path) -> None:
+def test_merge_lessons_undone_there_are_not_brought(mine: Path, theirs: Path) -> None:
     append(theirs, at(4, FAR), undone("create-4"), rewarded(1, 1, "praise"), undone("praise"))
     assert merge_files(mine, theirs).entries == ()
 
 
 @pytest.mark.parametrize(("prefer", "action"), [(None, "left"), ("mine", "left"), ("theirs", "right")])
-def test_an_rla_that_both_changed_is_a_conflict(mine: Path, theirs: Path, prefer: Side | None, action: str) -> None:
+def test_merge_rla_changed_in_both_is_a_conflict(mine: Path, theirs: Path, prefer: Side | None, action: str) -> None:
     append(mine, replaced(2, "left", "forward"))
     append(theirs, replaced(2, "right", "forward"), at(4, FAR, command_id="theirs-4"))
     before = events(mine)
@@ -179,7 +179,7 @@ def test_an_rla_that_both_changed_is_a_conflict(mine: Path, theirs: Path, prefer
         assert merge_files(mine, theirs).conflicts == ()  # settled once
 
 
-def test_both_made_the_same_of_it_and_nothing_is_to_do(mine: Path, theirs: Path) -> None:
+def test_merge_equal_changes_are_no_conflict(mine: Path, theirs: Path) -> None:
     append(mine, replaced(2, "left", "forward"))
     append(theirs, replaced(2, "right", "forward"), replaced(2, "left", "right"))
     append(mine, deleted(3))
@@ -189,7 +189,7 @@ def test_both_made_the_same_of_it_and_nothing_is_to_do(mine: Path, theirs: Path)
 
 
 @pytest.mark.parametrize("prefer", [None, "mine", "theirs"])
-def test_another_action_at_nearly_the_same_place_is_a_conflict(mine: Path, theirs: Path, prefer: Side | None) -> None:
+def test_merge_near_rlas_of_other_action_are_a_conflict(mine: Path, theirs: Path, prefer: Side | None) -> None:
     append(mine, at(4, FAR, "left", "mine-4"))
     append(theirs, at(4, FAR + 2.0, "right", "theirs-4"), at(5, FAR + 2.1, "right", "theirs-5"))
     (conflict,) = merge_files(mine, theirs, prefer).conflicts
@@ -201,10 +201,10 @@ def test_another_action_at_nearly_the_same_place_is_a_conflict(mine: Path, their
     assert {rla_id: action for rla_id, action in actions(mine).items() if rla_id > 3} == settled
 
 
-def test_what_they_put_beside_something_that_they_knew_or_deleted_is_no_conflict(mine: Path, theirs: Path) -> None:
+def test_merge_alternatives_to_known_rlas_are_no_conflict(mine: Path, theirs: Path) -> None:
     first = created(1).rla.condition
-    beside = RlaCreated(replace(created(4, "theirs-4", "left").rla, condition=first))
-    append(theirs, beside)
+    alternative = RlaCreated(replace(created(4, "theirs-4", "left").rla, condition=first))
+    append(theirs, alternative)
     assert merge_files(mine, theirs).conflicts == ()
     second = RlaCreated(replace(created(5, "theirs-5", "right").rla, condition=created(2).rla.condition))
     append(theirs, deleted(2), second)
@@ -212,7 +212,7 @@ def test_what_they_put_beside_something_that_they_knew_or_deleted_is_no_conflict
     assert actions(mine) == {1: "forward", 3: "forward", 4: "left", 5: "right"}
 
 
-def test_praise_of_both_adds_up(mine: Path, theirs: Path) -> None:
+def test_merge_rewards_of_both_add_up(mine: Path, theirs: Path) -> None:
     append(mine, rewarded(1, 1, "mine"))
     blame = RlaRewarded(1, -1, 390, origin("theirs"), (Credit(1, -0.5), Credit(4, -0.25), Credit(9, -1.0)))
     append(theirs, at(4, FAR, command_id="theirs-4"), blame, replaced(1, "left", "forward"))
@@ -224,11 +224,11 @@ def test_praise_of_both_adds_up(mine: Path, theirs: Path) -> None:
     record = system.lesson("theirs")
     assert record is not None
     assert isinstance(record.event, RlaRewarded)
-    assert record.event.credits == (Credit(1, -0.5), Credit(5, -0.25))  # of the ninth nobody knows anything
+    assert record.event.credits == (Credit(1, -0.5), Credit(5, -0.25))  # the ninth RLA exists in neither file
     assert merge_files(mine, theirs).entries == ()
 
 
-def test_a_name_for_two_places_is_a_conflict(mine: Path, theirs: Path) -> None:
+def test_merge_name_of_two_situations_is_a_conflict(mine: Path, theirs: Path) -> None:
     for path, x in ((mine, 1.0), (theirs, 2.0)):
         append(path, SituationNamed("door", (x, 0.0, 0.0, 0.0), BASIC, origin(f"name-{x}")))
     (conflict,) = merge_files(mine, theirs).conflicts
@@ -237,9 +237,7 @@ def test_a_name_for_two_places_is_a_conflict(mine: Path, theirs: Path) -> None:
     assert folded(mine).named_situations(BASIC)["door"][0] == 2.0
 
 
-def test_two_files_that_were_never_one_share_ids_of_lessons_and_are_merged_all_the_same(
-    mine: Path, tmp_path: Path
-) -> None:
+def test_merge_unrelated_files_with_equal_ids(mine: Path, tmp_path: Path) -> None:
     stranger = tmp_path / "stranger"
     append(stranger, *(at(number, FAR * number, "left", f"create-{number}") for number in (1, 2)))
     append(stranger, replaced(2, "back", "left"))
@@ -250,7 +248,7 @@ def test_two_files_that_were_never_one_share_ids_of_lessons_and_are_merged_all_t
     assert events(mine) == once
 
 
-def test_what_was_counted_of_new_rlas_comes_with_them(mine: Path, theirs: Path) -> None:
+def test_merge_new_rlas_bring_their_counts(mine: Path, theirs: Path) -> None:
     append(mine, at(4, -FAR, command_id="mine-4"))
     append(theirs, at(4, FAR, command_id="theirs-4"))
     expected = Expectation("theirs-4", 3, 10.0, pack(np.ones(4)), pack(np.zeros(4)))
@@ -265,9 +263,7 @@ def test_what_was_counted_of_new_rlas_comes_with_them(mine: Path, theirs: Path) 
     assert counted.expectations == {4: expected, 5: expected}
 
 
-def test_another_kind_of_features_a_running_robot_and_a_dry_run_change_nothing(
-    mine: Path, theirs: Path, tmp_path: Path
-) -> None:
+def test_merge_refused_or_dry_run_changes_nothing(mine: Path, theirs: Path, tmp_path: Path) -> None:
     append(theirs, at(4, FAR))
     before = events(mine)
     with Journal.open(mine, BINDING), refused(KnowledgeCode.ANOTHER_WRITER):
@@ -279,7 +275,7 @@ def test_another_kind_of_features_a_running_robot_and_a_dry_run_change_nothing(
     assert events(mine) == before
 
 
-def test_on_a_disk_without_room_all_of_a_merge_is_written_or_nothing(mine: Path, theirs: Path) -> None:
+def test_merge_full_disk_writes_all_or_nothing(mine: Path, theirs: Path) -> None:
     append(theirs, *(at(number, FAR * number, command_id=f"theirs-{number}") for number in range(4, 40)))
     before = events(mine)
     failed = 0
@@ -303,7 +299,7 @@ def both_taught(mine: Path, theirs: Path) -> None:
     assert actions(theirs) == {1: "forward", 2: "forward", 3: "forward", 4: "right", 5: "left"}
 
 
-def test_what_was_undone_here_after_they_took_it_does_not_come_back_from_there(mine: Path, theirs: Path) -> None:
+def test_merge_undo_here_outlives_their_copy(mine: Path, theirs: Path) -> None:
     both_taught(mine, theirs)
     append(mine, undone("mine-4"))
     merged = merge_files(mine, theirs)
@@ -313,14 +309,14 @@ def test_what_was_undone_here_after_they_took_it_does_not_come_back_from_there(m
     assert the_same(mine, theirs)
 
 
-def test_what_they_took_and_undid_is_undone_here(mine: Path, theirs: Path) -> None:
+def test_merge_undo_of_a_merged_lesson_follows_here(mine: Path, theirs: Path) -> None:
     both_taught(mine, theirs)
     append(theirs, undone("mine-4"))
     assert merge_files(mine, theirs).undone == 1
     assert the_same(mine, theirs)
 
 
-def test_what_they_took_and_corrected_is_corrected_here_without_a_conflict(mine: Path, theirs: Path) -> None:
+def test_merge_correction_of_a_merged_lesson_follows_here(mine: Path, theirs: Path) -> None:
     both_taught(mine, theirs)
     append(theirs, replaced(5, "back", "left"))
     assert merge_files(mine, theirs).conflicts == ()
@@ -328,9 +324,7 @@ def test_what_they_took_and_corrected_is_corrected_here_without_a_conflict(mine:
     assert the_same(mine, theirs)
 
 
-def test_what_came_by_way_of_a_third_file_and_was_undone_here_is_a_conflict(
-    mine: Path, theirs: Path, tmp_path: Path
-) -> None:
+def test_merge_undo_after_a_third_file_is_a_conflict(mine: Path, theirs: Path, tmp_path: Path) -> None:
     third = tmp_path / "third"
     branch(mine, third, None, stamp=STAMP)
     append(mine, at(4, FAR, "left", "mine-4"))
@@ -343,9 +337,7 @@ def test_what_came_by_way_of_a_third_file_and_was_undone_here_is_a_conflict(
     assert 4 not in actions(mine)
 
 
-def test_where_each_was_merged_into_an_older_other_a_change_of_both_is_a_conflict(
-    mine: Path, theirs: Path, tmp_path: Path
-) -> None:
+def test_merge_two_bases_change_of_both_is_a_conflict(mine: Path, theirs: Path, tmp_path: Path) -> None:
     append(mine, at(4, FAR, "left", "mine-4"))
     append(theirs, at(4, -FAR, "right", "theirs-4"))
     older = tmp_path / "older" / "branch.knowledge"
@@ -358,7 +350,7 @@ def test_where_each_was_merged_into_an_older_other_a_change_of_both_is_a_conflic
     assert len(merge_files(mine, theirs).conflicts) == 1
 
 
-def test_praise_comes_also_where_an_older_one_was_undone(mine: Path, tmp_path: Path) -> None:
+def test_merge_reward_follows_though_an_older_is_undone(mine: Path, tmp_path: Path) -> None:
     append(mine, rewarded(1, 1, "old"))
     branch(mine, tmp_path / "new", None, stamp=STAMP)
     append(mine, undone("old"))
@@ -367,7 +359,7 @@ def test_praise_comes_also_where_an_older_one_was_undone(mine: Path, tmp_path: P
     assert folded(mine).appraisal(1) == (0, 1)
 
 
-def test_praise_that_was_taken_back_there_is_taken_back_here_from_under_a_newer_one(mine: Path, tmp_path: Path) -> None:
+def test_merge_reward_undone_there_leaves_newer_reward(mine: Path, tmp_path: Path) -> None:
     append(mine, rewarded(1, 1, "old"))
     theirs = tmp_path / "new"
     branch(mine, theirs, None, stamp=STAMP)
@@ -380,7 +372,7 @@ def test_praise_that_was_taken_back_there_is_taken_back_here_from_under_a_newer_
     assert the_same(mine, theirs)
 
 
-def test_praise_under_a_correction_of_mine_stays_and_that_is_told(mine: Path, tmp_path: Path) -> None:
+def test_merge_buried_reward_stays_and_is_reported(mine: Path, tmp_path: Path) -> None:
     append(mine, rewarded(1, 1, "old"))
     theirs = tmp_path / "new"
     branch(mine, theirs, None, stamp=STAMP)
@@ -391,7 +383,7 @@ def test_praise_under_a_correction_of_mine_stays_and_that_is_told(mine: Path, tm
     assert merge_files(mine, theirs).left_out == ()
 
 
-def test_blame_of_the_old_action_is_not_put_on_the_corrected_one(mine: Path, theirs: Path) -> None:
+def test_merge_reward_of_another_action_is_left_out(mine: Path, theirs: Path) -> None:
     append(mine, replaced(1, "left", "forward"))
     of_another = RlaRewarded(2, -1, 390, origin("of-2"), (Credit(2, -0.5), Credit(1, -0.25)))
     append(theirs, rewarded(1, -1, "of-1"), of_another)
@@ -409,7 +401,7 @@ def test_blame_of_the_old_action_is_not_put_on_the_corrected_one(mine: Path, the
     assert merge_files(mine, theirs).left_out == ()
 
 
-def test_praise_here_of_what_was_taken_back_there_is_a_conflict(mine: Path, theirs: Path) -> None:
+def test_merge_orphaned_reward_is_a_conflict(mine: Path, theirs: Path) -> None:
     append(theirs, replaced(1, "left", "forward"))
     merge_files(mine, theirs)
     append(mine, rewarded(1, 1, "praise"))
@@ -420,9 +412,7 @@ def test_praise_here_of_what_was_taken_back_there_is_a_conflict(mine: Path, thei
     assert (actions(mine)[1], folded(mine).appraisal(1)) == ("forward", (0, 0))
 
 
-def test_a_plan_and_a_refused_merge_leave_the_file_as_it_is_and_a_plan_needs_no_robot_to_end(
-    mine: Path, tmp_path: Path
-) -> None:
+def test_merge_plan_and_conflict_leave_bytes_unchanged(mine: Path, tmp_path: Path) -> None:
     theirs = tmp_path / "with-critic"
     with Journal.open(theirs, WITH_CRITIC) as journal:
         journal.append([JournalEntry(created(number), STAMP) for number in (1, 2, 3)])
@@ -437,7 +427,7 @@ def test_a_plan_and_a_refused_merge_leave_the_file_as_it_is_and_a_plan_needs_no_
     assert mine.read_bytes() == whole
 
 
-def test_a_lesson_that_cannot_stand_again_comes_as_a_new_one(mine: Path, theirs: Path) -> None:
+def test_merge_lesson_without_redo_comes_as_new(mine: Path, theirs: Path) -> None:
     append(mine, rewarded(1, 1, "praise"))
     append(theirs, replaced(1, "left", "forward"))
     merge_files(mine, theirs)
@@ -450,9 +440,7 @@ def test_a_lesson_that_cannot_stand_again_comes_as_a_new_one(mine: Path, theirs:
     assert the_same(mine, theirs)
 
 
-def test_lessons_and_sessions_of_the_same_ids_are_there_once_each_when_merged_both_ways(
-    mine: Path, theirs: Path
-) -> None:
+def test_merge_equal_ids_both_ways_are_there_once(mine: Path, theirs: Path) -> None:
     append(mine, at(4, FAR, "left", "same"), *session(100))
     append(theirs, at(4, -FAR, "right", "same"), *session(20))
     merge_files(mine, theirs)
@@ -500,7 +488,7 @@ def teach(path: Path, whose: str, steps: Iterable[Step]) -> None:
 
 @settings(examples(24), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(steps, steps, steps, st.sampled_from(["mine", "theirs"]))
-def test_whatever_was_taught_a_merge_fits_once_and_then_there_is_nothing_to_do(
+def test_merge_random_files_fit_once_and_then_change_nothing(
     tmp_path_factory: pytest.TempPathFactory, first: list[Step], here: list[Step], there: list[Step], prefer: Side
 ) -> None:
     folder = tmp_path_factory.mktemp("merge")

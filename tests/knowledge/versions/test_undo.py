@@ -51,7 +51,7 @@ def redo(path: Path, lesson: str | None = None) -> LessonRecord:
     return record
 
 
-def test_the_last_lesson_that_stands_is_undone_and_the_one_before_it_next(path: Path) -> None:
+def test_undo_without_id_takes_the_newest_lesson(path: Path) -> None:
     begun(path, lessons=2)
     with Journal.open(path, BINDING) as journal:
         journal.append([JournalEntry(deleted(1), STAMP)])
@@ -65,7 +65,7 @@ def test_the_last_lesson_that_stands_is_undone_and_the_one_before_it_next(path: 
         undo(path)
 
 
-def test_what_was_undone_last_is_redone_first_with_what_its_reward_was_worth(path: Path) -> None:
+def test_redo_last_undo_comes_first_with_its_value(path: Path) -> None:
     with Journal.open(begun(path, lessons=2), BINDING) as journal:
         blame = RlaRewarded(1, -1, 390, origin("blame-1"), (Credit(1, -0.25),))
         journal.append([JournalEntry(blame, STAMP), JournalEntry(replaced(2, "left", "forward"), STAMP)])
@@ -81,7 +81,7 @@ def test_what_was_undone_last_is_redone_first_with_what_its_reward_was_worth(pat
         redo(path)
 
 
-def test_a_lesson_whose_place_is_taken_is_not_redone(path: Path) -> None:
+def test_redo_lesson_whose_place_is_taken_is_refused(path: Path) -> None:
     begun(path)
     undo(path, "create-3")
     with Journal.open(path, BINDING) as journal:
@@ -99,7 +99,7 @@ def test_a_lesson_whose_place_is_taken_is_not_redone(path: Path) -> None:
         redo(path, "create-3")
 
 
-def test_what_was_planned_is_made_as_it_was_planned_or_not_at_all(path: Path) -> None:
+def test_apply_plan_changed_file_is_refused(path: Path) -> None:
     begun(path, lessons=2)
     planned = plan_undo(path, teacher="command line")
     assert [record.event for record in planned.lessons] == [created(2)]
@@ -118,7 +118,7 @@ def redo_all_of(path: Path, teacher: str) -> tuple[tuple[LessonRecord, ...], tup
     return planned.lessons, planned.stay
 
 
-def test_all_that_was_undone_of_one_teacher_stands_again(path: Path) -> None:
+def test_redo_all_of_a_teacher_restores_all(path: Path) -> None:
     with Journal.open(begun(path), BINDING) as journal:
         taught = (
             replaced(1, "left", "forward"),
@@ -138,7 +138,7 @@ def test_all_that_was_undone_of_one_teacher_stands_again(path: Path) -> None:
         redo_all_of(path, "Hertha")
 
 
-def test_what_came_in_the_place_of_an_undone_lesson_stays_there(path: Path) -> None:
+def test_redo_all_of_a_teacher_skips_replaced_lessons(path: Path) -> None:
     begun(path, lessons=2)
     undo(path)
     with Journal.open(path, BINDING) as journal:
@@ -155,7 +155,7 @@ def test_what_came_in_the_place_of_an_undone_lesson_stays_there(path: Path) -> N
 
 
 @pytest.mark.parametrize("rule", ["td_lambda", "edge_weights"])
-def test_a_robot_that_goes_on_counts_a_redone_praise_again(rule: str) -> None:
+def test_redo_reward_counts_again_for_a_robot(rule: str) -> None:
     settings = ReinforcementSettings(rule=rule)  # type: ignore[arg-type]
     robot = Track(known_at(1, (0.0,), "a"), known_at(2, (50.0,), "b"), reinforcement=settings)
     robot.go(50.0, 20)
@@ -167,7 +167,7 @@ def test_a_robot_that_goes_on_counts_a_redone_praise_again(rule: str) -> None:
     assert robot.worth(1) == pytest.approx(before)
 
 
-def test_the_journal_tells_who_undid_what(path: Path) -> None:
+def test_undo_is_an_event_with_its_teacher(path: Path) -> None:
     undo(begun(path), "create-2")
     with Journal.read_only(path) as journal:
         *_, last = journal.entries()
@@ -176,7 +176,7 @@ def test_the_journal_tells_who_undid_what(path: Path) -> None:
     assert (last.event.lesson, last.event.origin.teacher, last.stamped_at) == ("create-2", "command line", STAMP)
 
 
-def test_a_lesson_that_cannot_be_undone_is_refused_and_nothing_is_written(path: Path) -> None:
+def test_undo_refused_lesson_writes_nothing(path: Path) -> None:
     begun(path)
     with Journal.open(path, BINDING) as journal:
         journal.append([JournalEntry(replaced(1, "left", "forward"), STAMP)])
@@ -187,14 +187,14 @@ def test_a_lesson_that_cannot_be_undone_is_refused_and_nothing_is_written(path: 
         assert len(journal.events()) == 4
 
 
-def test_nothing_is_undone_under_a_running_robot(path: Path) -> None:
+def test_undo_running_robot_is_refused(path: Path) -> None:
     begun(path)
     with Journal.open(path, BINDING), refused(KnowledgeCode.ANOTHER_WRITER):
         undo(path)
 
 
 def by_critic(*events: Lesson) -> list[JournalEntry]:
-    """What the critic did on its own."""
+    """Return entries of the critic in autonomous mode."""
     return [
         JournalEntry(replace(each, origin=replace(each.origin, teacher=CRITIC, phase=Phase.AUTONOMOUS)), STAMP)
         for each in events
@@ -202,8 +202,8 @@ def by_critic(*events: Lesson) -> list[JournalEntry]:
     ]
 
 
-def with_a_critics_work(path: Path) -> Path:
-    """Three RLAs by Hertha; the critic blamed two and had one deleted and one answered anew."""
+def with_critic_lessons(path: Path) -> Path:
+    """Three RLAs by Hertha; the critic blamed two and had one deleted and one answered again."""
     with Journal.open(begun(path), BINDING) as journal:
         blame = RlaRewarded(1, -1, 390, origin("blame-1"), (Credit(1, -0.25), Credit(2, -0.125), Credit(9, -1.0)))
         journal.append(by_critic(blame, deleted(2), rewarded(3, 1, "praise-3"), replaced(3, "left", "forward")))
@@ -211,8 +211,8 @@ def with_a_critics_work(path: Path) -> Path:
     return path
 
 
-def test_all_of_the_critic_is_undone_newest_first_and_what_teachers_taught_stays(path: Path) -> None:
-    told = undo_all_of(with_a_critics_work(path), CRITIC)
+def test_undo_all_of_the_critic_keeps_other_lessons(path: Path) -> None:
+    told = undo_all_of(with_critic_lessons(path), CRITIC)
 
     assert [record.event.origin.command_id for record in told] == ["replace-3-left", "praise-3", "delete-2", "blame-1"]
     assert all(record.undone for record in told)
@@ -225,8 +225,8 @@ def test_all_of_the_critic_is_undone_newest_first_and_what_teachers_taught_stays
         undo_all_of(path, CRITIC)
 
 
-def test_an_undone_reward_takes_its_credits_off_the_values(path: Path) -> None:
-    undo_all_of(with_a_critics_work(path), CRITIC)
+def test_undo_reward_takes_its_credits_off_values(path: Path) -> None:
+    undo_all_of(with_critic_lessons(path), CRITIC)
     with Journal.read_only(path) as journal:
         statistics = journal.statistics()
     assert statistics.values == {1: 0.5, 2: 0.5}  # the third one has the action again of which nothing was said
@@ -237,8 +237,8 @@ LINE = KnowledgeBinding("0123", ("place",), "wall following", "kurt2")
 
 
 @pytest.mark.parametrize("saved_late", [True, False])
-def test_a_file_is_undone_in_as_a_robot_undoes(path: Path, *, saved_late: bool) -> None:
-    """Blamed until it asks, answered anew, and the answer blamed as well: then all of it is taken back."""
+def test_undo_in_a_file_equals_the_undo_of_a_robot(path: Path, *, saved_late: bool) -> None:
+    """Blamed until it asks, answered again, and the answer blamed as well: then all of it is undone."""
     robot = Track(known_at(1, (0.0,), "a"), known_at(2, (50.0,), "b"), reinforcement=SIGNALS_ONLY)
     saved = robot.reinforcement.snapshot()
     for _ in range(3):
@@ -266,7 +266,7 @@ def test_a_file_is_undone_in_as_a_robot_undoes(path: Path, *, saved_late: bool) 
     assert robot.worth(1) == pytest.approx(0.2, abs=0.01)
 
 
-def test_where_only_weights_of_edges_were_saved_they_follow_at_the_next_start(path: Path) -> None:
+def test_undo_edge_weights_follow_at_the_next_start(path: Path) -> None:
     settings = ReinforcementSettings(rule="edge_weights")
     robot = Track(known_at(1, (0.0,), "a"), known_at(2, (50.0,), "b"), reinforcement=settings)
     robot.go(50.0, 20)
@@ -283,8 +283,8 @@ def test_where_only_weights_of_edges_were_saved_they_follow_at_the_next_start(pa
     assert (robot.worth(1), again.worth(1)) == pytest.approx((0.1, 0.0))
 
 
-def test_where_somebody_elses_later_lesson_stands_in_the_way_nothing_is_undone(path: Path) -> None:
-    with Journal.open(with_a_critics_work(path), BINDING) as journal:
+def test_undo_later_lesson_of_another_teacher_is_refused(path: Path) -> None:
+    with Journal.open(with_critic_lessons(path), BINDING) as journal:
         journal.append([JournalEntry(rewarded(1, 1, "praise-of-hertha"), STAMP)])
         before = journal.events(), journal.statistics()
     with refused(KnowledgeCode.LESSON_REFUSED, outcome=RefusalCode.TAUGHT_AFTER):
@@ -293,7 +293,7 @@ def test_where_somebody_elses_later_lesson_stands_in_the_way_nothing_is_undone(p
         assert (journal.events(), journal.statistics()) == before
 
 
-def test_in_a_file_without_lessons_there_is_nothing_to_undo_of_anybody(path: Path) -> None:
+def test_undo_all_without_lessons_is_refused(path: Path) -> None:
     Journal.open(path, BINDING).close()
     with refused(KnowledgeCode.NO_LESSON_BY, teacher="Ann"):
         undo_all_of(path, "Ann")
