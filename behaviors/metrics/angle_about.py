@@ -18,11 +18,11 @@ class AngleAbout:
         """Distance of the robot's centre."""
         return math.hypot(pose.x_m - self._x_m, pose.y_m - self._y_m)
 
-    def lose(self) -> None:
+    def interrupt(self) -> None:
         """The next pose continues no way: what lies between here and there was not swept."""
         self._angle_rad = None
 
-    def follow(self, pose: Pose) -> None:
+    def update(self, pose: Pose) -> None:
         """A step further, not halfway round."""
         angle_rad = math.atan2(pose.y_m - self._y_m, pose.x_m - self._x_m)
         if self._angle_rad is not None:

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from behaviors.metrics.angle_about import AngleAbout
 from behaviors.metrics.mean import MEASURE_EVERY, Mean
-from behaviors.metrics.task_metric import DISTANCE_ERROR, Findings, MetricSettings, TaskMetric
+from behaviors.metrics.task_metric import DISTANCE_ERROR, Metrics, MetricSettings, TaskMetric
 from hal.settings import SettingsError
 from hal.simulation import Pose, SimulatedPost, Simulation, WorldPlan
 
@@ -44,7 +44,7 @@ class Eights:
     """
 
     unit = "eights"
-    stranded = False
+    needs_reset = False
 
     def __init__(self, settings: EightsSettings, west: SimulatedPost, east: SimulatedPost, behaviour: str) -> None:
         self.behaviour = behaviour
@@ -58,16 +58,16 @@ class Eights:
         self._ticks = 0
 
     @property
-    def findings(self) -> Findings:
+    def findings(self) -> Metrics:
         """The distance error."""
-        return self._error_m.named(DISTANCE_ERROR)
+        return self._error_m.as_metric(DISTANCE_ERROR)
 
-    def put(self, pose: Pose) -> None:
+    def reset(self, pose: Pose) -> None:
         """To be set down elsewhere breaks off the round, and the eight."""
         self._side = self._rounded = None
-        self.follow(pose)
+        self.update(pose)
 
-    def follow(self, pose: Pose) -> None:
+    def update(self, pose: Pose) -> None:
         """A step further."""
         away_m = [swept.away_m(pose) - post.radius_m for swept, post in zip(self._sides, self._posts, strict=True)]
         side = 0 if away_m[0] <= away_m[1] else 1
@@ -78,11 +78,11 @@ class Eights:
             if self._side is not None:
                 self._leave(self._side)
             self._side = side
-            self._sides[side].lose()
+            self._sides[side].interrupt()
             self._sides[side].rounds = 0.0
-        self._sides[side].follow(pose)
+        self._sides[side].update(pose)
 
-    def end_early(self) -> None:
+    def abort(self) -> None:
         """What was made counts, and nothing else is."""
 
     def _leave(self, side: int) -> None:

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from behaviors.metrics.junctions import QUARTERS
 from behaviors.metrics.streets import StreetMap
-from behaviors.metrics.task_metric import JUNCTIONS, Findings, MetricSettings, TaskMetric
+from behaviors.metrics.task_metric import JUNCTIONS, Metrics, MetricSettings, TaskMetric
 from behaviors.metrics.town import Street, Town
 from hal.settings import SettingsError
 from hal.simulation import Pose, Simulation, WorldPlan
@@ -49,7 +49,7 @@ class Errands:
     """Follows the robot from street to street."""
 
     unit = "junctions"
-    stranded = False
+    needs_reset = False
 
     def __init__(self, town: Town, behaviour: str) -> None:
         self.town = town
@@ -61,16 +61,16 @@ class Errands:
         """All that it came to, one after the other; None where it was set down elsewhere."""
 
     @property
-    def findings(self) -> Findings:
+    def findings(self) -> Metrics:
         """Junctions that it left."""
         return {JUNCTIONS: self.progress}
 
-    def put(self, pose: Pose) -> None:
+    def reset(self, pose: Pose) -> None:
         """Set down here."""
         self.street = self.town.street_at(pose)
         self.streets += [None, self.street]
 
-    def follow(self, pose: Pose) -> None:
+    def update(self, pose: Pose) -> None:
         """A step further."""
         # From the edge of the junction on: a robot may know that it is in the next street a hand's breadth behind it.
         here = self.town.street_at(pose)
@@ -81,5 +81,5 @@ class Errands:
             self.streets.append(here)
             self.progress += 1
 
-    def end_early(self) -> None:
+    def abort(self) -> None:
         """What it came to counts."""

@@ -6,7 +6,7 @@ from collections import Counter
 
 from behaviors.metrics.mean import MEASURE_EVERY, Mean
 from behaviors.metrics.streets import Junction, Side, StreetMap, side_towards
-from behaviors.metrics.task_metric import JUNCTIONS, LATERAL_DEVIATION, RIGHT, Findings, MetricSettings, TaskMetric
+from behaviors.metrics.task_metric import JUNCTIONS, LATERAL_DEVIATION, RIGHT, Metrics, MetricSettings, TaskMetric
 from hal.settings import SettingsError
 from hal.simulation import Pose, Simulation, WorldPlan
 
@@ -41,14 +41,14 @@ class Junctions:
 
     The next command comes as soon as the robot has left a junction behind. What was asked for at a junction that the
     robot did not get to, or not out of, was not done: who turns back, or ends early, does it wrong. A robot that can do
-    none of its behaviours at the junction that it comes to is stranded.
+    none of its behaviours at the junction that it comes to is needs_reset.
     """
 
     unit = "junctions"
 
     def __init__(self, streets: StreetMap, behaviours: tuple[str, ...], chance: random.Random) -> None:
         self.behaviour = behaviours[0]
-        self.stranded = False
+        self.needs_reset = False
         self._streets = streets
         self._behaviours = behaviours
         self._chance = chance
@@ -69,19 +69,19 @@ class Junctions:
         return float(self._right.total())
 
     @property
-    def findings(self) -> Findings:
+    def findings(self) -> Metrics:
         """Junctions asked and right, in all and for each behaviour, and the lateral deviation in the streets."""
         found = {JUNCTIONS: float(self._passed.total()), RIGHT: float(self._right.total())}
         if len(self._behaviours) > 1:
             for each in self._behaviours:
                 found[f"{JUNCTIONS}, {each}"] = float(self._passed[each])
                 found[f"{RIGHT}, {each}"] = float(self._right[each])
-        deviation_m = {name: math.sqrt(mean) for name, mean in self._deviation2_m2.named(LATERAL_DEVIATION).items()}
+        deviation_m = {name: math.sqrt(mean) for name, mean in self._deviation2_m2.as_metric(LATERAL_DEVIATION).items()}
         return found | deviation_m
 
-    def put(self, pose: Pose) -> None:
+    def reset(self, pose: Pose) -> None:
         """Set down here: the next junction is the one that the robot looks towards."""
-        self.stranded = False
+        self.needs_reset = False
         way = side_towards(math.cos(pose.heading_rad), math.sin(pose.heading_rad))
         self._asked = self._ahead = None
         self._inside = self._streets.junction_at(pose)
@@ -90,7 +90,7 @@ class Junctions:
         else:
             self._command(self._inside, way)  # not judged: nobody can say where it came from
 
-    def follow(self, pose: Pose) -> None:
+    def update(self, pose: Pose) -> None:
         """A step further."""
         due = self._ticks % _LOOK_EVERY == 0
         self._ticks += 1
@@ -108,7 +108,7 @@ class Junctions:
         elif not self._inside.holds(pose, _LEFT_BEHIND_M):
             self._leave(self._inside, pose)
 
-    def end_early(self) -> None:
+    def abort(self) -> None:
         """Stuck, or stopped for good: it will not get through the junction that it was asked for."""
         if self._asked is not None or self._ahead is not None:
             self._judge(right=False)
@@ -123,7 +123,7 @@ class Junctions:
             # It came to another junction than the command is about, or its only behaviour leads nowhere here.
             self._command(junction, way)
         self._asked = self._side_meant(junction, way, self.behaviour)
-        self.stranded = self._asked is None
+        self.needs_reset = self._asked is None
 
     def _leave(self, junction: Junction, pose: Pose) -> None:
         way = junction.side_of(pose)

@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import Field
 
 from behaviors.metrics.mean import MEASURE_EVERY, Mean
-from behaviors.metrics.task_metric import DISTANCE_ERROR, LEAST_SPEED_M_S, Findings, MetricSettings, TaskMetric
+from behaviors.metrics.task_metric import DISTANCE_ERROR, LEAST_SPEED_M_S, Metrics, MetricSettings, TaskMetric
 from hal.simulation import Pose, Simulation
 
 
@@ -29,7 +29,7 @@ class Laps:
     """Counts laps, and how far from the wanted distance the robot is on the mean."""
 
     unit = "laps"
-    stranded = False
+    needs_reset = False
 
     def __init__(self, settings: LapsSettings, simulation: Simulation, behaviour: str) -> None:
         self.behaviour = behaviour
@@ -44,18 +44,18 @@ class Laps:
         return self._simulation.laps
 
     @property
-    def findings(self) -> Findings:
+    def findings(self) -> Metrics:
         """The distance error."""
-        return self._error_m.named(DISTANCE_ERROR)
+        return self._error_m.as_metric(DISTANCE_ERROR)
 
-    def put(self, pose: Pose) -> None:
+    def reset(self, pose: Pose) -> None:
         """The simulation knows itself that this is no way made."""
 
-    def follow(self, pose: Pose) -> None:  # noqa: ARG002 - the simulation looks itself
+    def update(self, pose: Pose) -> None:  # noqa: ARG002 - the simulation looks itself
         """Measure the distance now and then."""
         if self._ticks % MEASURE_EVERY == 0:
             self._error_m.add(abs(self._simulation.nearest_m - self._wanted_m))
         self._ticks += 1
 
-    def end_early(self) -> None:
+    def abort(self) -> None:
         """What was made counts, and nothing else is."""

@@ -1,6 +1,6 @@
 """A mean that grows with what is seen."""
 
-from behaviors.metrics.task_metric import Findings
+from behaviors.metrics.task_metric import Metrics
 
 MEASURE_EVERY = 10
 """Ticks from one measured distance to the next."""
@@ -18,6 +18,6 @@ class Mean:
         self._sum += value
         self._count += 1
 
-    def named(self, name: str) -> Findings:
+    def as_metric(self, name: str) -> Metrics:
         """The mean under a name; nothing when nothing was seen."""
         return {name: self._sum / self._count} if self._count else {}

@@ -10,7 +10,7 @@ from hal.settings_by_kind import as_its_kind, find_kind
 _PACKAGE = "behaviors.metrics"
 
 
-def course_settings(kind: str) -> type[MetricSettings]:
+def metric_settings(kind: str) -> type[MetricSettings]:
     """Settings of a kind of course. Raises ValueError that lists the kinds there are."""
     return find_kind(_PACKAGE, kind, MetricSettings)  # type: ignore[type-abstract]
 
@@ -19,5 +19,5 @@ def _checked(given: object) -> MetricSettings:
     return as_its_kind(given, _PACKAGE, MetricSettings)  # type: ignore[type-abstract]
 
 
-AnyCourseSettings = Annotated[SerializeAsAny[MetricSettings], PlainValidator(_checked)]
+AnyMetricSettings = Annotated[SerializeAsAny[MetricSettings], PlainValidator(_checked)]
 """In a schema: settings of whatever course the file names."""

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from behaviors.metrics.angle_about import AngleAbout
 from behaviors.metrics.mean import MEASURE_EVERY, Mean
-from behaviors.metrics.task_metric import DISTANCE_ERROR, Findings, MetricSettings, TaskMetric
+from behaviors.metrics.task_metric import DISTANCE_ERROR, Metrics, MetricSettings, TaskMetric
 from hal.settings import SettingsError
 from hal.simulation import Pose, SimulatedPost, Simulation, WorldPlan
 
@@ -42,7 +42,7 @@ class Rounds:
     """Counts rounds near the post, back turns against, and how far from the wanted distance they lead on the mean."""
 
     unit = "rounds"
-    stranded = False
+    needs_reset = False
 
     def __init__(self, settings: RoundsSettings, post: SimulatedPost, behaviour: str) -> None:
         self.behaviour = behaviour
@@ -59,25 +59,25 @@ class Rounds:
         return self._sign * self._swept.rounds
 
     @property
-    def findings(self) -> Findings:
+    def findings(self) -> Metrics:
         """The distance error, also from where the robot is not at the post."""
-        return self._error_m.named(DISTANCE_ERROR)
+        return self._error_m.as_metric(DISTANCE_ERROR)
 
-    def put(self, pose: Pose) -> None:
+    def reset(self, pose: Pose) -> None:
         """To be set down elsewhere makes no round."""
-        self._swept.lose()
-        self.follow(pose)
+        self._swept.interrupt()
+        self.update(pose)
 
-    def follow(self, pose: Pose) -> None:
+    def update(self, pose: Pose) -> None:
         """A step further."""
         away_m = self._swept.away_m(pose) - self._radius_m
         if self._ticks % MEASURE_EVERY == 0:
             self._error_m.add(abs(away_m - self._settings.wanted_m))
         self._ticks += 1
         if away_m > self._settings.within_m:
-            self._swept.lose()
+            self._swept.interrupt()
         else:
-            self._swept.follow(pose)
+            self._swept.update(pose)
 
-    def end_early(self) -> None:
+    def abort(self) -> None:
         """What was made counts, and nothing else is."""

@@ -16,7 +16,7 @@ from behaviors.metrics.task_metric import (
     JUNCTIONS,
     LATERAL_DEVIATION,
     RIGHT,
-    Findings,
+    Metrics,
     MetricSettings,
     TaskMetric,
     WayAhead,
@@ -80,7 +80,7 @@ class Passage:
 class FixedRoute:
     """Counts what is right at the junctions of the route.
 
-    A robot that left it counts as wrong, is stranded, and is to be set down on the street that it should have taken:
+    A robot that left it counts as wrong, is needs_reset, and is to be set down on the street that it should have taken:
     what comes next is judged as if nothing had been. One that is stuck on its way to a junction is to try that once
     more, one that is stuck within it is to go on behind it.
     """
@@ -89,7 +89,7 @@ class FixedRoute:
 
     def __init__(self, streets: StreetMap, route: Route, behaviours: tuple[str, ...]) -> None:
         self.route = route
-        self.stranded = False
+        self.needs_reset = False
         self.passages: list[Passage] = []
         """What was done at each junction so far."""
         self._streets = streets
@@ -115,7 +115,7 @@ class FixedRoute:
         return WayAhead(self._passed, self._inside, self.behaviour, self._meaning[self._at(1).quarters])
 
     @property
-    def set_down_at(self) -> Pose:
+    def reset_pose(self) -> Pose:
         """In the middle of the street that it should be in."""
         return self._at(1 if self._inside else 0).middle
 
@@ -125,7 +125,7 @@ class FixedRoute:
         return float(sum(each.taken == each.right for each in self.passages))
 
     @property
-    def findings(self) -> Findings:
+    def findings(self) -> Metrics:
         """Junctions and those where it did right, in all and by what was right, and the lateral deviation."""
         asked = Counter(each.right for each in self.passages)
         right = Counter(each.right for each in self.passages if each.taken == each.right)
@@ -133,22 +133,22 @@ class FixedRoute:
         for each in self._behaviours:
             found[f"{JUNCTIONS}, {each}"] = float(asked[QUARTERS[each]])
             found[f"{RIGHT}, {each}"] = float(right[QUARTERS[each]])
-        deviation_m = {name: math.sqrt(mean) for name, mean in self._deviation2_m2.named(LATERAL_DEVIATION).items()}
+        deviation_m = {name: math.sqrt(mean) for name, mean in self._deviation2_m2.as_metric(LATERAL_DEVIATION).items()}
         return found | deviation_m
 
-    def put(self, pose: Pose) -> None:
+    def reset(self, pose: Pose) -> None:
         """Set down: behind the junction that it was in, else on the way to the same one as before."""
-        self.stranded = False
+        self.needs_reset = False
         if self._inside:
             self._judge(None)
             self._go_on()
         self._pose = pose
 
-    def follow(self, pose: Pose) -> None:
+    def update(self, pose: Pose) -> None:
         """A step further."""
         due = self._ticks % _LOOK_EVERY == 0
         self._ticks += 1
-        if not due or self.stranded:
+        if not due or self.needs_reset:
             return
         self._pose = pose
         if self._looks % (MEASURE_EVERY // _LOOK_EVERY) == 0:
@@ -164,9 +164,9 @@ class FixedRoute:
             self._inside = True
         elif self._streets.junction_at(pose) is not None:  # it turned back on the way
             self._judge(None)
-            self.stranded = True
+            self.needs_reset = True
 
-    def end_early(self) -> None:
+    def abort(self) -> None:
         """Stuck, or stopped for good: it will not get through the junction ahead."""
         self._judge(None)
 
@@ -174,7 +174,7 @@ class FixedRoute:
         leg = self._at(0)
         taken = (junction.side_of(pose) - leg.way + 1) % 4 - 1
         self._judge(taken)
-        self.stranded = taken != leg.quarters
+        self.needs_reset = taken != leg.quarters
         self._go_on()
 
     def _go_on(self) -> None:

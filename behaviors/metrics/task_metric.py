@@ -11,7 +11,7 @@ from hal.simulation import Pose, Simulation, WorldPlan
 LEAST_SPEED_M_S = 0.1
 """A drive that makes way more slowly than this on average gets nowhere; the shipped policies make 0.2 m/s and more."""
 
-Findings = Mapping[str, float]
+Metrics = Mapping[str, float]
 """Measures by name, with the unit in the name where there is one."""
 DISTANCE_ERROR = "distance error, m"
 """Mean size of the difference from the distance that is wanted."""
@@ -37,7 +37,7 @@ class TaskMetric(Protocol):
         ...
 
     @property
-    def stranded(self) -> bool:
+    def needs_reset(self) -> bool:
         """Whether nothing can be done from here: the robot is to be set down elsewhere."""
         ...
 
@@ -47,19 +47,19 @@ class TaskMetric(Protocol):
         ...
 
     @property
-    def findings(self) -> Findings:
+    def findings(self) -> Metrics:
         """Other measures of the drive so far; those that nothing was seen of are left out."""
         ...
 
-    def put(self, pose: Pose) -> None:
+    def reset(self, pose: Pose) -> None:
         """The robot was set down here by hand, at the start or later."""
         ...
 
-    def follow(self, pose: Pose) -> None:
+    def update(self, pose: Pose) -> None:
         """Where the robot really is; to be told in every tick."""
         ...
 
-    def end_early(self) -> None:
+    def abort(self) -> None:
         """The drive ends here before its time, stuck or stopped for good: what is asked now will not be done."""
         ...
 
@@ -87,8 +87,8 @@ class RouteMetric(TaskMetric, Protocol):
         ...
 
     @property
-    def set_down_at(self) -> Pose:
-        """Where it is to be set down at the start, and where it is stranded or makes no way."""
+    def reset_pose(self) -> Pose:
+        """Where it is to be set down at the start, and where it is needs_reset or makes no way."""
         ...
 
 

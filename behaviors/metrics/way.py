@@ -3,7 +3,7 @@
 import math
 import random
 
-from behaviors.metrics.task_metric import LEAST_SPEED_M_S, Findings, MetricSettings, TaskMetric
+from behaviors.metrics.task_metric import LEAST_SPEED_M_S, Metrics, MetricSettings, TaskMetric
 from hal.simulation import Pose, Simulation
 
 
@@ -23,7 +23,7 @@ class Way:
     """Measures the way of the robot's centre; turning on the spot makes none."""
 
     unit = "m"
-    stranded = False
+    needs_reset = False
 
     def __init__(self, pose: Pose, behaviour: str) -> None:
         self.behaviour = behaviour
@@ -31,18 +31,18 @@ class Way:
         self._pose = pose
 
     @property
-    def findings(self) -> Findings:
+    def findings(self) -> Metrics:
         """None."""
         return {}
 
-    def put(self, pose: Pose) -> None:
+    def reset(self, pose: Pose) -> None:
         """To be set down elsewhere makes no way."""
         self._pose = pose
 
-    def follow(self, pose: Pose) -> None:
+    def update(self, pose: Pose) -> None:
         """A step further."""
         self.progress += math.hypot(pose.x_m - self._pose.x_m, pose.y_m - self._pose.y_m)
         self._pose = pose
 
-    def end_early(self) -> None:
+    def abort(self) -> None:
         """What was made counts, and nothing else is."""

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, ValidationInfo, field_validator
 
-from behaviors.metrics.registry import AnyCourseSettings
+from behaviors.metrics.registry import AnyMetricSettings
 from behaviors.policies.policy import PolicySettings
 from behaviors.registry import AnyJudgeSettings, AnyPolicySettings
 from hal.settings import Settings, SettingsError, find_config, load_settings
@@ -172,7 +172,7 @@ class TaskSettings(Settings):
     phases: PhasesSettings | None = None
     """Settings of the study of phases 3 to 5; None: there is none."""
     policy: AnyPolicySettings
-    course: AnyCourseSettings
+    course: AnyMetricSettings
     teaching: TeachingSettings
     exam: ExamSettings
     paper: PaperResult

@@ -42,10 +42,10 @@ class LiveMeasure:
     def on_tick(self, record: TickRecord) -> None:
         """Update the metric every 5 ticks; call it after each tick."""
         if any(isinstance(each, RobotRepositioned) for each in record.commands):
-            self._course.put(self._simulation.pose)
+            self._course.reset(self._simulation.pose)
         # The simulation counts laps itself; the distance to the wall is not needed.
         elif record.tick % _FOLLOW_EVERY == 0 and not isinstance(self._task.course, LapsSettings):
-            self._course.follow(self._simulation.pose)
+            self._course.update(self._simulation.pose)
 
     def _begin(self) -> TaskMetric:
         course: MetricSettings = self._task.course

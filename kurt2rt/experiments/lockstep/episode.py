@@ -73,9 +73,9 @@ class Episode(ABC):
         self._on_progress = on_progress
         self._sent = 0
         if isinstance(self.metric, RouteMetric):
-            simulation.put(self.metric.set_down_at)
+            simulation.put(self.metric.reset_pose)
         self._pose = simulation.pose
-        self.metric.put(self._pose)
+        self.metric.reset(self._pose)
 
     @abstractmethod
     def on_tick(self, record: TickRecord) -> None:
@@ -119,7 +119,7 @@ class Episode(ABC):
         pose = self.simulation.pose
         self.distance_travelled_m += math.hypot(pose.x_m - self._pose.x_m, pose.y_m - self._pose.y_m)
         self._pose = pose
-        self.metric.follow(pose)
+        self.metric.update(pose)
 
     def is_stuck(self, *, waiting: bool = False) -> bool:
         """Return whether the robot stayed in place for too long; `waiting` restarts the time. Call it in every tick."""
@@ -131,7 +131,7 @@ class Episode(ABC):
     def rescue(self) -> None:
         """Put the robot at the nearest start pose, or on its route."""
         if isinstance(self.metric, RouteMetric):
-            self.simulation.put(self.metric.set_down_at)
+            self.simulation.put(self.metric.reset_pose)
         else:
             self.simulation.rescue()
         self._begin_at(self.simulation.pose)
@@ -139,7 +139,7 @@ class Episode(ABC):
     def reposition(self, *, in_sight: bool = False, close: bool = False) -> None:
         """Put the robot on its route, or else at a random pose as `Simulation.reposition` chooses it."""
         if isinstance(self.metric, RouteMetric):
-            self.simulation.put(self.metric.set_down_at)
+            self.simulation.put(self.metric.reset_pose)
         else:
             self.simulation.reposition(self._chance, in_sight=in_sight, close=close)
         self.repositions += 1
@@ -160,4 +160,4 @@ class Episode(ABC):
     def _begin_at(self, pose: Pose) -> None:
         self._pose = self.simulation.pose
         self._stuck.restart()
-        self.metric.put(pose)
+        self.metric.reset(pose)

@@ -4,8 +4,7 @@ import random
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
-from behaviors.metrics.task_metric import JUNCTIONS, RIGHT, TaskMetric
-from behaviors.metrics.task_metric import Findings as Metrics
+from behaviors.metrics.task_metric import JUNCTIONS, RIGHT, Metrics, TaskMetric
 from hal.robot_settings import RobotSettings
 from hal.simulation import Position, Simulation
 from kurt2rt.core.basic.policy_level import PolicyLevel
@@ -179,7 +178,7 @@ class ExamRun(Episode):
         await self.run(round(duration_s / self.period_s))
         self._on_progress(duration_s)
         if self._alarm or (self._stuck_times and self._setup.stuck_ends):
-            self.metric.end_early()
+            self.metric.abort()
 
     def on_tick(self, record: TickRecord) -> None:
         """Measure the drive; end it or rescue the robot if it is stuck."""
@@ -190,7 +189,7 @@ class ExamRun(Episode):
         self._action = record.decision.action
         self.measure()
         self._setup.on_tick(record, self.metric)
-        if self.metric.stranded:
+        if self.metric.needs_reset:
             self.reposition()
         self._command_behaviour(record.behaviour)
         if record.guard_result.latched:  # an exam has no teacher who could resume

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import accumulate
 
-from behaviors.metrics.task_metric import Findings as Metrics
+from behaviors.metrics.task_metric import Metrics
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from hal.simulation import Position, Simulation
@@ -284,7 +284,7 @@ class TrainingRun(Episode):
             self._unknown_rescues += self.asking
 
     def _reposition_as_planned(self, tick: int) -> None:
-        if self.metric.stranded or (self._reposition_every and tick % self._reposition_every == 0):
+        if self.metric.needs_reset or (self._reposition_every and tick % self._reposition_every == 0):
             self.reposition(in_sight=self.task.teaching.reposition_to == "in_sight")
             self._workload.count_manual(tick, "set_down")
         if self._show_every and self._teacher.phase is Phase.CRITIC and tick % self._show_every == 0:

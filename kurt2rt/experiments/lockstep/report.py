@@ -8,7 +8,7 @@ from typing import Any
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from behaviors.metrics.task_metric import JUNCTIONS, RIGHT, Findings
+from behaviors.metrics.task_metric import JUNCTIONS, RIGHT, Metrics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, WorldResult
 from kurt2rt.experiments.lockstep.exam import ExamResult
@@ -131,7 +131,7 @@ def _render_measures(title: str, worlds: Sequence[str], exams: Sequence[Sequence
     return [table] if shown else []
 
 
-def _measure(findings: Sequence[Findings], name: str) -> str:
+def _measure(findings: Sequence[Metrics], name: str) -> str:
     """The median, or of junctions all that there were."""
     if not findings:
         return ""

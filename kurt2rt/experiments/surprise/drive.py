@@ -109,7 +109,7 @@ class SurpriseRun(Episode):
             self.simulation.rescue()
             self.send(Resume(self.next_id("go"), _EXPERIMENTER))
         self.measure()
-        if self.metric.stranded:
+        if self.metric.needs_reset:
             self.reposition()
         elif self.is_stuck():
             self.rescue()

@@ -28,12 +28,12 @@ def arc(centre: Point, radius_m: float, from_deg: float, to_deg: float) -> list[
 
 
 def put(course: TaskMetric, at: Point, towards_deg: float) -> None:
-    course.put(Pose(*at, math.radians(towards_deg)))
+    course.reset(Pose(*at, math.radians(towards_deg)))
 
 
 def follow(course: TaskMetric, points: Sequence[Point]) -> None:
-    """Drive there; stops where the course says that the robot is stranded."""
+    """Drive there; stops where the course says that the robot is needs_reset."""
     for pose in along(points):
-        course.follow(pose)
-        if course.stranded:
+        course.update(pose)
+        if course.needs_reset:
             return

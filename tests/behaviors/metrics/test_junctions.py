@@ -80,16 +80,16 @@ def test_who_ends_early_has_not_done_what_was_asked(way: list[Point]) -> None:
     course = set_down(("turn_left",))
     follow(course, way)
     assert passed(course) == (0.0, 0.0)  # nor does it count where the time is over
-    course.end_early()
+    course.abort()
     assert passed(course) == (1.0, 0.0)
 
 
 def test_who_ends_early_where_nothing_could_be_asked_has_done_nothing_wrong() -> None:
     course = set_down(("straight_on",), (2.2, 4.9))  # the northern border ends that street
-    course.end_early()
+    course.abort()
     assert passed(course) == (0.0, 0.0)
     course = set_down(("straight_on",), CROSSING)
-    course.end_early()
+    course.abort()
     assert passed(course) == (0.0, 0.0)
 
 
@@ -125,11 +125,11 @@ def test_all_behaviours_are_asked_for_by_chance_and_the_same_chance_asks_the_sam
 def test_straight_on_at_a_t_is_stranded_and_set_down_elsewhere_it_goes_on() -> None:
     course = set_down(("straight_on",), (2.2, 4.9))  # the northern border ends that street
     follow(course, [(2.2, 4.9), (2.2, 5.3)])
-    assert not course.stranded
+    assert not course.needs_reset
     follow(course, [(2.2, 5.3), (2.2, 5.6)])
-    assert course.stranded
+    assert course.needs_reset
     put(course, SOUTH_OF_A_CROSSING, 90.0)
-    assert not course.stranded
+    assert not course.needs_reset
     follow(course, [SOUTH_OF_A_CROSSING, CROSSING, WAYS_ON["straight_on"]])
     assert passed(course) == (1.0, 1.0)
 
@@ -138,7 +138,7 @@ def test_a_robot_that_turned_back_is_asked_for_something_possible_where_it_comes
     course = set_down(ALL, (4.9, 0.4), 180.0)  # towards a T, with streets ahead and to the right
     follow(course, [(4.9, 0.4), (5.0, 0.4), (5.5, 0.4)])  # but it came to the corner, where only a left turn is left
     assert course.behaviour == "turn_left"
-    assert not course.stranded
+    assert not course.needs_reset
 
 
 def test_set_down_within_a_junction_it_is_not_judged_there() -> None:

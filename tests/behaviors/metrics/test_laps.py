@@ -25,7 +25,7 @@ def laps_in(simulation: Kurt2Simulation) -> TaskMetric:
 
 def carry(simulation: Kurt2Simulation, course: TaskMetric, pose: Pose) -> None:
     simulation.simulated_robot.place(pose)
-    course.follow(pose)
+    course.update(pose)
 
 
 def test_the_distance_error_is_that_to_the_nearest_wall() -> None:
@@ -47,10 +47,10 @@ def test_what_was_carried_is_no_lap() -> None:
         for pose in along(ROUND, 0.02):
             carry(simulation, course, pose)
         assert course.progress == 0.0
-        course.end_early()
-        course.put(Pose(0.4, 0.4, math.pi / 2))
+        course.abort()
+        course.reset(Pose(0.4, 0.4, math.pi / 2))
         assert course.progress == 0.0
-        assert not course.stranded
+        assert not course.needs_reset
     finally:
         simulation.close()
 
@@ -66,7 +66,7 @@ def test_what_it_drives_itself_along_the_wall_is_and_backwards_counts_against(to
             simulation.robot.sense(tick * 0.01)
             simulation.robot.drive(WheelSpeeds(0.3, 0.3), tick * 0.01, tick * 0.01)
             simulation.step()
-            course.follow(simulation.pose)
+            course.update(simulation.pose)
         way_m = abs(simulation.pose.y_m - 2.2)
         assert way_m > 0.5
         # Once round, 0.35 m from the walls of 4.4 m, is 14.8 m.

@@ -27,7 +27,7 @@ def a_route(seed: int = 1, decisions: int = 8) -> Route:
 
 def set_down(route: Route | None = None) -> FixedRoute:
     course = FixedRoute(streets(), route or a_route(), ALL)
-    course.put(course.set_down_at)
+    course.reset(course.reset_pose)
     return course
 
 
@@ -64,7 +64,7 @@ def with_a_choice(course: FixedRoute) -> None:
 def test_it_begins_in_the_middle_of_the_first_street_and_says_what_is_right_at_its_end() -> None:
     course = set_down()
     assert isinstance(course, RouteMetric)
-    assert course.set_down_at == course.route.legs[0].middle
+    assert course.reset_pose == course.route.legs[0].middle
     assert MEANING[course.behaviour] == course.route.quarters[0]
     passed, inside, here, after = course.ahead
     assert (passed, inside, here, MEANING[after]) == (0, False, course.behaviour, course.route.quarters[1])
@@ -81,7 +81,7 @@ def test_round_the_route_every_decision_is_right_and_the_next_one_is_said_where_
     lefts = float(2 * course.route.quarters.count(1))
     assert course.findings["junctions, turn_left"] == course.findings["junctions right, turn_left"] == lefts
     assert course.ahead.passed == 16
-    assert not course.stranded
+    assert not course.needs_reset
 
 
 def test_within_a_junction_the_decision_is_still_the_one_there() -> None:
@@ -98,11 +98,11 @@ def test_a_wrong_way_counts_and_it_is_set_down_where_it_should_be() -> None:
     place = course.ahead.passed
     leg = course.route.legs[place]
     follow(course, [middle(leg), corner(leg), wrong_way(leg)])
-    assert course.stranded
+    assert course.needs_reset
     assert course.passages[-1].taken != leg.quarters
-    assert course.set_down_at == course.route.legs[(place + 1) % 8].middle
-    course.put(course.set_down_at)
-    assert not course.stranded
+    assert course.reset_pose == course.route.legs[(place + 1) % 8].middle
+    course.reset(course.reset_pose)
+    assert not course.needs_reset
     drive(course, 3)
     assert course.findings["junctions"] - course.findings["junctions right"] == 1.0
     assert course.progress == place + 3.0
@@ -112,10 +112,10 @@ def test_who_turns_back_on_the_way_did_wrong_and_tries_again() -> None:
     course = set_down()
     drive(course, 1)
     follow(course, [middle(course.route.legs[1]), corner(course.route.legs[0])])
-    assert course.stranded
+    assert course.needs_reset
     assert course.passages[-1].taken is None
-    assert course.set_down_at == course.route.legs[1].middle
-    course.put(course.set_down_at)
+    assert course.reset_pose == course.route.legs[1].middle
+    course.reset(course.reset_pose)
     drive(course, 1)
     assert (course.progress, course.findings["junctions"]) == (2.0, 3.0)
 
@@ -124,19 +124,19 @@ def test_turning_back_in_a_junction_is_wrong() -> None:
     course = set_down()
     leg = course.route.legs[0]
     follow(course, [middle(leg), corner(leg), middle(leg)])
-    assert course.stranded
+    assert course.needs_reset
     assert abs(course.passages[-1].taken or 0) == 2
 
 
 def test_stuck_in_a_street_it_tries_again_and_stuck_in_a_junction_it_goes_on_behind_it() -> None:
     course = set_down()
     first, second = course.route.legs[:2]
-    assert course.set_down_at == first.middle
-    course.put(course.set_down_at)
+    assert course.reset_pose == first.middle
+    course.reset(course.reset_pose)
     assert course.passages == []
     follow(course, [middle(first), corner(first)])
-    assert course.set_down_at == second.middle
-    course.put(course.set_down_at)
+    assert course.reset_pose == second.middle
+    course.reset(course.reset_pose)
     assert [each.taken for each in course.passages] == [None]
     assert (course.ahead.passed, course.ahead.inside) == (1, False)
 
@@ -144,7 +144,7 @@ def test_stuck_in_a_street_it_tries_again_and_stuck_in_a_junction_it_goes_on_beh
 def test_who_ends_early_has_not_done_what_was_right() -> None:
     course = set_down()
     drive(course, 2)
-    course.end_early()
+    course.abort()
     assert (course.progress, course.findings["junctions"]) == (2.0, 3.0)
 
 

@@ -70,10 +70,10 @@ def test_ways_are_measured_from_where_one_is_to_where_one_comes(town: Town) -> N
 def test_the_walk_notes_each_street_once_and_breaks_where_the_robot_was_set_down() -> None:
     assert isinstance(COURSE, ErrandsSettings)
     walk = COURSE.walk_in(PLAN, BEHAVIOURS)
-    walk.put(Pose(1.3, 2.2, 0.0))
+    walk.reset(Pose(1.3, 2.2, 0.0))
     for x_m in (1.5, 1.8, 2.2, 2.6, 2.75, 3.0):
-        walk.follow(Pose(x_m, 2.2, 0.0))
-    walk.put(Pose(1.3, 2.2, 0.0))
+        walk.update(Pose(x_m, 2.2, 0.0))
+    walk.reset(Pose(1.3, 2.2, 0.0))
     first, second = street(walk.town, 1.3, 2.2, Side.EAST), street(walk.town, 3.1, 2.2, Side.EAST)
     assert walk.streets == [None, first, second, None, first]
     assert walk.progress == 1.0

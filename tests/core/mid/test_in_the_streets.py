@@ -102,7 +102,7 @@ def random_drive(seed: int, duration_s: float, robot: RobotSettings) -> tuple[li
     drive = Drive(seed, robot)
     streets = StreetMap(drive.simulation.plan)
     course = Junctions(streets, TASK.behaviours, random.Random(seed))
-    course.put(drive.simulation.pose)
+    course.reset(drive.simulation.pose)
     truth, detector = Truth(streets), JunctionDetector(load_mid_level("turns").junctions, robot)
     passed: list[object] = []
     told: list[object] = []
@@ -110,7 +110,7 @@ def random_drive(seed: int, duration_s: float, robot: RobotSettings) -> tuple[li
         event = detector.perceive(senses)
         if event is not None:
             told.append((event.quarters, event.left_open, event.right_open))
-        course.follow(drive.simulation.pose)
+        course.update(drive.simulation.pose)
         drive.wanted.select(course.behaviour)
         really = truth.passed(drive)
         if really is not None:

@@ -132,14 +132,14 @@ class Errand:
     def __init__(self, scene: Scene, task: TaskSettings) -> None:
         self._walk = navigation_settings(task).walk_in(scene.simulation.plan, task.behaviours)
         self._guide = TourGuide(self._walk, 5, task.teaching.teacher, period_s=0.01, seed=3, session="errand")
-        self._walk.put(scene.simulation.pose)
+        self._walk.reset(scene.simulation.pose)
         self._guide.begin()
         scene.runtime.inbox.put(scene.teacher.begin_phase(Phase.CORRECTIONS))
         self._home = scene.simulation.pose
 
     def __call__(self, scene: Scene, record: TickRecord) -> None:
         tick, inbox = record.tick, scene.runtime.inbox
-        self._walk.follow(scene.simulation.pose)
+        self._walk.update(scene.simulation.pose)
         said = self._guide.watch(record) if tick < at(34) else None
         if said is not None:
             inbox.put(said)
@@ -149,7 +149,7 @@ class Errand:
         if tick == at(22):
             scene.simulation.put(self._home)
             scene.runtime.reposition()
-            self._walk.put(self._home)
+            self._walk.reset(self._home)
             self._guide.set_down_at_home()
         if tick == at(34):
             scene.say(lambda name: Seek(name, NAME, NamedGoal(HOME)))
