@@ -1,4 +1,4 @@
-"""What a person at the desk sees of the simulated robot, and may do to it."""
+"""Console of the simulated robot: status, events and commands."""
 
 import contextlib
 import math
@@ -21,7 +21,7 @@ help                  this"""
 
 
 class SimConsole:
-    """Obeys what is typed."""
+    """Executor of typed commands."""
 
     def __init__(self, standalone: StandaloneRobot, world: WorldSettings, ground: Kurt2World) -> None:
         self._standalone = standalone
@@ -29,7 +29,7 @@ class SimConsole:
         self._ground = ground
 
     def obey(self, line: str) -> str:
-        """Do what a line says; returns what came of it, for the screen."""
+        """Execute a line and return the answer for the screen."""
         match line.split():
             case []:
                 return ""
@@ -67,19 +67,19 @@ class SimConsole:
 
 
 class TypedLines:
-    """Lines that were typed, as they come, without waiting for them."""
+    """Typed lines, read by a thread of their own."""
 
     def __init__(self, lines: TextIO) -> None:
         self._lines = lines
         self._typed: queue.SimpleQueue[str] = queue.SimpleQueue()
         self.ended = False
-        """True when no more can come."""
+        """True after the end of the input."""
         # Daemon: reading a terminal cannot be interrupted, and must not keep the process alive.
         self.thread = threading.Thread(target=self._read, name="keyboard", daemon=True)
         self.thread.start()
 
     def typed(self) -> Iterator[str]:
-        """What came since the last look."""
+        """Yield the lines since the last call."""
         while not self._typed.empty():
             yield self._typed.get()
 
@@ -92,14 +92,14 @@ class TypedLines:
 
 
 class News:
-    """What happened to the robot since the last look, in lines."""
+    """Events of the robot since the last call, as lines."""
 
     def __init__(self, standalone: StandaloneRobot) -> None:
         self._standalone = standalone
         self._unheard, self._dead, self._trouble, self._collisions = True, False, "", 0
 
     def since(self) -> Iterator[str]:
-        """Each change once."""
+        """Yield a line for each change."""
         robot, trouble = self._standalone.robot, self._standalone.bus.error_text
         controller = robot.controller
         unheard, dead, collisions = controller.watchdog_expired, controller.crashed, robot.collisions
@@ -117,7 +117,7 @@ class News:
 
 
 class StatusLine:
-    """One line on how the robot is."""
+    """Status line of the robot."""
 
     def __init__(self, standalone: StandaloneRobot) -> None:
         self._standalone = standalone
@@ -125,7 +125,7 @@ class StatusLine:
         self._told = 0
 
     def next(self) -> str:
-        """As it is now; rates are those since the line before."""
+        """Return the present status; rates are those since the last line."""
         robot, bus, simulation = self._standalone.robot, self._standalone.bus, self._standalone.simulation
         controller = robot.controller
         time_s, control_frames = robot.time_s, controller.control_frames

@@ -27,7 +27,7 @@ def plan_of(world: WorldSettings, version: int = 0) -> WorldPlan:
 
 
 class Kurt2World:
-    """Reads what the simulation's thread writes, and hands changes to that thread."""
+    """World of a running simulation; changes are made by the simulation's thread."""
 
     def __init__(
         self, robot: SimulatedRobot, world: WorldSettings, geometry: GeometrySettings, simulation: RealtimeSimulation
@@ -46,7 +46,7 @@ class Kurt2World:
 
     @property
     def lives(self) -> bool:
-        """Whether the simulation goes on."""
+        """True while the simulation runs."""
         return self._simulation.error is None
 
     def place(self) -> SimulatedPlace:
@@ -57,7 +57,7 @@ class Kurt2World:
         )
 
     def world(self) -> WorldPlan:
-        """The world as it is as soon as the simulation has taken its next step."""
+        """Return the world after the next step of the simulation."""
         return plan_of(self._world, self._version)
 
     def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:

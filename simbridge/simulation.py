@@ -67,7 +67,7 @@ class Kurt2Simulation:
 
     @property
     def plan(self) -> WorldPlan:
-        """What a course may go by, with walls where they stand now."""
+        """World from above, with walls at their present places."""
         return plan_of(self.simulated_robot.world.settings)
 
     # Surveys of the whole world, which a run on a large map never asks for.
@@ -81,7 +81,7 @@ class Kurt2Simulation:
 
     @property
     def nearest_m(self) -> float:
-        """From the robot's centre to the nearest wall or obstacle."""
+        """Distance from the robot's center to the nearest wall or obstacle."""
         pose = self.simulated_robot.pose
         return self._nearest.distance_m((pose.x_m, pose.y_m))
 
@@ -92,7 +92,7 @@ class Kurt2Simulation:
 
     @property
     def touching(self) -> bool:
-        """Whether the robot touches something now."""
+        """True while the robot touches something."""
         return self.simulated_robot.touching
 
     @property
@@ -154,7 +154,7 @@ class Kurt2SimulationFactory:
     wire: str = NO_WIRE
 
     def open(self, world: str, seed: int, purpose: str) -> Kurt2Simulation:
-        """The simulated robot in a world."""
+        """Open the simulated robot in a world."""
         return Kurt2Simulation(self.settings, world, seed, purpose, self.wire)
 
     def require_worlds(self, *worlds: str) -> None:
@@ -164,7 +164,7 @@ class Kurt2SimulationFactory:
             load_world(world, self.settings)
 
     def plan_of(self, world: str) -> WorldPlan:
-        """What stands where in a world, and where its streets lead."""
+        """Return a world from above. Raises hal.settings.SettingsError."""
         return plan_of(load_world(world, self.settings))
 
     def draw(self, axes: "Axes", world: str) -> None:
@@ -176,7 +176,7 @@ class Kurt2SimulationFactory:
         draw_robot(axes, load_world(world, self.settings).start_poses[0].pose, self.settings)
 
     def settings_of(self, world: str) -> str:
-        """All that a world is made of, and the wire."""
+        """Return all settings of a world, and the wire, as a text."""
         return f"{self.wire} {load_world(world, self.settings).model_dump_json(serialize_as_any=True)}"
 
 

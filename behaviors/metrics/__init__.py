@@ -1,1 +1,1 @@
-"""Courses: what the robot is asked to do on its way in lessons and exams, and how well it does."""
+"""Task metrics: requirements and measures of a drive in lessons and exams."""

@@ -6,7 +6,7 @@ from hal.simulation import Pose
 
 
 class AngleAbout:
-    """Adds up the angle, in whole rounds, counter-clockwise positive."""
+    """Sum of the swept angle in whole rounds, counter-clockwise positive."""
 
     def __init__(self, x_m: float, y_m: float) -> None:
         self.rounds = 0.0
@@ -19,11 +19,11 @@ class AngleAbout:
         return math.hypot(pose.x_m - self._x_m, pose.y_m - self._y_m)
 
     def interrupt(self) -> None:
-        """The next pose continues no way: what lies between here and there was not swept."""
+        """Ignore the angle between the last pose and the next one."""
         self._angle_rad = None
 
     def update(self, pose: Pose) -> None:
-        """A step further, not halfway round."""
+        """Add the angle to this pose; the step must be less than half a round."""
         angle_rad = math.atan2(pose.y_m - self._y_m, pose.x_m - self._x_m)
         if self._angle_rad is not None:
             self.rounds += math.remainder(angle_rad - self._angle_rad, math.tau) / math.tau

@@ -12,24 +12,24 @@ from hal.settings import SettingsError
 from hal.simulation import Pose, SimulatedPost, Simulation, WorldPlan
 
 _WHOLE = 5 / 6
-"""Of a round from the middle back to the middle; what is missing was driven on the other post's side."""
+"""Least fraction of a round that counts as whole; the rest is driven on the other post's side."""
 
 
 class EightsSettings(MetricSettings):
-    """Eights."""
+    """Settings of the metric `eights`."""
 
     wanted_m: Annotated[float, Field(gt=0, le=5)]
     """Distance from the robot's centre to the face of the nearer post."""
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:  # noqa: ARG002
-        """Two posts."""
+        """Raise hal.settings.SettingsError unless the world has two posts."""
         if len(plan.posts) != 2:
             raise SettingsError(
                 f"course eights: world {plan.name} has {len(plan.posts)} round obstacles", do="choose one with two"
             )
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
-        """The course."""
+        """Return the metric in a simulation. Raises hal.settings.SettingsError as `require` does."""
         plan = simulation.plan
         self.require(plan, behaviours)
         west, east = sorted(plan.posts, key=lambda post: post.x_m)
@@ -59,16 +59,16 @@ class Eights:
 
     @property
     def findings(self) -> Metrics:
-        """The distance error."""
+        """Distance error in m, by its name."""
         return self._error_m.as_metric(DISTANCE_ERROR)
 
     def reset(self, pose: Pose) -> None:
-        """To be set down elsewhere breaks off the round, and the eight."""
+        """Break off the round and the eight: the robot was repositioned."""
         self._side = self._rounded = None
         self.update(pose)
 
     def update(self, pose: Pose) -> None:
-        """A step further."""
+        """Update the metric with the robot's pose."""
         away_m = [swept.away_m(pose) - post.radius_m for swept, post in zip(self._sides, self._posts, strict=True)]
         side = 0 if away_m[0] <= away_m[1] else 1
         if self._ticks % MEASURE_EVERY == 0:
@@ -83,7 +83,7 @@ class Eights:
         self._sides[side].update(pose)
 
     def abort(self) -> None:
-        """What was made counts, and nothing else is."""
+        """Do nothing: progress so far counts."""
 
     def _leave(self, side: int) -> None:
         rounds = self._sides[side].rounds

@@ -14,20 +14,20 @@ from hal.simulation import Pose, Simulation, WorldPlan
 
 
 class ErrandsSettings(MetricSettings):
-    """Errands."""
+    """Settings of the metric `errands`."""
 
     names: Annotated[int, Field(ge=1, le=1000)]
-    """So many places get a name, home left out; the robot is sent to them."""
+    """Number of named places without home; goals are among them."""
     goals: Annotated[int, Field(ge=1, le=1000)]
-    """How often it is sent."""
+    """Number of goals."""
     junctions_at_least: Annotated[int, Field(ge=1, le=100)]
-    """On the shortest way to a goal."""
+    """Least number of junctions on the shortest way to a goal."""
     detour_at_most: Annotated[float, Field(ge=1, le=10)]
     """A goal counts as reached by a way of at most so many times the shortest; and no way that it was led from there
     to there in one piece may be that short, else the goal was demonstrated."""
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
-        """Streets that meet, and behaviours that mean a way through."""
+        """Raise hal.settings.SettingsError without junctions, or for behaviours that choose no exit."""
         if not set(behaviours) <= set(QUARTERS):
             raise SettingsError(f"course errands: the task's behaviours must be among {', '.join(QUARTERS)}")
         if not plan.junctions:
@@ -36,17 +36,17 @@ class ErrandsSettings(MetricSettings):
             )
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
-        """The course."""
+        """Return the metric in a simulation. Raises hal.settings.SettingsError as `require` does."""
         return self.walk_in(simulation.plan, behaviours)
 
     def walk_in(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> "Errands":
-        """The same, for those who need to know where the robot is. Raises hal.settings.SettingsError."""
+        """Return the metric as a tracker of streets. Raises hal.settings.SettingsError."""
         self.require(plan, behaviours)
         return Errands(Town(StreetMap(plan), {each: QUARTERS[each] for each in behaviours}), behaviours[0])
 
 
 class Errands:
-    """Follows the robot from street to street."""
+    """Tracker of the robot from street to street."""
 
     unit = "junctions"
     needs_reset = False
@@ -56,22 +56,22 @@ class Errands:
         self.behaviour = behaviour
         self.progress = 0.0
         self.street: Street | None = None
-        """Where it is; None within a junction, and off the streets."""
+        """Street of the robot; None within a junction and off the streets."""
         self.streets: list[Street | None] = []
-        """All that it came to, one after the other; None where it was set down elsewhere."""
+        """Streets in their order; None before each repositioning."""
 
     @property
     def findings(self) -> Metrics:
-        """Junctions that it left."""
+        """Number of junctions that the robot left."""
         return {JUNCTIONS: self.progress}
 
     def reset(self, pose: Pose) -> None:
-        """Set down here."""
+        """Start at this pose."""
         self.street = self.town.street_at(pose)
         self.streets += [None, self.street]
 
     def update(self, pose: Pose) -> None:
-        """A step further."""
+        """Update the metric with the robot's pose."""
         # From the edge of the junction on: a robot may know that it is in the next street a hand's breadth behind it.
         here = self.town.street_at(pose)
         if here is None:
@@ -82,4 +82,4 @@ class Errands:
             self.progress += 1
 
     def abort(self) -> None:
-        """What it came to counts."""
+        """Do nothing: junctions so far count."""

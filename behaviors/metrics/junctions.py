@@ -11,17 +11,17 @@ from hal.settings import SettingsError
 from hal.simulation import Pose, Simulation, WorldPlan
 
 QUARTERS = {"straight_on": 0, "turn_left": 1, "turn_right": -1}
-"""What each behaviour means: quarter turns to the left."""
+"""Quarter turns to the left of each behaviour."""
 _LOOK_EVERY = 5
-"""Ticks from one look to the next; the robot goes some centimetres meanwhile."""
+"""Ticks between two updates; the robot drives some centimeters in them."""
 _LEFT_BEHIND_M = 0.1
 
 
 class JunctionsSettings(MetricSettings):
-    """Junctions."""
+    """Settings of the metric `junctions`."""
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
-        """Streets that meet, and behaviours that mean a way through."""
+        """Raise hal.settings.SettingsError without junctions, or for behaviours that choose no exit."""
         if not set(behaviours) <= set(QUARTERS):
             raise SettingsError(f"course junctions: the task's behaviours must be among {', '.join(QUARTERS)}")
         if not plan.junctions:
@@ -30,7 +30,7 @@ class JunctionsSettings(MetricSettings):
             )
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:
-        """The course."""
+        """Return the metric in a simulation. Raises hal.settings.SettingsError as `require` does."""
         plan = simulation.plan
         self.require(plan, behaviours)
         return Junctions(StreetMap(plan), behaviours, chance)
@@ -65,12 +65,12 @@ class Junctions:
 
     @property
     def progress(self) -> float:
-        """Junctions left through the right side."""
+        """Number of junctions left through the required side."""
         return float(self._right.total())
 
     @property
     def findings(self) -> Metrics:
-        """Junctions asked and right, in all and for each behaviour, and the lateral deviation in the streets."""
+        """Junctions required and right, in total and by behaviour, and the lateral deviation in m."""
         found = {JUNCTIONS: float(self._passed.total()), RIGHT: float(self._right.total())}
         if len(self._behaviours) > 1:
             for each in self._behaviours:
@@ -80,7 +80,7 @@ class Junctions:
         return found | deviation_m
 
     def reset(self, pose: Pose) -> None:
-        """Set down here: the next junction is the one that the robot looks towards."""
+        """Start here: the next junction is ahead of the robot."""
         self.needs_reset = False
         way = side_towards(math.cos(pose.heading_rad), math.sin(pose.heading_rad))
         self._asked = self._ahead = None
@@ -88,10 +88,10 @@ class Junctions:
         if self._inside is None:
             self._ahead = self._command(self._streets.next_junction(pose, way), way)
         else:
-            self._command(self._inside, way)  # not judged: nobody can say where it came from
+            self._command(self._inside, way)  # not judged: the direction of its arrival is unknown
 
     def update(self, pose: Pose) -> None:
-        """A step further."""
+        """Update the metric with the robot's pose."""
         due = self._ticks % _LOOK_EVERY == 0
         self._ticks += 1
         if not due:
@@ -109,7 +109,7 @@ class Junctions:
             self._leave(self._inside, pose)
 
     def abort(self) -> None:
-        """Stuck, or stopped for good: it will not get through the junction that it was asked for."""
+        """Count the current junction as wrong: the robot will not get through."""
         if self._asked is not None or self._ahead is not None:
             self._judge(right=False)
         self._asked = self._ahead = None

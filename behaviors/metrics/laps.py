@@ -11,7 +11,7 @@ from hal.simulation import Pose, Simulation
 
 
 class LapsSettings(MetricSettings):
-    """Laps."""
+    """Settings of the metric `laps`."""
 
     wanted_m: Annotated[float, Field(gt=0, le=5)]
     """Distance that is wanted from the robot's centre to the nearest wall."""
@@ -21,7 +21,7 @@ class LapsSettings(MetricSettings):
         return LEAST_SPEED_M_S * duration_s / simulation.lap_m
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
-        """The course."""
+        """Return the metric in a simulation. Raises hal.settings.SettingsError as `require` does."""
         return Laps(self, simulation, behaviours[0])
 
 
@@ -40,22 +40,22 @@ class Laps:
 
     @property
     def progress(self) -> float:
-        """Laps made."""
+        """Number of laps; driving backwards is negative."""
         return self._simulation.laps
 
     @property
     def findings(self) -> Metrics:
-        """The distance error."""
+        """Distance error in m, by its name."""
         return self._error_m.as_metric(DISTANCE_ERROR)
 
     def reset(self, pose: Pose) -> None:
-        """The simulation knows itself that this is no way made."""
+        """Do nothing: the simulation measures the laps."""
 
     def update(self, pose: Pose) -> None:  # noqa: ARG002 - the simulation looks itself
-        """Measure the distance now and then."""
+        """Measure the distance error every tenth tick."""
         if self._ticks % MEASURE_EVERY == 0:
             self._error_m.add(abs(self._simulation.nearest_m - self._wanted_m))
         self._ticks += 1
 
     def abort(self) -> None:
-        """What was made counts, and nothing else is."""
+        """Do nothing: progress so far counts."""

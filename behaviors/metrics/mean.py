@@ -1,4 +1,4 @@
-"""A mean that grows with what is seen."""
+"""Running mean of measured values."""
 
 from behaviors.metrics.task_metric import Metrics
 
@@ -7,17 +7,17 @@ MEASURE_EVERY = 10
 
 
 class Mean:
-    """Arithmetic mean of all values so far."""
+    """Arithmetic mean of all added values."""
 
     def __init__(self) -> None:
         self._sum = 0.0
         self._count = 0
 
     def add(self, value: float) -> None:
-        """One more."""
+        """Add a value, in the unit of the mean."""
         self._sum += value
         self._count += 1
 
     def as_metric(self, name: str) -> Metrics:
-        """The mean under a name; nothing when nothing was seen."""
+        """Return the mean by its name; empty without values."""
         return {name: self._sum / self._count} if self._count else {}

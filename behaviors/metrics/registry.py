@@ -1,4 +1,4 @@
-"""Courses by name: `laps` is in the file `laps.py` of this folder."""
+"""Registry of the metrics: `laps` is in the file `laps.py` of this folder."""
 
 from typing import Annotated
 
@@ -11,7 +11,7 @@ _PACKAGE = "behaviors.metrics"
 
 
 def metric_settings(kind: str) -> type[MetricSettings]:
-    """Settings of a kind of course. Raises ValueError that lists the kinds there are."""
+    """Return the settings class of a metric. Raises ValueError that lists the kinds."""
     return find_kind(_PACKAGE, kind, MetricSettings)  # type: ignore[type-abstract]
 
 
@@ -20,4 +20,4 @@ def _checked(given: object) -> MetricSettings:
 
 
 AnyMetricSettings = Annotated[SerializeAsAny[MetricSettings], PlainValidator(_checked)]
-"""In a schema: settings of whatever course the file names."""
+"""Settings of the metric that a file names, for a schema."""

@@ -15,7 +15,7 @@ Distance = Annotated[float, Field(gt=0, le=5)]
 
 
 class RoundsSettings(MetricSettings):
-    """Rounds; distances from the robot's centre to the face of the post."""
+    """Settings of the metric `rounds`; distances from the robot's center to the face of the post."""
 
     wanted_m: Distance
     within_m: Distance
@@ -24,7 +24,7 @@ class RoundsSettings(MetricSettings):
     """Left: counter-clockwise, with the post on the left."""
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:  # noqa: ARG002
-        """One post."""
+        """Raise hal.settings.SettingsError unless the world has one post."""
         if len(plan.posts) != 1:
             raise SettingsError(
                 f"course rounds: world {plan.name} has {len(plan.posts)} round obstacles",
@@ -32,7 +32,7 @@ class RoundsSettings(MetricSettings):
             )
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
-        """The course."""
+        """Return the metric in a simulation. Raises hal.settings.SettingsError as `require` does."""
         plan = simulation.plan
         self.require(plan, behaviours)
         return Rounds(self, plan.posts[0], behaviours[0])
@@ -55,21 +55,21 @@ class Rounds:
 
     @property
     def progress(self) -> float:
-        """Rounds made in the wanted direction."""
+        """Number of rounds in the required direction."""
         return self._sign * self._swept.rounds
 
     @property
     def findings(self) -> Metrics:
-        """The distance error, also from where the robot is not at the post."""
+        """Distance error in m, also far from the post."""
         return self._error_m.as_metric(DISTANCE_ERROR)
 
     def reset(self, pose: Pose) -> None:
-        """To be set down elsewhere makes no round."""
+        """Break off the round: the robot was repositioned."""
         self._swept.interrupt()
         self.update(pose)
 
     def update(self, pose: Pose) -> None:
-        """A step further."""
+        """Update the metric with the robot's pose."""
         away_m = self._swept.away_m(pose) - self._radius_m
         if self._ticks % MEASURE_EVERY == 0:
             self._error_m.add(abs(away_m - self._settings.wanted_m))
@@ -80,4 +80,4 @@ class Rounds:
             self._swept.update(pose)
 
     def abort(self) -> None:
-        """What was made counts, and nothing else is."""
+        """Do nothing: progress so far counts."""

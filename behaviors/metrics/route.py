@@ -25,23 +25,22 @@ from hal.settings import SettingsError
 from hal.simulation import Pose, Simulation, WorldPlan
 
 _LOOK_EVERY = 5
-"""Ticks from one look to the next; the robot goes some centimetres meanwhile."""
+"""Ticks between two updates; the robot drives some centimeters in them."""
 _LEFT_BEHIND_M = 0.1
 
 
 class RouteSettings(MetricSettings):
-    """Route."""
+    """Settings of the metric `route`."""
 
     decisions: Annotated[int, Field(ge=4, le=64)] = 8
     """Junctions of the loop; at each of them one way on is right."""
     seed: Annotated[int, Field(ge=0)] | None = None
     """Which loop of all that there are; None: the one of the robot's seed, where a robot is taught it."""
     starts: Annotated[int, Field(ge=1, le=100)] = 1
-    """So often in its lesson it is switched on anew at the start: what it decides there, before it has a history, is
-    corrected only where it comes there again."""
+    """Number of starts in the training run: a decision without history is corrected at the next start only."""
 
     def require(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> None:
-        """Streets with such a loop, and behaviours that mean a way through."""
+        """Raise hal.settings.SettingsError without such a loop, or for behaviours that choose no exit."""
         if not set(behaviours) <= set(QUARTERS):
             raise SettingsError(f"course route: the task's behaviours must be among {', '.join(QUARTERS)}")
         if not plan.junctions:
@@ -51,20 +50,23 @@ class RouteSettings(MetricSettings):
         self.route_in(plan, behaviours)
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
-        """The course; chance decides nothing of it, or another route would be examined than was taught."""
+        """Return the metric in a simulation, without random choices: exam and lesson share the route.
+
+        Raises hal.settings.SettingsError as `require` does.
+        """
         plan = simulation.plan
         self.require(plan, behaviours)
         return FixedRoute(StreetMap(plan), self.route_in(plan, behaviours), behaviours)
 
     def route_in(self, plan: WorldPlan, behaviours: tuple[str, ...]) -> Route:
-        """The loop in a world. Raises hal.settings.SettingsError where there is none."""
+        """Return the loop in a world. Raises hal.settings.SettingsError without such a loop."""
         chance = random.Random(f"route of {self.decisions} decisions, seed {self.seed or 0}")
         return random_route(StreetMap(plan), self.decisions, [QUARTERS[each] for each in behaviours], chance)
 
 
 @dataclass(frozen=True, slots=True)
 class Passage:
-    """What the robot did at one junction of the route."""
+    """Passage of the robot through one junction of the route."""
 
     leg: int
     """Which one of the route it came by."""
@@ -74,7 +76,7 @@ class Passage:
     """Those that it made; None where it did not come to that junction, or not out of it."""
     x_m: float
     y_m: float
-    """Where that was judged."""
+    """Position of the judgement."""
 
 
 class FixedRoute:
@@ -91,12 +93,12 @@ class FixedRoute:
         self.route = route
         self.needs_reset = False
         self.passages: list[Passage] = []
-        """What was done at each junction so far."""
+        """Passages through junctions so far."""
         self._streets = streets
         self._behaviours = behaviours
         self._meaning = {QUARTERS[each]: each for each in behaviours}
         self._leg = 0
-        """Of the street that it drives in, or of the junction that it is in."""
+        """Leg of the street or junction that the robot is in."""
         self._passed = 0
         self._inside = False
         self._pose = self._at(0).middle
@@ -106,27 +108,27 @@ class FixedRoute:
 
     @property
     def behaviour(self) -> str:
-        """Right at the junction that it is in or comes to next."""
+        """Required behaviour at the current or next junction."""
         return self._meaning[self._at(0).quarters]
 
     @property
     def ahead(self) -> WayAhead:
-        """Where it is on the route."""
+        """Position on the route."""
         return WayAhead(self._passed, self._inside, self.behaviour, self._meaning[self._at(1).quarters])
 
     @property
     def reset_pose(self) -> Pose:
-        """In the middle of the street that it should be in."""
+        """Middle of the street that the robot should be in."""
         return self._at(1 if self._inside else 0).middle
 
     @property
     def progress(self) -> float:
-        """Junctions at which it did what is right."""
+        """Number of junctions passed in the required way."""
         return float(sum(each.taken == each.right for each in self.passages))
 
     @property
     def findings(self) -> Metrics:
-        """Junctions and those where it did right, in all and by what was right, and the lateral deviation."""
+        """Junctions and right ones, in total and by behaviour, and the lateral deviation in m."""
         asked = Counter(each.right for each in self.passages)
         right = Counter(each.right for each in self.passages if each.taken == each.right)
         found = {JUNCTIONS: float(asked.total()), RIGHT: float(right.total())}
@@ -137,7 +139,7 @@ class FixedRoute:
         return found | deviation_m
 
     def reset(self, pose: Pose) -> None:
-        """Set down: behind the junction that it was in, else on the way to the same one as before."""
+        """Continue after the current junction, or on the way to the same junction as before."""
         self.needs_reset = False
         if self._inside:
             self._judge(None)
@@ -145,7 +147,7 @@ class FixedRoute:
         self._pose = pose
 
     def update(self, pose: Pose) -> None:
-        """A step further."""
+        """Update the metric with the robot's pose."""
         due = self._ticks % _LOOK_EVERY == 0
         self._ticks += 1
         if not due or self.needs_reset:
@@ -167,7 +169,7 @@ class FixedRoute:
             self.needs_reset = True
 
     def abort(self) -> None:
-        """Stuck, or stopped for good: it will not get through the junction ahead."""
+        """Count the junction ahead as wrong: the robot will not get through."""
         self._judge(None)
 
     def _leave(self, junction: Junction, pose: Pose) -> None:

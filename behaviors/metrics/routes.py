@@ -25,7 +25,7 @@ class Leg:
     leaves: Side
     """The way out of that junction, which is the next leg's."""
     behind: Junction
-    """Where the street comes from."""
+    """Junction at the start of the street."""
 
     @property
     def quarters(self) -> int:
@@ -47,15 +47,20 @@ class Route:
 
     @property
     def quarters(self) -> tuple[int, ...]:
-        """What is to be done at each junction."""
+        """Quarter turns to the left at each junction."""
         return tuple(leg.quarters for leg in self.legs)
 
 
 def random_route(streets: StreetMap, decisions: int, quarters: Sequence[int], chance: random.Random) -> Route:
-    """A loop past so many junctions, drawn from a random walk that never turns back, and that is no shorter loop anew.
+    """Return a closed loop past so many junctions, drawn from a random walk that never turns back.
 
-    It may cross itself, and go through a street more than once. `quarters`: the turns that can be asked for.
-    Raises hal.settings.SettingsError where there is none.
+    The loop may cross itself and use a street twice, but repeats no shorter loop.
+
+    Args:
+        quarters: allowed turns, in quarters to the left.
+
+    Raises:
+        hal.settings.SettingsError: the streets have no such loop.
     """
     allowed = set(quarters)
     on = {step: tuple(_steps_on(streets, step, allowed)) for step in _steps(streets)}
@@ -70,7 +75,7 @@ def random_route(streets: StreetMap, decisions: int, quarters: Sequence[int], ch
 
 
 def _leads_back(on: dict[_Step, tuple[_Step, ...]], first: _Step, decisions: int) -> bool:
-    """Whether some walk of so many steps ends where it began."""
+    """Return whether a walk of so many steps ends at its start."""
     there = {first}
     for _ in range(decisions):
         there = {following for step in there for following in on[step]}
@@ -80,7 +85,7 @@ def _leads_back(on: dict[_Step, tuple[_Step, ...]], first: _Step, decisions: int
 def _walk(
     on: dict[_Step, tuple[_Step, ...]], first: _Step, decisions: int, chance: random.Random
 ) -> tuple[_Step, ...] | None:
-    """Of so many steps, the last of which leads on to the first; None where this walk came to another end."""
+    """Return a closed random walk of so many steps; None if this walk did not close."""
     walk = [first]
     while len(walk) < decisions:
         if not on[walk[-1]]:
@@ -90,7 +95,7 @@ def _walk(
 
 
 def _repeats(walk: Sequence[_Step]) -> bool:
-    """Whether it is a shorter loop, several times."""
+    """Return whether the walk repeats a shorter loop."""
     size = len(walk)
     return any(size % part == 0 and all(walk[k] == walk[k % part] for k in range(size)) for part in range(1, size))
 
@@ -103,7 +108,7 @@ def _closed(walk: Sequence[_Step]) -> Route:
 
 
 def _steps(streets: StreetMap) -> Iterator[_Step]:
-    """Every street between two junctions, both ways."""
+    """Yield every street between two junctions, in both directions."""
     for behind in streets.junctions:
         for way in behind.arms:
             junction = _neighbour(streets, behind, way)

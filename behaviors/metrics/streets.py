@@ -18,21 +18,21 @@ class Side(IntEnum):
     SOUTH = 3
 
     def turned(self, quarters: int) -> "Side":
-        """So many quarter turns to the left of this one."""
+        """Return the side after so many quarter turns to the left."""
         return Side((self + quarters) % 4)
 
     @property
     def heading_rad(self) -> float:
-        """Of a robot that goes this way: counter-clockwise from the x axis."""
+        """Heading of a robot in this direction, counter-clockwise from the x axis."""
         return self * math.pi / 2
 
 
 ALONG = {Side.EAST: (1, 0), Side.NORTH: (0, 1), Side.WEST: (-1, 0), Side.SOUTH: (0, -1)}
-"""Where each way leads, in x and y."""
+"""Unit vector of each direction, in x and y."""
 
 
 def side_towards(dx: float, dy: float) -> Side:
-    """Where a direction leads, roughly."""
+    """Return the side nearest to a direction in m or as a unit vector."""
     if abs(dx) >= abs(dy):
         return Side.EAST if dx > 0 else Side.WEST
     return Side.NORTH if dy > 0 else Side.SOUTH
@@ -40,7 +40,7 @@ def side_towards(dx: float, dy: float) -> Side:
 
 @dataclass(frozen=True, slots=True)
 class Junction:
-    """Where streets meet."""
+    """Junction of streets."""
 
     x_m: float
     y_m: float
@@ -52,14 +52,14 @@ class Junction:
     """Sides at which a street goes on."""
 
     def holds(self, pose: Pose, margin_m: float = 0.0) -> bool:
-        """Whether a pose lies in its square, or not farther than `margin_m` outside."""
+        """Return whether a pose lies in the junction, or at most `margin_m` outside."""
         return (
             abs(pose.x_m - self.x_m) <= self.half_width_m + margin_m
             and abs(pose.y_m - self.y_m) <= self.half_height_m + margin_m
         )
 
     def side_of(self, pose: Pose) -> Side:
-        """The side that a pose lies at."""
+        """Return the side of the junction that a pose lies at."""
         return side_towards((pose.x_m - self.x_m) / self.half_width_m, (pose.y_m - self.y_m) / self.half_height_m)
 
 
@@ -73,11 +73,11 @@ class Lane:
     """Its y when level, else its x."""
     from_m: float
     to_m: float
-    """Where it begins and ends along the other axis."""
+    """Start and end along the other axis."""
     half_width_m: float
 
     def deviation_m(self, pose: Pose) -> float | None:
-        """Distance of a pose from the middle; None when it is not in the street."""
+        """Return the distance of a pose from the middle; None off the street."""
         along_m, across_m = (pose.x_m, pose.y_m) if self.level else (pose.y_m, pose.x_m)
         away_m = abs(across_m - self.line_m)
         return away_m if away_m <= self.half_width_m and self.from_m <= along_m <= self.to_m else None
@@ -91,18 +91,18 @@ class StreetMap:
         self.junctions = tuple(self._junction(x_m, y_m) for x_m, y_m in plan.junctions)
 
     def junction_at(self, pose: Pose) -> Junction | None:
-        """The junction in whose square a pose lies."""
+        """Return the junction that a pose lies in."""
         return next((each for each in self.junctions if each.holds(pose)), None)
 
     def deviation_m(self, pose: Pose) -> float | None:
-        """Distance from the middle of the street that a pose lies in; None in a junction and off the streets."""
+        """Return the distance of a pose from the middle of its street; None in junctions and off the streets."""
         if self.junction_at(pose) is not None:
             return None
         deviations_m = [away_m for lane in self.lanes if (away_m := lane.deviation_m(pose)) is not None]
         return min(deviations_m, default=None)
 
     def next_junction(self, pose: Pose, way: Side) -> Junction | None:
-        """The one that the street which a pose lies in leads to, this way; None where it leads to none."""
+        """Return the next junction in this direction along the street of a pose; None without one."""
         along_x, along_y = ALONG[way]
         ahead = [
             (along_m, each)

@@ -1,4 +1,4 @@
-"""The contract of a course."""
+"""Protocol of task metrics."""
 
 import random
 from abc import abstractmethod
@@ -18,59 +18,59 @@ DISTANCE_ERROR = "distance error, m"
 LATERAL_DEVIATION = "lateral deviation, m"
 """Root of the mean square of the distance from the middle of the street."""
 JUNCTIONS = "junctions"
-"""How many were asked for, and passed or not got through: stuck, stopped for good or turned back on the way."""
+"""Number of required junctions: passed, or not got through because the robot was stuck, stopped or turned back."""
 RIGHT = "junctions right"
-"""How many of them through the side that was asked for."""
+"""Number of junctions left through the required side."""
 
 
 class TaskMetric(Protocol):
-    """Watches one drive from above: says what is wanted, and measures how well it is done."""
+    """Metric of one drive: the required behaviour, and measures of the result."""
 
     @property
     def unit(self) -> str:
-        """What progress is counted in, such as `laps`."""
+        """Unit of the progress, such as `laps`."""
         ...
 
     @property
     def behaviour(self) -> str:
-        """The taught behaviour that is wanted now; empty for tasks with one without a name."""
+        """Required behaviour; empty for tasks with one unnamed behaviour."""
         ...
 
     @property
     def needs_reset(self) -> bool:
-        """Whether nothing can be done from here: the robot is to be set down elsewhere."""
+        """True if the robot must be repositioned to go on."""
         ...
 
     @property
     def progress(self) -> float:
-        """How far it came, in units."""
+        """Progress in `unit`."""
         ...
 
     @property
     def findings(self) -> Metrics:
-        """Other measures of the drive so far; those that nothing was seen of are left out."""
+        """Further measures of the drive so far; measures without values are left out."""
         ...
 
     def reset(self, pose: Pose) -> None:
-        """The robot was set down here by hand, at the start or later."""
+        """Start at this pose, at the beginning or after a repositioning."""
         ...
 
     def update(self, pose: Pose) -> None:
-        """Where the robot really is; to be told in every tick."""
+        """Update the metric with the true pose, in every tick."""
         ...
 
     def abort(self) -> None:
-        """The drive ends here before its time, stuck or stopped for good: what is asked now will not be done."""
+        """End the drive early, stuck or stopped: the current requirement counts as missed."""
         ...
 
 
 class WayAhead(NamedTuple):
-    """Where a robot is on a route, as its teacher sees it."""
+    """Position of a robot on a route, for its teacher."""
 
     passed: int
-    """Junctions that it has left behind."""
+    """Number of junctions already left."""
     inside: bool
-    """Whether it is in one."""
+    """True if the robot is in a junction."""
     here: str
     """The behaviour that is right at the junction that it is in, or comes to next."""
     after: str
@@ -79,16 +79,16 @@ class WayAhead(NamedTuple):
 
 @runtime_checkable
 class RouteMetric(TaskMetric, Protocol):
-    """A course along a route: what is right at a junction is said to the level that chooses among behaviours."""
+    """Metric along a route; its requirements are for the level that chooses behaviours."""
 
     @property
     def ahead(self) -> WayAhead:
-        """Where the robot is."""
+        """Position of the robot on the route."""
         ...
 
     @property
     def reset_pose(self) -> Pose:
-        """Where it is to be set down at the start, and where it is needs_reset or makes no way."""
+        """Pose at the start, and after a repositioning or rescue."""
         ...
 
 
@@ -107,4 +107,4 @@ class MetricSettings(KindSettings):
 
     @abstractmethod
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:
-        """The course in a simulation. Raises hal.settings.SettingsError as `require` does."""
+        """Return the metric in a simulation. Raises hal.settings.SettingsError as `require` does."""

@@ -21,18 +21,18 @@ class Street:
 
     @property
     def length_m(self) -> float:
-        """From the middle of the one junction to that of the other."""
+        """Distance between the centers of both junctions."""
         return math.hypot(self.ahead.x_m - self.behind.x_m, self.ahead.y_m - self.behind.y_m)
 
     @property
     def middle(self) -> Pose:
-        """Half-way along, looking ahead."""
+        """Pose half-way along, in the direction of the street."""
         x_m, y_m = (self.ahead.x_m + self.behind.x_m) / 2, (self.ahead.y_m + self.behind.y_m) / 2
         return Pose(x_m, y_m, self.way.heading_rad)
 
 
 class Town:
-    """All streets of a world."""
+    """Directed streets of a world, and the shortest ways between them."""
 
     def __init__(self, streets: StreetMap, meaning: Mapping[str, int]) -> None:
         """`meaning`: quarter turns to the left of each behaviour."""
@@ -47,7 +47,7 @@ class Town:
                 self._graph.add_edge(street, on, length_m=street.length_m)
 
     def street_at(self, pose: Pose) -> Street | None:
-        """The street that a pose lies in and looks along; None within a junction."""
+        """Return the street that a pose lies in and looks along; None within a junction."""
         if any(each.holds(pose) for each in self._map.junctions):
             return None
         way = side_towards(math.cos(pose.heading_rad), math.sin(pose.heading_rad))
@@ -55,7 +55,7 @@ class Town:
         return None if ahead is None else self._of.get((way, ahead))
 
     def on_from(self, street: Street) -> dict[str, Street]:
-        """The behaviours that are possible at the end of a street, and the street that each leads to."""
+        """Return the possible behaviours at the end of a street, each with the street that follows."""
         found = {}
         for behaviour, quarters in self._meaning.items():
             way = street.way.turned(quarters)
@@ -66,14 +66,14 @@ class Town:
         return found
 
     def shortest(self, start: Street, goal: Street) -> tuple[Street, ...] | None:
-        """The streets of the shortest way, both ends among them; None where no way leads there."""
+        """Return the streets of the shortest way, with both ends; None without a way."""
         try:
             return tuple(nx.dijkstra_path(self._graph, start, goal, weight="length_m"))
         except nx.NetworkXNoPath:
             return None
 
     def nearest(self, start: Street, goals: Sequence[Street]) -> tuple[Street, ...] | None:
-        """The shortest way to the nearest of several streets."""
+        """Return the shortest way to the nearest of several streets; None without a way."""
         ways = [way for goal in goals if (way := self.shortest(start, goal)) is not None]
         return min(ways, key=lambda way: length_m(way), default=None)
 
@@ -94,9 +94,11 @@ class Town:
 
 
 def length_m(way: Sequence[Street], start: Pose | None = None, end: Pose | None = None) -> float:
-    """Along the middles of streets, from a pose in the first to one in the last; None: from and to their middles.
+    """Return the length along the middles of streets, from a pose in the first to one in the last.
 
-    In one and the same street: straight on.
+    Args:
+        start: None: the middle of the first street.
+        end: None: the middle of the last street.
     """
     start, end = start or way[0].middle, end or way[-1].middle
     corners = [(each.ahead.x_m, each.ahead.y_m) for each in way[:-1]]

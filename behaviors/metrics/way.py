@@ -1,4 +1,4 @@
-"""Metres of way, wherever it leads."""
+"""Metric of the travelled distance in m."""
 
 import math
 import random
@@ -8,19 +8,19 @@ from hal.simulation import Pose, Simulation
 
 
 class WaySettings(MetricSettings):
-    """Way."""
+    """Settings of the metric `way`."""
 
     def least_progress(self, simulation: Simulation, duration_s: float) -> float:  # noqa: ARG002 - as in other courses
         """Return the way of a drive at 0.1 m/s, in m."""
         return LEAST_SPEED_M_S * duration_s
 
     def build(self, simulation: Simulation, behaviours: tuple[str, ...], chance: random.Random) -> TaskMetric:  # noqa: ARG002
-        """The course."""
+        """Return the metric in a simulation. Raises hal.settings.SettingsError as `require` does."""
         return Way(simulation.pose, behaviours[0])
 
 
 class Way:
-    """Measures the way of the robot's centre; turning on the spot makes none."""
+    """Distance travelled by the robot's center; turning on the spot adds none."""
 
     unit = "m"
     needs_reset = False
@@ -32,17 +32,17 @@ class Way:
 
     @property
     def findings(self) -> Metrics:
-        """None."""
+        """No further measures."""
         return {}
 
     def reset(self, pose: Pose) -> None:
-        """To be set down elsewhere makes no way."""
+        """Start at this pose without adding distance."""
         self._pose = pose
 
     def update(self, pose: Pose) -> None:
-        """A step further."""
+        """Update the metric with the robot's pose."""
         self.progress += math.hypot(pose.x_m - self._pose.x_m, pose.y_m - self._pose.y_m)
         self._pose = pose
 
     def abort(self) -> None:
-        """What was made counts, and nothing else is."""
+        """Do nothing: progress so far counts."""

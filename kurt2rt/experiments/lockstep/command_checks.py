@@ -1,4 +1,4 @@
-"""What a scripted teacher or an examiner says has to be carried out: nobody is there who would read a refusal."""
+"""Check that the robot carries out the commands of scripted teachers and examiners."""
 
 from collections.abc import Callable
 

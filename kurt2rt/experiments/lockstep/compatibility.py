@@ -1,4 +1,4 @@
-"""Whether a task can be taught and examined where it is to be."""
+"""Compatibility of tasks and worlds."""
 
 from collections.abc import Iterable
 
@@ -21,7 +21,7 @@ def require_course(factory: SimulationFactory, task: TaskSettings, worlds: Itera
 
 
 def route_of(course: TaskMetric, task: TaskSettings) -> RouteMetric:
-    """The course, along whose route a mid level is taught. Raises hal.settings.SettingsError for another one."""
+    """Return the metric as a route metric. Raises hal.settings.SettingsError for another metric."""
     if isinstance(course, RouteMetric):
         return course
     raise SettingsError(

@@ -1,4 +1,4 @@
-"""A lesson and its exams, for one seed: what a demonstration shows once and a study repeats."""
+"""Curriculum of one seed: a training run and its exams."""
 
 from collections.abc import Callable, Sequence
 from contextlib import closing
@@ -23,7 +23,7 @@ Report = Callable[[str, float, float], None]
 
 @dataclass(frozen=True, slots=True)
 class WorldResult:
-    """One world's exam beside the teacher's own drive there."""
+    """Exam in one world, with the teacher's own drive there."""
 
     learned: ExamResult
     teacher: ExamResult
@@ -31,13 +31,13 @@ class WorldResult:
 
     @property
     def succeeded(self) -> bool:
-        """Whether the exam was judged and passed."""
+        """True if the exam was judged and passed."""
         return self.verdict is ExamVerdict.PASSED
 
 
 @dataclass(frozen=True, slots=True)
 class CurriculumResult:
-    """A lesson and its exams."""
+    """Training run and exams."""
 
     lesson: TrainingResult
     exams: tuple[WorldResult, ...]

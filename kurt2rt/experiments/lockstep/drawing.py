@@ -15,7 +15,7 @@ from kurt2rt.experiments.lockstep.trails import ASKED, TRAIL, columns, draw_trai
 
 _TEACHER = "#b0b0b0"
 _CARRIED_M = 0.2
-"""Between two points of a trail, 0.1 s apart, it does not drive so far."""
+"""Greater distance of two points of a trail, 0.1 s apart: the robot was repositioned."""
 
 
 def draw_curriculum(result: CurriculumResult, task: TaskSettings, factory: SimulationFactory, path: Path) -> None:

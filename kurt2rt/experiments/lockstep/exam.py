@@ -67,12 +67,12 @@ class ExamResult:
 
     @property
     def failed(self) -> bool:
-        """Whether it collided, got stuck or was stopped by a latch of the guard."""
+        """True if the drive had a collision, got stuck or was stopped by a latch of the guard."""
         return self.collisions > 0 or self.stuck or bool(self.alarm)
 
     @property
     def got_nowhere(self) -> bool:
-        """Whether the progress is too small to measure another drive by."""
+        """True if the progress is too small to measure another drive by."""
         return self.progress <= self.least_progress
 
     @property
@@ -89,7 +89,7 @@ class ExamSetup:
     world: str
     seed: int
     teacher_policy: bool = False
-    """Whether the teacher's own policy drives instead of the RLAs."""
+    """True if the teacher's own policy drives instead of the RLAs."""
     saved: Statistics | None = None
     """Values and counters of the RLAs; None: initial ones."""
     autonomous_values: Statistics | None = None

@@ -1,4 +1,4 @@
-"""A knowledge file while a lesson is taught into it."""
+"""Knowledge file during a training run."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -18,7 +18,7 @@ class LessonLostError(UserError):
 
 
 class LessonKeeping:
-    """Keeps lessons, and looks that none is lost."""
+    """Open knowledge file of a training run that checks every acknowledgement."""
 
     def __init__(
         self, file: Path, opened: OpenedKnowledge, writer: JournalWriter, on_saved: Callable[[Acknowledgement], None]
@@ -37,7 +37,7 @@ class LessonKeeping:
         return TrainingStore(self.writer, opened.events, opened.counter, opened.saved)
 
     def look(self) -> None:
-        """Hear what became of lessons so far. Raises LessonLostError."""
+        """Check the acknowledgements so far. Raises LessonLostError."""
         for acknowledgement in self.writer.acknowledged():
             if acknowledgement.error is not None:
                 raise LessonLostError(f"{acknowledgement.error}", where=self._file)
@@ -46,7 +46,7 @@ class LessonKeeping:
     def telling(
         self, report: Callable[[str, float, float], None], what: str, whole_s: float
     ) -> Callable[[float], None]:
-        """To be called with the seconds of a lesson that are done: it looks, and reports."""
+        """Return a callback for the simulated seconds that checks the acknowledgements and reports progress."""
 
         def on_progress(done_s: float) -> None:
             self.look()
@@ -55,7 +55,7 @@ class LessonKeeping:
         return on_progress
 
     def end(self, counted: Statistics) -> None:
-        """Keep what was counted, and wait until all is durable. Raises LessonLostError."""
+        """Store the statistics, and wait until all is durable. Raises LessonLostError."""
         self.writer.submit_statistics(counted)
         if not self.writer.flush(timeout_s=30.0):
             raise LessonLostError(self.writer.error or f"{self._file}: the disk did not answer within 30 s")

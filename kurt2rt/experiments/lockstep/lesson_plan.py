@@ -1,4 +1,4 @@
-"""What a lesson consists of."""
+"""Plan of a training run."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -13,23 +13,23 @@ chance."""
 
 @dataclass(frozen=True, slots=True)
 class SignalTimes:
-    """How often the teacher praises and blames."""
+    """Intervals of the rewards."""
 
     bad_every_s: float = 1.0
     good_every_s: float = 2.0
     neutral_every_s: float = 1.0
-    """Only the critic is taught what is neutral."""
+    """Interval of neutral appraisals, for the critic only."""
     patience_s: float = 0.0
     """He speaks of what has been bad for so long without a break; teaching the critic he needs none."""
     gap_s: float = 0.0
-    """The shortest time between two signals of any kind."""
+    """Least time between two rewards or appraisals."""
     most_blame: int = 0
     """He blames no more often than this; 0: as often as he likes."""
 
 
 @dataclass(frozen=True, slots=True)
 class LessonPlan:
-    """Phases one after the other, and what the teacher does in them besides."""
+    """Phases of a training run, and the acts of the teacher in them."""
 
     phases: tuple[tuple[Phase, float], ...]
     """Each with its time in s."""
@@ -38,31 +38,31 @@ class LessonPlan:
     signs: Signs = "none"
     times: SignalTimes = SignalTimes()
     blame_by_chance: int = 0
-    """Who goes by chance blames so many times in all."""
+    """Number of random penalties."""
     reposition_every_s: float | None = None
     """The robot is set down at some start so often; 0: never; None: as the task says."""
     rescue_after_s: float | None = None
     """A robot that makes no way for so long is set down elsewhere by hand; None: as the task says."""
     set_down_every_s: float = 0.0
-    """In phase 4 the robot is set down anywhere in sight of something, also close to it, so often; 0: never."""
+    """Interval in phase 4 of repositioning the robot in sight of something, also close to it; 0: never."""
     shown_s: float = 0.0
     """Then some action of the repertoire, whatever it leads to, drives it for so long."""
     shown_share: float = 1.0
     """So often of the times that it is set down."""
     rescues_who_asks: bool = False
-    """Whether the time in which it makes no way goes on after a question, instead of beginning anew."""
+    """True if the time of the stuck detector continues after a question."""
 
     corrects_basic: bool = True
-    """Where there is a mid level: whether the basic level is corrected, too. It is answered in any case."""
+    """True if the basic level is corrected under a mid level, too; questions are answered in any case."""
 
     @property
     def duration_s(self) -> float:
-        """Robot time of all of it."""
+        """Duration of all phases in s."""
         return sum(lasts_s for _, lasts_s in self.phases)
 
 
 def plan_of(task: TaskSettings) -> LessonPlan:
-    """The lesson that the task describes: phases 1 and 2, or that one of them which it has time for."""
+    """Return the plan of the task: phases 1 and 2, without phases of 0 s."""
     teaching = task.teaching
     phases = ((Phase.SUPERVISED, teaching.supervised_s), (Phase.CORRECTIONS, teaching.corrections_s))
     return LessonPlan(tuple(each for each in phases if each[1]) or phases[:1])

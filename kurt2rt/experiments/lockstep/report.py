@@ -1,4 +1,4 @@
-"""What a lesson and its exams came to, as tables to read."""
+"""Tables of training runs and exams."""
 
 import math
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ _SUCCESS_WORDS = {**EXAM_VERDICT_TEXTS, ExamVerdict.PASSED: "yes", ExamVerdict.F
 
 
 def render_curriculum(result: CurriculumResult, task: TaskSettings) -> RenderableType:
-    """Tables of one lesson and its exams, beside what the paper reports."""
+    """Return the tables of one training run and its exams, with the paper's numbers."""
     lesson = result.lesson
     taught = TextTable(title=f"Lesson: {task.name} in world {lesson.world}, seed {lesson.seed}")
     taught.add_column("")
@@ -77,7 +77,7 @@ def _exam_as_data(exam: ExamResult) -> dict[str, Any]:
 
 
 def render_exams(exams: Sequence[WorldResult], task: TaskSettings) -> RenderableType:
-    """Table of one exam per world, beside the teacher's own drive there."""
+    """Return the table of one exam for each world, with the teacher's own drive."""
     driven = TextTable(title=f"Exams without teacher, {task.exam.duration_s:.0f} s each")
     unit = exams[0].learned.unit
     headings = ("world", unit, f"teacher's own {unit}", "collisions", "stuck", "unknown situations", "success")
@@ -105,7 +105,7 @@ def not_judged(result: WorldResult) -> bool:
 
 
 def verdict_of(result: WorldResult) -> str:
-    """One exam in a line: `2.31 of the teacher's 2.40 laps, no collision`, with what ended it early."""
+    """Return one exam in a line, such as `2.31 of the teacher's 2.40 laps, no collision`."""
     exam = result.learned
     collisions = {0: "no collision", 1: "1 collision"}.get(exam.collisions, f"{exam.collisions} collisions")
     of = f"of the teacher's {result.teacher.progress:.2f} {exam.unit}{_not_well(result.teacher)}"
@@ -116,7 +116,7 @@ def verdict_of(result: WorldResult) -> str:
 
 
 def _render_measures(title: str, worlds: Sequence[str], exams: Sequence[Sequence[ExamResult]]) -> list[TextTable]:
-    """What courses found besides, a column for the exams of each world; no table where they found nothing."""
+    """Return the table of further measures, a column for each world; no table without measures."""
     names = dict.fromkeys(name for each in exams for exam in each for name in exam.findings)
     # How many junctions there were is told beside how many were right.
     shown = [name for name in names if not name.startswith(JUNCTIONS) or name.startswith(RIGHT)]
@@ -132,7 +132,7 @@ def _render_measures(title: str, worlds: Sequence[str], exams: Sequence[Sequence
 
 
 def _measure(findings: Sequence[Metrics], name: str) -> str:
-    """The median, or of junctions all that there were."""
+    """Return the median, or the sum of junctions."""
     if not findings:
         return ""
     values = [found[name] for found in findings]
@@ -155,7 +155,7 @@ def _not_well(teacher: ExamResult) -> str:
 
 
 def label_of(world: str) -> str:
-    """A world as it is shown: the shipped ones by their capital letter, others as they were given."""
+    """Return the label of a world: a capital letter for shipped ones, else the name."""
     return world.upper() if len(world) == 1 else world
 
 
@@ -168,7 +168,7 @@ def wilson_interval(successes: int, trials: int) -> tuple[float, float]:
 
 
 def quartiles(values: Sequence[float]) -> tuple[float, float, float]:
-    """Lower quartile, median, upper quartile, by linear interpolation."""
+    """Return lower quartile, median and upper quartile, by linear interpolation."""
     ordered = sorted(values)
 
     def at(share: float) -> float:
@@ -181,7 +181,7 @@ def quartiles(values: Sequence[float]) -> tuple[float, float, float]:
 
 
 def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> RenderableType:
-    """Tables of many seeds: one row each, then medians, quartiles and intervals."""
+    """Return the tables of many seeds: a row for each, then medians, quartiles and intervals."""
     worlds = [each.learned.world for each in results[0].exams]
     unit = results[0].exams[0].learned.unit
     seeds = TextTable(title=f"{task.name}: one row per seed")

@@ -1,4 +1,4 @@
-"""Whether the robot makes way."""
+"""Detector of a stuck robot."""
 
 import math
 from collections import deque
@@ -16,7 +16,7 @@ class StuckDetector:
         self._ticks = 0
 
     def none_since_window(self, position: Position) -> bool:
-        """Take in one tick's position; true when a whole window passed within `least_m`. Looks twice a second."""
+        """Return whether the robot stayed within `least_m` for a whole window; call it in every tick."""
         due = self._ticks % self._stride == 0
         self._ticks += 1
         if not due:

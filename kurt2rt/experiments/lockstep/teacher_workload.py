@@ -1,4 +1,4 @@
-"""How much a teacher has to do: what he says, and does with his hands, in each minute of teaching."""
+"""Workload of a teacher: commands and manual acts in each minute."""
 
 from typing import Literal, NamedTuple
 
@@ -6,41 +6,41 @@ from kurt2rt.core.teaching.commands import Appraise, Command, Correct, DeleteRla
 
 
 class WorkloadMinute(NamedTuple):
-    """What a teacher said and did in one minute of robot time, also where it changed nothing."""
+    """Commands and manual acts of a teacher in one minute of robot time."""
 
     lessons: int = 0
     """Answers to the robot's questions."""
     corrections: int = 0
     rewards: int = 0
-    """Praise and blame."""
+    """Rewards of +1 and -1."""
     appraisals: int = 0
     """Lessons for the critic."""
     set_down: int = 0
-    """The robot was carried elsewhere, as planned."""
+    """Planned repositionings by hand."""
     shown: int = 0
-    """An action was shown to the critic."""
+    """Actions demonstrated to the critic."""
     rescued: int = 0
-    """The robot was carried elsewhere because it made no way."""
+    """Rescues of a stuck robot."""
     go: int = 0
-    """The robot was told to drive again after the guard had stopped it."""
+    """Resume commands after a latched stop."""
 
 
 Hands = Literal["set_down", "shown", "rescued", "go"]
 SAID = ("lessons", "corrections", "rewards", "appraisals")
-"""What is said; the rest is done."""
+"""Commands; the other fields are manual acts."""
 
 
 class TeacherWorkload:
-    """Counts what a teacher says, minute by minute."""
+    """Counter of commands and manual acts, minute by minute."""
 
     def __init__(self, ticks: int, period_s: float) -> None:
-        """Of a lesson of so many ticks; a minute that is begun counts."""
+        """Count for `ticks` ticks of `period_s`; the last minute may be shorter."""
         self._ticks_per_minute = round(60.0 / period_s)
         self._minutes = [WorkloadMinute()] * max(1, -(-ticks // self._ticks_per_minute))
 
     @property
     def minutes(self) -> tuple[WorkloadMinute, ...]:
-        """One after the other; the last one may be shorter."""
+        """Minutes in their order; the last one may be shorter."""
         return tuple(self._minutes)
 
     def count(self, tick: int, command: Command) -> None:

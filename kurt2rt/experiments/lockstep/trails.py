@@ -1,4 +1,4 @@
-"""Ways of robots in pictures from above."""
+"""Trails of robots in figures."""
 
 import math
 from collections.abc import Sequence
@@ -30,7 +30,7 @@ def draw_trail(
 
 
 def ways(trail: Sequence[PlaceT], carried_m: float) -> list[list[PlaceT]]:
-    """The trail in the pieces that the robot drove itself."""
+    """Return the trail in pieces, split at repositionings."""
     pieces: list[list[PlaceT]] = []
     for place in trail:
         if not pieces or math.dist(pieces[-1][-1], place) > carried_m:
@@ -40,5 +40,5 @@ def ways(trail: Sequence[PlaceT], carried_m: float) -> list[list[PlaceT]]:
 
 
 def columns(places: Sequence[tuple[float, float]]) -> tuple[list[float], list[float]]:
-    """x and y, to plot."""
+    """Return all x and all y, in m."""
     return [x for x, _ in places], [y for _, y in places]

@@ -1,1 +1,1 @@
-"""Errands: places and ways taught by leading the robot about, then goals that were never demonstrated as a whole."""
+"""Navigation: places and ways taught in a guided tour, then goals that no tour demonstrated as a whole."""

@@ -1,4 +1,4 @@
-"""Pictures of errands: where the robot was led, the places with names, and how it went to its goals."""
+"""Figures of navigation: tour, named places and drives to goals."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ _BOX = {"boxstyle": "round,pad=0.15", "facecolor": "white", "edgecolor": _LED, "
 
 
 def draw_errands(factory: SimulationFactory, world: str, outcome: ErrandsOutcome, path: Path) -> None:
-    """One robot."""
+    """Draw the tour and the drives of one robot."""
     figure = Figure(figsize=(7.2, 8.0), layout="constrained")
     axes = figure.subplots()
     factory.draw(axes, world)

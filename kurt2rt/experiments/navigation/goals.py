@@ -1,4 +1,4 @@
-"""Which goals a robot is sent to: places by name that it was never led to, from where it then is, in one piece."""
+"""Choice of goals: named places to which no tour led directly."""
 
 import math
 import random
@@ -11,12 +11,12 @@ from behaviors.metrics.town import Street, Town, length_m
 
 @dataclass(frozen=True, slots=True)
 class GoalChosen:
-    """One errand."""
+    """Goal with its start and shortest way."""
 
     name: str
     start: Street
     street: Street
-    """Where the name was given."""
+    """Street of the name."""
     shortest: tuple[Street, ...]
     """The shortest way there, both ends among them."""
     demonstrated_m: float
@@ -24,7 +24,7 @@ class GoalChosen:
 
     @property
     def demonstrated(self) -> float:
-        """The same, as a multiple of the shortest way."""
+        """Ratio of `demonstrated_m` and the shortest distance in m."""
         return self.demonstrated_m / length_m(self.shortest)
 
 

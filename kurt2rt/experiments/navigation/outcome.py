@@ -1,4 +1,4 @@
-"""What errands came to, as it is kept."""
+"""Stored outcome of the navigation study."""
 
 from typing import Literal
 
@@ -14,7 +14,7 @@ the one that was taught first."""
 
 
 class ErrandDone(Settings):
-    """One goal that a robot was sent to."""
+    """Outcome of one drive to a goal."""
 
     goal: str
     why_not: str
@@ -22,45 +22,45 @@ class ErrandDone(Settings):
     seconds: float
     way_m: float
     shortest_m: float
-    """From where it began to where it stopped; where it did not come there, to the middle of the goal's street."""
+    """Shortest distance from start to end; of a missed goal, to the middle of its street."""
     junctions: int
-    """On the shortest way."""
+    """Number of junctions on the shortest way."""
     demonstrated: float | None
     """The shortest way that it was led there in one piece, as a multiple of the shortest one; None: never."""
     surprises: int
-    """How often it came to another place than planned."""
+    """Number of places that differed from the plan."""
     collisions: int
 
     @property
     def reached(self) -> bool:
-        """Whether it came there without touching anything."""
+        """True if the robot reached the goal without a collision."""
         return not self.why_not and not self.collisions
 
     @property
     def detour(self) -> float:
-        """Way made, as a multiple of the shortest."""
+        """Ratio of the travelled and the shortest distance, both in m."""
         return self.way_m / max(self.shortest_m, 0.1)
 
 
 class ErrandsRun(Settings):
-    """All goals, one after the other."""
+    """Outcome of all drives to goals by one strategy."""
 
     how: Strategy
     errands: tuple[ErrandDone, ...]
     trail: tuple[Place, ...]
 
     def good(self, detour_at_most: float) -> int:
-        """How many goals were reached by a way that is short enough."""
+        """Return the number of goals reached at this ratio of distances or less."""
         return sum(each.reached and each.detour <= detour_at_most for each in self.errands)
 
     @property
     def reached(self) -> tuple[ErrandDone, ...]:
-        """Those that were reached, however long the way."""
+        """Goals that were reached, however long the way."""
         return tuple(each for each in self.errands if each.reached)
 
 
 class ErrandsOutcome(Settings):
-    """One robot, led about and sent to goals."""
+    """Outcome of one robot: a tour and drives to goals."""
 
     made_of: Provenance | None = None
     seed: int
@@ -75,13 +75,13 @@ class ErrandsOutcome(Settings):
     corrections: int
     rescues: int
     named: dict[str, Place]
-    """Where each name was given: beside the middle of the street, to the right."""
+    """Position of each name: right of the middle of its street."""
     led: tuple[Place, ...]
-    """Where it was led."""
+    """Trail of the tour."""
     knowledge_hash: str
     runs: tuple[ErrandsRun, ...]
-    """By planning, and controls."""
+    """Runs by planning, and controls."""
 
     def run_of(self, how: Strategy) -> ErrandsRun | None:
-        """How it went by one of these; None where it was not tried."""
+        """Return the run of a strategy; None without one."""
         return next((each for each in self.runs if each.how == how), None)

@@ -1,4 +1,4 @@
-"""What is to be done: the streets once for each robot, where they were not taught before, then its errands."""
+"""Plan of the navigation study: the streets of each robot, unless taught before, then its goals."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ DECIDING = (NavigationJob,)
 
 @dataclass(frozen=True, slots=True)
 class NavigationPlan:
-    """Everything."""
+    """Jobs of the study."""
 
     task: TaskSettings
     seeds: tuple[int, ...]
@@ -80,5 +80,5 @@ def make_plan(
 
 
 def read_outcomes(plan: NavigationPlan, results: Results) -> tuple[ErrandsOutcome, ...]:
-    """What all jobs have left. Raises StudyError."""
+    """Return the outcomes of all jobs. Raises StudyError."""
     return tuple(results.read(job, ErrandsOutcome) for job in plan.jobs)

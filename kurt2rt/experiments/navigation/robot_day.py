@@ -1,4 +1,4 @@
-"""One robot's whole day: it learns the town, and then runs its errands."""
+"""Guided tour of one robot, then its drives to goals."""
 
 import random
 from collections.abc import Sequence
@@ -89,6 +89,6 @@ async def teach_and_send(
 
 
 def _shown_at(street: Street) -> Place:
-    """To the right of its middle: the same street the other way is another place."""
+    """Return the position right of the middle: the opposite direction is another place."""
     along_x, along_y = ALONG[street.way]
     return street.middle.x_m + _BESIDE_M * along_y, street.middle.y_m - _BESIDE_M * along_x

@@ -12,7 +12,7 @@ from kurt2rt.experiments.study.eligibility import reasons_against_judging
 from kurt2rt.experiments.study.table import Table
 
 SHARE = 18 / 20
-"""Of the goals that are to be reached, by a way that is short enough; and of the robots that are to do so."""
+"""Required ratio of goals reached by a way that is short enough, and of robots that reach this ratio."""
 
 _TITLES: dict[Strategy, str] = {
     "planning": "by a plan",
@@ -22,14 +22,14 @@ _TITLES: dict[Strategy, str] = {
 
 
 def all_tables(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Iterator[Table]:
-    """All tables."""
+    """Yield all tables."""
     yield targets_table(outcomes, course)
     yield runs_table(outcomes, course)
     yield robots_table(outcomes, course)
 
 
 def targets_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
-    """What was asked beside what came."""
+    """Return the table of requirements and measured values."""
     runs = _runs(outcomes, "planning")
     goals = sum(len(run.errands) for run in runs)
     good = sum(run.good(course.detour_at_most) for run in runs)
@@ -69,7 +69,7 @@ def targets_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -
 
 
 def runs_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
-    """By a plan, and the controls."""
+    """Return the table of the runs by planning, and of the controls."""
     rows = []
     for how in (*PLANNING, *CONTROLS):
         runs = _runs(outcomes, how)
@@ -107,7 +107,7 @@ def runs_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> T
 
 
 def robots_table(outcomes: Sequence[ErrandsOutcome], course: ErrandsSettings) -> Table:
-    """Each robot by itself."""
+    """Return the table of single robots."""
     rows = []
     for each in outcomes:
         run = each.run_of("planning")

@@ -1,4 +1,4 @@
-"""A scripted teacher who leads the robot about: says at each place what is possible there, and names places."""
+"""Scripted guide of a tour: teaches the behaviours that are possible at each place, and names places."""
 
 import random
 from collections import deque
@@ -14,7 +14,7 @@ from kurt2rt.core.tick import TickRecord
 HOME = "home"
 _NAME = "scripted teacher"
 _NOTICES_WITHIN_S = 3.0
-"""From a junction that it has left to where the robot says so; later it has missed the junction."""
+"""Time from leaving a junction to the report of the robot; after it, the junction is missed."""
 
 
 class TourGuide:
@@ -55,7 +55,7 @@ class TourGuide:
         return len(self._led)
 
     def begin(self) -> None:
-        """The robot was set down at home for the first time: that is its first name."""
+        """Name the first place, home, and start the tour."""
         street = self._walk.street
         assert street is not None
         self.named[HOME] = street
@@ -63,7 +63,7 @@ class TourGuide:
         self._set_out()
 
     def set_down_at_home(self) -> None:
-        """The robot was set down at home once more."""
+        """Restart the tour at home."""
         self._to_say.clear()
         self._to_say.append(BeAt(self._next_id(), _NAME, HOME))
         self._set_out()
@@ -129,7 +129,7 @@ class TourGuide:
         return self._chance.sample(streets, len(streets))
 
     def _command(self, street: Street, *, driving: bool) -> Command | None:
-        """The robot is in another street, and does not know it yet: where that lasts too long, he says what to do."""
+        """Return a command if the robot did not notice a junction for too long."""
         self._unnoticed_ticks += driving
         if self._unnoticed_ticks != self._notices_within_ticks:
             return None

@@ -1,1 +1,1 @@
-"""The paper's results section (VII.1) beside ours: jobs, their results in files, tables, figures, one report."""
+"""Study of the paper's results section (VII.1): jobs, stored results, tables, figures and report."""

@@ -6,11 +6,11 @@ from kurt2rt.experiments.paper.plan import PaperPlan
 from kurt2rt.experiments.study.eligibility import ROBOTS, reasons_against_judging
 
 CHOSEN_ON_ROOMS = range(60)
-"""The same of generated rooms."""
+"""Seeds of generated rooms that settings were searched on."""
 
 
 def reasons_not_to_judge(plan: PaperPlan) -> Iterator[str]:
-    """Sentences; none where everything was done, by enough robots that nobody has seen, in such worlds."""
+    """Yield the reasons against judging; none for a whole study with enough new robots and worlds."""
     if not plan.extent.is_whole:
         yield "A part only: it says that everything works, and nothing about the paper."
     yield from reasons_against_judging(plan.seeds)

@@ -1,4 +1,4 @@
-"""How much of the paper's experiments is done."""
+"""Extent of the paper's experiments in one run."""
 
 from dataclasses import dataclass
 
@@ -8,25 +8,25 @@ from kurt2rt.experiments.paper.settings import GrowthSettings, PaperSettings, Un
 
 @dataclass(frozen=True, slots=True)
 class Extent:
-    """A part of all tasks, worlds and times; the settings of learning stay as they are."""
+    """Limits of tasks, worlds and times; settings of learning stay."""
 
     tasks: tuple[str, ...] | None = None
-    """Only these, unless the user names some; None: all."""
+    """Tasks unless the user names others; None: all."""
     most_teaching_s: float | None = None
     most_exam_s: float | None = None
     most_unseen: int | None = None
     most_radii: int | None = None
     most_robots: int | None = None
-    """For each radius."""
+    """Robots for each radius."""
     most_growth_s: float | None = None
 
     @property
     def is_whole(self) -> bool:
-        """Whether nothing is left out."""
+        """True if nothing is left out."""
         return self == WHOLE
 
     def task(self, task: TaskSettings) -> TaskSettings:
-        """With less time for everything; both phases of a lesson are shortened alike."""
+        """Return the task with less time; both phases of training are shortened in proportion."""
         teaching, exam = task.teaching, task.exam
         if self.most_teaching_s is not None and teaching.duration_s > self.most_teaching_s:
             share = self.most_teaching_s / teaching.duration_s
@@ -39,7 +39,7 @@ class Extent:
         return task.model_copy(update={"teaching": teaching, "exam": exam})
 
     def paper(self, paper: PaperSettings) -> PaperSettings:
-        """With fewer generated worlds and smaller growth."""
+        """Return the settings with fewer generated worlds and less growth."""
         experiments = tuple(each.model_copy(update={"unseen": self._unseen(each.unseen)}) for each in paper.experiments)
         return paper.model_copy(update={"experiments": experiments, "growth": self._growth(paper.growth)})
 
@@ -69,4 +69,4 @@ QUICK = Extent(
     most_robots=2,
     most_growth_s=60.0,
 )
-"""Says that everything works, and nothing about the paper."""
+"""Extent of a test of the program; its numbers say nothing about the paper."""

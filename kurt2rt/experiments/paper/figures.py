@@ -27,7 +27,7 @@ _VERDICT_TEXTS = {**EXAM_VERDICT_TEXTS, ExamVerdict.PASSED: "success", ExamVerdi
 
 
 def draw_eight(factory: SimulationFactory, drive: DriveOutcome, path: Path) -> None:
-    """Fig. 7: the way round the two columns, with its start."""
+    """Draw Fig. 7: the trail round the two columns, with its start."""
     figure = Figure(figsize=(7.0, 6.0), layout="constrained")
     axes = figure.subplots()
     _draw_drive(axes, factory, drive)
@@ -36,7 +36,7 @@ def draw_eight(factory: SimulationFactory, drive: DriveOutcome, path: Path) -> N
 
 
 def draw_drives(factory: SimulationFactory, drives: Sequence[DriveOutcome], path: Path) -> None:
-    """A panel per drive: the way, its start, where the robot did not know the situation and where it collided."""
+    """Draw a panel for each drive: trail, start, unknown situations and collisions."""
     columns = 2 if len(drives) == 4 else min(_COLUMNS, len(drives))
     rows = math.ceil(len(drives) / columns)
     figure = Figure(
@@ -78,7 +78,7 @@ _TITLES = {"shipped": "With the shipped settings", "plain": "Plain reading of th
 
 
 def draw_growth(studies: Sequence[GrowthStudy], paper: PaperResult, path: Path) -> None:
-    """One panel per reading: medians as lines, quartiles as bands, and the point that the paper's text gives."""
+    """Draw a panel for each reading: medians as lines, quartiles as bands, and the point of the paper's text."""
     figure = Figure(figsize=(5.6 * len(studies), 4.8), layout="constrained")
     panels = figure.subplots(1, len(studies), squeeze=False, sharey=True)[0]
     for axes, study in zip(panels, studies, strict=True):
@@ -106,7 +106,7 @@ def draw_growth(studies: Sequence[GrowthStudy], paper: PaperResult, path: Path) 
 
 
 def draw_testing_ground(factory: SimulationFactory, world: str, path: Path) -> None:
-    """Fig. 4: the world that is taught in, with the robot in it."""
+    """Draw Fig. 4: the world of the training, with the robot."""
     figure = Figure(figsize=(5.6, 6.0), layout="constrained")
     axes = figure.subplots()
     factory.draw(axes, world)
@@ -115,7 +115,7 @@ def draw_testing_ground(factory: SimulationFactory, world: str, path: Path) -> N
 
 
 def draw_worlds(factory: SimulationFactory, worlds: Sequence[str], path: Path) -> None:
-    """Fig. 6: all worlds, two beside each other."""
+    """Draw Fig. 6: all worlds, two in a row."""
     rows = math.ceil(len(worlds) / 2)
     figure = Figure(figsize=(10.0, 5.0 * rows), layout="constrained")
     panels = figure.subplots(rows, 2, squeeze=False).flatten().tolist()

@@ -80,7 +80,7 @@ class GrowthJob(StudyJob):
 
     @property
     def radius(self) -> float:
-        """Confidence radius R."""
+        """Confidence radius R in counts."""
         return self.task.learning.radius
 
     @property
@@ -105,7 +105,7 @@ class GrowthJob(StudyJob):
 
 
 def with_radius_only(task: TaskSettings, radius: float, duration_s: float) -> TaskSettings:
-    """Return the task with this radius, taught in phase 1 only for `duration_s`."""
+    """Return the task with this radius in counts, taught in phase 1 only for `duration_s`."""
     learning = task.learning.model_copy(update={"radius": radius})
     teaching = task.teaching.model_copy(update={"supervised_s": duration_s, "corrections_s": 0.0})
     return task.model_copy(update={"learning": learning, "teaching": teaching})

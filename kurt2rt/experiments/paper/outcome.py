@@ -1,4 +1,4 @@
-"""What a job comes to, as it is kept in its file."""
+"""Stored outcome of a job."""
 
 from typing import Literal
 
@@ -7,14 +7,14 @@ from kurt2rt.experiments.lockstep.exam_verdict import ExamVerdict
 from kurt2rt.experiments.study.provenance import Provenance
 
 Reading = Literal["shipped", "plain"]
-"""Of the paper's scheme: with the settings of this project, or plainly as the paper says it."""
+"""Reading of the paper's scheme: the settings of this project, or the literal ones."""
 
 Place = tuple[float, float]
 """x and y in m, to the millimetre."""
 
 
 class DriveOutcome(Settings):
-    """One exam, beside the teacher's own drive from the same start."""
+    """Outcome of one exam, with the teacher's own drive from the same start."""
 
     world: str
     unit: str
@@ -46,12 +46,12 @@ class DriveOutcome(Settings):
 
     @property
     def teacher_failed(self) -> bool:
-        """Whether the teacher's own drive collided, got stuck or was stopped by the guard for good."""
+        """True if the teacher's own drive collided, got stuck or was stopped by a latch."""
         return self.teachers_collisions > 0 or self.teachers_stuck or bool(self.teachers_alarm)
 
     @property
     def teacher_got_nowhere(self) -> bool:
-        """Whether the teacher's own drive made too little progress to measure another drive by."""
+        """True if the teacher's own drive made too little progress to measure another drive by."""
         return self.teachers_progress <= self.least_progress
 
 
@@ -63,7 +63,7 @@ class TaughtOutcome(Settings):
     teaching_s: float
     rlas: int
     rlas_of: dict[str, int]
-    """By taught behaviour; empty where there is but one."""
+    """Number of RLAs by behaviour; empty for a single behaviour."""
     knowledge_hash: str
     asks: int
     corrections: int

@@ -1,4 +1,4 @@
-"""What is to be done: every experiment, reading and seed as a job."""
+"""Plan of the paper study: a job for each experiment, reading and seed."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -44,7 +44,7 @@ class Growth:
 
 @dataclass(frozen=True, slots=True)
 class PaperPlan:
-    """Everything, in the order in which it is shown."""
+    """Jobs of the study, in the order of the report."""
 
     paper: PaperSettings
     extent: Extent
@@ -69,7 +69,7 @@ class PaperPlan:
         ]
 
     def experiments_of(self, reading: Reading) -> tuple[PaperExperiment, ...]:
-        """Those of one reading."""
+        """Return the experiments of one reading."""
         return tuple(each for each in self.experiments if each.reading == reading)
 
 

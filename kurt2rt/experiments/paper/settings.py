@@ -43,7 +43,7 @@ class ExperimentSettings(Settings):
     """One task, taught and examined with many seeds."""
 
     task: str
-    """By name, or a path to its YAML file."""
+    """Name of the task, or path of its YAML file."""
     title: str
     asked: AskedSettings = AskedSettings()
     unseen: UnseenSettings | None = None
@@ -52,7 +52,7 @@ class ExperimentSettings(Settings):
 
 
 class GrowthSettings(Settings):
-    """How the number of RLAs grows in phase 1, for several R (Fig. 2)."""
+    """Settings of Fig. 2: growth of the number of RLAs in phase 1, for several R."""
 
     task: str
     radii: Annotated[tuple[Annotated[float, Field(gt=0, le=100_000)], ...], Field(min_length=1)]

@@ -13,7 +13,7 @@ SUCCESS = (
 
 
 def learning_table(study: PaperStudy) -> Table:
-    """How each task was taught, in each reading of the paper."""
+    """Return the table of the learning settings of each task and reading."""
     rows = []
     for each in study.summaries:
         learning, teaching, teacher = each.task.learning, each.task.teaching, each.task.teaching.teacher
@@ -59,7 +59,7 @@ def learning_table(study: PaperStudy) -> Table:
 
 
 def exams_table(study: PaperStudy) -> Table:
-    """How each task was examined; the same in every reading."""
+    """Return the table of the exam settings of each task."""
     rows = []
     for task in {each.task.name: each.task for each in study.summaries}.values():
         exam, success = task.exam, task.exam.success

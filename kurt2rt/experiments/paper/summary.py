@@ -37,11 +37,11 @@ class WorldSummary:
     """Exams with a verdict; in the others the teacher's own drive got nowhere."""
     succeeded: int
     interval: tuple[float, float] | None
-    """Of the share of `judged` that succeeded, 95 %; None if no exam was judged."""
+    """95 % interval of the success ratio of `judged`; None if no exam was judged."""
     collided: int
     """Drives with any collision."""
     collisions: Rate
-    """In 10 min of driving."""
+    """Collisions in 10 min of driving."""
     ended_early: int
     """Stuck, or stopped by the guard for good."""
     unit: str
@@ -50,7 +50,7 @@ class WorldSummary:
     teachers_progress: float
     """Median of the teacher's own drives."""
     teacher_failed: int
-    """Of his drives, how many collided, got stuck or were stopped by the guard for good."""
+    """Number of the teacher's drives that collided, got stuck or were stopped by a latch."""
     teacher_got_nowhere: int
     """Number of the teacher's drives with too little progress to measure another drive by."""
     share_unknown: float
@@ -77,7 +77,7 @@ class PaperSummary:
     rescues: float
     """Medians, these three."""
     rlas_of: dict[str, Quartiles]
-    """By taught behaviour, where there are several."""
+    """Number of RLAs by behaviour, if there are several."""
     worlds: tuple[WorldSummary, ...]
     outcomes: tuple[TaughtOutcome, ...]
     """One per robot, in the order of the seeds."""
@@ -89,7 +89,7 @@ class PaperSummary:
 
 
 def summarize(experiment: PaperExperiment, outcomes: Sequence[TaughtOutcome]) -> PaperSummary:
-    """The numbers of one experiment; one outcome per robot."""
+    """Return the summary of one experiment from an outcome for each robot."""
     task, unseen = experiment.task, experiment.settings.unseen
     drives = [drive for outcome in outcomes for drive in outcome.drives]
     groups = [(world, label_of(world), [each for each in drives if each.world == world]) for world in task.exam.worlds]
@@ -174,13 +174,13 @@ class GrowthStudy:
         return sorted({each.radius for each in self.outcomes})
 
     def curves(self, radius: float) -> list[tuple[int, ...]]:
-        """Number of RLAs after each second, one curve per robot."""
+        """Return the number of RLAs after each second, a curve for each robot."""
         return [each.growth for each in self.outcomes if each.radius == radius]
 
 
 @dataclass(frozen=True, slots=True)
 class PaperStudy:
-    """All numbers."""
+    """Plan and summaries of the study."""
 
     plan: PaperPlan
     summaries: tuple[PaperSummary, ...]
@@ -188,11 +188,11 @@ class PaperStudy:
 
     @property
     def readings(self) -> tuple[Reading, ...]:
-        """In the order in which they are shown."""
+        """Readings in the order of the report."""
         return tuple(dict.fromkeys(each.reading for each in self.summaries))
 
     def of(self, reading: Reading) -> tuple[PaperSummary, ...]:
-        """The experiments in one reading."""
+        """Return the experiments in one reading."""
         return tuple(each for each in self.summaries if each.reading == reading)
 
 

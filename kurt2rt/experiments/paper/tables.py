@@ -29,7 +29,7 @@ _OF_RATES = (
 
 
 def all_tables(study: PaperStudy) -> Iterator[Table]:
-    """All tables, those of each reading of the paper's scheme behind each other."""
+    """Yield all tables, reading by reading."""
     reasons = list(reasons_not_to_judge(study.plan))
     for reading in study.readings:
         summaries = study.of(reading)
@@ -56,7 +56,7 @@ def paper_targets_table(summaries: Sequence[PaperSummary], title: str, not_judge
 
 
 def knowledge_table(summaries: Sequence[PaperSummary], title: str) -> Table:
-    """RLAs and teaching time beside the paper's."""
+    """Return the table of RLAs and teaching time, with the paper's numbers."""
     rows = [
         (
             each.label,
@@ -80,7 +80,7 @@ def knowledge_table(summaries: Sequence[PaperSummary], title: str) -> Table:
 
 
 def exam_table(summaries: Sequence[PaperSummary], title: str) -> Table:
-    """Success and collisions by world."""
+    """Return the table of success and collisions by world."""
     rows = []
     for each, world in _worlds(summaries):
         interval = "" if world.interval is None else "{:.0%} to {:.0%}".format(*world.interval)
@@ -110,7 +110,7 @@ def exam_table(summaries: Sequence[PaperSummary], title: str) -> Table:
 
 
 def drive_table(summaries: Sequence[PaperSummary], title: str) -> Table:
-    """How far they came and how well, by world."""
+    """Return the table of progress and measures by world."""
     names = list(dict.fromkeys(name for _, world in _worlds(summaries) for name in world.lengths))
     rows = []
     for each, world in _worlds(summaries):
@@ -144,7 +144,7 @@ def drive_table(summaries: Sequence[PaperSummary], title: str) -> Table:
 
 
 def behaviour_table(summaries: Sequence[PaperSummary], title: str) -> Table:
-    """RLAs and junctions of each taught behaviour, where several were taught in one session."""
+    """Return the table of RLAs and junctions by behaviour."""
     rows = []
     for each in summaries:
         for name, rlas in each.rlas_of.items():
@@ -167,7 +167,7 @@ def behaviour_table(summaries: Sequence[PaperSummary], title: str) -> Table:
 
 
 def growth_table(growth: GrowthStudy) -> Table:
-    """Numbers behind Fig. 2."""
+    """Return the table of Fig. 2."""
     last_s = min(len(each.growth) for each in growth.outcomes)
     at_s = [time_s for time_s in _GROWTH_AT_S if time_s <= last_s] or [last_s]
     rows = []
@@ -186,7 +186,7 @@ def growth_table(growth: GrowthStudy) -> Table:
 
 
 def unseen_table(summary: PaperSummary) -> Table:
-    """Which robot drove in which generated world, and how that went; no rows where these robots drove in none."""
+    """Return the table of exams in generated worlds; without rows if there were none."""
     names = summary.settings.unseen.names if summary.settings.unseen is not None else ()
     drives = sorted(
         (names.index(drive.world), outcome.seed, drive)

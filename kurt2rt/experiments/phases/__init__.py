@@ -1,1 +1,1 @@
-"""The whole path of training, phases 1 to 5, with its controls: jobs, tables, figures, one report."""
+"""Study of the phases 1 to 5, with controls: jobs, tables, figures and report."""

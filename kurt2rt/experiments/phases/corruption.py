@@ -1,4 +1,4 @@
-"""What is done to a set before a branch begins: wrong actions, and a critic from elsewhere."""
+"""Changes of the knowledge before a branch begins: wrong actions, and another critic."""
 
 import random
 from collections.abc import Iterable, Iterator, Sequence
@@ -35,7 +35,7 @@ def corrupt(
 
 
 def critics_lessons(events: Iterable[TeachingEvent]) -> Iterator[TeachingEvent]:
-    """Those that made the critic what it is, and those that it agreed with."""
+    """Yield the lessons of the critic, and the appraisals of its agreement."""
     ids: set[int] = set()
     for event in events:
         match event:
@@ -51,7 +51,7 @@ def critics_lessons(events: Iterable[TeachingEvent]) -> Iterator[TeachingEvent]:
 def shuffled(
     appraisals: Sequence[Rla], settings: CriticSettings, seed: int, period_s: float
 ) -> Iterator[TeachingEvent]:
-    """The same appraisal RLAs with their opinions dealt out anew, and what makes the robot trust them all the same."""
+    """Yield the appraisal RLAs with shuffled opinions, and appraisals that make the robot trust them."""
     opinions = [rla.action for rla in appraisals]
     random.Random(f"shuffled critic, seed {seed}").shuffle(opinions)
     for rla, opinion in zip(appraisals, opinions, strict=True):

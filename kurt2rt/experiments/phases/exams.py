@@ -19,14 +19,14 @@ from kurt2rt.experiments.phases.outcome import ExamOutcome, Judgement
 
 
 class Scoring:
-    """Counts what the critic says of what the judge thinks, while something drives the robot."""
+    """Counter of the pairs of opinions of critic and judge, while the robot drives."""
 
     def __init__(self, judge: Judge) -> None:
         self._judge = judge
         self._ticks: Counter[tuple[int, int | None]] = Counter()
 
     def look(self, record: TickRecord) -> None:
-        """Take in one tick."""
+        """Count the opinions of one tick."""
         if record.appraisal_features is None or not record.decision.driving:
             return
         said = None if record.opinion is None else record.opinion.said
@@ -34,14 +34,14 @@ class Scoring:
 
     @property
     def judgements(self) -> Iterator[Judgement]:
-        """Each pair of opinions that came."""
+        """Pairs of opinions with their ticks."""
         for judged, said in sorted(self._ticks, key=str):
             yield Judgement(judged=judged, said=said, ticks=self._ticks[judged, said])
 
 
 @dataclass(frozen=True, slots=True)
 class Examiner:
-    """Examines one robot; a robot that gets stuck is set down elsewhere and goes on."""
+    """Examiner of one robot; a stuck robot is rescued and drives on."""
 
     factory: SimulationFactory
     robot: RobotSettings
@@ -50,7 +50,7 @@ class Examiner:
     report: Report
 
     async def teachers(self, worlds: Sequence[str]) -> tuple[ExamOutcome, ...]:
-        """Drives of the teacher's own policy."""
+        """Return the drives of the teacher's own policy."""
         drives = [await self._drive(world, (), None, None, teacher_policy=True) for world in worlds]
         return tuple(_outcome(each, succeeded=not each.failed) for each in drives)
 

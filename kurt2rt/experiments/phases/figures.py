@@ -66,7 +66,7 @@ def draw_figures(study: PhasesStudy, folder: Path) -> Iterator[SavedFigure]:
 
 
 def _draw_stages(study: PhasesStudy, names: Sequence[str], path: Path) -> None:
-    """Success and collisions of each stage, a colour for each world."""
+    """Draw success and collisions of each stage, a color for each world."""
     figure = Figure(figsize=(11.0, 1.6 + 0.55 * len(names)), layout="constrained")
     success, collisions = figure.subplots(1, 2, sharey=True)
     places = np.arange(len(names))[::-1]

@@ -1,4 +1,4 @@
-"""What the steps of one robot come to, as they are kept in their files."""
+"""Stored outcomes of the steps of one robot."""
 
 from hal.settings import Settings
 from kurt2rt.experiments.lockstep.teacher_workload import WorkloadMinute
@@ -15,7 +15,7 @@ class ExamOutcome(Settings):
     way_m: float
     collisions: int
     rescues: int
-    """How often it was stuck."""
+    """Number of times the robot was stuck."""
     alarm: str
     share_unknown: float
     action_changes_per_s: float
@@ -24,7 +24,7 @@ class ExamOutcome(Settings):
 
 
 class TeachingOutcome(Settings):
-    """What was done in one step."""
+    """Counters of the training run of one step."""
 
     duration_s: float
     load: tuple[WorkloadMinute, ...]
@@ -35,32 +35,32 @@ class TeachingOutcome(Settings):
     collisions: int
     rescues: int
     unknown_rescues: int
-    """Of these, those of a robot that did not know the situation, with nobody there to be asked."""
+    """Rescues of a robot in an unknown situation without a teacher."""
     alarms: int
     share_unknown: float
     agreement: tuple[float | None, ...]
-    """After each ten seconds."""
+    """Agreement after each 10 s."""
     share_trusted: float
     withdrawn: int
-    """Actions that had sunk and were asked for again."""
+    """Actions that were withdrawn because their value fell."""
     critics_changes: int
     """Lessons that the critic gave itself."""
     rolled_back: int
-    """Of its lessons, those that were undone since its score fell."""
+    """Lessons of the critic that were undone because its score fell."""
 
     @property
     def interventions(self) -> int:
-        """How often a person had to look after the robot: collided, stuck, without an answer, or stopped for good."""
+        """Number of interventions by a person: after collisions, rescues and latched stops."""
         return self.collisions + self.rescues + self.alarms
 
 
 class Judgement(Settings):
-    """What the critic said of what a judge thinks, while nothing was taught."""
+    """Opinions of judge and critic, with the number of their ticks."""
 
     judged: int
-    """-1, 0 or +1: what the judge thinks."""
+    """Opinion of the judge: -1, 0 or +1."""
     said: int | None
-    """What the critic says; None: it does not know."""
+    """Opinion of the critic; None: unknown."""
     ticks: int
 
 
@@ -76,13 +76,13 @@ class StageOutcome(Settings):
     """None: nothing was taught since the stage before."""
     exams: tuple[ExamOutcome, ...]
     still_withdrawn: int = 0
-    """RLAs whose action was withdrawn and not taught anew: they ask, and exams pass over them."""
+    """RLAs with a withdrawn action: they ask, and exams skip them."""
     judgements: tuple[Judgement, ...] = ()
-    """Where the critic was only judged: each pair of opinions that came."""
+    """Pairs of opinions, if the critic was only judged."""
 
 
 class JobOutcome(Settings):
-    """What one job leaves."""
+    """Stored outcome of one job."""
 
     made_of: Provenance
     seed: int

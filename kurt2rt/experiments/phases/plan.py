@@ -1,4 +1,4 @@
-"""What is to be done: every step of every robot as a job, in waves of which each needs only those before it."""
+"""Plan of the phases study: every step of every robot as a job, in waves."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ DECIDING = (TaughtJob, StepJob)
 """Classes whose code, and all that it imports, decides the results."""
 _QUICK_TEACHING_S, _QUICK_EXAM_S, _QUICK_STEP_S, _QUICK_ALONE_S = 40.0, 6.0, 10.0, 40.0
 _QUICK_SHARE = 0.2
-"""What is done every so often in a whole run is done after this share of the time in a quick one."""
+"""Factor of the intervals in a quick run."""
 
 
 class _RobotParts(JobParts):
@@ -29,7 +29,7 @@ class _RobotParts(JobParts):
 
 @dataclass(frozen=True, slots=True)
 class PhasesPlan:
-    """Everything."""
+    """Jobs of the study."""
 
     task: TaskSettings
     seeds: tuple[int, ...]
@@ -99,7 +99,7 @@ def make_plan(
 
 
 def _way_to(step: PhaseStep | None, by_name: dict[str, PhaseStep]) -> Iterator[PhaseStep]:
-    """All steps that lead to one, itself among them."""
+    """Yield all steps that lead to a step, and the step itself."""
     if step is not None:
         for name in step.needs:
             yield from _way_to(by_name.get(name), by_name)
@@ -127,13 +127,13 @@ def _shortened(task: TaskSettings) -> TaskSettings:
 
 
 def _near_sinking(worths: AutonomousValues) -> AutonomousValues:
-    """Of RLAs that a few signals can sink."""
+    """Return values that a few rewards can withdraw."""
     names = ("first_value", "sunk_below", "well_above")
     return worths.model_copy(update={name: _QUICK_SHARE * getattr(worths, name) for name in names})
 
 
 def _hastened(critic: CriticSettings) -> CriticSettings:
-    """A critic that is trusted, and that measures and changes, after as little as is heard in seconds."""
+    """Return a critic that is trusted, measures and changes after some seconds."""
     agreement, every = critic.agreement, critic.signal_every_s
     few = max(2, round(_QUICK_SHARE * agreement.least))
     heard = {

@@ -11,7 +11,7 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, SignalTimes
 
 Critic = Literal["own", "taught", "shuffled"]
-"""What the set has before the step: appraisals of its own, those of this robot's phase 4, or those in disorder."""
+"""Critic before the step: the knowledge's own, the one of this robot's phase 4, or a shuffled one."""
 
 UNTAUGHT, PHASE_1, PHASE_2 = "untaught", "phase-1", "phase-2"
 PHASE_3, PHASE_4, PHASE_5, LONG_RUN = "phase-3", "phase-4", "phase-5", "long-run"
@@ -55,15 +55,15 @@ class PhaseStep:
     plan: LessonPlan | None
     """None: nothing is taught."""
     worlds: tuple[str, ...]
-    """Of its exams."""
+    """Worlds of the exams."""
     mistakes: str = "repair"
-    """What the wrong actions are for: another purpose has others."""
+    """Purpose of the wrong actions, which chooses them."""
     blames_like: str = ""
-    """The step in which this robot was blamed as often as it shall be by chance; empty where nobody goes by chance."""
+    """Step with the number of penalties for random ones; empty without random penalties."""
     judges_critic: bool = False
-    """Whether a drive follows in which nothing is learnt and the judge judges the critic."""
+    """True if a drive without learning compares critic and judge."""
     aside: bool = False
-    """Whether only the critic is kept of what was taught, and all else, exams too, is as it was before the step."""
+    """True if only the critic is kept of the step, and knowledge and exams are those before it."""
 
     @property
     def needs(self) -> tuple[str, ...]:
@@ -73,7 +73,7 @@ class PhaseStep:
 
 
 def phases_of(task: TaskSettings) -> PhasesSettings:
-    """The task's section. Raises hal.settings.SettingsError where there is none."""
+    """Return the task's section. Raises hal.settings.SettingsError without one."""
     if task.phases is None:
         raise SettingsError(
             "says nothing about phases 3 to 5", where=f"task {task.name}", do="add a section `phases:` to its file"

@@ -23,9 +23,9 @@ class WorldSummary:
     robots: int
     succeeded: int
     interval: tuple[float, float]
-    """Of the share that succeeded, 95 %."""
+    """95 % interval of the success ratio."""
     collisions: Rate
-    """In 10 min."""
+    """Return the collisions in 10 min."""
     stuck: int
     """Robots that were stuck at least once, or stopped by the guard for good."""
     unit: str
@@ -45,7 +45,7 @@ class WorldSummary:
 
 
 def worlds_of(stages: Sequence[StageOutcome]) -> tuple[WorldSummary, ...]:
-    """One stage of all robots, world by world."""
+    """Return the summaries of one stage of all robots, world by world."""
     return tuple(
         summarize([exam for stage in stages for exam in stage.exams if exam.world == world])
         for world in dict.fromkeys(exam.world for stage in stages for exam in stage.exams)
@@ -53,7 +53,7 @@ def worlds_of(stages: Sequence[StageOutcome]) -> tuple[WorldSummary, ...]:
 
 
 def summarize(exams: Sequence[ExamOutcome]) -> WorldSummary:
-    """Exams in one world, of one robot each."""
+    """Return the summary of exams in one world, one for each robot."""
     succeeded = sum(each.succeeded for each in exams)
     errors = [each.findings[DISTANCE_ERROR] for each in exams if DISTANCE_ERROR in each.findings]
     return WorldSummary(
@@ -74,12 +74,12 @@ def summarize(exams: Sequence[ExamOutcome]) -> WorldSummary:
 
 @dataclass(frozen=True, slots=True)
 class CriticScore:
-    """How far a critic says what the judge thinks; None where there was nothing to divide by."""
+    """Agreement of critic and judge, as ratios; None without ticks."""
 
     precision: float | None
-    """Of the ticks that it calls bad, the share that are."""
+    """Ratio of ticks called bad that are bad."""
     recall: float | None
-    """Of the ticks that are bad, the share that it calls so."""
+    """Ratio of bad ticks that are called bad."""
     agreement: float | None
     """Mean over bad and good ones of the share that it calls so."""
     silent: float | None
@@ -87,7 +87,7 @@ class CriticScore:
 
 
 def score_of(judgements: Sequence[Judgement]) -> CriticScore:
-    """Of one robot, or of several together."""
+    """Return the agreement of one robot, or of several together."""
 
     def share(part: Callable[[Judgement], bool], whole: Callable[[Judgement], bool]) -> float | None:
         ticks = sum(each.ticks for each in judgements if whole(each))
@@ -104,12 +104,12 @@ def score_of(judgements: Sequence[Judgement]) -> CriticScore:
 
 
 def alike(one: Sequence[StageOutcome], other: Sequence[StageOutcome]) -> int:
-    """Robots that drive the same in all exams of both stages."""
+    """Return the number of robots with equal exams at both stages."""
     return sum(a.exams == b.exams for a, b in zip(one, other, strict=True))
 
 
 def collisions_of(exams: Sequence[ExamOutcome]) -> Rate:
-    """In 10 min."""
+    """Return the collisions in 10 min."""
     return rate_of([each.collisions for each in exams], [each.duration_s / TEN_MIN_S for each in exams])
 
 
@@ -157,22 +157,22 @@ class Paired:
         return worst / abs(self.before) if self.before else math.copysign(math.inf, worst) if worst else 0.0
 
     def not_worse(self, margin: float) -> bool:
-        """Whether no robot lost what is counted, or what is measured is surely not worse by this share of before."""
+        """Return whether no robot stopped being clean, or the measure is not worse by this ratio."""
         return not self.no_longer_clean if self.measure.clean is not None else self.worst_change <= margin
 
     @property
     def surely_worse(self) -> bool:
-        """Whether the interval lies on the bad side altogether."""
+        """True if the whole interval is worse."""
         return self.difference.high < 0 if self.measure.better > 0 else self.difference.low > 0
 
     @property
     def surely_better(self) -> bool:
-        """Whether the interval lies on the good side altogether."""
+        """True if the whole interval is better."""
         return self.difference.low > 0 if self.measure.better > 0 else self.difference.high < 0
 
 
 def paired(before: Sequence[StageOutcome], after: Sequence[StageOutcome]) -> tuple[Paired, ...]:
-    """Each measure in each world of both; robots in the same order."""
+    """Return each measure in each world; robots in the same order."""
     found = []
     for world in dict.fromkeys(exam.world for stage in after for exam in stage.exams):
         pairs = [(_exam_in(world, one), _exam_in(world, other)) for one, other in zip(before, after, strict=True)]
@@ -204,11 +204,11 @@ def _exam_in(world: str, stage: StageOutcome) -> ExamOutcome:
 
 @dataclass(frozen=True, slots=True)
 class PhasesStudy:
-    """All numbers."""
+    """Plan and summaries of the study."""
 
     plan: PhasesPlan
     stages: dict[str, tuple[StageOutcome, ...]]
-    """By the name of the step, each in the order of the seeds."""
+    """Outcomes by the name of the step, in the order of the seeds."""
     teachers: tuple[tuple[ExamOutcome, ...], ...]
     """Drives of the teacher's own policy, per seed one in each world."""
 

@@ -58,7 +58,7 @@ def phases_targets_table(study: PhasesStudy, not_judged_because: Sequence[str]) 
 
 
 def all_tables(study: PhasesStudy, reasons: Sequence[str]) -> Iterator[Table]:
-    """All of them. `reasons` not to judge, if any."""
+    """Yield all tables. `reasons`: those against judging."""
     yield phases_targets_table(study, reasons)
     yield exam_table("Phase by phase", PATH, study, f"{SUCCESS} {_PHASE_4}")
     yield teachers_table(study)
@@ -100,7 +100,7 @@ def all_tables(study: PhasesStudy, reasons: Sequence[str]) -> Iterator[Table]:
 
 
 def exam_table(title: str, stages: Sequence[str], study: PhasesStudy, note: str) -> Table:
-    """How robots drive at each stage, world by world."""
+    """Return the table of exams at each stage, world by world."""
     rows = []
     for name in stages:
         rlas = quartiles([stage.rlas for stage in study.stages[name]])[1]
@@ -146,7 +146,7 @@ def exam_table(title: str, stages: Sequence[str], study: PhasesStudy, note: str)
 
 
 def paired_table(title: str, pairs: Sequence[Paired], note: str) -> Table:
-    """The same robots at two stages."""
+    """Return the table of the same robots at two stages."""
     rows = []
     for each in pairs:
         sure = "better" if each.surely_better else "worse" if each.surely_worse else ""
@@ -170,7 +170,7 @@ def paired_table(title: str, pairs: Sequence[Paired], note: str) -> Table:
 
 
 def teachers_table(study: PhasesStudy) -> Table:
-    """The yardstick: how the teacher's own policy drives from the same starts."""
+    """Return the table of the drives of the teacher's own policy from the same starts."""
     rows = []
     for world in dict.fromkeys(exam.world for robot in study.teachers for exam in robot):
         drives = [exam for robot in study.teachers for exam in robot if exam.world == world]
@@ -202,7 +202,7 @@ def teachers_table(study: PhasesStudy) -> Table:
 
 
 def settings_table(task: TaskSettings) -> Table:
-    """All that stands in the sections of these phases, and in the critic's file."""
+    """Return the table of the settings of phases 3 to 5 and of the critic."""
     of: dict[str, Any] = {
         "phases": phases_of(task).model_dump(mode="json", exclude={"asked"}),
         "reinforcement": task.reinforcement.model_dump(mode="json"),

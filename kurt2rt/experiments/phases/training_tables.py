@@ -28,12 +28,12 @@ from kurt2rt.experiments.study.table import Table
 
 
 def taught_of(stages: Sequence[StageOutcome]) -> list[TeachingOutcome]:
-    """Of those in which something was done since the stage before."""
+    """Return the training runs of the stages that had one."""
     return [stage.teaching for stage in stages if stage.teaching is not None]
 
 
 def workload_table(title: str, stages: Sequence[str], study: PhasesStudy) -> Table:
-    """What the teacher said, in all and in a minute."""
+    """Return the table of the teacher's commands, in total and for each minute."""
     rows = []
     for name in stages:
         taught = taught_of(study.stages[name])
@@ -86,7 +86,7 @@ def _all_of(load: Sequence[WorkloadMinute]) -> WorkloadMinute:
 
 
 def critic_table(study: PhasesStudy) -> Table:
-    """What the critic was taught, and how far it agrees."""
+    """Return the table of the critic: appraisals and agreement."""
     rows = []
     for name in (PHASE_4, PHASE_5, CRITIC_ALONE, SHUFFLED, INTACT):
         stages = study.stages[name]
@@ -117,7 +117,7 @@ def critic_table(study: PhasesStudy) -> Table:
 
 
 def judged_table(study: PhasesStudy) -> Table:
-    """What the critic says where it learns nothing, beside what the judge thinks."""
+    """Return the table of the opinions of critic and judge."""
     robots = [stage.judgements for stage in study.stages[JUDGED]]
     together = score_of([each for robot in robots for each in robot])
     scores = [score_of(each) for each in robots]
@@ -143,7 +143,7 @@ def judged_table(study: PhasesStudy) -> Table:
 
 
 def autonomous_table(study: PhasesStudy) -> Table:
-    """What happened while nobody taught."""
+    """Return the table of the drives without a teacher."""
     rows = []
     for name in (CRITIC_ALONE, SHUFFLED, INTACT, PHASE_5):
         taught = taught_of(study.stages[name])
@@ -164,7 +164,7 @@ def autonomous_table(study: PhasesStudy) -> Table:
 
 
 def long_run_table(study: PhasesStudy) -> Table:
-    """How often a person had to come."""
+    """Return the table of interventions in the long run."""
     taught = taught_of(study.stages[LONG_RUN])
     rate = interventions(study)
     row = (
@@ -187,7 +187,7 @@ def long_run_table(study: PhasesStudy) -> Table:
 
 
 def words_of_controls(study: PhasesStudy) -> Iterator[str]:
-    """Sentences on controls that say nothing, because what they are to show did not happen."""
+    """Yield sentences on controls without effect."""
     stages = study.stages
     robots = len(stages[ASKS])
     if not any(each.asks for each in taught_of(stages[ASKS])):

@@ -46,13 +46,13 @@ def verdicts(study: PhasesStudy) -> Iterator[Verdict]:
 
 
 def interventions(study: PhasesStudy, stage: str = LONG_RUN) -> Rate:
-    """An hour, of all robots together in a step without a teacher."""
+    """Return the interventions in an hour, of all robots in a step without a teacher."""
     taught = [each.teaching for each in study.stages[stage] if each.teaching is not None]
     return rate_of([each.interventions for each in taught], [each.duration_s / _HOUR_S for each in taught])
 
 
 def robots_of_the_long_run(study: PhasesStudy) -> str:
-    """What the hours are made of, and the robot that needed most."""
+    """Return the number of robots, their hours, and the most interventions of one robot."""
     taught = [each.teaching for each in study.stages[LONG_RUN] if each.teaching is not None]
     minutes = " or ".join(f"{each:g}" for each in sorted({each.duration_s / 60.0 for each in taught}))
     return f"{len(taught)} robots of {minutes} min each, of which the worst had {max(t.interventions for t in taught)}"

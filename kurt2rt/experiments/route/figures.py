@@ -40,7 +40,7 @@ def draw_figures(study: RouteStudy, factory: SimulationFactory, folder: Path) ->
 
 
 def draw_route(factory: SimulationFactory, world: str, outcome: RouteOutcome, path: Path) -> None:
-    """One robot: its route with the number of each decision, and its drive."""
+    """Draw the route of one robot with the numbers of its decisions, and the drive."""
     figure = Figure(figsize=(7.2, 7.8), layout="constrained")
     axes = figure.subplots()
     _draw(axes, factory, world, outcome)
@@ -50,7 +50,7 @@ def draw_route(factory: SimulationFactory, world: str, outcome: RouteOutcome, pa
 
 
 def draw_routes(factory: SimulationFactory, world: str, outcomes: Sequence[RouteOutcome], path: Path) -> None:
-    """A panel per robot."""
+    """Draw a panel for each robot."""
     wide = min(_COLUMNS, len(outcomes))
     rows = math.ceil(len(outcomes) / wide)
     figure = Figure(figsize=(4.0 * wide, 4.4 * rows), layout=ConstrainedLayoutEngine(h_pad=0.12, w_pad=0.08))
@@ -91,7 +91,7 @@ _BOX = {"boxstyle": "circle,pad=0.12", "facecolor": "white", "edgecolor": _ROUTE
 
 
 def _beside(here: Place, there: Place) -> tuple[Place, Place]:
-    """The way from junction to junction, to the right of the middle of the street, within its corners."""
+    """Return start and end of the way between two junctions, right of the middle of the street."""
     (from_x, from_y), (to_x, to_y) = here, there
     length_m = math.dist(here, there)
     along_x, along_y = (to_x - from_x) / length_m, (to_y - from_y) / length_m

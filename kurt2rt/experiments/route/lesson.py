@@ -37,7 +37,7 @@ class TaughtRoute:
     wrong: tuple[Wrong, ...]
 
     def outcome(self, made_of: Provenance | None = None) -> RouteOutcome:
-        """What is kept of it."""
+        """Return the stored outcome."""
         last, exam, legs = self.lessons[-1], self.exam, self.route.legs
 
         def of_all(name: str) -> int:
@@ -112,7 +112,7 @@ async def teach_route(
 
 
 def route_of_task(task: TaskSettings) -> RouteSettings:
-    """Settings of the route that a task teaches. Raises hal.settings.SettingsError for one that teaches none."""
+    """Return the settings of a task's route. Raises hal.settings.SettingsError for a task without one."""
     if isinstance(task.course, RouteSettings):
         return task.course
     raise SettingsError(f"its course is {task.course.kind}, and there is no route to teach", where=f"task {task.name}")
@@ -131,7 +131,7 @@ def with_route(task: TaskSettings, seed: int, decisions: int | None = None) -> T
 
 
 def copy_knowledge(source: Path, path: Path) -> None:
-    """A copy of a knowledge file, also while somebody writes it. Raises KnowledgeError."""
+    """Copy a knowledge file, also while another process writes it. Raises KnowledgeError."""
     with Journal.read_only(source) as journal:
         path.write_bytes(journal.image())
 

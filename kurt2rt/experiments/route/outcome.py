@@ -1,4 +1,4 @@
-"""What a job comes to, as it is kept in its file."""
+"""Stored outcome of a job."""
 
 from typing import Literal
 
@@ -43,7 +43,7 @@ class RouteDrive(Settings):
 
     @property
     def without_error(self) -> bool:
-        """Whether every decision was right, nothing was touched, and it drove to the end."""
+        """True if every decision was right, without a collision, to the end."""
         return not self.wrong and not self.collisions and not self.stuck and not self.alarm
 
 
@@ -62,10 +62,10 @@ class RouteOutcome(Settings):
     mid_asks: int
     mid_corrections: int
     missed_junctions: int
-    """In the lesson; the teacher said what was wanted."""
+    """Junctions that the mid level missed in training; the teacher commanded there."""
     asks: int
     corrections: int
-    """At the basic level, these two."""
+    """Corrections of the basic level, as `asks`."""
     rescues: int
     knowledge_hash: str
     drive: RouteDrive

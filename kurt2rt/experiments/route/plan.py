@@ -1,4 +1,4 @@
-"""What is to be done: the streets once for each robot, then every length and way of teaching as a job."""
+"""Plan of the route study: the streets of each robot, then a job for each length and variant."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ DECIDING = (BasicJob, RouteJob)
 
 @dataclass(frozen=True, slots=True)
 class RouteExperiment:
-    """Routes of one length, taught in one way: a job per seed."""
+    """Routes of one length and variant: a job for each seed."""
 
     decisions: int
     variant: Variant
@@ -33,10 +33,10 @@ class RouteExperiment:
 
 @dataclass(frozen=True, slots=True)
 class RoutePlan:
-    """Everything, in the order in which it is shown."""
+    """Jobs of the study, in the order of the report."""
 
     task: TaskSettings
-    """Without the route, which is each robot's own."""
+    """Task without the route, which each robot's seed draws."""
     basic: TaskSettings
     seeds: tuple[int, ...]
     source: str
@@ -105,14 +105,14 @@ def make_plan(
 
 
 class Streets(NamedTuple):
-    """What robots are taught before: the streets."""
+    """Knowledge of the streets, which robots have before a route."""
 
     jobs: tuple[BasicJob, ...]
     """Empty where they were taught already."""
     files: dict[int, Path]
     """Knowledge of each seed."""
     made_of: dict[int, str]
-    """What decides that knowledge, or what it holds, of each seed."""
+    """Provenance or content of the knowledge, by seed."""
 
 
 def streets_of(
@@ -163,5 +163,5 @@ def basic_file(place: Path, basic: TaskSettings, seed: int) -> Path:
 
 
 def decisions_of(task: TaskSettings, asked: Sequence[int]) -> tuple[int, ...]:
-    """Lengths of routes: those asked for, each once, or the task's own."""
+    """Return the lengths of routes: the requested ones, each once, or the task's own."""
     return tuple(dict.fromkeys(asked)) or (route_of_task(task).decisions,)

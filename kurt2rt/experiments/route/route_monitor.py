@@ -31,7 +31,7 @@ class RouteMonitor:
         self._last: tuple[TickRecord, FixedRoute] | None = None
 
     def look(self, record: TickRecord, course: TaskMetric) -> None:
-        """One tick, after the course has followed it."""
+        """Compare one tick, after the metric was updated."""
         assert isinstance(course, FixedRoute)
         self._last = record, course
         mid = record.decision.mid
@@ -47,7 +47,7 @@ class RouteMonitor:
         self._judge()
 
     def end(self) -> None:
-        """The drive is over."""
+        """Judge the last junctions at the end of the drive."""
         self._judge()
 
     def _judge(self) -> None:
@@ -88,10 +88,10 @@ class RouteMonitor:
         return "symbols" if misled else "basic"
 
     def _knows(self) -> bool:
-        """Whether what it noticed of the last junctions is what it did there."""
+        """Return whether the noticed turns are the real ones."""
         return tuple(self._noticed) == tuple(self._true)
 
     def _is_to_notice(self) -> bool:
-        """Whether it lacks nothing but the last junction, from which it has not come far."""
+        """Return whether only the last junction is not noticed yet."""
         recent = _HISTORY - 1
         return tuple(self._noticed)[-recent:] == tuple(self._true)[:-1] and bool(self._true)

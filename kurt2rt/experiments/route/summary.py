@@ -12,7 +12,7 @@ from kurt2rt.experiments.study.results import Results
 
 @dataclass(frozen=True, slots=True)
 class RouteSummary:
-    """Routes of one length, taught in one way."""
+    """Summary of routes of one length and variant."""
 
     experiment: RouteExperiment
     outcomes: tuple[RouteOutcome, ...]
@@ -20,17 +20,17 @@ class RouteSummary:
 
     @property
     def robots(self) -> int:
-        """How many."""
+        """Number of robots."""
         return len(self.outcomes)
 
     @property
     def without_error(self) -> int:
-        """Robots that drove to the end without one."""
+        """Number of robots without an error."""
         return sum(each.drive.without_error for each in self.outcomes)
 
     @property
     def junctions(self) -> int:
-        """Passed, or not got through, by all of them."""
+        """Number of junctions passed or not got through, of all robots."""
         return sum(each.drive.junctions for each in self.outcomes)
 
     @property
@@ -45,22 +45,22 @@ class RouteSummary:
         return Rate(1 - errs.value, max(0.0, 1 - errs.high), 1 - errs.low)
 
     def failed(self, layer: Layer) -> int:
-        """Wrong decisions of all robots for which a layer is to blame."""
+        """Return the number of wrong decisions caused by a layer."""
         return sum(wrong.layer == layer for each in self.outcomes for wrong in each.drive.wrong)
 
     @property
     def failures(self) -> dict[Layer, int]:
-        """The same of every layer."""
+        """Wrong decisions by layer."""
         return {layer: self.failed(layer) for layer in LAYERS}
 
     def quartiles(self, of: str) -> tuple[float, float, float]:
-        """Of a number that each robot's outcome has."""
+        """Return the quartiles of an attribute of the outcomes."""
         return quartiles([float(getattr(each, of)) for each in self.outcomes])
 
 
 @dataclass(frozen=True, slots=True)
 class RouteStudy:
-    """All numbers."""
+    """Plan and summaries of the study."""
 
     plan: RoutePlan
     summaries: tuple[RouteSummary, ...]

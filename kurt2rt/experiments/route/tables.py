@@ -18,7 +18,7 @@ _LAYERS = (
 
 
 def all_tables(study: RouteStudy) -> Iterator[Table]:
-    """All tables."""
+    """Yield all tables."""
     found = [
         ((_heading(each)[1],), verdict) for each in study.summaries for verdict in verdicts(each, study.plan.task.paper)
     ]
@@ -32,7 +32,7 @@ def all_tables(study: RouteStudy) -> Iterator[Table]:
 
 
 def taught_table(summaries: Sequence[RouteSummary]) -> Table:
-    """What the lessons came to."""
+    """Return the table of the training runs."""
     rows = []
     for each in summaries:
         low, median, high = each.quartiles("mid_rlas")
@@ -61,7 +61,7 @@ def taught_table(summaries: Sequence[RouteSummary]) -> Table:
 
 
 def exam_table(summaries: Sequence[RouteSummary]) -> Table:
-    """Drives without a teacher."""
+    """Return the table of the exams."""
     rows = []
     for each in summaries:
         low, high = wilson_interval(each.without_error, each.robots)
@@ -94,7 +94,7 @@ def exam_table(summaries: Sequence[RouteSummary]) -> Table:
 
 
 def robots_table(summary: RouteSummary) -> Table:
-    """Each robot by itself."""
+    """Return the table of single robots."""
     rows = tuple((str(each.seed), *_of_robot(each)) for each in summary.outcomes)
     return Table(
         f"Each robot: {', '.join(_heading(summary))}",
@@ -105,7 +105,7 @@ def robots_table(summary: RouteSummary) -> Table:
 
 
 def robot_table(outcome: RouteOutcome, task: TaskSettings) -> Table:
-    """One robot, beside what the paper reports."""
+    """Return the table of one robot, with the paper's numbers."""
     drive, paper = outcome.drive, task.paper
     rows = (
         ("mid-level RLAs", str(outcome.mid_rlas), str(paper.rlas)),
@@ -127,7 +127,7 @@ def robot_table(outcome: RouteOutcome, task: TaskSettings) -> Table:
 
 
 def errors_of(outcome: RouteOutcome) -> str:
-    """What went wrong in a drive, and when."""
+    """Return the errors of a drive with their times."""
     drive = outcome.drive
     said = [f"{each.layer} at {each.at_s:.0f} s (decision {each.leg + 1})" for each in drive.wrong]
     said += [f"{drive.collisions} collision{'' if drive.collisions == 1 else 's'}"] if drive.collisions else []

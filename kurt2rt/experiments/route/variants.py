@@ -1,4 +1,4 @@
-"""What is taught and driven, and what it is compared with."""
+"""Variants of teaching a route: the shipped one and its controls."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -13,25 +13,25 @@ Phases = tuple[tuple[Phase, float], ...]
 
 @dataclass(frozen=True, slots=True)
 class Variant:
-    """One way to teach the same route."""
+    """Variant of teaching a route."""
 
     name: str
-    """In names of files."""
+    """Name in file names."""
     title: str
     mid: str | None = ""
-    """Another mid level by name; None: none, somebody commands at each junction; empty: the task's own."""
+    """Name of another mid level; None: none, the teacher commands at each junction; empty: the task's own."""
     radius: float | None = None
     """Another R of the mid level."""
     distance: Literal["hamming", "edit"] | None = None
     """Another distance of histories."""
     starts: int | None = None
-    """The lesson is begun anew so often; None: as the task says."""
+    """Number of starts; None: the task's."""
     only_answers: bool = False
-    """Nothing is corrected at either level."""
+    """True if neither level is corrected."""
     corrects_basic: bool = True
 
     def task(self, task: TaskSettings) -> TaskSettings:
-        """The task with what is different."""
+        """Return the task with the changes of the variant."""
         if self.mid is None or task.mid is None:
             return task.model_copy(update={"mid": None})
         mid = load_mid_level(self.mid or task.mid)
@@ -61,7 +61,7 @@ class Variant:
 
 
 def _part(phases: Phases, from_s: float, to_s: float) -> Phases:
-    """What of the phases lies between two moments."""
+    """Return the phases between two times in s."""
     part, begins_s = [], 0.0
     for phase, lasts_s in phases:
         ends_s = begins_s + lasts_s

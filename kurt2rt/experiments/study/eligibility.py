@@ -1,15 +1,15 @@
-"""When results may be judged by the numbers that were asked for."""
+"""Conditions for judging results by the targets."""
 
 from collections.abc import Iterator, Sequence
 
 ROBOTS = 20
-"""Robots that the numbers are asked of."""
+"""Number of robots for which targets are defined."""
 CHOSEN_ON = range(80)
-"""Seeds that settings were searched on; a robot made of one of them proves nothing."""
+"""Seeds that settings were searched on; results of such robots are not judged."""
 
 
 def reasons_against_judging(seeds: Sequence[int]) -> Iterator[str]:
-    """Sentences; none where there are enough robots that nobody has seen."""
+    """Yield the reasons against judging; none for enough robots with new seeds."""
     robots = len(seeds)
     if robots < ROBOTS:
         yield f"{robots} robot{'' if robots == 1 else 's'} only; the numbers are asked of {ROBOTS}."

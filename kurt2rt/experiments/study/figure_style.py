@@ -1,4 +1,4 @@
-"""What the figures share."""
+"""Style that all figures share."""
 
 from pathlib import Path
 
@@ -11,10 +11,10 @@ _DPI = 130
 
 
 def save(figure: Figure, path: Path) -> None:
-    """As a PNG whose bytes depend on nothing but what is drawn."""
+    """Save a figure as a PNG whose bytes depend on its content only."""
     figure.savefig(path, dpi=_DPI, metadata={"Software": None})
 
 
 def legend_below(axes: Axes, columns: int = 3) -> None:
-    """Below the floor plan, where it hides no wall."""
+    """Draw the legend below the floor plan, where it hides no wall."""
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=columns, fontsize="small", frameon=False)

@@ -1,4 +1,4 @@
-"""How sure a rate is."""
+"""Confidence intervals of rates and differences."""
 
 import math
 from collections.abc import Callable, Sequence

@@ -32,30 +32,30 @@ class JobKilledError(UserError):
 
 
 class Job(Protocol[ResultT_co]):
-    """A piece of work that can be sent to another process."""
+    """Job that can be sent to another process."""
 
     @property
     def name(self) -> str:
-        """What is shown while it runs."""
+        """Name in progress displays."""
         ...
 
     @property
     def robot_time_s(self) -> float:
-        """How much there is to simulate."""
+        """Simulated time in s."""
         ...
 
     def run(self, tell: Progress) -> ResultT_co:
-        """Do it."""
+        """Run the job and report the progress in s."""
         ...
 
 
 class PoolProgress(NamedTuple):
-    """How far the jobs are."""
+    """Progress of all jobs of a pool."""
 
     done_s: float
-    """Robot time of all of them so far."""
+    """Robot time so far, in s."""
     running: tuple[str, ...]
-    """What is being done."""
+    """Names of the running jobs."""
 
 
 def run_jobs(
@@ -156,7 +156,7 @@ def _killed(left: Sequence[int], workers: Mapping[int, int], processes: Iterable
 
 @contextmanager
 def _named(job: Job[object]) -> Iterator[None]:
-    """What the job raises says in a note whose it was."""
+    """Add the name of the job to the notes of its errors."""
     try:
         yield
     except Exception as error:

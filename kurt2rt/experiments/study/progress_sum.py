@@ -1,10 +1,10 @@
-"""How far a job of several drives is."""
+"""Progress of a job of several drives."""
 
 from kurt2rt.experiments.study.pool import Progress
 
 
 class ProgressSum:
-    """Adds up the robot time of drives that come one after the other."""
+    """Sum of the robot time of successive drives."""
 
     def __init__(self, tell: Progress) -> None:
         self._tell = tell

@@ -36,7 +36,7 @@ class Provenance(Settings):
 
 
 def versions() -> str:
-    """Of Python and of the packages that compute."""
+    """Return the versions of Python and of the computing packages."""
     return ", ".join([f"Python {platform.python_version()}", *(f"{name} {version(name)}" for name in _COMPUTE)])
 
 
@@ -54,7 +54,7 @@ def source_hash(*deciding: type) -> str:
 
 
 def settings_hash(*settings: str) -> str:
-    """Of texts."""
+    """Return the hash of texts."""
     return hashlib.sha256("\0".join(settings).encode()).hexdigest()[:16]
 
 
@@ -112,12 +112,12 @@ class Fingerprints:
 
 @lru_cache(maxsize=1024)
 def _hash_of(text: str) -> bytes:
-    """Of what a module does, remembered by its text: all of them take half a second."""
+    """Return the cached hash of a module's code; all modules take 0.5 s."""
     return hashlib.sha256(code_of(text).encode()).digest()
 
 
 def code_of(text: str) -> str:
-    """What a module does, as a text that says nothing of how it is written down."""
+    """Return the code of a module as a text without comments, docstrings and layout."""
     words: list[str] = []
     _tell(ast.parse(text), words)
     return "\n".join(words)

@@ -26,7 +26,7 @@ class StudyError(UserError):
 
 
 class StoredResult(Protocol):
-    """A job as far as its file goes."""
+    """Job with a stored result."""
 
     @property
     def file(self) -> str:
@@ -35,7 +35,7 @@ class StoredResult(Protocol):
 
     @property
     def made_of(self) -> Provenance:
-        """What decides its result."""
+        """Provenance of the result."""
         ...
 
     @property
@@ -76,7 +76,7 @@ class Results:
 
     @contextmanager
     def scratch(self) -> Iterator[Path]:
-        """A folder for what a job has begun; gone afterwards."""
+        """Yield a temporary folder for an unfinished job."""
         with tempfile.TemporaryDirectory(prefix=_UNFINISHED, dir=self.folder) as folder:
             yield Path(folder)
 
@@ -115,7 +115,7 @@ class Results:
         write_durably(self.folder / job.file, outcome.model_dump_json() + "\n")
 
     def read(self, job: StoredResult, schema: type[OutcomeT]) -> OutcomeT:
-        """A result. Raises StudyError."""
+        """Return a result. Raises StudyError."""
         return self._read(self.folder / job.file, schema)
 
     def keep(self, file: Path, name: str) -> None:

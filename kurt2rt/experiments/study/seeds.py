@@ -16,7 +16,7 @@ from kurt2rt.experiments.study.progress_sum import ProgressSum
 
 @dataclass(frozen=True, slots=True)
 class SeedJob:
-    """What one process does: teach with one seed into a knowledge file, then examine."""
+    """Job of one seed: training run into a knowledge file, then exams."""
 
     factory: SimulationFactory
     settings: RobotSettings
@@ -27,7 +27,7 @@ class SeedJob:
 
     @property
     def name(self) -> str:
-        """What is shown while it runs."""
+        """Name in progress displays."""
         return f"{self.task.name}, seed {self.seed}"
 
     @property

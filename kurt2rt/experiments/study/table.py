@@ -1,4 +1,4 @@
-"""A table as it is read, on the terminal and in the report."""
+"""Table for terminal and report."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from kurt2rt.platform.text_table import TextTable
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Cells are texts."""
+    """Table of texts."""
 
     title: str
     columns: tuple[str, ...]
@@ -18,7 +18,7 @@ class Table:
     words: int = 1
     """So many columns from the left hold words, the others numbers."""
     note: str = ""
-    """What one has to know to read it."""
+    """Explanation below the table."""
 
 
 def as_rich(table: Table) -> RenderableType:

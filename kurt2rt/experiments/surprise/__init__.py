@@ -1,1 +1,1 @@
-"""How surprised a taught robot is: on ground that it knows, and where something is different."""
+"""Surprise study: ends of RLAs on known ground, and after a change."""

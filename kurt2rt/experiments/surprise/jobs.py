@@ -1,4 +1,4 @@
-"""Robots that were taught get to know what to expect; then something is different."""
+"""Jobs of the surprise study: a robot learns what to expect, then drives with each difference."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,14 +16,14 @@ from kurt2rt.experiments.surprise.drive import Difference, SurpriseCounts, Surpr
 from kurt2rt.knowledge.journal.loading import read_lessons
 
 LEARNS_S = 900.0
-"""So long a robot gets to know what to expect."""
+"""Time to learn the expectations."""
 DIFFERENT_S = 300.0
-"""So long it drives with each difference, from the same expectations."""
+"""Time of the drive with each difference."""
 
 
 @dataclass(frozen=True, slots=True)
 class SurpriseJob:
-    """What one process does: one robot that was taught."""
+    """Job of one taught robot."""
 
     factory: SimulationFactory
     settings: RobotSettings
@@ -35,16 +35,16 @@ class SurpriseJob:
 
     @property
     def name(self) -> str:
-        """What is shown while it runs."""
+        """Name in progress displays."""
         return f"{self.task.name}, seed {self.seed}"
 
     @property
     def robot_time_s(self) -> float:
-        """All its drives."""
+        """Time of all drives in s."""
         return self.learns_s + 4 * self.different_s
 
     def run(self, tell: Progress) -> tuple[SurpriseCounts, ...]:
-        """Drive them all."""
+        """Run all drives."""
         return anyio.run(self._drives, tell)
 
     async def _drives(self, tell: Progress) -> tuple[SurpriseCounts, ...]:
@@ -81,7 +81,7 @@ class SurpriseJob:
 
 
 def surprise_table(results: Sequence[Sequence[SurpriseCounts]]) -> Table:
-    """A row for each difference, all robots together; `results`: one sequence for each robot, alike."""
+    """Return the table of all robots, a row for each difference; `results`: an equal sequence for each robot."""
     rows = []
     for drives in zip(*results, strict=True):
         ends = sum(each.ends for each in drives)
