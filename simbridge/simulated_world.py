@@ -50,7 +50,7 @@ class Kurt2World:
         return self._simulation.error is None
 
     def place(self) -> SimulatedPlace:
-        """Where the robot is."""
+        """Return the robot's pose and counters."""
         pose = self._robot.pose
         return SimulatedPlace(
             pose.x_m, pose.y_m, pose.heading_rad, self._robot.laps, self._robot.collisions, self._version

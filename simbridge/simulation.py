@@ -110,7 +110,7 @@ class Kurt2Simulation:
         self._line.cycle(self.simulated_robot.step)
 
     def attach_tap(self, tap: Tap | None) -> None:
-        """Somebody who sees what passes the notebook's end of the bus; None: nobody."""
+        """Set the tap of the notebook's bus interface; None: none."""
         self._line.notebook_end.tap = tap
 
     def rescue(self) -> None:

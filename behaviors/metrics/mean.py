@@ -14,7 +14,7 @@ class Mean:
         self._count = 0
 
     def add(self, value: float) -> None:
-        """Add a value, in the unit of the mean."""
+        """Add a value, in the unit of the metric, such as m."""
         self._sum += value
         self._count += 1
 

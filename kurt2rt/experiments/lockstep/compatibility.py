@@ -25,7 +25,7 @@ def route_of(course: TaskMetric, task: TaskSettings) -> RouteMetric:
     if isinstance(course, RouteMetric):
         return course
     raise SettingsError(
-        f"course {task.course.kind} has no route, so nobody can say what the mid level is to want",
+        f"course {task.course.kind} has no route to teach the mid level",
         where=f"task {task.name}",
         do="give the course route, or leave mid out",
     )

@@ -57,6 +57,7 @@ class ExamResult:
         """Return the verdict on this drive, measured by the progress of the teacher's own policy from the same start.
 
         A drive passes with no more collisions than allowed, no alarm, not stuck, and with enough progress.
+        `teachers_progress`: in the unit of `progress`, such as laps or m.
         """
         if teachers_progress <= self.least_progress:
             return ExamVerdict.NOT_JUDGED

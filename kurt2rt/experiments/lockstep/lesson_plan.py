@@ -7,8 +7,7 @@ from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings
 
 Signs = Literal["none", "judge", "unknown", "chance"]
-"""What the teacher goes by when he praises and blames: nothing, the task's judge, that the robot knew no answer, or
-chance."""
+"""Source of the teacher's rewards: none, the task's judge, unknown situations, or random penalties."""
 
 
 @dataclass(frozen=True, slots=True)

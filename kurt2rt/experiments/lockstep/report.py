@@ -118,7 +118,7 @@ def verdict_of(result: WorldResult) -> str:
 def _render_measures(title: str, worlds: Sequence[str], exams: Sequence[Sequence[ExamResult]]) -> list[TextTable]:
     """Return the table of further measures, a column for each world; no table without measures."""
     names = dict.fromkeys(name for each in exams for exam in each for name in exam.findings)
-    # How many junctions there were is told beside how many were right.
+    # The number of junctions is in the same cell as the number of right ones.
     shown = [name for name in names if not name.startswith(JUNCTIONS) or name.startswith(RIGHT)]
     table = TextTable(title=title)
     table.add_column("")

@@ -22,7 +22,13 @@ def draw_trail(
     width: float = 1.0,
     zorder: float = 3,
 ) -> None:
-    """A line with gaps where the robot was set down elsewhere: where two points are farther apart than `carried_m`."""
+    """Draw a line with gaps at repositionings.
+
+    Args:
+        trail: points in m.
+        carried_m: least distance between two points of a gap.
+        width: width of the line in points.
+    """
     said: str | None = label
     for way in ways(trail, carried_m):
         axes.plot(*columns(way), color=colour, linewidth=width, zorder=zorder, label=said)

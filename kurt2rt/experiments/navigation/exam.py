@@ -37,7 +37,12 @@ class RandomChooser:
         self._way: Rla | None = None
 
     def choose(self, group: tuple[Rla, ...], vector: NDArray[np.float64]) -> Rla | None:
-        """Return one RLA of the group; the same until the next place."""
+        """Return one RLA of the group; the same until the next place.
+
+        Args:
+            group: RLAs that are possible at the place.
+            vector: features of the mid level, shape (features,); a new array at each place.
+        """
         if vector is not self._at or self._way not in group:
             self._at, self._way = vector, self._chance.choice(group)
         return self._way

@@ -36,9 +36,9 @@ def choose_goals(
     settings: ErrandsSettings,
     chance: random.Random,
 ) -> tuple[GoalChosen, ...]:
-    """Goals that follow each other, the first from `start`; as many as asked for, fewer where there are none.
+    """Return successive goals, the first from `start`; fewer than required if there are none.
 
-    `led`: all streets that the robot was led through, None where it was set down anew.
+    `led`: streets of the tour; None before each repositioning.
     """
     chosen: list[GoalChosen] = []
     here = start
@@ -65,7 +65,7 @@ def _goal(town: Town, name: str, start: Street, street: Street, led: Sequence[St
 
 
 def demonstrated_m(led: Sequence[Street | None], start: Street, goal: Street) -> float:
-    """Length of the shortest piece of a way led that begins in one street and ends in the other."""
+    """Return the length in m of the shortest piece of the tour from one street to the other; infinite without one."""
     best_m, piece = math.inf, list[Street]()
     for street in led:
         if street is None:

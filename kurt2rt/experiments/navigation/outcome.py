@@ -9,8 +9,7 @@ Place = tuple[float, float]
 """x and y in m, to the millimetre."""
 
 Strategy = Literal["planning", "chance", "first taught"]
-"""By what the robot goes: a plan; or, as controls, any of the ways that were taught at a place, by chance; or always
-the one that was taught first."""
+"""Strategy of the drive: a plan; as controls, random taught ways, or always the way taught first."""
 
 
 class ErrandDone(Settings):

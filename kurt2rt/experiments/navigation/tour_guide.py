@@ -18,16 +18,15 @@ _NOTICES_WITHIN_S = 3.0
 
 
 class TourGuide:
-    """Leads along a random route, and rather where he has not led it yet; sees the robot, and what its mid level says.
+    """Scripted guide along a random route that prefers new ways; its input is the robot's mid level and street.
 
-    Each way that he leads it for the first time he teaches, beside what was taught there; where the robot would do
-    something else, he says what is wanted.
+    The guide teaches each new way as an alternative, and commands a behaviour if the robot would choose another one.
     """
 
     def __init__(
         self, walk: Errands, names: int, settings: TeacherSettings, *, period_s: float, seed: int, session: str
     ) -> None:
-        """`walk`: where the robot is. `names`: so many places get one. `session`: as in ScriptedTeacher."""
+        """`walk`: tracker of the robot. `names`: number of named places. `session`: as in ScriptedTeacher."""
         self._walk = walk
         self._names = names
         self._session = session
@@ -38,20 +37,20 @@ class TourGuide:
         self._led: set[tuple[Street, str]] = set()
         self._to_say: deque[Command] = deque()
         self._wanted: str | None = None
-        """What is to be done at the next junction; None until the robot is at a place where that can be said."""
+        """Behaviour for the next junction; None until the robot is at a place."""
         self._waited = 0
         self._noticed = False
         self._here: Street | None = None
         self._unnoticed_ticks = 0
         self._said = 0
         self.named: dict[str, Street] = {}
-        """Where each name was given."""
+        """Named places, each with its street."""
         self.missed = 0
-        """Junctions that the robot did not notice."""
+        """Number of junctions that the robot did not notice."""
 
     @property
     def ways(self) -> int:
-        """Ways from a street to the next that he taught."""
+        """Number of ways from a street to the next that were taught."""
         return len(self._led)
 
     def begin(self) -> None:
@@ -69,7 +68,7 @@ class TourGuide:
         self._set_out()
 
     def watch(self, record: TickRecord) -> Command | None:
-        """See one tick; what he says to it, if anything."""
+        """Return the command in response to one tick, if any."""
         mid, street = record.decision.mid, self._walk.street
         assert mid is not None
         if self._to_say:

@@ -85,12 +85,15 @@ def make_plan(
     source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
     tasks: Sequence[str] = (),
 ) -> PaperPlan:
-    """Look at every task and world, and make the jobs.
+    """Check every task and world, and return the jobs.
 
-    `source_of`: tells the hash of the program's source; `tasks`: only these, by name or path; empty: all.
+    Args:
+        source_of: returns the hash of the program's source.
+        tasks: names or paths; empty: all. A task without an experiment in `paper` has no targets.
 
-    A task that has no experiment in `paper` is done, too; nothing is asked of it.
-    Raises hal.settings.SettingsError, StudyError.
+    Raises:
+        hal.settings.SettingsError: a task and a world do not fit.
+        StudyError: two tasks have one name, or a target has no exam.
     """
     paper = extent.paper(paper)
     chosen = _chosen(paper, extent, tasks)
@@ -142,10 +145,7 @@ def make_plan(
 
 
 def unseen_of(seed: int, experiment: ExperimentSettings) -> tuple[str, ...]:
-    """Generated worlds that the robot of a seed drives in; 20 seeds that follow each other share all of them.
-
-    Which ones the other seeds are does not matter.
-    """
+    """Return the generated worlds of one seed; 20 successive seeds share all of them."""
     return experiment.unseen.names[seed % ROBOTS :: ROBOTS] if experiment.unseen else ()
 
 

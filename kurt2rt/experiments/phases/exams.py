@@ -75,10 +75,7 @@ class Examiner:
         return tuple(outcomes)
 
     async def critic(self, events: Sequence[TeachingEvent], saved: Statistics | None) -> tuple[Judgement, ...]:
-        """A drive in the world that is taught in, by what `events` taught, in which the judge judges the critic.
-
-        Nothing is learnt in it.
-        """
+        """Drive in the world of the training without learning, and return the opinions of critic and judge."""
         assert self.task.judge is not None
         scoring = Scoring(self.task.judge.build())
         await self._drive(self.task.teaching.world, events, saved, None, teacher_policy=False, on_record=scoring.look)

@@ -43,7 +43,7 @@ def draw_figures(study: PhasesStudy, folder: Path) -> Iterator[SavedFigure]:
     yield SavedFigure(
         path,
         "The teacher's load",
-        "What he says in each minute, mean of all robots, along the path of all phases. In phase 5 nobody teaches.",
+        "What he says in each minute, mean of all robots, along the path of all phases. Phase 5 has no teacher.",
     )
     path = folder / "agreement.png"
     _draw_agreement(study, path)

@@ -80,7 +80,7 @@ def phases_of(task: TaskSettings) -> PhasesSettings:
         )
     if task.judge is None:
         raise SettingsError(
-            "there is no judge, so nobody can praise or blame", where=f"task {task.name}", do="add `judge:`"
+            "there is no judge, so the teacher cannot reward", where=f"task {task.name}", do="add `judge:`"
         )
     return task.phases
 
@@ -99,11 +99,11 @@ def steps_of(task: TaskSettings) -> Iterator[PhaseStep]:
     )
 
     def taught(phase: Phase, lasts_s: float, purpose: str, **more: object) -> LessonPlan:
-        # Whoever is compared with others is rescued by the same rule, whatever phase he is in.
+        # Robots that are compared are rescued by one rule in all phases.
         return LessonPlan(((phase, lasts_s),), purpose, rescues_who_asks=True, **more)  # type: ignore[arg-type]
 
     def alone(lasts_s: float, purpose: str) -> LessonPlan:
-        # Who is not there to teach does not look so often, either, and sets nothing down that he was not called for.
+        # Without a teacher, rescues come later and planned repositionings are left out.
         return taught(
             Phase.AUTONOMOUS, lasts_s, purpose, rescue_after_s=task.exam.stuck_after_s, reposition_every_s=0.0
         )

@@ -71,8 +71,8 @@ def all_tables(study: PhasesStudy, reasons: Sequence[str]) -> Iterator[Table]:
         study,
         "All branches begin with the same set of each robot. Asks only: the teacher answers, no more. Unknown is -1: "
         "he also blames what led into a situation that the robot does not know. By chance: he blames whatever drives "
-        "now and then, and answers where the robot asks again. Critic alone: nobody is asked. "
-        "Shuffled: the same appraisals with their opinions dealt out anew, trusted all the same. "
+        "now and then, and answers where the robot asks again. Critic alone: there is no teacher to ask. "
+        "Shuffled: the same appraisals with their opinions shuffled, trusted all the same. "
         + " ".join(words_of_controls(study)),
     )
     yield workload_table("What that took", (ASKS, UNKNOWN_BAD, BLAME_BY_CHANCE, REWARDS), study)

@@ -98,7 +98,7 @@ def critic_table(study: PhasesStudy) -> Table:
             (
                 TITLES[name],
                 f"{quartiles([stage.appraisals for stage in stages])[1]:g}",
-                # Elsewhere nobody says what it could agree with: what there is was heard in phase 4, or made up.
+                # Other steps have no teacher to agree with: their agreement is that of phase 4, or made up.
                 "" if name != PHASE_4 else "too little heard" if agreement is None else f"{agreement[1]:.2f}",
                 "" if name != PHASE_4 or agreement is None else f"{agreement[0]:.2f} to {agreement[2]:.2f}",
                 f"{sum(each.share_trusted > 0 for each in taught)} of {len(taught)}",
@@ -138,7 +138,7 @@ def judged_table(study: PhasesStudy) -> Table:
         ("share", "all robots together", "median robot", "quartiles"),
         tuple(rows),
         note="After phase 4, in a drive by the corrupted set of the branches in the world that is taught in: tick by "
-        "tick beside the judge, and nothing is learnt. The critic has not seen these wrong actions.",
+        "tick with the judge, and nothing is learnt. The critic has not seen these wrong actions.",
     )
 
 

@@ -119,7 +119,7 @@ def route_of_task(task: TaskSettings) -> RouteSettings:
 
 
 def with_route(task: TaskSettings, seed: int, decisions: int | None = None) -> TaskSettings:
-    """The task with the route of this robot, unless it says which one; `decisions`: None: as many as the task says.
+    """Return the task with the route of this robot, unless it names one; `decisions`: None: the task's number.
 
     Raises hal.settings.SettingsError for a task that teaches no route.
     """

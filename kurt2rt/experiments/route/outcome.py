@@ -9,8 +9,8 @@ Place = tuple[float, float]
 """x and y in m, to the millimetre."""
 
 Layer = Literal["symbols", "mid", "basic"]
-"""Who failed: what the robot noticed of junctions, its mid level by what it had noticed, or its basic level, which was
-told what is right and did something else, or was told something else after a noise of the first."""
+"""Layer that failed: `symbols`, noticed junctions differ from the real ones; `mid`, a wrong choice from right symbols;
+`basic`, a right choice that was not driven."""
 
 LAYERS: tuple[Layer, ...] = ("symbols", "mid", "basic")
 

@@ -69,11 +69,17 @@ def make_plan(
     basic_folder: Path | None = None,
     source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
 ) -> RoutePlan:
-    """Look at tasks, worlds and routes, and make the jobs.
+    """Check tasks, worlds and routes, and return the jobs.
 
-    `basic`: the task that teaches the streets; `basic_folder`: files of robots that were taught it, as `kurt2rt lesson`
-    leaves them. `source_of`: tells the hash of the program's source.
-    Raises hal.settings.SettingsError, StudyError, KnowledgeError.
+    Args:
+        basic: the task that teaches the streets.
+        basic_folder: knowledge files of that task, as `kurt2rt lesson` leaves them; None: the streets are taught first.
+        source_of: returns the hash of the program's source.
+
+    Raises:
+        hal.settings.SettingsError: a task and a world do not fit.
+        StudyError: a knowledge file is missing.
+        KnowledgeError: a knowledge file cannot be read.
     """
     worlds = (task.teaching.world, *task.exam.worlds[:1])
     factory.require_worlds(*worlds, basic.teaching.world)
@@ -139,7 +145,7 @@ def streets_of(
 
 
 def basic_task_of(task: TaskSettings) -> TaskSettings:
-    """The task that teaches the streets: the one whose RLA system this one shares, and is named after.
+    """Return the task that teaches the streets, named by `system` of the route's task.
 
     Raises hal.settings.SettingsError.
     """

@@ -42,9 +42,9 @@ class Variant:
         return task.model_copy(update={"mid": mid})
 
     def plans(self, task: TaskSettings, starts: int) -> tuple[LessonPlan, ...]:
-        """Its lesson, in as many parts of the same length as it is begun anew; the phases go on through all of them.
+        """Return a plan for each start; the parts have one length, and the phases continue through them.
 
-        `starts`: as the task says.
+        `starts`: the task's number of starts.
         """
         whole = plan_of(task)
         starts = self.starts or starts
@@ -82,5 +82,5 @@ CONTROLS = (
     Variant("one-start", "begun at the start once", starts=1),
     Variant("only-answers", "questions are answered, nothing is corrected", only_answers=True),
     Variant("basic-not-corrected", "the basic level is answered, and not corrected", corrects_basic=False),
-    Variant("commanded", "no mid level: somebody commands at each junction, in the exam, too", mid=None),
+    Variant("commanded", "no mid level: a teacher commands at each junction, in the exam, too", mid=None),
 )

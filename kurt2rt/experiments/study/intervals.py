@@ -23,10 +23,10 @@ class Rate(NamedTuple):
 
 
 def rate_of(counts: Sequence[int], exposures: Sequence[float]) -> Rate:
-    """Events per unit of exposure over several drives, such as collisions per 10 min: one count and exposure each.
+    """Return the events per unit of exposure over several drives, such as collisions in 10 min.
 
-    The interval is the wider at each end of two. Poisson's exact one holds however rare the events are. The other is
-    bootstrapped over the drives, since collisions come in clusters: a robot that was taught badly has many.
+    The interval is the wider at each end of two: Poisson's exact one for rare events, and a bootstrap over the drives,
+    because collisions come in clusters.
     """
     total = sum(exposures)
     events = sum(counts)
@@ -64,9 +64,9 @@ class RateDifference(NamedTuple):
 
 
 def difference_of(changes: Sequence[float]) -> RateDifference:
-    """The mean change of the same robots from one thing to another, bootstrapped over the robots.
+    """Return the mean change of the same robots, with an interval bootstrapped over the robots.
 
-    Where all changes are alike, as where none is, the interval is a point; one robot says nothing of others.
+    The interval of equal changes is a point, and infinite for one robot.
     """
     value = math.fsum(changes) / len(changes)
     if len(changes) == 1:
@@ -76,10 +76,7 @@ def difference_of(changes: Sequence[float]) -> RateDifference:
 
 
 def fall_of(before: Sequence[float], after: Sequence[float]) -> RateDifference:
-    """By which share the sum of something falls in the same robots, bootstrapped over the robots, pairs kept together.
-
-    Where there was nothing before, nothing falls.
-    """
+    """Return the relative fall of a sum in the same robots, bootstrapped over the pairs; 0 for a sum of 0 before."""
     value = 1.0 - math.fsum(after) / math.fsum(before) if any(before) else 0.0
     if len(before) == 1:
         return RateDifference(value, -math.inf, 1.0)

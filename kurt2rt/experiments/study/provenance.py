@@ -19,9 +19,9 @@ _COMPUTE = ("numpy", "pymunk", "shapely")
 
 
 class Provenance(Settings):
-    """What decides a result: hashes of settings and source, and the versions of what computes.
+    """Provenance of a result: hashes of settings and source, and versions of the computing packages.
 
-    The field names are said to the user: made with other ...
+    Error texts name the fields.
     """
 
     task: str
@@ -81,9 +81,9 @@ class Fingerprints:
         self._known: dict[tuple[str, str], str] = {}
 
     def of(self, task: TaskSettings, worlds: Iterable[str], *more: str) -> Provenance:
-        """Of one job that drives in these worlds; `more`: what else it goes by.
+        """Return the provenance of a job in these worlds; `more`: further texts that decide its result.
 
-        Raises hal.settings.SettingsError for what cannot be used.
+        Raises hal.settings.SettingsError for unusable settings.
         """
         of_task = task.model_dump_json(exclude=self._leave_out, serialize_as_any=True)
         return Provenance(
