@@ -13,7 +13,7 @@ from kurt2rt.core.decision.level import Level
 from kurt2rt.core.decision.standing import DRIVES, BumperWatch, Standing, StandingWatch
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.expectations.tracker import ExpectationTracker
-from kurt2rt.core.mid.usage_counter import MidUsageCounter
+from kurt2rt.core.mid.mid_level import MidUsageCounter
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.perception.perception import Perception, Situation
 from kurt2rt.core.rla.rla import BASIC, Phase, Rla, TeachingEvent

@@ -1,1 +1,1 @@
-"""The mid level's situation: which junctions the robot has passed, and what it did there (paper, V.B and VI.B.2)."""
+"""Mid level: RLAs over the passed junctions (paper, sections V.B and VI.B.2)."""

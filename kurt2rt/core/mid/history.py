@@ -1,4 +1,4 @@
-"""The mid level's situation as the paper has it (VI.B.2): the last differing symbols."""
+"""Mid-level situation of the paper (section VI.B.2): a history of symbols."""
 
 from collections.abc import Sequence
 from typing import Annotated, Literal
@@ -18,41 +18,41 @@ from kurt2rt.core.rla.space import Metric
 
 
 class HistorySettings(MidSituationSettings):
-    """A history of symbols."""
+    """Settings of a history of symbols."""
 
     symbols: AnySymbolSettings
     length: Annotated[int, Field(ge=1, le=100)]
-    """How many symbols are remembered."""
+    """Number of symbols."""
     distance: Literal["hamming", "edit"]
-    """hamming: in how many places two histories differ; edit: how many insertions, deletions and changes it takes."""
+    """hamming: number of different places; edit: number of insertions, deletions and changes."""
 
     @property
     def features(self) -> tuple[str, ...]:
-        """The newest symbol first."""
+        """Names of the symbols, newest first."""
         return tuple(f"symbol {place}" for place in range(1, self.length + 1))
 
     @property
     def metric(self) -> Metric:
-        """Symbols are equal or not."""
+        """Metric of symbols."""
         return self.distance
 
     def describe(self, vector: Sequence[float] | NDArray[np.float64]) -> tuple[str, ...]:
-        """The newest symbol first."""
+        """Return the symbols of a situation (d,) by name, newest first."""
         named = dict(enumerate(("", *self.symbols.names)))
         return tuple(named.get(int(symbol), str(int(symbol))) for symbol in vector)
 
     def build(
         self,
         detector: JunctionDetector,
-        robot: RobotSettings,  # noqa: ARG002 - the robot is its detector's matter
+        robot: RobotSettings,  # noqa: ARG002 - used by the detector
         transitions: Transitions,
     ) -> MidSituation:
-        """The history, empty."""
+        """Return an empty history."""
         return SymbolHistory(self, self.symbols.build(transitions), detector)
 
 
 class SymbolHistory:
-    """The last symbols, newest first; NONE where there was none yet."""
+    """Mid-level situation of the last symbols, newest first; NONE in unused places."""
 
     def __init__(self, settings: HistorySettings, source: SymbolSource, detector: JunctionDetector) -> None:
         self.features = settings.features
@@ -63,7 +63,7 @@ class SymbolHistory:
         self._detector = detector
 
     def perceive(self, senses: SensorReadings, before: Decision) -> bool:
-        """Take in one tick."""
+        """Process one tick; return whether there is a new symbol."""
         self.passed = self._detector.perceive(senses)
         symbol = self._source.perceive(before, self._detector, self.passed)
         if symbol == NONE:
@@ -75,7 +75,7 @@ class SymbolHistory:
         return True
 
     def restart(self) -> None:
-        """Forget all symbols."""
+        """Remove all symbols."""
         self._detector.restart()
         self._source.restart()
         self.passed = None

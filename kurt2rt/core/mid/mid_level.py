@@ -1,4 +1,4 @@
-"""The mid level: RLAs over the junctions that were passed; their actions are taught behaviours of the basic level."""
+"""Mid level: RLAs over the passed junctions, whose actions are taught behaviours of the basic level."""
 
 from typing import Protocol
 
@@ -7,38 +7,39 @@ from numpy.typing import NDArray
 
 from hal.robot import SensorReadings
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Decision, MidDecision
+from kurt2rt.core.decision.decision import Cause, Decision, MidDecision
 from kurt2rt.core.decision.errors import UnknownBehaviourError
 from kurt2rt.core.mid.settings import MidSettings
 from kurt2rt.core.mid.situation import MidSituation
 from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.usage_counter import StatisticsCounter
 
 
 class TieBreaker(Protocol):
-    """Who says which of several RLAs on the very same condition commands: a plan, for instance."""
+    """Choice among RLAs with an equal condition, for instance by a plan."""
 
     def choose(self, group: tuple[Rla, ...], vector: NDArray[np.float64]) -> Rla | None:
-        """One of the group, oldest first, at this mid-level situation; None: no wish, the nearest commands.
+        """Return one RLA of the group, oldest first, at a situation (d,); None: the nearest one commands.
 
-        Asked in every tick in which the mid level knows its situation.
+        Called in each tick in which the mid level knows its situation.
         """
         ...
 
 
 class MidLevel:
-    """Winner takes all among mid-level RLAs; what they say is what the basic level is to pursue.
+    """Winner takes all among mid-level RLAs; the winner's action is the active behaviour of the basic level.
 
-    Situation and knowledge change seldom, and only then the nearest RLA is looked up anew.
+    The search runs only after a change of situation or knowledge.
     """
 
     def __init__(
         self, system: RlaSystem, situation: MidSituation, settings: MidSettings, wanted: ActiveBehaviour
     ) -> None:
-        """`wanted`: shared with the basic level, which follows what the mid level commands there.
+        """`wanted`: active behaviour, shared with the basic level.
 
-        Raises UnknownBehaviourError for RLAs that command what the task does not teach.
+        Raises UnknownBehaviourError for an RLA whose behaviour the task does not have.
         """
         for rla in system.rlas_at(MID):
             if rla.action not in wanted.behaviours and not rla.is_withdrawn:
@@ -58,39 +59,39 @@ class MidLevel:
 
     @property
     def vector(self) -> NDArray[np.float64]:
-        """The mid-level situation, shape (d,): the condition that a lesson would teach now. Never changed in place."""
+        """Mid-level situation, shape (d,): the condition of a lesson given now. Never changed in place."""
         return self.situation.vector
 
     @property
     def commanded(self) -> str:
-        """The behaviour that is wanted now."""
+        """Active behaviour."""
         return self._wanted.behaviour
 
     @property
     def overridden(self) -> bool:
-        """Whether a teacher commands until the next junction has been passed."""
+        """Return whether a teacher's override holds, until the next junction is passed."""
         return self._overridden
 
     def override(self, behaviour: str) -> None:
-        """A teacher commands a behaviour until the next junction has been passed. Raises CommandRefusedError.
+        """Command a behaviour until the next junction is passed. Raises CommandRefusedError for an unknown one.
 
-        Where one of the RLAs that know this very situation says so, too, it commands: what comes of it is its doing.
+        If an RLA of this situation has the same action, that RLA commands and gets the use counted.
         """
         self._wanted.select(behaviour)
         self._overridden = True
 
     def end_override(self) -> None:
-        """What a teacher commanded counts no more: the mid level commands from the next decision on."""
+        """End the override: the mid level commands from the next decision on."""
         self._overridden = False
 
     def restart(self) -> None:
-        """Forget where the robot was: it has been set down elsewhere. What a teacher commanded goes on."""
+        """Reset the situation after the robot was repositioned; an override stays."""
         self.situation.restart()
         self._match = None
         self._changes = -1
 
     def decide(self, senses: SensorReadings, before: Decision) -> MidDecision:
-        """Command a behaviour; `before`: the decision of the tick before. Changes what is wanted."""
+        """Return the command of this tick and activate its behaviour; `before`: decision of the last tick."""
         changed = self.situation.perceive(senses, before)
         event = self.situation.passed
         if event is not None:
@@ -122,3 +123,32 @@ class MidLevel:
             rla = self.tie_breaker.choose(self.system.competitors(rla), self.situation.vector) or rla
         wanted.select(rla.action)
         return MidDecision(rla.action, rla.rla_id, match, False, False, None)
+
+
+class MidUsageCounter:
+    """Counter of uses of mid-level RLAs: one for each junction that an RLA led the robot through.
+
+    RLAs corrected before the junction, overrides and manual driving do not count. A robot that stands on its way is
+    still on it.
+    """
+
+    def __init__(self, counter: StatisticsCounter) -> None:
+        """`counter`: common to all levels."""
+        self._counter = counter
+        self._leads: int | None = None
+
+    def count(self, decision: Decision, *, driving: bool) -> None:
+        """Count one tick; `driving`: whether the wheels turned for this decision."""
+        mid = decision.mid
+        if mid is None:
+            return
+        if mid.event is not None:
+            self._counter.count(self._leads, MID, again=True)
+        if driving:
+            by_teacher = mid.overridden or decision.cause is Cause.TEACHER
+            self._leads = None if by_teacher else mid.rla_id
+
+    def restart(self) -> None:
+        """Count no transition into the next RLA."""
+        self._counter.count(None, MID)
+        self._leads = None

@@ -1,4 +1,4 @@
-"""The mid level's situation as a place: where the robot is by its wheels, and what it saw at the last junction."""
+"""Mid-level situation as a place: dead-reckoned pose, and the walls of the last junction."""
 
 import math
 from collections.abc import Callable
@@ -20,54 +20,53 @@ from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.space import Metric
 
 X, Y, EAST, NORTH, WALL_LEFT, WALL_RIGHT = range(6)
-"""Where each feature stands in the vector."""
+"""Index of each feature."""
 _UNKNOWN_WALL = 0.5
 _QUARTER_RAD = math.pi / 2
 _HEADINGS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
-"""Of each number of quarter turns to the left, exactly."""
+"""(east, north) by the number of left quarter turns, exact."""
 
 KnownPlace = Callable[[NDArray[np.float64]], Condition | None]
-"""The condition of the place that a situation is at; None where it is at none that the robot knows."""
+"""Function from a situation (d,) to the condition of its place; None at an unknown place."""
 
 
 class PlaceSettings(MidSituationSettings):
-    """A place, by dead reckoning."""
+    """Settings of a place by dead reckoning."""
 
     heading_m: Annotated[float, Field(ge=0, le=100)]
-    """Two places at one point with opposite headings count as twice so far apart."""
+    """Half the distance of two opposite headings at one point."""
     blind_m: Annotated[float, Field(ge=0, le=100)] = 0.0
-    """A junction gone straight through after less way than this since the last one is none, but a gap in a wall."""
+    """Distance after a junction within which a straight passage is a gap in a wall."""
 
     @property
     def features(self) -> tuple[str, ...]:
-        """Position and heading; then, of no weight, whether walls stood beside the robot in the last junction."""
+        """Position and heading; then the walls of the last junction, of weight 0."""
         return ("x_m", "y_m", "east", "north", "wall_left", "wall_right")
 
     @property
     def weights(self) -> NDArray[np.float64]:
-        """What was seen at a junction tells no places apart; but goals can be about it."""
+        """Weights, shape (6,); walls do not distinguish places, but goals can refer to them."""
         return np.array([1.0, 1.0, self.heading_m, self.heading_m, 0.0, 0.0])
 
     @property
     def metric(self) -> Metric:
-        """Metres."""
+        """Metric of places."""
         return "euclidean"
 
     def build(
         self,
         detector: JunctionDetector,
         robot: RobotSettings,
-        transitions: Transitions,  # noqa: ARG002 - it goes by nothing counted
+        transitions: Transitions,  # noqa: ARG002 - needs no counts
     ) -> MidSituation:
-        """The place where the robot is switched on: there its reckoning begins."""
-        return Place(self, detector, robot)
+        """Return the place at power-on, the origin of the dead reckoning."""
+        return PlaceSituation(self, detector, robot)
 
 
-class Place:
-    """Position and heading behind the last junction, reckoned by the wheels and put right at places that are known.
+class PlaceSituation:
+    """Pose after the last junction, by dead reckoning, corrected at known places; constant between junctions.
 
-    Streets run at right angles: behind each junction the heading is a whole number of quarter turns, so errors of the
-    heading do not add up. Between junctions nothing changes.
+    Streets meet at right angles, so the heading is a whole number of quarter turns and its error does not add up.
     """
 
     def __init__(self, settings: PlaceSettings, detector: JunctionDetector, robot: RobotSettings) -> None:
@@ -75,7 +74,7 @@ class Place:
         self.dimensions = len(settings.features)
         self.passed: JunctionEvent | None = None
         self.known_place: KnownPlace | None = None
-        """Where there is one, the reckoning goes on from the places that it knows."""
+        """Function that corrects the position at known places; None: no correction."""
         self._blind_m = settings.blind_m
         self._detector = detector
         self._metres_per_tick = robot.geometry.metres_per_tick
@@ -84,35 +83,35 @@ class Place:
 
     @property
     def lost(self) -> bool:
-        """Whether the robot does not know where it is: it was set down elsewhere, and nobody has said where."""
+        """Return whether the position is unknown: the robot was repositioned and not localised since."""
         return bool(np.isnan(self.vector[X]))
 
     @property
     def since_m(self) -> float:
-        """Way driven since the situation changed."""
+        """Driven distance since the last change."""
         return self._way_m
 
-    def perceive(self, senses: SensorReadings, before: Decision) -> bool:  # noqa: ARG002 - what was decided does not matter here
-        """Take in one tick."""
-        told, self._moved = self._moved, False
+    def perceive(self, senses: SensorReadings, before: Decision) -> bool:  # noqa: ARG002 - decisions do not matter
+        """Process one tick; return whether the situation changed."""
+        moved, self._moved = self._moved, False
         self.passed = passed = self._detector.perceive(senses)
         self._reckon(senses)
         if passed is not None and passed.quarters == 0 and self._way_m < self._blind_m:
             self.passed = passed = None
         if passed is None or self.lost:
-            return told
+            return moved
         self._arrive(passed)
         return True
 
     def restart(self) -> None:
-        """The robot was set down elsewhere: it is lost until somebody says where it is."""
+        """Set the position to unknown after the robot was repositioned."""
         self._begin((math.nan, math.nan, 1.0, 0.0, _UNKNOWN_WALL, _UNKNOWN_WALL))
         self._detector.restart()
         self.passed = None
         self._moved = True
 
     def localise(self, place: Condition) -> None:
-        """Somebody says where the robot is: the reckoning goes on from there."""
+        """Continue the dead reckoning from a place that the teacher named."""
         self._begin(place)
         self._detector.restart()
         self.passed = None
@@ -125,7 +124,7 @@ class Place:
         self._begin_leg()
 
     def _begin_leg(self) -> None:
-        """From one junction to the next the way is reckoned in the frame of the encoders' own yaw."""
+        """Start the displacement since a junction, in the frame of the encoders' yaw."""
         self._x_driven_m = self._y_driven_m = self._way_m = 0.0
 
     def _reckon(self, senses: SensorReadings) -> None:
@@ -136,7 +135,7 @@ class Place:
         self._way_m += abs(step_m)
 
     def _arrive(self, passed: JunctionEvent) -> None:
-        ahead_m, left_m = self._along_the_street(passed)
+        ahead_m, left_m = self._displacement_m(passed)
         east, north = _HEADINGS[self._quarters]
         self._x_m += ahead_m * east - left_m * north
         self._y_m += ahead_m * north + left_m * east
@@ -148,14 +147,14 @@ class Place:
             self._x_m, self._y_m = known[X], known[Y]
         self._begin_leg()
 
-    def _along_the_street(self, passed: JunctionEvent) -> tuple[float, float]:
-        """The leg ahead and to the left, as seen along the street that it began in.
+    def _displacement_m(self, passed: JunctionEvent) -> tuple[float, float]:
+        """Return the displacement in m, ahead and to the left, along the street that it began in.
 
-        What the encoders make of the turn more or less than whole quarters is wrong half-way through on average.
-        Who goes straight on through a junction stays in line: how he strays between the walls does not add up.
+        The error of the measured turn is taken to arise half-way on average. A straight passage has no left
+        displacement, because wobbling between the walls does not add up.
         """
         street_rad = self._detector.street_rad
-        assert street_rad is not None  # nobody passes a junction without having been in a street
+        assert street_rad is not None  # a junction follows a street
         surplus_rad = math.remainder(passed.turn_rad - passed.quarters * _QUARTER_RAD, 2 * math.pi)
         came_rad = street_rad - passed.turn_rad + surplus_rad / 2
         cos, sin = round_portable(math.cos(came_rad)), round_portable(math.sin(came_rad))

@@ -20,16 +20,16 @@ Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class MidLearningSettings(Settings):
-    """How the mid level's RLA system matches and takes lessons."""
+    """Settings of matching and lessons of the mid level."""
 
     radius: Annotated[float, Field(ge=0, le=100_000)]
-    """Confidence radius R; of histories: how many places may differ (paper: 6 of 12). 0: only what was taught."""
+    """Confidence radius R; of histories the number of different places (paper: 6 of 12). 0: equal situations only."""
     insert_beyond_share: Share
-    """A correction farther than this share of R from the nearest condition inserts a new RLA, else it replaces."""
+    """Share of R beyond which a correction inserts an RLA; nearer it replaces the action."""
 
 
 class MidSettings(Settings):
-    """The mid level, whole."""
+    """Settings of a mid level."""
 
     name: Name
     junctions: JunctionDetectorSettings
@@ -48,15 +48,15 @@ class MidSettings(Settings):
 
     @property
     def space(self) -> Space:
-        """What distances of the mid level are measured in."""
+        """Space of the mid level."""
         situation = self.situation
         return Space(len(situation.features), self.learning.radius, situation.weights, situation.metric)
 
     @property
     def feature_hash(self) -> str:
-        """Fingerprint of what the features are; mid-level RLAs are refused under another.
+        """Fingerprint of the features; mid-level RLAs with another one are refused.
 
-        How distances are measured is no part of it, nor is the radius: with others the same RLAs have other borders.
+        Metric and radius are not part of it: they only move the borders between RLAs.
         """
         situation = self.situation.model_dump(mode="json")
         situation.pop("distance", None)
@@ -64,15 +64,15 @@ class MidSettings(Settings):
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
     def build(self, robot: RobotSettings, transitions: Transitions | None = None) -> MidSituation:
-        """The situation, for this robot, as if just switched on. Raises hal.settings.SettingsError.
+        """Return the situation at power-on for a robot. Raises hal.settings.SettingsError.
 
-        `transitions`: which RLA followed which how often, as counted up to now.
+        `transitions`: (RLA id, follow-up id) -> count.
         """
         return self.situation.build(JunctionDetector(self.junctions, robot), robot, transitions or {})
 
 
 def load_mid_level(name_or_path: str | MidSettings) -> MidSettings:
-    """Settings of a shipped mid level by name, or of a file by path; settings are taken as they are.
+    """Return the settings of a built-in mid level by name, or of a file by path; settings are returned unchanged.
 
     Raises hal.settings.SettingsError.
     """

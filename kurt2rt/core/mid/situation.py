@@ -1,4 +1,4 @@
-"""What the mid level needs of its situation, whatever it is made of."""
+"""Protocol of mid-level situations, and base of their settings."""
 
 from abc import abstractmethod
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ from kurt2rt.core.rla.space import Metric
 
 
 class MidSituation(Protocol):
-    """Where the robot is, for the mid level: changes when a junction has been passed, not in between."""
+    """Situation of the mid level; it changes at junctions only."""
 
     @property
     def features(self) -> tuple[str, ...]:
@@ -33,25 +33,25 @@ class MidSituation(Protocol):
 
     @property
     def vector(self) -> NDArray[np.float64]:
-        """Shape (dimensions,). Never changed in place: where the situation changes there is a new one, so keep it."""
+        """Situation, shape (dimensions,); a change makes a new array."""
         ...
 
     @property
     def passed(self) -> JunctionEvent | None:
-        """The junction that the last call of `perceive` found passed."""
+        """Junction passed in the last call of `perceive`; None without one."""
         ...
 
     def perceive(self, senses: SensorReadings, before: Decision) -> bool:
-        """Take in one tick; `before`: the decision of the tick before. Returns whether the vector has changed."""
+        """Process one tick; return whether the vector changed. `before`: decision of the last tick."""
         ...
 
     def restart(self) -> None:
-        """Forget what was: the robot has been switched on, or set down elsewhere."""
+        """Reset after power-on or repositioning."""
         ...
 
 
 class MidSituationSettings(KindSettings):
-    """Base of the settings of every mid-level situation: a class named after its file in this folder, the kind."""
+    """Base of the settings of mid-level situations; the class is named after its file, the kind."""
 
     @property
     @abstractmethod
@@ -60,26 +60,23 @@ class MidSituationSettings(KindSettings):
 
     @property
     def weights(self) -> NDArray[np.float64] | None:
-        """Shape (dimensions,): how much each feature counts in a distance; None: all count 1."""
+        """Weight of each feature in a distance, shape (dimensions,); None: all 1."""
         return None
 
     @property
     @abstractmethod
     def metric(self) -> Metric:
-        """How distances are measured."""
+        """Metric of distances."""
 
     def describe(self, vector: Sequence[float] | NDArray[np.float64]) -> tuple[str, ...]:
-        """A situation or condition for people to read: a word per feature, empty where nothing is there yet.
-
-        All are empty where the robot does not know where it is.
-        """
+        """Return a text per feature of a situation or condition (d,); all empty for an unknown position."""
         if not np.isfinite(vector).all():
             return ("",) * len(self.features)
         return tuple(f"{name} {value:.2f}" for name, value in zip(self.features, vector, strict=True))
 
     @abstractmethod
     def build(self, detector: JunctionDetector, robot: RobotSettings, transitions: Transitions) -> MidSituation:
-        """The situation, for this robot; `transitions`: as counted up to now. Raises hal.settings.SettingsError."""
+        """Return the situation at power-on; `transitions`: counts so far. Raises hal.settings.SettingsError."""
 
 
 def _checked(given: object) -> MidSituationSettings:
@@ -87,4 +84,4 @@ def _checked(given: object) -> MidSituationSettings:
 
 
 AnyMidSituationSettings = Annotated[SerializeAsAny[MidSituationSettings], PlainValidator(_checked)]
-"""In a schema: settings of whatever situation the file names."""
+"""Schema type: settings of the kind that a file names."""

@@ -1,66 +1,61 @@
-"""Going to a goal: plan, follow the plan, plan anew when surprised, and say so where there is no way."""
+"""Pursuit of a goal: plan, follow the plan, plan again after a surprise, and report a missing path."""
 
 from collections.abc import Callable
 
 from kurt2rt.core.decision.goal import Goal
 from kurt2rt.core.decision.plan_step import GoalStatus
-from kurt2rt.core.planning.map_builder import MapBuilder
 from kurt2rt.core.planning.plan import Plan, plan_to
 from kurt2rt.core.planning.target import GroupAt, Target, Vector
-from kurt2rt.core.planning.topological_map import MapBuild, TopologicalMap
+from kurt2rt.core.planning.topological_map import MapBuild, MapBuilder, TopologicalMap
 from kurt2rt.core.rla.rla import Rla
 
 PIECES = 16
-"""RLAs and places that are looked at in one tick, for a plan; each takes 30 to 60 us."""
+"""RLAs and places processed in one tick of planning; each takes 30 to 60 us."""
 
 
 class GoalPursuit:
-    """Where the robot is to go, and the plan to get there. Changes at junction events only, and when it is told to.
+    """Goal and plan, changed at junctions and by commands.
 
-    A plan is made over several ticks, counted in RLAs and places, so that no tick waits for it, and the same run is the
-    same again.
+    Planning is spread over ticks and counted in RLAs and places, not in time, so that a replay is equal.
     """
 
-    def __init__(self, build_map: Callable[[], MapBuild], group_at: GroupAt) -> None:
-        """`build_map`: begins a chart of what is known and expected now; asked for when a plan is.
-
-        `group_at` knows no place where the mid level would ask, so no plan drives there either.
-        """
-        self._begin_map = build_map
+    def __init__(self, begin_map: Callable[[], MapBuild], group_at: GroupAt) -> None:
+        """`begin_map`: starts the map of a new plan. `group_at`: RLAs on a place; empty if the mid level would ask."""
+        self._begin_map = begin_map
         self._group_at = group_at
         self._target: Target | None = None
         self._map_builder: MapBuilder | None = None
-        """While a plan is being made: what has been looked at for it."""
+        """Map under construction; None unless planning."""
         self._here = 0
-        """The place that it begins at."""
+        """Start place of the plan."""
         self._begun = False
-        """The tick that begins a plan may still hear of what an RLA leads to no more: it looks at nothing."""
+        """Whether the first tick has passed, whose events may still remove expectations: it builds nothing."""
         self._map_done = False
-        """Whether the survey is done; the search has the next tick for itself."""
+        """Whether the map is complete; the search runs alone in the next tick."""
         self._stood_before: GoalStatus | None = None
-        """How the robot stood when the plan was begun."""
+        """Reason of a standstill at the beginning of planning."""
         self._lost_meaning = ""
-        """Why the goal means nothing any more."""
+        """Reason that the goal cannot be resolved any more; empty if it can."""
         self._planned_on: TopologicalMap | None = None
         self._next_place: frozenset[int] = frozenset()
-        """RLAs on the place that the plan leads to next."""
+        """Ids of the RLAs on the next place of the plan."""
         self._rejected_goals: set[int] = set()
-        """Places that looked like the goal on the chart, and were not when the robot came there."""
+        """Places that matched the goal on the map, but not when the robot arrived."""
         self.goal: Goal | None = None
         self.status = GoalStatus.NONE
         self.plan: Plan | None = None
-        """What is left of it; its first way is the one that is being gone."""
+        """Rest of the plan; its first edge is being driven."""
         self.surprises = 0
-        """How often the robot came to another place than planned, since this goal was given."""
+        """Number of arrivals at another place than planned, for this goal."""
 
     @property
     def stands(self) -> bool:
-        """Whether the robot stands: it has arrived, sees no way, is lost, or was so when it began to plan."""
+        """Return whether the robot stands because of the goal."""
         return self.stands_as is not None
 
     @property
     def stands_as(self) -> GoalStatus | None:
-        """Why the robot stands: at a goal, or without a way; None where it does not."""
+        """Reason of the standstill, ARRIVED or NO_WAY; None while it drives."""
         match self.status:
             case GoalStatus.ARRIVED:
                 return GoalStatus.ARRIVED
@@ -72,7 +67,7 @@ class GoalPursuit:
 
     @property
     def text(self) -> str:
-        """How it stands, in a few words; empty while there is no goal."""
+        """Status in a few words; empty without a goal."""
         if self.goal is None:
             return ""
         match self.status:
@@ -87,14 +82,14 @@ class GoalPursuit:
             case GoalStatus.LOST:
                 return f"lost on the way to {self.goal.text}: this place is not known; answer here, or set it down"
         left = 0 if self.plan is None else len(self.plan.edges)
-        way = None if self.plan is None else self.plan.next
-        if way is None:
+        edge = None if self.plan is None else self.plan.next
+        if edge is None:
             return f"on the way to {self.goal.text}: the plan begins behind the next junction"
         ways = "1 way" if left == 1 else f"{left} ways"
-        return f"on the way to {self.goal.text}: {ways} left, now {way.action} (RLA {way.rla_id})"
+        return f"on the way to {self.goal.text}: {ways} left, now {edge.action} (RLA {edge.rla_id})"
 
     def seek(self, goal: Goal, target: Target) -> None:
-        """Go there from now on; the plan is begun at the next `arrive`."""
+        """Set the goal; the next `arrive` begins the plan."""
         self._stood_before = self.stands_as
         self.goal, self._target = goal, target
         self._lost_meaning = ""
@@ -104,22 +99,22 @@ class GoalPursuit:
         self.surprises = 0
 
     def retarget(self, target: Target) -> None:
-        """The same goal, as it is told from other situations by what is known now."""
+        """Replace the target after the knowledge changed; the goal stays."""
         self._target = target
 
     def give_up(self, because: str) -> None:
-        """The goal means nothing any more: the robot stands, until there is another one, or none."""
+        """Stand until another goal is set, because this one cannot be resolved any more."""
         self._target = None
         self._lost_meaning = because
         self._settle(GoalStatus.NO_WAY)
 
     def stop(self) -> None:
-        """No goal any more."""
+        """Drop the goal."""
         self.goal = self._target = None
         self._settle(GoalStatus.NONE)
 
     def arrive(self, situation: Vector) -> None:
-        """The robot has come to a place: is it the goal, or where the plan leads to, and how does it go on?"""
+        """Process the arrival in a situation (d,): at the goal, at the planned place, or elsewhere."""
         if self._target is None or self.status is GoalStatus.ARRIVED:
             return
         if self._target.matches(situation):
@@ -137,41 +132,41 @@ class GoalPursuit:
         self._plan_from(group)
 
     def replan(self, situation: Vector) -> None:
-        """What is known has changed: plan from here."""
+        """Plan again from a situation (d,), because the knowledge changed."""
         self.plan = None
         self.arrive(situation)
 
     def choose(self, group: tuple[Rla, ...]) -> Rla | None:
-        """Of the RLAs on the place where the robot is, the one that the plan goes by; None where it has no opinion."""
-        way = None if self.plan is None else self.plan.next
-        if way is None:
+        """Return the RLA of the group that the plan uses; None if the plan uses none."""
+        edge = None if self.plan is None else self.plan.next
+        if edge is None:
             return None
-        return next((rla for rla in group if rla.rla_id == way.rla_id), None)
+        return next((rla for rla in group if rla.rla_id == edge.rla_id), None)
 
     def plan_step(self) -> bool:
-        """A tick's share of the work on a plan; whether that has settled how it goes on."""
-        survey = self._map_builder
-        if survey is None:
+        """Do one tick of planning; return whether planning has ended."""
+        builder = self._map_builder
+        if builder is None:
             return False
         if not self._begun:
             self._begun = True
             return False
         if not self._map_done:
-            self._map_done = survey.step(PIECES)
+            self._map_done = builder.step(PIECES)
             return False
-        chart, goals = survey.topological_map, survey.goals
-        assert chart is not None
+        topological_map, goals = builder.topological_map, builder.goals
+        assert topological_map is not None
         if self._here in goals:
             self._rejected_goals.add(self._here)
-        plan = plan_to(chart, self._here, goals - self._rejected_goals)
+        plan = plan_to(topological_map, self._here, goals - self._rejected_goals)
         self._settle(GoalStatus.NO_WAY if plan is None else GoalStatus.UNDER_WAY)
         if plan is not None:
-            self._planned_on = chart
+            self._planned_on = topological_map
             self._follow(plan)
         return True
 
     def defer_plan(self) -> None:
-        """The plan came too late for this junction: it is made anew behind it."""
+        """Drop a plan that is too late for this junction; the next arrival plans again."""
         self.plan = None
 
     def _plan_from(self, group: tuple[Rla, ...]) -> None:
@@ -185,8 +180,8 @@ class GoalPursuit:
         self._begun = self._map_done = False
         self._here = group[0].rla_id
 
-    def _settle(self, course: GoalStatus) -> None:
-        self.status = course
+    def _settle(self, status: GoalStatus) -> None:
+        self.status = status
         self._map_builder = self.plan = self._stood_before = None
 
     def _follow(self, plan: Plan) -> None:

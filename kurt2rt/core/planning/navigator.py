@@ -1,4 +1,4 @@
-"""Between plan and mid level: says which of the ways from a place is gone while the robot seeks a goal."""
+"""Navigator: chooses among the mid-level RLAs of a place by the plan to a goal."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -8,26 +8,24 @@ import numpy as np
 from kurt2rt.core.decision.goal import Goal, NamedGoal, RlaGoal
 from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.mid.mid_level import MidLevel
-from kurt2rt.core.mid.place import Place
+from kurt2rt.core.mid.place import PlaceSituation
 from kurt2rt.core.outcome import CommandRefusedError, RefusalCode
 from kurt2rt.core.outcome_text import text_of
-from kurt2rt.core.planning.distances import distance_function
 from kurt2rt.core.planning.goal_pursuit import GoalPursuit
-from kurt2rt.core.planning.target import Target, Vector, make_target
+from kurt2rt.core.planning.target import Target, Vector, distance_function, make_target
 from kurt2rt.core.planning.topological_map import Forecast, MapBuild, build_map
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.rla import MID, Rla
 
-_BEFORE_THE_NEXT_M = 0.3
-"""Way behind a junction within which a plan may still say what is done at the next one: farther on the robot may be in
-that one already, and must not change its mind in a turn."""
-_ANEW_AFTER_TICKS = 25
-"""However often what is known changes, a plan is begun anew for it no sooner."""
+_CHOICE_DISTANCE_M = 0.3
+"""Distance after a junction up to which a plan may choose for the next one; beyond it the robot may turn there."""
+_REPLAN_AFTER_TICKS = 25
+"""Least number of ticks between two plans because of changed knowledge."""
 _PLACE_OF = re.compile(r"RLA ([1-9][0-9]{0,8})")
 
 
 class Navigator:
-    """The chooser of the mid level while there is a goal (kurt2rt.core.mid.mid_level.TieBreaker)."""
+    """Tie breaker of the mid level while there is a goal (kurt2rt.core.mid.mid_level.TieBreaker)."""
 
     def __init__(
         self,
@@ -35,11 +33,14 @@ class Navigator:
         follow_ups: Callable[[int], Mapping[int, int]],
         forecast: Callable[[int], Forecast | None],
     ) -> None:
-        """`follow_ups`: how often each RLA followed one. `forecast`: what is expected of one.
+        """Connect to a mid level. If its situation is a place, known places correct the dead reckoning.
 
-        Both are looked at when a plan is made. Where the situation of the mid level is a place, it is put right at
-        places that are known from now on; where some are known already, the robot was switched on at none of them that
-        it could tell, and is lost until somebody says where it is.
+        If places are known at the start, the robot is lost until a teacher localises it.
+
+        Args:
+            mid: mid level whose tie breaker this becomes.
+            follow_ups: RLA id -> {follow-up id: count}; read for each plan.
+            forecast: expectation of an RLA; None before its first end.
         """
         self._mid = mid
         self._system = mid.system
@@ -49,43 +50,43 @@ class Navigator:
         self._forecast = forecast
         self._pursuit = GoalPursuit(self._build_map, self._group_at)
         self._refreshed_at: Vector | None = None
-        """The situation that the plan was last looked at in."""
+        """Situation of the last refresh."""
         self._changes = self._system.changes
         self._rlas = self._system.rlas_at(MID)
         self._goal_condition: Condition | None = None
-        """The situation that the goal meant when it was last looked at; None where it means more than one."""
+        """Condition of the goal at the last refresh; None for a goal with several situations."""
         self._outdated = False
-        """Whether the plan is to be begun anew, for what is known has changed."""
+        """Whether changed knowledge requires a new plan."""
         self._ticks = 0
-        self._planned_at_tick = -_ANEW_AFTER_TICKS
+        self._planned_at_tick = -_REPLAN_AFTER_TICKS
         self._chosen: int | None = None
         self._chosen_at: Vector | None = None
-        """What was chosen last, and in which situation."""
+        """Situation of the last choice."""
         mid.tie_breaker = self
-        if isinstance(mid.situation, Place):
+        if isinstance(mid.situation, PlaceSituation):
             mid.situation.known_place = self._known_place
             if self._rlas or self.named_situations:
                 mid.restart()
         self.status: PlanStep | None = None
-        """How it stands with the goal; None while there is none."""
+        """Goal and plan as reported with each tick; None without a goal."""
 
     @property
     def goal_status(self) -> GoalStatus:
-        """How it stands with the goal."""
+        """Status of the goal."""
         return self._pursuit.status
 
     @property
     def stands_as(self) -> GoalStatus | None:
-        """Why the robot is to stand: at its goal, or without a way there; None where it is not."""
+        """Reason to stand, ARRIVED or NO_WAY; None to drive."""
         return self._pursuit.stands_as
 
     @property
     def named_situations(self) -> Mapping[str, Condition]:
-        """What can be gone to by name."""
+        """Named situations of the mid level."""
         return self._system.named_situations(MID)
 
     def seek(self, goal: Goal) -> str:
-        """Go there from now on; how it stands. Raises CommandRefusedError."""
+        """Set the goal and return its status in words. Raises CommandRefusedError for an unknown goal."""
         target = self._target_of(goal)
         self._changes, self._rlas = self._system.changes, self._system.rlas_at(MID)
         self._begin(goal, target)
@@ -93,23 +94,23 @@ class Navigator:
         return self.status.says
 
     def stop(self) -> None:
-        """Seek nothing any more: from the next junction on the mid level commands as ever."""
+        """Drop the goal; the nearest mid-level RLA commands again from the next junction on."""
         self._pursuit.stop()
         self._publish()
 
     def localise(self, name: str) -> None:
-        """The robot is at a place that has a name, or at that of an RLA, such as RLA 12.
+        """Set the position to a named place, or to that of an RLA, such as RLA 12.
 
-        Raises CommandRefusedError where it is none, or places are not known.
+        Raises CommandRefusedError for an unknown place, or if the mid level knows no places.
         """
         situation = self._mid.situation
-        if not isinstance(situation, Place):
+        if not isinstance(situation, PlaceSituation):
             raise CommandRefusedError(RefusalCode.NO_PLACES)
         situation.localise(self._named_condition(name))
         self._pursuit.plan = None
 
     def choose(self, group: tuple[Rla, ...], vector: Vector) -> Rla | None:
-        """The way that the plan says, of those from here; one that was begun is gone to its end."""
+        """Return the RLA of the plan in a situation `vector` (d,); the last choice stays valid in its situation."""
         self.refresh()
         chosen = self._pursuit.choose(group)
         if chosen is None and vector is self._chosen_at:
@@ -119,11 +120,11 @@ class Navigator:
         return chosen
 
     def step(self) -> None:
-        """Once in each tick: look, and work on the plan as long as a tick has time for that."""
+        """Refresh and do one tick of planning; call it in each tick."""
         self._ticks += 1
         self.refresh()
         if self._outdated:
-            if self._ticks - self._planned_at_tick >= _ANEW_AFTER_TICKS:
+            if self._ticks - self._planned_at_tick >= _REPLAN_AFTER_TICKS:
                 self._planned_at_tick, self._outdated = self._ticks, False
                 self._pursuit.replan(self._mid.vector)
                 self._publish()
@@ -135,7 +136,7 @@ class Navigator:
             self._publish()
 
     def refresh(self) -> None:
-        """Notice a new situation, or that the plan cannot be followed any more; begin a plan where that is needed."""
+        """Process a new situation or changed knowledge; begin a plan if necessary."""
         if self._pursuit.goal is None:
             return
         vector, changes = self._mid.vector, self._system.changes
@@ -150,43 +151,35 @@ class Navigator:
         self._publish()
 
     def _on_knowledge_changed(self) -> None:
-        seeking, before = self._pursuit, self._rlas
+        pursuit, before = self._pursuit, self._rlas
         self._rlas = self._system.rlas_at(MID)
-        if seeking.goal is None or seeking.status is GoalStatus.ARRIVED:
+        if pursuit.goal is None or pursuit.status is GoalStatus.ARRIVED:
             return
         try:
-            target = self._target_of(seeking.goal)
+            target = self._target_of(pursuit.goal)
         except CommandRefusedError as error:
             self._goal_condition, self._outdated = None, False
-            seeking.give_up(text_of(error.outcome))
+            pursuit.give_up(text_of(error.outcome))
             return
-        if self._condition_of(seeking.goal) != self._goal_condition:
-            self._begin(seeking.goal, target)
+        if self._condition_of(pursuit.goal) != self._goal_condition:
+            self._begin(pursuit.goal, target)
         elif self._rlas != before:
-            seeking.retarget(target)
-            planning = seeking.status is GoalStatus.PLANNING
-            self._outdated = self._outdated or planning or seeking.stands or not self._is_plan_valid()
+            pursuit.retarget(target)
+            planning = pursuit.status is GoalStatus.PLANNING
+            self._outdated = self._outdated or planning or pursuit.stands or not self._is_plan_valid()
 
     def _begin(self, goal: Goal, target: Target) -> None:
         at_once = self._pursuit.stands or self._is_near_junction()
         self._goal_condition, self._outdated = self._condition_of(goal), False
         self._pursuit.seek(goal, target)
-        # Else the next junction is left as it was to be, and the plan begins behind it.
+        # Otherwise the next junction is driven as commanded, and the plan begins after it.
         self._refreshed_at = None if at_once else self._mid.vector
         self.refresh()
         self._publish()
 
     def _target_of(self, goal: Goal) -> Target:
-        return make_target(
-            goal,
-            named=self.named_situations,
-            rla=self._system.get,
-            level=MID,
-            features=self._mid.situation.features,
-            radius=self._space.radius,
-            distance=self._distance,
-            group_at=self._group_at,
-        )
+        features = self._mid.situation.features
+        return make_target(goal, self._system, features, self._space, self._distance, self._group_at)
 
     def _condition_of(self, goal: Goal) -> Condition | None:
         match goal:
@@ -207,7 +200,7 @@ class Navigator:
         raise CommandRefusedError(RefusalCode.NO_PLACE, name=name, known=tuple(sorted(self.named_situations)))
 
     def _is_plan_valid(self) -> bool:
-        """Whether the way that is being gone still is what it was when it was planned."""
+        """Return whether the present edge of the plan still exists with its action."""
         plan = self._pursuit.plan
         if plan is None or plan.next is None:
             return True
@@ -215,15 +208,15 @@ class Navigator:
         return rla is not None and rla.action == plan.next.action
 
     def _is_too_late(self) -> bool:
-        """Whether the robot may be in the next junction already, on another way than the one that was planned."""
+        """Return whether the robot may already be in the next junction with another action than planned."""
         plan, situation = self._pursuit.plan, self._mid.situation
-        if plan is None or plan.next is None or not isinstance(situation, Place):
+        if plan is None or plan.next is None or not isinstance(situation, PlaceSituation):
             return False
-        return situation.since_m > _BEFORE_THE_NEXT_M and plan.next.action != self._mid.commanded
+        return situation.since_m > _CHOICE_DISTANCE_M and plan.next.action != self._mid.commanded
 
     def _is_near_junction(self) -> bool:
         situation = self._mid.situation
-        return isinstance(situation, Place) and situation.since_m <= _BEFORE_THE_NEXT_M
+        return isinstance(situation, PlaceSituation) and situation.since_m <= _CHOICE_DISTANCE_M
 
     def _group_at(self, situation: Vector) -> tuple[Rla, ...]:
         match = self._system.match(situation, level=MID)
@@ -243,16 +236,16 @@ class Navigator:
         return build_map(self._rlas, self._group_at, self._follow_ups, self._forecast)
 
     def _publish(self) -> None:
-        seeking = self._pursuit
-        if seeking.goal is None:
+        pursuit = self._pursuit
+        if pursuit.goal is None:
             self.status = None
             return
-        ways = () if seeking.plan is None else seeking.plan.edges
+        edges = () if pursuit.plan is None else pursuit.plan.edges
         self.status = PlanStep(
-            seeking.goal.text,
-            seeking.status,
-            tuple(way.action for way in ways),
-            ways[0].rla_id if ways else None,
-            seeking.text,
-            seeking.surprises,
+            pursuit.goal.text,
+            pursuit.status,
+            tuple(edge.action for edge in edges),
+            edges[0].rla_id if edges else None,
+            pursuit.text,
+            pursuit.surprises,
         )

@@ -1,4 +1,4 @@
-"""A goal as it can be compared with situations."""
+"""Targets: goals as predicates on mid-level situations."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
@@ -9,30 +9,37 @@ from numpy.typing import NDArray
 from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.outcome import CommandRefusedError, RefusalCode
 from kurt2rt.core.rla.condition import Condition
-from kurt2rt.core.rla.rla import Rla
+from kurt2rt.core.rla.matching import exact_distances
+from kurt2rt.core.rla.rla import MID, Rla
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.rla.space import Space
+from kurt2rt.core.rla.symbol_index import edit_distances, hamming_distances
 
 Vector = NDArray[np.float64]
 Distance = Callable[[Vector, Vector], float]
-"""How far two situations of the mid level are apart."""
+"""Distance of two mid-level situations (d,)."""
 
 
 GroupAt = Callable[[Vector], tuple[Rla, ...]]
-"""The RLAs on the place that a situation of the mid level is at, oldest first; none where it is at no known one."""
+"""Function from a situation (d,) to the RLAs on its place, oldest first; empty at an unknown place."""
 
 
 class Target(Protocol):
-    """What tells whether a situation is one that was to be reached."""
+    """Predicate on situations: whether the goal is reached."""
 
     def matches(self, situation: Vector) -> bool:
-        """Whether a situation of the mid level is; never that of a robot that does not know where it is."""
+        """Return whether a situation (d,) reaches the goal; False for a lost robot (NaN)."""
         ...
 
 
 class NearTarget:
-    """All situations at the same place as one; where one of them is at no place that is known, near enough ones."""
+    """Target: the place of a situation, or its neighbourhood if one of the two places is unknown."""
 
     def __init__(self, situation: Condition, within: float, distance: Distance, group_at: GroupAt) -> None:
-        """Good as long as the RLAs of the mid level stay as they are."""
+        """Resolve the place of a situation; valid until the mid-level RLAs change.
+
+        `within`: greatest distance, in m or symbols, if a place is unknown.
+        """
         self._situation = np.array(situation, dtype=np.float64)
         self._within = within
         self._distance = distance
@@ -40,7 +47,7 @@ class NearTarget:
         self._there = group_at(self._situation)
 
     def matches(self, situation: Vector) -> bool:
-        """Whether a situation is."""
+        """Return whether a situation (d,) is at the place."""
         if not np.isfinite(situation).all():
             return False
         here, there = self._group_at(situation), self._there
@@ -50,50 +57,62 @@ class NearTarget:
 
 
 class FeatureTarget:
-    """All situations with some features about as wanted."""
+    """Target: situations with some features near given values."""
 
     def __init__(self, wanted: Mapping[int, float], tolerance: float) -> None:
-        """`wanted`: values by the feature's place in the situation."""
+        """`wanted`: index of the feature -> value; `tolerance`: in the unit of the features, such as m."""
         self._at = list(wanted)
         self._values = np.array(list(wanted.values()), dtype=np.float64)
         self._tolerance = tolerance
 
     def matches(self, situation: Vector) -> bool:
-        """Whether all of them are."""
+        """Return whether all features of a situation (d,) are within the tolerance."""
         if not np.isfinite(situation).all():
             return False
         return bool((np.abs(situation[self._at] - self._values) <= self._tolerance).all())
 
 
 def make_target(
-    goal: Goal,
-    *,
-    named: Mapping[str, Condition],
-    rla: Callable[[int], Rla | None],
-    level: str,
-    features: Sequence[str],
-    radius: float,
-    distance: Distance,
-    group_at: GroupAt,
+    goal: Goal, system: RlaSystem, features: Sequence[str], space: Space, distance: Distance, group_at: GroupAt
 ) -> Target:
-    """Return what a goal means now. Raises CommandRefusedError, which lists the goals that there are.
+    """Return the target of a goal. Raises CommandRefusedError, with the existing goals, for an unknown one.
 
-    `named`: situations of that level by name; `rla`: the living RLA of an id; `radius`: what counts as near.
+    Args:
+        goal: goal of the mid level.
+        system: knowledge that the goal refers to.
+        features: names of the mid-level features.
+        space: space of the mid level; its radius is the neighbourhood of a place.
+        distance: distance function of `space`.
+        group_at: RLAs on the place of a situation.
     """
+    radius = space.radius
     match goal:
         case NamedGoal(name):
+            named = system.named_situations(MID)
             if name not in named:
                 raise CommandRefusedError(RefusalCode.NOT_NAMED, name=name, known=tuple(sorted(named)))
             return NearTarget(named[name], radius, distance, group_at)
         case RlaGoal(rla_id):
-            meant = rla(rla_id)
-            if meant is None or meant.level != level:
+            rla = system.get(rla_id)
+            if rla is None or rla.level != MID:
                 raise CommandRefusedError(RefusalCode.NO_RLA, rla=rla_id)
-            return NearTarget(meant.condition, radius if meant.radius is None else meant.radius, distance, group_at)
+            return NearTarget(rla.condition, radius if rla.radius is None else rla.radius, distance, group_at)
         case PartialGoal(wanted, tolerance):
             unknown = sorted(name for name, _ in wanted if name not in features)
             if unknown or not wanted:
                 raise CommandRefusedError(
-                    RefusalCode.NO_FEATURE, features=tuple(unknown), level=level, known=tuple(features)
+                    RefusalCode.NO_FEATURE, features=tuple(unknown), level=MID, known=tuple(features)
                 )
             return FeatureTarget({features.index(name): value for name, value in wanted}, tolerance)
+
+
+def distance_function(space: Space) -> Distance:
+    """Return the distance function of two situations (d,) in a space."""
+    match space.metric:
+        case "hamming":
+            return lambda a, b: float(hamming_distances(a[np.newaxis], b)[0])
+        case "edit":
+            return lambda a, b: float(edit_distances(a[np.newaxis], b)[0])
+        case "euclidean":
+            weights: Vector = np.ones(space.dimensions) if space.weights is None else space.weights
+            return lambda a, b: float(exact_distances((a * weights)[np.newaxis], b * weights)[0])

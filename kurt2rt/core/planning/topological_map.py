@@ -1,7 +1,6 @@
-"""The chart: which places the robot knows, and the ways between them (paper, III.B and V.C).
+"""Topological map: known places and the edges between them (paper, sections III.B and V.C).
 
-A place is a situation of the mid level with all RLAs that stand on it; each of these is a way, to where its expectation
-says that it leads.
+A place is a mid-level situation with all RLAs on it. Each RLA is an edge to the place of its expectation.
 """
 
 from collections import Counter
@@ -12,88 +11,88 @@ from typing import NamedTuple, Protocol
 import networkx as nx
 import numpy as np
 
-from kurt2rt.core.planning.target import GroupAt, Vector
+from kurt2rt.core.planning.target import GroupAt, Target, Vector
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.rla import Rla
 
 MapBuild = Generator[None, None, "TopologicalMap"]
-"""A chart in the making: each piece of the work looks at one RLA, whose situation is matched at most once in it."""
+"""Generator that builds a map; each piece processes one RLA with at most one match."""
 
-_LIGHT = 8
-"""So many RLAs make a piece of work where none of them is matched."""
+_RLAS_PER_PIECE = 8
+"""RLAs per piece in stages without a match."""
 
 
 class Forecast(Protocol):
-    """What is expected of one RLA."""
+    """Expectation of one RLA."""
 
     @property
     def mean(self) -> Vector:
-        """The situation in which it ends."""
+        """Expected situation at its end, shape (d,)."""
         ...
 
     @property
     def ticks(self) -> float:
-        """How long it takes."""
+        """Expected duration in ticks."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A situation of the mid level, and what can be done there."""
+    """Mid-level situation and the RLAs on it."""
 
     place_id: int
-    """The oldest of its RLAs; for one that nothing was taught at yet, less the RLA that leads there."""
+    """Id of its oldest RLA; of an untaught place the negative id of the RLA that leads there."""
     condition: Condition
     members: tuple[Rla, ...]
-    """The RLAs on it, oldest first; none where nothing was taught yet."""
+    """RLAs on it, oldest first; empty for an untaught place."""
 
 
 class Edge(NamedTuple):
-    """From one place to another."""
+    """Edge from one place to another."""
 
     rla_id: int
     action: str
     start: int
-    """Place where it begins."""
+    """Place at its beginning."""
     end: int
-    """Place where it leads."""
+    """Place at its end."""
     share: float
-    """How often it led there, of all the times that it was gone."""
+    """Share of its drives that ended there, 0 to 1."""
     ticks: float
-    """How long it is expected to take."""
+    """Expected duration."""
 
     @property
     def cost(self) -> float:
-        """Ticks, and those of the tries that lead elsewhere."""
+        """Return the expected ticks, failed attempts included."""
         return self.ticks / self.share
 
 
 class TopologicalMap:
-    """Places and ways as a directed graph."""
+    """Directed graph of places and edges."""
 
     def __init__(self) -> None:
         self.places: dict[int, Place] = {}
         self.graph: nx.DiGraph[int] = nx.DiGraph()
 
     def add_place(self, place: Place) -> None:
-        """Put a place on it."""
+        """Add a place."""
         self.places[place.place_id] = place
         self.graph.add_node(place.place_id)
 
-    def add_edge(self, way: Edge) -> None:
-        """Put a way on it; of several from one place to another only the cheapest stays."""
-        known = (way.start, way.end) in self.graph.edges
-        if not known or way.cost < self.graph.edges[way.start, way.end]["cost"]:
-            self.graph.add_edge(way.start, way.end, cost=way.cost, way=way)
+    def add_edge(self, edge: Edge) -> None:
+        """Add an edge; of parallel edges only the cheapest is kept."""
+        known = (edge.start, edge.end) in self.graph.edges
+        if not known or edge.cost < self.graph.edges[edge.start, edge.end]["cost"]:
+            self.graph.add_edge(edge.start, edge.end, cost=edge.cost, edge=edge)
 
     def members(self, place_id: int) -> frozenset[int]:
-        """Ids of the RLAs on a place."""
+        """Return the ids of the RLAs on a place."""
         return frozenset(rla.rla_id for rla in self.places[place_id].members)
 
     def edge(self, start: int, end: int) -> Edge:
-        """The cheapest way from a place straight to another."""
-        way: Edge = self.graph.edges[start, end]["way"]
-        return way
+        """Return the cheapest edge between two places."""
+        edge: Edge = self.graph.edges[start, end]["edge"]
+        return edge
 
 
 def build_map(
@@ -102,14 +101,17 @@ def build_map(
     follow_ups: Callable[[int], Mapping[int, int]],
     forecast: Callable[[int], Forecast | None],
 ) -> MapBuild:
-    """Make the chart of all RLAs of the mid level, which must stay as they are until it stands.
+    """Build the map of the mid-level RLAs, which must not change meanwhile; yield after each piece.
 
-    `follow_ups`: how often each RLA followed one.
-    `forecast`: what is expected of one, None for one that was never seen to end. An RLA leads to the place that its
-    expectation lies in, and as often as follow-ups of that place came; where expectations lie in no place, to where
-    its follow-ups stand.
+    An RLA leads to the place of its expectation and to the places of its follow-ups, in the share of their counts.
+
+    Args:
+        rlas: all active RLAs of the mid level.
+        group_at: RLAs on the place of a situation.
+        follow_ups: RLA id -> {follow-up id: count}.
+        forecast: expectation of an RLA; None before its first end.
     """
-    chart = TopologicalMap()
+    result = TopologicalMap()
     members: dict[Condition, list[Rla]] = {}
     forecasts: dict[int, Forecast] = {}
     for number, rla in enumerate(rlas):
@@ -117,16 +119,16 @@ def build_map(
         expected = forecast(rla.rla_id)
         if expected is not None:
             forecasts[rla.rla_id] = expected
-        if number % _LIGHT == 0:
+        if number % _RLAS_PER_PIECE == 0:
             yield
     home: dict[int, int] = {}
     for number, (at, group) in enumerate(members.items()):
-        chart.add_place(Place(group[0].rla_id, at, tuple(group)))
+        result.add_place(Place(group[0].rla_id, at, tuple(group)))
         home.update((rla.rla_id, group[0].rla_id) for rla in group)
-        if number % _LIGHT == 0:
+        if number % _RLAS_PER_PIECE == 0:
             yield
     usual_ticks = float(np.mean([each.ticks for each in forecasts.values()])) if forecasts else 1.0
-    for start, place in list(chart.places.items()):
+    for start, place in list(result.places.items()):
         for rla in place.members:
             if rla.is_withdrawn:
                 continue
@@ -136,16 +138,16 @@ def build_map(
                     ends[home[after]] += times
             expected = forecasts.get(rla.rla_id)
             if expected is not None:
-                end = _end_of(rla, expected, group_at, home, chart)
+                end = _end_of(rla, expected, group_at, home, result)
                 if end > 0 or not ends:
                     ends[end] = max(ends[end], 1)
             ticks = usual_ticks if expected is None else max(expected.ticks, 1.0)
             seen = ends.total()
             for end, times in ends.items():
                 if end != start:
-                    chart.add_edge(Edge(rla.rla_id, rla.action, start, end, times / seen, ticks))
+                    result.add_edge(Edge(rla.rla_id, rla.action, start, end, times / seen, ticks))
             yield
-    return chart
+    return result
 
 
 def _end_of(
@@ -153,11 +155,39 @@ def _end_of(
     expected: Forecast,
     group_at: GroupAt,
     home: Mapping[int, int],
-    chart: TopologicalMap,
+    result: TopologicalMap,
 ) -> int:
-    """The place that an expectation lies in; one that nothing was taught at yet is put on the chart."""
+    """Return the place of an expectation; add an untaught place if there is none."""
     there = group_at(expected.mean)
     if there:
         return home[there[0].rla_id]
-    chart.add_place(Place(-rla.rla_id, tuple(expected.mean.tolist()), ()))
+    result.add_place(Place(-rla.rla_id, tuple(expected.mean.tolist()), ()))
     return -rla.rla_id
+
+
+class MapBuilder:
+    """Construction of the map and search for its goal places, in pieces that fit into ticks."""
+
+    def __init__(self, build: MapBuild, target: Target) -> None:
+        """`build`: not started yet."""
+        self._work = self._build(build, target)
+        self.topological_map: TopologicalMap | None = None
+        """None until the map is complete."""
+        self.goals: set[int] = set()
+        """Ids of the places that match the target; complete when the work is done."""
+
+    def step(self, pieces: int) -> bool:
+        """Process at most `pieces` RLAs or places; return whether the work is done."""
+        return any(next(self._work, True) for _ in range(pieces))
+
+    def _build(self, build: MapBuild, target: Target) -> Generator[bool, None, None]:
+        while self.topological_map is None:
+            try:
+                next(build)
+            except StopIteration as done:
+                self.topological_map = done.value
+            yield False
+        for place_id, place in self.topological_map.places.items():
+            if target.matches(np.array(place.condition)):
+                self.goals.add(place_id)
+            yield False

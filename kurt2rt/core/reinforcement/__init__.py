@@ -1,1 +1,1 @@
-"""Reinforcement (paper, phases 3 and 5): what rewards and blame change in the knowledge, and how RLAs compete."""
+"""Reinforcement (paper, phases 3 and 5): values of RLAs from rewards, and repair of RLAs with low values."""

@@ -1,4 +1,4 @@
-"""The latest decisions, so that a teacher can mean one of them: delay must not blur who is blamed."""
+"""History of decisions, so that a delayed reward or correction meets the decision that it is about."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +10,12 @@ from kurt2rt.core.perception.perception import Situation
 
 
 class DecisionHistory:
-    """What was seen, decided and thought in the last `capacity` ticks, in memory that does not grow."""
+    """Situations, decisions and opinions of the last `capacity` ticks, in constant memory."""
 
     def __init__(self, dimensions: int, capacity: int = 1000) -> None:
         self._capacity = capacity
         self._ticks = np.full(capacity, -1, dtype=np.int64)
-        # Written once here: memory that is only promised costs the first tick that touches it half a millisecond.
+        # Filled here: the first write to a page of untouched memory would cost a tick half a millisecond.
         self._situations = np.full((capacity, dimensions), np.nan)
         self._has_situation = np.zeros(capacity, dtype=np.bool_)
         self._touches = np.zeros(capacity, dtype=np.bool_)
@@ -25,7 +25,7 @@ class DecisionHistory:
         self._circumstances: list[AppraisalFeatures | None] = [None] * capacity
         self._opinions: list[Opinion | None] = [None] * capacity
         self.newest = -1
-        """Tick of the newest decision; -1 before the first."""
+        """Tick of the newest decision; -1 before the first one."""
 
     def add(
         self,
@@ -39,10 +39,17 @@ class DecisionHistory:
         circumstances: AppraisalFeatures | None = None,
         opinion: Opinion | None = None,
     ) -> None:
-        """Keep what was decided in a tick, for which taught behaviour, and what the critic thought of it.
+        """Store a tick in place of the oldest one.
 
-        The oldest is forgotten. A `blind` robot was in no situation; one that `touches` something asked what to do
-        there in place of what it had decided.
+        Args:
+            tick: number of the tick.
+            situation: its situation.
+            decision: its decision.
+            behaviour: active taught behaviour.
+            blind: whether the sensor data were missing, so that there is no situation.
+            touches: whether the robot asked at a bumper instead of driving.
+            circumstances: appraisal features; None without a critic, or if `blind`.
+            opinion: critic's opinion; None without one.
         """
         row = tick % self._capacity
         self.newest = tick
@@ -57,45 +64,45 @@ class DecisionHistory:
         self._opinions[row] = opinion
 
     def contains(self, tick: int) -> bool:
-        """Whether that tick is kept: it ran, and not too long ago."""
+        """Return whether a tick is stored."""
         return tick >= 0 and int(self._ticks[tick % self._capacity]) == tick
 
     def has_situation(self, tick: int) -> bool:
-        """Whether the robot saw anything in a tick that is known."""
+        """Return whether a stored tick had sensor data."""
         return bool(self._has_situation[tick % self._capacity])
 
     def touched(self, tick: int) -> bool:
-        """Whether the robot asked what to do with what it touched, in a tick that is known."""
+        """Return whether the robot asked at a bumper in a stored tick."""
         return bool(self._touches[tick % self._capacity])
 
     def situation(self, tick: int) -> NDArray[np.float64]:
-        """Situation vector (d,) of a tick that is known and seen; a view, to be copied by whoever keeps it."""
+        """Return the situation (d,) of a stored tick that had one: a view that later ticks overwrite."""
         row: NDArray[np.float64] = self._situations[tick % self._capacity]
         return row
 
     def driving_rla(self, tick: int) -> int | None:
-        """The RLA that drove in a tick that is known."""
+        """Return the RLA that drove in a stored tick."""
         return self._rlas[tick % self._capacity]
 
     def behaviour(self, tick: int) -> str:
-        """The taught behaviour that was wanted in a tick that is known."""
+        """Return the active taught behaviour of a stored tick."""
         return self._behaviours[tick % self._capacity]
 
     def answering_rla(self, tick: int) -> int | None:
-        """The RLA that drove in a tick that is known while the situation lay inside its radius: who may be blamed."""
+        """Return the RLA that drove in a stored tick inside its radius: the one that rewards are about."""
         return int(self._answering[tick % self._capacity]) or None
 
     def answering_up_to(self, tick: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """All ticks that are kept, up to and with one, oldest first, and the RLA that answered in each (0: none)."""
+        """Return the stored ticks up to `tick`, oldest first, and their answering RLAs (0: none), both (n,)."""
         ticks = np.arange(max(0, tick - self._capacity + 1), tick + 1)
         rows = ticks % self._capacity
         kept = self._ticks[rows] == ticks
         return ticks[kept], self._answering[rows[kept]]
 
     def circumstances(self, tick: int) -> AppraisalFeatures | None:
-        """The appraisal situation of a tick that is known; None where the robot saw nothing, or has no critic."""
+        """Return the appraisal features of a stored tick; None without sensor data or critic."""
         return self._circumstances[tick % self._capacity]
 
     def opinion(self, tick: int) -> Opinion | None:
-        """What the critic thought in a tick that is known; None where it had been taught nothing, or there is none."""
+        """Return the critic's opinion of a stored tick; None without an opinion or critic."""
         return self._opinions[tick % self._capacity]

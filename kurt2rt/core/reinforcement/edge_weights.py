@@ -1,11 +1,8 @@
-"""Weights on the edges of the RLA network (Illerhues and Goerke 2007): the smaller, the better what follows what.
+"""Weights on the edges of the RLA network (Illerhues and Goerke 2007); smaller is better.
 
-Each edge that was used begins at 100. Praise multiplies the weights of the last three transitions before the tick that
-is meant by 0.9, 0.95 and 0.97, newest first; blame divides by them. An RLA is worth by how much the edges into it have
-fallen: (100 - their mean) / 100.
-
-A weight stays between 10 and 1000, as many praises from 100 as blames: what was blamed for an hour is healed by no more
-praise than it took blame to get there.
+Each used edge begins at 100. A reward of +1 multiplies the weights of the last three transitions before the rewarded
+tick by 0.9, 0.95 and 0.97, newest first; -1 divides by them. The value of an RLA is (100 - mean weight into it) / 100.
+Weights stay between 10 and 1000, equally many rewards from 100 in both directions.
 """
 
 from collections.abc import Collection, Iterable, Mapping
@@ -21,19 +18,19 @@ FIRST_WEIGHT = 100.0
 _LEAST_WEIGHT, _MOST_WEIGHT = 10.0, 1000.0
 
 _Edges = dict[int, float]
-"""Weights of the used edges into one RLA, by the RLA before it."""
+"""Weights of the used edges into one RLA, by predecessor."""
 
 
 class EdgeWeights:
-    """Weights of the edges, and worths by them."""
+    """Reinforcement rule on edge weights (ReinforcementRule)."""
 
     def __init__(self, settings: ReinforcementSettings) -> None:
         self._factors = settings.factors
         self._history = ValueHistory[_Edges]()
         self._before: int | None = None
 
-    def update(self, rla_id: int | None, tick: int) -> None:  # noqa: ARG002 - what follows what is all that counts
-        """Take in one tick: another RLA than before makes an edge used."""
+    def update(self, rla_id: int | None, tick: int) -> None:  # noqa: ARG002 - only transitions count
+        """Learn from one tick: a change of the RLA creates an edge."""
         if rla_id == self._before:
             return
         if rla_id is not None and self._before is not None:
@@ -41,7 +38,7 @@ class EdgeWeights:
         self._before = rla_id
 
     def credits_for(self, value: int, trace: EligibilityTrace) -> tuple[Credit, ...]:
-        """What each weight changes by, as a share of the first one: falling weights are worth more."""
+        """Return the change of each weight as a share of the first weight; lower weights give positive credits."""
         present = self._history.present
         return tuple(
             Credit(rla_id, (present.get(rla_id, {}).get(before, FIRST_WEIGHT) - edges[before]) / FIRST_WEIGHT, before)
@@ -51,12 +48,12 @@ class EdgeWeights:
         )
 
     def learn(self, value: int, trace: EligibilityTrace) -> None:
-        """Multiply or divide the weights of the last transitions."""
+        """Multiply (+1) or divide (-1) the weights of the last transitions by the factors."""
         self._history.present.update(self._weights_after(value, trace))
 
-    def apply_credits(self, bookings: Iterable[CreditUpdate], sign: int) -> None:
-        """Change the edge that a credit is of; in old journals it is of an RLA, and shifts all edges into that one."""
-        for (rla_id, change, before), depth in bookings:
+    def apply_credits(self, updates: Iterable[CreditUpdate], sign: int) -> None:
+        """Change the edge of each credit; a credit of an old journal has no edge and changes all edges into its RLA."""
+        for (rla_id, change, before), depth in updates:
             edges = self._history.get(rla_id, depth)
             if edges is None and (before is None or sign < 0):
                 continue
@@ -68,39 +65,39 @@ class EdgeWeights:
             self._history.set(rla_id, depth, edges)
 
     def value(self, rla_id: int) -> float:
-        """From -1 to 1; 0 for one that nothing was ever said of."""
-        return max(-1.0, min(1.0, _worth(self._history.present.get(rla_id))))
+        """Return the value, a score of -1 to 1; 0 without rewards."""
+        return max(-1.0, min(1.0, _value(self._history.present.get(rla_id))))
 
     def depth(self, rla_id: int) -> int:
-        """How many actions it has had before."""
+        """Return the number of earlier actions of an RLA."""
         return self._history.depth(rla_id)
 
     def reset(self, rla_id: int) -> None:
-        """The edges into it begin anew."""
+        """Start with no edges into an RLA that got another action."""
         self._history.reset(rla_id)
 
     def restore_previous(self, rla_id: int) -> None:
-        """The edges into it as they were."""
+        """Restore the edges into an RLA that got its previous action back."""
         self._history.restore_previous(rla_id)
 
     def archive(self, rla_id: int) -> None:
-        """The edges into it wait; those out of it are gone, for nothing could ever heal them."""
+        """Keep the edges into a deleted RLA for an undo; drop the edges out of it."""
         self._history.reset(rla_id)
         self._drop_edges_from(rla_id)
 
     def discard(self, rla_id: int) -> None:
-        """All its edges are gone."""
+        """Drop all edges of an RLA."""
         self._history.discard(rla_id)
         self._drop_edges_from(rla_id)
 
     @property
     def values(self) -> Mapping[int, float]:
-        """None."""
+        """Empty: this rule has no values."""
         return {}
 
     @property
     def edge_weights(self) -> Mapping[tuple[int, int], float]:
-        """Weights of all edges that were used."""
+        """Weights of all used edges."""
         return {
             (before, after): weight
             for after, edges in self._history.present.items()
@@ -108,7 +105,7 @@ class EdgeWeights:
         }
 
     def restore(self, saved: Statistics, only: Collection[int] | None = None) -> None:
-        """Weights as they were saved: of the edges into each RLA."""
+        """Restore saved weights of the edges into all RLAs, or into `only` some."""
         edges_into: dict[int, _Edges] = {}
         for (before, after), weight in saved.edge_weights.items():
             edges_into.setdefault(after, {})[before] = _bounded(weight)
@@ -121,7 +118,7 @@ class EdgeWeights:
             self._before = None
 
     def _weights_after(self, value: int, trace: EligibilityTrace) -> dict[int, _Edges]:
-        """Edges into each RLA that the signal means, after it."""
+        """Return the edges into each RLA of the trace after a reward of `value`."""
         changed: dict[int, _Edges] = {}
         for (before, after), factor in zip(trace.transitions, self._factors, strict=False):
             edges = changed.setdefault(after, dict(self._history.present.get(after, {})))
@@ -134,6 +131,6 @@ def _bounded(weight: float) -> float:
     return max(_LEAST_WEIGHT, min(_MOST_WEIGHT, weight))
 
 
-def _worth(edges: _Edges | None) -> float:
-    """Not clipped, so that credits add up."""
+def _value(edges: _Edges | None) -> float:
+    """Return the value without limits."""
     return (FIRST_WEIGHT - sum(edges.values()) / len(edges)) / FIRST_WEIGHT if edges else 0.0

@@ -1,4 +1,4 @@
-"""Who is meant by a signal: the RLAs that drove up to the tick it is about, the later ones more (eligibility trace)."""
+"""Eligibility trace: shares of the RLAs that drove up to a rewarded tick, later ones larger."""
 
 import math
 from collections.abc import Mapping
@@ -10,14 +10,14 @@ from kurt2rt.core.numerics import round_portable
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 
 LEAST_SHARE = 0.001
-"""Smaller shares change nothing that could be told, and would fill the journal."""
+"""Least share: smaller ones have no visible effect and would fill the journal."""
 
 
 class EligibilityTrace(NamedTuple):
-    """What led to a tick."""
+    """Eligibility of RLAs and transitions for a reward about one tick."""
 
     shares: Mapping[int, float]
-    """RLA id -> its share of the signal; together at most 1, less where the robot stood or nobody may be blamed."""
+    """RLA id -> share of the reward. The sum is at most 1, less after standstill or outside all radii."""
     transitions: tuple[tuple[int, int], ...]
     """(RLA id, follow-up RLA id), newest first."""
 
@@ -30,10 +30,14 @@ def make_trace(
     most_transitions: int,
     since: Mapping[int, int],
 ) -> EligibilityTrace:
-    """The trace at a tick, from the decisions that are remembered of the ticks up to it, and of none after it.
+    """Return the trace at a tick, from the stored decisions up to it.
 
-    `trace_ticks`: time constant. `since`: RLA id -> tick in which it got the action it has; what it did before with
-    another one is neither its merit nor its fault.
+    Args:
+        recent: stored decisions.
+        tick: rewarded tick.
+        trace_ticks: time constant in ticks.
+        most_transitions: greatest number of transitions.
+        since: RLA id -> tick in which it got its action; earlier decisions had another action and do not count.
     """
     decay = round_portable(math.exp(-1.0 / trace_ticks))
     reach = math.ceil(round_portable(-math.log(LEAST_SHARE) * trace_ticks))
@@ -51,7 +55,7 @@ def make_trace(
 
 
 def _last_transitions(ticks: list[int], rlas: list[int], most: int) -> tuple[tuple[int, int], ...]:
-    """Standing still, and ticks in which nobody may be blamed, end a chain of transitions."""
+    """Return the last transitions, newest first; ticks without an answering RLA separate transitions."""
     found: list[tuple[int, int]] = []
     for place in range(len(rlas) - 1, 0, -1):
         if len(found) == most:

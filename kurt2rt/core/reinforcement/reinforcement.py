@@ -1,8 +1,8 @@
-"""Reinforcement, put together: signals change what RLAs are worth, and one that has sunk is mended (paper, phase 3).
+"""Reinforcement: rewards change the values of RLAs, and RLAs below a threshold are repaired (paper, phase 3).
 
-What RLAs are worth stands in two accounts. The teacher's is that of phases 1 to 4: it is saved, and it is what credits
-and undo are about. That of phase 5 begins anew whenever phase 5 begins and is dropped when it ends: a critic's praise
-and blame stand on another scale. What a teacher says in phase 5 is booked in both.
+There are two sets of values. The teacher's values belong to phases 1 to 4; they are saved, and credits and undo refer
+to them. The autonomous values start with each phase 5 and end with it, because a critic's rewards have another scale.
+A teacher's reward in phase 5 changes both.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
@@ -36,7 +36,7 @@ from kurt2rt.core.rla.statistics import EDGE_WEIGHTS_INCLUDE, FIRST_VALUE, VALUE
 
 
 class _Punishment(NamedTuple):
-    """A -1 whose RLAs have yet to be looked at."""
+    """Reward of -1 whose RLAs are still to be checked."""
 
     rlas: tuple[int, ...]
     signal: str
@@ -45,21 +45,21 @@ class _Punishment(NamedTuple):
 
 
 class Reinforcement:
-    """Follows the teaching events and the ticks; what it changes in the knowledge is left to its owner to apply."""
+    """Values of RLAs from events and ticks, and the lessons that repair RLAs; the owner applies these lessons."""
 
     def __init__(
         self, system: RlaSystem, recent: DecisionHistory, settings: ReinforcementSettings, period_s: float
     ) -> None:
-        """`recent`: the decisions that signals are about. `period_s` of a tick."""
+        """`recent`: stored decisions that rewards refer to; `period_s`: duration of a tick in s."""
         self._system = system
         self.recent = recent
         self._period_s = period_s
         self._settings = settings
         self._value_settings: ValueSettings = settings.with_teacher
         self.rule = self._make_rule(settings.with_teacher)
-        """The teacher's account."""
+        """Teacher's values."""
         self._autonomous: ReinforcementRule | None = None
-        """That of phase 5, while it lasts."""
+        """Autonomous values; None outside phase 5."""
         self.choice = EpsilonGreedy(
             self.value,
             epsilon=settings.epsilon,
@@ -69,26 +69,25 @@ class Reinforcement:
         self._repair = Repair(system, self.value, settings)
         self._repair.set_thresholds(self._value_settings)
         self._depths: dict[str, tuple[int, ...]] = {}
-        """Of each reward in the journal, by its command id: to which actions of their RLAs its credits belong, so that
-        an undo takes them off the teacher's account there."""
+        """Command id of each reward -> depth of each credit, so that an undo subtracts it from the right action."""
         self._autonomous_credits: dict[str, tuple[CreditUpdate, ...]] = {}
-        """Of each reward that a teacher gave in this phase 5: what an undo takes off its account."""
+        """Command id of each reward in this phase 5 -> its credits in the autonomous values."""
         self._since: dict[int, int] = {}
-        """RLA id -> tick of this run in which it got the action it has."""
+        """RLA id -> tick of this run in which it got its action."""
         self._punishments: list[_Punishment] = []
         self._saved = Statistics()
-        """What was saved before this run: the other rule's table stays as it is there."""
+        """Statistics saved before this run: the other rule's table is saved unchanged."""
         self.rows = 0
-        """How many teaching events there were, which is how many rows the journal has when all of them are written."""
+        """Number of teaching events: the number of journal rows once all are written."""
 
     def value(self, rla_id: int) -> float:
-        """What the action is worth that an RLA has now, in the account that counts in this phase."""
+        """Return the value of an RLA's present action in this phase, a score of about -1 to 1."""
         return self._active_rule.value(rla_id)
 
     def restore(self, events: Sequence[TeachingEvent], saved: Statistics | None) -> None:
-        """Take in what was taught before this run, as it is applied to the system.
+        """Apply the events of earlier runs to the system, and restore the saved values.
 
-        What was saved tells how many of the events it includes; those behind it are booked on top of it.
+        The saved values include a number of rows; credits of later rows are added.
         """
         saved = saved or Statistics()
         included = len(events)
@@ -100,13 +99,13 @@ class Reinforcement:
         self._since.clear()  # ticks of other runs
         self._punishments.clear()
         self._repair.forget_rolled_back()
-        # An earlier kurt2rt did not say how many rows a table includes: all there are.
+        # Older files do not tell the number of included rows: all rows.
         tables = {VALUES_INCLUDE: saved.values, EDGE_WEIGHTS_INCLUDE: saved.edge_weights}
         includes = {name: float(self.rows) for name, table in tables.items() if table}
         self._saved = replace(saved, numbers={**includes, **saved.numbers})
 
     def snapshot(self) -> Statistics:
-        """The teacher's account for the checkpoint; what the other rule had saved there stays as it is."""
+        """Return the teacher's values for the checkpoint; the other rule's table is unchanged."""
         numbers = {**self._saved.numbers, self._rows_key: float(self.rows)}
         if self._settings.rule == "td_lambda":
             numbers[FIRST_VALUE] = self._settings.with_teacher.first_value
@@ -114,33 +113,33 @@ class Reinforcement:
         return replace(self._saved, edge_weights=dict(self.rule.edge_weights), numbers=numbers)
 
     def set_phase(self, phase: Phase) -> None:
-        """Values of a robot that has a teacher begin elsewhere, and sink elsewhere, than those of one that is alone."""
-        worths = self._settings.alone if phase is Phase.AUTONOMOUS else self._settings.with_teacher
-        if worths is not self._value_settings:
-            self._value_settings = worths
-            self._autonomous = self._make_rule(worths) if phase is Phase.AUTONOMOUS else None
+        """Use the thresholds of a phase; entering phase 5 starts new autonomous values."""
+        values = self._settings.alone if phase is Phase.AUTONOMOUS else self._settings.with_teacher
+        if values is not self._value_settings:
+            self._value_settings = values
+            self._autonomous = self._make_rule(values) if phase is Phase.AUTONOMOUS else None
             self._autonomous_credits.clear()
-            self._repair.set_thresholds(worths)
+            self._repair.set_thresholds(values)
             self.choice.reset()
 
     def autonomous_values(self) -> Statistics:
-        """What RLAs are worth in the account of phase 5; empty in any other phase."""
+        """Return the autonomous values; empty outside phase 5."""
         if self._autonomous is None:
             return Statistics()
         return Statistics(values=dict(self._autonomous.values), edge_weights=dict(self._autonomous.edge_weights))
 
-    def restore_autonomous(self, worths: Statistics, rla_ids: Collection[int]) -> None:
-        """In the account of phase 5 these RLAs are worth again what `worths_alone` told of them."""
+    def restore_autonomous(self, values: Statistics, rla_ids: Collection[int]) -> None:
+        """Restore the autonomous values of some RLAs, as `autonomous_values` returned them."""
         if self._autonomous is not None:
-            self._autonomous.restore(worths, [rla_id for rla_id in rla_ids if self._is_active(rla_id)])
+            self._autonomous.restore(values, [rla_id for rla_id in rla_ids if self._is_active(rla_id)])
             self.choice.reset()
 
     def credits_for(self, value: int, tick: int) -> tuple[Credit, ...]:
-        """What a teacher's signal about a tick that is remembered would change."""
+        """Return the changes that a reward (-1 or +1) about a stored tick would make."""
         return self.rule.credits_for(value, self._trace(tick, None))
 
     def on_event(self, event: TeachingEvent) -> None:
-        """Follow an event that was applied to the system just now."""
+        """Learn from an event that was just applied to the system."""
         self.rows += 1
         match event:
             case RlaRewarded(_, value, decided_at_tick, origin):
@@ -160,28 +159,28 @@ class Reinforcement:
                 self._on_rla_changed(event, event.origin.tick)
 
     def signal(self, value: int, tick: int, trace_s: float, *, signal: str, teacher: str) -> None:
-        """Learn from a signal that is no event: one of the critic's, which changes the account of phase 5 only.
+        """Learn from a critic's signal, which is no event and changes the autonomous values only.
 
-        `signal`: what its changes are called after.
+        `trace_s`: time constant of the trace in s. `signal`: prefix of the command ids of its repairs.
         """
         trace = self._trace(tick, trace_s)
         self._active_rule.learn(value, trace)
         self._add_punishment(value, trace, signal, teacher)
 
     def update(self, rla_id: int | None, tick: int) -> None:
-        """Learn from a tick: the RLA that answered; None where the robot stood, or nobody may be blamed."""
+        """Learn from a tick; `rla_id`: answering RLA, None at standstill or outside its radius."""
         self._active_rule.update(rla_id, tick)
 
     def repairs(self, tick: int, phase: Phase) -> Iterator[Lesson]:
-        """What is to be changed after blame, one by one: apply each before the next is asked for."""
+        """Yield the lessons that repair punished RLAs; apply each before requesting the next."""
         if not self._punishments:
             return
-        blames, self._punishments = self._punishments, []
-        mend = self._repair.try_other_action if phase is Phase.AUTONOMOUS else self._repair.withdraw
-        for blame in blames:
-            for rla_id in blame.rlas:
+        punishments, self._punishments = self._punishments, []
+        repair = self._repair.try_other_action if phase is Phase.AUTONOMOUS else self._repair.withdraw
+        for punishment in punishments:
+            for rla_id in punishment.rlas:
                 if self._repair.is_below_threshold(rla_id):
-                    yield from mend(rla_id, self._origins(blame, phase, tick))
+                    yield from repair(rla_id, self._origins(punishment, phase, tick))
 
     def _replay(self, events: Sequence[TeachingEvent]) -> None:
         for event in events:
@@ -198,35 +197,35 @@ class Reinforcement:
         return VALUES_INCLUDE if self._settings.rule == "td_lambda" else EDGE_WEIGHTS_INCLUDE
 
     def _has_saved(self, saved: Statistics) -> bool:
-        """Whether this rule has saved anything there."""
+        """Return whether this rule has saved values."""
         table = saved.values if self._settings.rule == "td_lambda" else saved.edge_weights
         return self._rows_key in saved.numbers or bool(table)
 
     @property
     def _active_rule(self) -> ReinforcementRule:
-        """The account of this phase."""
+        """Return the rule whose values count in this phase."""
         return self.rule if self._autonomous is None else self._autonomous
 
     @property
     def _rules(self) -> tuple[ReinforcementRule, ...]:
         return (self.rule,) if self._autonomous is None else (self.rule, self._autonomous)
 
-    def _make_rule(self, worths: ValueSettings) -> ReinforcementRule:
+    def _make_rule(self, values: ValueSettings) -> ReinforcementRule:
         settings = self._settings
         if settings.rule == "td_lambda":
-            return TdLambda(settings, worths, self._period_s)
+            return TdLambda(settings, values, self._period_s)
         return EdgeWeights(settings)
 
-    def _origins(self, blame: _Punishment, phase: Phase, tick: int) -> OriginOf:
+    def _origins(self, punishment: _Punishment, phase: Phase, tick: int) -> OriginOf:
         def origin_of(word: str) -> Origin:
-            # The critic's signals have no ids of their own; no two lessons are the same in number.
-            number = f"-{len(self._system.lessons) + 1}" if blame.teacher == CRITIC else ""
-            return Origin(f"{blame.signal}{number}/{word}", blame.teacher, phase, tick)
+            # The critic's signals have no ids; the number of the lesson makes each id unique.
+            number = f"-{len(self._system.lessons) + 1}" if punishment.teacher == CRITIC else ""
+            return Origin(f"{punishment.signal}{number}/{word}", punishment.teacher, phase, tick)
 
         return origin_of
 
     def _trace(self, tick: int, trace_s: float | None) -> EligibilityTrace:
-        """Of those that live: what was deleted since has no part in it."""
+        """Return the trace without deleted RLAs; `trace_s`: time constant in s, None: the task's."""
         seconds = self._settings.trace_s if trace_s is None else trace_s
         trace = make_trace(
             self.recent,
@@ -254,8 +253,8 @@ class Reinforcement:
         if value < 0:
             self.choice.reset()
             least = self._value_settings.blamed_share
-            blamed = tuple(rla_id for rla_id, share in trace.shares.items() if share >= least)
-            self._punishments.append(_Punishment(blamed, signal, teacher))
+            punished = tuple(rla_id for rla_id, share in trace.shares.items() if share >= least)
+            self._punishments.append(_Punishment(punished, signal, teacher))
 
     def _on_undone(self, lesson: str, origin: Origin) -> None:
         record = self._system.lesson(lesson)
@@ -283,7 +282,7 @@ class Reinforcement:
                 self._repair.on_creation_undone(rla, rolled_back=origin.teacher == CRITIC)
 
     def _on_redone(self, lesson: str, origin: Origin) -> None:
-        """As when it was taught, but for what was earned in between; a reward's credits are those of then."""
+        """Apply a redone lesson; a reward has its original credits."""
         record = self._system.lesson(lesson)
         assert record is not None
         match record.event:
@@ -295,7 +294,7 @@ class Reinforcement:
                 self._on_rla_changed(event, origin.tick)
 
     def _on_rla_changed(self, event: TeachingEvent, tick: int) -> None:
-        """That one was made, changed or deleted at that tick, for the first time or again."""
+        """Apply the creation, correction or deletion of an RLA at a tick."""
         match event:
             case ActionReplaced(rla_id):
                 for account in self._rules:
@@ -311,10 +310,10 @@ class Reinforcement:
 
 
 def _depths(account: ReinforcementRule, credits_: Iterable[Credit]) -> tuple[int, ...]:
-    """To which actions credits belong: to those that their RLAs have now."""
+    """Return the depth of each credit: that of its RLA's present action."""
     return tuple(account.depth(credit.rla_id) for credit in credits_)
 
 
 def _credit_updates(account: ReinforcementRule, credits_: Sequence[Credit]) -> tuple[CreditUpdate, ...]:
-    """Credits as they belong to the actions that their RLAs have now."""
+    """Return credits with the depths of their RLAs' present actions."""
     return tuple(map(CreditUpdate, credits_, _depths(account, credits_)))

@@ -1,4 +1,4 @@
-"""What becomes of an RLA that has sunk: asked anew where somebody can be asked, else another action is tried."""
+"""Repair of an RLA whose value is below the threshold: ask the teacher, or try another action in phase 5."""
 
 import math
 from collections import Counter
@@ -13,31 +13,31 @@ from kurt2rt.core.rla.rla import ActionWithdrawn, Lesson, Origin, Rla, RlaCreate
 from kurt2rt.core.rla.rla_system import RlaSystem
 
 OriginOf = Callable[[str], Origin]
-"""Origin of a change, of which a word tells what it is and to which RLA."""
+"""Function from a suffix of the command id to the origin of a repair."""
 
 
 class Repair:
-    """Makes the changes that mend an RLA; whoever asks for them applies them, one after the other."""
+    """Generator of the lessons that repair an RLA; the caller applies each before requesting the next."""
 
-    def __init__(self, system: RlaSystem, worth: Callable[[int], float], settings: ReinforcementSettings) -> None:
-        """`worth` of an RLA by its id."""
+    def __init__(self, system: RlaSystem, value: Callable[[int], float], settings: ReinforcementSettings) -> None:
+        """`value`: value of an RLA by its id."""
         self._system = system
-        self._value = worth
+        self._value = value
         self._settings = settings
         self._thresholds: ValueSettings = settings.with_teacher
         self._tried: dict[tuple[str, Condition], list[str]] = {}
-        """Actions tried on a condition, by behaviour and condition, where there were competitors and any RLA lives."""
+        """Actions tried on each condition with competitors and at least one active RLA."""
         self._condition_key_of: dict[int, tuple[str, Condition]] = {}
-        """Of the RLAs that live on those conditions."""
+        """Key of each active RLA on those conditions."""
         self._rolled_back: dict[tuple[str, Condition], list[str]] = {}
-        """Actions whose try made things worse: they are not tried there again in this run."""
+        """Actions that a rollback removed from a condition: not tried there again in this run."""
 
-    def set_thresholds(self, worths: ValueSettings) -> None:
-        """What counts as sunk and as well from now on."""
-        self._thresholds = worths
+    def set_thresholds(self, thresholds: ValueSettings) -> None:
+        """Use the thresholds of another phase."""
+        self._thresholds = thresholds
 
     def is_below_threshold(self, rla_id: int) -> bool:
-        """Whether an RLA lives, has an action, and is worth too little."""
+        """Return whether an RLA is active, has an action, and has a value below the threshold."""
         rla = self._system.get(rla_id)
         return rla is not None and not rla.is_withdrawn and self._value(rla_id) < self._thresholds.sunk_below
 
@@ -45,36 +45,36 @@ class Repair:
         return not rla.is_withdrawn and self._value(rla.rla_id) > self._thresholds.well_above
 
     def forget_rolled_back(self) -> None:
-        """All that was heard up to now was of earlier runs."""
+        """Forget repairs that earlier runs rolled back."""
         self._rolled_back.clear()
 
     def on_created(self, rla: Rla) -> None:
-        """An RLA was created, or its deletion undone: where others stand on its condition, it was a try."""
+        """Record the action of an RLA as tried if other RLAs share its condition."""
         group = self._system.competitors(rla)
         if len(group) > 1:
-            place = _condition_key(rla)
-            tried = self._tried.setdefault(place, [])
+            key = _condition_key(rla)
+            tried = self._tried.setdefault(key, [])
             tried.extend(each.action for each in group if each.action not in tried)
-            self._condition_key_of.update((each.rla_id, place) for each in group)
+            self._condition_key_of.update((each.rla_id, key) for each in group)
 
     def on_deleted(self, rla_id: int) -> None:
-        """An RLA was deleted: what was tried on its condition counts as long as another one lives there."""
-        place = self._condition_key_of.pop(rla_id, None)
-        if place is not None and place not in self._condition_key_of.values():
-            del self._tried[place]
+        """Forget the tried actions of a condition without active RLAs."""
+        key = self._condition_key_of.pop(rla_id, None)
+        if key is not None and key not in self._condition_key_of.values():
+            del self._tried[key]
 
     def on_creation_undone(self, created: Rla, *, rolled_back: bool) -> None:
-        """The creation of an RLA was undone, `rolled_back`: because things had become worse."""
-        place = _condition_key(created)
-        tried = self._tried.get(place, [])
+        """Make the action of an RLA untried again, unless a rollback removed the RLA."""
+        key = _condition_key(created)
+        tried = self._tried.get(key, [])
         if created.action in tried:
             tried.remove(created.action)
             if rolled_back:
-                self._rolled_back.setdefault(place, []).append(created.action)
+                self._rolled_back.setdefault(key, []).append(created.action)
         self.on_deleted(created.rla_id)
 
     def withdraw(self, rla_id: int, origin_of: OriginOf) -> Iterable[Lesson]:
-        """Withdraw the action of an RLA that has sunk, so that its teacher is asked; a competitor is not needed."""
+        """Yield the withdrawal of an RLA's action, so that the robot asks; the deletion if it has competitors."""
         rla = self._system.get(rla_id)
         if rla is None or rla.is_withdrawn:
             return
@@ -84,9 +84,9 @@ class Repair:
             yield ActionWithdrawn(rla_id, rla.action, origin_of(f"withdraw-{rla_id}"))
 
     def try_other_action(self, rla_id: int, origin_of: OriginOf) -> Iterable[Lesson]:
-        """Where nobody is asked: a competitor with a neighbour's action, or an end to all once enough were tried.
+        """Yield a competitor with a neighbour's action, or the deletion of all competitors after enough tries.
 
-        Not where no neighbour reaches: the robot would stand there, and nobody would come.
+        Nothing is deleted if no neighbour covers the condition: the robot would stand there without a teacher.
         """
         rla = self._system.get(rla_id)
         if rla is None or rla.is_withdrawn:
@@ -95,8 +95,8 @@ class Repair:
         if any(self._is_healthy(each) for each in group):
             yield RlaDeleted(rla_id, origin_of(f"delete-{rla_id}"))
             return
-        place = _condition_key(rla)
-        tried = [*self._tried.get(place, [rla.action]), *self._rolled_back.get(place, ())]
+        key = _condition_key(rla)
+        tried = [*self._tried.get(key, [rla.action]), *self._rolled_back.get(key, ())]
         action = self._action_to_try(rla, tried) if len(tried) <= self._settings.most_competitors else None
         if action is None:
             for each in group if self._neighbour_covers(rla) else ():
@@ -107,7 +107,7 @@ class Repair:
         yield RlaCreated(Rla(new_id, rla.condition, action, rla.radius, origin, rla.behaviour, rla.level))
 
     def _neighbour_covers(self, rla: Rla) -> bool:
-        """Whether the condition of an RLA lies within the radius of another one that has an action."""
+        """Return whether the condition of an RLA lies inside the radius of a neighbour that has an action."""
         near = next((each for each in self._system.neighbours(rla, len(self._system)) if not each.is_withdrawn), None)
         if near is None:
             return False
@@ -115,7 +115,7 @@ class Repair:
         return math.sqrt(exact_square(off)) <= (self._system.radius if near.radius is None else near.radius)
 
     def _action_to_try(self, rla: Rla, tried: list[str]) -> str | None:
-        """What most of the nearest neighbours do that was not tried; None where all they do was."""
+        """Return the most frequent untried action of the nearest neighbours; None if all were tried."""
         nearest = self._system.neighbours(rla, self._settings.neighbours)
         votes = Counter(each.action for each in nearest if self._is_healthy(each))
         return next((action for action, _ in votes.most_common() if action not in tried), None)

@@ -1,4 +1,4 @@
-"""The contract of a reinforcement rule: what a signal changes, and what an RLA is worth by it."""
+"""Protocol of a reinforcement rule: credits of a reward, and values of RLAs."""
 
 from collections.abc import Collection, Iterable, Mapping
 from typing import NamedTuple, Protocol
@@ -9,66 +9,66 @@ from kurt2rt.core.rla.statistics import Statistics
 
 
 class CreditUpdate(NamedTuple):
-    """A credit, and to which action of its RLA it belongs."""
+    """Credit with the action of its RLA that it belongs to."""
 
     credit: Credit
     depth: int
-    """As `depth` told it when the credit was given."""
+    """Result of `depth` when the reward was given."""
 
 
 class ReinforcementRule(Protocol):
-    """Learns from what follows what, and from signals. All of it is statistics: undo takes credits off, no more."""
+    """Reinforcement rule: learns from transitions and rewards. An undo subtracts credits only."""
 
     def update(self, rla_id: int | None, tick: int) -> None:
-        """Take in one tick: the RLA that answered; None where the robot stood, or nobody may be blamed."""
+        """Learn from one tick; `rla_id`: answering RLA, None at standstill or outside its radius."""
         ...
 
     def credits_for(self, value: int, trace: EligibilityTrace) -> tuple[Credit, ...]:
-        """By what a signal of -1 or +1 would change the worth of each RLA; changes nothing."""
+        """Return the changes that a reward of -1 or +1 would make, without making them."""
         ...
 
     def learn(self, value: int, trace: EligibilityTrace) -> None:
-        """Learn from a signal: worths change by what `credits_of` says."""
+        """Learn from a reward of -1 or +1: apply the changes of `credits_for`."""
         ...
 
-    def apply_credits(self, bookings: Iterable[CreditUpdate], sign: int) -> None:
-        """Add credits from the journal (+1), or take them off again (-1), where there is anything to take them off."""
+    def apply_credits(self, updates: Iterable[CreditUpdate], sign: int) -> None:
+        """Add credits of the journal (`sign` +1), or subtract them (-1) from existing values."""
         ...
 
     def value(self, rla_id: int) -> float:
-        """What the action is worth that an RLA has now; the more the better, 1 at most, or about."""
+        """Return the value of an RLA's present action, a score of about -1 to 1; more is better."""
         ...
 
     def depth(self, rla_id: int) -> int:
-        """How many actions an RLA has had before, which can be come back to."""
+        """Return the number of earlier actions of an RLA that an undo can restore."""
         ...
 
     def reset(self, rla_id: int) -> None:
-        """The RLA has got another action, which begins anew."""
+        """Start a new value for an RLA that got another action."""
         ...
 
     def restore_previous(self, rla_id: int) -> None:
-        """The RLA has got back the action that it had before, or has come back itself, with what it had earned."""
+        """Restore the value of the previous action, or of a restored RLA."""
         ...
 
     def archive(self, rla_id: int) -> None:
-        """The RLA was deleted; it may come back."""
+        """Keep the value of a deleted RLA for an undo."""
         ...
 
     def discard(self, rla_id: int) -> None:
-        """The RLA is no more, and never comes back."""
+        """Drop all values of an RLA whose creation was undone."""
         ...
 
     @property
     def values(self) -> Mapping[int, float]:
-        """For the checkpoint: values by RLA; empty for a rule without."""
+        """Values by RLA id, for the checkpoint; empty for edge weights."""
         ...
 
     @property
     def edge_weights(self) -> Mapping[tuple[int, int], float]:
-        """For the checkpoint: weights by transition; empty for a rule without."""
+        """Weights by transition, for the checkpoint; empty for TD(lambda)."""
         ...
 
     def restore(self, saved: Statistics, only: Collection[int] | None = None) -> None:
-        """Go on from what was saved, of all RLAs or of some only."""
+        """Restore saved values of all RLAs, or of `only` some."""
         ...

@@ -1,4 +1,4 @@
-"""How a task learns from rewards: the section `reinforcement` of `config/tasks/*.yaml`."""
+"""Settings of reinforcement: the section `reinforcement` of `config/tasks/*.yaml`."""
 
 from typing import Annotated, Literal
 
@@ -12,22 +12,22 @@ _Value = Annotated[float, Field(ge=-1, le=1)]
 
 
 class ValueSettings(Settings):
-    """Where values begin, and from where an RLA has to be mended."""
+    """First and highest value, and thresholds of repair."""
 
     first_value: _Value
-    """Of an action that was just taught."""
+    """Value of a newly taught action."""
     highest_value: _Value | None = None
-    """Praise lifts no value above this, and blame counts from there; None: wherever it leads."""
+    """Upper limit of values, from which punishments count; None: no limit."""
     sunk_below: _Value
-    """An RLA that was blamed and is worth less has sunk: its action is mended."""
+    """Value below which a punished RLA is repaired."""
     well_above: _Value
-    """One that is worth more is well: it may stand in for a competitor that has sunk, and has a vote as a neighbour."""
+    """Value above which an RLA is healthy: it can replace a competitor, and votes as a neighbour."""
     blamed_share: _Share
-    """Only an RLA with so much of the blame's trace is looked at."""
+    """Least share of a punishment's trace for a repair."""
 
 
 class TaughtValues(ValueSettings):
-    """With a teacher. What was praised a hundred times may be wrong elsewhere in its radius: praise only heals."""
+    """Values with a teacher: a reward only restores, because an RLA can be wrong elsewhere in its radius."""
 
     first_value: _Value = 0.0
     highest_value: _Value | None = 0.0
@@ -37,7 +37,7 @@ class TaughtValues(ValueSettings):
 
 
 class AutonomousValues(ValueSettings):
-    """Without one. A critic errs more often than a teacher, and its praise has to weigh against that."""
+    """Values without a teacher: a critic errs more often, so its rewards of +1 raise values without a limit."""
 
     first_value: _Value = 0.5
     sunk_below: _Value = -0.2
@@ -46,16 +46,16 @@ class AutonomousValues(ValueSettings):
 
 
 class ReinforcementSettings(Settings):
-    """Defaults were found in simulation; every number may stand in a task's file."""
+    """Settings of reinforcement; the defaults were found in simulation."""
 
     rule: Literal["td_lambda", "edge_weights"] = "td_lambda"
-    """What a signal changes: the value of each RLA, or the weights between RLAs that follow each other."""
+    """Reinforcement rule: values of RLAs, or weights of transitions."""
     trace_s: _Seconds = 0.7
-    """Time constant of the eligibility trace, unless a signal brings its own."""
+    """Time constant of the eligibility trace of a teacher's reward."""
     alpha: _Share = 0.3
     """Step size of values."""
     gamma: _Share = 0.9
-    """What the value of the next RLA counts, one step later."""
+    """Discount of the next RLA's value per step."""
     step_s: _Seconds = 0.1
     """Time between two steps of temporal difference learning."""
     factors: Annotated[tuple[Annotated[float, Field(gt=0, le=1)], ...], Field(min_length=1, max_length=100)] = (
@@ -63,18 +63,18 @@ class ReinforcementSettings(Settings):
         0.95,
         0.97,
     )
-    """Edge weights: by what praise multiplies, and blame divides, those of the last transitions, newest first."""
+    """Edge weights: factors of the last transitions, newest first; +1 multiplies, -1 divides."""
     with_teacher: TaughtValues = TaughtValues()
-    """In phases 1 to 4."""
+    """Values of phases 1 to 4."""
     alone: AutonomousValues = AutonomousValues()
-    """In phase 5."""
+    """Values of phase 5."""
     epsilon: _Share = 0.02
-    """Share of the choices among competitors that are made by chance instead of by worth."""
+    """Share of the choices among competitors that are random."""
     hold_s: Annotated[float, Field(ge=0, le=1000)] = 1.0
-    """A choice among competitors stands until they have not been nearest for so long, or are blamed."""
+    """Time without being nearest after which a choice among competitors ends; a punishment ends it at once."""
     most_competitors: Annotated[int, Field(ge=0, le=100)] = 3
-    """Actions that are tried on one condition where nobody is asked, before its RLAs are deleted; 0: at once."""
+    """Number of actions tried on one condition in phase 5 before its RLAs are deleted; 0: at once."""
     neighbours: Annotated[int, Field(ge=1, le=1000)] = 5
-    """Of so many RLAs around it, the action that most have is the next one to try; one that has sunk has no vote."""
+    """Number of neighbours that vote on the next action to try; only healthy ones vote."""
     seed: Annotated[int, Field(ge=0)] = 0
-    """Of the choices by chance."""
+    """Seed of random choices."""

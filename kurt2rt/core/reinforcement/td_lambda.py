@@ -1,10 +1,10 @@
-"""TD(lambda): each RLA has a value V, what may be expected of a situation that it answers (paper, phase 3).
+"""TD(lambda): each RLA has a value V, the expected reward of the situations that it answers (paper, phase 3).
 
 Every step, with e the trace:   delta = gamma V(now) - V(before),   V_i += alpha delta e_i
-At a signal r about a tick t:   V_i += alpha r e_i(t)
+At a reward r about a tick t:   V_i += alpha r e_i(t)
 
-V begins at `first_value`, and praise lifts it to `highest_value` at most. Both differ between a robot that has a
-teacher and one that is alone, and each of them has an account of its own.
+V begins at `first_value`, and rewards of +1 raise it to `highest_value` at most. The two differ between supervised and
+autonomous phases, which have separate values.
 """
 
 import math
@@ -20,28 +20,28 @@ from kurt2rt.core.rla.statistics import Statistics
 
 
 class TdLambda:
-    """Values of RLAs, and an eligibility trace of those that drive."""
+    """Values of RLAs, and the eligibility trace of those that drive (ReinforcementRule)."""
 
-    def __init__(self, settings: ReinforcementSettings, worths: ValueSettings, period_s: float) -> None:
-        """`worths`: where values begin, and how high they may rise. `period_s` of a tick."""
+    def __init__(self, settings: ReinforcementSettings, values: ValueSettings, period_s: float) -> None:
+        """`values`: first and highest value; `period_s`: duration of a tick in s."""
         self._settings = settings
-        self._value_settings = worths
+        self._value_settings = values
         self._decay = round_portable(math.exp(-period_s / settings.trace_s))
         self._step_ticks = max(1, round(settings.step_s / period_s))
         self._history = ValueHistory[float]()
-        """V less the first value."""
+        """V minus the first value."""
         self._trace: dict[int, float] = {}
-        """Divided by the scale, so that a tick need not touch what only fades."""
+        """Trace divided by `_scale`, so that a tick changes one entry only."""
         self._scale = 1.0
         self._tick = -1
         self._before: int | None = None
-        """Which RLA drove in the tick of the last step."""
+        """RLA that drove in the tick of the last step."""
         self._before_tick = -1
         self._trace_before: dict[int, float] = {}
-        """The trace as it was in the tick of the last step."""
+        """Trace in the tick of the last step."""
 
     def update(self, rla_id: int | None, tick: int) -> None:
-        """Take in one tick: the trace fades, grows for the one that answered, and every so often a step is made."""
+        """Learn from one tick: decay the trace, add the answering RLA, and make a step every `step_s`."""
         self._scale *= self._decay if tick == self._tick + 1 else power(self._decay, tick - self._tick)
         self._tick = tick
         if self._scale < 1e-100:
@@ -52,79 +52,79 @@ class TdLambda:
             self._step(rla_id, tick)
 
     def credits_for(self, value: int, trace: EligibilityTrace) -> tuple[Credit, ...]:
-        """Each RLA its share of the signal, as far as its value may rise."""
+        """Return each RLA's share of a reward, limited by the highest value."""
         alpha = self._settings.alpha
         changes = ((rla_id, self._change(rla_id, alpha * value * share)) for rla_id, share in trace.shares.items())
         return tuple(Credit(rla_id, change) for rla_id, change in changes if change != 0.0)
 
     def learn(self, value: int, trace: EligibilityTrace) -> None:
-        """V_i += alpha r e_i(t)."""
+        """Add alpha r e_i(t) to each V_i."""
         for rla_id, change, _ in self.credits_for(value, trace):
             self._add(rla_id, change)
 
-    def apply_credits(self, bookings: Iterable[CreditUpdate], sign: int) -> None:
-        """Add credits to values, or take them off."""
-        for (rla_id, change, before), depth in bookings:
-            if before is not None:  # of the other rule
+    def apply_credits(self, updates: Iterable[CreditUpdate], sign: int) -> None:
+        """Add credits to values (`sign` +1), or subtract them (-1)."""
+        for (rla_id, change, before), depth in updates:
+            if before is not None:  # a credit of edge weights
                 continue
             earned = self._history.get(rla_id, depth)
             if earned is not None or sign > 0:
                 self._history.set(rla_id, depth, (earned or 0.0) + sign * change)
 
     def value(self, rla_id: int) -> float:
-        """V."""
+        """Return V of an RLA, a score of about -1 to 1."""
         return self._value_settings.first_value + self._history.present.get(rla_id, 0.0)
 
     def depth(self, rla_id: int) -> int:
-        """How many actions it has had before."""
+        """Return the number of earlier actions of an RLA."""
         return self._history.depth(rla_id)
 
     def reset(self, rla_id: int) -> None:
-        """V of the new action is that of the beginning, and what the old one did is not its merit."""
+        """Start V of a new action at the first value, without a trace."""
         self._history.reset(rla_id)
         self._drop_trace(rla_id)
 
     def restore_previous(self, rla_id: int) -> None:
-        """V as it was."""
+        """Restore V of the previous action, without a trace."""
         self._history.restore_previous(rla_id)
         self._drop_trace(rla_id)
 
     def archive(self, rla_id: int) -> None:
-        """Its V waits."""
+        """Keep V of a deleted RLA for an undo."""
         self._history.reset(rla_id)
         self._drop_trace(rla_id)
         self._end_step_from(rla_id)
 
     def discard(self, rla_id: int) -> None:
-        """Nothing is left of it."""
+        """Drop all values of an RLA."""
         self._history.discard(rla_id)
         self._drop_trace(rla_id)
         self._end_step_from(rla_id)
 
     @property
     def values(self) -> Mapping[int, float]:
-        """V, where it is not that of the beginning."""
+        """V of each RLA that differs from the first value."""
         first_value = self._value_settings.first_value
         return {rla_id: first_value + change for rla_id, change in self._history.present.items()}
 
     @property
     def edge_weights(self) -> Mapping[tuple[int, int], float]:
-        """None."""
+        """Empty: this rule has no edge weights."""
         return {}
 
     def restore(self, saved: Statistics, only: Collection[int] | None = None) -> None:
-        """Values as they were saved."""
+        """Restore saved values of all RLAs, or of `only` some."""
         first_value = self._value_settings.first_value
         changes = {rla_id: value - first_value for rla_id, value in saved.values.items()}
         self._history.restore(changes, only)
 
     def _change(self, rla_id: int, change: float) -> float:
-        """What a signal changes: praise up to the highest value, blame down from there where V is above it."""
+        """Return the change of V: up to the highest value; a negative change starts from there if V is above."""
         room = self._room_above(rla_id)
         return min(change, max(0.0, room)) if change > 0.0 else change + min(0.0, room)
 
     def _room_above(self, rla_id: int) -> float:
-        """How far V may rise; negative where it stands higher: blame was undone that praise had healed."""
+        """Return the distance of V to the highest value; negative if an undo of a punishment raised V above."""
         highest = self._value_settings.highest_value
         return math.inf if highest is None else highest - self.value(rla_id)
 

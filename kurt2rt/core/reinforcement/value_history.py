@@ -1,4 +1,4 @@
-"""What the actions of an RLA have earned: that of the present one, and, for an undo, that of those before it."""
+"""History of values: of each RLA's present action, and of its earlier actions for an undo."""
 
 from collections.abc import Collection, Mapping
 from typing import Generic, TypeVar
@@ -7,26 +7,23 @@ EarnedT = TypeVar("EarnedT")
 
 
 class ValueHistory(Generic[EarnedT]):
-    """By RLA id; an RLA that gets another action begins anew, and its former account waits until that is undone.
-
-    So does the account of one that is deleted; nothing is kept of one that can never come back.
-    """
+    """Values by RLA id, as a stack per RLA: a new action or a deletion pushes, its undo pops."""
 
     def __init__(self) -> None:
         self.present: dict[int, EarnedT] = {}
-        """Of the action that each RLA has now, where anything was earned."""
+        """Value of each RLA's present action, if rewards changed it."""
         self._former: dict[int, list[EarnedT | None]] = {}
 
     def depth(self, rla_id: int) -> int:
-        """How many accounts lie below the present one."""
+        """Return the number of earlier values of an RLA."""
         return len(self._former.get(rla_id, ()))
 
     def reset(self, rla_id: int) -> None:
-        """The RLA has another action now."""
+        """Push the present value; the new action has none."""
         self._former.setdefault(rla_id, []).append(self.present.pop(rla_id, None))
 
     def restore_previous(self, rla_id: int) -> None:
-        """The RLA has the action again that it had before."""
+        """Pop the previous value."""
         former = self._former.get(rla_id)
         earned = former.pop() if former else None
         self.present.pop(rla_id, None)
@@ -34,12 +31,12 @@ class ValueHistory(Generic[EarnedT]):
             self.present[rla_id] = earned
 
     def discard(self, rla_id: int) -> None:
-        """The RLA never comes back."""
+        """Drop all values of an RLA."""
         self.present.pop(rla_id, None)
         self._former.pop(rla_id, None)
 
     def restore(self, saved: Mapping[int, EarnedT], only: Collection[int] | None) -> None:
-        """The present accounts as they were saved: of all RLAs, or of some only."""
+        """Restore the saved present values of all RLAs, or of `only` some."""
         if only is None:
             self.present = dict(saved)
             return
@@ -49,12 +46,12 @@ class ValueHistory(Generic[EarnedT]):
                 self.present[rla_id] = saved[rla_id]
 
     def get(self, rla_id: int, depth: int) -> EarnedT | None:
-        """What lies at a depth; None where nothing was earned."""
+        """Return the value at a depth; None without rewards."""
         former = self._former.get(rla_id, [])
         return former[depth] if depth < len(former) else self.present.get(rla_id)
 
     def set(self, rla_id: int, depth: int, earned: EarnedT) -> None:
-        """Put something else at a depth."""
+        """Replace the value at a depth."""
         former = self._former.get(rla_id, [])
         if depth < len(former):
             former[depth] = earned

@@ -13,7 +13,7 @@ from hal.simulation import Pose
 from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Cause, Decision
-from kurt2rt.core.mid.place import EAST, NORTH, WALL_LEFT, WALL_RIGHT, Place, X, Y
+from kurt2rt.core.mid.place import EAST, NORTH, WALL_LEFT, WALL_RIGHT, PlaceSituation, X, Y
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.condition import Condition
@@ -27,16 +27,16 @@ NOTHING = Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
 NOWHERE = Situation(np.zeros(1), history_frozen=False)
 
 
-def place() -> Place:
+def place() -> PlaceSituation:
     built = PLACES.build(ROBOT)
-    assert isinstance(built, Place)
+    assert isinstance(built, PlaceSituation)
     return built
 
 
 class Drive:
     """The robot in Manhattan, led by one who knows the streets, and what it reckons."""
 
-    def __init__(self, place: Place, start: Pose) -> None:
+    def __init__(self, place: PlaceSituation, start: Pose) -> None:
         self.place = place
         self.simulation = Kurt2Simulation(ROBOT, "manhattan", 1, "reckoning")
         self.simulation.simulated_robot.place(start)
@@ -83,7 +83,7 @@ def drive() -> Iterator[Drive]:
     drives.simulation.close()
 
 
-def heading(place: Place) -> tuple[float, float]:
+def heading(place: PlaceSituation) -> tuple[float, float]:
     return place.vector[EAST], place.vector[NORTH]
 
 

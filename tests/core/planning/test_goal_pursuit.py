@@ -10,8 +10,8 @@ from kurt2rt.core.planning.goal_pursuit import PIECES, GoalPursuit
 from kurt2rt.core.planning.target import Target, Vector, make_target
 from kurt2rt.core.planning.topological_map import build_map
 from kurt2rt.core.rla.rla import MID, Rla
-from tests.core.planning.town import FEATURES, RADIUS, Town
-from tests.core.rla.helpers import deleted
+from tests.core.planning.town import FEATURES, SPACE, Town
+from tests.core.rla.helpers import deleted, named
 
 
 def grid() -> Town:
@@ -27,17 +27,9 @@ def grid() -> Town:
 
 
 def target(town: Town, goal: Goal) -> Target:
-    door = {"door": tuple(town.at("e").tolist())} if "e" in town.places else {}
-    return make_target(
-        goal,
-        named=door,
-        rla=town.system.get,
-        level=MID,
-        features=FEATURES,
-        radius=RADIUS,
-        distance=town.distance,
-        group_at=town.group_at,
-    )
+    if "e" in town.places and "door" not in town.system.named_situations(MID):
+        town.system.apply(named("door", tuple(town.at("e").tolist()), MID))
+    return make_target(goal, town.system, FEATURES, SPACE, town.distance, town.group_at)
 
 
 DOOR = NamedGoal("door")

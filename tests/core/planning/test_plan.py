@@ -5,7 +5,7 @@ import numpy as np
 from kurt2rt.core.planning.plan import Plan, plan_to
 from kurt2rt.core.planning.target import FeatureTarget, NearTarget, Target
 from kurt2rt.core.planning.topological_map import TopologicalMap
-from tests.core.planning.town import RADIUS, Town
+from tests.core.planning.town import SPACE, Town
 from tests.core.rla.helpers import withdrawn
 
 
@@ -29,7 +29,7 @@ def meeting(chart: TopologicalMap, target: Target) -> set[int]:
 
 def plan(town: Town, start: str, end: str) -> Plan | None:
     chart = town.chart()
-    target = NearTarget(tuple(town.at(end).tolist()), RADIUS, town.distance, town.group_at)
+    target = NearTarget(tuple(town.at(end).tolist()), SPACE.radius, town.distance, town.group_at)
     return plan_to(chart, place_id(town, start), meeting(chart, target))
 
 

@@ -5,15 +5,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from kurt2rt.core.planning.map_builder import MapBuilder
 from kurt2rt.core.planning.target import FeatureTarget, Vector
-from kurt2rt.core.planning.topological_map import MapBuild, TopologicalMap, build_map
+from kurt2rt.core.planning.topological_map import MapBuild, MapBuilder, TopologicalMap, build_map
 from kurt2rt.core.rla.rla import MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from tests.core.rla.helpers import created
 
-RADIUS = 0.5
+SPACE = Space(3, 0.5, np.array([1.0, 1.0, 0.0]))
 FEATURES = ("x_m", "y_m", "wall_left")
 
 
@@ -30,7 +29,7 @@ class Town:
     def __init__(self, **places: tuple[float, float]) -> None:
         self.places = places
         self.walled: set[str] = set()
-        self.system = RlaSystem(2, 1.0, others={MID: Space(3, RADIUS, np.array([1.0, 1.0, 0.0]))})
+        self.system = RlaSystem(2, 1.0, others={MID: SPACE})
         self.follow_ups: Counter[tuple[int, int]] = Counter()
         self.seen: dict[int, Seen] = {}
 

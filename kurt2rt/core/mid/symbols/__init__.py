@@ -1,1 +1,1 @@
-"""What a history is made of: one kind of symbols a file."""
+"""Kinds of symbols of a history, one per file."""

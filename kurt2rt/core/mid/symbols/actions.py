@@ -1,4 +1,4 @@
-"""The paper's plain reading: the actions that the basic level's RLAs took (VI.B.2)."""
+"""Actions of the basic level's RLAs as symbols (paper, section VI.B.2)."""
 
 from typing import Annotated
 
@@ -11,30 +11,30 @@ from kurt2rt.core.mid.symbols.source import NONE, SymbolSettings, SymbolSource, 
 
 
 class ActionsSettings(SymbolSettings):
-    """Actions of the repertoire."""
+    """Settings of actions as symbols."""
 
     actions: Annotated[tuple[str, ...], Field(min_length=1)]
-    """Those that make symbols; any other one makes none."""
+    """Actions that are symbols; others are ignored."""
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The actions."""
+        """Names of the actions."""
         return self.actions
 
-    def build(self, transitions: Transitions) -> SymbolSource:  # noqa: ARG002 - it goes by nothing learned
-        """The source."""
-        return Actions(self.actions)
+    def build(self, transitions: Transitions) -> SymbolSource:  # noqa: ARG002 - needs no counts
+        """Return the source."""
+        return ActionSymbols(self.actions)
 
 
-class Actions:
-    """The action that drives, each time it becomes another one. A robot that stands has none, and forgets none."""
+class ActionSymbols:
+    """Source of the driving action at each change; standstill is no change."""
 
     def __init__(self, actions: tuple[str, ...]) -> None:
         self._symbols = {action: number for number, action in enumerate(actions, start=1)}
         self._last = NONE
 
     def perceive(self, before: Decision, detector: JunctionDetector, passed: JunctionEvent | None) -> int:  # noqa: ARG002
-        """The symbol of the action that began to drive in the tick before."""
+        """Return the symbol of an action that began in the last tick."""
         symbol = NONE if before.action is None else self._symbols.get(before.action, NONE)
         if symbol in (NONE, self._last):
             return NONE
@@ -42,5 +42,5 @@ class Actions:
         return symbol
 
     def restart(self) -> None:
-        """Whatever drives next is new."""
+        """Forget the last action."""
         self._last = NONE

@@ -1,4 +1,4 @@
-"""What the basic level expected and got: the follow-up RLA, where it was the one that follows most often."""
+"""Expected follow-up RLAs of the basic level as symbols."""
 
 from collections import Counter
 from collections.abc import Mapping
@@ -13,23 +13,23 @@ from kurt2rt.core.mid.symbols.source import NONE, SymbolSettings, SymbolSource, 
 
 
 class ExpectationsSettings(SymbolSettings):
-    """Numbers of RLAs of the basic level are the symbols. What follows by chance makes none."""
+    """Settings of follow-up RLAs as symbols; the symbols are RLA ids."""
 
     least_share: Annotated[float, Field(ge=0, le=1)]
-    """A follow-up is expected that has at least this share of all that have followed."""
+    """Least share of a follow-up among all transitions from an RLA."""
 
     @property
     def names(self) -> tuple[str, ...]:
-        """RLAs have numbers."""
+        """Empty: RLAs have numbers."""
         return ()
 
     def build(self, transitions: Transitions) -> SymbolSource:
-        """The source; what was counted up to now says what is expected."""
-        return Expectations(self.least_share, transitions)
+        """Return the source, which starts with these counts."""
+        return ExpectationSymbols(self.least_share, transitions)
 
 
-class Expectations:
-    """Each expected follow-up RLA, when it is another than the last one. Counts go on while the robot drives."""
+class ExpectationSymbols:
+    """Source of each most frequent follow-up RLA, at a change; counts continue while the robot drives."""
 
     def __init__(self, least_share: float, transitions: Mapping[tuple[int, int], int]) -> None:
         self._least_share = least_share
@@ -39,12 +39,12 @@ class Expectations:
         self.restart()
 
     def restart(self) -> None:
-        """No RLA has driven yet."""
+        """Forget the last RLA and symbol."""
         self._driver: int | None = None
         self._last = NONE
 
     def perceive(self, before: Decision, detector: JunctionDetector, passed: JunctionEvent | None) -> int:  # noqa: ARG002
-        """The RLA that took over in the tick before."""
+        """Return the id of an expected RLA that took over in the last tick."""
         driver, self._driver = self._driver, before.rla_id
         if self._driver is None or driver is None or self._driver == driver:
             return NONE

@@ -1,4 +1,4 @@
-"""One symbol per junction that was passed: what the robot did there."""
+"""Turns at passed junctions as symbols, one per junction."""
 
 from kurt2rt.core.decision.decision import Decision
 from kurt2rt.core.decision.junction_event import NAMES, JunctionEvent
@@ -9,24 +9,24 @@ _SYMBOLS = {quarters: number for number, quarters in enumerate(NAMES, start=1)}
 
 
 class JunctionsSettings(SymbolSettings):
-    """Junctions are events: all count, equal ones too."""
+    """Settings of junctions as symbols; equal ones in a row count too."""
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What can be done at a junction."""
+        """Names of the turns at a junction."""
         return tuple(NAMES.values())
 
-    def build(self, transitions: Transitions) -> SymbolSource:  # noqa: ARG002 - it goes by nothing learned
-        """The source."""
-        return Junctions()
+    def build(self, transitions: Transitions) -> SymbolSource:  # noqa: ARG002 - needs no counts
+        """Return the source."""
+        return JunctionSymbols()
 
 
-class Junctions:
-    """Symbols of the junctions that are passed."""
+class JunctionSymbols:
+    """Source of the turn at each passed junction."""
 
     def perceive(self, before: Decision, detector: JunctionDetector, passed: JunctionEvent | None) -> int:  # noqa: ARG002
-        """The symbol of the junction that was passed in this tick."""
+        """Return the symbol of the junction passed in this tick."""
         return NONE if passed is None else _SYMBOLS[passed.quarters]
 
     def restart(self) -> None:
-        """There is nothing to forget."""
+        """Do nothing: there is no state."""

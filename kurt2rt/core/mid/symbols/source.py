@@ -1,4 +1,4 @@
-"""The contract of a source of symbols."""
+"""Protocol of a source of symbols, and base of its settings."""
 
 from abc import abstractmethod
 from collections.abc import Mapping
@@ -12,38 +12,38 @@ from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.mid.junction_detector import JunctionDetector
 
 Transitions = Mapping[tuple[int, int], int]
-"""(RLA id, follow-up RLA id) -> how often the one followed the other, as counted up to now."""
+"""(RLA id, follow-up RLA id) -> number of transitions so far."""
 
 NONE = 0
-"""The symbol of a place of a history that nothing stands in yet."""
+"""Symbol of an unused place of a history."""
 
 
 class SymbolSource(Protocol):
-    """Says in each tick which symbol is to be remembered."""
+    """Source of the new symbol of each tick."""
 
     def perceive(self, before: Decision, detector: JunctionDetector, passed: JunctionEvent | None) -> int:
-        """The symbol that is new in this tick; NONE: none is.
+        """Return the new symbol of this tick; NONE without one.
 
-        `before`: the decision of the tick before; `detector` has seen this tick, and `passed` is what it said.
+        `before`: decision of the last tick; `passed`: result of `detector` in this tick.
         """
         ...
 
     def restart(self) -> None:
-        """Forget what was."""
+        """Reset after power-on or repositioning."""
         ...
 
 
 class SymbolSettings(KindSettings):
-    """Base of the settings of every kind of symbols: a class named after its file in this folder, which is the kind."""
+    """Base of the settings of symbols; the class is named after its file, the kind."""
 
     @property
     @abstractmethod
     def names(self) -> tuple[str, ...]:
-        """How the symbols 1, 2, 3 ... are spoken of; empty where they are numbers of RLAs."""
+        """Names of the symbols from 1; empty if the symbols are RLA ids."""
 
     @abstractmethod
     def build(self, transitions: Transitions) -> SymbolSource:
-        """The source. `transitions`: of the basic level's RLAs, among others."""
+        """Return the source; `transitions`: counts of all levels."""
 
 
 def _checked(given: object) -> SymbolSettings:
@@ -51,4 +51,4 @@ def _checked(given: object) -> SymbolSettings:
 
 
 AnySymbolSettings = Annotated[SerializeAsAny[SymbolSettings], PlainValidator(_checked)]
-"""In a schema: settings of whatever kind of symbols the file names."""
+"""Schema type: settings of the kind that a file names."""

@@ -1,4 +1,4 @@
-"""Where the robot is and how it turns, low-passed and with hysteresis: street, crossing, left, right."""
+"""Street, crossing and turns as symbols, low-pass filtered and with hysteresis."""
 
 from typing import Annotated
 
@@ -16,33 +16,33 @@ _STREET, _CROSSING, _LEFT, _RIGHT = range(1, 5)
 
 
 class TurnsSettings(SymbolSettings):
-    """Way is that of the wheels' rims, the mean of both sides, so a robot that turns on the spot makes way, too."""
+    """Settings of turns as symbols; distance is the mean of both wheels, so turning on the spot adds distance."""
 
     smooth_over_m: Metres
-    """Over so much way a turn is forgotten."""
+    """Distance constant of the turn filter."""
     turning_rad: Radians
-    """A robot that has turned so far lately is turning."""
+    """Filtered angle at which a turn begins."""
     straight_rad: Radians
-    """One that was turning, and has turned less than this lately, is not any more."""
+    """Filtered angle below which a turn has ended."""
     crossing_over_m: Metres
-    """Over so much way a side must be open for a crossing."""
+    """Distance with an open side that makes a crossing."""
     street_over_m: Metres
-    """Over so much way walls must stand on both sides for a street."""
+    """Distance between two walls that makes a street."""
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What a robot does in streets."""
+        """Names of the symbols."""
         return ("street", "crossing", "left", "right")
 
-    def build(self, transitions: Transitions) -> SymbolSource:  # noqa: ARG002 - it goes by nothing learned
-        """The source."""
-        return Turns(self)
+    def build(self, transitions: Transitions) -> SymbolSource:  # noqa: ARG002 - needs no counts
+        """Return the source."""
+        return TurnSymbols(self)
 
 
-class Turns:
-    """One symbol each time it becomes another one.
+class TurnSymbols:
+    """Source of a symbol at each change.
 
-    A crossing is told when it lies behind the robot without a turn: some turn at once where a side opens, some late.
+    A crossing counts after the robot has passed it without a turn, because turns begin early or late in it.
     """
 
     def __init__(self, settings: TurnsSettings) -> None:
@@ -50,13 +50,13 @@ class Turns:
         self.restart()
 
     def restart(self) -> None:
-        """The robot has not turned, and where it is has to show."""
+        """Reset the filters and the last symbol."""
         self._turned_rad = self._open_m = self._walled_m = 0.0
         self._in_crossing = False
         self._last = NONE
 
     def perceive(self, before: Decision, detector: JunctionDetector, passed: JunctionEvent | None) -> int:  # noqa: ARG002
-        """What it has begun, or passed."""
+        """Return the symbol that has just begun, or the passed crossing."""
         rims_m = detector.rims_m
         if rims_m == 0.0:
             return NONE
@@ -71,7 +71,7 @@ class Turns:
         return symbol
 
     def _now(self) -> int:
-        """NONE: what it was before. A turn goes on until the robot is straight in a street again."""
+        """Return the present symbol, NONE for no change; a turn lasts until the robot is straight in a street."""
         want = self._settings
         if abs(self._turned_rad) >= want.turning_rad:
             self._in_crossing = False
