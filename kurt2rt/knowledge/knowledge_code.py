@@ -99,7 +99,7 @@ class KnowledgeCode(StrEnum):
     NO_LESSON_BY = "no lesson by"
     NO_UNDONE_LESSON_BY = "no undone lesson by"
     LESSON_REFUSED = "lesson refused"
-    """Field `outcome`: the kurt2rt.core.rla.outcome.RefusalCode of it."""
+    """Field `outcome`: the kurt2rt.core.outcome.RefusalCode of it."""
     # Views
     NO_SUCH_RLA = "no such rla"
     NO_RLA_AT_LEVEL = "no rla at level"

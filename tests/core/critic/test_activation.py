@@ -17,14 +17,14 @@ def drive(one: ActivationMonitor, ticks: int, bad_each: int) -> None:
         one.update(driving=True, bad=tick % bad_each == 0)
 
 
-def test_at_first_the_mean_is_a_plain_one() -> None:
+def test_activation_first_mean_is_unweighted() -> None:
     one = need(mean_s=1000.0)
     drive(one, 100, bad_each=20)
     assert one.share == pytest.approx(0.05, rel=0.01)
     assert not one.needed
 
 
-def test_too_much_that_is_bad_makes_it_needed_and_it_stays_so() -> None:
+def test_activation_bad_share_activates_for_good() -> None:
     one = need()
     drive(one, 500, bad_each=5)
     assert one.needed
@@ -35,7 +35,7 @@ def test_too_much_that_is_bad_makes_it_needed_and_it_stays_so() -> None:
     assert (one.needed, one.share) == (False, 0.0)
 
 
-def test_not_before_the_first_time_is_over() -> None:
+def test_activation_not_before_first_s() -> None:
     one = need(first_s=1.0)
     drive(one, 99, bad_each=2)
     assert not one.needed
@@ -43,7 +43,7 @@ def test_not_before_the_first_time_is_over() -> None:
     assert one.needed
 
 
-def test_time_in_which_nothing_drives_does_not_count() -> None:
+def test_activation_standstill_does_not_count() -> None:
     one = need()
     for _ in range(1000):
         one.update(driving=False, bad=True)

@@ -37,7 +37,7 @@ def agreed(value: int, times: int = 1) -> list[TeachingEvent]:
     return [Appraised(NAMES[value], value, 0, origin()) for _ in range(times)]
 
 
-def test_before_enough_was_said_of_good_and_bad_there_is_no_trust() -> None:
+def test_agreement_too_few_signals_no_trust() -> None:
     one = agreement()
     one.replay([*agreed(1, 5), *agreed(0, 5), *agreed(-1, 1)])
     assert (one.share, one.trusted) == (None, False)
@@ -45,7 +45,7 @@ def test_before_enough_was_said_of_good_and_bad_there_is_no_trust() -> None:
     assert (one.share, one.trusted) == (1.0, True)
 
 
-def test_each_value_counts_the_same_however_often_it_was_said() -> None:
+def test_agreement_values_have_equal_weight() -> None:
     one = agreement(bound=0.75)
     one.on_event(appraisal(1, "bad"))
     one.replay([*agreed(-1), *agreed(1, 5)])
@@ -56,7 +56,7 @@ def test_each_value_counts_the_same_however_often_it_was_said() -> None:
     assert not one.trusted
 
 
-def test_only_the_latest_of_each_value_count() -> None:
+def test_agreement_window_keeps_the_newest() -> None:
     one = agreement(window=3)
     one.replay([*agreed(1, 3), *agreed(-1, 3), *[rewarded(1, said=None) for _ in range(3)]])
     assert one.share == 1.0  # it has no appraisal yet that could have said anything
@@ -67,7 +67,7 @@ def test_only_the_latest_of_each_value_count() -> None:
     assert one.share == 1.0
 
 
-def test_neutral_ones_count_from_enough_on() -> None:
+def test_agreement_neutral_counts_from_enough_on() -> None:
     one = agreement()
     one.replay([*agreed(1, 2), *agreed(-1, 2), appraisal(1, "neutral")])
     assert one.share == 1.0
@@ -76,7 +76,7 @@ def test_neutral_ones_count_from_enough_on() -> None:
     assert (one.count_for(0), one.share_for(0)) == (2, 0.0)
 
 
-def test_a_lesson_to_the_critic_is_a_disagreement_and_one_to_the_robot_is_not() -> None:
+def test_agreement_lesson_to_critic_is_disagreement() -> None:
     one = agreement()
     one.replay([*agreed(1, 2), *agreed(-1, 2)])
     one.on_event(RlaCreated(Rla(1, (0.0,), "good", None, origin())))
@@ -88,14 +88,14 @@ def test_a_lesson_to_the_critic_is_a_disagreement_and_one_to_the_robot_is_not() 
     assert one.share_for(-1) == 2 / 3
 
 
-def test_what_the_critic_says_itself_does_not_count() -> None:
+def test_agreement_ignores_events_of_the_critic() -> None:
     one = agreement()
     one.on_event(appraisal(1, "bad"))
     one.on_event(rewarded(-1, said=-1, said_by=origin(teacher=CRITIC, phase=Phase.AUTONOMOUS)))
     assert one.count_for(-1) == 1
 
 
-def test_what_was_taken_back_was_never_said() -> None:
+def test_agreement_undone_signal_is_removed() -> None:
     one = agreement()
     one.replay([*agreed(1, 2), *agreed(-1, 2)])
     mistaken = origin("mistaken")
@@ -109,7 +109,7 @@ def test_what_was_taken_back_was_never_said() -> None:
     assert one.share_for(-1) == 2 / 3
 
 
-def test_sessions_say_nothing_and_an_appraisal_of_other_settings_neither() -> None:
+def test_agreement_ignores_sessions_and_unknown_appraisals() -> None:
     one = agreement()
     one.replay([SessionBegun("monday", origin()), SessionEnded(3, origin()), appraisal(1, "splendid")])
     assert [one.count_for(value) for value in (-1, 0, 1)] == [0, 0, 0]
@@ -121,7 +121,7 @@ def said_at(tick: int, *, right: bool) -> TeachingEvent:
     return Appraised("good", 1, tick, by) if right else rewarded(1, said=-1, said_by=by)
 
 
-def test_what_is_said_soon_after_a_signal_that_counts_does_not_count_whether_they_agree_or_not() -> None:
+def test_agreement_signal_soon_after_another_is_ignored() -> None:
     """Somebody who clicks "good" ten times in one place would be trusted else; and only agreements would be lost."""
     one = agreement(apart_s=5.0)
     one.on_event(appraisal(1, "good", said_by=origin(tick=100)))
@@ -131,7 +131,7 @@ def test_what_is_said_soon_after_a_signal_that_counts_does_not_count_whether_the
     assert (one.count_for(1), one.share_for(1)) == (3, 1 / 3)
 
 
-def test_the_ticks_of_another_run_are_no_reason_not_to_count() -> None:
+def test_agreement_ticks_of_a_new_run_count() -> None:
     one = agreement(apart_s=5.0)
     one.replay([appraisal(1, "good", said_by=origin(tick=9000)), said_at(10, right=True), said_at(20, right=True)])
     assert one.count_for(1) == 2

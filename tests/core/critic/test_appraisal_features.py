@@ -49,24 +49,24 @@ def changed(**perception_values: object) -> CriticSettings:
 # Distances and angles
 
 
-def test_the_nearest_thing_of_each_side_counts() -> None:
+def test_distance_is_that_of_the_nearest_object() -> None:
     seen = senses(s4=0.2, s1=0.4, s10=0.3, s8=0.15, s13=0.5, s15=0.25, s16=0.35)
     here = perception().perceive(seen, driving=False)
     near = (here.left_m, here.front_m, here.right_m, here.rear_m, here.ahead_left_m, here.ahead_right_m)
     assert near == pytest.approx((0.2, 0.3, 0.15, 0.5, 0.25, 0.35), abs=0.003)
 
 
-def test_where_nothing_is_seen_it_is_far_and_there_is_no_angle() -> None:
+def test_distance_without_object_is_far_without_angle() -> None:
     assert perception().perceive(senses(), driving=False) == AppraisalFeatures(*[FAR_M] * 6, *[0.0] * 7)
 
 
-def test_the_angle_is_that_by_which_the_nose_is_turned_away() -> None:
+def test_angle_is_the_turn_away_from_the_wall() -> None:
     away = perception().perceive(senses(s1=0.34, s3=0.3, s4=0.25, s2=0.2, s5=0.15, s6=0.29), driving=False)
     assert away.left_angle_rad == pytest.approx(math.atan(0.14 / 0.28), abs=0.02)
     assert away.right_angle_rad == pytest.approx(-away.left_angle_rad, abs=0.03)
 
 
-def test_a_wall_that_one_end_of_the_side_sees_has_an_angle_and_one_that_only_its_middle_sees_has_none() -> None:
+def test_angle_needs_a_wall_at_one_end_of_the_side() -> None:
     assert perception().perceive(senses(s2=0.3), driving=False).left_angle_rad > 0.7
     assert perception().perceive(senses(s3=0.3), driving=False).left_angle_rad == 0.0
 
@@ -74,7 +74,7 @@ def test_a_wall_that_one_end_of_the_side_sees_has_an_angle_and_one_that_only_its
 # How it moves
 
 
-def test_speed_and_turn_rate_come_to_what_the_wheels_do() -> None:
+def test_speed_and_turn_rate_follow_the_wheels() -> None:
     moving = perception()
     assert 0 < moving.perceive(senses(0.1, 0.3), driving=True).speed_m_s < 0.05
     here = after(1.0, moving, senses(0.1, 0.3))
@@ -85,7 +85,7 @@ def test_speed_and_turn_rate_come_to_what_the_wheels_do() -> None:
     assert here.turn_rad_s == pytest.approx(0.0, abs=0.001)
 
 
-def test_a_bump_is_remembered_for_a_second() -> None:
+def test_bumped_lasts_one_second() -> None:
     bumped = perception()
     assert bumped.perceive(senses(bumpers=0b100), driving=True).bumped == 1.0
     assert after(0.99, bumped, senses()).bumped == 1.0
@@ -95,13 +95,13 @@ def test_a_bump_is_remembered_for_a_second() -> None:
 # No progress
 
 
-def test_who_spins_makes_no_progress_after_three_seconds() -> None:
+def test_no_progress_spinning_after_three_seconds() -> None:
     spinning = perception()
     assert after(3.0, spinning, senses(0.2, -0.2)).no_progress == 0.0
     assert after(0.01, spinning, senses(0.2, -0.2)).no_progress == 1.0
 
 
-def test_who_drives_to_and_fro_makes_none_and_who_creeps_on_does() -> None:
+def test_no_progress_to_and_fro_but_not_creeping() -> None:
     shuttling, creeping = perception(), perception()
     for _ in range(5):
         after(0.5, shuttling, senses(0.3, 0.3))
@@ -111,7 +111,7 @@ def test_who_drives_to_and_fro_makes_none_and_who_creeps_on_does() -> None:
     assert after(4.0, creeping, senses(0.04, 0.04)).no_progress == 1.0
 
 
-def test_who_waits_is_not_reproached_for_it_and_begins_anew() -> None:
+def test_no_progress_waiting_resets_it() -> None:
     waiting = perception()
     assert after(20.0, waiting, senses(), driving=False).no_progress == 0.0
     assert after(3.0, waiting, senses()).no_progress == 0.0
@@ -123,7 +123,7 @@ def test_who_waits_is_not_reproached_for_it_and_begins_anew() -> None:
 # No wall
 
 
-def test_the_wall_is_gone_after_two_seconds_without() -> None:
+def test_no_wall_after_two_seconds() -> None:
     lost = perception()
     assert after(1.99, lost, senses(0.3, 0.3)).no_wall == 0.0
     assert after(0.01, lost, senses(0.3, 0.3)).no_wall == 1.0
@@ -131,7 +131,7 @@ def test_the_wall_is_gone_after_two_seconds_without() -> None:
     assert after(5.0, lost, senses(s5=0.3, s11=0.3)).no_wall == 1.0  # what is elsewhere is not the wall that is meant
 
 
-def test_while_it_waits_the_time_without_a_wall_stands_still() -> None:
+def test_no_wall_time_pauses_while_waiting() -> None:
     lost = perception()
     after(1.5, lost, senses())
     assert after(60.0, lost, senses(), driving=False).no_wall == 0.0
@@ -142,7 +142,7 @@ def test_while_it_waits_the_time_without_a_wall_stands_still() -> None:
 # Beginning anew
 
 
-def test_a_robot_that_was_blind_begins_anew() -> None:
+def test_features_reset_after_missing_sensor_data() -> None:
     blinded = perception()
     after(10.0, blinded, senses(0.2, -0.2, bumpers=1))
     here = blinded.perceive(senses(age_s=0.06), driving=False)
@@ -151,7 +151,7 @@ def test_a_robot_that_was_blind_begins_anew() -> None:
     assert (here.bumped, here.no_progress, here.no_wall) == (0.0, 0.0, 0.0)
 
 
-def test_a_robot_that_never_saw_anything_begins_with_nothing() -> None:
+def test_features_without_any_sensor_data_are_finite() -> None:
     unborn = SensorReadings(0.0, (0,) * 18, math.inf, 0, 0, math.inf, 0, math.inf)
     assert after(5.0, perception(), unborn) == AppraisalFeatures(*[FAR_M] * 6, *[0.0] * 7)
 
@@ -164,7 +164,7 @@ def test_a_robot_that_never_saw_anything_begins_with_nothing() -> None:
         max_size=30,
     )
 )
-def test_the_same_senses_give_the_same_finite_circumstances(ticks: list[tuple[list[int], int, int, bool]]) -> None:
+def test_features_are_deterministic_and_finite(ticks: list[tuple[list[int], int, int, bool]]) -> None:
     one, other = perception(), perception()
     for seen, left, right, driving in ticks:
         sensed = SensorReadings(0.0, tuple(seen), 0.0, left, right, 0.0, 0, 0.0)
@@ -176,13 +176,13 @@ def test_the_same_senses_give_the_same_finite_circumstances(ticks: list[tuple[li
 # Settings that do not fit
 
 
-def test_sensors_that_the_robot_does_not_have_are_named() -> None:
+def test_perception_unknown_sensors_are_refused() -> None:
     sensors = CRITIC.perception.sensors.model_dump(mode="json") | {"ahead_left": ["s15", "s99"]}
     with pytest.raises(SettingsError, match=r"critic basic: perception.sensors: the robot has no sensor s99; allowed"):
         AppraisalPerception(changed(sensors=sensors), ROBOT)
 
 
-def test_a_side_the_wrong_way_round_has_no_angle() -> None:
+def test_perception_reversed_side_is_refused() -> None:
     sensors = CRITIC.perception.sensors.model_dump(mode="json") | {"right": ["s6", "s5"]}
     with pytest.raises(SettingsError, match="s6 does not sit ahead of s5; give the sensors of a side from front"):
         AppraisalPerception(changed(sensors=sensors), ROBOT)
@@ -191,7 +191,7 @@ def test_a_side_the_wrong_way_round_has_no_angle() -> None:
 # Surprise
 
 
-def test_a_surprise_is_a_circumstance_for_as_long_as_it_is_held() -> None:
+def test_surprised_lasts_as_configured() -> None:
     of = AppraisalPerception(changed(surprise_held_s=1.0), ROBOT)
     assert of.perceive(senses(), driving=True).surprised == 0.0
     of.notify_surprise()
@@ -199,7 +199,7 @@ def test_a_surprise_is_a_circumstance_for_as_long_as_it_is_held() -> None:
     assert of.perceive(senses(), driving=True).surprised == 0.0
 
 
-def test_a_critic_that_does_not_hold_surprises_sees_none() -> None:
+def test_surprised_without_setting_is_zero() -> None:
     of = perception()
     of.notify_surprise()
     assert after(0.1, of, senses()).surprised == 0.0

@@ -26,19 +26,19 @@ def agreement(*, trusted: bool = True) -> Agreement:
     return heard
 
 
-def test_what_a_trusted_critic_thinks_is_a_signal_about_this_tick() -> None:
+def test_autonomy_trusted_opinion_is_a_signal() -> None:
     speaking = Autonomy(RATES, agreement(), 0.01)
     assert speaking.signal(40, BAD, True) == Signal(-1, "bad", 40, 0.7)
     assert speaking.signal(41, GOOD, True) == Signal(1, "good", 41, 0.5)
 
 
-def test_it_says_the_same_no_more_often_than_a_person() -> None:
+def test_autonomy_signals_are_rate_limited() -> None:
     speaking = Autonomy(RATES, agreement(), 0.01)
     assert [tick for tick in range(450) if speaking.signal(tick, BAD, True)] == [0, 100, 200, 300, 400]
     assert [tick for tick in range(450) if speaking.signal(tick, GOOD, True)] == [0, 200, 400]
 
 
-def test_neutral_and_unknown_are_no_signals_and_a_robot_that_stands_gets_none() -> None:
+def test_autonomy_neutral_unknown_or_standing_no_signal() -> None:
     speaking = Autonomy(RATES, agreement(), 0.01)
     assert speaking.signal(1, NEUTRAL, True) is None
     assert speaking.signal(2, UNKNOWN, True) is None
@@ -47,7 +47,7 @@ def test_neutral_and_unknown_are_no_signals_and_a_robot_that_stands_gets_none() 
     assert speaking.signal(5, BAD, True) is not None
 
 
-def test_it_holds_its_tongue_while_it_is_not_trusted() -> None:
+def test_autonomy_untrusted_no_signal() -> None:
     heard = agreement(trusted=False)
     speaking = Autonomy(RATES, heard, 0.01)
     assert speaking.signal(1, BAD, True) is None
@@ -57,19 +57,19 @@ def test_it_holds_its_tongue_while_it_is_not_trusted() -> None:
     assert speaking.signal(300, BAD, True) is None
 
 
-def test_what_it_thinks_for_a_moment_only_it_keeps_to_itself() -> None:
+def test_autonomy_short_opinion_no_signal() -> None:
     speaking = Autonomy(RATES.model_copy(update={"patience_s": 0.05}), agreement(), 0.01)
     thought = [BAD, BAD, BAD, BAD, GOOD, BAD, BAD, BAD, BAD, BAD, BAD, BAD]
     assert [tick for tick, opinion in enumerate(thought) if speaking.signal(tick, opinion, True)] == [10]
 
 
-def test_a_wait_or_a_gap_begins_the_thought_anew() -> None:
+def test_autonomy_wait_or_gap_restarts_patience() -> None:
     speaking = Autonomy(RATES.model_copy(update={"patience_s": 0.05}), agreement(), 0.01)
     assert [tick for tick in range(20) if speaking.signal(tick, BAD, tick != 4)] == [10]
     assert [tick for tick in range(200, 210) if speaking.signal(tick, BAD, True)] == [205]
 
 
-def test_what_drives_well_enough_is_left_alone() -> None:
+def test_autonomy_good_driving_no_signal() -> None:
     need = ActivationSettings(bad_share=0.05, mean_s=1.0, first_s=0.0)
     listening = Autonomy(RATES.model_copy(update={"need": need}), agreement(), 0.01)
     said = [tick for tick in range(2000) if listening.signal(tick, BAD if tick % 50 == 49 else GOOD, True)]
@@ -78,7 +78,7 @@ def test_what_drives_well_enough_is_left_alone() -> None:
     assert listening.signal(2300, GOOD, True) is not None  # from then on it acts
 
 
-def test_while_it_is_told_to_listen_it_finds_out_whether_it_is_needed() -> None:
+def test_autonomy_listening_still_updates_activation() -> None:
     need = ActivationSettings(bad_share=0.5, mean_s=1.0, first_s=0.0)
     listening = Autonomy(RATES.model_copy(update={"need": need}), agreement(), 0.01)
     assert not any(listening.signal(tick, BAD, True, listening=True) for tick in range(100))

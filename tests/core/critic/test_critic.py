@@ -18,7 +18,7 @@ def system() -> RlaSystem:
     return RlaSystem(2, 1.0, others={CRITIC: space})
 
 
-def test_before_its_first_lesson_it_thinks_nothing() -> None:
+def test_critic_before_first_lesson_has_no_opinion() -> None:
     knowledge = system()
     critic = Critic(knowledge, SETTINGS)
     assert critic.opinion(critic.to_vector(FREE)) is None
@@ -26,7 +26,7 @@ def test_before_its_first_lesson_it_thinks_nothing() -> None:
     assert critic.opinion(critic.to_vector(FREE)) is None
 
 
-def test_it_thinks_what_the_nearest_appraisal_says() -> None:
+def test_critic_opinion_is_that_of_the_nearest_rla() -> None:
     knowledge = system()
     critic = Critic(knowledge, SETTINGS)
     knowledge.apply_all([appraisal(1, "good", FREE), appraisal(2, "bad", CLOSE)])
@@ -42,7 +42,7 @@ def test_it_thinks_what_the_nearest_appraisal_says() -> None:
     assert there.said == 1
 
 
-def test_what_is_far_from_all_it_was_taught_it_does_not_know() -> None:
+def test_critic_far_situation_is_unknown() -> None:
     knowledge = system()
     critic = Critic(knowledge, SETTINGS)
     knowledge.apply(appraisal(1, "bad", CLOSE))
@@ -52,7 +52,7 @@ def test_what_is_far_from_all_it_was_taught_it_does_not_know() -> None:
     assert said.distance > said.radius == SETTINGS.learning.radius
 
 
-def test_an_appraisal_that_was_withdrawn_or_has_no_meaning_here_is_no_opinion() -> None:
+def test_critic_withdrawn_or_unknown_appraisal_no_opinion() -> None:
     knowledge = system()
     critic = Critic(knowledge, SETTINGS)
     knowledge.apply_all([appraisal(1, "splendid", FREE), appraisal(2, "bad", CLOSE)])
@@ -63,7 +63,7 @@ def test_an_appraisal_that_was_withdrawn_or_has_no_meaning_here_is_no_opinion() 
         assert said.said is None
 
 
-def test_it_thinks_anew_every_few_ticks_and_after_each_lesson() -> None:
+def test_critic_searches_every_few_ticks_and_after_lessons() -> None:
     knowledge = system()
     critic = Critic(knowledge, SETTINGS.model_copy(update={"think_every_ticks": 5}))
     assert critic.appraise(10, FREE) is None
@@ -76,7 +76,7 @@ def test_it_thinks_anew_every_few_ticks_and_after_each_lesson() -> None:
     assert now.appraisal == "neutral"
 
 
-def test_circumstances_become_numbers_in_their_order() -> None:
+def test_critic_vector_follows_the_feature_order() -> None:
     critic = Critic(system(), SETTINGS)
     assert critic.to_vector(FREE).tolist() == list(FREE)[: len(NAMES)]
     assert critic.to_vector(FREE).dtype == np.float64

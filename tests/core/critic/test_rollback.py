@@ -45,7 +45,7 @@ def replaced(rla_id: int, command_id: str, teacher: str = CRITIC) -> ActionRepla
     return ActionReplaced(rla_id, "back", "forward", origin(command_id, teacher, Phase.AUTONOMOUS))
 
 
-def test_what_made_it_worse_is_undone_newest_first() -> None:
+def test_rollback_worse_window_undoes_newest_first() -> None:
     kept = best()
     assert window(kept, good=8) == ()
     for event in (created(1, "first"), replaced(1, "second"), created(2, "third")):
@@ -58,7 +58,7 @@ def test_what_made_it_worse_is_undone_newest_first() -> None:
     assert len({each.origin.command_id for each in undone}) == 3
 
 
-def test_a_little_worse_is_chance_and_better_is_kept() -> None:
+def test_rollback_within_margin_or_better_keeps() -> None:
     kept = best()
     window(kept, good=5)
     kept.on_event(created(1, "first"))
@@ -69,14 +69,14 @@ def test_a_little_worse_is_chance_and_better_is_kept() -> None:
     assert [each.lesson for each in window(kept, good=2)] == ["second"]
 
 
-def test_nothing_is_undone_where_nothing_was_changed() -> None:
+def test_rollback_without_changes_undoes_nothing() -> None:
     kept = best()
     window(kept, good=9)
     assert window(kept, good=0) == ()
     assert kept.best == 0.9
 
 
-def test_time_in_which_it_stands_does_not_count() -> None:
+def test_rollback_standstill_does_not_count() -> None:
     kept = best()
     for tick in range(1000):
         assert kept.update(tick, -1, False) == ()
@@ -85,7 +85,7 @@ def test_time_in_which_it_stands_does_not_count() -> None:
     assert kept.score == 0.3
 
 
-def test_a_robot_that_has_come_to_know_no_way_on_goes_back() -> None:
+def test_rollback_asking_counts_as_bad() -> None:
     kept = best()
     window(kept, good=1)
     kept.on_event(created(1, "first"))
@@ -94,7 +94,7 @@ def test_a_robot_that_has_come_to_know_no_way_on_goes_back() -> None:
     assert kept.score == -1.0
 
 
-def test_what_was_undone_by_hand_is_not_undone_again() -> None:
+def test_rollback_skips_lessons_undone_by_hand() -> None:
     kept = best()
     window(kept, good=9)
     kept.on_event(created(1, "first"))
@@ -105,7 +105,7 @@ def test_what_was_undone_by_hand_is_not_undone_again() -> None:
     assert [each.lesson for each in window(kept, good=0)] == ["first"]
 
 
-def test_what_a_teacher_went_on_from_stays() -> None:
+def test_rollback_keeps_lessons_below_a_teachers() -> None:
     kept = best()
     window(kept, good=9)
     kept.on_event(created(1, "first"))
@@ -114,7 +114,7 @@ def test_what_a_teacher_went_on_from_stays() -> None:
     assert [each.lesson for each in window(kept, good=0)] == ["second"]
 
 
-def test_after_a_roll_back_the_restored_knowledge_is_scored_anew() -> None:
+def test_rollback_is_followed_by_a_measured_window() -> None:
     kept = best()
     window(kept, good=10)  # by chance
     kept.on_event(created(1, "first"))
@@ -128,7 +128,7 @@ def test_after_a_roll_back_the_restored_knowledge_is_scored_anew() -> None:
     assert kept.best == 0.6
 
 
-def test_while_it_is_measured_nothing_is_to_be_changed() -> None:
+def test_rollback_measured_window_reports_measuring() -> None:
     kept = best()
     assert kept.is_measuring
     window(kept, good=8)
@@ -142,7 +142,7 @@ def test_while_it_is_measured_nothing_is_to_be_changed() -> None:
     assert kept.is_measuring
 
 
-def test_what_was_changed_during_a_window_that_is_won_is_not_proven_by_it() -> None:
+def test_rollback_won_window_proves_earlier_lessons_only() -> None:
     kept = best()
     window(kept, good=5)
     kept.on_event(created(1, "before"))
@@ -155,7 +155,7 @@ def test_what_was_changed_during_a_window_that_is_won_is_not_proven_by_it() -> N
     assert [each.lesson for each in window(kept, good=3)] == ["late"]
 
 
-def test_what_is_left_to_be_proven_is_proven_by_the_next_window_that_is_won() -> None:
+def test_rollback_next_won_window_proves_the_rest() -> None:
     kept = best()
     window(kept, good=5)
     for tick in range(5):
@@ -167,7 +167,7 @@ def test_what_is_left_to_be_proven_is_proven_by_the_next_window_that_is_won() ->
     assert window(kept, good=0) == ()
 
 
-def test_knowledge_that_slowly_gets_worse_does_not_slip_through() -> None:
+def test_rollback_slow_decline_is_noticed() -> None:
     """Each window a little worse than the one before: none of them becomes what the next is held against."""
     kept = best(margin=0.1)
     window(kept, good=6)
@@ -182,7 +182,7 @@ def test_knowledge_that_slowly_gets_worse_does_not_slip_through() -> None:
     assert [each.lesson for each in undone] == ["change-3", "change-2"]
 
 
-def test_the_time_before_it_was_alone_does_not_count() -> None:
+def test_rollback_restart_discards_the_open_window() -> None:
     kept = best()
     for tick in range(9):
         kept.update(tick, -1, True)
@@ -191,7 +191,7 @@ def test_the_time_before_it_was_alone_does_not_count() -> None:
     assert kept.best == 0.7
 
 
-def test_alone_again_it_is_held_against_what_it_is_now_unless_something_is_to_be_proven() -> None:
+def test_rollback_restart_measures_unless_unproven() -> None:
     kept = best()
     window(kept, good=9)
     kept.restart()
@@ -202,7 +202,7 @@ def test_alone_again_it_is_held_against_what_it_is_now_unless_something_is_to_be
     assert [each.lesson for each in window(kept, good=0)] == ["first"]
 
 
-def test_in_another_run_it_goes_on_from_the_best_window_and_what_was_changed_after_it() -> None:
+def test_rollback_restore_continues_from_best_window() -> None:
     kept = best()
     events: list[TeachingEvent] = [
         created(1, "proven"),
@@ -221,7 +221,7 @@ def test_in_another_run_it_goes_on_from_the_best_window_and_what_was_changed_aft
     assert [each.lesson for each in window(again, good=2)] == ["late"]
 
 
-def test_without_a_best_another_run_begins_with_knowledge_as_it_is() -> None:
+def test_rollback_restore_without_best_proves_all() -> None:
     again = best()
     again.restore([created(1, "first")], None, 0)
     window(again, good=8)
@@ -245,7 +245,7 @@ Act = tuple[str, int]
     )
 )
 @examples(150)
-def test_whatever_is_changed_by_whom_a_roll_back_fits_the_knowledge(windows: list[tuple[list[Act], int]]) -> None:
+def test_rollback_random_events_undos_fit(windows: list[tuple[list[Act], int]]) -> None:
     kept, knowledge = best(margin=0.1), RlaSystem(1, 1.0)
     commands = 0
 

@@ -21,12 +21,12 @@ def checked(content: dict[str, Any]) -> CriticSettings:
     return CriticSettings.model_validate_json(json.dumps(content))
 
 
-def test_the_shipped_critic_thinks_bad_neutral_or_good() -> None:
+def test_builtin_critic_has_bad_neutral_and_good() -> None:
     assert load_critic().values == {"bad": -1, "neutral": 0, "good": 1}
 
 
 @pytest.mark.parametrize("name", ["eight", "fleeing"])
-def test_the_critics_of_other_tasks_look_at_the_same_and_differ_in_what_counts(name: str) -> None:
+def test_builtin_critics_differ_in_weights_only(name: str) -> None:
     basic, other = load_critic(), load_critic(name)
     same = {"name": basic.name, "learning": basic.learning}
     assert other.model_copy(update=same) == basic
@@ -34,14 +34,14 @@ def test_the_critics_of_other_tasks_look_at_the_same_and_differ_in_what_counts(n
     assert load_task(name).critic == name
 
 
-def test_a_name_that_is_not_there_is_told() -> None:
+def test_load_critic_unknown_name_is_refused() -> None:
     with pytest.raises(
         SettingsError, match=r"no such file in critics; give a path to a \.yaml file or one of: basic, eight"
     ):
         load_critic("stern")
 
 
-def test_appraisals_are_bound_to_what_the_circumstances_are_and_to_nothing_else() -> None:
+def test_feature_hash_depends_on_features_only() -> None:
     bound = load_critic().level_features
     assert bound.feature_names == NAMES
     assert bound.feature_hash == load_critic().feature_hash
@@ -60,12 +60,12 @@ def test_appraisals_are_bound_to_what_the_circumstances_are_and_to_nothing_else(
         (CONTENT | {"appraisals": CONTENT["appraisals"] * 2}, "bad, good, neutral stands twice"),
     ],
 )
-def test_what_makes_no_sense_is_refused(content: dict[str, Any], told: str) -> None:
+def test_critic_settings_invalid_values_are_refused(content: dict[str, Any], told: str) -> None:
     with pytest.raises(ValueError, match=told):
         checked(content)
 
 
-def test_each_circumstance_may_be_weighed_and_nothing_else(tmp_path: Path) -> None:
+def test_appraisal_weights_cover_each_feature(tmp_path: Path) -> None:
     assert set(AppraisalWeights.model_fields) == {*NAMES, SURPRISED}
     wrong = tmp_path / "wrong.yaml"
     wrong.write_text(json.dumps(changed("learning", weights={"lift_m": 1.0})))
@@ -73,7 +73,7 @@ def test_each_circumstance_may_be_weighed_and_nothing_else(tmp_path: Path) -> No
         load_critic(str(wrong))
 
 
-def test_a_critic_of_ones_own_may_know_more(tmp_path: Path) -> None:
+def test_critic_settings_may_have_more_appraisals(tmp_path: Path) -> None:
     mine = tmp_path / "mine.yaml"
     long = {"name": "bad_for_long", "value": -1, "trace_s": 3.0}
     mine.write_text(json.dumps(CONTENT | {"appraisals": [*CONTENT["appraisals"], long]}))
@@ -81,7 +81,7 @@ def test_a_critic_of_ones_own_may_know_more(tmp_path: Path) -> None:
     assert load_critic(str(mine)).weight_vector.shape == (len(NAMES),)
 
 
-def test_surprise_is_a_feature_of_those_that_hold_it_and_of_no_others() -> None:
+def test_surprised_feature_needs_its_duration() -> None:
     shipped = load_critic()
     content = json.loads(shipped.model_dump_json())
     content["perception"]["surprise_held_s"] = 1.0

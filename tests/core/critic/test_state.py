@@ -22,7 +22,7 @@ def standing(track: Track) -> tuple[CriticState, float | None]:
     return track.school.updater.critic_state, track.school.updater.bad_share
 
 
-def test_it_measures_then_waits_until_it_is_needed_and_acts() -> None:
+def test_state_measures_then_not_needed_then_acts() -> None:
     track = alone()
     track.go(0.0)
     assert standing(track) == (CriticState.MEASURES, 0.0)
@@ -38,7 +38,7 @@ def test_it_measures_then_waits_until_it_is_needed_and_acts() -> None:
     assert standing(track)[0] is CriticState.ACTS
 
 
-def test_before_phase_5_and_without_trust_it_listens() -> None:
+def test_state_before_phase_5_or_untrusted_listens() -> None:
     track = alone()
     track.go(0.0)
     track.school.phase = Phase.CRITIC

@@ -16,7 +16,7 @@ PLACES = st.tuples(st.floats(-1000, 1000), st.floats(-1000, 1000))
 
 
 @given(st.lists(PLACES, min_size=2, max_size=50))
-def test_mean_and_spread_are_those_of_all_situations_that_followed(places: list[tuple[float, float]]) -> None:
+def test_learn_mean_and_spread_of_all_ends(places: list[tuple[float, float]]) -> None:
     small = Small()
     for place in places:
         small.ends(1, 2, *place)
@@ -26,20 +26,20 @@ def test_mean_and_spread_are_those_of_all_situations_that_followed(places: list[
     assert expected.spread == pytest.approx(np.std(places, axis=0, ddof=1), abs=1e-4)
 
 
-def test_how_long_it_drives_is_expected_too() -> None:
+def test_learn_mean_duration() -> None:
     small = Small()
     for ticks in (10, 20, 60):
         small.ends(1, 2, 0.0, 0.0, ticks=ticks)
     assert small.expected(1).ticks == pytest.approx(30.0)
 
 
-def test_nothing_is_expected_of_an_rla_that_was_never_seen_to_end() -> None:
+def test_expectation_before_first_end_is_none() -> None:
     small = Small()
     small.ends(1, 2, 5.0, 5.0)
     assert small.expectations.get(2) is None
 
 
-def test_what_comes_as_ever_is_no_surprise_and_what_lies_far_off_is_one() -> None:
+def test_surprise_only_for_distant_ends() -> None:
     small = Small()
     for number in range(20):
         small.ends(1, 2, 50.0 + number % 2, 20.0)
@@ -53,13 +53,13 @@ def test_what_comes_as_ever_is_no_surprise_and_what_lies_far_off_is_one() -> Non
     assert (off.rla_id, off.follow_up, off.ends) == (1, 2, 21)
 
 
-def test_who_has_seen_little_is_not_surprised() -> None:
+def test_surprise_needs_enough_ends() -> None:
     small = Small()
     assert [small.ends(1, 2, 1000.0 * number, 0.0) for number in range(5)] == [None] * 5
     assert small.ends(1, 2, 0.0, 0.0) is not None
 
 
-def test_what_always_came_exactly_alike_may_vary_a_little() -> None:
+def test_surprise_constant_ends_have_a_least_distance() -> None:
     small = Small()
     for _ in range(10):
         small.ends(1, 2, 50.0, 20.0)
@@ -70,7 +70,7 @@ def test_what_always_came_exactly_alike_may_vary_a_little() -> None:
     assert [near.surprising, far.surprising] == [False, True]
 
 
-def test_a_follow_up_that_never_came_before_is_told() -> None:
+def test_surprise_new_follow_up_is_marked() -> None:
     small = Small()
     for _ in range(5):
         small.ends(1, 2, 50.0, 20.0)
@@ -81,14 +81,14 @@ def test_a_follow_up_that_never_came_before_is_told() -> None:
     assert (again.seen, again.ends) == (1, 6)
 
 
-def test_of_symbols_the_most_frequent_ones_are_expected() -> None:
+def test_learn_symbols_most_frequent_wins() -> None:
     small = Small("hamming")
     for symbols in [(4, 1, 2)] + 7 * [(1, 2, 2)] + [(3, 2, 4)]:
         small.ends(1, 2, *map(float, symbols))
     assert small.expected(1).mean.tolist() == [1.0, 2.0, 2.0]
 
 
-def test_of_symbols_another_one_than_ever_is_a_surprise() -> None:
+def test_surprise_symbols_different_ones() -> None:
     small = Small("hamming")
     for _ in range(8):
         small.ends(1, 2, 1.0, 2.0, 2.0)
@@ -99,7 +99,7 @@ def test_of_symbols_another_one_than_ever_is_a_surprise() -> None:
     assert (other.surprising, other.distance, other.level) == (True, 1.0, MID)
 
 
-def test_symbols_that_came_in_between_hold_up_no_majority() -> None:
+def test_learn_symbols_rare_ones_keep_the_majority() -> None:
     small = Small("hamming")
     for _ in range(20):
         small.ends(1, 2, 3.0, 0.0, 0.0)
@@ -108,7 +108,7 @@ def test_symbols_that_came_in_between_hold_up_no_majority() -> None:
     assert small.expected(1).mean.tolist() == [1.0, 0.0, 0.0]
 
 
-def test_an_rla_with_another_action_is_expected_to_do_nothing_that_the_old_one_did() -> None:
+def test_on_event_new_action_drops_expectation() -> None:
     small = Small()
     small.ends(1, 2, 5.0, 5.0)
     small.ends(2, 1, 7.0, 7.0)
@@ -120,7 +120,7 @@ def test_an_rla_with_another_action_is_expected_to_do_nothing_that_the_old_one_d
     assert small.expectations.get(1) is None
 
 
-def test_what_was_deleted_comes_back_without_expectation() -> None:
+def test_on_event_restored_rla_has_no_expectation() -> None:
     small = Small()
     small.ends(1, 2, 5.0, 5.0)
     small.expectations.snapshot()
@@ -134,14 +134,14 @@ def test_what_was_deleted_comes_back_without_expectation() -> None:
     assert small.expected(1).mean.tolist() == [6.0, 5.0]
 
 
-def test_a_lesson_that_is_undone_takes_its_expectation_with_it() -> None:
+def test_on_event_undo_drops_expectation() -> None:
     small = Small()
     small.ends(3, 2, 5.0, 5.0)
     assert small.happens(undone("lesson-3")) == 3
     assert small.expectations.snapshot() == {}
 
 
-def test_praise_changes_no_expectation() -> None:
+def test_on_event_reward_keeps_expectation() -> None:
     small = Small()
     small.ends(1, 2, 5.0, 5.0)
     assert small.happens(rewarded(1)) is None
@@ -150,7 +150,7 @@ def test_praise_changes_no_expectation() -> None:
 
 
 @pytest.mark.parametrize("metric", ["euclidean", "hamming"])
-def test_it_goes_on_from_what_was_saved(metric: str) -> None:
+def test_snapshot_restores_expectations(metric: str) -> None:
     situations = [tuple(float((7 * step + place) % 3) for place in range(3)) for step in range(12)]
     whole, first = Small("hamming"), Small("hamming")
     if metric == "euclidean":
@@ -166,7 +166,7 @@ def test_it_goes_on_from_what_was_saved(metric: str) -> None:
     assert second.expected(1) == whole.expected(1)  # to the last bit
 
 
-def test_what_was_saved_of_the_dead_or_of_another_action_is_left_behind() -> None:
+def test_restore_drops_deleted_or_changed_rlas() -> None:
     before = Small()
     for rla_id in (1, 2, 3):
         before.ends(rla_id, 2, 5.0, 5.0)
@@ -178,7 +178,7 @@ def test_what_was_saved_of_the_dead_or_of_another_action_is_left_behind() -> Non
     assert expectations.snapshot() == {3: saved[3]}
 
 
-def test_only_what_has_changed_is_made_anew_to_be_saved() -> None:
+def test_snapshot_shares_unchanged_expectations() -> None:
     small = Small()
     for rla_id in (1, 2, 3):
         small.ends(rla_id, 2, 5.0, 5.0)
@@ -189,7 +189,7 @@ def test_only_what_has_changed_is_made_anew_to_be_saved() -> None:
     assert first[2].count == 1  # what was handed over does not change any more
 
 
-def test_what_was_saved_of_other_features_is_refused_at_the_start() -> None:
+def test_restore_other_dimensions_is_refused() -> None:
     small = Small()
     small.ends(1, 2, 5.0, 5.0)
     narrow = replace(small.expected(1), packed_mean=pack(np.zeros(1)))

@@ -39,7 +39,7 @@ class Journey:
             self.following.update(decision, self.situation, driving=driving)
 
 
-def test_an_rla_ends_in_the_situation_in_which_another_takes_over() -> None:
+def test_basic_rla_ends_when_another_takes_over() -> None:
     drive = Drive()
     drive.see(1, 10.0, ticks=30)
     drive.see(2, 20.0)
@@ -47,7 +47,7 @@ def test_an_rla_ends_in_the_situation_in_which_another_takes_over() -> None:
     assert (expected.mean.tolist(), expected.ticks, expected.count) == ([20.0, 0.0], 30.0, 1)
 
 
-def test_standing_is_no_follow_up() -> None:
+def test_basic_standstill_is_no_follow_up() -> None:
     drive = Drive()
     drive.see(1, 10.0, ticks=3)
     drive.see(None, 20.0, ticks=3)
@@ -55,7 +55,7 @@ def test_standing_is_no_follow_up() -> None:
     assert drive.small.expectations.get(1) is None
 
 
-def test_what_a_command_ended_did_not_lead_there() -> None:
+def test_basic_change_of_behaviour_is_no_follow_up() -> None:
     drive = Drive()
     drive.see(1, 10.0, ticks=3, behaviour="straight_on")
     drive.see(2, 20.0, ticks=3, behaviour="turn_left")
@@ -64,7 +64,7 @@ def test_what_a_command_ended_did_not_lead_there() -> None:
     assert drive.small.expected(2).mean.tolist() == [30.0, 0.0]
 
 
-def test_a_correction_of_the_one_that_drives_begins_anew() -> None:
+def test_basic_correction_of_the_driver_restarts() -> None:
     drive = Drive()
     drive.see(1, ticks=50)
     event = replaced(1, "backward", "forward")
@@ -75,7 +75,7 @@ def test_a_correction_of_the_one_that_drives_begins_anew() -> None:
     assert drive.small.expected(1).ticks == 5.0
 
 
-def test_at_the_mid_level_an_rla_ends_where_a_junction_was_passed() -> None:
+def test_mid_rla_ends_at_a_junction() -> None:
     journey = Journey()
     journey.comes_to(1.0, 0.0, 0.0)
     journey.sees(1, ticks=800)
@@ -85,7 +85,7 @@ def test_at_the_mid_level_an_rla_ends_where_a_junction_was_passed() -> None:
     assert (expected.mean.tolist(), expected.ticks) == ([2.0, 1.0, 0.0], 800.0)
 
 
-def test_it_may_follow_itself() -> None:
+def test_mid_rla_may_follow_itself() -> None:
     journey = Journey()
     journey.comes_to(1.0, 0.0, 0.0)
     journey.sees(1, ticks=10)
@@ -94,7 +94,7 @@ def test_it_may_follow_itself() -> None:
     assert journey.small.expected(1).mean.tolist() == [1.0, 1.0, 0.0]
 
 
-def test_waiting_is_not_the_way() -> None:
+def test_mid_waiting_does_not_count() -> None:
     journey = Journey()
     journey.comes_to(1.0, 0.0, 0.0)
     journey.sees(1, ticks=10)
@@ -104,7 +104,7 @@ def test_waiting_is_not_the_way() -> None:
     assert journey.small.expected(1).ticks == 10.0
 
 
-def test_what_changes_while_no_junction_was_passed_follows_from_nothing() -> None:
+def test_mid_change_between_junctions_is_no_end() -> None:
     journey = Journey()
     journey.comes_to(1.0, 0.0, 0.0)
     journey.sees(1, ticks=10)
@@ -115,7 +115,7 @@ def test_what_changes_while_no_junction_was_passed_follows_from_nothing() -> Non
     assert journey.small.expected(2).ticks == 10.0
 
 
-def test_what_is_taught_where_nobody_knew_the_way_on_is_what_followed() -> None:
+def test_mid_follow_up_may_be_taught_later() -> None:
     journey = Journey()
     journey.comes_to(1.0, 0.0, 0.0)
     journey.sees(1, ticks=10)
@@ -127,7 +127,7 @@ def test_what_is_taught_where_nobody_knew_the_way_on_is_what_followed() -> None:
     assert (expected.mean.tolist(), expected.ticks, expected.count) == ([2.0, 1.0, 0.0], 10.0, 1)
 
 
-def test_who_was_set_down_elsewhere_came_from_nowhere() -> None:
+def test_mid_repositioned_robot_has_no_predecessor() -> None:
     journey = Journey()
     journey.comes_to(1.0, 0.0, 0.0)
     journey.sees(1, ticks=10)

@@ -46,7 +46,7 @@ class Led:
         return [each for each in names if each]
 
 
-def test_what_was_done_at_each_junction_newest_first() -> None:
+def test_history_holds_turns_newest_first() -> None:
     led = Led(load_mid_level("turns")).go(0.5)
     assert led.situation.dimensions == len(led.situation.features) == 12
     assert led.situation.vector.tolist() == [0.0] * 12
@@ -57,7 +57,7 @@ def test_what_was_done_at_each_junction_newest_first() -> None:
     assert led.words == ["straight"] * 11 + ["right"]
 
 
-def test_the_vector_of_an_earlier_moment_stays_as_it_was() -> None:
+def test_history_vector_is_never_changed() -> None:
     led = Led(load_mid_level("turns")).go(0.5)
     before = led.situation.vector
     led.over(90.0)
@@ -67,7 +67,7 @@ def test_the_vector_of_an_earlier_moment_stays_as_it_was() -> None:
     assert led.situation.vector is after
 
 
-def test_a_junction_is_told_in_the_tick_in_which_it_has_been_passed_and_in_no_other() -> None:
+def test_history_reports_a_junction_in_its_tick_only() -> None:
     situation = load_mid_level("turns").build(ROBOT)
     seen = []
     for away_m, steps in ((STREET_M, 100), (OPEN_M, 160), (STREET_M, 100)):
@@ -78,7 +78,7 @@ def test_a_junction_is_told_in_the_tick_in_which_it_has_been_passed_and_in_no_ot
     assert [each.name for each in seen if each is not None] == ["straight"]
 
 
-def test_a_robot_that_was_set_down_has_no_past() -> None:
+def test_history_restart_is_empty() -> None:
     led = Led(load_mid_level("turns")).go(0.5).over(90.0, 0.0)
     led.go(0.8, OPEN_M)
     led.situation.restart()
@@ -87,7 +87,7 @@ def test_a_robot_that_was_set_down_has_no_past() -> None:
     assert led.over(-90.0).words == ["right"]
 
 
-def test_low_passed_symbols_tell_streets_crossings_and_turns_each_once_while_it_lasts() -> None:
+def test_turn_symbols_are_reported_once() -> None:
     led = Led(load_mid_level("low_passed")).go(1.0)
     assert led.words == ["street"]
     led.over(90.0, 90.0, 0.0)
@@ -96,12 +96,12 @@ def test_low_passed_symbols_tell_streets_crossings_and_turns_each_once_while_it_
     assert len(led.words) == 7
 
 
-def test_turning_on_the_spot_is_a_turn_of_low_passed_symbols_too() -> None:
+def test_turn_symbols_include_turns_on_the_spot() -> None:
     led = Led(load_mid_level("low_passed")).go(1.0).go(0.3, OPEN_M).go(0.0, OPEN_M, turn_deg=-90.0).go(1.0)
     assert led.words == ["street", "right", "street"]
 
 
-def test_actions_of_the_basic_level_as_symbols_count_when_they_differ() -> None:
+def test_action_symbols_count_changes() -> None:
     led = Led(load_mid_level("actions"))
     for action in ("forward", "forward", None, "forward", "sharp_left", "stand", "sharp_left", "forward"):
         led.situation.perceive(sensed(STREET_M, STREET_M), driven(action))
@@ -112,13 +112,13 @@ def test_actions_of_the_basic_level_as_symbols_count_when_they_differ() -> None:
 
 
 @pytest.mark.parametrize("name", ["turns", "low_passed", "actions"])
-def test_conditions_of_whatever_symbols_can_be_read(name: str) -> None:
+def test_describe_names_each_symbol(name: str) -> None:
     situation = load_mid_level(name).situation
     assert situation.describe(np.array([1.0, 0.0, 2.0] + [0.0] * 9))[1] == ""
     assert all(situation.describe([1.0] * 12))
 
 
-def test_what_the_basic_level_expected_and_got_counts_and_what_came_by_chance_does_not() -> None:
+def test_expectation_symbols_skip_rare_follow_ups() -> None:
     mid = load_mid_level("expectations")
     situation = mid.build(ROBOT, {(1, 2): 5, (1, 3): 2, (2, 3): 1, (3, 1): 4})
     for rla_id in (1, 1, 2, 3, 1, 3, None, 2, 3):

@@ -50,7 +50,7 @@ class Drive:
         self.simulation.close()
 
 
-def test_corners_ts_and_crossings_each_tell_what_was_done_there_and_where_it_could_go() -> None:
+def test_detector_corners_ts_and_crossings_in_simulation() -> None:
     drive = Drive(1)
     drive.simulation.simulated_robot.place(Pose(0.4, 1.3, math.pi / 2))
     detector = JunctionDetector(load_mid_level("turns").junctions, ROBOT)
@@ -126,7 +126,7 @@ def noisy(robot: RobotSettings, **changes: float) -> RobotSettings:
     return robot.model_copy(update={"infrared": infrared})
 
 
-def test_random_ways_are_told_as_they_were_gone() -> None:
+def test_detector_random_drives_in_simulation() -> None:
     passed, told = random_drive(3, 40.0, ROBOT)
     assert len(passed) >= 6
     assert told == passed
@@ -134,7 +134,7 @@ def test_random_ways_are_told_as_they_were_gone() -> None:
 
 @pytest.mark.deep
 @pytest.mark.parametrize("seed", range(4))
-def test_for_minutes_with_more_noise_and_more_unlike_sensors_junctions_are_told_as_they_were_passed(seed: int) -> None:
+def test_detector_noisy_sensors_for_minutes(seed: int) -> None:
     for robot in (ROBOT, noisy(ROBOT, noise_share=0.05), noisy(ROBOT, gain_spread_share=0.08)):
         passed, told = random_drive(seed, 300.0, robot)
         assert len(passed) >= 45

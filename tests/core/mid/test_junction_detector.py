@@ -13,7 +13,7 @@ from tests.core.mid.walk import OPEN_M, ROBOT, STREET_M, Walk
 SETTINGS = load_mid_level("turns").junctions
 
 
-def test_straight_over_a_crossing() -> None:
+def test_detector_crossing_straight() -> None:
     walk = Walk().street().go(0.8, OPEN_M, OPEN_M)
     assert walk.told == []  # not before the robot is sure of the next street
     walk.street(0.1)
@@ -27,14 +27,14 @@ def test_straight_over_a_crossing() -> None:
 
 
 @pytest.mark.parametrize(("left_m", "right_m"), [(OPEN_M, STREET_M), (STREET_M, OPEN_M)])
-def test_straight_on_where_a_street_leads_off_to_one_side(left_m: float, right_m: float) -> None:
+def test_detector_side_street_straight(left_m: float, right_m: float) -> None:
     (event,) = Walk().street().go(0.8, left_m, right_m).street().passed
     assert event.name == "straight"
     assert (event.left_open, event.right_open) == (left_m == OPEN_M, right_m == OPEN_M)
 
 
 @pytest.mark.parametrize(("turn_deg", "name"), [(90.0, "left"), (-90.0, "right"), (180.0, "back"), (-180.0, "back")])
-def test_turns_are_told_in_quarters_and_the_side_that_was_taken_was_open(turn_deg: float, name: str) -> None:
+def test_detector_turns_in_quarters_with_open_side(turn_deg: float, name: str) -> None:
     walk = Walk().street().go(0.4, OPEN_M, STREET_M, turn_deg=0.3 * turn_deg)
     # By now it looks away from the wall on its right, along which it came.
     (event,) = walk.go(0.4, OPEN_M, OPEN_M, turn_deg=0.7 * turn_deg).street().passed
@@ -44,19 +44,19 @@ def test_turns_are_told_in_quarters_and_the_side_that_was_taken_was_open(turn_de
     assert event.right_open == (turn_deg == -90.0)
 
 
-def test_turning_on_the_spot_in_a_corner_is_a_turn() -> None:
+def test_detector_turn_on_the_spot() -> None:
     walk = Walk().street().go(0.4, OPEN_M, STREET_M).go(0.0, OPEN_M, OPEN_M, turn_deg=88.0)
     assert walk.go(0.4, STREET_M, OPEN_M).street().told == ["left"]
 
 
-def test_one_junction_after_the_other() -> None:
+def test_detector_several_junctions_in_a_row() -> None:
     walk = Walk().street()
     for turn_deg in (90.0, 0.0, -90.0, -90.0, 0.0):
         walk.go(0.7, OPEN_M, OPEN_M, turn_deg=turn_deg).street(1.0)
     assert walk.told == ["left", "straight", "right", "right", "straight"]
 
 
-def test_how_the_robot_wobbles_on_its_way_in_and_out_is_no_turn() -> None:
+def test_detector_wobble_is_no_turn() -> None:
     askew = Walk().street().go(0.3, turn_deg=18.0).go(0.2, askew_deg=18.0)
     askew.go(0.7, OPEN_M, OPEN_M, turn_deg=54.0)
     (event,) = askew.go(0.3, askew_deg=-18.0).passed
@@ -64,13 +64,13 @@ def test_how_the_robot_wobbles_on_its_way_in_and_out_is_no_turn() -> None:
     assert event.turn_rad == pytest.approx(math.radians(90.0), abs=math.radians(6.0))
 
 
-def test_while_the_walls_are_not_parallel_the_robot_is_still_turning() -> None:
+def test_detector_unparallel_walls_delay_the_event() -> None:
     walk = Walk().street().go(0.5, OPEN_M, OPEN_M, turn_deg=60.0).go(0.4, 0.25, 0.25, askew_deg=25.0)
     assert walk.told == []
     assert walk.go(0.1, OPEN_M, OPEN_M, turn_deg=30.0).street().told == ["left"]
 
 
-def test_a_robot_that_stands_comes_no_nearer_to_a_junction_nor_out_of_one() -> None:
+def test_detector_standstill_changes_nothing() -> None:
     walk = Walk().street().go(0.0, OPEN_M, OPEN_M).street()
     assert walk.told == []
     assert walk.go(0.8, OPEN_M, OPEN_M).go(0.0).told == []
@@ -78,23 +78,23 @@ def test_a_robot_that_stands_comes_no_nearer_to_a_junction_nor_out_of_one() -> N
 
 
 @pytest.mark.parametrize("gap_m", [0.03, 0.1, 0.3])
-def test_a_gap_that_is_narrower_than_a_way_is_no_junction(gap_m: float) -> None:
+def test_detector_narrow_gap_is_no_junction(gap_m: float) -> None:
     assert Walk().street().go(gap_m, OPEN_M, STREET_M).street().told == []
 
 
-def test_who_looks_into_a_junction_and_drives_back_has_not_passed_it() -> None:
+def test_detector_look_in_and_back_is_no_junction() -> None:
     walk = Walk().street().go(0.3, OPEN_M, OPEN_M).go(-0.3, OPEN_M, OPEN_M).go(-0.3)
     assert walk.told == []
     assert walk.street().go(0.8, OPEN_M, OPEN_M).street().told == ["straight"]
 
 
-def test_a_look_out_of_the_street_in_the_middle_of_a_junction_does_not_end_it() -> None:
+def test_detector_momentary_walls_do_not_end_a_junction() -> None:
     walk = Walk().street().go(0.4, OPEN_M, OPEN_M).go(0.08).go(0.4, OPEN_M, OPEN_M)
     assert walk.told == []
     assert walk.street().told == ["straight"]
 
 
-def test_who_turns_back_in_a_street_or_at_its_dead_end_has_gone_back() -> None:
+def test_detector_turn_back_in_street_is_back() -> None:
     walk = Walk().street().go(0.0, OPEN_M, OPEN_M, turn_deg=180.0)
     assert walk.told == []
     (event,) = walk.street().passed
@@ -102,7 +102,7 @@ def test_who_turns_back_in_a_street_or_at_its_dead_end_has_gone_back() -> None:
     assert walk.go(0.8, OPEN_M, OPEN_M).street().told == ["back", "straight"]
 
 
-def test_a_robot_that_was_set_down_came_from_nowhere() -> None:
+def test_detector_restart_has_no_past() -> None:
     walk = Walk().street().go(0.5, OPEN_M, OPEN_M)
     walk.detector.restart()
     walk.go(0.5, OPEN_M, OPEN_M, turn_deg=90.0).street()
@@ -110,7 +110,7 @@ def test_a_robot_that_was_set_down_came_from_nowhere() -> None:
     assert walk.go(0.8, OPEN_M, OPEN_M).street().told == ["straight"]
 
 
-def test_wheels_that_measure_turns_by_a_tenth_too_far_tell_the_same() -> None:
+def test_detector_tolerates_ten_percent_turn_error() -> None:
     walk = Walk().street()
     for turn_deg in (99.0, 5.0, -99.0, 99.0, 198.0):
         walk.go(0.7, OPEN_M, OPEN_M, turn_deg=turn_deg).street(1.0)
@@ -124,7 +124,7 @@ def test_wheels_that_measure_turns_by_a_tenth_too_far_tell_the_same() -> None:
         ({"right": ["s6", "s5"]}, "s6 does not sit ahead of s5; give a side's sensors from front to back"),
     ],
 )
-def test_sensors_that_do_not_fit_are_refused(changes: dict[str, object], told: str) -> None:
+def test_detector_unknown_sensors_are_refused(changes: dict[str, object], told: str) -> None:
     content = json.dumps(SETTINGS.model_dump(mode="json") | changes)
     with pytest.raises(SettingsError, match=told):
         JunctionDetector(JunctionDetectorSettings.model_validate_json(content), ROBOT)

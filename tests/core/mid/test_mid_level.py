@@ -9,14 +9,14 @@ from tests.core.mid_helpers import BEHAVIOURS, STRAIGHT, SmallStack, taught
 from tests.core.rla.helpers import created, deleted, replaced, undone, withdrawn
 
 
-def test_before_its_first_lesson_it_asks_and_what_was_wanted_stays() -> None:
+def test_mid_level_before_first_lesson_asks() -> None:
     small = SmallStack()
     first = small.commanded()
     assert first == ("straight_on", None, None, True, False, None)
     assert small.wanted.behaviour == "straight_on"
 
 
-def test_the_nearest_rla_commands_what_the_basic_level_is_to_follow() -> None:
+def test_mid_level_nearest_rla_commands() -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"), taught(5, (2.0, 1.0, 1.0), "turn_right"))
     assert (small.commanded().behaviour, small.wanted.behaviour) == ("turn_left", "turn_left")
     small.commanded(1.0)
@@ -27,12 +27,12 @@ def test_the_nearest_rla_commands_what_the_basic_level_is_to_follow() -> None:
     assert (third.match.distance, third.match.radius) == (1.0, 1.0)
 
 
-def test_a_junction_is_told_once() -> None:
+def test_mid_level_reports_a_junction_once() -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
     assert [small.commanded(symbol).event for symbol in (None, 1.0, None)] == [None, STRAIGHT, None]
 
 
-def test_outside_every_radius_it_asks_and_tells_what_was_nearest() -> None:
+def test_mid_level_outside_radius_asks() -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
     assert not small.commanded(1.0).asks
     asked = small.commanded(1.0)
@@ -43,7 +43,7 @@ def test_outside_every_radius_it_asks_and_tells_what_was_nearest() -> None:
     assert asked.behaviour == small.wanted.behaviour == "turn_left"
 
 
-def test_a_lesson_counts_at_once_though_the_situation_is_the_same() -> None:
+def test_mid_level_lesson_counts_at_once() -> None:
     small = SmallStack()
     assert small.commanded().asks
     small.system.apply(taught(4, (0.0, 0.0, 0.0), "turn_left"))
@@ -57,7 +57,7 @@ def test_a_lesson_counts_at_once_though_the_situation_is_the_same() -> None:
     assert small.commanded().behaviour == "turn_left"
 
 
-def test_as_long_as_nothing_changes_nothing_is_looked_up(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_mid_level_unchanged_situation_no_search(monkeypatch: pytest.MonkeyPatch) -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
     looked_up = 0
     match = RlaSystem.match
@@ -75,7 +75,7 @@ def test_as_long_as_nothing_changes_nothing_is_looked_up(monkeypatch: pytest.Mon
     assert looked_up == 2
 
 
-def test_what_a_teacher_commands_counts_until_the_next_junction_has_been_passed() -> None:
+def test_mid_level_override_lasts_to_next_junction() -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
     small.commanded()
     small.mid.override("turn_right")
@@ -87,7 +87,7 @@ def test_what_a_teacher_commands_counts_until_the_next_junction_has_been_passed(
     assert small.wanted.behaviour == "turn_left"
 
 
-def test_a_teacher_may_lead_on_where_the_mid_level_would_ask() -> None:
+def test_mid_level_override_answers_a_question() -> None:
     small = SmallStack(taught(4, (1.0, 0.0, 0.0), "turn_left"), radius=0.0)
     assert small.commanded().asks
     small.mid.override("straight_on")
@@ -97,21 +97,21 @@ def test_a_teacher_may_lead_on_where_the_mid_level_would_ask() -> None:
     assert small.commanded(1.0).asks
 
 
-def test_nobody_else_changes_what_is_wanted_for_longer_than_a_tick() -> None:
+def test_mid_level_corrects_a_foreign_change() -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
     small.commanded()
     small.wanted.select("turn_right")
     assert small.commanded().behaviour == small.wanted.behaviour == "turn_left"
 
 
-def test_a_teacher_cannot_command_what_is_not_taught() -> None:
+def test_mid_level_override_unknown_behaviour_is_refused() -> None:
     small = SmallStack()
     with pytest.raises(ValueError, match="NO_BEHAVIOUR"):
         small.mid.override("fly")
     assert small.commanded().asks
 
 
-def test_a_robot_that_was_set_down_begins_anew() -> None:
+def test_mid_level_restart_forgets_the_situation() -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"), taught(5, (1.0, 1.0, 0.0), "turn_right"), radius=0.0)
     small.commanded(1.0)
     assert small.commanded(1.0).behaviour == "turn_right"
@@ -119,14 +119,14 @@ def test_a_robot_that_was_set_down_begins_anew() -> None:
     assert small.commanded().behaviour == "turn_left"
 
 
-def test_an_rla_whose_action_was_withdrawn_asks() -> None:
+def test_mid_level_withdrawn_rla_asks() -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
     assert not small.commanded().asks
     small.system.apply(withdrawn(4, "turn_left"))
     assert small.commanded().asks
 
 
-def test_knowledge_that_commands_what_the_task_does_not_teach_is_refused() -> None:
+def test_mid_level_unknown_behaviour_in_rla_is_refused() -> None:
     with pytest.raises(UnknownBehaviourError, match="mid-level RLA 4 commands the behaviour dance"):
         SmallStack(taught(4, (0.0, 0.0, 0.0), "dance"))
     assert len(SmallStack(created(4, (5.0,), "a", behaviour=BEHAVIOURS[0])).system.rlas) == 4

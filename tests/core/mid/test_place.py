@@ -87,7 +87,7 @@ def heading(place: PlaceSituation) -> tuple[float, float]:
     return place.vector[EAST], place.vector[NORTH]
 
 
-def test_behind_each_junction_it_knows_where_it_is_and_where_it_looks(drive: Drive) -> None:
+def test_place_tracks_pose_behind_each_junction(drive: Drive) -> None:
     drive.lead("turn_right")
     assert heading(drive.place) == (1.0, 0.0)
     assert drive.off_m < 0.15
@@ -96,12 +96,12 @@ def test_behind_each_junction_it_knows_where_it_is_and_where_it_looks(drive: Dri
     assert drive.off_m < 0.3
 
 
-def test_what_stood_beside_it_in_the_junction_is_part_of_the_place(drive: Drive) -> None:
+def test_place_includes_walls_of_the_junction(drive: Drive) -> None:
     drive.lead("turn_right", "straight_on", "turn_left", "turn_left")  # the last in a corner of the town
     assert (drive.place.vector[WALL_LEFT], drive.place.vector[WALL_RIGHT]) == (0.0, 1.0)
 
 
-def test_at_a_place_that_it_knows_the_reckoning_is_put_right(drive: Drive) -> None:
+def test_place_known_place_corrects_position(drive: Drive) -> None:
     drive.lead("turn_right")
     known: Condition = (3.0, 4.1, 1.0, 0.0, 0.0, 0.0)
     drive.place.known_place = lambda vector: known if np.hypot(vector[X] - 4.9, vector[Y] - 4.1) < 0.6 else None
@@ -112,7 +112,7 @@ def test_at_a_place_that_it_knows_the_reckoning_is_put_right(drive: Drive) -> No
     assert drive.place.vector[X] - known[X] < 1.5  # but goes on from what it knew
 
 
-def test_between_junctions_nothing_changes_and_vectors_are_never_changed_in_place(drive: Drive) -> None:
+def test_place_is_constant_between_junctions(drive: Drive) -> None:
     before = drive.place.vector
     while not drive.step():
         pass
@@ -120,7 +120,7 @@ def test_between_junctions_nothing_changes_and_vectors_are_never_changed_in_plac
     assert tuple(before) == AT_START
 
 
-def test_set_down_elsewhere_it_is_lost_until_somebody_says_where_it_is(drive: Drive) -> None:
+def test_place_restart_is_lost_until_localised(drive: Drive) -> None:
     drive.lead("turn_right")
     drive.place.restart()
     assert drive.place.lost
@@ -135,14 +135,14 @@ def test_set_down_elsewhere_it_is_lost_until_somebody_says_where_it_is(drive: Dr
     assert drive.off_m < 0.15
 
 
-def test_a_robot_that_was_just_switched_on_reckons_from_there() -> None:
+def test_place_power_on_is_the_origin() -> None:
     fresh = place()
     assert tuple(fresh.vector) == (0.0, 0.0, 1.0, 0.0, 0.5, 0.5)
     assert not fresh.lost
     assert not fresh.perceive(SensorReadings(0.0, (0,) * 10, 0.0, 0, 0, 0.0, 0, 0.0), NOTHING)
 
 
-def test_places_at_one_point_with_opposite_headings_are_two() -> None:
+def test_place_opposite_headings_are_distinct() -> None:
     space = PLACES.space
     assert space.weights is not None
     apart = np.array([0.0, 0.0, 2.0, 0.0, 1.0, 1.0]) * space.weights

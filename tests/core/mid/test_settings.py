@@ -16,7 +16,7 @@ def checked(**sections: dict[str, object]) -> MidSettings:
     return MidSettings.model_validate_json(json.dumps(content))
 
 
-def test_the_shipped_mid_level_is_the_papers_with_junctions_for_symbols() -> None:
+def test_builtin_mid_level_matches_the_paper() -> None:
     mid = load_mid_level("turns")
     assert (mid.space.dimensions, mid.space.radius, mid.space.metric) == (12, 6.0, "hamming")
     assert mid.situation.kind == "history"
@@ -24,12 +24,12 @@ def test_the_shipped_mid_level_is_the_papers_with_junctions_for_symbols() -> Non
     assert load_mid_level(mid) is mid
 
 
-def test_a_name_that_is_not_there_is_told() -> None:
+def test_load_mid_level_unknown_name_is_refused() -> None:
     with pytest.raises(SettingsError, match="no such file in mid_levels"):
         load_mid_level("nowhere")
 
 
-def test_knowledge_is_bound_to_what_the_features_are_and_to_nothing_else() -> None:
+def test_feature_hash_depends_on_features_only() -> None:
     bound = load_mid_level("turns").level_features
     assert bound.feature_names == load_mid_level("turns").features
     for same in (checked(learning={"radius": 3.0}), checked(situation={"distance": "edit"})):
@@ -52,6 +52,6 @@ def test_knowledge_is_bound_to_what_the_features_are_and_to_nothing_else() -> No
         ("junctions", {"left": ["s1"]}, "at least 2"),
     ],
 )
-def test_what_does_not_fit_is_refused(section: str, changes: dict[str, object], told: str) -> None:
+def test_mid_settings_invalid_values_are_refused(section: str, changes: dict[str, object], told: str) -> None:
     with pytest.raises(ValueError, match=told):
         checked(**{section: changes})

@@ -35,29 +35,29 @@ def hash_of(text: str, folder: Path) -> str:
         ("side: left", "side: right"),
     ],
 )
-def test_any_change_of_the_definition_changes_the_hash(old: str, new: str, tmp_path: Path) -> None:
+def test_definition_hash_differs_for_each_change(old: str, new: str, tmp_path: Path) -> None:
     assert old in BASIC
     assert hash_of(BASIC.replace(old, new, 1), tmp_path) != hash_of(BASIC, tmp_path)
 
 
-def test_comments_and_the_way_numbers_are_written_do_not_change_the_hash(tmp_path: Path) -> None:
+def test_definition_hash_ignores_comments_and_notation(tmp_path: Path) -> None:
     written_otherwise = "# taught in spring\n" + BASIC.replace("history_steps: 1000", "history_steps:   1_000")
     assert hash_of(written_otherwise, tmp_path) == hash_of(BASIC, tmp_path)
 
 
-def test_the_order_of_features_and_of_the_robots_sensors_changes_the_hash() -> None:
+def test_definition_hash_depends_on_both_orders() -> None:
     small = definition()
     swapped = definition((ALL_KINDS[1], ALL_KINDS[0], *ALL_KINDS[2:]))
     hashes = {small.hash(SENSORS), small.hash(SENSORS[::-1]), small.hash((*SENSORS, "e")), swapped.hash(SENSORS)}
     assert len(hashes) == 4
 
 
-def test_the_hash_is_the_same_in_every_run() -> None:
+def test_definition_hash_is_constant() -> None:
     """Knowledge files hold it: a change here makes all of them unreadable for their robots."""
     assert load_situation("basic", ROBOT_SENSORS).hash(ROBOT_SENSORS) == "ee983b9befe83baa"
 
 
-def test_names_come_in_the_order_of_the_vector() -> None:
+def test_definition_names_follow_the_vector() -> None:
     assert definition().names[:9] == (
         *("b", "a"),
         *("maximum front", "minimum front", "maximum rear"),
@@ -68,7 +68,7 @@ def test_names_come_in_the_order_of_the_vector() -> None:
     assert definition().dimensions == 18
 
 
-def test_a_definition_for_another_robot_is_refused_with_the_sensors_it_wants() -> None:
+def test_load_situation_unknown_sensor_is_refused() -> None:
     with pytest.raises(
         SettingsError, match=r"basic\.yaml: features: the robot has no sensor s17, s18; allowed: s1, s2"
     ):

@@ -37,18 +37,18 @@ def extracted(features: Features, counts: tuple[int, ...], driven: WheelSpeeds =
         (READINGS, (0, 1023, 0, 0), [1023, 0]),
     ],
 )
-def test_each_kind_of_feature_in_the_configured_order(
+def test_features_of_each_kind_in_configured_order(
     features: Features, counts: tuple[int, ...], by_hand: list[int]
 ) -> None:
     assert extracted(features, counts) == by_hand
 
 
-def test_wheel_speeds_are_whole_counts_of_the_side_that_was_named() -> None:
+def test_features_wheel_speeds_are_whole_counts() -> None:
     assert extracted(WHEELS, (0, 0, 0, 0), WheelSpeeds(0.30, -0.156)) == [-16, 30]
 
 
 @given(st.permutations(ALL_KINDS), st.tuples(*[st.integers(0, 1023)] * 4))
-def test_the_order_of_the_definition_is_the_order_of_the_values(
+def test_features_follow_the_order_of_the_definition(
     order: list[Mapping[str, object]], counts: tuple[int, ...]
 ) -> None:
     driven = WheelSpeeds(0.2, -0.1)
@@ -56,7 +56,7 @@ def test_the_order_of_the_definition_is_the_order_of_the_values(
     assert extracted(order, counts, driven) == alone
 
 
-def test_the_paper_situation_for_a_robot_between_walls() -> None:
+def test_features_of_the_basic_situation_between_walls() -> None:
     """Sensor s<n> shows 100 + 10 n; the features of `basic` follow from the paper's section VI.B.1."""
     sensors = load_robot().infrared.names
     basic = load_situation("basic", sensors)

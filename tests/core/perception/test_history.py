@@ -16,7 +16,7 @@ def average(history: History, width: int) -> NDArray[np.float64]:
 
 
 @pytest.mark.parametrize("steps", [1, 7, 1000])
-def test_thousands_of_random_steps_are_exact_at_every_step(steps: int) -> None:
+def test_history_random_steps_are_exact(steps: int) -> None:
     chance = np.random.default_rng(steps)
     rows = chance.integers(-1000, 1024, (3333, 5))
     history = History(steps, 5)
@@ -29,14 +29,14 @@ def test_thousands_of_random_steps_are_exact_at_every_step(steps: int) -> None:
 
 
 @given(st.integers(1, 5), st.lists(st.integers(-(10**15), 10**15), max_size=30))
-def test_large_numbers_leave_nothing_behind_when_they_have_left(steps: int, values: list[int]) -> None:
+def test_history_large_numbers_leave_no_residue(steps: int, values: list[int]) -> None:
     history = History(steps, 1)
     for value in [*values, *[7] * steps]:
         history.push(np.array([value]))
     assert average(history, 1).tolist() == [7.0]
 
 
-def test_a_ring_of_1000_forgets_the_first_step_with_the_1001st() -> None:
+def test_history_ring_of_1000_drops_the_first_step() -> None:
     history = History(1000, 1)
     history.push(np.array([1000]))
     for _ in range(999):
@@ -46,7 +46,7 @@ def test_a_ring_of_1000_forgets_the_first_step_with_the_1001st() -> None:
     assert average(history, 1).tolist() == [0.0]
 
 
-def test_what_was_pushed_may_change_afterwards() -> None:
+def test_history_pushed_array_may_change_later() -> None:
     history, row = History(2, 1), np.array([5])
     history.push(row)
     row[0] = 100

@@ -11,7 +11,7 @@ def drive_past(perception: Perception, *counts: int) -> None:
         perception.perceive(sensed(*counts), history_frozen=False)
 
 
-def test_recent_values_come_first_then_their_averages() -> None:
+def test_perception_recent_values_precede_averages() -> None:
     perception = Perception(definition(READINGS), SENSORS)
     drive_past(perception, 10, 20, 0, 0)
     situation = perception.perceive(sensed(20, 40, 0, 0), history_frozen=False)
@@ -19,7 +19,7 @@ def test_recent_values_come_first_then_their_averages() -> None:
     assert not situation.history_frozen
 
 
-def test_a_frozen_history_keeps_while_the_recent_values_go_on() -> None:
+def test_perception_frozen_history_keeps_averages() -> None:
     perception = Perception(definition(READINGS), SENSORS)
     drive_past(perception, 10, 20, 0, 0)
     for count in range(100, 300):
@@ -30,7 +30,7 @@ def test_a_frozen_history_keeps_while_the_recent_values_go_on() -> None:
     assert situation.vector.tolist() == [40, 20, 25, 12.5]
 
 
-def test_wheel_speed_features_are_held_until_another_action_drives() -> None:
+def test_perception_wheel_speeds_last_until_next_action() -> None:
     perception = Perception(definition(WHEELS), SENSORS)
     now = sensed(0, 0, 0, 0)
     assert perception.perceive(now, history_frozen=True).vector[:2].tolist() == [0, 0]
@@ -41,7 +41,7 @@ def test_wheel_speed_features_are_held_until_another_action_drives() -> None:
     assert perception.perceive(now, history_frozen=True).vector[:2].tolist() == [20, -20]
 
 
-def test_a_situation_once_given_does_not_change_with_the_next_one() -> None:
+def test_perception_situation_is_never_changed() -> None:
     perception = Perception(definition(READINGS), SENSORS)
     first = perception.perceive(sensed(10, 20, 0, 0), history_frozen=False)
     perception.perceive(sensed(99, 99, 0, 0), history_frozen=False)

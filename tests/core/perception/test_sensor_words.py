@@ -22,12 +22,12 @@ WORDS = words_for(INFRARED)
         ("junction", "junction"),
     ],
 )
-def test_place_of_a_feature_is_named_by_its_sensors(feature: str, place: str) -> None:
+def test_place_is_named_by_its_sensors(feature: str, place: str) -> None:
     assert WORDS.place(feature) == place
 
 
 @pytest.mark.parametrize("distance_m", [0.11, 0.13, 0.25, 0.40, 0.55])
-def test_reading_is_the_distance_that_causes_it(distance_m: float) -> None:
+def test_reading_is_a_distance(distance_m: float) -> None:
     assert WORDS.reading("s9", INFRARED.counts_at(distance_m)) == f"{distance_m * 100:.0f} cm"
 
 
@@ -38,18 +38,18 @@ def test_reading_out_of_range_says_so(counts: int, text: str) -> None:
     assert WORDS.reading("maximum front", counts) == text
 
 
-def test_feature_that_is_no_reading_keeps_its_number() -> None:
+def test_reading_other_feature_is_a_number() -> None:
     assert WORDS.difference("wheel speed left", 30.0, 0.25) == "wheel speed left: 30, was 0.25"
     assert NO_WORDS.difference("maximum front", 300.0, 20.0) == "maximum front: 300, was 20"
 
 
-def test_law_agrees_with_the_robot_settings_where_it_sees() -> None:
+def test_infrared_law_inverts_the_settings() -> None:
     law = infrared_law(INFRARED)
     seen = [counts for counts in range(1024) if law.detects(counts)]
     assert [law.distance_m(each) for each in seen] == [INFRARED.distance_m(each) for each in seen]
 
 
-def test_every_feature_of_the_basic_situation_has_words_of_its_own() -> None:
+def test_place_is_unique_for_each_feature() -> None:
     names = load_situation("basic", INFRARED.names).names
     places = [WORDS.place(name) for name in names]
     assert len(set(places)) == len(names)

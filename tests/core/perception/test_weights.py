@@ -20,12 +20,12 @@ DEFINITION = load_situation("basic", ROBOT.infrared.names)
 NAMES = DEFINITION.names
 
 
-def test_all_recent_features_weigh_one_and_their_averages_a_share_of_it() -> None:
+def test_feature_weights_averages_have_a_share() -> None:
     weights = feature_weights(DEFINITION, (), 0.25, "mine")
     assert weights.tolist() == [1.0] * 36 + [0.25] * 36
 
 
-def test_some_weigh_something_else_in_both_halves() -> None:
+def test_feature_weights_changed_in_both_halves() -> None:
     weights = dict(
         zip(
             NAMES,
@@ -54,9 +54,7 @@ def test_some_weigh_something_else_in_both_halves() -> None:
         ),
     ],
 )
-def test_a_feature_that_is_not_there_or_twice_is_refused(
-    changed: list[tuple[tuple[str, ...], float]], told: str
-) -> None:
+def test_feature_weights_unknown_or_double_is_refused(changed: list[tuple[tuple[str, ...], float]], told: str) -> None:
     with pytest.raises(SettingsError) as caught:
         feature_weights(DEFINITION, changed, 1.0, "mine")
     assert told in str(caught.value)
@@ -78,7 +76,7 @@ def first_tick(*taught: TeachingEvent, weights: tuple[FeatureWeight, ...] = ()) 
     return records[0]
 
 
-def test_a_weight_of_the_task_decides_which_rla_drives() -> None:
+def test_feature_weights_decide_which_rla_drives() -> None:
     here = first_tick().situation.vector
 
     def unlike_in(feature: str, counts: float) -> tuple[float, ...]:
@@ -94,6 +92,6 @@ def test_a_weight_of_the_task_decides_which_rla_drives() -> None:
     assert first_tick(*taught, weights=(light,)).decision.action == "back"
 
 
-def test_a_weight_for_what_the_situation_has_not_is_refused_before_the_robot_drives() -> None:
+def test_feature_weights_unknown_feature_stops_the_start() -> None:
     with pytest.raises(SettingsError, match="situation basic has no feature 's99'"):
         first_tick(weights=(FeatureWeight(weight=2.0, features=("s99",)),))

@@ -64,7 +64,7 @@ def chosen(town: Town, seeks: GoalPursuit, place: str) -> str | None:
     return None if rla is None else rla.action
 
 
-def test_the_plan_takes_the_robot_to_the_goal_place_by_place() -> None:
+def test_pursuit_follows_the_plan_to_the_goal() -> None:
     town = grid()
     seeks = seeking(town)
     arrive(seeks, town.at("a"))
@@ -82,7 +82,7 @@ def test_the_plan_takes_the_robot_to_the_goal_place_by_place() -> None:
     assert seeks.surprises == 0
 
 
-def test_who_comes_to_another_place_than_planned_is_surprised_and_plans_from_there() -> None:
+def test_pursuit_other_place_is_surprise_and_new_plan() -> None:
     town = grid()
     seeks = seeking(town)
     arrive(seeks, town.at("a"))
@@ -94,7 +94,7 @@ def test_who_comes_to_another_place_than_planned_is_surprised_and_plans_from_the
     assert course(seeks) is GoalStatus.ARRIVED
 
 
-def test_without_a_way_the_robot_stands_and_says_so() -> None:
+def test_pursuit_no_path_stands() -> None:
     town = grid()
     seeks = seeking(town)
     arrive(seeks, town.at("e"))
@@ -106,7 +106,7 @@ def test_without_a_way_the_robot_stands_and_says_so() -> None:
     assert seeks.text == "no way from here to the situation of RLA 1: nothing taught leads there"
 
 
-def test_off_all_known_places_it_stands_and_is_lost() -> None:
+def test_pursuit_unknown_place_is_lost() -> None:
     town = grid()
     seeks = seeking(town)
     arrive(seeks, town.at("a"))
@@ -118,7 +118,7 @@ def test_off_all_known_places_it_stands_and_is_lost() -> None:
     assert course(seeks) is GoalStatus.UNDER_WAY
 
 
-def test_a_way_taught_meanwhile_is_taken_when_it_plans_anew() -> None:
+def test_pursuit_replan_uses_new_edge() -> None:
     town = grid()
     seeks = seeking(town, RlaGoal(1))
     arrive(seeks, town.at("e"))
@@ -133,7 +133,7 @@ def test_a_way_taught_meanwhile_is_taken_when_it_plans_anew() -> None:
     assert chosen(town, seeks, "e") == "turn_left"
 
 
-def test_a_way_that_was_deleted_under_the_plan_is_planned_around() -> None:
+def test_pursuit_deleted_edge_is_planned_around() -> None:
     town = grid()
     seeks = seeking(town)
     arrive(seeks, town.at("a"))
@@ -143,7 +143,7 @@ def test_a_way_that_was_deleted_under_the_plan_is_planned_around() -> None:
     assert seeks.surprises == 0
 
 
-def test_a_place_that_only_looked_like_the_goal_is_not_gone_to_again() -> None:
+def test_pursuit_false_goal_place_is_rejected() -> None:
     town = grid()
     town.walled = {"c", "d"}
     fresh = Town(**town.places)
@@ -170,7 +170,7 @@ def test_a_place_that_only_looked_like_the_goal_is_not_gone_to_again() -> None:
     assert seeks.text == "arrived: wall_left 1"
 
 
-def test_when_nobody_seeks_the_mid_level_commands_as_ever() -> None:
+def test_pursuit_without_goal_chooses_none() -> None:
     town = grid()
     seeks = seeking(town)
     arrive(seeks, town.at("a"))
@@ -194,13 +194,13 @@ def test_when_nobody_seeks_the_mid_level_commands_as_ever() -> None:
         (PartialGoal(()), Outcome.of(RefusalCode.NO_FEATURE, features=(), level=MID, known=FEATURES)),
     ],
 )
-def test_a_goal_that_means_nothing_is_refused_with_what_there_is(goal: Goal, outcome: Outcome) -> None:
+def test_make_target_unknown_goal_is_refused(goal: Goal, outcome: Outcome) -> None:
     with pytest.raises(CommandRefusedError) as refused:
         target(grid(), goal)
     assert refused.value.outcome == outcome
 
 
-def test_a_plan_in_a_large_town_is_made_over_many_ticks_and_is_the_same_again() -> None:
+def test_pursuit_large_town_plans_over_many_ticks() -> None:
     row = Town(**{f"p{number}": (2.0 * number, 0.0) for number in range(200)})
     for number in range(199):
         row.way(f"p{number}", "straight_on", f"p{number + 1}")
@@ -230,7 +230,7 @@ def test_a_plan_in_a_large_town_is_made_over_many_ticks_and_is_the_same_again() 
     assert len(seeks.plan.edges) == 199
 
 
-def test_nowhere_is_no_goal() -> None:
+def test_target_lost_robot_never_matches() -> None:
     town = grid()
     nowhere = np.array([np.nan, np.nan, 1.0])
     for goal in (DOOR, PartialGoal((("wall_left", 1.0),))):

@@ -38,21 +38,21 @@ def actions(found: Plan | None) -> list[str]:
     return [way.action for way in found.edges]
 
 
-def test_a_plan_is_a_chain_of_ways_that_were_never_gone_one_after_the_other() -> None:
+def test_plan_joins_edges_never_driven_in_a_row() -> None:
     found = plan(block(), "se", "sw")
     assert actions(found) == ["turn_left", "turn_left", "turn_left"]
     assert found is not None
     assert found.ticks == 2400.0
 
 
-def test_of_two_chains_the_quicker_one_is_planned() -> None:
+def test_plan_takes_the_quicker_chain() -> None:
     town = block()
     town.way("sw", "straight_on", "ne", ticks=1500.0)
     assert actions(plan(town, "sw", "ne")) == ["straight_on"]
     assert actions(plan(town, "sw", "nw")) == ["straight_on", "turn_left"]
 
 
-def test_a_way_that_often_leads_elsewhere_costs_the_tries() -> None:
+def test_plan_cost_includes_failed_attempts() -> None:
     town = block()
     risky = town.way("sw", "straight_on", "ne", ticks=1500.0)
     town.follow_ups[risky, place_id(town, "ne")] = 3
@@ -60,27 +60,27 @@ def test_a_way_that_often_leads_elsewhere_costs_the_tries() -> None:
     assert actions(plan(town, "sw", "ne")) == ["turn_left", "turn_left"]
 
 
-def test_where_nothing_leads_there_is_no_plan() -> None:
+def test_plan_unreachable_goal_is_none() -> None:
     town = Town(home=(0.0, 0.0), door=(2.0, 0.0))
     town.way("door", "straight_on", "home")
     town.teach("home", "straight_on")  # taught, but never gone: nobody knows where it leads
     assert plan(town, "home", "door") is None
 
 
-def test_who_is_there_has_nothing_to_go() -> None:
+def test_plan_at_the_goal_is_empty() -> None:
     found = plan(block(), "ne", "ne")
     assert found is not None
     assert found.next is None
 
 
-def test_a_goal_may_lie_where_nothing_was_taught_yet() -> None:
+def test_plan_goal_may_be_untaught() -> None:
     town = block()
     town.places["yard"] = (4.0, 0.0)
     town.way("se", "straight_on", "yard")
     assert actions(plan(town, "sw", "yard")) == ["turn_left", "straight_on"]
 
 
-def test_what_followed_tells_where_an_rla_leads_when_its_expectation_lies_between_two_places() -> None:
+def test_map_follow_ups_replace_distant_expectation() -> None:
     town = block()
     torn = town.way("sw", "straight_on", "ne")
     town.seen[torn] = town.seen[torn]._replace(mean=np.array([1.0, 1.0, 0.0]))
@@ -92,7 +92,7 @@ def test_what_followed_tells_where_an_rla_leads_when_its_expectation_lies_betwee
     assert {(way.end, way.share) for way in ways} == {(place_id(town, "ne"), 0.5), (place_id(town, "nw"), 0.5)}
 
 
-def test_a_partial_goal_is_the_nearest_place_that_has_it() -> None:
+def test_plan_partial_goal_is_the_nearest_match() -> None:
     town = block()
     town.walled = {"ne", "nw"}
     fresh = Town(**town.places)
@@ -107,7 +107,7 @@ def test_a_partial_goal_is_the_nearest_place_that_has_it() -> None:
     assert actions(found) == ["turn_left", "turn_left"]
 
 
-def test_an_rla_that_lost_its_action_is_no_way() -> None:
+def test_map_withdrawn_rla_is_no_edge() -> None:
     town = block()
     rla_id = place_id(town, "se")
     town.system.apply(withdrawn(rla_id, "turn_left"))

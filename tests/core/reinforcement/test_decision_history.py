@@ -27,12 +27,12 @@ def remember(recent: DecisionHistory, tick: int, behaviour: str = "", *, blind: 
 
 
 @pytest.mark.parametrize("tick", [-1, 0, 1, 9, 10, 11, 2**53])
-def test_nothing_is_known_before_the_first_tick(tick: int) -> None:
+def test_history_is_empty_before_first_tick(tick: int) -> None:
     assert not remembered().contains(tick)
     assert remembered().newest == -1
 
 
-def test_each_tick_has_its_own_situation_and_rla() -> None:
+def test_history_returns_situation_and_rla_by_tick() -> None:
     recent = remembered(3, 4, 5)
     for tick in (3, 4, 5):
         assert recent.contains(tick)
@@ -42,24 +42,24 @@ def test_each_tick_has_its_own_situation_and_rla() -> None:
     assert recent.newest == 5
 
 
-def test_as_many_as_fit_are_kept_and_the_oldest_is_forgotten() -> None:
+def test_history_full_drops_the_oldest() -> None:
     recent = remembered(*range(1, 11))
     assert [recent.contains(tick) for tick in (0, 1, 10, 11)] == [False, True, True, False]
     remember(recent, 11)
     assert [recent.contains(tick) for tick in (1, 2, 11, 12)] == [False, True, True, False]
 
 
-def test_what_is_forgotten_or_still_to_come_is_not_taken_for_what_lies_in_its_place() -> None:
+def test_history_other_tick_of_the_same_row_is_unknown() -> None:
     recent = remembered(23)
     assert not any(recent.contains(tick) for tick in (3, 13, 33, 2**53 - 2**53 % 10 + 3))
 
 
-def test_a_missed_tick_is_not_known() -> None:
+def test_history_missed_tick_is_unknown() -> None:
     recent = remembered(1, 2, 5)
     assert [recent.contains(tick) for tick in range(1, 6)] == [True, True, False, False, True]
 
 
-def test_a_tick_in_which_the_robot_saw_nothing_is_known_as_such() -> None:
+def test_history_blind_tick_has_no_situation() -> None:
     recent = remembered(1)
     remember(recent, 2, blind=True)
     assert recent.contains(2)
@@ -69,14 +69,14 @@ def test_a_tick_in_which_the_robot_saw_nothing_is_known_as_such() -> None:
     assert recent.has_situation(12)
 
 
-def test_a_thousand_ticks_are_kept() -> None:
+def test_history_default_capacity_is_1000() -> None:
     recent = DecisionHistory(2)
     for tick in range(1, 1002):
         remember(recent, tick)
     assert [recent.contains(tick) for tick in (1, 2, 1001)] == [False, True, True]
 
 
-def test_each_tick_has_the_behaviour_that_was_wanted_then() -> None:
+def test_history_returns_behaviour_by_tick() -> None:
     recent = DecisionHistory(2, capacity=2)
     remember(recent, 1, "straight_on")
     remember(recent, 2, "turn_left")
@@ -85,7 +85,7 @@ def test_each_tick_has_the_behaviour_that_was_wanted_then() -> None:
     assert [recent.behaviour(tick) for tick in (2, 3)] == ["turn_left", ""]
 
 
-def test_each_tick_has_who_may_be_blamed_for_it() -> None:
+def test_history_returns_answering_rla_by_tick() -> None:
     recent = remembered()
     for tick, answers in enumerate((True, False, True), 1):
         decision = Decision(STANDSTILL, Cause.HELD, "a", 100 + tick, None, answers)
@@ -96,14 +96,14 @@ def test_each_tick_has_who_may_be_blamed_for_it() -> None:
     assert (ticks.tolist(), rlas.tolist()) == ([1, 2, 3], [101, 0, 103])
 
 
-def test_ticks_up_to_one_are_told_oldest_first_without_those_that_were_missed_or_forgotten() -> None:
+def test_history_answering_up_to_skips_missing_ticks() -> None:
     recent = remembered(*range(1, 8), *range(9, 14))
     assert recent.answering_up_to(12)[0].tolist() == [4, 5, 6, 7, 9, 10, 11, 12]
     assert recent.answering_up_to(7)[0].tolist() == [4, 5, 6, 7]
     assert recent.answering_up_to(2)[0].tolist() == []
 
 
-def test_each_tick_has_what_the_critic_looked_at_and_thought() -> None:
+def test_history_returns_features_and_opinion_by_tick() -> None:
     recent = remembered()
     opinion = Opinion(-1, "bad", 0.7, None, 0.1, 1.0, True)
     decision = Decision(STANDSTILL, Cause.RLA, "a", 1, None, True)

@@ -20,7 +20,7 @@ def rule(*way: int | None) -> EdgeWeights:
     return learner
 
 
-def test_praise_multiplies_the_last_three_newest_first_and_blame_divides() -> None:
+def test_edge_weights_reward_multiplies_or_divides() -> None:
     learner = rule(1, 2, 3, 4)
     learner.learn(1, LAST)
     assert learner.edge_weights == {(3, 4): 90.0, (2, 3): 95.0, (1, 2): 97.0}
@@ -32,7 +32,7 @@ def test_praise_multiplies_the_last_three_newest_first_and_blame_divides() -> No
     assert learner.values == {}
 
 
-def test_an_rla_is_worth_the_mean_of_the_edges_into_it_that_were_used() -> None:
+def test_edge_weights_value_is_mean_of_used_edges() -> None:
     learner = rule(1, 4, 2, 4, 3, 4)
     assert learner.value(4) == 0.0
     learner.learn(-1, EligibilityTrace({}, ((3, 4),)))
@@ -40,14 +40,14 @@ def test_an_rla_is_worth_the_mean_of_the_edges_into_it_that_were_used() -> None:
     assert learner.value(9) == 0.0
 
 
-def test_a_worth_stays_between_minus_one_and_one() -> None:
+def test_edge_weights_value_stays_within_one() -> None:
     learner = rule(3, 4)
     for _ in range(30):
         learner.learn(-1, EligibilityTrace({}, ((3, 4),)))
     assert learner.value(4) == -1.0
 
 
-def test_praise_heals_as_fast_as_blame_hurt_however_often_it_came() -> None:
+def test_edge_weights_rewards_are_symmetric() -> None:
     learner = rule(3, 4)
     last = EligibilityTrace({}, ((3, 4),))
     hurt = 0
@@ -67,7 +67,7 @@ def test_praise_heals_as_fast_as_blame_hurt_however_often_it_came() -> None:
     assert learner.credits_for(1, last) == ()
 
 
-def test_undoing_and_restoring_leave_no_weight_beyond_the_bounds() -> None:
+def test_edge_weights_undo_and_restore_stay_in_bounds() -> None:
     learner = rule()
     learner.restore(Statistics(edge_weights={(3, 4): 1e300, (2, 5): 20.0}))
     assert learner.edge_weights == {(3, 4): 1000.0, (2, 5): 20.0}
@@ -75,11 +75,11 @@ def test_undoing_and_restoring_leave_no_weight_beyond_the_bounds() -> None:
     assert learner.edge_weights[2, 5] == 10.0
 
 
-def test_standing_is_no_way_from_one_to_the_other() -> None:
+def test_edge_weights_standstill_makes_no_edge() -> None:
     assert rule(1, None, 2, 2, 3).edge_weights == {(2, 3): 100.0}
 
 
-def test_credits_tell_which_edges_changed_and_an_undo_changes_those_back_and_no_other() -> None:
+def test_edge_weights_undo_changes_credited_edges_only() -> None:
     learner = rule(1, 2, 3, 4, 2, 4)
     before = learner.edge_weights
     credits_ = learner.credits_for(-1, LAST)
@@ -97,7 +97,7 @@ def test_credits_tell_which_edges_changed_and_an_undo_changes_those_back_and_no_
     assert learner.edge_weights == pytest.approx({**blamed, (2, 4): 90.0})
 
 
-def test_credits_from_the_journal_make_the_edges_that_they_are_of() -> None:
+def test_edge_weights_credits_create_their_edges() -> None:
     learner = rule()
     learner.apply_credits([CreditUpdate(Credit(4, 0.1, 3), 0), CreditUpdate(Credit(4, -0.5, 2), 0)], 1)
     assert learner.edge_weights == pytest.approx({(3, 4): 90.0, (2, 4): 150.0})
@@ -105,13 +105,13 @@ def test_credits_from_the_journal_make_the_edges_that_they_are_of() -> None:
     assert (3, 9) not in learner.edge_weights
 
 
-def test_credits_of_an_earlier_kurt2rt_shift_all_edges_into_an_rla() -> None:
+def test_edge_weights_old_credits_shift_all_edges() -> None:
     learner = rule(3, 4, 2, 4)
     learner.apply_credits([CreditUpdate(Credit(4, 0.1), 0)], 1)
     assert learner.edge_weights[3, 4] == learner.edge_weights[2, 4] == pytest.approx(90.0)
 
 
-def test_another_action_begins_anew_and_the_former_one_comes_back() -> None:
+def test_edge_weights_reset_and_restore_previous() -> None:
     learner = rule(3, 4)
     learner.learn(-1, EligibilityTrace({}, ((3, 4),)))
     worth = learner.value(4)
@@ -122,7 +122,7 @@ def test_another_action_begins_anew_and_the_former_one_comes_back() -> None:
     assert (learner.value(4), learner.depth(4)) == pytest.approx((0.0, 0))
 
 
-def test_what_is_saved_is_gone_on_from() -> None:
+def test_edge_weights_restore_continues_saved_weights() -> None:
     learner = rule(1, 2, 3, 4)
     learner.learn(-1, LAST)
     again = rule()

@@ -35,39 +35,39 @@ def trace(recent: DecisionHistory, tick: int, since: dict[int, int] | None = Non
     return make_trace(recent, tick, trace_ticks=TRACE_TICKS, most_transitions=3, since=since or {})
 
 
-def test_each_tick_counts_less_the_longer_it_is_ago() -> None:
+def test_trace_decays_with_age() -> None:
     shares = trace(drives(7, 7, 8), 3).shares
     assert shares == {7: pytest.approx((1 - D) * (D + D * D)), 8: pytest.approx(1 - D)}
 
 
-def test_who_drove_for_long_has_nearly_all_of_it() -> None:
+def test_trace_long_drive_has_nearly_all() -> None:
     shares = trace(drives(*[7] * 1000), 1000).shares
     assert shares == {7: pytest.approx(1.0, abs=0.002)}
 
 
-def test_a_late_signal_does_not_mean_the_one_that_drives_now() -> None:
+def test_trace_late_signal_means_its_tick() -> None:
     recent = drives(*[7] * 100, *[8] * 100)
     assert trace(recent, 100).shares.keys() == {7}
     assert trace(recent, 101).shares[8] == pytest.approx(1 - D)
 
 
-def test_a_robot_that_stands_or_is_outside_the_radius_blames_nobody() -> None:
+def test_trace_standstill_and_unknown_have_no_share() -> None:
     assert trace(drives(None, None, None), 3) == EligibilityTrace({}, ())
     assert trace(drives(7, 8, 7, answers=False), 3) == EligibilityTrace({}, ())
 
 
-def test_while_the_robot_stands_what_was_before_fades() -> None:
+def test_trace_standstill_decays_earlier_shares() -> None:
     shares = trace(drives(*[7] * 50, *[None] * 20), 70).shares
     assert shares == {7: pytest.approx((1 - D**50) * D**20)}
 
 
-def test_what_an_rla_did_with_another_action_is_not_its_fault() -> None:
+def test_trace_starts_with_the_present_action() -> None:
     recent = drives(*[7] * 100)
     assert trace(recent, 100, {7: 91, 8: 500}).shares == {7: pytest.approx(1 - D**10)}
     assert trace(recent, 90, {7: 91}).shares == {}
 
 
-def test_ticks_that_are_forgotten_or_were_missed_count_for_nobody() -> None:
+def test_trace_forgotten_or_missed_ticks_have_no_share() -> None:
     recent = drives(*[7] * 10)
     remember(recent, 20, 8)
     shares = trace(recent, 20).shares
@@ -75,7 +75,7 @@ def test_ticks_that_are_forgotten_or_were_missed_count_for_nobody() -> None:
     assert trace(recent, 1015).shares == {}
 
 
-def test_the_last_transitions_are_told_newest_first_and_standing_ends_the_chain() -> None:
+def test_trace_transitions_newest_first_end_at_standstill() -> None:
     recent = drives(1, 1, 2, 3, None, 4, 4, 5, 6, 6, 7)
     assert trace(recent, 11).transitions == ((6, 7), (5, 6), (4, 5))
     assert trace(recent, 7).transitions == ((2, 3), (1, 2))
@@ -83,7 +83,7 @@ def test_the_last_transitions_are_told_newest_first_and_standing_ends_the_chain(
 
 
 @given(st.lists(st.sampled_from([None, 1, 2, 3]), min_size=1, max_size=200), st.integers(0, 199))
-def test_shares_are_what_the_sum_over_all_ticks_says(rlas: list[int | None], back: int) -> None:
+def test_trace_equals_the_sum_over_ticks(rlas: list[int | None], back: int) -> None:
     tick = max(1, len(rlas) - back)
     expected: dict[int, float] = {}
     for k, rla_id in enumerate(rlas[:tick], 1):

@@ -41,7 +41,7 @@ def shares(event: RlaRewarded) -> dict[int, float]:
     return {credit.rla_id: credit.change for credit in event.credits}
 
 
-def test_a_reward_goes_to_those_that_drove_and_its_event_tells_how_much() -> None:
+def test_reward_credits_those_that_drove() -> None:
     robot = track()
     robot.go(LEFT, 400)
     robot.go(RIGHT, 20)
@@ -53,7 +53,7 @@ def test_a_reward_goes_to_those_that_drove_and_its_event_tells_how_much() -> Non
     assert (robot.worth(1), robot.worth(2)) == pytest.approx((0.5 + credits_[1], 0.5 + credits_[2]))
 
 
-def test_a_late_signal_means_the_tick_it_names_and_not_the_one_that_drives_now() -> None:
+def test_reward_late_means_its_tick() -> None:
     robot = track()
     robot.go(LEFT, 400)
     meant = robot.tick
@@ -65,7 +65,7 @@ def test_a_late_signal_means_the_tick_it_names_and_not_the_one_that_drives_now()
     assert robot.worth(2) == 0.5
 
 
-def test_nobody_is_blamed_while_the_robot_asks_or_stands() -> None:
+def test_reward_asking_or_standing_credits_none() -> None:
     robot = track()
     robot.go(LEFT, 100)
     asked = robot.go(25.0)
@@ -77,7 +77,7 @@ def test_nobody_is_blamed_while_the_robot_asks_or_stands() -> None:
     assert (robot.worth(1), robot.worth(2)) == (0.5, 0.5)
 
 
-def test_an_rla_whose_action_is_held_where_it_is_not_known_is_not_blamed() -> None:
+def test_reward_held_action_outside_radius_has_no_share() -> None:
     """The minimum time of an action carries it out of its radius, into that of another."""
     robot = track()
     robot.go(LEFT)
@@ -89,7 +89,7 @@ def test_an_rla_whose_action_is_held_where_it_is_not_known_is_not_blamed() -> No
     assert shares(robot.signal(-1)).keys() == {1, 2}  # for the tick in which it was known, and its own
 
 
-def test_an_rla_whose_action_is_held_inside_its_radius_is_blamed_with_the_others() -> None:
+def test_reward_held_action_inside_radius_has_a_share() -> None:
     robot = Track(created(1, (0.0,), "a"), created(2, (4.0,), "b"), reinforcement=SIGNALS_ONLY)
     robot.go(1.0)
     held = robot.go(3.0)
@@ -97,7 +97,7 @@ def test_an_rla_whose_action_is_held_inside_its_radius_is_blamed_with_the_others
     assert shares(robot.signal(-1)).keys() == {1}
 
 
-def test_an_undo_takes_exactly_the_credits_off_whatever_came_after_them() -> None:
+def test_undo_subtracts_exactly_the_credits() -> None:
     robot = track()
     robot.go(LEFT, 400)
     robot.go(RIGHT, 20)
@@ -114,7 +114,7 @@ def test_an_undo_takes_exactly_the_credits_off_whatever_came_after_them() -> Non
     assert (robot.worth(1), robot.worth(2)) == pytest.approx((0.5, 0.5))
 
 
-def test_credits_are_taken_off_the_action_that_they_were_given_to() -> None:
+def test_undo_subtracts_credits_from_their_action() -> None:
     robot = track()
     robot.go(LEFT, 400)
     robot.go(RIGHT, 20)
@@ -128,7 +128,7 @@ def test_credits_are_taken_off_the_action_that_they_were_given_to() -> None:
     assert robot.worth(1) == pytest.approx(0.5)
 
 
-def test_what_an_rla_did_before_it_was_corrected_is_not_the_new_actions_fault() -> None:
+def test_reward_after_correction_skips_the_old_action() -> None:
     robot = track()
     robot.go(LEFT, 100)
     wrong = robot.tick
@@ -138,7 +138,7 @@ def test_what_an_rla_did_before_it_was_corrected_is_not_the_new_actions_fault() 
     assert robot.worth(1) == 0.5
 
 
-def test_an_rla_that_has_sunk_is_withdrawn_stops_the_robot_in_the_next_tick_and_asks() -> None:
+def test_punished_rla_is_withdrawn_and_asks_next_tick() -> None:
     robot = track()
     sink(robot, LEFT)
     assert robot.worth(1) < -0.2
@@ -153,7 +153,7 @@ def test_an_rla_that_has_sunk_is_withdrawn_stops_the_robot_in_the_next_tick_and_
     assert not robot.go(RIGHT).asking
 
 
-def test_a_value_that_has_sunk_without_blame_changes_nothing() -> None:
+def test_low_value_without_punishment_is_not_repaired() -> None:
     robot = track(saved=Statistics(values={1: -0.9}))
     robot.go(LEFT, 400)
     assert robot.learnt == []
@@ -162,7 +162,7 @@ def test_a_value_that_has_sunk_without_blame_changes_nothing() -> None:
     assert robot.learnt == []
 
 
-def test_the_answer_to_a_withdrawn_rla_gives_it_another_action_that_acts_in_the_next_tick() -> None:
+def test_answer_to_withdrawn_rla_acts_next_tick() -> None:
     robot = track()
     sink(robot, LEFT)
     robot.go(LEFT, 2)
@@ -176,7 +176,7 @@ def test_the_answer_to_a_withdrawn_rla_gives_it_another_action_that_acts_in_the_
     assert (decision.driving, decision.action) == (True, "c")
 
 
-def test_an_answer_farther_off_inserts_and_the_withdrawn_one_goes_on_asking() -> None:
+def test_answer_farther_off_inserts_and_still_asks() -> None:
     robot = track()
     sink(robot, LEFT)
     robot.go(LEFT, 2)
@@ -187,7 +187,7 @@ def test_an_answer_farther_off_inserts_and_the_withdrawn_one_goes_on_asking() ->
     assert robot.go(LEFT).asking
 
 
-def test_a_withdrawal_that_is_undone_lets_the_robot_drive_as_before() -> None:
+def test_undo_of_withdrawal_drives_as_before() -> None:
     robot = track()
     known = robot.hash
     sink(robot, LEFT)
@@ -200,7 +200,7 @@ def test_a_withdrawal_that_is_undone_lets_the_robot_drive_as_before() -> None:
 
 
 @pytest.mark.parametrize("phase", [Phase.SUPERVISED, Phase.CORRECTIONS, Phase.REINFORCEMENT, Phase.CRITIC])
-def test_blame_counts_in_every_phase_that_has_a_teacher(phase: Phase) -> None:
+def test_punishment_counts_in_phases_1_to_4(phase: Phase) -> None:
     robot = track(phase=phase)
     sink(robot, LEFT)
     robot.go(LEFT)
@@ -209,13 +209,13 @@ def test_blame_counts_in_every_phase_that_has_a_teacher(phase: Phase) -> None:
 
 
 @pytest.mark.parametrize(("phase", "learns"), [(1, False), (2, False), (3, True), (4, True), (5, False)])
-def test_values_follow_each_other_only_while_signals_are_to_be_expected(phase: int, learns: bool) -> None:
+def test_td_steps_only_in_phases_with_signals(phase: int, learns: bool) -> None:
     robot = Track(*KNOWN, reinforcement=SIGNALS_ONLY.model_copy(update={"step_s": 0.1}), phase=Phase(phase))
     robot.go(LEFT, 400)
     assert (robot.worth(1) < 0.5) == learns
 
 
-def test_where_nobody_is_asked_a_competitor_takes_the_neighbours_action() -> None:
+def test_phase_5_competitor_takes_neighbours_action() -> None:
     robot = track(phase=Phase.AUTONOMOUS)
     sink(robot, LEFT)
     robot.go(LEFT)
@@ -226,7 +226,7 @@ def test_where_nobody_is_asked_a_competitor_takes_the_neighbours_action() -> Non
     assert (decision.action, decision.rla_id) == ("b", 3)
 
 
-def test_a_competitor_that_is_undone_is_gone_and_the_former_one_answers() -> None:
+def test_undo_of_competitor_restores_the_former() -> None:
     robot = track(phase=Phase.AUTONOMOUS)
     known = robot.hash
     sink(robot, LEFT)
@@ -236,7 +236,7 @@ def test_a_competitor_that_is_undone_is_gone_and_the_former_one_answers() -> Non
     assert robot.go(LEFT).rla_id == 1
 
 
-def test_one_that_sinks_beside_a_better_one_is_deleted() -> None:
+def test_low_competitor_of_a_better_one_is_deleted() -> None:
     robot = track(phase=Phase.AUTONOMOUS)
     sink(robot, LEFT)
     robot.go(LEFT, 10)
@@ -248,7 +248,7 @@ def test_one_that_sinks_beside_a_better_one_is_deleted() -> None:
     assert robot.actions == {2: "b", 3: "b"}
 
 
-def test_after_enough_tries_all_on_the_condition_are_deleted_so_that_neighbours_answer() -> None:
+def test_phase_5_enough_tries_delete_all_competitors() -> None:
     settings = SIGNALS_ONLY.model_copy(update={"most_competitors": 1})
     robot = Track(*KNOWN, created(3, (5.0,), "c"), reinforcement=settings, phase=Phase.AUTONOMOUS)
     sink(robot, LEFT)
@@ -261,7 +261,7 @@ def test_after_enough_tries_all_on_the_condition_are_deleted_so_that_neighbours_
     assert robot.go(LEFT).rla_id == 3
 
 
-def test_a_correction_on_competitors_means_the_one_that_drove() -> None:
+def test_correction_of_competitors_means_the_driver() -> None:
     robot = Track(created(1, (LEFT,), "a"), created(2, (LEFT,), "b"), saved=Statistics(values={1: -0.5}))
     assert robot.go(LEFT).rla_id == 2
     assert robot.say(correct("c"), LEFT).outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=2, action="c", was="b")
@@ -269,7 +269,7 @@ def test_a_correction_on_competitors_means_the_one_that_drove() -> None:
     assert robot.go(LEFT).action == "c"
 
 
-def test_competitors_that_sink_while_a_teacher_is_there_go_and_the_last_one_asks() -> None:
+def test_competitors_with_teacher_are_deleted_last_asks() -> None:
     saved = Statistics(values={1: 0.0, 2: -0.1})
     robot = Track(created(1, (LEFT,), "a"), created(2, (LEFT,), "b"), reinforcement=SIGNALS_ONLY, saved=saved)
     sink(robot, LEFT, times=1)
@@ -296,7 +296,7 @@ def whole_story(seed: int) -> Track:
     return robot
 
 
-def test_the_same_seed_and_senses_give_the_same_knowledge_and_worths() -> None:
+def test_same_seed_gives_same_knowledge_and_values() -> None:
     one, again = whole_story(1), whole_story(1)
     assert len(one.events) > 60
     assert one.events == again.events
@@ -304,7 +304,7 @@ def test_the_same_seed_and_senses_give_the_same_knowledge_and_worths() -> None:
     assert one.reinforcement.rule.values == again.reinforcement.rule.values
 
 
-def test_everything_that_was_changed_can_be_undone_one_after_the_other() -> None:
+def test_all_changes_can_be_undone() -> None:
     robot = whole_story(1)
     assert any(isinstance(event, RlaDeleted) for event in robot.events)
     first = Track(*(created(n, (4.0 * n,), "abc"[n % 3]) for n in range(1, 12)))
@@ -313,7 +313,7 @@ def test_everything_that_was_changed_can_be_undone_one_after_the_other() -> None
     assert robot.hash == first.hash
 
 
-def test_what_was_taught_in_an_earlier_run_is_known_by_its_credits_where_no_values_were_saved() -> None:
+def test_restore_without_values_uses_credits() -> None:
     robot = track()
     robot.go(LEFT, 400)
     robot.go(RIGHT, 20)
@@ -333,7 +333,7 @@ def test_what_was_taught_in_an_earlier_run_is_known_by_its_credits_where_no_valu
     assert again.learnt == []  # blame of an earlier run was looked at then
 
 
-def test_saved_values_go_before_credits_and_an_undo_still_takes_them_off() -> None:
+def test_restore_saved_values_precede_credits() -> None:
     robot = track()
     robot.go(LEFT, 400)
     blame = robot.signal(-1)
@@ -343,7 +343,7 @@ def test_saved_values_go_before_credits_and_an_undo_still_takes_them_off() -> No
     assert again.worth(1) == pytest.approx(0.1 - blame.credits[0].change)
 
 
-def test_what_came_after_the_last_checkpoint_is_booked_behind_it_at_the_next_start() -> None:
+def test_restore_adds_credits_after_the_checkpoint() -> None:
     robot = track()
     robot.go(LEFT, 400)
     robot.signal(-1)
@@ -362,7 +362,7 @@ def test_what_came_after_the_last_checkpoint_is_booked_behind_it_at_the_next_sta
     assert [again.worth(n) for n in (1, 2)] == pytest.approx([0.5, 0.5])
 
 
-def test_an_answer_after_the_last_checkpoint_does_not_begin_with_what_its_forerunner_was_worth() -> None:
+def test_restore_answer_after_checkpoint_starts_fresh() -> None:
     robot = track()
     sink(robot, LEFT)
     robot.go(LEFT, 2)
@@ -372,7 +372,7 @@ def test_an_answer_after_the_last_checkpoint_does_not_begin_with_what_its_foreru
     assert again.worth(1) == robot.worth(1) == 0.5
 
 
-def test_a_run_with_the_other_rule_leaves_what_was_learnt_as_it_is() -> None:
+def test_restore_other_rule_keeps_the_table() -> None:
     robot = track()
     robot.go(LEFT, 400)
     robot.signal(-1)
@@ -395,7 +395,7 @@ def track_with(robot: Track, saved: Statistics) -> Track:
     return Track(*robot.events, reinforcement=SIGNALS_ONLY, saved=saved)
 
 
-def test_the_other_rule_withdraws_as_well() -> None:
+def test_edge_weights_rule_withdraws_too() -> None:
     settings = ReinforcementSettings(rule="edge_weights")
     robot = Track(*KNOWN, reinforcement=settings)
     robot.go(RIGHT, 20)
@@ -416,7 +416,7 @@ STEPS = SIGNALS_ONLY.model_copy(update={"step_s": 0.1})
 NEUTRAL = CALM._replace(front_m=0.30, speed_m_s=5.0)
 
 
-def test_what_an_rla_was_worth_alone_is_not_held_against_it_when_the_teacher_is_back() -> None:
+def test_autonomous_values_end_with_phase_5() -> None:
     robot = Track(*KNOWN, *knows_good_from_bad(), reinforcement=STEPS, phase=Phase.AUTONOMOUS)
     while robot.worth(1) > 0.3:  # unpraised, values sink
         robot.go(LEFT, 100, NEUTRAL)
@@ -429,7 +429,7 @@ def test_what_an_rla_was_worth_alone_is_not_held_against_it_when_the_teacher_is_
     assert robot.worth(1) == 0.5  # and each phase 5 begins anew
 
 
-def test_a_teachers_reward_in_phase_5_is_booked_in_both_accounts_and_an_undo_takes_it_off_both() -> None:
+def test_phase_5_teachers_reward_changes_both_values() -> None:
     robot = track(phase=Phase.AUTONOMOUS)
     robot.go(LEFT, 400)
     blame = robot.signal(-1)
@@ -451,7 +451,7 @@ def test_a_teachers_reward_in_phase_5_is_booked_in_both_accounts_and_an_undo_tak
 
 
 @pytest.mark.parametrize("rule", ["td_lambda", "edge_weights"])
-def test_nothing_is_kept_of_what_is_gone_for_good_and_what_comes_back_has_what_it_had_earned(rule: str) -> None:
+def test_undone_creation_is_dropped_deletion_is_kept(rule: str) -> None:
     robot = Track(*KNOWN, reinforcement=SIGNALS_ONLY.model_copy(update={"rule": rule}))
 
     def kept() -> set[int]:
@@ -477,7 +477,7 @@ def test_nothing_is_kept_of_what_is_gone_for_good_and_what_comes_back_has_what_i
     assert 3 not in kept()
 
 
-def test_what_was_tried_on_a_condition_is_kept_as_long_as_an_rla_lives_there() -> None:
+def test_tried_actions_last_while_an_rla_is_active() -> None:
     robot = whole_story(1)
     repair = robot.reinforcement._repair
     living = {(rla.behaviour, rla.condition) for rla in robot.system.rlas}
@@ -486,12 +486,12 @@ def test_what_was_tried_on_a_condition_is_kept_as_long_as_an_rla_lives_there() -
     assert set(repair._condition_key_of) <= set(robot.actions)
 
 
-def test_what_an_earlier_kurt2rt_saved_of_the_dead_is_let_go() -> None:
+def test_restore_drops_values_of_deleted_rlas() -> None:
     robot = track(saved=Statistics(values={1: 0.25, 77: -0.5}))
     assert robot.reinforcement.snapshot().values == {1: 0.25}
 
 
-def test_an_undone_correction_is_heard_as_one() -> None:
+def test_undone_correction_restores_the_value() -> None:
     robot = track()
     robot.say(correct("c", "c-1"), LEFT)
     assert isinstance(robot.events[-1], ActionReplaced)

@@ -64,7 +64,7 @@ def changes(robot: Track) -> list[TeachingEvent]:
     return [event for event in robot.events if event.origin.teacher == CRITIC]
 
 
-def test_what_the_critic_finds_bad_is_mended_without_a_teacher() -> None:
+def test_critic_bad_opinion_repairs_without_teacher() -> None:
     robot = alone()
     while not changes(robot):
         robot.go(HERE, 1, CRASHED)
@@ -75,7 +75,7 @@ def test_what_the_critic_finds_bad_is_mended_without_a_teacher() -> None:
     assert robot.go(HERE).action == "b"
 
 
-def test_what_it_finds_good_is_worth_more() -> None:
+def test_critic_good_opinion_raises_value() -> None:
     robot = at_work()
     robot.go(HERE, 100, CALM)
     assert robot.worth(1) > 0.5
@@ -83,14 +83,14 @@ def test_what_it_finds_good_is_worth_more() -> None:
 
 
 @pytest.mark.parametrize("phase", [Phase.SUPERVISED, Phase.CORRECTIONS, Phase.REINFORCEMENT, Phase.CRITIC])
-def test_while_there_is_a_teacher_the_critic_only_listens(phase: Phase) -> None:
+def test_critic_with_teacher_only_listens(phase: Phase) -> None:
     robot = alone(phase)
     robot.go(HERE, 300, CRASHED)
     assert changes(robot) == []
     assert robot.worth(1) == 0.5
 
 
-def test_a_critic_that_is_not_trusted_changes_nothing() -> None:
+def test_critic_untrusted_changes_nothing() -> None:
     robot = Track(*KNOWN, *knows_good_from_bad()[:2], phase=Phase.AUTONOMOUS)
     assert not robot.agreement.trusted
     known = robot.hash
@@ -100,7 +100,7 @@ def test_a_critic_that_is_not_trusted_changes_nothing() -> None:
     assert (robot.worth(1), robot.worth(2)) == (0.5, 0.5)
 
 
-def test_when_trust_is_lost_it_goes_back_to_listening() -> None:
+def test_critic_lost_trust_returns_to_listening() -> None:
     robot = at_work()
     robot.go(HERE, 10, CRASHED)
     assert robot.worth(1) < 0.5
@@ -110,7 +110,7 @@ def test_when_trust_is_lost_it_goes_back_to_listening() -> None:
     assert (robot.hash, robot.worth(1), changes(robot)) == (known, worth, [])
 
 
-def test_it_says_nothing_of_a_robot_that_stands_or_asks() -> None:
+def test_critic_standing_or_asking_gives_no_signal() -> None:
     robot = at_work()
     robot.go(25.0, 300, CRASHED)
     assert changes(robot) == []
@@ -126,7 +126,7 @@ def crowded() -> Track:
     return robot
 
 
-def test_all_its_changes_have_ids_of_their_own_and_can_be_undone() -> None:
+def test_critic_changes_have_unique_ids_and_undo() -> None:
     robot = crowded()
     known = Track(*robot.events[: 11 + len(knows_good_from_bad())]).hash
     made = changes(robot)
@@ -138,7 +138,7 @@ def test_all_its_changes_have_ids_of_their_own_and_can_be_undone() -> None:
     assert robot.hash == known
 
 
-def test_its_changes_are_the_same_when_the_journal_is_read_again() -> None:
+def test_critic_changes_are_equal_after_reload() -> None:
     robot = crowded()
     again = Track(*robot.events, reinforcement=SIGNALS_ONLY, phase=Phase.AUTONOMOUS)
     assert again.hash == robot.hash
@@ -149,7 +149,7 @@ def test_its_changes_are_the_same_when_the_journal_is_read_again() -> None:
     assert len(changes(again)) > len(changes(robot))
 
 
-def test_it_deletes_nothing_where_no_neighbour_would_answer() -> None:
+def test_critic_deletes_nothing_without_a_neighbour() -> None:
     robot = alone()
     robot.go(HERE, 1500, CRASHED)
     assert not robot.go(HERE).asking
@@ -167,7 +167,7 @@ class Judged:
         self.robot.go(HERE, 100, CRASHED)
 
 
-def test_when_its_score_falls_its_changes_are_undone_and_the_best_knowledge_is_back() -> None:
+def test_critic_lower_score_rolls_back() -> None:
     story = Judged()
     robot = story.robot
     robot.go(HERE, 99, CRASHED)
@@ -180,7 +180,7 @@ def test_when_its_score_falls_its_changes_are_undone_and_the_best_knowledge_is_b
     assert robot.go(THERE).action == "b"
 
 
-def test_what_is_come_back_to_is_worth_what_it_was_in_the_best_window() -> None:
+def test_rollback_restores_values_of_best_window() -> None:
     story = Judged()
     robot, worth = story.robot, story.robot.worth(2)
     while not changes(robot):
@@ -194,7 +194,7 @@ def test_what_is_come_back_to_is_worth_what_it_was_in_the_best_window() -> None:
     assert robot.worth(2) == worth
 
 
-def test_what_others_have_earned_meanwhile_and_what_a_teacher_said_outlasts_a_roll_back() -> None:
+def test_rollback_keeps_other_values_and_rewards() -> None:
     story = Judged()
     robot = story.robot
     robot.go(THERE, 10, CALM)
@@ -212,7 +212,7 @@ def test_what_others_have_earned_meanwhile_and_what_a_teacher_said_outlasts_a_ro
     assert [robot.worth(rla_id) for rla_id in (1, 2)] == [0.5, worths[1]]  # nothing was changed at RLA 2's condition
 
 
-def test_a_teachers_own_lessons_are_not_rolled_back() -> None:
+def test_rollback_keeps_lessons_of_teachers() -> None:
     story = Judged()
     robot = story.robot
     while not changes(robot):
@@ -229,7 +229,7 @@ def test_a_teachers_own_lessons_are_not_rolled_back() -> None:
 
 
 @pytest.mark.parametrize("seen", [CALM, CRASHED])
-def test_in_its_first_window_it_only_looks(seen: AppraisalFeatures) -> None:
+def test_first_window_only_measures(seen: AppraisalFeatures) -> None:
     robot = alone()
     known = robot.hash
     robot.go(HERE, 100, seen)
@@ -238,7 +238,7 @@ def test_in_its_first_window_it_only_looks(seen: AppraisalFeatures) -> None:
     assert robot.worth(1) != 0.5
 
 
-def test_after_a_roll_back_it_only_looks_for_a_window() -> None:
+def test_window_after_rollback_only_measures() -> None:
     story = Judged()
     story.bad_window()
     robot, known, told = story.robot, story.robot.hash, len(changes(story.robot))
@@ -249,7 +249,7 @@ def test_after_a_roll_back_it_only_looks_for_a_window() -> None:
     assert len(changes(robot)) > told
 
 
-def test_what_a_hand_does_neither_proves_nor_disproves_the_knowledge() -> None:
+def test_manual_driving_does_not_count() -> None:
     robot = alone()
     for _ in range(300):
         robot.tick += 1
@@ -262,7 +262,7 @@ def test_what_a_hand_does_neither_proves_nor_disproves_the_knowledge() -> None:
     assert robot.worth(1) < 0.5
 
 
-def test_whenever_it_is_left_alone_again_it_looks_first() -> None:
+def test_return_to_phase_5_measures_first() -> None:
     robot = at_work()
     robot.school.phase = Phase.SUPERVISED
     robot.go(HERE, 10, CRASHED)
@@ -278,7 +278,7 @@ def started_again(robot: Track) -> Track:
     return Track(*robot.events, reinforcement=SIGNALS_ONLY, phase=Phase.AUTONOMOUS, saved=saved)
 
 
-def test_what_was_not_proven_when_the_robot_was_switched_off_is_to_be_proven_when_it_is_on_again() -> None:
+def test_restart_keeps_unproven_lessons_unproven() -> None:
     story = Judged()
     story.robot.go(HERE, 90, CRASHED)
     assert story.robot.hash != story.known
@@ -293,7 +293,7 @@ def test_what_was_not_proven_when_the_robot_was_switched_off_is_to_be_proven_whe
     assert again.hash == story.known
 
 
-def test_what_was_proven_before_the_robot_was_switched_off_stays() -> None:
+def test_restart_keeps_proven_lessons() -> None:
     robot = alone()
     robot.go(HERE, 100, CRASHED)  # what it is measured against
     while not changes(robot):
@@ -305,7 +305,7 @@ def test_what_was_proven_before_the_robot_was_switched_off_stays() -> None:
     assert again.hash == robot.hash == made
 
 
-def test_a_score_that_falls_a_little_is_chance() -> None:
+def test_slightly_lower_score_is_no_rollback() -> None:
     best = QUICK.model_copy(update={"best": RollbackSettings(window_s=1.0, margin=2.0)})
     robot = Track(*KNOWN, *knows_good_from_bad(), reinforcement=SIGNALS_ONLY, critic=best, phase=Phase.AUTONOMOUS)
     robot.go(THERE, 100, CALM)
@@ -314,7 +314,7 @@ def test_a_score_that_falls_a_little_is_chance() -> None:
     assert robot.hash != known
 
 
-def test_the_same_senses_give_the_same_changes() -> None:
+def test_same_senses_give_same_changes() -> None:
     def story() -> Track:
         robot = alone()
         for turn in range(10):
@@ -327,7 +327,7 @@ def test_the_same_senses_give_the_same_changes() -> None:
     assert one.hash == again.hash
 
 
-def test_a_try_that_was_rolled_back_is_not_made_again() -> None:
+def test_rolled_back_try_is_not_repeated() -> None:
     known = (created(1, (HERE,), "a"), created(2, (THERE,), "b"), created(3, (-THERE,), "c"))
     robot = Track(*known, *knows_good_from_bad(), reinforcement=SIGNALS_ONLY, phase=Phase.AUTONOMOUS)
     for _ in range(10):
@@ -339,7 +339,7 @@ def test_a_try_that_was_rolled_back_is_not_made_again() -> None:
     assert len(tries) == len(set(tries)), tries
 
 
-def test_a_way_that_the_mid_level_does_not_know_is_no_fault_of_what_was_changed() -> None:
+def test_mid_level_question_does_not_lower_the_score() -> None:
     robot = Judged().robot
     while not changes(robot):
         robot.go(HERE, 1, CRASHED)

@@ -27,7 +27,7 @@ def drive(learner: TdLambda, rla_id: int | None, first: int, last: int) -> None:
         learner.update(rla_id, tick)
 
 
-def test_a_signal_is_shared_out_by_the_trace() -> None:
+def test_td_lambda_signal_is_shared_by_the_trace() -> None:
     learner = rule()
     assert learner.credits_for(-1, HALF_EACH) == (Credit(1, -ALPHA * 0.5), Credit(2, -ALPHA * 0.25))
     assert learner.value(1) == V0
@@ -35,7 +35,7 @@ def test_a_signal_is_shared_out_by_the_trace() -> None:
     assert (learner.value(1), learner.value(2), learner.value(3)) == pytest.approx((0.35, 0.425, V0))
 
 
-def test_an_rla_that_drives_on_unpraised_sinks_towards_nothing() -> None:
+def test_td_lambda_unrewarded_value_decays() -> None:
     learner = rule()
     drive(learner, 1, 1, 10)
     assert learner.value(1) == V0  # one step is no difference in time
@@ -46,7 +46,7 @@ def test_an_rla_that_drives_on_unpraised_sinks_towards_nothing() -> None:
     assert 0.0 <= learner.value(1) < 0.01
 
 
-def test_what_leads_to_something_worse_is_worth_less() -> None:
+def test_td_lambda_worse_successor_lowers_value() -> None:
     learner = rule()
     learner.restore(Statistics(values={2: -1.0}))
     drive(learner, 1, 1, 10)
@@ -54,7 +54,7 @@ def test_what_leads_to_something_worse_is_worth_less() -> None:
     assert learner.value(1) == pytest.approx(V0 + ALPHA * (GAMMA * -1.0 - V0) * (1 - D**10))
 
 
-def test_the_step_into_standing_and_out_of_it_teaches_nothing() -> None:
+def test_td_lambda_standstill_makes_no_step() -> None:
     learner = rule()
     drive(learner, 1, 1, 15)
     drive(learner, None, 16, 25)
@@ -62,14 +62,14 @@ def test_the_step_into_standing_and_out_of_it_teaches_nothing() -> None:
     assert (learner.value(1), learner.value(2)) == (V0, V0)
 
 
-def test_after_a_pause_there_is_no_step_and_no_trace() -> None:
+def test_td_lambda_pause_ends_step_and_trace() -> None:
     learner = rule()
     drive(learner, 1, 1, 15)
     drive(learner, 2, 1_000_000, 1_000_020)
     assert learner.value(1) == V0
 
 
-def test_credits_of_the_journal_are_booked_and_taken_off() -> None:
+def test_td_lambda_apply_credits_adds_and_subtracts() -> None:
     learner = rule()
     bookings = [CreditUpdate(Credit(1, -0.3), 0), CreditUpdate(Credit(2, 0.2), 0)]
     learner.apply_credits(bookings, 1)
@@ -78,7 +78,7 @@ def test_credits_of_the_journal_are_booked_and_taken_off() -> None:
     assert (learner.value(1), learner.value(2)) == pytest.approx((V0, V0))
 
 
-def test_another_action_begins_anew_and_the_former_one_comes_back_with_its_value() -> None:
+def test_td_lambda_reset_and_restore_previous() -> None:
     learner = rule()
     learner.learn(-1, EligibilityTrace({1: 1.0}, ()))
     assert learner.depth(1) == 0
@@ -91,7 +91,7 @@ def test_another_action_begins_anew_and_the_former_one_comes_back_with_its_value
     assert (learner.value(1), learner.depth(1)) == pytest.approx((V0, 0))
 
 
-def test_a_new_action_has_no_part_in_what_the_former_one_led_to() -> None:
+def test_td_lambda_new_action_has_no_old_trace() -> None:
     learner = rule()
     learner.restore(Statistics(values={2: -1.0}))
     drive(learner, 1, 1, 10)
@@ -100,7 +100,7 @@ def test_a_new_action_has_no_part_in_what_the_former_one_led_to() -> None:
     assert learner.value(1) == V0
 
 
-def test_what_is_saved_is_gone_on_from() -> None:
+def test_td_lambda_restore_continues_saved_values() -> None:
     learner = rule()
     learner.learn(-1, HALF_EACH)
     again = rule()
@@ -108,7 +108,7 @@ def test_what_is_saved_is_gone_on_from() -> None:
     assert [again.value(rla_id) for rla_id in (1, 2, 3)] == [learner.value(rla_id) for rla_id in (1, 2, 3)]
 
 
-def test_the_trace_does_not_grow_with_all_that_ever_drove() -> None:
+def test_td_lambda_trace_size_is_bounded() -> None:
     learner = rule()
     for tick in range(1, 20_001):
         learner.update(tick // 10, tick)
@@ -119,7 +119,7 @@ CAPPED = ReinforcementSettings(alpha=ALPHA, step_s=0.1)
 """As it is shipped: with a teacher values begin at 0 and praise only heals; alone they begin at 0.5."""
 
 
-def test_with_a_teacher_praise_heals_and_lifts_no_higher() -> None:
+def test_td_lambda_teacher_reward_stops_at_highest() -> None:
     learner = TdLambda(CAPPED, CAPPED.with_teacher, 0.01)
     assert learner.credits_for(1, HALF_EACH) == ()
     learner.learn(-1, EligibilityTrace({1: 0.2}, ()))
@@ -128,7 +128,7 @@ def test_with_a_teacher_praise_heals_and_lifts_no_higher() -> None:
     assert (learner.value(1), learner.value(2)) == (0.0, 0.0)
 
 
-def test_alone_values_begin_higher_and_praise_lifts_them() -> None:
+def test_td_lambda_autonomous_reward_raises_value() -> None:
     learner = TdLambda(CAPPED, CAPPED.alone, 0.01)
     learner.learn(-1, EligibilityTrace({1: 0.5}, ()))
     assert (learner.value(1), learner.value(2)) == pytest.approx((0.35, 0.5))
@@ -136,7 +136,7 @@ def test_alone_values_begin_higher_and_praise_lifts_them() -> None:
     assert learner.values == pytest.approx({1: 0.5, 2: 0.8})
 
 
-def test_some_values_come_back_and_the_others_stay() -> None:
+def test_td_lambda_restore_only_some() -> None:
     learner = rule()
     learner.learn(-1, EligibilityTrace({1: 1.0, 2: 1.0}, ()))
     then = Statistics(values=dict(learner.values))
@@ -145,7 +145,7 @@ def test_some_values_come_back_and_the_others_stay() -> None:
     assert [learner.value(n) for n in range(1, 6)] == pytest.approx([0.2, -0.1, V0, 0.2, V0])
 
 
-def test_blame_of_a_teacher_counts_from_the_highest_value_wherever_it_stood() -> None:
+def test_td_lambda_punishment_counts_from_highest() -> None:
     learner = TdLambda(CAPPED, CAPPED.with_teacher, 0.01)
     learner.restore(Statistics(values={1: 0.3}))
     assert learner.credits_for(1, EligibilityTrace({1: 1.0}, ())) == ()
@@ -156,7 +156,7 @@ def test_blame_of_a_teacher_counts_from_the_highest_value_wherever_it_stood() ->
     assert learner.value(1) == pytest.approx(0.3)
 
 
-def test_steps_lift_no_value_above_the_highest_and_do_not_cut_one_that_is_there() -> None:
+def test_td_lambda_step_stops_at_highest() -> None:
     learner = TdLambda(CAPPED, CAPPED.with_teacher, 0.01)
     learner.restore(Statistics(values={1: -0.2, 2: 0.4}))
     for turn in range(20):

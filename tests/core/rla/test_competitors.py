@@ -29,13 +29,13 @@ def around(system: RlaSystem, rla_id: int, count: int) -> list[int]:
     return [rla.rla_id for rla in system.neighbours(rla_id_of(system, rla_id), count)]
 
 
-def test_an_rla_alone_on_its_condition_competes_with_nobody_but_itself() -> None:
+def test_competitors_single_rla_competes_with_itself() -> None:
     system = system_of(created(1, (0.0, 0.0)), created(2, (0.0, 1e-300)))
     assert system.competitors(rla_id_of(system, 1)) == (rla_id_of(system, 1),)
     assert competing(system, 2) == [2]
 
 
-def test_competitors_are_of_the_same_level_behaviour_and_condition_the_oldest_first() -> None:
+def test_competitors_share_level_behaviour_condition() -> None:
     system = system_of(
         created(1, (1.0, 2.0)),
         created(2, (1.0, 2.0), behaviour="turn_left"),
@@ -48,7 +48,7 @@ def test_competitors_are_of_the_same_level_behaviour_and_condition_the_oldest_fi
     assert (competing(system, 2), competing(system, 3)) == ([2], [3])
 
 
-def test_whoever_is_changed_deleted_or_brought_back_is_so_for_its_competitors() -> None:
+def test_competitors_follow_all_changes() -> None:
     system = system_of(created(1, (0.0, 0.0)), created(2, (0.0, 0.0)), created(3, (0.0, 0.0)))
     system.apply(replaced(2, "back", "forward"))
     system.apply(withdrawn(3))
@@ -61,7 +61,7 @@ def test_whoever_is_changed_deleted_or_brought_back_is_so_for_its_competitors() 
     assert competing(system, 3) == [1, 2, 3]
 
 
-def test_where_the_last_one_was_deleted_nobody_competes() -> None:
+def test_competitors_last_one_deleted_is_empty() -> None:
     system = system_of(created(1, (0.0, 0.0)))
     gone = rla_id_of(system, 1)
     system.apply(deleted(1))
@@ -70,7 +70,7 @@ def test_where_the_last_one_was_deleted_nobody_competes() -> None:
     assert competing(system, 2) == [2]
 
 
-def test_neighbours_are_the_nearest_others_with_another_condition() -> None:
+def test_neighbours_have_other_conditions_nearest_first() -> None:
     system = system_of(
         created(1, (0.0, 0.0)),
         created(2, (0.0, 0.0), "back"),
@@ -86,7 +86,7 @@ def test_neighbours_are_the_nearest_others_with_another_condition() -> None:
     assert around(system, 7, 9) == around(system, 8, 9) == around(system, 1, 0) == []
 
 
-def test_neighbours_of_one_that_was_deleted_are_those_around_its_place() -> None:
+def test_neighbours_of_a_deleted_rla_are_found() -> None:
     system = system_of(created(1, (0.0, 0.0)), created(2, (1.0, 0.0)))
     gone = rla_id_of(system, 1)
     system.apply(deleted(1))
@@ -94,7 +94,7 @@ def test_neighbours_of_one_that_was_deleted_are_those_around_its_place() -> None
 
 
 @pytest.mark.parametrize(("weights", "nearest"), [((1.0, 1.0), 2), ((1.0, 0.1), 3)])
-def test_neighbours_are_near_by_the_weights_of_their_level(weights: tuple[float, float], nearest: int) -> None:
+def test_neighbours_use_the_weights_of_the_level(weights: tuple[float, float], nearest: int) -> None:
     for level in ("basic", CRITIC):
         space = Space(2, 1.0, np.array(weights))
         system = RlaSystem(2, 1.0, space.weights, others={CRITIC: space})

@@ -16,7 +16,7 @@ _ORIGIN = Origin("c-1", "Ann", Phase.SUPERVISED, 0)
 
 
 @given(_NUMBERS)
-def test_it_is_its_numbers_to_the_last_bit(numbers: tuple[float, ...]) -> None:
+def test_packed_condition_equals_its_tuple(numbers: tuple[float, ...]) -> None:
     condition = pack_condition(numbers)
     assert isinstance(condition, PackedCondition)
     assert tuple(map(float.hex, condition)) == tuple(map(float.hex, numbers))
@@ -28,21 +28,21 @@ def test_it_is_its_numbers_to_the_last_bit(numbers: tuple[float, ...]) -> None:
 
 
 @given(_NUMBERS, _NUMBERS)
-def test_equal_numbers_are_one_key_whatever_they_are_kept_in(a: tuple[float, ...], b: tuple[float, ...]) -> None:
+def test_packed_condition_equal_numbers_are_one_key(a: tuple[float, ...], b: tuple[float, ...]) -> None:
     assert pack_condition(a) == a
     assert a == pack_condition(a)
     assert (pack_condition(a) == pack_condition(b)) == (a == b)
     assert hash(pack_condition(a)) == hash(a)
 
 
-def test_zero_and_minus_zero_are_one_place() -> None:
+def test_packed_condition_zero_equals_minus_zero() -> None:
     assert pack_condition((0.0, 1.0)) == pack_condition((-0.0, 1.0))
     assert hash(pack_condition((0.0, 1.0))) == hash(pack_condition((-0.0, 1.0)))
     assert pack_condition((0.0, 1.0)) != pack_condition((0.0, 1.0, 2.0))
     assert pack_condition((0.0,)) != [0.0]
 
 
-def test_what_numpy_makes_of_it_may_be_written_to() -> None:
+def test_packed_condition_array_copy_is_writable() -> None:
     condition = pack_condition((1.0, 2.0))
     array = np.array(condition)
     array[0] = 5.0
@@ -52,11 +52,11 @@ def test_what_numpy_makes_of_it_may_be_written_to() -> None:
 
 
 @pytest.mark.parametrize("numbers", [(), (1, 2.0), ("a", 1.0), (True,)])
-def test_what_is_not_made_of_floats_stays_for_others_to_refuse(numbers: tuple[float, ...]) -> None:
+def test_pack_condition_other_types_are_unchanged(numbers: tuple[float, ...]) -> None:
     assert pack_condition(numbers) is numbers
 
 
-def test_an_rla_keeps_its_condition_in_little_room() -> None:
+def test_rla_stores_a_packed_condition() -> None:
     rla = Rla(1, tuple(0.1 * place for place in range(72)), "forward", None, _ORIGIN)
     assert isinstance(rla.condition, PackedCondition)
     assert sys.getsizeof(rla.condition.packed) + sys.getsizeof(rla.condition) < 700

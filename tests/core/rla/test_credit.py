@@ -17,7 +17,7 @@ _ORIGIN = Origin("c-1", "Ann", Phase.REINFORCEMENT, 0)
 
 
 @given(_CREDITS, _CREDITS)
-def test_they_are_their_credits_to_the_last_bit(a: tuple[Credit, ...], b: tuple[Credit, ...]) -> None:
+def test_packed_credits_equal_their_tuple(a: tuple[Credit, ...], b: tuple[Credit, ...]) -> None:
     credits_ = pack_credits(a)
     assert isinstance(credits_, PackedCredits)
     assert [(each.rla_id, each.change.hex(), each.before) for each in credits_] == [
@@ -42,12 +42,12 @@ def test_they_are_their_credits_to_the_last_bit(a: tuple[Credit, ...], b: tuple[
         Credit(1, 1.0, 2**32),
     ],
 )
-def test_what_is_no_sound_credit_stays_for_others_to_refuse(credit: Credit) -> None:
+def test_pack_credits_unfit_items_are_unchanged(credit: Credit) -> None:
     credits_ = (Credit(1, 1.0), credit)
     assert pack_credits(credits_) is credits_
 
 
-def test_a_reward_keeps_its_credits_in_little_room() -> None:
+def test_rla_rewarded_stores_packed_credits() -> None:
     credits_ = tuple(Credit(rla_id, 0.1, rla_id + 1) for rla_id in range(1, 41))
     rewarded = RlaRewarded(1, 1, 7, _ORIGIN, credits_)
     assert isinstance(rewarded.credits, PackedCredits)

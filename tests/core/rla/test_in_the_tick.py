@@ -51,7 +51,7 @@ def comes_and_goes(drive: Drive, times: int = 1, far: int = FAR) -> None:
         drive.run(counts=far, ticks=12)
 
 
-def test_what_follows_an_rla_is_learned_in_phase_1_and_without_a_teacher(drive: Drive) -> None:
+def test_expectation_is_learned_in_phases_1_and_5(drive: Drive) -> None:
     comes_and_goes(drive, times=3)
     expected = drive.runtime.expectations.get(1)
     assert expected is not None
@@ -60,7 +60,7 @@ def test_what_follows_an_rla_is_learned_in_phase_1_and_without_a_teacher(drive: 
     assert expected.mean[:18].tolist() == [float(FAR)] * 18  # the readings
 
 
-def test_the_tick_in_which_an_rla_ends_tells_how_surprising_that_is(drive: Drive) -> None:
+def test_surprise_is_reported_in_the_tick_of_the_end(drive: Drive) -> None:
     comes_and_goes(drive, times=8)
     drive.run(counts=NEAR, ticks=30)
     as_ever = drive.run(counts=FAR)
@@ -73,7 +73,7 @@ def test_the_tick_in_which_an_rla_ends_tells_how_surprising_that_is(drive: Drive
     assert other.surprise.surprising
 
 
-def test_a_critic_may_look_at_surprise(drive: Drive) -> None:
+def test_surprise_is_an_appraisal_feature(drive: Drive) -> None:
     shipped = load_critic()
     held = shipped.perception.model_copy(update={"surprise_held_s": 0.05})
     task = TASK.model_copy(update={"critic": shipped.model_copy(update={"perception": held})})
@@ -88,13 +88,13 @@ def test_a_critic_may_look_at_surprise(drive: Drive) -> None:
     assert [each.surprised for each in seen if each is not None] == [1.0] * 5 + [0.0] * 2
 
 
-def test_a_robot_that_is_stopped_expects_nothing_of_it(drive: Drive) -> None:
+def test_expectation_stop_is_no_follow_up(drive: Drive) -> None:
     drive.run(counts=NEAR, ticks=30)
     drive.run(Stop("s", "Ann"), counts=FAR, ticks=5)
     assert drive.runtime.expectations.get(1) is None
 
 
-def test_expectations_are_saved_and_gone_on_from(drive: Drive) -> None:
+def test_expectations_survive_a_restart(drive: Drive) -> None:
     comes_and_goes(drive, times=8)
     saved = drive.runtime.snapshot()
     assert {rla_id: each.count for rla_id, each in saved.expectations.items()} == {1: 8, 2: 7}
@@ -106,7 +106,7 @@ def test_expectations_are_saved_and_gone_on_from(drive: Drive) -> None:
     assert again.runtime.snapshot().expectations[1].count == 9
 
 
-def test_a_correction_a_deletion_and_an_undo_take_expectations_with_them(drive: Drive) -> None:
+def test_expectations_end_with_correction_deletion_undo(drive: Drive) -> None:
     comes_and_goes(drive, times=3)
     drive.run(Correct("c", "Ann", "curve_left"), counts=NEAR)
     assert set(drive.runtime.snapshot().expectations) == {2}
@@ -119,7 +119,7 @@ def test_a_correction_a_deletion_and_an_undo_take_expectations_with_them(drive: 
     assert drive.runtime.snapshot().expectations == {}
 
 
-def test_what_is_expected_at_a_level_that_does_not_drive_here_is_kept() -> None:
+def test_expectations_of_idle_level_are_kept() -> None:
     place = created(3, (1.0,) * LENGTH, level=MID)
     foreign = Expectation("lesson-3", 4, 800.0, pack(np.ones(LENGTH)), pack(np.zeros(LENGTH)))
     drive = Drive([created(1, (0.0,) * 72), place], saved=Statistics(expectations={3: foreign, 9: foreign}))
@@ -142,7 +142,7 @@ def symbols(town: Town, rla_id: int) -> list[float]:
     return mean
 
 
-def test_at_the_mid_level_the_history_behind_the_junction_is_expected(town: Town) -> None:
+def test_mid_expectation_is_the_next_history(town: Town) -> None:
     before = np.array(town.runtime.level.system.rlas_at(MID)[0].condition)
     town.junction(1)
     after = symbols(town, 4)
@@ -153,7 +153,7 @@ def test_at_the_mid_level_the_history_behind_the_junction_is_expected(town: Town
     assert 30 < expected.ticks < 60
 
 
-def test_what_is_taught_at_an_unknown_place_is_what_followed(town: Town) -> None:
+def test_mid_expectation_follow_up_is_taught_later(town: Town) -> None:
     for quarters in (1, 1, -1, 1, 1, -1, 1):
         town.junction(quarters)
     assert town.run().decision.asks_at == MID
@@ -162,13 +162,13 @@ def test_what_is_taught_at_an_unknown_place_is_what_followed(town: Town) -> None
     assert town.runtime.snapshot().expectations[4].count == 7
 
 
-def test_where_the_teacher_led_nothing_is_expected_of_it(town: Town) -> None:
+def test_mid_expectation_ignores_manual_driving(town: Town) -> None:
     town.run(Pursue("p", "Ann", "turn_left"))
     town.junction(1)
     assert town.runtime.expectations.get(4) is None
 
 
-def test_set_down_elsewhere_what_comes_next_follows_from_nothing(town: Town) -> None:
+def test_mid_expectation_ignores_repositioning(town: Town) -> None:
     town.junction(1)
     assert town.runtime.snapshot().expectations[4].count == 1
     town.runtime.reposition()
@@ -176,7 +176,7 @@ def test_set_down_elsewhere_what_comes_next_follows_from_nothing(town: Town) -> 
     assert town.runtime.snapshot().expectations[4].count == 1
 
 
-def test_who_is_told_where_it_stands_did_not_get_there_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_mid_expectation_ignores_localisation(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("tests.core.test_tick_with_mid_level.ROUTE", STREETS.model_copy(update={"mid": "places"}))
     town = Town()
     town.way_to_the_first_junction()
@@ -194,7 +194,7 @@ def test_who_is_told_where_it_stands_did_not_get_there_by_itself(monkeypatch: py
     assert saved.uses[4] == 1
 
 
-def test_a_correction_on_the_way_leaves_the_corrected_one_without_an_end(town: Town) -> None:
+def test_mid_expectation_ignores_corrected_rla(town: Town) -> None:
     town.junction()
     town.run(another_way("turn_left", "c-1"))  # RLA 5
     town.junction(1)
@@ -202,7 +202,7 @@ def test_a_correction_on_the_way_leaves_the_corrected_one_without_an_end(town: T
     assert counts == {4: 1, 5: 1}
 
 
-def test_a_junction_that_was_passed_otherwise_than_ever_is_a_surprise() -> None:
+def test_mid_unusual_junction_is_a_surprise() -> None:
     town = ToldOf()
     town.way_to_the_first_junction()
     for number in range(3 * LENGTH):

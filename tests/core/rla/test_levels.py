@@ -21,7 +21,7 @@ def system_of(*events: TeachingEvent) -> RlaSystem:
     return system
 
 
-def test_each_level_answers_situations_of_its_own_in_its_own_space() -> None:
+def test_levels_match_in_their_own_spaces() -> None:
     system = system_of(created(1, (0.0, 0.0)), created(2, (0.0, 0.0, 9.0), "bad", level=CRITIC))
     driving = system.match(np.array([3.0, 4.0]))
     appraising = system.match(np.array([0.3, 0.4, -9.0]), level=CRITIC)
@@ -34,7 +34,7 @@ def test_each_level_answers_situations_of_its_own_in_its_own_space() -> None:
 
 
 @pytest.mark.parametrize("known", [1, 3])
-def test_from_a_situation_that_is_nowhere_everything_is_far(known: int) -> None:
+def test_match_nan_situation_is_infinitely_far(known: int) -> None:
     system = RlaSystem(2, 5.0)
     system.apply_all(created(number, (float(number), 0.0)) for number in range(1, known + 1))
     match = system.match(np.array([np.nan, 0.0]))
@@ -42,7 +42,7 @@ def test_from_a_situation_that_is_nowhere_everything_is_far(known: int) -> None:
     assert (match.rla.rla_id, match.distance, match.runner_up_distance, match.known) == (1, np.inf, np.inf, False)
 
 
-def test_ids_lessons_and_undo_run_through_all_levels_and_the_rest_is_the_basic_ones() -> None:
+def test_levels_share_ids_lessons_and_undo() -> None:
     system = system_of(
         created(1, (0.0, 0.0)),
         created(2, (0.0, 0.0, 0.0), "good", level=CRITIC),
@@ -60,14 +60,14 @@ def test_ids_lessons_and_undo_run_through_all_levels_and_the_rest_is_the_basic_o
     assert len(system) == 1
 
 
-def test_a_condition_must_have_the_length_of_its_level() -> None:
+def test_condition_length_must_fit_the_level() -> None:
     system = system_of()
     for event in (created(1, (0.0, 0.0), level=CRITIC), created(1, (0.0, 0.0, 0.0))):
         assert refused_by(system, event).fault is EventFault.BAD_CONDITION
     assert (system.next_id, system.lessons) == (1, ())
 
 
-def test_a_robot_without_a_critic_keeps_what_it_was_taught_and_answers_nothing_by_it() -> None:
+def test_critic_rlas_without_critic_are_kept_unmatched() -> None:
     system = RlaSystem(2, 5.0)
     whole = system_of()
     lessons = (created(1, (0.0,) * 3, "bad", level=CRITIC), created(2, (0.0, 0.0)), replaced(1, "good", "bad"))
@@ -81,7 +81,7 @@ def test_a_robot_without_a_critic_keeps_what_it_was_taught_and_answers_nothing_b
     assert [rla.action for rla in system.rlas_at(CRITIC)] == ["bad"]
 
 
-def test_the_knowledge_hash_tells_levels_and_withdrawn_actions_apart() -> None:
+def test_knowledge_hash_differs_by_level_and_withdrawal() -> None:
     taught = [
         system_of(created(1, (1.0, 2.0, 3.0), "bad", level=CRITIC)),
         system_of(created(1, (1.0, 2.0, 3.0), "good", level=CRITIC)),
@@ -91,7 +91,7 @@ def test_the_knowledge_hash_tells_levels_and_withdrawn_actions_apart() -> None:
     assert len({system.knowledge_hash() for system in taught}) == len(taught)
 
 
-def test_where_an_action_was_withdrawn_the_nearest_rla_is_told_and_nothing_is_known() -> None:
+def test_withdrawn_rla_is_matched_but_not_known() -> None:
     system = system_of(created(1, (0.0, 0.0)), created(2, (3.0, 0.0), "back"), withdrawn(1))
     here = system.match(np.array([0.0, 0.0]))
     beside = system.match(np.array([2.0, 0.0]))
@@ -115,14 +115,14 @@ def test_where_an_action_was_withdrawn_the_nearest_rla_is_told_and_nothing_is_kn
         (withdrawn(1, command_id="again"), EventFault.WITHDRAWN_ALREADY),
     ],
 )
-def test_asking_is_no_action_and_comes_only_by_a_withdrawal(event: TeachingEvent, fault: EventFault) -> None:
+def test_ask_is_no_teachable_action(event: TeachingEvent, fault: EventFault) -> None:
     system = system_of(created(1, (0.0, 0.0)), withdrawn(1))
     before = system.knowledge_hash(), system.lessons, system.next_id
     assert refused_by(system, event).fault is fault
     assert (system.knowledge_hash(), system.lessons, system.next_id) == before
 
 
-def test_an_opinion_that_the_critic_shared_is_no_lesson_and_changes_nothing() -> None:
+def test_appraised_event_changes_nothing() -> None:
     system = system_of(created(1, (0.0, 0.0)))
     before = system.knowledge_hash(), system.lessons
     system.apply(Appraised("good", 1, 99, origin("same", 100)))
@@ -130,7 +130,7 @@ def test_an_opinion_that_the_critic_shared_is_no_lesson_and_changes_nothing() ->
     assert system.why_not_undo("same") == Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson="same")
 
 
-def test_how_an_rla_is_spoken_of() -> None:
+def test_rla_title_by_behaviour_and_level() -> None:
     assert rla_title(17, "") == "RLA 17"
     assert rla_title(17, "turn_left") == "RLA 17 of turn_left"
     assert rla_title(40, "", CRITIC) == created(40, (), level=CRITIC).rla.title == "appraisal RLA 40"
@@ -139,7 +139,7 @@ def test_how_an_rla_is_spoken_of() -> None:
 
 @examples(60)
 @given(st.lists(st.tuples(st.integers(-5, 5), st.booleans()), min_size=1, max_size=12), st.integers(-6, 6))
-def test_passing_over_those_that_ask_is_as_if_they_were_not_there(taught: list[tuple[int, bool]], place: int) -> None:
+def test_match_without_withdrawn_equals_their_absence(taught: list[tuple[int, bool]], place: int) -> None:
     every = [created(number, (float(x), 0.0)) for number, (x, _) in enumerate(taught, 1)]
     asking = [number for number, (_, asks) in enumerate(taught, 1) if asks]
     system = system_of(*every, *(withdrawn(number) for number in asking))

@@ -72,7 +72,7 @@ def worlds(draw: st.DrawFn) -> tuple[list[tuple[Point, int] | int], list[Point]]
 @example(([((0.3,), -1), ((0.6,), -1)], [(1e16,)]))
 @example(([((2.1e-22,), -1), ((1.2e-22,), -1)], [(1.7e-22,)]))
 @example(([((3e20, 0.0), -1), ((1.0, 0.0), -1)], [(2.0, 0.0)]))
-def test_winner_is_that_of_a_brute_force_after_any_inserts_and_removals(
+def test_condition_index_random_changes_equal_brute_force(
     world: tuple[list[tuple[Point, int] | int], list[Point]],
 ) -> None:
     steps, situations = world
@@ -95,7 +95,7 @@ def test_winner_is_that_of_a_brute_force_after_any_inserts_and_removals(
 
 @given(st.integers(0, 2**32), st.sampled_from((3, 8, 9, 36, 72, 129, 200)), st.integers(1, 150))
 @examples(100)
-def test_winner_in_as_many_dimensions_as_a_situation_has(seed: int, dimensions: int, size: int) -> None:
+def test_condition_index_72_dimensions_equal_brute_force(seed: int, dimensions: int, size: int) -> None:
     """Half the values are whole counts, half are averages of up to 1000 counts, as Perception makes them."""
     chance = np.random.default_rng(seed)
     half = dimensions // 2
@@ -121,7 +121,7 @@ def clustered(count: int, spread: float) -> NDArray[np.float64]:
 
 
 @pytest.mark.parametrize("spread", [30.0, 1e-10])
-def test_winner_among_5000_clustered_conditions(spread: float) -> None:
+def test_condition_index_5000_clusters_equal_brute_force(spread: float) -> None:
     rows = clustered(5000, spread)
     index = index_of([tuple(row) for row in rows.tolist()])
     chance = np.random.default_rng(6)
@@ -129,7 +129,7 @@ def test_winner_among_5000_clustered_conditions(spread: float) -> None:
         assert_right(index, rows, rows[position] + chance.normal(0.0, spread, 72))
 
 
-def test_of_duplicates_the_older_wins_also_when_the_oldest_was_removed() -> None:
+def test_condition_index_duplicates_older_wins() -> None:
     index = index_of([(9.0, 9.0), (1.0, 2.0), (1.0, 2.0), (1.0, 2.0)])
     situation = np.array([1.0, 2.0])
     first = index.nearest(situation)
@@ -142,14 +142,14 @@ def test_of_duplicates_the_older_wins_also_when_the_oldest_was_removed() -> None
     assert second.distance == second.runner_up_distance == 0.0
 
 
-def test_a_condition_that_comes_back_to_its_place_is_again_the_older_one() -> None:
+def test_condition_index_reinserted_row_is_older_again() -> None:
     index = index_of([(9.0, 9.0), (1.0, 2.0), (1.0, 2.0)])
     index.remove(1)
     index.insert(1, (1.0, 2.0))
     assert index.nearest(np.array([1.0, 2.0])) == (1, 0.0, 2, 0.0)
 
 
-def test_a_far_condition_that_was_taken_out_leaves_no_trace() -> None:
+def test_condition_index_removed_far_row_leaves_no_bound() -> None:
     near = clustered(200, 30.0)
     rows = [tuple(row) for row in near.tolist()]
     index, visited = index_of(rows), index_of(rows)
@@ -159,7 +159,7 @@ def test_a_far_condition_that_was_taken_out_leaves_no_trace() -> None:
         assert visited.nearest(situation) == index.nearest(situation)  # the runner-up's rough distance as well
 
 
-def test_a_situation_that_is_not_a_number_is_near_to_nothing() -> None:
+def test_condition_index_nan_situation_has_nan_distance() -> None:
     nearest = index_of([(1.0, 2.0), (3.0, 4.0)]).nearest(np.array([math.nan, 0.0]))
     assert nearest is not None
     assert not nearest.distance <= 1e300
@@ -169,7 +169,7 @@ def test_a_situation_that_is_not_a_number_is_near_to_nothing() -> None:
     ("condition", "problem"),
     [((1.0,), "has 1 values, this system matches 2"), ((1.0, math.nan), "finite"), ((math.inf, 0.0), "finite")],
 )
-def test_a_condition_that_cannot_be_matched_is_refused_and_changes_nothing(condition: Point, problem: str) -> None:
+def test_condition_index_unfit_condition_is_refused(condition: Point, problem: str) -> None:
     index = index_of([(1.0, 2.0)])
     with pytest.raises(ValueError, match=problem):
         index.append(condition)
@@ -178,14 +178,14 @@ def test_a_condition_that_cannot_be_matched_is_refused_and_changes_nothing(condi
 
 
 @given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=200), st.integers(1, 20))
-def test_a_sum_of_squares_is_the_same_alone_and_among_others(values: list[float], rows: int) -> None:
+def test_exact_square_equals_row_of_exact_distances(values: list[float], rows: int) -> None:
     row = np.array(values)
     distances = exact_distances(np.tile(row, (rows, 1)), np.zeros(len(row)))
     assert set(distances.tolist()) == {math.sqrt(exact_square(row))}
 
 
 @pytest.mark.parametrize("dimensions", [1, 72, 10_000])
-def test_many_distances_are_those_of_each_alone(dimensions: int) -> None:
+def test_exact_distances_equal_single_ones(dimensions: int) -> None:
     conditions = np.random.default_rng(1).normal(0.0, 100.0, (300, dimensions))
     situation = conditions.mean(axis=0)
     alone = [math.sqrt(exact_square(row - situation)) for row in conditions]

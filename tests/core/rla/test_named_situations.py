@@ -13,7 +13,7 @@ def system() -> RlaSystem:
     return RlaSystem(2, 5.0, others={MID: Space(3, 0.5)})
 
 
-def test_a_name_means_the_situation_that_it_was_given_to_at_its_level() -> None:
+def test_named_situation_belongs_to_its_level() -> None:
     knows = system()
     knows.apply_all([named("door", (1.0, 2.0, 0.0), MID), named("post", (7.0, 8.0))])
     assert knows.named_situations(MID) == {"door": (1.0, 2.0, 0.0)}
@@ -21,7 +21,7 @@ def test_a_name_means_the_situation_that_it_was_given_to_at_its_level() -> None:
     assert [record.text for record in knows.lessons] == ["situation named: door", "situation named: post"]
 
 
-def test_a_name_given_again_means_the_newer_situation_until_that_is_undone() -> None:
+def test_named_situation_newer_one_counts_until_undone() -> None:
     knows = system()
     knows.apply_all([named("door", (1.0, 2.0, 0.0), MID), named("door", (5.0, 5.0, 0.0), MID, "moved")])
     assert knows.named_situations(MID)["door"] == (5.0, 5.0, 0.0)
@@ -35,7 +35,7 @@ def test_a_name_given_again_means_the_newer_situation_until_that_is_undone() -> 
     assert [record.undone for record in knows.lessons] == [True, True]
 
 
-def test_naming_changes_no_rla_and_no_fingerprint() -> None:
+def test_named_situation_changes_no_rla_or_hash() -> None:
     knows = system()
     knows.apply(created(1, (0.0, 0.0)))
     before = knows.knowledge_hash()
@@ -44,14 +44,14 @@ def test_naming_changes_no_rla_and_no_fingerprint() -> None:
     assert knows.next_id == 2
 
 
-def test_a_situation_that_is_none_of_the_level_cannot_be_named() -> None:
+def test_named_situation_unfit_for_level_is_refused() -> None:
     knows = system()
     assert refused_by(knows, named("door", (1.0, 2.0), MID)).fault is EventFault.BAD_SITUATION
     assert refused_by(knows, named("door", (1.0, math.nan, 0.0), MID)).fault is EventFault.BAD_SITUATION
     assert knows.lessons == ()
 
 
-def test_names_of_a_level_that_this_robot_lacks_are_kept() -> None:
+def test_named_situation_of_unknown_level_is_kept() -> None:
     knows = system()
     knows.apply(named("fine", (1.0,), CRITIC))
     assert knows.named_situations(CRITIC) == {"fine": (1.0,)}

@@ -36,7 +36,7 @@ def system_of(*events: TeachingEvent) -> RlaSystem:
         named("door", (1.0, 2.0), command_id="it"),
     ],
 )
-def test_what_was_undone_and_redone_is_as_if_nothing_had_been(lesson: TeachingEvent) -> None:
+def test_redo_after_undo_restores_the_knowledge(lesson: TeachingEvent) -> None:
     taught = system_of(FIRST, SECOND, lesson)
     again = system_of(FIRST, SECOND, lesson, undone("it"), redone("it"))
     assert again.knowledge_hash() == taught.knowledge_hash()
@@ -49,7 +49,7 @@ def test_what_was_undone_and_redone_is_as_if_nothing_had_been(lesson: TeachingEv
     assert again.knowledge_hash() == system_of(FIRST, SECOND).knowledge_hash()
 
 
-def test_several_come_back_in_the_order_in_which_they_were_taught() -> None:
+def test_redo_several_in_taught_order_only() -> None:
     system = system_of(FIRST, replaced(1, "back", "forward", "a"), replaced(1, "left", "back", "b"))
     for lesson in ("b", "a", "lesson-1"):
         system.apply(undone(lesson))
@@ -62,7 +62,7 @@ def test_several_come_back_in_the_order_in_which_they_were_taught() -> None:
     assert [rla.action for rla in system.rlas] == ["left"]
 
 
-def test_where_another_lesson_has_taken_its_place_the_refusal_names_it() -> None:
+def test_redo_replaced_lesson_is_refused() -> None:
     system = system_of(FIRST, replaced(1, "back", "forward", "a"), undone("a"), replaced(1, ASK + "ed", "forward", "b"))
     refusal = refused_by(system, redone("a")).refusal
     assert refusal is not None
@@ -72,18 +72,18 @@ def test_where_another_lesson_has_taken_its_place_the_refusal_names_it() -> None
     assert [rla.action for rla in system.rlas] == ["back"]
 
 
-def test_what_stands_or_never_was_cannot_be_redone() -> None:
+def test_redo_standing_or_unknown_lesson_is_refused() -> None:
     system = system_of(FIRST)
     assert system.why_not_redo("lesson-1") == Outcome.of(RefusalCode.STANDS_ALREADY, lesson="lesson-1")
     assert system.why_not_redo("lesson-9") == Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson="lesson-9")
 
 
-def test_a_reward_counts_again() -> None:
+def test_redo_reward_counts_again() -> None:
     system = system_of(FIRST, rewarded(1, 1, "praise"), undone("praise"), redone("praise"))
     assert system.appraisal(1) == Appraisal(rewards=1)
 
 
-def test_a_merge_changes_nothing_by_itself() -> None:
+def test_merge_event_changes_nothing() -> None:
     system = system_of(FIRST, KnowledgeMerged("b.knowledge", 7, "lesson-7", origin("merge-1")))
     assert system.rlas == (FIRST.rla,)
     assert len(system.lessons) == 1
@@ -91,7 +91,7 @@ def test_a_merge_changes_nothing_by_itself() -> None:
 
 @examples(100)
 @given(st.lists(st.tuples(st.integers(0, 5), st.integers(0, 30)), max_size=40))
-def test_after_any_undoing_and_redoing_the_standing_lessons_alone_make_the_same_knowledge(
+def test_redo_random_sequences_equal_standing_lessons(
     steps: list[tuple[int, int]],
 ) -> None:
     system = RlaSystem(2, 5.0)

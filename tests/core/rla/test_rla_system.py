@@ -40,13 +40,13 @@ def actions(system: RlaSystem) -> dict[int, str]:
     return {rla.rla_id: rla.action for rla in system.rlas}
 
 
-def test_nothing_taught_matches_nothing() -> None:
+def test_match_without_rlas_is_none() -> None:
     system = system_of()
     assert system.match(np.zeros(2)) is None
     assert (len(system), system.next_id, system.rlas, system.get(1)) == (0, 1, (), None)
 
 
-def test_the_nearest_rla_answers_and_the_one_behind_it_is_named() -> None:
+def test_match_returns_nearest_and_runner_up() -> None:
     system = system_of(created(1, (0.0, 0.0), "back"), created(2, (10.0, 0.0)), created(3, (0.0, 30.0)))
     match = system.match(np.array([7.0, 4.0]))
     assert match is not None
@@ -59,13 +59,13 @@ def test_the_nearest_rla_answers_and_the_one_behind_it_is_named() -> None:
     assert match.runner_up_distance == pytest.approx(math.sqrt(65), rel=1e-6)
 
 
-def test_a_lone_rla_has_no_runner_up() -> None:
+def test_match_single_rla_has_no_runner_up() -> None:
     match = system_of(created(1, (0.0, 0.0))).match(np.array([100.0, 0.0]))
     assert match is not None
     assert (match.known, match.runner_up, match.runner_up_distance) == (False, None, math.inf)
 
 
-def test_an_own_radius_goes_before_that_of_the_system() -> None:
+def test_match_own_radius_overrides_the_system() -> None:
     system = system_of(created(1, (0.0, 0.0), radius=2.0), created(2, (100.0, 0.0), radius=50.0))
     near_first, near_second = system.match(np.array([3.0, 0.0])), system.match(np.array([140.0, 0.0]))
     assert near_first is not None
@@ -75,7 +75,7 @@ def test_an_own_radius_goes_before_that_of_the_system() -> None:
 
 
 @given(st.integers(0, 2**32))
-def test_a_situation_is_known_up_to_the_radius_and_not_a_bit_farther(seed: int) -> None:
+def test_match_known_up_to_the_exact_radius(seed: int) -> None:
     chance = np.random.default_rng(seed)
     rows = chance.integers(60, 560, (20, 72)) / chance.choice((1, 1000))
     situation = rows[3] + chance.uniform(-9, 9, 72)
@@ -92,7 +92,7 @@ def test_a_situation_is_known_up_to_the_radius_and_not_a_bit_farther(seed: int) 
         assert (match.distance, match.known) == (distance, known)
 
 
-def test_a_replaced_action_keeps_id_condition_age_and_radius_and_has_a_new_origin() -> None:
+def test_action_replaced_keeps_all_but_action_and_origin() -> None:
     system = system_of(created(1, (1.0, 2.0), "forward", radius=3.0), created(2, (1.0, 2.0), "back"))
     correction = replaced(1, "spin_right", "forward")
     system.apply(correction)
@@ -102,7 +102,7 @@ def test_a_replaced_action_keeps_id_condition_age_and_radius_and_has_a_new_origi
     assert match.rla.rla_id == 1  # still the older one
 
 
-def test_a_deleted_rla_is_gone_and_its_id_never_comes_back() -> None:
+def test_rla_deleted_id_is_not_used_again() -> None:
     system = system_of(created(1, (0.0, 0.0)), created(2, (9.0, 0.0)), created(3, (9.5, 0.0)))
     system.apply(deleted(3))
     assert system.next_id == 4
@@ -138,7 +138,7 @@ def test_a_deleted_rla_is_gone_and_its_id_never_comes_back() -> None:
         (undone("reward-2"), EventFault.NOT_UNDOABLE),
     ],
 )
-def test_an_event_that_does_not_fit_is_refused_and_changes_nothing(event: TeachingEvent, fault: EventFault) -> None:
+def test_apply_unfit_event_is_refused_and_changes_nothing(event: TeachingEvent, fault: EventFault) -> None:
     system = system_of(
         created(1, (0.0, 0.0)), created(2, (9.0, 0.0)), deleted(1), rewarded(2), undone("reward-2"), *session(7)
     )
@@ -153,7 +153,7 @@ _ACTS = st.lists(
 
 
 @given(_ACTS, st.integers(0, 9))
-def test_any_lesson_folds_to_what_a_plain_dictionary_of_rlas_holds(acts: list[tuple[str, int, str]], at: int) -> None:
+def test_apply_random_lessons_equals_a_dictionary(acts: list[tuple[str, int, str]], at: int) -> None:
     system, living, taught = system_of(radius=100.0), dict[int, tuple[float, str]](), 0
     for count, (act, number, action) in enumerate(acts):
         rla_id = number % (taught + 1) + 1
@@ -175,7 +175,7 @@ def test_any_lesson_folds_to_what_a_plain_dictionary_of_rlas_holds(acts: list[tu
     assert (None if match is None else match.rla.rla_id) == nearest
 
 
-def test_the_knowledge_hash_tells_every_difference_in_what_is_known() -> None:
+def test_knowledge_hash_differs_for_each_difference() -> None:
     first = created(1, (1.0, 2.0), "forward")
     base = system_of(first)
     others = [
@@ -191,7 +191,7 @@ def test_the_knowledge_hash_tells_every_difference_in_what_is_known() -> None:
     assert len({system.knowledge_hash() for system in (base, *others)}) == len(others) + 1
 
 
-def test_the_knowledge_hash_does_not_depend_on_who_taught_or_on_the_way_there() -> None:
+def test_knowledge_hash_ignores_teachers_and_history() -> None:
     direct = system_of(created(2, (1.0, 2.0), "back"))
     by_bob = replace(origin("bobs"), teacher="Bob", phase=Phase.CORRECTIONS, tick=99)
     detour = system_of(created(1, (5.0, 5.0)), created(2, (1.0, 2.0)), deleted(1))
@@ -199,11 +199,11 @@ def test_the_knowledge_hash_does_not_depend_on_who_taught_or_on_the_way_there() 
     assert detour.knowledge_hash() == direct.knowledge_hash()
 
 
-def test_the_knowledge_hash_is_of_numbers_not_of_how_they_were_written() -> None:
+def test_knowledge_hash_depends_on_numbers_only() -> None:
     assert system_of(created(1, (1, 2))).knowledge_hash() == system_of(created(1, (1.0, 2.0))).knowledge_hash()
 
 
-def test_weights_say_how_much_each_feature_counts_and_leave_conditions_as_they_were_taught() -> None:
+def test_match_weights_scale_distances_only() -> None:
     system = RlaSystem(2, 10.0, np.array([1.0, 0.5]))
     system.apply(created(1, (0.0, 0.0)))
     system.apply(created(2, (3.0, 40.0)))
@@ -214,7 +214,7 @@ def test_weights_say_how_much_each_feature_counts_and_leave_conditions_as_they_w
     assert match.rla.condition == (0.0, 0.0)
 
 
-def test_a_weight_of_zero_leaves_a_feature_out() -> None:
+def test_match_weight_zero_ignores_a_feature() -> None:
     system = RlaSystem(2, 10.0, np.array([1.0, 0.0]))
     system.apply(created(1, (0.0, 1e9)))
     match = system.match(np.array([4.0, -1e9]))
@@ -222,12 +222,12 @@ def test_a_weight_of_zero_leaves_a_feature_out() -> None:
     assert match.distance == 4.0
 
 
-def test_the_knowledge_hash_of_a_task_without_named_behaviours_is_what_it_always_was() -> None:
+def test_knowledge_hash_unnamed_behaviour_is_unchanged() -> None:
     system = system_of(created(1, (1.0, 2.0), "forward"), created(2, (3.0, 4.0), "back", radius=5.0))
     assert system.knowledge_hash() == "b9a93b6acbee93fddd099ccc5652afdfc5d62e6f1f64db3d67a8c0b3e27715b9"
 
 
-def test_only_rlas_of_the_same_behaviour_compete() -> None:
+def test_match_compares_rlas_of_one_behaviour() -> None:
     system = system_of(
         created(1, (0.0, 0.0), "forward", behaviour="straight_on"),
         created(2, (0.0, 0.0), "back", behaviour="turn_left"),
@@ -245,7 +245,7 @@ def test_only_rlas_of_the_same_behaviour_compete() -> None:
     assert (match.rla.rla_id, match.runner_up) == (3, None)
 
 
-def test_a_corrected_rla_stays_what_it_belongs_to() -> None:
+def test_action_replaced_keeps_the_behaviour() -> None:
     system = system_of(created(1, (0.0, 0.0), behaviour="turn_left"), replaced(1, "back", "forward"))
     assert [(rla.action, rla.behaviour) for rla in system.rlas] == [("back", "turn_left")]
     system.apply(undone("correction-1"))
@@ -257,7 +257,7 @@ _STEPS = st.lists(st.tuples(st.sampled_from("ccccrdu"), st.integers(0, 40), st.s
 
 
 @given(_STEPS)
-def test_a_system_of_several_behaviours_is_as_good_as_a_system_for_each(steps: list[tuple[str, int, str]]) -> None:
+def test_behaviours_in_one_system_equal_separate_systems(steps: list[tuple[str, int, str]]) -> None:
     together, alone = system_of(), {name: system_of() for name in _BEHAVIOURS}
     for count, (act, number, behaviour) in enumerate(steps):
         name, living, lessons = f"step-{count}", together.rlas, together.lessons
@@ -291,7 +291,7 @@ def test_a_system_of_several_behaviours_is_as_good_as_a_system_for_each(steps: l
 
 
 @pytest.mark.parametrize("most", [1, 2, 3, 5, 8, 20])
-def test_the_nearest_few_are_the_first_of_all_in_order_of_nearness_and_age(most: int) -> None:
+def test_nearest_first_limit_is_a_prefix(most: int) -> None:
     places = (3.0, -3.0, 0.0, 7.0, 3.0, 1.0, -1.0, 3.0)
     system = system_of(*(created(place, (at, 0.0)) for place, at in enumerate(places, start=1)))
     assert system.candidate_count() == len(places)
@@ -302,7 +302,7 @@ def test_the_nearest_few_are_the_first_of_all_in_order_of_nearness_and_age(most:
     assert lost == tuple((rla_id, math.inf) for rla_id in range(1, 9))[:most]
 
 
-def test_the_lessons_about_one_rla_are_told_apart_from_all_others() -> None:
+def test_lessons_about_one_rla_are_separate() -> None:
     lessons = (
         created(1, (0.0, 0.0)),
         created(2, (1.0, 0.0)),

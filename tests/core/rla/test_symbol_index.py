@@ -44,7 +44,7 @@ def index_of(histories: list[Symbols], *, by_edits: bool = False) -> SymbolIndex
 
 
 @given(HISTORIES)
-def test_hamming_counts_the_places_that_differ(histories: list[Symbols]) -> None:
+def test_hamming_distances_count_different_places(histories: list[Symbols]) -> None:
     one, rows = histories[0], np.array(histories)
     assert hamming_distances(rows, np.array(one)).tolist() == [
         sum(a != b for a, b in zip(one, other, strict=True)) for other in histories
@@ -52,13 +52,13 @@ def test_hamming_counts_the_places_that_differ(histories: list[Symbols]) -> None
 
 
 @given(HISTORIES)
-def test_edits_are_counted_for_all_rows_at_once_as_for_each_alone(histories: list[Symbols]) -> None:
+def test_edit_distances_of_rows_equal_single_ones(histories: list[Symbols]) -> None:
     one, rows = histories[0], np.array(histories)
     assert edit_distances(rows, np.array(one)).tolist() == [edits(one, other) for other in histories]
 
 
 @given(HISTORIES, st.booleans())
-def test_the_oldest_of_the_nearest_wins_and_the_next_one_runs_up(histories: list[Symbols], by_edits: bool) -> None:
+def test_symbol_index_equal_distance_oldest_wins(histories: list[Symbols], by_edits: bool) -> None:
     *taught, here = [*histories, histories[0]]
     index = index_of(taught, by_edits=by_edits)
     nearest = index.nearest(np.array(here))
@@ -72,14 +72,14 @@ def test_the_oldest_of_the_nearest_wins_and_the_next_one_runs_up(histories: list
         assert nearest.runner_up == 1 + others.index(min(others))
 
 
-def test_one_symbol_too_many_shifts_all_places_but_is_one_edit_and_one_at_the_end() -> None:
+def test_symbol_index_shifted_row_is_one_edit() -> None:
     before, shifted = (1.0, 2.0, 3.0) * 4, (2.0, *(1.0, 2.0, 3.0) * 4)[:12]
     here = np.array(shifted)
     assert index_of([before]).distances(here).tolist() == [12.0]
     assert index_of([before], by_edits=True).distances(here).tolist() == [2.0]
 
 
-def test_conditions_come_in_where_their_age_belongs_and_leave_again() -> None:
+def test_symbol_index_insert_and_remove_keep_order() -> None:
     index = index_of([(1.0, 1.0), (3.0, 3.0)])
     index.insert(1, (2.0, 2.0))
     here = np.array([2.0, 3.0])
@@ -91,7 +91,7 @@ def test_conditions_come_in_where_their_age_belongs_and_leave_again() -> None:
 
 
 @pytest.mark.parametrize(("condition", "told"), [((1.0,), "1 values, this system matches 2"), ((1.0, math.nan), "fin")])
-def test_a_condition_that_does_not_fit_is_refused(condition: Symbols, told: str) -> None:
+def test_symbol_index_unfit_condition_is_refused(condition: Symbols, told: str) -> None:
     index = index_of([(1.0, 1.0)])
     with pytest.raises(ValueError, match=told):
         index.append(condition)
@@ -111,7 +111,7 @@ def matched(system: RlaSystem, *here: float) -> tuple[int, float, bool]:
     return match.rla.rla_id, match.distance, match.known
 
 
-def test_a_level_of_symbols_is_taught_undone_and_deleted_as_every_other() -> None:
+def test_rla_system_symbol_level_takes_all_events() -> None:
     system = system_of(
         "hamming",
         created(1, (1.0, 2.0, 3.0, 0.0), "turn_left", level=MID),
@@ -128,13 +128,13 @@ def test_a_level_of_symbols_is_taught_undone_and_deleted_as_every_other() -> Non
     assert [rla.title for rla in system.rlas_at(MID)] == ["mid-level RLA 1", "mid-level RLA 2"]
 
 
-def test_by_edits_a_history_with_one_symbol_more_is_still_near() -> None:
+def test_rla_system_edit_metric_matches_shifted_history() -> None:
     taught = created(1, (1.0, 2.0, 3.0, 4.0), "turn_left", level=MID)
     assert matched(system_of("hamming", taught), 4.0, 1.0, 2.0, 3.0) == (1, 4.0, False)
     assert matched(system_of("edit", taught), 4.0, 1.0, 2.0, 3.0) == (1, 2.0, False)
 
 
-def test_every_event_that_is_applied_counts_as_a_change_and_one_that_does_not_fit_does_not() -> None:
+def test_rla_system_changes_count_applied_events() -> None:
     system = system_of("hamming", created(1, (0.0,) * 4, level=MID))
     before = system.changes
     system.apply(replaced(1, "turn_left", "forward"))
@@ -143,7 +143,7 @@ def test_every_event_that_is_applied_counts_as_a_change_and_one_that_does_not_fi
     assert system.changes == before + 1
 
 
-def test_symbols_take_no_weights() -> None:
+def test_candidate_index_symbols_with_weights_are_refused() -> None:
     system = RlaSystem(2, 5.0, others={MID: Space(2, 1.0, np.ones(2), "hamming")})
     with pytest.raises(ValueError, match="a space of metric hamming takes no weights"):
         system.apply(created(1, (1.0, 1.0), level=MID))

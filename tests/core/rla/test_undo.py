@@ -32,14 +32,14 @@ def winner(system: RlaSystem, x: float, y: float) -> tuple[int, str]:
     return match.rla.rla_id, match.rla.action
 
 
-def test_an_undone_creation_is_gone_and_its_id_is_never_given_again() -> None:
+def test_undo_creation_removes_rla_and_keeps_its_id_used() -> None:
     system = system_of(FIRST, SECOND, THIRD, undone("lesson-3"))
     assert [rla.rla_id for rla in system.rlas] == [1, 2]
     assert (system.get(3), system.next_id) == (None, 4)
     assert winner(system, 9.0, 0.0) == (1, "forward")
 
 
-def test_an_undone_replacement_leaves_action_and_origin_as_they_were() -> None:
+def test_undo_replacement_restores_action_and_origin() -> None:
     system = system_of(FIRST, replaced(1, "back", "forward", "a"), replaced(1, "left", "back", "b"), undone("b"))
     rla = system.get(1)
     assert rla is not None
@@ -48,7 +48,7 @@ def test_an_undone_replacement_leaves_action_and_origin_as_they_were() -> None:
     assert system.get(1) == FIRST.rla
 
 
-def test_an_undone_deletion_brings_the_rla_back_to_its_place_in_age_with_its_rewards() -> None:
+def test_undo_deletion_restores_rla_and_rewards() -> None:
     system = system_of(FIRST, rewarded(1, 1, "r1"), rewarded(1, -1, "r2"), rewarded(1, 1, "r3"), SECOND, THIRD)
     system.apply(deleted(1))
     assert winner(system, 0.0, 0.0) == (2, "back")
@@ -58,7 +58,7 @@ def test_an_undone_deletion_brings_the_rla_back_to_its_place_in_age_with_its_rew
     assert system.rlas == (FIRST.rla, SECOND.rla, THIRD.rla)
 
 
-def test_an_undone_reward_is_not_counted() -> None:
+def test_undo_reward_is_not_counted() -> None:
     system = system_of(FIRST, rewarded(1, 1, "praise"), rewarded(1, -1, "blame"))
     assert system.appraisal(1) == (1, 1)
     system.apply(undone("blame"))
@@ -67,7 +67,7 @@ def test_an_undone_reward_is_not_counted() -> None:
     assert system.appraisal(1) == system.appraisal(77) == (0, 0)
 
 
-def test_an_undone_withdrawal_gives_the_action_back() -> None:
+def test_undo_withdrawal_restores_the_action() -> None:
     system = system_of(FIRST, withdrawn(1), replaced(1, "back", ASK), undone("correction-1"))
     rla = system.get(1)
     assert rla is not None
@@ -77,7 +77,7 @@ def test_an_undone_withdrawal_gives_the_action_back() -> None:
     assert winner(system, 0.0, 0.0) == (1, "forward")
 
 
-def test_only_the_newest_lesson_of_an_rla_is_undone_and_the_refusal_names_it() -> None:
+def test_undo_of_older_lesson_names_the_newest() -> None:
     system = system_of(FIRST, replaced(1, "back", "forward", "phone-7"), SECOND)
     refusal = refused_by(system, undone("lesson-1")).refusal
     says = "RLA 1 corrected: back instead of forward"
@@ -88,7 +88,7 @@ def test_only_the_newest_lesson_of_an_rla_is_undone_and_the_refusal_names_it() -
     assert system.rlas == (SECOND.rla,)
 
 
-def test_a_lesson_is_undone_once() -> None:
+def test_undo_twice_is_refused() -> None:
     system = system_of(FIRST, undone("lesson-1"))
     twice = refused_by(system, undone("lesson-1")).refusal
     assert twice == Outcome.of(RefusalCode.UNDONE_ALREADY, lesson="lesson-1")
@@ -96,7 +96,7 @@ def test_a_lesson_is_undone_once() -> None:
     assert no_lesson == Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson="undo-lesson-1")
 
 
-def test_all_lessons_are_told_and_which_of_them_stand() -> None:
+def test_lessons_list_all_with_their_state() -> None:
     system = system_of()
     assert (system.lessons, system.standing_lessons, system.last_standing_lesson) == ((), 0, None)
     praise = rewarded(2)
@@ -111,7 +111,7 @@ def test_all_lessons_are_told_and_which_of_them_stand() -> None:
     assert (system.standing_lessons, system.last_standing_lesson) == (0, None)
 
 
-def test_sessions_change_no_rla_and_their_time_adds_up() -> None:
+def test_sessions_change_no_rla_and_add_up() -> None:
     system = system_of(FIRST)
     before = system.rlas, system.lessons
     system.apply_all([*session(6000), *session(30)])
@@ -131,7 +131,7 @@ def test_sessions_change_no_rla_and_their_time_adds_up() -> None:
         (rewarded(1, -1), "RLA 1 punished"),
     ],
 )
-def test_a_lesson_is_told_in_a_few_words(lesson: RlaLesson, text: str) -> None:
+def test_lesson_record_text_by_event(lesson: RlaLesson, text: str) -> None:
     assert LessonRecord(lesson).text == text
     assert rla_id_of(lesson) == 1
 
@@ -144,7 +144,7 @@ def test_a_lesson_is_told_in_a_few_words(lesson: RlaLesson, text: str) -> None:
         (rewarded(1), "RLA 1 of turn_left rewarded"),
     ],
 )
-def test_a_lesson_is_told_with_the_behaviour_that_it_is_about(event: Lesson, text: str) -> None:
+def test_lesson_record_text_names_the_behaviour(event: Lesson, text: str) -> None:
     system = system_of(created(1, (0.0, 0.0), behaviour="turn_left"), event)
     assert [record.text for record in system.lessons] == ["RLA 1 of turn_left taught: forward", text]
     problem = system.why_not_undo("lesson-1")
@@ -154,7 +154,7 @@ def test_a_lesson_is_told_with_the_behaviour_that_it_is_about(event: Lesson, tex
     assert (system.lessons[-1].text, system.lessons[-1].undone) == (text, True)
 
 
-def test_a_lesson_of_the_critics_rlas_is_told_as_one() -> None:
+def test_lesson_record_text_names_the_critic_level() -> None:
     system = system_of(created(1, (0.0, 0.0), "bad", level=CRITIC), replaced(1, "good", "bad"), deleted(1))
     assert [record.text for record in system.lessons] == [
         "appraisal RLA 1 taught: bad",
@@ -194,7 +194,7 @@ def lessons_and_undos(steps: list[tuple[str, int, str]], system: RlaSystem) -> I
 
 @given(_STEPS)
 @examples(400)
-def test_what_is_left_is_what_the_standing_lessons_alone_would_have_taught(steps: list[tuple[str, int, str]]) -> None:
+def test_undo_random_sequences_equal_standing_lessons(steps: list[tuple[str, int, str]]) -> None:
     system, standing, undos = system_of(), dict[str, Lesson](), 0
     for event in lessons_and_undos(steps, system):
         try:
@@ -224,7 +224,7 @@ def test_what_is_left_is_what_the_standing_lessons_alone_would_have_taught(steps
         assert system.competitors(rla) == tuple(each for each in system.rlas if each.condition == rla.condition)
 
 
-def test_a_lesson_can_be_taught_again_after_its_undo_under_another_command() -> None:
+def test_undo_then_teach_needs_a_new_command_id() -> None:
     system = system_of(FIRST, undone("lesson-1"), created(2, (0.0, 0.0)))
     assert [rla.rla_id for rla in system.rlas] == [2]
     assert refused_by(system, created(3, (1.0, 0.0), command_id="lesson-1")).fault is EventFault.LESSON_EXISTS

@@ -9,28 +9,28 @@ def drive(statistics: StatisticsCounter, ticks: list[int | None]) -> None:
         statistics.count(rla_id)
 
 
-def test_an_rla_is_used_once_however_many_ticks_it_drives() -> None:
+def test_usage_counter_counts_one_use_per_drive() -> None:
     statistics = StatisticsCounter()
     drive(statistics, [1, 1, 1, 2, 2, 1])
     assert statistics.uses == {1: 2, 2: 1}
     assert statistics.transitions == {(1, 2): 1, (2, 1): 1}
 
 
-def test_standing_ends_a_chain_of_transitions() -> None:
+def test_usage_counter_standstill_ends_the_chain() -> None:
     statistics = StatisticsCounter()
     drive(statistics, [1, None, None, 2, None, 2])
     assert statistics.uses == {1: 1, 2: 2}
     assert not statistics.transitions
 
 
-def test_counting_goes_on_from_what_was_kept() -> None:
+def test_usage_counter_continues_saved_counts() -> None:
     statistics = StatisticsCounter({1: 10}, {(1, 2): 4})
     drive(statistics, [1, 2])
     assert statistics.uses == {1: 11, 2: 1}
     assert statistics.transitions == {(1, 2): 5}
 
 
-def test_the_dead_are_dropped_and_what_drove_last_is_no_way_to_what_comes() -> None:
+def test_usage_counter_drop_deleted_removes_edges() -> None:
     statistics = StatisticsCounter()
     drive(statistics, [1, 2, 3, 1, 2])
     statistics.drop_deleted({1, 3}.__contains__)
@@ -40,7 +40,7 @@ def test_the_dead_are_dropped_and_what_drove_last_is_no_way_to_what_comes() -> N
     assert statistics.transitions == {(3, 1): 1}
 
 
-def test_each_level_has_a_chain_of_its_own_in_the_same_tables() -> None:
+def test_usage_counter_levels_have_separate_chains() -> None:
     statistics = StatisticsCounter()
     for basic, mid in ((1, 8), (2, 8), (2, 9), (1, 9)):
         statistics.count(basic)
@@ -52,7 +52,7 @@ def test_each_level_has_a_chain_of_its_own_in_the_same_tables() -> None:
     assert statistics.transitions == {(1, 2): 1, (2, 1): 1}
 
 
-def test_what_is_decided_anew_is_another_use_though_it_be_the_same_rla() -> None:
+def test_usage_counter_again_counts_another_use() -> None:
     statistics = StatisticsCounter()
     for anew in (True, False, True):
         statistics.count(8, MID, again=anew)
@@ -60,7 +60,7 @@ def test_what_is_decided_anew_is_another_use_though_it_be_the_same_rla() -> None
     assert statistics.transitions == {(8, 8): 1}
 
 
-def test_what_followed_an_rla_is_forgotten_with_its_action_but_not_what_it_followed() -> None:
+def test_usage_counter_drop_follow_ups_keeps_incoming() -> None:
     statistics = StatisticsCounter()
     drive(statistics, [1, 2, 3, 1, 2])
     statistics.drop_follow_ups(2)
@@ -70,7 +70,7 @@ def test_what_followed_an_rla_is_forgotten_with_its_action_but_not_what_it_follo
     assert statistics.uses == {1: 2, 2: 2, 3: 2}
 
 
-def test_what_followed_one_rla_is_told_without_the_others() -> None:
+def test_usage_counter_follow_ups_of_one_rla() -> None:
     counter = StatisticsCounter({1: 3, 2: 1}, {(1, 2): 4})
     for current in (1, 3, 1, 2):
         counter.count(current)
