@@ -29,6 +29,7 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
         "stops": standing.stops,
         "troubles": health.troubles,
         "notices of the page's server": page.notices,
+        "sentences of the page": page.sentences,
     },
     "terminal": {
         "outcomes of commands": outcomes.in_terminal,

@@ -1,9 +1,11 @@
-"""Listing of the texts of `kurt2rt.teacher.page.texts`."""
+"""Listings of the texts of `kurt2rt.teacher.page.texts` and of static/texts.js."""
 
+import re
 from collections.abc import Iterator
 from string import Formatter
 
 from kurt2rt.teacher.page import texts
+from kurt2rt.teacher.page.app import STATIC
 from kurt2rt.teacher.page.texts import PageNotice
 
 SAMPLES = {"place": "127.0.0.1:5683", "most_mb": 64, "name": "a.zip", "size": 70_000_000, "most": 64_000_000}
@@ -14,3 +16,9 @@ def notices() -> Iterator[tuple[str, str]]:
     for notice in PageNotice:
         fields = [name for _, name, _, _ in Formatter().parse(texts._TEXTS[notice]) if name]
         yield notice, texts.text_of(notice, **{name: SAMPLES[name] for name in fields})
+
+
+def sentences() -> Iterator[tuple[str, str]]:
+    """Yield the page's own sentences, as static/texts.js has them."""
+    script = (STATIC / "texts.js").read_text(encoding="utf-8")
+    yield from re.findall(r'^  (\w+): "(.*)",$', script, re.MULTILINE)

@@ -165,7 +165,7 @@ def format_trust(state: State) -> str:
     if state.agreement is None:
         bad, good = state.signals_missing
         missing = " and ".join(f"{count} {of}" for count, of in ((bad, "bad"), (good, "good")) if count)
-        return f"needs {missing or 'a few'} signals more of yours (not trusted)"
+        return f"needs {missing or 'a few'} signals from you (not trusted)"
     share = math.floor(state.agreement * 100) / 100  # not rounded up to the bound that it misses
     trusted = "trusted" if state.trusted else "not trusted"
     return f"agrees with you {share:.2f} ({'; '.join(part for part in (trusted, format_role(state)) if part)})"
@@ -177,7 +177,7 @@ def format_role(state: State) -> str:
         case CriticState.LISTENS:
             return ""
         case CriticState.MEASURES:
-            return "measures how well it goes"
+            return "measures the driving"
         case CriticState.NOT_NEEDED:
             percent = math.floor((state.bad_share or 0.0) * 100)  # not rounded up to what it would be needed for
             return f"not needed: {percent} % of the driving was bad"

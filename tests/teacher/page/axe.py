@@ -1,4 +1,4 @@
-"""axe-core in the browser of the stories: what a page has that shuts people out."""
+"""axe-core in the browser: accessibility faults of the page."""
 
 import os
 from importlib import import_module

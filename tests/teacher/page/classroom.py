@@ -29,13 +29,13 @@ class Classroom:
     """Opens the page."""
 
     def state(self) -> State:
-        """The newest picture that came over the link."""
+        """Return the newest state that came over the link."""
         state = self.portal.call(lambda: self.client.state)
         assert state is not None
         return state
 
     def put_robot_in_the_open(self) -> None:
-        """Where it can drive any way; not beside a wall, with which the guard would have a word."""
+        """Place the robot where no wall makes the guard stop it."""
         answer = self.portal.call(self.client.place, 2.2, 2.0, 0.0)
         assert answer.accepted, answer.text
 
@@ -44,7 +44,7 @@ class Classroom:
         self.portal.call(self.link.cut)
 
     def mend(self) -> None:
-        """The link is as before."""
+        """Restore the link."""
         self.portal.call(self.link.mend)
 
 

@@ -31,9 +31,9 @@ class Lesson:
         self._begun = 0
 
     def begin(self, prepare: Callable[[FakeRobot], None] = lambda _: None, **shown: object) -> None:
-        """Another robot comes up, prepared so, and drives by its RLA 1; the page has nothing open from the one before.
+        """Start another robot, which drives by its RLA 1; close what the page has open from the robot before.
 
-        A page introduces itself to a robot that was started anew; to load it anew for each story takes far longer.
+        The page stays loaded and is introduced to the new robot, because to load it takes far longer.
         """
         self._begun += 1
         boot, name = f"boot {self._begun}".encode(), f"robot {self._begun}"
@@ -49,15 +49,15 @@ class Lesson:
         self.phone.wait(self._is_shown, "the page shows this robot, and is its teacher's")
 
     def show(self, **changes: object) -> State:
-        """From the next picture on; returns that one."""
+        """Send a changed state; return it."""
         return self._portal.call(partial(self.robot.show, **changes))
 
     def reads(self, selector: str, text: str) -> None:
-        """Wait until it stands there."""
+        """Wait until an element has a text."""
         self.phone.wait(lambda: text in self.phone.text(selector), f"{selector} says {text!r}")
 
     def told(self, name: str) -> list[object]:
-        """What the robot was told of one kind."""
+        """Return the first argument of each call of the robot."""
         return [each[1] for each in self.robot.told if each[0] == name]
 
     def _is_shown(self) -> bool:
@@ -66,7 +66,7 @@ class Lesson:
 
 
 async def show_on(robot: FakeRobot) -> None:
-    """A picture of it each 100 ms; what changes is shown at once."""
+    """Send a state each 100 ms."""
     while True:
         await anyio.sleep(0.1)
         if robot.state is not None:
@@ -75,7 +75,7 @@ async def show_on(robot: FakeRobot) -> None:
 
 @contextmanager
 def lessons(phone: Phone) -> Iterator[Lesson]:
-    """A page's server and the robot behind it, for one lesson after another."""
+    """Serve a page and a robot, for one lesson after another."""
     with start_blocking_portal() as portal, portal.wrap_async_context_manager(served()) as page:
         pictures = portal.start_task_soon(show_on, page.robot)
         try:

@@ -70,7 +70,7 @@ class Phone:
 
     @contextmanager
     def first_visit(self) -> Iterator[None]:
-        """A teacher who has never seen the page opens it meanwhile."""
+        """Open the page as on a first visit meanwhile."""
         self._remove_before_scripts(self._before)
         try:
             yield
@@ -80,7 +80,7 @@ class Phone:
 
     @contextmanager
     def in_the_dark(self) -> Iterator[None]:
-        """The browser wants dark pages meanwhile."""
+        """Prefer the dark theme meanwhile."""
         scheme = "prefers-color-scheme"
         self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": scheme, "value": "dark"}]})
         try:
@@ -90,7 +90,7 @@ class Phone:
 
     def turn(self, size: tuple[int, int], *, touch: bool = True) -> None:
         """Give the screen another size."""
-        fine = 2 if self._screenshots else 1  # a screen that nobody looks at is painted in a quarter of the time
+        fine = 2 if self._screenshots else 1  # without screenshots, painted in a quarter of the time
         screen = {"width": size[0], "height": size[1], "deviceScaleFactor": fine, "mobile": touch}
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", screen)
         self.driver.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": touch})
@@ -113,19 +113,19 @@ class Phone:
         self.open("about:blank")
 
     def text(self, selector: str) -> str:
-        """What stands in the first element of a CSS selector; nothing where it is not seen."""
+        """Return the text of the first element of a CSS selector; empty if it is hidden."""
         return str(self.run(_TEXT, selector))
 
     def texts(self, selector: str) -> list[str]:
-        """What stands in each that is seen."""
+        """Return the text of each visible element."""
         return [each.text for each in self.driver.find_elements(By.CSS_SELECTOR, selector) if each.is_displayed()]
 
     def shows(self, selector: str) -> bool:
-        """Whether its first element is seen."""
+        """Return whether the first element is visible."""
         return bool(self.run(_SHOWN, selector))
 
     def has(self, selector: str) -> bool:
-        """Whether there is such an element."""
+        """Return whether there is such an element."""
         return bool(self.run("return document.querySelector(arguments[0]) !== null;", selector))
 
     def write(self, selector: str, text: str) -> None:
@@ -133,7 +133,7 @@ class Phone:
         self.driver.find_element(By.CSS_SELECTOR, selector).send_keys(text)
 
     def run(self, script: str, *arguments: object) -> Any:
-        """What a script in the page returns."""
+        """Run a script in the page and return its result."""
         return self.driver.execute_script(script, *arguments)
 
     def wait(self, until: Callable[[], object], what: str) -> None:
@@ -142,7 +142,7 @@ class Phone:
         waiting.until(lambda _: until(), f"never: {what}")
 
     def touch(self, selector: str) -> None:
-        """A short touch in the middle of an element."""
+        """Touch the middle of an element."""
         self.finger_down(*self.middle(selector))
         self.finger_up()
 
@@ -199,7 +199,7 @@ class Phone:
             assert self.driver.save_screenshot(str(self._screenshots / f"{name}.png"))
 
     def complaints(self) -> list[str]:
-        """What the browser's console said since the last call."""
+        """Return the messages of the browser's console since the last call."""
         return [entry["message"] for entry in self.driver.get_log("browser")]  # type: ignore[no-untyped-call]
 
     def _add_before_scripts(self, script: str) -> dict[str, Any]:
@@ -215,7 +215,7 @@ class Phone:
 
 @contextmanager
 def phone(screenshots: Path | None) -> Iterator[Phone]:
-    """A browser of its own, with nothing in it. Skips where none is installed, unless this is CI."""
+    """Start a browser without data. Skips if none is installed, unless this is CI."""
     if not (BROWSER.exists() and DRIVER.exists()):
         why = "the browser's stories need Debian's chromium and chromium-driver"
         if os.environ.get("CI") == "true":

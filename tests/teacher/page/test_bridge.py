@@ -281,7 +281,7 @@ async def test_release_ends_its_press_and_not_the_next_one(fixture: BridgeFixtur
 DRIVING = {"teacher": "phone", "action": "forward", "phase": 1}
 
 
-async def test_driving_robot_320_ms_after_the_last_heartbeat_is_stopped(fixture: BridgeFixture, page: Page) -> None:
+async def test_driving_robot_is_stopped_320_ms_after_a_heartbeat(fixture: BridgeFixture, page: Page) -> None:
     await page.see(**DRIVING)
     await fixture.wait(0.29)
     assert fixture.told("stop") == []

@@ -68,7 +68,7 @@ def begin(phone: Phone, room: Classroom) -> None:
     phone.wait(lambda: phone.run("return innerWidth") == PORTRAIT[0], "the screen is turned")
     if phone.shows("#claim"):
         phone.touch("#claim-button")
-    phone.wait(lambda: not phone.shows("#claim"), "the pad is open")
+    phone.wait(lambda: not phone.shows("#claim"), "this page has control")
     room.put_robot_in_the_open()
 
 
@@ -86,10 +86,10 @@ def test_a_teacher_teaches_drives_loses_the_link_and_comes_back(a_phone: Phone, 
     # The code of the pairing opens the page; the robot shows itself and knows nothing.
     phone.open(room.address)
     phone.wait(lambda: phone.text("#sentence") == "I know nothing yet, teach me", "the robot asks")
-    phone.show("1-nobody-teaches")
+    phone.show("1-no teacher-teaches")
     phone.touch("#claim-button")
     phone.wait(lambda: room.state().teacher == "local", "this device teaches")
-    phone.wait(lambda: not phone.shows("#claim"), "the pad is open")
+    phone.wait(lambda: not phone.shows("#claim"), "this page has control")
     phone.show("2-it-asks")
 
     # Ten lessons by touching actions: answers while it asks, corrections while it drives.
@@ -257,9 +257,7 @@ def test_a_key_whose_end_the_browser_keeps_to_itself_lets_go(a_phone: Phone, roo
     phone.key("keyUp", "KeyW")
 
 
-def test_the_arrow_keys_steer_after_the_tab_was_clicked_and_u_undoes_only_what_is_seen(
-    a_phone: Phone, room: Classroom
-) -> None:
+def test_arrow_keys_steer_after_a_click_of_the_tab(a_phone: Phone, room: Classroom) -> None:
     phone = a_phone
     begin(phone, room)
     phone.touch("#tab-drive")
@@ -313,7 +311,7 @@ def test_a_stop_without_a_link_is_sent_when_the_link_is_back(a_phone: Phone, roo
     begin(phone, room)
     phone.run("sockets.at(-1).close(); shut = true")
     phone.wait(lambda: no_picture(phone), "the page sees nothing")
-    phone.wait(lambda: not room.client.watching, "its server knows that nobody looks")
+    phone.wait(lambda: not room.client.watching, "its server knows that no teacher looks")
     # A page that went may have left a stop on its way, which goes before what is said meanwhile.
     phone.wait(lambda: room.portal.call(room.client.resume).accepted, "its teacher is heard")
     phone.wait(lambda: room.state().stopped is None, "the robot may drive")
@@ -376,7 +374,7 @@ def test_it_can_be_read_in_the_sun_and_touched_with_a_thumb(
 
 
 def assert_handy(phone: Phone, size: tuple[int, int], tab: str) -> None:
-    """What is seen can be read and touched, and what counts is on the screen."""
+    """Assert contrast, target size and position of the visible elements."""
     for text, contrast in phone.run(TEXTS):
         assert contrast >= LEAST_CONTRAST, f"{tab}: {text!r} has a contrast of {contrast:.1f}"
     for name, width, height, left, right in phone.run(TARGETS):
@@ -397,7 +395,7 @@ def pressed(phone: Phone) -> list[str]:
     return phone.texts("#behaviours [aria-pressed=true]")
 
 
-def test_where_several_behaviours_are_taught_the_teacher_touches_the_one_to_follow(a_lesson: Lesson) -> None:
+def test_several_behaviours_have_a_button_each(a_lesson: Lesson) -> None:
     def prepare(robot: FakeRobot) -> None:
         robot.greeting = replace(A_HELLO, behaviours=TURNS)
 
@@ -419,7 +417,7 @@ def test_where_several_behaviours_are_taught_the_teacher_touches_the_one_to_foll
     phone.wait(lambda: phone.run("return document.querySelector('#behaviours').inert"), "it is the teacher's")
 
 
-def test_where_one_thing_is_taught_there_is_nothing_to_choose(a_phone: Phone, room: Classroom) -> None:
+def test_one_behaviour_has_no_button(a_phone: Phone, room: Classroom) -> None:
     begin(a_phone, room)
     assert not a_phone.shows("#behaviours")
 

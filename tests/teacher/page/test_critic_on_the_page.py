@@ -34,7 +34,7 @@ def fits(lesson: Lesson) -> None:
 
 
 def look(lesson: Lesson, name: str) -> None:
-    """It can be read and touched on each screen."""
+    """Assert contrast and targets on each screen."""
     for size in SIZES:
         lesson.phone.turn(size, touch=size != LAPTOP)
         lesson.phone.show(f"11-{name}-{size[0]}x{size[1]}")
@@ -53,11 +53,11 @@ def lesson(a_lesson: Lesson) -> Lesson:
     return a_lesson
 
 
-def test_in_phase_4_the_signals_teach_the_critic_and_the_teacher_sees_how_far_it_agrees(lesson: Lesson) -> None:
+def test_phase_4_rewards_teach_the_critic_and_show_agreement(lesson: Lesson) -> None:
     phone = lesson.phone
     lesson.reads("#opinion", "critic: thinks good")
     assert phone.text("#trusted") == "not trusted yet"
-    assert phone.text("#agreement-text") == "needs 6 bad and 2 good signals more of yours"
+    assert phone.text("#agreement-text") == "needs 6 bad and 2 good signals from you"
     fits(lesson)
     shown = phone.texts("#rewards button")
     assert [each.split()[-1] for each in shown] == ["bad", "neutral", "good", "last"]
@@ -81,15 +81,15 @@ def test_in_phase_4_the_signals_teach_the_critic_and_the_teacher_sees_how_far_it
     look(lesson, "phase-4")
 
     lesson.show(phase=3, value=-0.001)
-    phone.wait(lambda: not phone.shows("#critic"), "before phase 4 nobody sees it")
-    lesson.reads("#gauge-text", "worth 0.00")
+    phone.wait(lambda: not phone.shows("#critic"), "it is hidden before phase 4")
+    lesson.reads("#gauge-text", "value 0.00")
     lesson.show(value=-0.08)
-    lesson.reads("#gauge-text", "worth \N{MINUS SIGN}0.08")
+    lesson.reads("#gauge-text", "value \N{MINUS SIGN}0.08")
     phone.touch("#blame")
     phone.wait(lambda: lesson.told("reward") == [-1], "a signal is the robot's reward again")
 
 
-def test_in_phase_5_the_teacher_sees_what_the_critic_thinks_and_changed_last(lesson: Lesson) -> None:
+def test_phase_5_shows_opinion_and_last_change(lesson: Lesson) -> None:
     phone = lesson.phone
     lesson.show(phase=5, agreement=0.87, trusted=True, signals_missing=(0, 0), value=0.52)
     lesson.reads("#changed", "has changed nothing lately")
@@ -98,7 +98,7 @@ def test_in_phase_5_the_teacher_sees_what_the_critic_thinks_and_changed_last(les
     lesson.reads("#changed", "changed last: RLA 17 corrected: spin_left instead of back, 21 Nov")
     assert phone.text("#trusted") == "trusted"
     lesson.show(role="measures", bad_share=0.0)
-    lesson.reads("#role", "measures how well it goes")
+    lesson.reads("#role", "measures the driving")
     lesson.show(role="acts", bad_share=0.07)
     lesson.reads("#role", "acts")
     lesson.show(role="not needed", bad_share=0.0199)
@@ -114,7 +114,7 @@ def test_in_phase_5_the_teacher_sees_what_the_critic_thinks_and_changed_last(les
     lesson.reads("#changed", "undone: RLA 17")
 
 
-def test_an_action_that_was_withdrawn_is_answered_and_not_corrected(lesson: Lesson) -> None:
+def test_action_at_a_withdrawn_rla_is_an_answer(lesson: Lesson) -> None:
     phone = lesson.phone
     lesson.show(
         cause="unknown",
@@ -126,7 +126,7 @@ def test_an_action_that_was_withdrawn_is_answered_and_not_corrected(lesson: Less
         left_m_s=0.0,
         right_m_s=0.0,
     )
-    lesson.reads("#sentence", "RLA 17 was blamed: worth \N{MINUS SIGN}0.10 now, teach me again")
+    lesson.reads("#sentence", "RLA 17 was marked wrong (value \N{MINUS SIGN}0.10), teach me again")
     assert phone.text("#nearest") == "nearest: RLA 17, its action was withdrawn"
     phone.touch("[data-action=forward]")
     phone.wait(lambda: lesson.told("answer") == ["forward"], "an answer")

@@ -1,4 +1,4 @@
-"""The pages of several devices on one port: who is let in where, and what becomes of it when pairings change."""
+"""Pages of several devices on one port: access, links, and changes of the pairings."""
 
 import http.client
 import json
@@ -25,7 +25,7 @@ from kurt2rt.teacher.page.server import listen
 from tests.teacher.page.fake_robot import FakeRobot
 
 ELSEWHERE = "127.0.0.2"
-"""Of this machine, but not where a port is that listens on 127.0.0.1 alone."""
+"""Address of this machine that a port on 127.0.0.1 alone does not serve."""
 PATIENCE_S = 20.0
 
 
@@ -299,7 +299,7 @@ async def test_this_machines_own_page_is_not_served_to_the_network(tmp_path: Pat
     assert links.opened == []
 
 
-def test_local_devices_are_this_machines_own_then_the_newest_and_none_that_moved_away(tmp_path: Path) -> None:
+def test_local_devices_lists_own_then_newest_present_ones(tmp_path: Path) -> None:
     pairings = Pairings(tmp_path / "teachers", tmp_path / "devices")
     for name in (LOCAL, TERMINAL):
         local_pairing(pairings.teachers, pairings.devices, name)

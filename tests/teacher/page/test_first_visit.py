@@ -26,7 +26,7 @@ def test_first_lesson_of_a_fresh_start_takes_two_taps(a_phone: Phone, tmp_path: 
         phone.wait(lambda: phone.shows("#claim-button"), "the robot can be taken")
         assert phone.shows("#bubble")  # it covers neither of the two buttons
         phone.touch("#claim-button")
-        phone.wait(lambda: phone.run("return !document.querySelector('#teach').inert;"), "the pad is open")
+        phone.wait(lambda: phone.run("return !document.querySelector('#teach').inert;"), "this page has control")
         phone.touch("[data-action=along_left_wall]")
         phone.wait(lambda: room.state().lessons == 1, "a lesson, after two taps")
         phone.wait(lambda: phone.text("#lesson-count") == "1", "the page shows it")

@@ -25,7 +25,7 @@ document.hasFocus = () => !window.away;
 
 @pytest.fixture
 def driving(a_lesson: Lesson) -> Iterator[Lesson]:
-    """A page with a gamepad that has just been plugged in."""
+    """Return a page with a new gamepad."""
     phone = a_lesson.phone
     phone.leave()
     with phone.before_scripts(PAD):
@@ -41,7 +41,7 @@ def presses(lesson: Lesson) -> list[tuple[object, ...]]:
 
 
 def polled(phone: Phone) -> None:
-    """The pad was looked at a few times more."""
+    """Wait for a few polls of the gamepad."""
     phone.driver.execute_async_script("const [done] = arguments; setTimeout(done, 200);")
 
 
@@ -111,7 +111,7 @@ def test_gamepad_of_a_page_that_only_watches_drives_nothing(driving: Lesson) -> 
 
 
 @pytest.mark.deep
-def test_second_gamepad_that_is_held_does_not_go_on_for_the_first(driving: Lesson) -> None:
+def test_second_held_gamepad_does_not_replace_the_first(driving: Lesson) -> None:
     hold(driving)
     phone = driving.phone
     phone.run("pads[1] = {...pad, index: 1, buttons: pad.buttons.map((each) => ({...each}))};")

@@ -1,4 +1,4 @@
-"""How the robot's program is, on the page: a small line that opens to a table."""
+"""Health of the robot on the page: the line in the bar, the table, the warnings."""
 
 from dataclasses import replace
 
@@ -33,7 +33,7 @@ def later(lesson: Lesson, ticks: int, report: HealthReport) -> None:
 
 
 def falls_ill(lesson: Lesson) -> None:
-    """The robot's next report is of a second later."""
+    """Send the report of a second later."""
     later(lesson, 100, ILL)
 
 
@@ -74,7 +74,7 @@ def test_a_report_that_grows_old_is_no_news(lesson: Lesson) -> None:
     lesson.reads("#health", "late 0.20 ms")
 
 
-def test_what_is_wrong_is_told_in_colour_with_since_when_and_what_to_do(lesson: Lesson) -> None:
+def test_faults_are_coloured_with_time_and_cure(lesson: Lesson) -> None:
     phone = lesson.phone
     falls_ill(lesson)
     lesson.reads("#health", "sensors silent, …")

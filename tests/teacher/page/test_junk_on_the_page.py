@@ -89,7 +89,7 @@ FRAMES: dict[str, bytes] = {
     "an unknown kind": frame(5, b"{}"),
     "a long ping": frame(_PING, bytes(200)),
     "a fragmented ping": frame(_PING, b"", final=False),
-    "a pong": frame(_PONG, b"nobody asked") + frame(_BINARY, b""),
+    "a pong": frame(_PONG, b"unasked") + frame(_BINARY, b""),
     "a continuation of nothing": frame(0, b"{}"),
     "two beginnings": frame(_TEXT, b"{", final=False) + frame(_TEXT, b"}"),
     "too long": bytes((0x81, 0xFF)) + struct.pack(">Q", 2**62),
@@ -122,7 +122,7 @@ async def still_serves(page: Served) -> None:
 
 @pytest.fixture
 def said(caplog: pytest.LogCaptureFixture, capfd: pytest.CaptureFixture[str]) -> Callable[[], str]:
-    """What stands in the log, tracebacks included, and on the screen."""
+    """Return a function that reads log, tracebacks included, and output."""
 
     def read() -> str:
         captured = capfd.readouterr()
@@ -172,7 +172,7 @@ async def test_bytes_at_random_leave_no_traceback(said: Callable[[], str]) -> No
     assert said() == ""
 
 
-async def test_a_page_that_says_junk_is_told_why(said: Callable[[], str]) -> None:
+async def test_binary_message_closes_with_1008(said: Callable[[], str]) -> None:
     async with served() as page, page.websocket() as socket:
         await see(page, socket)
         await socket.send(b"\x00")

@@ -30,21 +30,21 @@ class Junction:
         self.reads = lesson.reads
 
     def ask_which_way(self) -> None:
-        """The robot stands, for the mid level does not know this way."""
+        """Stop the robot at a question: the mid level does not know this way."""
         stands = {"cause": "unknown", "action": None, "rla": None, "left_m_s": 0.0, "right_m_s": 0.0}
         near = {"nearest": 12, "nearest_action": "turn_right", "distance": 7.0, "radius": 6.0}
         self.show(mid=ASKS, asks_at="mid", **stands, **near)
         self.reads("#sentence", "Which way? I don't know, teach me")
 
     def drive_on(self) -> None:
-        """It knows the way."""
+        """Let the mid level decide."""
         drives = {"cause": "rla", "action": "forward", "rla": 1, "left_m_s": 0.3, "right_m_s": 0.3}
         near = {"nearest": 1, "nearest_action": "forward", "distance": 300.0, "radius": 700.0}
         self.show(mid=COMMANDS, asks_at="basic", **drives, **near)
         self.reads("#sentence", "RLA 1 of turn left does forward")
 
     def told(self, name: str) -> list[tuple[object, ...]]:
-        """What the robot was told of one kind, without the tick that was meant."""
+        """Return the calls of the robot of one name, without the tick that was meant."""
         return [(each[1], *each[3:]) for each in self.robot.told if each[0] == name]
 
     def touch_way(self, way: str) -> None:
@@ -53,7 +53,7 @@ class Junction:
         self.phone.touch(f"[data-way={way}]")
 
     def look(self, name: str, tab: str = "teach", sizes: tuple[tuple[int, int], ...] = SIZES) -> None:
-        """It can be read and touched on these screens."""
+        """Assert contrast and targets on these screens."""
         for size in sizes:
             self.phone.turn(size, touch=size != LAPTOP)
             self.phone.wait(lambda: self.phone.run(CALM), "the colours of an answer are gone")
@@ -74,11 +74,11 @@ def junction(a_lesson: Lesson) -> Junction:
     return Junction(a_lesson)
 
 
-def test_the_line_says_why_the_mid_level_wants_this_way_and_what_it_has_come_by(junction: Junction) -> None:
+def test_line_has_the_choice_of_the_mid_level_and_its_symbols(junction: Junction) -> None:
     phone = junction.phone
     junction.reads("#mid-sentence", "turn left because mid-level RLA 12: 2 of 12 differ, R 6")
     assert not phone.shows("#behaviours")
-    assert phone.has('#strip[aria-label="came by: straight, left, left, straight, right, straight, left"]')
+    assert phone.has('#strip[aria-label="passed: straight, left, left, straight, right, straight, left"]')
     arrows = phone.run("return [...document.querySelectorAll('#strip i')].map((e) => e.title);")
     assert arrows[-3:] == ["straight", "left", "turn left"]  # time goes to the right, what it wants now is last
     junction.look("way-known")
@@ -102,14 +102,14 @@ def test_it_asks_which_way_and_big_buttons_answer(junction: Junction) -> None:
     assert junction.told("correct") == []
 
 
-def test_the_mid_level_is_corrected_told_what_is_also_possible_and_overridden(junction: Junction) -> None:
+def test_mid_level_is_corrected_extended_and_overridden(junction: Junction) -> None:
     phone = junction.phone
     junction.reads("#mid-sentence", "turn left because")
     junction.touch_way("straight_on")
     phone.wait(lambda: junction.told("correct") == [("straight_on", "mid")], "a correction of the mid level")
-    phone.touch("[data-meant=beside]")
+    phone.touch("[data-meant=also]")
     junction.touch_way("turn_right")
-    phone.wait(lambda: junction.told("answer") == [("turn_right", "mid", True)], "a way beside the one it knows")
+    phone.wait(lambda: junction.told("answer") == [("turn_right", "mid", True)], "an alternative")
     phone.touch("[data-meant=once]")
     phone.show("13-once")
     junction.touch_way("turn_right")
@@ -117,11 +117,11 @@ def test_the_mid_level_is_corrected_told_what_is_also_possible_and_overridden(ju
     pressed = phone.text("#meant [aria-pressed=true]")
     assert pressed.startswith("right")  # the next touch is a lesson again
     junction.show(mid=replace(COMMANDS, behaviour="turn_right", rla=None, overridden=True))
-    junction.reads("#mid-sentence", "turn right because a teacher said so, until it has finished")
+    junction.reads("#mid-sentence", "turn right by the teacher's choice, until it has finished")
     assert junction.told("correct") == [("straight_on", "mid")]
 
 
-def test_what_the_basic_level_asks_turns_the_pad_over_and_back(junction: Junction) -> None:
+def test_question_of_the_basic_level_changes_the_buttons(junction: Junction) -> None:
     phone = junction.phone
     junction.show(cause="unknown", asks_at="basic", action=None, rla=None, distance=812.0)
     phone.wait(lambda: phone.shows("#actions"), "the actions are offered")
@@ -157,7 +157,7 @@ def test_places_get_names_and_are_sought(junction: Junction) -> None:
     phone = junction.phone
     phone.touch("#tab-goals")
     junction.reads("#goal-list", "window")
-    junction.reads("#goal-now", "seeks nothing")
+    junction.reads("#goal-now", "no goal")
     phone.write("#situation-name", "lift")
     phone.touch("#name-situation")
     phone.wait(lambda: junction.told("name_situation") == [("lift",)], "this place has a name")
@@ -183,10 +183,10 @@ def test_places_get_names_and_are_sought(junction: Junction) -> None:
 
 def test_a_mid_level_that_knows_places_tells_where_it_is(junction: Junction) -> None:
     phone, robot = junction.phone, junction.robot
-    robot.greeting = replace(robot.greeting, mid=MidIntroduction("place", 6, 0.5), boot=b"anew")
+    robot.greeting = replace(robot.greeting, mid=MidIntroduction("place", 6, 0.5), boot=b"again")
     here = ("x_m 1.80", "y_m 3.62", "east 0.00", "north 1.00", "wall_left 1.00", "wall_right 0.00")
     there = ("x_m 1.80", "y_m 5.40", "east -1.00", "north 0.00", "wall_left 0.50", "wall_right 0.00")
-    junction.show(boot=b"anew", mid=replace(COMMANDS, distance=0.08, radius=0.5, here=here, there=here))
+    junction.show(boot=b"again", mid=replace(COMMANDS, distance=0.08, radius=0.5, here=here, there=here))
     junction.reads("#mid-sentence", "turn left because mid-level RLA 12: 0.08 off, R 0.50")
     junction.reads("#strip", "x 1.80 m, y 3.62 m, \N{UPWARDS ARROW}, wall left")
     junction.look("place", sizes=(SMALL,))
@@ -197,7 +197,7 @@ def test_a_mid_level_that_knows_places_tells_where_it_is(junction: Junction) -> 
     junction.look("which-way-from-a-place", sizes=(SMALL,))
 
 
-def test_where_there_is_no_mid_level_nothing_of_it_is_shown(a_lesson: Lesson) -> None:
+def test_robot_without_a_mid_level_shows_none(a_lesson: Lesson) -> None:
     def prepare(robot: FakeRobot) -> None:
         robot.greeting = replace(A_HELLO, actions=ACTIONS, behaviours=TURNS)
 
@@ -221,7 +221,7 @@ def test_a_robot_in_the_streets_is_taught_which_way_and_how(
         phone.wait(lambda: "Which way? I know none yet" in phone.text("#sentence"), "it asks which way")
         phone.complaints()  # of the page before, whose server is gone
         phone.touch("#claim-button")
-        phone.wait(lambda: not phone.shows("#claim"), "the pad is open")
+        phone.wait(lambda: not phone.shows("#claim"), "this page has control")
         phone.show("14-which-way")
         phone.touch("[data-way=turn_left]")
         phone.wait(lambda: "I know nothing of turn left yet" in phone.text("#sentence"), "now it asks how")
@@ -234,7 +234,7 @@ def test_a_robot_in_the_streets_is_taught_which_way_and_how(
         phone.wait(lambda: phone.shows("#ways") and phone.run(READY), "the ways are back")
         phone.touch("[data-meant=once]")
         phone.touch("[data-way=straight_on]")
-        phone.wait(lambda: "a teacher said so" in phone.text("#mid-sentence"), "the teacher overrides it")
+        phone.wait(lambda: "teacher's choice" in phone.text("#mid-sentence"), "the teacher overrides it")
         answer = "straight_on is wanted until the next junction is passed"
         phone.wait(lambda: phone.text("#said") == answer, "the robot answers")
         phone.touch("#tab-goals")

@@ -1,4 +1,4 @@
-"""The page's server as a browser, a stranger and another site meet it."""
+"""The page's server: access, headers, WebSocket, files, limits."""
 
 import contextlib
 import http.client
@@ -83,7 +83,7 @@ async def served(*, public: PublicAddress | None = None, request_within_s: float
 
 
 async def hear(socket: ClientConnection, kind: str) -> dict[str, Any]:
-    """The next message of a kind."""
+    """Return the next message of a kind."""
     while True:
         message: dict[str, Any] = json.loads(await socket.recv())
         if message["kind"] == kind:
@@ -91,14 +91,14 @@ async def hear(socket: ClientConnection, kind: str) -> dict[str, Any]:
 
 
 async def see(page: Served, socket: ClientConnection) -> int:
-    """A picture comes to the page; its number."""
+    """Send a state to the page; return its number."""
     await socket.send('{"kind": "beat", "picture": null, "at_ms": 0}')
     page.robot.show(teacher="local")
     number: int = (await hear(socket, "state"))["picture"]
     return number
 
 
-async def test_without_the_cookie_there_is_nothing_but_how_to_get_it() -> None:
+async def test_get_without_the_cookie_is_403() -> None:
     async with served() as page:
         for path in ("/", "/index.html", "/app.js", "/style.css", "/robot", "/nothing"):
             got = await page.get(path)
@@ -109,7 +109,7 @@ async def test_without_the_cookie_there_is_nothing_but_how_to_get_it() -> None:
             assert wrong.status == 403
 
 
-async def test_the_token_brings_the_cookie_and_the_cookie_the_page() -> None:
+async def test_pair_sets_the_cookie_which_opens_the_page() -> None:
     async with served() as page:
         got = await page.get(f"/pair?token={TOKEN}")
         assert got.status == 200
@@ -125,7 +125,7 @@ async def test_the_token_brings_the_cookie_and_the_cookie_the_page() -> None:
         assert (await page.get("/../app.py", brought)).status == 404
 
 
-async def test_wrong_tokens_never_lock_out_the_right_one() -> None:
+async def test_pair_wrong_tokens_do_not_lock_out_the_right_one() -> None:
     async with served() as page:
         for _ in range(5):
             assert (await page.get("/pair?token=guess")).status == 403
@@ -136,7 +136,7 @@ async def test_wrong_tokens_never_lock_out_the_right_one() -> None:
         assert (await page.get("/pair?token=guess")).status == 429
 
 
-async def test_under_a_foreign_name_nothing_is_served() -> None:
+async def test_get_of_a_foreign_host_is_421() -> None:
     async with served() as page:
         for path in ("/", f"/pair?token={TOKEN}"):
             assert (await page.get(path, {**page.cookie, "Host": f"evil.example:{page.port}"})).status == 421
@@ -146,7 +146,7 @@ async def test_under_a_foreign_name_nothing_is_served() -> None:
                 pass
 
 
-async def test_no_other_site_opens_the_websocket() -> None:
+async def test_websocket_of_another_origin_is_refused() -> None:
     async with served() as page:
         for origin in (None, "null", "http://evil.example", "https://127.0.0.1"):
             with pytest.raises(InvalidStatus):
@@ -203,7 +203,7 @@ async def test_pictures_come_over_the_websocket_and_orders_go_back() -> None:
         assert (answer["number"], answer["accepted"]) == (7, True)
 
 
-async def test_what_no_page_of_ours_says_closes_its_websocket() -> None:
+async def test_invalid_message_closes_the_websocket() -> None:
     async with served() as page, page.websocket() as socket:
         await socket.send('{"kind": "drive"}')
         await socket.wait_closed()
@@ -231,7 +231,7 @@ async def test_the_end_of_the_server_lets_go_of_the_robot_first() -> None:
         assert page.robot.told[-1] == ("let_go",)
 
 
-async def test_connections_that_say_nothing_do_not_keep_the_teacher_out() -> None:
+async def test_silent_connections_do_not_keep_the_teacher_out() -> None:
     async with served() as page, AsyncExitStack() as idle:
         for _ in range(120):
             await idle.enter_async_context(await anyio.connect_tcp("127.0.0.1", page.port))
@@ -267,7 +267,7 @@ async def test_a_page_stays_for_longer_than_a_request_may_take() -> None:
         await see(page, socket)
 
 
-async def test_behind_a_tls_proxy_the_page_is_served_under_its_public_address_alone() -> None:
+async def test_public_address_is_served_for_a_tls_proxy() -> None:
     async with served(public=PublicAddress("robot.example")) as page:
         public = {"Host": "robot.example"}
         got = await page.get(f"/pair?token={TOKEN}", public)

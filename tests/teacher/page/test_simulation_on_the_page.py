@@ -66,24 +66,24 @@ def test_back_to_start_is_one_touch_and_new_knowledge_two(lesson: Lesson) -> Non
     phone.wait(lambda: ("next_run", None, None, True) in lesson.robot.told, "the next run is wanted")
 
 
-def test_the_speed_is_chosen_and_the_one_that_is_reached_is_shown(lesson: Lesson) -> None:
+def test_speed_is_chosen_and_the_reached_one_shown(lesson: Lesson) -> None:
     phone, robot = lesson.phone, lesson.robot
     robot.simulated = replace(A_SIMULATION, speed=10, reached=5.04)
     choose(phone, "#sim-speed", "10")
     phone.wait(lambda: ("set_speed", 10) in robot.told, "it is told")
-    lesson.reads("#sim-reached", "now 5.0 times")
+    lesson.reads("#sim-reached", "5.0 times reached")
     choose(phone, "#sim-task", "eight")
     robot.simulated = replace(A_SIMULATION, speed=10, reached=7.3)
     assert robot.state is not None
     lesson.show(tick=robot.state.tick + 100)
-    lesson.reads("#sim-reached", "now 7.3 times")
+    lesson.reads("#sim-reached", "7.3 times reached")
     assert phone.run("return document.querySelector('#sim-task').value;") == "eight"
     phone.middle("#sim-speed")
     phone.show("25-speed")
 
 
-@pytest.mark.parametrize(("unit", "shown"), [("laps", "laps 2.3"), ("m", "way 2 m")])
-def test_what_it_did_of_its_task_stands_beside_the_progress(a_lesson: Lesson, unit: str, shown: str) -> None:
+@pytest.mark.parametrize(("unit", "shown"), [("laps", "laps 2.3"), ("m", "distance 2 m")])
+def test_progress_shows_the_task_s_unit(a_lesson: Lesson, unit: str, shown: str) -> None:
     def prepare(robot: FakeRobot) -> None:
         robot.simulated = replace(A_SIMULATION, progress=2.34, unit=unit)
 
@@ -92,7 +92,7 @@ def test_what_it_did_of_its_task_stands_beside_the_progress(a_lesson: Lesson, un
     a_lesson.phone.show(f"26-measure-{unit}")
 
 
-def test_a_generated_world_that_is_driven_in_is_chosen_by_its_number(a_lesson: Lesson) -> None:
+def test_generated_world_is_chosen_by_its_number(a_lesson: Lesson) -> None:
     def prepare(robot: FakeRobot) -> None:
         robot.simulated = replace(A_SIMULATION, world="rooms-17")
 

@@ -45,7 +45,7 @@ def test_a_latched_guard_goes_before_the_rule_that_would_drive(lesson: Lesson) -
     assert phone.run(_GO) == [True, "none"]
 
 
-def test_a_robot_at_a_bumper_asks_and_an_action_corrects_the_rule_that_pushes(lesson: Lesson) -> None:
+def test_robot_at_a_bumper_asks_and_is_corrected(lesson: Lesson) -> None:
     phone = lesson.phone
     stands = {"cause": "touches", "action": None, "rla": None, "left_m_s": 0.0, "right_m_s": 0.0}
     lesson.show(standing=TOUCHES, nearest=1, nearest_action="forward", distance=90.0, bumpers=7, **stands)

@@ -1,4 +1,4 @@
-"""What the task is, how far teaching has come, and what the sensors make different."""
+"""Task, progress and differing sensors on the page."""
 
 from dataclasses import replace
 
@@ -70,7 +70,7 @@ def test_progress_is_told_with_rules_and_lessons_apart(a_lesson: Lesson) -> None
     a_lesson.reads("#progress", "by itself 87 % · asks 3 a minute · rules 12")
 
 
-def test_question_tells_places_and_centimetres_and_marks_the_sensors(a_lesson: Lesson) -> None:
+def test_question_has_places_centimetres_and_marks(a_lesson: Lesson) -> None:
     a_lesson.begin(prepare)
     phone = a_lesson.phone
     assert phone.run(MARKED, "#robot-view") == 0
@@ -114,7 +114,7 @@ def test_trail_outlives_a_reload_and_ends_with_the_robot_program(a_lesson: Lesso
 
 
 def stay(phone: Phone) -> None:
-    """The page sees some pictures more: it notes ten places a second."""
+    """Send more states: the page stores ten places a second."""
     phone.driver.execute_async_script("const [done] = arguments; setTimeout(done, 300);")
 
 
@@ -125,7 +125,7 @@ def reload(phone: Phone) -> None:
 
 
 def xs(phone: Phone) -> set[float]:
-    """Where the trail that was kept goes along."""
+    """Return the x of each stored point of the trail, in metres."""
     return {x for _, x, _ in phone.run("return JSON.parse(sessionStorage.getItem('kurt2rt.trail')).points;")}
 
 

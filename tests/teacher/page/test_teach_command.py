@@ -16,7 +16,7 @@ from tests.cli.helpers import running
 
 
 def free_udp_port() -> int:
-    """A port that nobody listens on."""
+    """Return a free UDP port."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         probe.bind(("127.0.0.1", 0))
         port: int = probe.getsockname()[1]

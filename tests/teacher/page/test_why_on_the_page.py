@@ -39,7 +39,7 @@ def test_a_touch_on_its_sentence_tells_why_it_does_so(lesson: Lesson) -> None:
     assert not phone.shows("#explanation")
 
 
-def test_it_is_asked_anew_when_the_teacher_wants_it_and_stop_stays_free(lesson: Lesson) -> None:
+def test_refresh_asks_again_and_stop_stays_free(lesson: Lesson) -> None:
     phone = lesson.phone
     lesson.robot.decided = facts(level((123.0, 84.0), NEAREST, RUNNER_UP), action="back")
     phone.key("keyDown", "KeyY")

@@ -1,10 +1,10 @@
-// The robot's repertoire as buttons: a touch answers while the robot asks, and corrects while it drives.
+// Buttons of the robot's actions: a touch answers a question, or corrects a robot that drives.
 
 import { glyph } from "./glyphs.js";
 
 export const WITHDRAWN = "ask"; // the action of an RLA whose action was withdrawn
 
-// Where a known action has its place: row, first column, columns. Left is left.
+// Grid place of each known action: row, first column, number of columns. Left is left.
 const PLACES = {
   curve_left: [1, 1, 1], bear_left: [1, 2, 1], forward: [1, 3, 1], bear_right: [1, 4, 1], curve_right: [1, 5, 1],
   spin_left: [2, 1, 1], quarter_turn_left: [2, 2, 1], stand: [2, 3, 1], quarter_turn_right: [2, 4, 1], spin_right: [2, 5, 1],
@@ -39,7 +39,7 @@ export class ActionPad {
     const button = document.createElement("button");
     button.type = "button";
     button.dataset.action = name;
-    button.setAttribute("aria-label", NAMES[name] ?? words(name)); // begins with the text that is seen
+    button.setAttribute("aria-label", NAMES[name] ?? words(name))
     const picture = glyph(name);
     if (picture) button.append(picture);
     const label = document.createElement("small");
@@ -56,7 +56,7 @@ export class ActionPad {
     return button;
   }
 
-  // Which one drives, and which one the nearest RLA would choose.
+  // Marks the action that drives, and the action of the nearest RLA.
   show(state) {
     for (const [name, button] of this.#buttons) {
       button.classList.toggle("current", name === state.action && state.stands.reason === "drives");
@@ -64,7 +64,7 @@ export class ActionPad {
     }
   }
 
-  mark(name, outcome) {
+  markOutcome(name, outcome) {
     const button = this.#buttons.get(name);
     if (!button) return;
     button.classList.remove("pending", "saved", "refused");

@@ -1,9 +1,10 @@
-// The teacher's page: what comes from the robot is shown, what the teacher touches is sent.
+// The teacher's page: it shows the robot's messages and sends the teacher's touches.
 
 import { ActionPad, WITHDRAWN, words } from "./actions.js";
 import { Bubbles } from "./bubbles.js";
 import { onTheme } from "./canvas.js";
 import { Critic, CRITIC } from "./critic.js";
+import { Decision, setText } from "./decision.js";
 import { Exam } from "./exam.js";
 import { Explanation } from "./explanation.js";
 import { Files } from "./files.js";
@@ -13,130 +14,128 @@ import { Health } from "./health.js";
 import { keyboard } from "./keyboard.js";
 import { Lessons, twice } from "./lessons.js";
 import { Link } from "./link.js";
-import { BASIC, MID } from "./mid.js";
-import { Organising } from "./organising.js";
+import { Drive, driveCircle } from "./manual_drive.js";
+import { MidLevelPad } from "./mid_level.js";
+import { BASIC, MID } from "./mid_text.js";
 import { showProgress } from "./progress.js";
 import { drawRobot } from "./robot_view.js";
+import { SessionPanel } from "./session.js";
 import { Simulation } from "./simulation.js";
-import { Drive, stick } from "./stick.js";
-import { Ways } from "./ways.js";
-import { setText, Why } from "./why.js";
+import { text } from "./texts.js";
 import { WorldView } from "./world_view.js";
 
 const $ = (id) => document.getElementById(id);
 const TABS = ["teach", "drive", "goals", "lessons", "more"];
-const IN_CHARGE = [...TABS, "behaviours", "levels"]; // what only the teacher may touch
+const CONTROLLED = [...TABS, "behaviours", "levels"]; // inert while this page has no control
 const FASTEST_BY_HAND_M_S = 0.6;
-const SAID_MS = 8000;
-const PICTURE_MS = 1000;
+const MESSAGE_MS = 8000;
+const STATE_MS = 1000;
 const LIST_MS = 5000;
 
 const link = new Link();
 const drive = new Drive(link);
-const why = new Why();
-const pad = new ActionPad($("actions"), teach);
-const lessons = new Lessons((lesson) => tell("undo", { lesson }));
-const ways = new Ways(teachWay);
-const goals = new Goals(tell);
+const decision = new Decision();
+const actionPad = new ActionPad($("actions"), teach);
+const lessons = new Lessons((lesson) => sendCommand("undo", { lesson }));
+const midPad = new MidLevelPad(teachBehaviour);
+const goals = new Goals(sendCommand);
 const critic = new Critic(appraise);
 const health = new Health();
 const explanation = new Explanation(link);
-const organising = new Organising(tell);
-const files = new Files(tell, say);
-const exam = new Exam(tell);
-const simulation = new Simulation(tell);
-const world = new WorldView($("world-view"), (name, args) => tell(name, args));
+const session = new SessionPanel(sendCommand);
+const files = new Files(sendCommand, showMessage);
+const exam = new Exam(sendCommand);
+const simulation = new Simulation(sendCommand);
+const world = new WorldView($("world-view"), (name, args) => sendCommand(name, args));
 
 let hello = null;
 let page = { seat: "elsewhere", device: "", robot: "" };
 
-// ---- Orders
+// ---- Commands
 
 const TEACHES = ["answer", "correct", "reward", "appraise", "undo", "name"];
-let teaching = 0; // orders of these that are not answered yet
-let taught = 0; // number of the newest that was
+let pendingLessons = 0; // commands of TEACHES without an answer
+let answered = 0; // number of the newest answered one
 
-// Says what became of an order: pending, then saved or refused.
-async function tell(name, args = {}, doing = words(name)) {
-  say("pending", `${doing} …`);
-  if (!TEACHES.includes(name)) return heed(await link.order(name, args));
-  teaching += 1;
-  const answer = await link.order(name, args);
-  teaching -= 1;
-  taught = Math.max(taught, answer.done ?? 0);
-  return heed(answer);
+// Sends a command and shows its outcome: pending, then saved or refused. Resolves with the answer.
+async function sendCommand(name, args = {}, doing = words(name)) {
+  showMessage("pending", `${doing} …`);
+  if (!TEACHES.includes(name)) return showAnswer(await link.command(name, args));
+  pendingLessons += 1;
+  const answer = await link.command(name, args);
+  pendingLessons -= 1;
+  answered = Math.max(answered, answer.done ?? 0);
+  return showAnswer(answer);
 }
 
-function heed(answer) {
-  say(answer.accepted ? "saved" : "refused", answer.text || (answer.accepted ? "done" : `refused: ${answer.why}`));
+function showAnswer(answer) {
+  showMessage(answer.accepted ? "saved" : "refused", answer.text || (answer.accepted ? "done" : `refused: ${answer.why}`));
   navigator.vibrate?.(answer.accepted ? 20 : [30, 40, 30]);
   return answer;
 }
 
-let forgetting = null;
+let hideTimer = null;
 
-function say(outcome, text) {
+function showMessage(outcome, sentence) {
   const line = $("said");
   line.className = outcome;
-  setText(line, text);
-  clearTimeout(forgetting);
-  if (outcome !== "pending") forgetting = setTimeout(() => setText(line, "\u00a0"), SAID_MS);
+  setText(line, sentence);
+  clearTimeout(hideTimer);
+  if (outcome !== "pending") hideTimer = setTimeout(() => setText(line, "\u00a0"), MESSAGE_MS);
 }
 
 function teach(action) {
   if (!link.state) return;
-  // Beyond R there is no RLA to correct, nor where its action was withdrawn, whether the robot asks just now or not.
+  // Beyond R, and at a withdrawn action, there is nothing to correct: the touch is an answer.
   const { nearest, nearest_action: its, distance, radius, asks_at: at } = link.state;
-  // While the mid level asks, these are of that level; a correction is right however near the basic one's RLAs are.
+  // While the mid level asks, the state has its nearest RLA; a correction of the basic level is always valid.
   const asks = at === BASIC && (nearest === null || its === WITHDRAWN || distance === null || distance > radius);
-  give(pad, action, asks ? "answer" : "correct", asks ? { level: BASIC, beside: false } : { level: BASIC }, asks);
+  sendLesson(actionPad, action, asks ? "answer" : "correct", asks ? { level: BASIC, beside: false } : { level: BASIC }, asks);
 }
 
-// At the mid level; `meant` says whether it is right here, possible too, or wanted only this once.
-function teachWay(behaviour, meant) {
+// Teaches the mid level; `meant`: teach (right here), also (an alternative) or once (no lesson).
+function teachBehaviour(behaviour, meant) {
   if (!link.state?.mid) return;
   if (meant === "once") {
-    if (!tooEarly(behaviour)) tell("pursue", { behaviour }, `${words(behaviour)}, this once`);
+    if (!refuseEarly(behaviour)) sendCommand("pursue", { behaviour }, `${words(behaviour)}, this once`);
     return;
   }
   const { nearest, nearest_behaviour: its, distance, radius } = link.state.mid;
   const asks = nearest === null || its === WITHDRAWN || distance === null || distance > radius;
-  const beside = !asks && meant === "beside";
-  if (asks || beside) give(ways, behaviour, "answer", { level: MID, beside }, asks);
-  else give(ways, behaviour, "correct", { level: MID }, false);
+  const alternative = !asks && meant === "also";
+  if (asks || alternative) sendLesson(midPad, behaviour, "answer", { level: MID, beside: alternative }, asks);
+  else sendLesson(midPad, behaviour, "correct", { level: MID }, false);
 }
 
-// A lesson from the buttons of a pad: `asks` where it answers a question.
-async function give(from, action, name, args, asks) {
-  if (tooEarly(action)) return;
-  if (asks) busy(true);
-  from.mark(action, "pending");
-  const answer = await tell(name, { action, ...args }, `${name}: ${words(action)}`);
-  from.mark(action, answer.accepted ? "saved" : "refused");
-  setTimeout(() => from.mark(action, null), 900);
+// Sends a lesson of a pad's button; `asks`: it answers a question.
+async function sendLesson(pad, action, name, args, asks) {
+  if (refuseEarly(action)) return;
+  if (asks) setAnswering(true);
+  pad.markOutcome(action, "pending");
+  const answer = await sendCommand(name, { action, ...args }, `${name}: ${words(action)}`);
+  pad.markOutcome(action, answer.accepted ? "saved" : "refused");
+  setTimeout(() => pad.markOutcome(action, null), 900);
   if (!asks) return;
-  if (answer.accepted || answer.why === "unknown") await pictureAfter(answer.tick ?? -1);
-  busy(false);
+  if (answer.accepted || answer.why === "unknown") await stateAfter(answer.tick ?? -1);
+  setAnswering(false);
 }
 
-// The question on the screen is answered already, or has just taken another one's place: a second answer would be a
-// second RLA beside the first.
-function tooEarly(action) {
-  if (!asking && !ways.justTurned) return false;
-  const wait = asking ? "wait for the picture after the last answer" : "the question has just changed, look again";
-  say("busy", `${words(action)} was not sent: ${wait}`);
+// Refuses a second answer to a question, which would make a second RLA, and an answer to one that has just changed.
+function refuseEarly(action) {
+  if (!answering && !midPad.justTurned) return false;
+  showMessage("busy", text(answering ? "awaitPicture" : "questionChanged", { action: words(action) }));
   return true;
 }
 
-let asking = false;
+let answering = false;
 
-function busy(is) {
-  asking = is;
+function setAnswering(is) {
+  answering = is;
   for (const id of ["actions", "ways"]) $(id).setAttribute("aria-busy", String(is));
 }
 
-// A picture that came from now on and is newer than a tick; or for a second none did.
-function pictureAfter(tick) {
+// Resolves with the first new state that is newer than a tick, or after a second.
+function stateAfter(tick) {
   return new Promise((resolve) => {
     const end = () => {
       clearTimeout(timer);
@@ -144,73 +143,73 @@ function pictureAfter(tick) {
       resolve();
     };
     const see = ({ detail }) => detail.tick > tick && end();
-    const timer = setTimeout(end, PICTURE_MS);
+    const timer = setTimeout(end, STATE_MS);
     link.addEventListener("state", see);
   });
 }
 
-// The newest lesson that stands, once the list has all that was taught from here; undefined without one.
+// Resolves with the newest valid lesson once the list has all lessons of this page; undefined without one.
 async function newestLesson() {
   const until = performance.now() + LIST_MS;
-  while (teaching || lessons.after < taught) {
+  while (pendingLessons || lessons.after < answered) {
     if (performance.now() > until) return undefined;
     await new Promise((resolve) => setTimeout(resolve, 50));
   }
   return lessons.newest;
 }
 
-let meant = null;
+let undoCandidate = null;
 
-// The lesson is named at the first tap; whatever is taught until the second one stays.
-async function askUndo() {
-  meant = newestLesson();
-  const lesson = await meant;
-  if (lesson) say("asks", `undo ${lesson.text}? touch again`);
+// The first tap names the lesson; later lessons stay.
+async function prepareUndo() {
+  undoCandidate = newestLesson();
+  const lesson = await undoCandidate;
+  if (lesson) showMessage("asks", text("undoAgain", { lesson: lesson.text }));
 }
 
 async function undoLast() {
-  const lesson = await meant;
-  if (lesson) tell("undo", { lesson: lesson.command_id });
-  else say("refused", "no lesson that stands is in the list; nothing was sent");
+  const lesson = await undoCandidate;
+  if (lesson) sendCommand("undo", { lesson: lesson.command_id });
+  else showMessage("refused", text("nothingToUndo"));
 }
 
-// In phase 4 the signals are the critic's lessons.
-function signal(value) {
+// Sends a reward, or in phase 4 an appraisal for the critic.
+function reward(value) {
   if (link.state && critic.teaches(link.state)) {
     const name = critic.nameOf(value);
     if (name !== undefined) appraise(name);
   } else if (value) {
-    tell("reward", { value }, value > 0 ? "right" : "wrong");
+    sendCommand("reward", { value }, value > 0 ? "right" : "wrong");
   }
 }
 
 function appraise(appraisal) {
-  tell("appraise", { appraisal }, `to the critic: ${words(appraisal)}`);
+  sendCommand("appraise", { appraisal }, `to the critic: ${words(appraisal)}`);
 }
 
-const go = () => tell("resume", {}, "go");
+const resume = () => sendCommand("resume", {}, "go");
 
 async function stop() {
   drive.release();
-  say("pending", "stop …");
-  heed(await link.stop());
+  showMessage("pending", "stop …");
+  showAnswer(await link.stop());
 }
 
-// ---- What comes
+// ---- Messages of the server
 
 link.addEventListener("page", ({ detail }) => {
   page = detail;
-  claim();
+  showControl();
 });
 
 link.addEventListener("hello", ({ detail }) => {
   hello = detail;
-  organising.build(hello);
-  pad.build(hello.actions);
-  ways.build(hello);
+  session.build(hello);
+  actionPad.build(hello.actions);
+  midPad.build(hello);
   goals.build(hello);
   critic.build(hello);
-  world.greet(hello);
+  world.setHello(hello);
   files.build(hello);
   exam.build(hello);
   setText($("what"), hello.what || `Task ${words(hello.task)}`);
@@ -220,40 +219,40 @@ link.addEventListener("hello", ({ detail }) => {
   $("view").hidden = !hello.simulated;
   document.body.classList.toggle("simulated", hello.simulated);
   if (!hello.simulated) showView("robot");
-  pace();
+  applyPace();
 });
 
 link.addEventListener("world", ({ detail }) => {
   world.world = detail;
 });
-link.addEventListener("simulation", ({ detail }) => simulation.see(detail));
-link.addEventListener("exam", ({ detail }) => exam.see(detail));
-link.addEventListener("health", ({ detail }) => health.see(detail));
+link.addEventListener("simulation", ({ detail }) => simulation.update(detail));
+link.addEventListener("exam", ({ detail }) => exam.update(detail));
+link.addEventListener("health", ({ detail }) => health.update(detail));
 link.addEventListener("situations", ({ detail }) => goals.list(detail.situations));
 link.addEventListener("lessons", ({ detail }) => lessons.show(detail.lessons, detail.after));
 link.addEventListener("let_go", ({ detail }) => {
   drive.release();
-  say("refused", detail.text || "the press was ended; press anew");
+  showMessage("refused", detail.text || text("driveEnded"));
 });
 link.addEventListener("silent", ({ detail }) => setText($("no-picture-why"), detail.text));
 link.addEventListener("open", () => {
-  taught = 0; // the server may be another one, which counts from the beginning
-  setText($("no-picture-why"), "waiting for the robot's picture …");
+  answered = 0; // a new server counts from 0
+  setText($("no-picture-why"), text("awaitRobot"));
 });
-// A STOP that nobody has answered yet is shown for as long.
-link.addEventListener("stopwish", ({ detail: wished }) => {
-  $("stop").classList.toggle("wished", wished);
-  setText($("stop"), wished ? "STOP …" : "STOP");
+// A STOP without an answer is shown as pending.
+link.addEventListener("stoppending", ({ detail: pending }) => {
+  $("stop").classList.toggle("wished", pending);
+  setText($("stop"), pending ? "STOP …" : "STOP");
 });
 link.addEventListener("closed", () => {
-  setText($("no-picture-why"), "no link to this page's server; trying again …");
+  setText($("no-picture-why"), text("awaitServer"));
   page = { ...page, seat: "elsewhere" };
 });
-link.addEventListener("stopped", ({ detail }) => heed(detail));
-link.addEventListener("freshness", freshness);
+link.addEventListener("stopped", ({ detail }) => showAnswer(detail));
+link.addEventListener("freshness", showFreshness);
 
 link.addEventListener("state", ({ detail: state }) => {
-  world.see(state);
+  world.update(state);
   requestAnimationFrame(show);
 });
 
@@ -264,30 +263,30 @@ function show() {
   if (!state || !hello || shown === state) return;
   shown = state;
   setText($("phase"), `phase ${state.phase}`);
-  setText($("phase-name"), organising.phaseNames[state.phase - 1] ?? "");
+  setText($("phase-name"), session.phaseNames[state.phase - 1] ?? "");
   setText($("clock"), clock(state.clock_s));
   setText($("session"), state.session ?? "no session");
   setText($("lesson-count"), String(state.lessons));
-  $("go").disabled = !state.stands.needs_go || state.by_hand || !inCharge();
+  $("go").disabled = !state.stands.needs_go || state.by_hand || !inControl();
   showLink(state);
   showProgress(state, simulation.measure);
-  why.show(state, hello);
+  decision.show(state, hello);
   announce(state);
-  pad.show(state);
-  ways.show(state);
+  actionPad.show(state);
+  midPad.show(state);
   goals.show(state);
   critic.show(state, lessons.newestOf(CRITIC));
-  warn(state);
+  showWarnings(state);
   health.show(state);
-  if (state.refused && drive.held) say("refused", state.refused);
-  organising.show(state, inCharge());
-  claim();
+  if (state.refused && drive.held) showMessage("refused", state.refused);
+  session.show(state, inControl());
+  showControl();
   draw();
 }
 
 let announced = "";
 
-// The question alone is said by a screen reader without being asked, once for each time that the robot begins to ask.
+// Announces a question to a screen reader, once each time that the robot begins to ask.
 function announce(state) {
   const { asks: does, needs_go: waits, reason } = state.stands;
   const asks = does && !waits ? `${reason} ${state.behaviour}` : "";
@@ -306,13 +305,13 @@ function showLink(state) {
   const both = rtt === null ? null : rtt + (link.pageRttMs ?? 0);
   const parts = [`${Math.round(rate ?? 0)}/s`, both === null ? "" : `${both.toFixed(0)} ms`, age > 150 ? `${age} ms old` : ""];
   setText($("link-text"), parts.filter(Boolean).join(" · "));
-  $("link").title = `pictures a second, round trip to the robot (${rtt?.toFixed(1) ?? "–"} ms) and to this page's server`;
+  $("link").title = `pictures a second; round trip to the robot (${rtt?.toFixed(1) ?? "–"} ms) and to this page's server`;
 }
 
-function freshness() {
+function showFreshness() {
   const lost = !link.fresh;
   document.body.classList.toggle("no-picture", lost);
-  for (const id of IN_CHARGE) $(id).inert = lost || !inCharge();
+  for (const id of CONTROLLED) $(id).inert = lost || !inControl();
   if (lost) {
     drive.release();
     setText($("link-text"), "no picture");
@@ -320,11 +319,11 @@ function freshness() {
   }
 }
 
-function warn(state) {
+function showWarnings(state) {
   setText($("guard"), state.guard.length ? `guard: ${state.guard.join(", ")}` : "");
   const lines = state.trouble ? [state.trouble] : [];
   lines.push(...health.urgent(state));
-  if (state.unsaved) lines.push(`${state.unsaved} not saved yet`);
+  if (state.unsaved) lines.push(`${state.unsaved} lessons not saved yet`);
   const box = $("warnings");
   if (lines.join("\n") === [...box.children].map((each) => each.textContent).join("\n")) return;
   box.replaceChildren(
@@ -341,62 +340,59 @@ function clock(seconds) {
   return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}`;
 }
 
-// ---- Who is in charge
+// ---- Control
 
-function inCharge() {
+function inControl() {
   return page.seat === "here" && link.state?.teacher === page.device;
 }
 
-function claim() {
+function showControl() {
   const state = link.state;
   const box = $("claim");
-  box.hidden = inCharge() || !state;
-  for (const id of IN_CHARGE) $(id).inert = !inCharge() || !link.fresh;
+  box.hidden = inControl() || !state;
+  for (const id of CONTROLLED) $(id).inert = !inControl() || !link.fresh;
   if (box.hidden) return;
   drive.release();
   const another = state.teacher && state.teacher !== page.device;
-  const text =
-    another ? `${state.teacher} is the teacher. This page watches; it can stop the robot.`
-    : page.seat === "elsewhere" ? "Another page has the pad. This one watches; it can stop the robot."
-    : page.seat === "free" ? "No page has the pad. This one watches; it can stop the robot."
-    : "Nobody teaches the robot.";
-  setText($("claim-text"), text);
-  setText($("claim-button"), another ? `Take over from ${state.teacher}` : page.seat === "here" ? "Take the robot" : "Take the pad here");
+  const { teacher } = state;
+  const reason = another ? "otherTeacher" : { elsewhere: "controlElsewhere", free: "controlFree" }[page.seat] ?? "noTeacher";
+  setText($("claim-text"), text(reason, { teacher }));
+  setText($("claim-button"), text(another ? "takeOver" : page.seat === "here" ? "takeRobot" : "takeControl", { teacher }));
 }
 
-const take = () => tell("take", {}, "take");
+const take = () => sendCommand("take", {}, "take");
 $("claim-button").addEventListener("click", take);
 $("take-here").addEventListener("click", take);
 
 // ---- Touch
 
 $("stop").addEventListener("pointerdown", (event) => {
-  // At the first touch, not when the finger is lifted.
+  // At the touch itself, not when the finger is lifted.
   event.preventDefault();
   stop();
 });
 $("stop").addEventListener("click", (event) => {
   if (event.detail === 0) stop(); // from a keyboard or a screen reader: no touch came before it
 });
-$("go").addEventListener("click", go);
-$("praise").addEventListener("click", () => signal(1));
-$("blame").addEventListener("click", () => signal(-1));
-twice($("undo-last"), "sure?", undoLast, askUndo);
+$("go").addEventListener("click", resume);
+$("praise").addEventListener("click", () => reward(1));
+$("blame").addEventListener("click", () => reward(-1));
+twice($("undo-last"), "sure?", undoLast, prepareUndo);
 
-stick($("stick"), $("knob"), drive);
+driveCircle($("stick"), $("knob"), drive);
 drive.addEventListener("change", ({ detail }) => {
   const [left, right] = detail.speeds;
-  setText($("speeds"), detail.held ? `left ${left.toFixed(2)}, right ${right.toFixed(2)} m/s` : "hold the circle; let go to stop");
+  setText($("speeds"), detail.held ? `left ${left.toFixed(2)}, right ${right.toFixed(2)} m/s` : text("holdCircle"));
 });
 
 for (const button of $("pace").querySelectorAll("button")) {
   button.addEventListener("click", () => {
     for (const each of $("pace").querySelectorAll("button")) each.setAttribute("aria-pressed", String(each === button));
-    pace();
+    applyPace();
   });
 }
 
-function pace() {
+function applyPace() {
   const share = Number($("pace").querySelector("[aria-pressed=true]").dataset.share);
   drive.most = share * Math.min(FASTEST_BY_HAND_M_S, hello?.max_m_s ?? FASTEST_BY_HAND_M_S);
 }
@@ -411,10 +407,10 @@ function showTab(name) {
 TABS.forEach((name) => {
   $(`tab-${name}`).addEventListener("click", (event) => {
     showTab(name);
-    if (event.detail > 0) event.currentTarget.blur(); // clicked: the arrow keys are for the wheels
+    if (event.detail > 0) event.currentTarget.blur(); // after a click the arrow keys steer
   });
   $(`tab-${name}`).addEventListener("keydown", (event) => {
-    if (name === "drive") return; // there they steer
+    if (name === "drive") return; // there the arrow keys steer
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
     if (!step) return;
     event.stopPropagation();
@@ -435,7 +431,7 @@ new ResizeObserver(draw).observe($("stage"));
 onTheme(draw);
 new Bubbles();
 
-// Not modal: STOP and GO stay free.
+// Not modal, so that STOP and GO stay free.
 const help = () => ($("keys").open ? $("keys").close() : $("keys").show());
 $("show-keys").addEventListener("click", help);
 $("close-keys").addEventListener("click", () => $("keys").close());
@@ -443,19 +439,19 @@ $("close-keys").addEventListener("click", () => $("keys").close());
 keyboard({
   drive,
   stop,
-  go: () => !$("go").disabled && go(),
+  resume: () => !$("go").disabled && resume(),
   act: (i) => {
-    if (!inCharge()) return;
-    if (ways.level === MID) ways.names[i] && ways.choose(ways.names[i]);
-    else if (pad.names[i]) teach(pad.names[i]);
+    if (!inControl()) return;
+    if (midPad.level === MID) midPad.names[i] && midPad.choose(midPad.names[i]);
+    else if (actionPad.names[i]) teach(actionPad.names[i]);
   },
-  signal: (value) => inCharge() && signal(value),
-  undo: () => inCharge() && $("undo-last").checkVisibility() && $("undo-last").click(),
+  reward: (value) => inControl() && reward(value),
+  undo: () => inControl() && $("undo-last").checkVisibility() && $("undo-last").click(),
   why: () => explanation.toggle(),
   help,
-  mayDrive: () => inCharge() && link.fresh,
+  mayDrive: () => inControl() && link.fresh,
 });
-gamepad({ drive, mayDrive: () => inCharge() && link.fresh, say });
+gamepad({ drive, mayDrive: () => inControl() && link.fresh, showMessage });
 
 // ---- The screen stays on where the browser allows it.
 
@@ -464,7 +460,7 @@ async function stayAwake() {
   try {
     await navigator.wakeLock.request("screen");
   } catch {
-    // Refused, by a low battery for one: the screen's own time-out then ends presence, and the robot stands.
+    // Refused, for example because of a low battery: the screen's time-out ends presence, and the robot stops.
   }
 }
 document.addEventListener("visibilitychange", stayAwake);

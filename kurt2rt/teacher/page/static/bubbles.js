@@ -1,19 +1,20 @@
-// Three bubbles that say what to do: on the first visit, and whenever "?" is touched. Nothing waits for them.
+// Three bubbles of help: on the first visit, and after a touch of "?". They block nothing.
 
-import { setText } from "./why.js";
+import { setText } from "./decision.js";
+import { text } from "./texts.js";
 
 const KEY = "kurt2rt.bubbles";
 const GAP_PX = 6;
 const BUBBLES = [
-  ["why", "Here it says what it does and why. When it asks, this turns yellow."],
-  ["panel", "Take the robot and touch what is right here: a lesson, which acts at once."],
-  ["stop-bar", "STOP stops it, from every device. GO lets it drive on."],
+  ["why", "bubbleWhy"],
+  ["panel", "bubblePanel"],
+  ["stop-bar", "bubbleStop"],
 ];
 
 const $ = (id) => document.getElementById(id);
 
 export class Bubbles {
-  #shown = -1; // which of them; -1: none
+  #shown = -1; // index of the visible bubble; -1: none
 
   constructor() {
     $("show-bubbles").addEventListener("click", () => this.#show(0));
@@ -28,7 +29,7 @@ export class Bubbles {
     this.#point(false);
     this.#shown = number;
     this.#point(true);
-    setText($("bubble-text"), BUBBLES[number][1]);
+    setText($("bubble-text"), text(BUBBLES[number][1]));
     setText($("bubble-number"), `${number + 1} of ${BUBBLES.length}`);
     setText($("bubble-next"), number + 1 < BUBBLES.length ? "Next" : "Done");
     $("bubble").hidden = false;
@@ -42,7 +43,7 @@ export class Bubbles {
     try {
       localStorage.setItem(KEY, "seen");
     } catch {
-      // Storage is forbidden: they come again with the next visit.
+      // Storage is forbidden: the bubbles come again with the next visit.
     }
   }
 
@@ -50,7 +51,7 @@ export class Bubbles {
     if (this.#shown >= 0) $(BUBBLES[this.#shown][0]).classList.toggle("pointed-at", on);
   }
 
-  // Over the lower end of the picture, where nothing is touched.
+  // Places the bubble over the lower end of the picture, which has no buttons.
   #place() {
     if (this.#shown < 0) return;
     const stage = $("stage").getBoundingClientRect();

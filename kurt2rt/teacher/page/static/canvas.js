@@ -1,4 +1,4 @@
-// A canvas that is as sharp as the screen, in CSS pixels, in the colours of the page: light or dark.
+// Canvas with the screen's resolution, in CSS pixels and in the colours of the page's theme.
 
 const LIGHT = {
   ink: "#10151c", paper: "#ffffff", blue: "#0b4a8f", red: "#b00020", grey: "#5a6472", faint: "#c9d0d8",
@@ -9,7 +9,7 @@ const DARK = {
   pale: "#1d3a5c", shade: "#232b35", trail: "#6fb0e8", far: "#4f8fc6", near: "#ff6b72", differs: "#ff9a5c",
 };
 
-// Other modules see the colours of the present theme under these names.
+// Colours of the present theme.
 export let INK, PAPER, BLUE, RED, GREY, FAINT, PALE, SHADE, TRAIL, FAR, NEAR, DIFFERS;
 
 function paintIn(theme) {
@@ -38,13 +38,13 @@ export function onTheme(draw) {
   });
 }
 
-// A colour between two of the form #rrggbb, at a share of the way.
+// Returns the colour between two of the form #rrggbb; `share` 0 is the first, 1 the second.
 export function between(one, other, share) {
   const part = (text, i) => parseInt(text.slice(1 + 2 * i, 3 + 2 * i), 16);
   return `rgb(${[0, 1, 2].map((i) => Math.round(part(one, i) + (part(other, i) - part(one, i)) * share)).join(" ")})`;
 }
 
-// Clears it and returns { paint, width, height }, or null while it is not shown.
+// Clears a canvas and returns { paint, width, height }, or null while it is hidden.
 export function sheet(canvas) {
   const width = canvas.clientWidth;
   const height = canvas.clientHeight;
@@ -62,7 +62,7 @@ export function sheet(canvas) {
   return { paint, width, height };
 }
 
-// The robot's body in its own frame, x forward, in metres; the pen is there already.
+// Draws the robot's body in its own frame, x forward, in metres.
 export function body(paint, length, width, { fill, line, lineWidth }) {
   paint.beginPath();
   paint.roundRect(-length / 2, -width / 2, length, width, 0.03);

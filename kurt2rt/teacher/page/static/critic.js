@@ -1,12 +1,12 @@
-// The inner critic: buttons that teach it, what it thinks now, how well it agrees with the teacher, what it changed.
+// The inner critic: buttons that teach it, its opinion, its agreement with the teacher, its last change.
 
 import { words } from "./actions.js";
-import { setText, when } from "./why.js";
+import { setText, when } from "./decision.js";
 
 export const CRITIC = "critic"; // its name as a teacher
 const TAUGHT_IN = 4;
 const SIGNS = { [-1]: "−", 0: "0", 1: "+" };
-const CALM_MS = 400; // what it thinks may change with every picture; nobody can read that
+const CALM_MS = 400; // the opinion may change with every state, too fast to read
 
 const $ = (id) => document.getElementById(id);
 
@@ -15,23 +15,23 @@ function missing([bad, good]) {
   return parts.join(" and ");
 }
 
-// How far it may be believed, in words.
+// Returns its agreement with the teacher in words.
 export function agreement(state, trustedFrom) {
   if (state.agreement === null) {
-    return `needs ${missing(state.signals_missing) || "a few"} signals more of yours`;
+    return `needs ${missing(state.signals_missing) || "a few"} signals from you`;
   }
-  const share = (Math.floor(state.agreement * 100) / 100).toFixed(2); // not rounded up to the bound that it misses
+  const share = (Math.floor(state.agreement * 100) / 100).toFixed(2); // rounded down, so that it does not show a bound that it misses
   return state.trusted ? `agrees with you ${share}` : `agrees ${share}, needs ${trustedFrom.toFixed(2)}`;
 }
 
-// What it does with what it thinks, once the robot is alone with it; nothing while it only listens.
+// Returns its activity in phase 5; empty while it only listens.
 export function role({ role, bad_share: bad }) {
-  const percent = Math.floor((bad ?? 0) * 100); // not rounded up to what it would be needed for
+  const percent = Math.floor((bad ?? 0) * 100); // rounded down, so that it does not show the bound from which on it is needed
   switch (role) {
     case "listens":
       return "";
     case "measures":
-      return "measures how well it goes";
+      return "measures the driving";
     case "not needed":
       return `not needed: ${percent} % of the driving was bad`;
     default:
@@ -49,7 +49,7 @@ export class Critic {
   #names = []; // [{ name, value }], the worst first
   #trustedFrom = 1;
   #buttons = new Map();
-  #thought = { text: "", sinceMs: -Infinity };
+  #opinion = { text: "", sinceMs: -Infinity };
 
   constructor(choose) {
     this.#choose = choose;
@@ -79,7 +79,7 @@ export class Critic {
     return button;
   }
 
-  // Whether the buttons are for the critic.
+  // Returns whether the buttons teach the critic.
   teaches(state) {
     return this.#names.length > 0 && state.phase === TAUGHT_IN;
   }
@@ -93,7 +93,7 @@ export class Critic {
     $("critic").hidden = !seen;
     $("rewards").classList.toggle("appraises", this.teaches(state));
     if (!seen) return;
-    this.#think(state);
+    this.#showOpinion(state);
     const known = state.agreement !== null;
     $("trust").className = !known ? "unknown" : state.trusted ? "trusted" : "low";
     setText($("trusted"), state.trusted ? "trusted" : state.phase > TAUGHT_IN ? "only listens" : "not trusted yet");
@@ -106,12 +106,12 @@ export class Critic {
     setText($("changed"), lastChange(lesson));
   }
 
-  #think({ opinion, opinion_of: rla }) {
+  #showOpinion({ opinion, opinion_of: rla }) {
     const name = this.nameOf(opinion);
     const text = `critic: ${name === undefined ? "does not know this" : `thinks ${words(name)}`}`;
     const nowMs = performance.now();
-    if (text === this.#thought.text || nowMs - this.#thought.sinceMs < CALM_MS) return;
-    this.#thought = { text, sinceMs: nowMs };
+    if (text === this.#opinion.text || nowMs - this.#opinion.sinceMs < CALM_MS) return;
+    this.#opinion = { text, sinceMs: nowMs };
     setText($("opinion"), text);
     $("opinion").title = rla === null ? "" : `appraisal RLA ${rla}`;
     for (const [each, button] of this.#buttons) button.classList.toggle("current", each === name);

@@ -1,18 +1,18 @@
-// The exam of a simulated robot: begun here, driven by another process of the robot's program, shown as a picture.
+// Exam of a simulated robot: started here, driven by another process of the robot's program, shown as a picture.
 
-import { setText } from "./why.js";
+import { setText } from "./decision.js";
 
 const $ = (id) => document.getElementById(id);
 
 export class Exam {
-  #tell;
+  #sendCommand;
   #running = false;
-  #wanted = false; // begun from this page: its verdict opens by itself
+  #own = false; // started from this page: its result opens by itself
   #shown = "";
 
-  // `tell` gives an order and resolves with its answer.
-  constructor(tell) {
-    this.#tell = tell;
+  // `sendCommand` resolves with the answer.
+  constructor(sendCommand) {
+    this.#sendCommand = sendCommand;
     $("examine").addEventListener("click", () => this.#begin());
     $("show-exam").addEventListener("click", () => $("exam-result").show()); // not modal: STOP and GO stay free
     $("close-exam").addEventListener("click", () => $("exam-result").close());
@@ -22,7 +22,7 @@ export class Exam {
     $("exam").hidden = !hello.simulated;
   }
 
-  see(exam) {
+  update(exam) {
     this.#running = exam.running;
     $("examine").disabled = exam.running;
     $("exam-progress").hidden = !exam.running;
@@ -33,13 +33,13 @@ export class Exam {
     if (exam.running || !exam.picture || exam.picture === this.#shown) return;
     this.#shown = exam.picture;
     this.#fill(exam);
-    if (this.#wanted) $("exam-result").show();
-    this.#wanted = false;
+    if (this.#own) $("exam-result").show();
+    this.#own = false;
   }
 
   async #begin() {
-    const answer = await this.#tell("examine", {}, "exam");
-    this.#wanted = answer.accepted;
+    const answer = await this.#sendCommand("examine", {}, "exam");
+    this.#own = answer.accepted;
   }
 
   #fill(exam) {

@@ -1,6 +1,6 @@
-// Why the robot does what it does: asked of the robot when the box with its sentence is touched.
+// Explanation of the newest decision, asked of the robot when its sentence is touched.
 
-import { setText } from "./why.js";
+import { setText } from "./decision.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -18,7 +18,7 @@ export class Explanation {
     const table = $("explanation");
     if (table.open) return table.close();
     for (const other of document.querySelectorAll("dialog[open]")) other.close();
-    table.show(); // not modal: STOP and GO stay free
+    table.show(); // not modal, so that STOP and GO stay free
     this.#ask();
   }
 

@@ -1,4 +1,6 @@
-// Copies of the knowledge: the robot makes one, and the browser downloads it.
+// Copies of the knowledge: the robot writes one, and the browser downloads it.
+
+import { text } from "./texts.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -7,20 +9,20 @@ function size(bytes) {
 }
 
 export class Files {
-  #tell;
-  #say;
+  #sendCommand;
+  #showMessage;
 
-  // `tell` gives an order and resolves with its answer; `say` shows what became of something.
-  constructor(tell, say) {
-    this.#tell = tell;
-    this.#say = say;
+  // `sendCommand` resolves with the answer; `showMessage` shows an outcome and a sentence.
+  constructor(sendCommand, showMessage) {
+    this.#sendCommand = sendCommand;
+    this.#showMessage = showMessage;
     $("load").addEventListener("click", () => $("load-file").click());
     $("load-file").addEventListener("change", () => this.#load());
-    $("save").addEventListener("click", () => this.#keep("save", { label: $("save-label").value.trim() }));
-    $("export").addEventListener("click", () => this.#keep("export", {}));
+    $("save").addEventListener("click", () => this.#save("save", { label: $("save-label").value.trim() }));
+    $("export").addEventListener("click", () => this.#save("export", {}));
   }
 
-  // Knowledge comes back only to a simulated robot: a real one would let go of its bus meanwhile.
+  // Only a simulated robot loads knowledge: a real one would leave its bus meanwhile.
   build(hello) {
     $("load").hidden = !hello.simulated;
   }
@@ -30,20 +32,20 @@ export class Files {
     $("load-file").value = ""; // the same file may be chosen again
     if (!file) return;
     $("load").disabled = true;
-    this.#say("pending", `${file.name} is being uploaded …`);
+    this.#showMessage("pending", text("uploading", { name: file.name }));
     try {
       const response = await fetch("/upload", { method: "POST", body: file });
-      if (response.ok) await this.#tell("load", await response.json(), `load ${file.name}`);
-      else this.#say("refused", `${file.name}: ${await response.text()}`);
+      if (response.ok) await this.#sendCommand("load", await response.json(), `load ${file.name}`);
+      else this.#showMessage("refused", `${file.name}: ${await response.text()}`);
     } catch {
-      this.#say("refused", `${file.name}: the upload broke off; choose the file again`);
+      this.#showMessage("refused", text("uploadBroke", { name: file.name }));
     } finally {
       $("load").disabled = false;
     }
   }
 
-  async #keep(name, args) {
-    const answer = await this.#tell(name, args);
+  async #save(name, args) {
+    const answer = await this.#sendCommand(name, args);
     if (!answer.accepted || !answer.extra.name) return;
     const { name: file, size: bytes } = answer.extra;
     const link = document.createElement("a");
@@ -51,7 +53,7 @@ export class Files {
     link.download = file;
     link.textContent = file;
     const room = bytes ? ` (${size(bytes)})` : "";
-    // The link stays: a browser that asks first, or a download that broke off, is one more tap.
+    // The link stays for another tap, if the browser asks first or the download broke off.
     $("saved").replaceChildren("Downloaded: ", link, `${room}; a copy is on the robot.`);
     link.click();
   }

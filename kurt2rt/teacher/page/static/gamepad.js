@@ -1,4 +1,6 @@
-// A gamepad: its left stick drives by hand, and only while a shoulder button is held.
+// Gamepad: the left stick drives by hand while a shoulder button, the deadman switch, is held.
+
+import { text } from "./texts.js";
 
 const POLL_MS = 40;
 const DEADMAN = [4, 5, 6, 7]; // both shoulders of the standard mapping (W3C Gamepad, 8)
@@ -11,9 +13,9 @@ function deadman(pad) {
   return DEADMAN.some((i) => pad.buttons[i] && (pad.buttons[i].pressed || pad.buttons[i].value >= PRESSED_FROM));
 }
 
-export function gamepad({ drive, mayDrive, say }) {
-  let driving = null; // index of the gamepad that holds the robot
-  let spent = new Set(); // gamepads whose press ended otherwise: their button has to be let go first
+export function gamepad({ drive, mayDrive, showMessage }) {
+  let driving = null; // index of the gamepad that drives
+  let spent = new Set(); // gamepads whose press was ended: their button has to be released first
   let timer = null;
 
   const pads = () => [...navigator.getGamepads()].filter((pad) => pad?.connected && pad.mapping === "standard");
@@ -27,7 +29,7 @@ export function gamepad({ drive, mayDrive, say }) {
 
   const poll = () => {
     const there = pads();
-    if (driving !== null && !there.some((pad) => pad.index === driving)) end(); // gone without a word
+    if (driving !== null && !there.some((pad) => pad.index === driving)) end(); // disconnected without an event
     for (const pad of there) {
       const held = deadman(pad);
       if (!held) {
@@ -42,11 +44,11 @@ export function gamepad({ drive, mayDrive, say }) {
       const mayBegin = driving === null && !drive.held && document.hasFocus();
       if (!mayDrive() || (driving !== pad.index && !mayBegin)) {
         if (driving === pad.index) end();
-        spent.add(pad.index); // pressed when it was not its turn
+        spent.add(pad.index); // pressed while it may not drive
         continue;
       }
       driving = pad.index;
-      drive.hold(deadzone(pad.axes[0] ?? 0), -deadzone(pad.axes[1] ?? 0));
+      drive.press(deadzone(pad.axes[0] ?? 0), -deadzone(pad.axes[1] ?? 0));
     }
     if (!there.length) {
       clearInterval(timer);
@@ -55,10 +57,10 @@ export function gamepad({ drive, mayDrive, say }) {
   };
 
   addEventListener("gamepadconnected", ({ gamepad: pad }) => {
-    if (pad.mapping !== "standard") return say("refused", "gamepad: its buttons are not known; use another one");
-    say("saved", "gamepad: hold a shoulder button, then the left stick drives");
+    if (pad.mapping !== "standard") return showMessage("refused", text("gamepadUnknown"));
+    showMessage("saved", text("gamepadReady"));
     if (driving === pad.index) end();
-    // A button that is held already was not pressed to drive.
+    // A button that is held while the gamepad connects was not pressed to drive.
     spent.add(pad.index);
     timer ??= setInterval(poll, POLL_MS);
   });
@@ -68,7 +70,7 @@ export function gamepad({ drive, mayDrive, say }) {
   });
   for (const lost of ["blur", "pagehide"]) addEventListener(lost, end);
   document.addEventListener("visibilitychange", end);
-  // A press that ended for another reason, such as a lost link, needs a new one.
+  // After a press was ended for another reason, such as a lost link, a new press is needed.
   drive.addEventListener("change", ({ detail }) => {
     if (detail.held || driving === null) return;
     spent.add(driving);

@@ -1,4 +1,4 @@
-// Arrows for the actions that are known by name; others have their name alone.
+// Arrows of known actions; other actions have a name only.
 
 const SVG = "http://www.w3.org/2000/svg";
 
@@ -10,7 +10,7 @@ const LEFT = {
   along_left_wall: ["M15 21V4", "M9.5 9.5 15 4 20.5 9.5", "M4 2V22"],
 };
 
-// What a robot does at a junction, and the behaviours that have it do so.
+// Symbols and behaviours of junctions, by the action of the same arrow.
 const SAME_AS = {
   straight: "forward", straight_on: "forward", left: "quarter_turn_left", turn_left: "quarter_turn_left",
   right: "quarter_turn_right", turn_right: "quarter_turn_right",

@@ -1,21 +1,21 @@
-// Goals: places that have a name, where the robot is sent to, and how it stands with that.
+// Goals: named places, the goal that the robot seeks, and its status.
 
 import { twice } from "./lessons.js";
-import { setText } from "./why.js";
+import { setText } from "./decision.js";
 import { words } from "./actions.js";
 
 const $ = (id) => document.getElementById(id);
 
 export class Goals {
-  #tell;
+  #sendCommand;
   #names = "";
   #goal = null;
 
-  // `tell` gives an order and resolves with its answer.
-  constructor(tell) {
-    this.#tell = tell;
+  // `sendCommand` resolves with the answer.
+  constructor(sendCommand) {
+    this.#sendCommand = sendCommand;
     $("name-situation").addEventListener("click", () => this.#name());
-    $("stop-seeking").addEventListener("click", () => tell("stop_seeking", {}, "stop seeking"));
+    $("stop-seeking").addEventListener("click", () => sendCommand("stop_seeking", {}, "stop seeking"));
   }
 
   build(hello) {
@@ -29,7 +29,7 @@ export class Goals {
     this.#names = key;
     if (!names.length) {
       const none = document.createElement("li");
-      none.textContent = "No place has a name yet: name the one where the robot is.";
+      none.textContent = "No place has a name yet. Name the place where the robot is.";
       $("goal-list").replaceChildren(none);
       return;
     }
@@ -38,7 +38,7 @@ export class Goals {
   }
 
   show(state) {
-    setText($("goal-now"), state.goal ? state.plan_says || `seeks ${state.goal}` : "seeks nothing");
+    setText($("goal-now"), state.goal ? state.plan_says || `seeks ${state.goal}` : "no goal");
     setText($("plan"), state.plan.length ? `then ${state.plan.map(words).join(", ")}` : "");
     $("stop-seeking").disabled = !state.goal;
     if (state.goal === this.#goal) return;
@@ -61,12 +61,12 @@ export class Goals {
     here.type = "button";
     here.textContent = "Is here";
     here.setAttribute("aria-label", `Is here: the robot stands at ${name}`);
-    twice(here, "Sure?", () => this.#tell("be_at", { name }, `it is at ${name}`));
+    twice(here, "Sure?", () => this.#sendCommand("be_at", { name }, `robot is at ${name}`));
     const seek = document.createElement("button");
     seek.type = "button";
     seek.textContent = "Seek";
     seek.setAttribute("aria-label", `Seek ${name}`);
-    seek.addEventListener("click", () => this.#tell("seek", { name }, `seek ${name}`));
+    seek.addEventListener("click", () => this.#sendCommand("seek", { name }, `seek ${name}`));
     row.append(label, here, seek);
     return row;
   }
@@ -77,7 +77,7 @@ export class Goals {
       $("situation-name").focus();
       return;
     }
-    const answer = await this.#tell("name", { name }, `this is ${name}`);
+    const answer = await this.#sendCommand("name", { name }, `this is ${name}`);
     if (answer.accepted) $("situation-name").value = "";
   }
 }

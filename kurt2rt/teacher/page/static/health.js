@@ -1,6 +1,6 @@
-// How the robot's program is: a small line in the bar, which opens to a table; what is wrong is in colour.
+// Health of the robot's program: a small line in the bar, which opens a table; faults are in colour.
 
-import { setText } from "./why.js";
+import { setText } from "./decision.js";
 
 const OLD_TICKS = 500; // a report is made each second
 
@@ -16,13 +16,13 @@ export class Health {
     $("close-health").addEventListener("click", () => table.close());
   }
 
-  // The report of the last second, in the robot's own words.
-  see(report) {
+  // Takes the report of the last second, in the robot's own words.
+  update(report) {
     this.#report = report;
     if ($("health-table").open) this.#fill();
   }
 
-  // The line in the bar: how late the loop is, or what is wrong, the worst by its name.
+  // Shows the line in the bar: lateness of the loop, or the name of the worst fault.
   show(state) {
     const troubles = this.#report?.troubles ?? [];
     const old = Boolean(this.#report?.tick) && state.tick - this.#report.tick > OLD_TICKS;
@@ -34,13 +34,13 @@ export class Health {
     setText(missed, troubles.length || old ? "" : `, missed ${state.missed_ticks}`);
   }
 
-  // What is wrong for which the robot stands, or that puts lessons at risk, but for what the picture says itself.
+  // Returns the faults that stop the robot or put lessons at risk, without the one in the state itself.
   urgent(state) {
     const troubles = this.#report?.troubles ?? [];
     return troubles.filter(({ what, urgent }) => urgent && !state.trouble.includes(what)).map(({ what }) => what);
   }
 
-  // Not modal: STOP and GO stay free.
+  // Not modal, so that STOP and GO stay free.
   #open(table) {
     this.#fill();
     for (const other of document.querySelectorAll("dialog[open]")) other.close();
@@ -51,7 +51,7 @@ export class Health {
     const report = this.#report;
     if (report === this.#shown) return;
     this.#shown = report;
-    setText($("health-says"), report?.says || "nothing is known yet");
+    setText($("health-says"), report?.says || "no report yet");
     $("health-troubles").replaceChildren(
       ...(report?.troubles ?? []).map(({ text, urgent }) => {
         const line = document.createElement("li");
@@ -72,7 +72,7 @@ export class Health {
   }
 }
 
-// The first trouble, which is the worst; dots for more that are not of its kind.
+// Returns the name of the first and worst fault; dots if there are faults of other kinds.
 function named(troubles) {
   const names = new Set(troubles.map(({ name }) => name));
   const [worst] = names;

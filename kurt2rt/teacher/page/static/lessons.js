@@ -1,15 +1,15 @@
-// The last lessons, each with an undo that wants a second tap.
+// The last lessons, each with an undo button that needs a second tap.
 
-import { when } from "./why.js";
+import { when } from "./decision.js";
 
 const SURE_MS = 3000;
 
-// Makes a button act only on its second tap within three seconds; `asked` is called at the first one.
+// Makes a button act on its second tap within three seconds; `asked` is called at the first.
 export function twice(button, question, act, asked = () => {}) {
   const label = button.querySelector(".word") ?? button;
   const first = label.textContent;
   let timer = null;
-  const forget = () => {
+  const reset = () => {
     clearTimeout(timer);
     timer = null;
     label.textContent = first;
@@ -19,10 +19,10 @@ export function twice(button, question, act, asked = () => {}) {
     if (timer === null) {
       label.textContent = question;
       button.classList.add("sure");
-      timer = setTimeout(forget, SURE_MS);
+      timer = setTimeout(reset, SURE_MS);
       asked();
     } else {
-      forget();
+      reset();
       act();
     }
   });
@@ -32,18 +32,18 @@ export class Lessons {
   #list = document.getElementById("lesson-list");
   #undo;
   #lessons = null;
-  after = 0; // number of the newest order whose lesson is in the list
+  after = 0; // number of the newest command whose lesson is in the list
 
   constructor(undo) {
     this.#undo = undo;
   }
 
-  // The newest one that stands; undefined without one.
+  // The newest valid lesson; undefined without one.
   get newest() {
     return this.#lessons?.find((lesson) => !lesson.undone);
   }
 
-  // The newest one of a teacher among those that are listed; undefined without one.
+  // Returns the newest listed lesson of a teacher; undefined without one.
   newestOf(teacher) {
     return this.#lessons?.find((lesson) => lesson.teacher === teacher);
   }

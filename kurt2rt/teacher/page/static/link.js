@@ -1,45 +1,47 @@
-// The WebSocket to the page's server: heartbeats out, pictures in, and whether there is a picture at all.
+// WebSocket to the page's server: heartbeats and commands out, states in, and the freshness of the last state.
 
-const BEAT_MS = 100;
-const NO_PICTURE_MS = 500;
-const NO_WORD_MS = 2000;
+import { text } from "./texts.js";
+
+const HEARTBEAT_MS = 100;
+const STALE_MS = 500;
+const SILENT_MS = 2000;
 const RECONNECT_MS = 500;
 const CONNECT_MS = 3000;
-const STOP_AGAIN_MS = 500;
+const STOP_REPEAT_MS = 500;
 const AUTONOMOUS = 5;
 
 export class Link extends EventTarget {
   #socket = null;
   #heardMs = 0;
-  #pictureMs = -Infinity;
+  #stateMs = -Infinity;
   #wasFresh = false;
   #number = 0;
   #waiting = new Map();
-  #stopWished = false;
-  #stopAsked = false;
-  #stopAskedMs = -Infinity;
-  #left = false;
-  picture = null; // number of the picture on the screen
+  #stopPending = false;
+  #stopSent = false;
+  #stopSentMs = -Infinity;
+  #leaving = false;
+  picture = null; // number of the state on the screen
   state = null;
   pageRttMs = null;
 
   start() {
     this.#connect();
-    setInterval(() => this.#beat(), BEAT_MS);
+    setInterval(() => this.#sendHeartbeat(), HEARTBEAT_MS);
     document.addEventListener("visibilitychange", () => {
       if (document.visibilityState === "hidden") this.#send({ kind: "hidden" });
-      else this.#beat();
+      else this.#sendHeartbeat();
     });
     addEventListener("freeze", () => this.#send({ kind: "hidden" }));
-    // A page that is left may be kept for the way back: its link is not.
+    // The browser may cache a page that is left; its link is closed.
     addEventListener("pagehide", () => {
-      this.#left = true;
+      this.#leaving = true;
       this.#send({ kind: "hidden" });
-      this.#drop();
+      this.#close();
     });
     addEventListener("pageshow", (event) => {
       if (!event.persisted) return;
-      this.#left = false;
+      this.#leaving = false;
       if (!this.#alive) this.#connect();
     });
   }
@@ -48,36 +50,36 @@ export class Link extends EventTarget {
     return this.#socket?.readyState === WebSocket.OPEN;
   }
 
-  // Open, or on its way to be.
+  // True while the socket is open or opening.
   get #alive() {
     return this.open || this.#socket?.readyState === WebSocket.CONNECTING;
   }
 
-  get pictureAgeMs() {
-    return performance.now() - this.#pictureMs;
+  get stateAgeMs() {
+    return performance.now() - this.#stateMs;
   }
 
-  // Whether what the page shows is what the robot does. While it is not, nothing but a stop is sent.
+  // True while the page shows the present state. Otherwise only a stop is sent.
   get fresh() {
-    return this.open && this.pictureAgeMs < NO_PICTURE_MS;
+    return this.open && this.stateAgeMs < STALE_MS;
   }
 
-  // An order to the robot; resolves with its answer, or with a refusal when there is none.
-  order(name, args = {}) {
-    if (!this.fresh) return Promise.resolve({ accepted: false, why: "no picture", text: "no picture: nothing was sent" });
-    if (name === "resume") this.#wishStop(false);
-    return this.#ask({ kind: "order", name, arguments: args, picture: this.picture });
+  // Sends a command; resolves with its answer, or with a refusal without one.
+  command(name, args = {}) {
+    if (!this.fresh) return Promise.resolve({ accepted: false, why: "no picture", text: text("commandWithoutPicture") });
+    if (name === "resume") this.#setStopPending(false);
+    return this.#request({ kind: "order", name, arguments: args, picture: this.picture });
   }
 
-  // What the robot's newest decision rests on; anybody who sees the page may ask.
+  // Asks for the facts of the newest decision; allowed without control.
   why() {
-    if (!this.fresh) return Promise.resolve({ accepted: false, text: "no picture: nothing was asked" });
-    return this.#ask({ kind: "why" });
+    if (!this.fresh) return Promise.resolve({ accepted: false, text: text("whyWithoutPicture") });
+    return this.#request({ kind: "why" });
   }
 
-  press(hold, left, right) {
+  press(pressId, left, right) {
     if (!this.fresh) return false;
-    this.#send({ kind: "press", hold, left_m_s: left, right_m_s: right, picture: this.picture });
+    this.#send({ kind: "press", hold: pressId, left_m_s: left, right_m_s: right, picture: this.picture });
     return true;
   }
 
@@ -85,42 +87,42 @@ export class Link extends EventTarget {
     this.#send({ kind: "release" });
   }
 
-  // Stop goes out with or without a picture. It stays wished, also over a link that breaks, until the robot has
-  // answered it or GO is said.
+  // Sends a stop, with or without a fresh state. It stays pending, also over a broken link, until the robot answers
+  // or GO is touched.
   async stop() {
-    this.#wishStop(true);
+    this.#setStopPending(true);
     if (this.open) {
-      const answer = await this.#askStop();
-      return this.#stopWished ? { ...answer, text: "STOP is not answered yet; it is sent again until it is" } : answer;
+      const answer = await this.#sendStop();
+      return this.#stopPending ? { ...answer, text: text("stopUnanswered") } : answer;
     }
-    const meanwhile = this.state?.phase === AUTONOMOUS ? "in phase 5 the robot drives on until then" : "without its teacher the robot stops by itself";
-    return { accepted: false, why: "no link", text: `no link: STOP goes out as soon as it is back; ${meanwhile}` };
+    const meanwhile = text(this.state?.phase === AUTONOMOUS ? "autonomousMeanwhile" : "supervisedMeanwhile");
+    return { accepted: false, why: "no link", text: text("stopWithoutLink", { meanwhile }) };
   }
 
-  async #askStop() {
-    this.#stopAsked = true;
-    this.#stopAskedMs = performance.now();
-    const answer = await this.#ask({ kind: "stop" });
-    this.#stopAsked = false;
-    if (answer.accepted && this.#stopWished) this.#wishStop(false);
+  async #sendStop() {
+    this.#stopSent = true;
+    this.#stopSentMs = performance.now();
+    const answer = await this.#request({ kind: "stop" });
+    this.#stopSent = false;
+    if (answer.accepted && this.#stopPending) this.#setStopPending(false);
     return answer;
   }
 
-  #wishStop(wished) {
-    if (this.#stopWished === wished) return;
-    this.#stopWished = wished;
-    this.dispatchEvent(new CustomEvent("stopwish", { detail: wished }));
+  #setStopPending(pending) {
+    if (this.#stopPending === pending) return;
+    this.#stopPending = pending;
+    this.dispatchEvent(new CustomEvent("stoppending", { detail: pending }));
   }
 
-  #stopAgain() {
-    if (!this.#stopWished || this.#stopAsked || !this.open) return;
-    if (performance.now() - this.#stopAskedMs < STOP_AGAIN_MS) return;
-    this.#askStop().then((answer) => {
+  #repeatStop() {
+    if (!this.#stopPending || this.#stopSent || !this.open) return;
+    if (performance.now() - this.#stopSentMs < STOP_REPEAT_MS) return;
+    this.#sendStop().then((answer) => {
       if (answer.accepted) this.dispatchEvent(new CustomEvent("stopped", { detail: answer }));
     });
   }
 
-  #ask(message) {
+  #request(message) {
     const number = ++this.#number;
     this.#send({ ...message, number });
     return new Promise((resolve) => this.#waiting.set(number, resolve));
@@ -130,19 +132,18 @@ export class Link extends EventTarget {
     if (this.open) this.#socket.send(JSON.stringify(message));
   }
 
-  #beat() {
+  #sendHeartbeat() {
     const now = performance.now();
     if (document.visibilityState === "visible") {
       this.#send({ kind: "beat", picture: this.picture, at_ms: Math.round(now * 10) / 10 });
     }
-    if (this.open && now - this.#heardMs > NO_WORD_MS) this.#drop();
-    this.#stopAgain();
-    this.#tellFreshness();
+    if (this.open && now - this.#heardMs > SILENT_MS) this.#close();
+    this.#repeatStop();
+    this.#publishFreshness();
   }
 
-  // Also at once with each picture and with the end of the link: a link that lives shorter than a beat must not leave
-  // a picture behind that looks alive.
-  #tellFreshness() {
+  // Called with each heartbeat, each state and the end of the link, so that no old state looks fresh.
+  #publishFreshness() {
     if (this.fresh === this.#wasFresh) return;
     this.#wasFresh = this.fresh;
     this.dispatchEvent(new Event("freshness"));
@@ -154,43 +155,43 @@ export class Link extends EventTarget {
     const socket = new WebSocket(place);
     this.#socket = socket;
     this.#heardMs = performance.now();
-    // A network that swallows everything answers an attempt only after minutes.
-    setTimeout(() => this.#socket === socket && socket.readyState === WebSocket.CONNECTING && this.#drop(), CONNECT_MS);
-    // What comes of a socket that was given up is nothing to us.
+    // In a network that drops all packets, an attempt ends only after minutes.
+    setTimeout(() => this.#socket === socket && socket.readyState === WebSocket.CONNECTING && this.#close(), CONNECT_MS);
+    // Events of a socket that was given up are ignored.
     socket.onopen = () => {
       if (this.#socket !== socket) return;
       this.#heardMs = performance.now();
       this.picture = null;
-      this.#beat();
+      this.#sendHeartbeat();
       this.dispatchEvent(new Event("open"));
     };
     socket.onmessage = (event) => {
-      if (this.#socket === socket) this.#hear(JSON.parse(event.data));
+      if (this.#socket === socket) this.#onMessage(JSON.parse(event.data));
     };
     socket.onclose = () => {
-      if (this.#socket === socket) this.#drop();
+      if (this.#socket === socket) this.#close();
     };
   }
 
-  // The link is lost, or given up: a socket takes its time to close, and nobody waits for that.
-  #drop() {
+  // Gives up the socket without waiting until it is closed.
+  #close() {
     const socket = this.#socket;
     this.#socket = null;
     socket?.close();
     for (const resolve of this.#waiting.values()) {
-      resolve({ accepted: false, why: "unknown", text: "the link broke: not known whether it counted; look at the lessons" });
+      resolve({ accepted: false, why: "unknown", text: text("linkBroke") });
     }
     this.#waiting.clear();
-    this.#stopAsked = false;
-    this.#stopAskedMs = -Infinity;
+    this.#stopSent = false;
+    this.#stopSentMs = -Infinity;
     this.dispatchEvent(new Event("closed"));
-    this.#tellFreshness();
-    if (!this.#left) setTimeout(() => this.#again(), RECONNECT_MS);
+    this.#publishFreshness();
+    if (!this.#leaving) setTimeout(() => this.#reconnect(), RECONNECT_MS);
   }
 
-  // A pairing that was renewed or revoked closes the door; the server's page then says what to do.
-  async #again() {
-    if (this.#left || this.#alive) return;
+  // After the pairing was renewed or revoked, the server answers 403 with a page that says what to do.
+  async #reconnect() {
+    if (this.#leaving || this.#alive) return;
     try {
       const response = await fetch("/", { method: "HEAD", cache: "no-store", signal: AbortSignal.timeout(CONNECT_MS) });
       if (response.status === 403) {
@@ -198,18 +199,18 @@ export class Link extends EventTarget {
         return;
       }
     } catch {
-      // The server is not there: the WebSocket tries again below.
+      // The server does not answer: the WebSocket tries again below.
     }
-    if (!this.#left && !this.#alive) this.#connect();
+    if (!this.#leaving && !this.#alive) this.#connect();
   }
 
-  #hear(message) {
+  #onMessage(message) {
     this.#heardMs = performance.now();
     if (message.kind === "state") {
-      this.#pictureMs = this.#heardMs;
+      this.#stateMs = this.#heardMs;
       this.picture = message.picture;
       this.state = message;
-      this.#tellFreshness();
+      this.#publishFreshness();
       if (message.echo) this.pageRttMs = this.#heardMs - message.echo[0] - message.echo[1];
     } else if (message.kind === "answer") {
       this.#waiting.get(message.number)?.(message);

@@ -1,18 +1,18 @@
-// How far teaching has come: the share driven without help, questions a minute, and rules, of which several lessons may make one.
+// Progress of teaching: fraction driven without help, questions a minute, number of rules.
 
-import { setText } from "./why.js";
+import { setText } from "./decision.js";
 
 const MINUTE_S = 60;
 
-// What a simulated robot did of its task, as "laps 2.3"; nothing for a real one, which is not seen from above.
+// Returns the progress of a simulated robot in its task, such as "laps 2.3"; empty for a real robot.
 export function measured({ progress, unit }) {
   if (!unit) return "";
-  return unit === "m" ? `way ${progress.toFixed(0)} m` : `${unit} ${progress.toFixed(1)}`;
+  return unit === "m" ? `distance ${progress.toFixed(0)} m` : `${unit} ${progress.toFixed(1)}`;
 }
 
 export function progress({ progress, rlas }, measure = "") {
   const { seconds, driven_percent: driven, asks } = progress;
-  const parts = [`rules ${rlas}`]; // lessons are counted in the bar
+  const parts = [`rules ${rlas}`]
   if (driven !== null) parts.unshift(`by itself ${driven} %`, seconds < MINUTE_S ? `asks ${asks} in ${seconds} s` : `asks ${asks} a minute`);
   if (measure) parts.push(measure);
   return parts.join(" · ");
@@ -21,5 +21,5 @@ export function progress({ progress, rlas }, measure = "") {
 export function showProgress(state, measure) {
   const line = document.getElementById("progress");
   setText(line, progress(state, measure));
-  line.title = "In the last minute: how much of the time its own rules drove it, and how often it began to ask; what it did of its task since the run began";
+  line.title = "In the last minute: time driven by its own rules, and number of questions; progress in the task since the start of the run";
 }

@@ -4,14 +4,14 @@ import { between, BLUE, body, DIFFERS, FAINT, FAR, GREY, INK, NEAR, PAPER, RED, 
 import { differing, distance, farthest } from "./sensors.js";
 
 const HALF_BEAM_RAD = 0.09;
-const BEHIND_PX = 12; // from what a sensor sees to its text
+const BEHIND_PX = 12; // from the point that a sensor sees to its text
 
 // Far is pale blue, near is red; dark enough for the sun.
 function colour(metres) {
   return between(FAR, NEAR, Math.min(1, Math.max(0, (0.45 - metres) / 0.3)));
 }
 
-// While the robot asks, the sensors that make the difference are marked, as in the picture of `kurt2rt why`.
+// Draws the robot; while it asks, differing sensors are marked as in the picture of `kurt2rt why`.
 export function drawRobot(canvas, hello, state) {
   const drawn = sheet(canvas);
   if (!drawn || !hello || !state) return;
@@ -106,7 +106,7 @@ function wheel(paint, x, height, speed, most, name) {
   paint.textAlign = "center";
   paint.font = "600 15px system-ui, sans-serif";
   paint.fillStyle = INK;
-  const top = 74; // below the button that changes the view
+  const top = 74; // below the view button
   if (height < top + 80) {
     paint.fillText(speed.toFixed(2), x, height - 8); // no room for a bar
     return;

@@ -1,39 +1,39 @@
-// Where the infra-red sensors are and what they see, by the law that the robot tells of them.
+// Infra-red sensors: distances by the law of the robot's introduction, and differing features.
 
-const LAW = [86.016, 0.04, 64.4, 0.1, 0.6, 76]; // of a robot that does not tell its own
+const LAW = [86.016, 0.04, 64.4, 0.1, 0.6, 76]; // for a robot without a law
 const MOST_LINES = 3;
 
-// The distance in metres that a reading stands for, from the sensor's face; the farthest where it sees nothing.
+// Returns the distance of a reading in metres, from the sensor's face; the farthest if it sees nothing.
 export function distance({ law }, counts) {
   const [numerator, offset, bias, near, far, nothing] = law ?? LAW;
   return counts <= nothing ? far : Math.min(far, Math.max(near, numerator / (counts + bias) - offset));
 }
 
-// The distance up to which sensors see anything.
+// Returns the range of the sensors in metres.
 export function farthest({ law }) {
   return (law ?? LAW)[4];
 }
 
-// The features of a question whose texts tell a difference: [name, here, there, place, its text here, and there].
-// The nearest or farthest of some sensors says nothing new next to the sensor that it is.
-function told(question) {
+// Returns the features of a question with different texts: [name, here, there, place, text here, text there].
+// A minimum or maximum is left out if its sensor is listed.
+function visible(question) {
   const ofSome = ([name]) => /^(maximum|minimum) /.test(name);
   const again = (line) => ofSome(line) && question.some((other) => !ofSome(other) && other[4] === line[4]);
   return question.filter((line) => line[4] !== line[5] && !again(line)).slice(0, MOST_LINES);
 }
 
-// Sensors that make the difference while the robot asks, by name, with what they read; empty while it does not ask.
+// Returns the differing sensors while the robot asks: their texts by name.
 export function differing(state, hello) {
   const names = new Set(hello.sensors.map(([name]) => name));
-  const asks = state.cause === "unknown" ? told(state.question) : [];
+  const asks = state.cause === "unknown" ? visible(state.question) : [];
   return new Map(asks.filter(([name]) => names.has(name)).map(([name, , , , here]) => [name, here.replace(/ within.*| or less/, "")]));
 }
 
-// "front left: 13 cm, was 40 cm", a line for each feature.
+// Returns a list with a line for each feature, such as "front left: 13 cm, was 40 cm".
 export function differenceList(question) {
   const list = document.createElement("ul");
   list.append(
-    ...told(question).map(([, , , place, here, there]) => {
+    ...visible(question).map(([, , , place, here, there]) => {
       const line = document.createElement("li");
       const where = document.createElement("b");
       where.textContent = place;

@@ -1,31 +1,31 @@
-// The menu of a simulated robot: world, task, start again.
+// Menu of a simulated robot: world, task, speed, start again.
 
 import { words } from "./actions.js";
 import { twice } from "./lessons.js";
 import { measured } from "./progress.js";
-import { setText } from "./why.js";
+import { setText } from "./decision.js";
 
 const $ = (id) => document.getElementById(id);
-const GENERATED = ["rooms", "streets"]; // worlds that are made for any whole number
+const GENERATED = ["rooms", "streets"]; // kinds of worlds that exist for any whole number
 const FASTEST = 10;
 const HIGHEST_NUMBER = 999999999;
 
 export class Simulation {
-  #tell;
+  #sendCommand;
   #simulation = null;
-  measure = ""; // what the robot did of its task
-  #run = ""; // world, task and what else could be, as it is shown
+  measure = ""; // progress in the task
+  #run = ""; // world, task and their alternatives, as displayed
 
-  // `tell` gives an order and resolves with its answer.
-  constructor(tell) {
-    this.#tell = tell;
-    for (const id of ["sim-world", "sim-number", "sim-task"]) $(id).addEventListener("input", () => this.#look());
+  // `sendCommand` resolves with the answer.
+  constructor(sendCommand) {
+    this.#sendCommand = sendCommand;
+    for (const id of ["sim-world", "sim-number", "sim-task"]) $(id).addEventListener("input", () => this.#showChoice());
     $("sim-change").addEventListener("click", () => this.#change());
     const speeds = Array.from({ length: FASTEST }, (_, i) => i + 1);
     $("sim-speed").replaceChildren(...speeds.map((times) => option(String(times), times === 1 ? "Real time" : `${times} times as fast`)));
-    $("sim-speed").addEventListener("input", () => tell("speed", { times: Number($("sim-speed").value) }, "speed"));
-    $("sim-back").addEventListener("click", () => tell("put_back", {}, "back to the start"));
-    const fresh = () => tell("next_run", { world: null, task: null, fresh: true }, "a new knowledge file");
+    $("sim-speed").addEventListener("input", () => sendCommand("speed", { times: Number($("sim-speed").value) }, "speed"));
+    $("sim-back").addEventListener("click", () => sendCommand("put_back", {}, "back to the start"));
+    const fresh = () => sendCommand("next_run", { world: null, task: null, fresh: true }, "a new knowledge file");
     twice($("sim-fresh"), "Sure? The old file is kept", fresh);
   }
 
@@ -34,13 +34,13 @@ export class Simulation {
     this.measure = "";
   }
 
-  see(simulation) {
+  update(simulation) {
     this.#simulation = simulation;
     this.measure = measured(simulation);
     const { world, task, speed, reached } = simulation;
     $("sim-speed").value = String(speed);
-    setText($("sim-reached"), speed === 1 ? "" : `now ${reached.toFixed(1)} times`);
-    // What is being chosen is not taken back by each second's news of the speed.
+    setText($("sim-reached"), speed === 1 ? "" : `${reached.toFixed(1)} times reached`);
+    // A choice in progress is kept although the speed is reported each second.
     const run = JSON.stringify([world, task, simulation.worlds, simulation.tasks]);
     if (run === this.#run) return;
     this.#run = run;
@@ -57,7 +57,7 @@ export class Simulation {
     const all = tasks.includes(task) ? tasks : [task, ...tasks];
     $("sim-task").replaceChildren(...all.map((name) => option(name, words(name))));
     $("sim-task").value = task;
-    this.#look();
+    this.#showChoice();
   }
 
   get #world() {
@@ -65,24 +65,24 @@ export class Simulation {
     return GENERATED.includes(chosen) ? `${chosen}-${Number($("sim-number").value)}` : chosen;
   }
 
-  #look() {
+  #showChoice() {
     if (!this.#simulation) return;
     const { world, task, tasks } = this.#simulation;
     const generated = GENERATED.includes($("sim-world").value);
     $("sim-number").hidden = !generated;
     const number = Number($("sim-number").value);
-    const sound = !generated || ($("sim-number").value !== "" && Number.isInteger(number) && number >= 0 && number <= HIGHEST_NUMBER);
+    const valid = !generated || ($("sim-number").value !== "" && Number.isInteger(number) && number >= 0 && number <= HIGHEST_NUMBER);
     const chosen = $("sim-task").value;
     setText($("sim-what"), tasks.find((each) => each.name === chosen)?.what ?? "");
-    $("sim-change").disabled = !sound || (this.#world === world && chosen === task);
+    $("sim-change").disabled = !valid || (this.#world === world && chosen === task);
   }
 
   #change() {
     const { world, task } = this.#simulation;
     const chosen = $("sim-task").value;
-    // A task brings its own world along, unless another one was chosen with it.
+    // Without a chosen world, the task brings its own.
     const args = { world: this.#world === world ? null : this.#world, task: chosen === task ? null : chosen, fresh: false };
-    this.#tell("next_run", args, "the next run");
+    this.#sendCommand("next_run", args, "the next run");
   }
 }
 

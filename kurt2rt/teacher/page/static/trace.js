@@ -1,4 +1,4 @@
-// The last twenty seconds of the distance against R: how near the edge of what it knows the robot has been.
+// Distance to the nearest RLA relative to R, over the last 20 s.
 
 import { BLUE, FAINT, GREY, RED, sheet } from "./canvas.js";
 
@@ -13,8 +13,8 @@ export class Trace {
     this.#canvas = canvas;
   }
 
-  see(tick, share) {
-    if (this.#shares.length && tick < this.#shares.at(-1)[0]) this.#shares = []; // started anew
+  add(tick, share) {
+    if (this.#shares.length && tick < this.#shares.at(-1)[0]) this.#shares = []; // the robot was restarted
     this.#shares.push([tick, share]);
     while (tick - this.#shares[0][0] > SHOWN_TICKS) this.#shares.shift();
   }

@@ -1,31 +1,31 @@
-// Where the simulated robot has been in the last minute and where it has asked; outlives a reload of the page.
+// Path of the simulated robot in the last minute, and the points of its questions; kept over a reload of the page.
 
 const TRAIL_S = 60;
 const EACH_MS = 100;
 const MOST_ASKED = 200;
-const KEEP_EACH_MS = 2000;
+const STORE_EACH_MS = 2000;
 const KEY = "kurt2rt.trail";
 
 export class Trail {
-  #boot = null; // of the robot program that it is about
+  #boot = null; // start of the robot program of this trail
   #asking = false;
-  #keptMs = 0;
+  #storedMs = 0;
   points = []; // [ms since 1970, x, y]
   asked = []; // [x, y]
 
   constructor() {
-    addEventListener("pagehide", () => this.#keep());
+    addEventListener("pagehide", () => this.#store());
   }
 
-  // The trail of this start of the robot program: the one that was kept, or an empty one.
-  of({ boot }) {
+  // Restores the stored trail of this start of the robot program, or starts an empty one.
+  restore({ boot }) {
     if (boot === this.#boot) return;
     this.#boot = boot;
     this.#asking = false;
-    [this.points, this.asked] = kept(boot);
+    [this.points, this.asked] = stored(boot);
   }
 
-  see({ place, stands }) {
+  add({ place, stands }) {
     if (!place) return;
     const now = Date.now();
     const last = this.points.at(-1);
@@ -37,26 +37,26 @@ export class Trail {
       if (this.asked.length > MOST_ASKED) this.asked.shift();
     }
     this.#asking = asking;
-    if (now - this.#keptMs > KEEP_EACH_MS) this.#keep(now);
+    if (now - this.#storedMs > STORE_EACH_MS) this.#store(now);
   }
 
-  #keep(now = Date.now()) {
+  #store(now = Date.now()) {
     if (this.#boot === null) return;
-    this.#keptMs = now;
+    this.#storedMs = now;
     try {
       sessionStorage.setItem(KEY, JSON.stringify({ boot: this.#boot, points: this.points, asked: this.asked }));
     } catch {
-      // Storage is full or forbidden: the trail then ends with the page.
+      // Storage is full or forbidden: the trail ends with the page.
     }
   }
 }
 
-function kept(boot) {
+function stored(boot) {
   try {
     const trail = JSON.parse(sessionStorage.getItem(KEY));
     return trail?.boot === boot ? [trail.points, trail.asked] : [[], []];
   } catch {
-    return [[], []]; // forbidden, or not ours
+    return [[], []]; // storage is forbidden, or has other content
   }
 }
 

@@ -1,4 +1,4 @@
-// The simulated world from above, and a hand that puts the robot or a wall elsewhere; it acts when it lets go.
+// The simulated world from above; robot and walls can be dragged to another place.
 
 import { BLUE, body, DIFFERS, FAR, INK, PALE, PAPER, RED, sheet, TRAIL } from "./canvas.js";
 import { differing, distance, farthest } from "./sensors.js";
@@ -10,20 +10,19 @@ const HANDLE_M = 0.46;
 
 export class WorldView {
   #canvas;
-  #order;
+  #sendCommand;
   #world = null;
   #hello = null;
   #state = null;
   #trail = new Trail();
   #grab = null;
 
-  // `order` sends a command to the robot.
-  constructor(canvas, order) {
+  constructor(canvas, sendCommand) {
     this.#canvas = canvas;
-    this.#order = order;
-    canvas.addEventListener("pointerdown", (event) => this.#take(event));
+    this.#sendCommand = sendCommand;
+    canvas.addEventListener("pointerdown", (event) => this.#grabAt(event));
     canvas.addEventListener("pointermove", (event) => this.#move(event));
-    canvas.addEventListener("pointerup", (event) => this.#drop(event));
+    canvas.addEventListener("pointerup", (event) => this.#release(event));
     for (const lost of ["pointercancel", "lostpointercapture", "contextmenu"]) {
       canvas.addEventListener(lost, (event) => {
         if (lost === "contextmenu") event.preventDefault();
@@ -32,18 +31,18 @@ export class WorldView {
     }
   }
 
-  greet(hello) {
+  setHello(hello) {
     this.#hello = hello;
-    this.#trail.of(hello);
+    this.#trail.restore(hello);
   }
 
   set world(world) {
     this.#world = world;
   }
 
-  see(state) {
+  update(state) {
     this.#state = state;
-    this.#trail.see(state);
+    this.#trail.add(state);
   }
 
   draw() {
@@ -96,7 +95,7 @@ export class WorldView {
     return this.#grab?.what === "wall" && this.#grab.name === name ? [this.#grab.dx, this.#grab.dy] : [0, 0];
   }
 
-  // What each sensor sees, from where it sits; the bold end is what it has found.
+  // Draws the ray of each sensor; a dot marks the obstacle.
   #rays(paint, scale, { x_m: x, y_m: y, heading_rad: turned }) {
     const marked = differing(this.#state, this.#hello);
     paint.save();
@@ -128,7 +127,7 @@ export class WorldView {
     paint.beginPath();
     let previous = null;
     for (const [, x, y] of this.#trail.points) {
-      // A robot that was put down elsewhere did not drive there.
+      // No line to a place where the robot was put.
       if (previous && Math.hypot(x - previous[0], y - previous[1]) < 0.3) paint.lineTo(x, y);
       else paint.moveTo(x, y);
       previous = [x, y];
@@ -169,7 +168,7 @@ export class WorldView {
     return [(event.clientX - box.left - view.left) / view.scale, -(event.clientY - box.top - view.top) / view.scale, view.scale];
   }
 
-  #take(event) {
+  #grabAt(event) {
     if (!this.#world || !this.#state?.place || !event.isPrimary) return;
     const [x, y, scale] = this.#point(event);
     const place = this.#state.place;
@@ -206,13 +205,13 @@ export class WorldView {
     else [grab.dx, grab.dy] = [x - grab.fromX, y - grab.fromY];
   }
 
-  #drop(event) {
+  #release(event) {
     const grab = this.#grab;
     this.#grab = null;
     if (!grab || Math.hypot(event.clientX - grab.px, event.clientY - grab.py) < CLICK_PX) return;
     const round = (value) => Math.round(value * 1000) / 1000;
-    if (grab.what === "wall") this.#order("move", { name: grab.name, dx_m: round(grab.dx), dy_m: round(grab.dy) });
-    else this.#order("place", { x_m: round(grab.x), y_m: round(grab.y), heading_rad: round(grab.heading) });
+    if (grab.what === "wall") this.#sendCommand("move", { name: grab.name, dx_m: round(grab.dx), dy_m: round(grab.dy) });
+    else this.#sendCommand("place", { x_m: round(grab.x), y_m: round(grab.y), heading_rad: round(grab.heading) });
   }
 }
 

@@ -1,4 +1,4 @@
-// Hold-to-drive: speeds go out twenty times a second while it is held, and whatever ends a touch means let go.
+// Manual drive with a deadman switch: speeds are sent 20 times a second while a press lasts.
 
 const PRESS_MS = 50;
 const DEAD_SHARE = 0.12;
@@ -7,7 +7,7 @@ const TURN_SHARE = 0.6;
 export class Drive extends EventTarget {
   #link;
   #timer = null;
-  #hold = 0;
+  #pressId = 0;
   #speeds = [0, 0];
   most = 0.3; // m/s
 
@@ -22,17 +22,17 @@ export class Drive extends EventTarget {
     return this.#timer !== null;
   }
 
-  // x to the right, y forward, each -1 to 1.
-  hold(x, y) {
+  // Begins or continues a press; x to the right, y forward, each -1 to 1.
+  press(x, y) {
     const fastest = Math.max(1, Math.abs(y + TURN_SHARE * x), Math.abs(y - TURN_SHARE * x));
     const speed = (share) => Math.round((share / fastest) * this.most * 100) / 100;
     this.#speeds = [speed(y + TURN_SHARE * x), speed(y - TURN_SHARE * x)];
     if (!this.held) {
-      this.#hold += 1;
+      this.#pressId += 1;
       this.#timer = setInterval(() => this.#send(), PRESS_MS);
       this.#send();
     }
-    this.#tell();
+    this.#publish();
   }
 
   release() {
@@ -41,20 +41,20 @@ export class Drive extends EventTarget {
     this.#timer = null;
     this.#speeds = [0, 0];
     this.#link.release();
-    this.#tell();
+    this.#publish();
   }
 
   #send() {
-    if (!this.#link.press(this.#hold, ...this.#speeds)) this.release();
+    if (!this.#link.press(this.#pressId, ...this.#speeds)) this.release();
   }
 
-  #tell() {
+  #publish() {
     this.dispatchEvent(new CustomEvent("change", { detail: { held: this.held, speeds: this.#speeds } }));
   }
 }
 
-// The circle under a thumb.
-export function stick(circle, knob, drive) {
+// Connects the circle under a thumb to the drive.
+export function driveCircle(circle, knob, drive) {
   let pointer = null;
 
   const move = (event) => {
@@ -65,11 +65,11 @@ export function stick(circle, knob, drive) {
     const length = Math.hypot(x, y);
     if (length > 1) [x, y] = [x / length, y / length];
     if (length < DEAD_SHARE) [x, y] = [0, 0];
-    // Nearly straight is straight: a thumb does not find the line.
+    // Nearly straight counts as straight: a thumb is not precise.
     if (Math.abs(x) < 0.15) x = 0;
     if (Math.abs(y) < 0.15) y = 0;
     knob.style.transform = `translate(${x * radius * 0.62}px, ${-y * radius * 0.62}px)`;
-    drive.hold(x, y);
+    drive.press(x, y);
   };
   const end = (event) => {
     if (event.pointerId === undefined || event.pointerId === pointer) {

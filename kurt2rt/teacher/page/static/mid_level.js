@@ -1,25 +1,25 @@
-// The pad that teaches the mid level which way is right, and what that one wants now.
+// Buttons that teach the mid level a behaviour, and its present choice.
 
 import { words } from "./actions.js";
 import { glyph } from "./glyphs.js";
-import { BASIC, MID, strip, symbol, waySentence } from "./mid.js";
-import { setText, when } from "./why.js";
+import { BASIC, MID, strip, symbol, waySentence } from "./mid_text.js";
+import { setText, when } from "./decision.js";
 
 const TURNED_MS = 400;
 
 const $ = (id) => document.getElementById(id);
 
-export class Ways {
+export class MidLevelPad {
   #choose;
   #buttons = new Map();
   #hello = null;
-  #chosen = MID; // by the teacher; a question goes before it
+  #chosen = MID; // by the teacher; a question overrides it
   #level = BASIC;
   #turned = null; // timer
   #shown = "";
   names = [];
 
-  // `choose` gets the behaviour and how it is meant: teach, beside, once.
+  // `choose` gets the behaviour and its kind: teach, also (an alternative) or once.
   constructor(choose) {
     this.#choose = choose;
     for (const button of $("levels").children) {
@@ -45,12 +45,12 @@ export class Ways {
     this.#mean("teach");
   }
 
-  // The level that the pad teaches.
+  // Level that the buttons teach.
   get level() {
     return this.#level;
   }
 
-  // Whether the question has turned the pad over just now: a touch may have been meant for what was there before.
+  // True just after a question has changed the buttons: a touch may have been meant for those before.
   get justTurned() {
     return this.#turned !== null;
   }
@@ -72,7 +72,7 @@ export class Ways {
   choose(name) {
     const meant = $("meant").querySelector("[aria-pressed=true]").dataset.meant;
     this.#choose(name, meant);
-    this.#mean("teach"); // the next one is a lesson again: not by a choice of long ago
+    this.#mean("teach"); // an old choice must not change the next lesson
   }
 
   #mean(meant) {
@@ -88,7 +88,7 @@ export class Ways {
     $("teach").classList.toggle("ways", level === MID);
   }
 
-  // By a question, not by the teacher's hand.
+  // Shows the level of a question.
   #turnOver(level) {
     this.#turn(level);
     $("teach").classList.add("turned");
@@ -100,7 +100,7 @@ export class Ways {
 
   show(state) {
     const { mid } = state;
-    $("mid").hidden = !mid || mid.asks; // then it is the question that says so
+    $("mid").hidden = !mid || mid.asks; // the question is shown instead
     if (!mid || !this.#hello.mid) return;
     const level = state.cause === "unknown" ? state.asks_at : this.#chosen;
     if (level !== this.#level) this.#turnOver(level);
@@ -110,7 +110,7 @@ export class Ways {
     if (key !== this.#shown) {
       this.#shown = key;
       $("strip").replaceChildren(...strip(mid.here, [], this.#hello.mid), this.#next(mid));
-      $("strip").setAttribute("aria-label", `came by: ${[...mid.here].reverse().filter(Boolean).map(words).join(", ") || "nothing yet"}`);
+      $("strip").setAttribute("aria-label", `passed: ${[...mid.here].reverse().filter(Boolean).map(words).join(", ") || "nothing yet"}`);
     }
     for (const [name, button] of this.#buttons) {
       button.classList.toggle("current", !mid.asks && name === mid.behaviour);
@@ -125,7 +125,7 @@ export class Ways {
     return pair;
   }
 
-  mark(name, outcome) {
+  markOutcome(name, outcome) {
     const button = this.#buttons.get(name);
     if (!button) return;
     button.classList.remove("pending", "saved", "refused");

@@ -1,19 +1,13 @@
-// What organises a lesson: training phase, the behaviour to follow, session, who teaches.
+// Training phase, behaviour to follow, session and teacher.
 
 import { words } from "./actions.js";
 import { twice } from "./lessons.js";
-import { setText } from "./why.js";
+import { text } from "./texts.js";
+import { setText } from "./decision.js";
 
 const PHASES = ["Supervised", "Corrections", "Reinforcement", "Critic", "Autonomous"];
 const AUTONOMOUS = 5;
-// What each phase changes.
-const PHASES_SAY = [
-  "Where it knows nothing it stands and asks; your answer is a rule.",
-  "It drives by its rules, and you also correct it while it drives.",
-  "Right and wrong change what its rules are worth; one that is worth too little is asked for again.",
-  "Right and wrong teach its critic to judge by itself.",
-  "It drives without a teacher and asks nobody; a critic that is trusted repairs its rules.",
-];
+const PHASES_SAY = PHASES.map((_, i) => text(`phase${i + 1}`));
 
 const $ = (id) => document.getElementById(id);
 
@@ -30,22 +24,22 @@ function newSession() {
   return `${now.getFullYear()}-${two(now.getMonth() + 1)}-${two(now.getDate())} ${two(now.getHours())}:${two(now.getMinutes())}`;
 }
 
-export class Organising {
-  #tell;
-  #session = null; // name of the one that is on
+export class SessionPanel {
+  #sendCommand;
+  #session = null; // name of the present session
   phaseNames = PHASES;
 
-  // `tell` gives an order and resolves with its answer.
-  constructor(tell) {
-    this.#tell = tell;
+  // `sendCommand` resolves with the answer.
+  constructor(sendCommand) {
+    this.#sendCommand = sendCommand;
     $("session-button").addEventListener("click", () => this.#beginOrEnd());
-    $("hand-over").addEventListener("click", () => tell("hand_over", { to: null }, "hand over"));
+    $("hand-over").addEventListener("click", () => sendCommand("hand_over", { to: null }, "hand over"));
   }
 
   build(hello) {
     this.phaseNames = namesOf(hello.phases);
     $("phases").replaceChildren(...this.phaseNames.map((name, i) => this.#phase(i + 1, name)));
-    $("behaviours").hidden = hello.behaviours.length < 2 || Boolean(hello.mid); // then the mid level's pad has them
+    $("behaviours").hidden = hello.behaviours.length < 2 || Boolean(hello.mid); // the mid level's buttons have them
     $("behaviours").replaceChildren(...hello.behaviours.map((name) => this.#behaviour(name)));
   }
 
@@ -63,7 +57,7 @@ export class Organising {
     name.disabled = state.session !== null;
     if (state.session !== null) name.value = state.session;
     else if (!name.value) name.value = newSession();
-    setText($("who"), state.teacher === null ? "nobody teaches" : `${state.teacher} teaches`);
+    setText($("who"), state.teacher === null ? "no teacher" : `${state.teacher} teaches`);
     $("hand-over").disabled = !inCharge;
     $("take-here").disabled = inCharge;
   }
@@ -79,29 +73,29 @@ export class Organising {
     label.className = "word";
     label.textContent = name;
     button.append(digit, label);
-    const enter = () => this.#tell("phase", { phase: number }, `phase ${number}`);
-    // From then on it drives with nobody looking: not by a slip of the thumb.
-    if (number === AUTONOMOUS) twice(button, "sure?", enter);
-    else button.addEventListener("click", enter);
+    const setPhase = () => this.#sendCommand("phase", { phase: number }, `phase ${number}`);
+    // Phase 5 needs a second tap: from then on the robot drives without supervision.
+    if (number === AUTONOMOUS) twice(button, "sure?", setPhase);
+    else button.addEventListener("click", setPhase);
     return button;
   }
 
-  // What the robot is to follow, where a task teaches several behaviours.
+  // Button of one behaviour, for a task of several.
   #behaviour(name) {
     const button = document.createElement("button");
     button.type = "button";
     button.dataset.behaviour = name;
     button.textContent = words(name);
-    button.addEventListener("click", () => this.#tell("pursue", { behaviour: name }, words(name)));
+    button.addEventListener("click", () => this.#sendCommand("pursue", { behaviour: name }, words(name)));
     return button;
   }
 
   async #beginOrEnd() {
     if (this.#session !== null) {
-      const answer = await this.#tell("end_session");
+      const answer = await this.#sendCommand("end_session");
       if (answer.accepted) $("session-name").value = newSession();
     } else {
-      this.#tell("begin_session", { name: $("session-name").value.trim() || newSession() });
+      this.#sendCommand("begin_session", { name: $("session-name").value.trim() || newSession() });
     }
   }
 }

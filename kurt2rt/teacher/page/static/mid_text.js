@@ -1,4 +1,4 @@
-// The mid level in words and arrows: which way it has the basic level go, why, what it has come by; and surprise.
+// The mid level in words and arrows: its behaviour, the reason, the symbols that the robot passed; and surprise.
 
 import { words } from "./actions.js";
 import { glyph } from "./glyphs.js";
@@ -9,7 +9,7 @@ const HISTORY = "history";
 const LOUD_FROM = 4; // times the usual distance
 const SURPRISED_TICKS = 300;
 
-// How far off, in words: of histories how many symbols differ.
+// Returns a distance in words; for histories the number of differing symbols.
 export function differs({ distance, radius }, [kind, length]) {
   if (distance === null) return "none is near";
   return kind === HISTORY
@@ -20,21 +20,21 @@ export function differs({ distance, radius }, [kind, length]) {
 export function waySentence(state, hello) {
   const { mid, goal } = state;
   const way = words(mid.behaviour || "the only behaviour");
-  if (mid.overridden) return `${way} because a teacher said so, until it has finished`;
-  if (mid.rla === null) return `${way}; the mid level has not said anything yet`;
+  if (mid.overridden) return `${way} by the teacher's choice, until it has finished`;
+  if (mid.rla === null) return `${way}; the mid level has not decided yet`;
   const because = goal && state.plan.length ? `it leads to ${goal}, mid-level RLA ${mid.rla}` : `mid-level RLA ${mid.rla}`;
   return `${way} because ${because}: ${differs(mid, hello.mid)}`;
 }
 
-// How surprised it is: nothing, a quiet word, or a loud one.
+// Returns a surprise as text, loud from a ratio on; null without one.
 export function surprise({ surprise: it, tick }) {
   if (!it || tick - it.tick > SURPRISED_TICKS || tick < it.tick) return null;
   const whose = `${it.level === MID ? "mid-level RLA" : "RLA"} ${it.rla}`;
-  const far = it.times === null ? "" : ` ${it.times.toFixed(1)} ×`; // as far off as usual
+  const far = it.times === null ? "" : ` ${it.times.toFixed(1)} ×`; // times the usual distance
   return { loud: it.times === null || it.times >= LOUD_FROM, text: `surprise${far} after ${whose}${it.new ? ", new" : ""}` };
 }
 
-// A symbol as an arrow, or by its first letters.
+// Returns a symbol as an arrow, or its first letters.
 export function symbol(word) {
   const cell = document.createElement("i");
   const picture = word && glyph(word);
@@ -44,7 +44,7 @@ export function symbol(word) {
   return cell;
 }
 
-// A place in words: of what is either there or not, what is there; the heading as an arrow.
+// Returns a place in words: features with value 1 by name, the heading as an arrow.
 function place(features) {
   const line = document.createElement("p");
   const values = new Map(features.map((each) => [each.slice(0, each.lastIndexOf(" ")), Number(each.slice(each.lastIndexOf(" ") + 1))]));
@@ -59,7 +59,7 @@ function place(features) {
   return line;
 }
 
-// The last symbols, time going to the right; below each, where wanted, what the nearest RLA has in its place.
+// Returns the last symbols, oldest first; below each the symbol of the nearest RLA, if `there` has any.
 export function strip(here, there, [kind]) {
   if (kind !== HISTORY) return [here, there].filter((words) => words.length).map(place);
   return here

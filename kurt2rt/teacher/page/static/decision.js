@@ -1,14 +1,14 @@
-// Who moves the wheels and why: a sentence, the distance against R, and while it asks, what is different.
+// The newest decision: a sentence, the distance relative to R, and the differences while the robot asks.
 
 import { WITHDRAWN, words } from "./actions.js";
-import { differs, MID, strip, surprise } from "./mid.js";
+import { differs, MID, strip, surprise } from "./mid_text.js";
 import { differenceList } from "./sensors.js";
 import { Trace } from "./trace.js";
 
 const MONTHS = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
 const VALUES_FROM_PHASE = 3;
-const CALM_MS = 500; // readings flicker by a centimetre with every picture; no person can read that
-const GAUGE_SHARE = 0.7; // where R stands on the gauge
+const CALM_MS = 500; // readings change by a centimetre with every state, too fast to read
+const GAUGE_SHARE = 0.7; // position of R on the gauge
 
 export function when(stamp) {
   if (!stamp) return "";
@@ -27,14 +27,14 @@ function taught(state) {
   return parts.length ? `, taught ${parts.join(", ")}` : "";
 }
 
-// Whether the robot says itself why it stands; what it does not know is put below as a question, with the nearest RLA.
+// Returns whether the robot's own text says why it stands; a question is worded here, with the nearest RLA.
 function standsFor(state) {
   const { needs_go: waits, reason } = state.stands;
   return waits || !["drives", "asks", "asks the way"].includes(reason);
 }
 
-function worthNow({ nearest_value: value }) {
-  return typeof value === "number" ? `: worth ${signed(value)} now` : "";
+function valueNow({ nearest_value: value }) {
+  return typeof value === "number" ? ` (value ${signed(value)})` : "";
 }
 
 export function sentence(state) {
@@ -43,24 +43,24 @@ export function sentence(state) {
     case "rla":
       return `RLA ${state.rla}${of(state)} does ${words(state.action)}${taught(state)}`;
     case "held":
-      return `RLA ${state.rla} keeps ${words(state.action)} for its least time; RLA ${state.nearest} is nearest now`;
+      return `RLA ${state.rla} keeps ${words(state.action)} for its shortest time; RLA ${state.nearest} is nearest now`;
     case "teacher":
       return state.action && state.action !== "by hand"
-        ? `${state.teacher ?? "A teacher"} lets it run ${words(state.action)}`
+        ? `${state.teacher ?? "A teacher"} runs ${words(state.action)}`
         : `${state.teacher ?? "A teacher"} drives by hand`;
     case "unknown":
       if (state.asks_at === MID) {
         if (state.nearest_action === WITHDRAWN && state.distance <= state.radius) {
-          return `Which way? Mid-level RLA ${state.nearest} was blamed, teach me again`;
+          return `Which way? Mid-level RLA ${state.nearest} was marked wrong, teach me again`;
         }
         if (state.nearest === null) return "Which way? I know none yet, teach me";
-        return state.distance === null ? "Where am I? Say at which goal" : "Which way? I don't know, teach me";
+        return state.distance === null ? "Where am I? Touch “is here” at a goal" : "Which way? I don't know, teach me";
       }
       if (state.nearest_action === WITHDRAWN && state.distance <= state.radius) {
-        return `RLA ${state.nearest}${of(state)} was blamed${worthNow(state)}, teach me again`;
+        return `RLA ${state.nearest}${of(state)} was marked wrong${valueNow(state)}, teach me again`;
       }
       if (state.nearest !== null && state.distance !== null && state.distance <= state.radius) {
-        return `RLA ${state.nearest}${of(state)}: ${words(state.nearest_action)} is lost here, teach me another`;
+        return `RLA ${state.nearest}${of(state)}: I no longer have ${words(state.nearest_action)}, teach me another action`;
       }
       return state.nearest === null ? `I know nothing${of(state)} yet, teach me` : "I don't know this situation, teach me";
     default:
@@ -68,7 +68,7 @@ export function sentence(state) {
   }
 }
 
-export class Why {
+export class Decision {
   #box = document.getElementById("why");
   #nearest = document.getElementById("nearest");
   #trace = new Trace(document.getElementById("trace"));
@@ -83,7 +83,7 @@ export class Why {
   show(state, hello) {
     const asks = state.stands.asks && !state.stands.needs_go;
     this.#box.classList.toggle("stands", standsFor(state));
-    const which = asks && state.asks_at === MID && state.mid; // the mid level asks which way
+    const which = asks && state.asks_at === MID && state.mid;
     this.#box.classList.toggle("asks", asks);
     this.#box.classList.toggle("which", Boolean(which));
     setText(this.#sentence, sentence(state));
@@ -94,15 +94,15 @@ export class Why {
     this.#fill.style.width = `${Math.min(1, share * GAUGE_SHARE) * 100}%`;
     const its = state.nearest_action === WITHDRAWN ? "its action was withdrawn" : words(state.nearest_action ?? "–");
     const rla = which ? "mid-level RLA" : "RLA";
-    const nowhere = which && state.nearest !== null && state.distance === null; // it was set down elsewhere
+    const nowhere = which && state.nearest !== null && state.distance === null; // the robot was put elsewhere
     const untaught = nowhere ? "goals: touch “is here”" : which ? "touch the way that is right here" : "touch the action that is right here";
     setText(this.#nearest, known ? `nearest: ${rla} ${state.nearest}, ${its}` : untaught);
-    const value = state.value === null || state.phase < VALUES_FROM_PHASE ? "" : ` · worth ${signed(state.value)}`;
+    const value = state.value === null || state.phase < VALUES_FROM_PHASE ? "" : ` · value ${signed(state.value)}`;
     const off = which ? differs(state, hello.mid) : known ? `${state.distance.toFixed(0)} of R ${state.radius.toFixed(0)}${value}` : "no RLA yet";
     setText(this.#text, off);
     this.#surprise(state);
-    this.#trace.see(state.tick, known && !which ? share : null);
-    if (!asks) this.#shownMs = -Infinity; // the next question is shown at once
+    this.#trace.add(state.tick, known && !which ? share : null);
+    if (!asks) this.#shownMs = -Infinity; // shows the next question at once
     if (which) this.#compare(state.mid, hello.mid);
     else if (asks) this.#show(state.question);
     else this.#trace.draw();
@@ -117,7 +117,7 @@ export class Why {
     setText(line, it.text);
   }
 
-  // What the robot has come by, and below it the way that the nearest mid-level RLA knows.
+  // Shows the symbols that the robot passed, and below them the condition of the nearest mid-level RLA.
   #compare(mid, introduced) {
     const key = JSON.stringify([introduced, mid.here, mid.there]);
     if (key === this.#shown) return;
@@ -125,7 +125,7 @@ export class Why {
     this.#differences.replaceChildren(...strip(mid.here, mid.there, introduced));
   }
 
-  // Each sensor that makes a difference, by its place: what it reads here and what it read when that was taught.
+  // Shows each differing sensor by its place, with the reading here and the taught one.
   #show(question) {
     const key = JSON.stringify(question.map((line) => line.slice(3)));
     const nowMs = performance.now();
