@@ -15,7 +15,7 @@ To add a table of texts:
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-from tests.texts import complaints, doctor, health, merging, outcomes, page, shutdown, standing, verdicts
+from tests.texts import complaints, doctor, health, merging, no_answer, outcomes, page, shutdown, standing, verdicts
 
 COMMAND = "python -m tests.golden_texts"
 FOLDER = Path(__file__).parent / "golden"
@@ -50,6 +50,7 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
     },
     "log": {
         "outcomes of commands": outcomes.in_log,
+        "missing answers": no_answer.texts,
         "standing": standing.in_log,
         "stops": standing.stops,
         "troubles": health.troubles,

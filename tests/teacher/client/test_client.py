@@ -118,6 +118,15 @@ async def client(pairing: Pairing, robot: StandInRobot) -> AsyncIterator[Teacher
         yield client
 
 
+def always(reply: Reply) -> Callable[[Request], Awaitable[Reply]]:
+    """Return a robot's mind that gives the same reply to each request."""
+
+    async def mind(_: Request) -> Reply:
+        return reply
+
+    return mind
+
+
 async def first_state(client: TeacherClient) -> None:
     await seen(client, lambda: True)
 
@@ -209,10 +218,7 @@ async def test_doubled_and_overtaken_pictures_never_go_back_in_time(pairing: Pai
 
 
 async def test_it_asks_what_robot_this_is(client: TeacherClient, robot: StandInRobot) -> None:
-    async def introduces_itself(_: Request) -> Reply:
-        return Reply(ReplyStatus.DONE, HELLO)
-
-    robot.mind = introduces_itself
+    robot.mind = always(Reply(ReplyStatus.DONE, HELLO))
     hello = await client.hello()
     assert hello.behaviours == ("straight_on", "turn_left")
     assert (hello.robot, hello.actions, hello.outline) == ("kurt2-indoor", ("forward", "spin_left"), (0.434, 0.33))
@@ -256,10 +262,7 @@ async def test_lessons_and_world_come_as_values(client: TeacherClient, robot: St
 
 
 async def test_the_situations_that_have_a_name_are_read(client: TeacherClient, robot: StandInRobot) -> None:
-    async def tells(_: Request) -> Reply:
-        return Reply(ReplyStatus.DONE, {"situations": ["door", "window"]})
-
-    robot.mind = tells
+    robot.mind = always(Reply(ReplyStatus.DONE, {"situations": ["door", "window"]}))
     assert await client.situations() == ("door", "window")
     assert robot.orders() == [SituationsRequest()]
     robot.mind = agrees
@@ -268,10 +271,7 @@ async def test_the_situations_that_have_a_name_are_read(client: TeacherClient, r
 
 
 async def test_a_real_robot_has_no_world_to_tell_of(client: TeacherClient, robot: StandInRobot) -> None:
-    async def is_real(_: Request) -> Reply:
-        return Reply(ReplyStatus.NOT_HERE, {"why": "refused", "text": "this robot is not simulated"})
-
-    robot.mind = is_real
+    robot.mind = always(Reply(ReplyStatus.NOT_HERE, {"why": "refused", "text": "this robot is not simulated"}))
     assert await client.world() is None
 
 
@@ -357,10 +357,7 @@ async def test_each_command_says_on_which_picture_it_was_given(client: TeacherCl
 
 
 async def test_an_answer_tells_what_was_done(client: TeacherClient, robot: StandInRobot) -> None:
-    async def saves(_: Request) -> Reply:
-        return done(99, name="a.db", sha256="ab12")
-
-    robot.mind = saves
+    robot.mind = always(done(99, name="a.db", sha256="ab12"))
     assert await client.save("x") == Answer(True, "", "", 99, {"name": "a.db", "sha256": "ab12"})
 
 
@@ -376,10 +373,7 @@ async def test_an_answer_tells_what_was_done(client: TeacherClient, robot: Stand
     ],
 )
 async def test_a_refusal_is_an_answer(client: TeacherClient, robot: StandInRobot, reply: Reply, answer: Answer) -> None:
-    async def refuses(_: Request) -> Reply:
-        return reply
-
-    robot.mind = refuses
+    robot.mind = always(reply)
     assert await client.answer("forward") == answer
 
 
