@@ -7,7 +7,7 @@ from tests.channel.lossy_link import Weather
 
 @dataclass(frozen=True, slots=True)
 class BadLink:
-    """The same weather both ways, drawn anew for each direction."""
+    """Return the same weather both ways, drawn for each direction on its own."""
 
     name: str
     weather: Weather
@@ -22,7 +22,7 @@ class BadLink:
 
     @property
     def holds_back(self) -> bool:
-        """Whether some datagrams come seconds later."""
+        """Return whether some datagrams come seconds later."""
         return self.weather.held_back > 0.0
 
 

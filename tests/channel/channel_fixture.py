@@ -183,7 +183,7 @@ class ChannelFixture:
 
     @property
     def tick(self) -> int:
-        """Of the newest picture."""
+        """Tick of the newest state."""
         return self.handler.tick
 
     def run(self, ticks: int = 1, counts: int | None = None) -> TickRecord:
@@ -199,7 +199,7 @@ class ChannelFixture:
         return self.record
 
     def write(self, error: str | None = None) -> None:
-        """The disk takes all lessons that wait, or never will because of `error`."""
+        """Write all waiting lessons to the disk, or fail them with `error`."""
         for event in self.notebook.events[self.written :]:
             self.written += 1
             command_id = event.origin.command_id
@@ -216,7 +216,7 @@ class ChannelFixture:
     async def send(
         self, request: Request, device: str = "ann", number: int | None = None, pairing: bytes = b"first"
     ) -> "asyncio.Task[Reply]":
-        """A request arrives, and waits for its reply; it is the newest message of its device unless `number` is given.
+        """Send a request and return its task; it is the newest message of its device unless `number` is given.
 
         What is waiting must be awaited with `reply_of`, after the tick that answers it.
         """
@@ -228,7 +228,7 @@ class ChannelFixture:
         return task
 
     async def ask(self, request: Request, device: str = "ann", *, write: bool = True) -> Reply:
-        """A request arrives, the next tick takes it, and the disk takes what it taught."""
+        """Send a request, run the tick that handles it, write its lessons, and return the reply."""
         task = await self.send(request, device)
         if not task.done():
             self.run()
@@ -239,7 +239,7 @@ class ChannelFixture:
     async def stream(
         self, request: StreamRequest, device: str = "ann", number: int | None = None, pairing: bytes = b"first"
     ) -> Reply:
-        """A message of a stream arrives; it is answered at once."""
+        """Send a stream message and return its reply, which comes at once."""
         task = await self.send(request, device, number, pairing)
         assert task.done()
         return task.result()
@@ -254,7 +254,7 @@ class ChannelFixture:
         return StopRequest(self.new_id())
 
     def command(self, kind: type[CommandRequest], *fields: Any, age: int = 0, boot: bytes = BOOT) -> CommandRequest:
-        """A new command of the kind, given on the picture of `age` ticks ago."""
+        """Return a new command on the state of `age` ticks ago."""
         return kind(boot, self.new_id(), self.tick - age, *fields)
 
     def answer(self, action: str = "forward", of: int | None = None) -> CommandRequest:
@@ -268,7 +268,7 @@ async def turns(count: int = 5) -> None:
 
 
 async def reply_of(task: "asyncio.Task[Reply]") -> Reply:
-    """The reply that has been made; a request that waits on is an error of the test."""
+    """Return the reply of a task that has to be done."""
     await turns()
     assert task.done(), "still waits for its reply"
     return task.result()
@@ -280,7 +280,7 @@ def outcome_of(reply: Reply) -> Outcome | None:
 
 
 def why(reply: Reply) -> object:
-    """The word of a refusal; "" where there is none."""
+    """Return the wire word of a refusal; "" if there is none."""
     return reply.body.get("why", "")
 
 

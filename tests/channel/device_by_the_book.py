@@ -50,7 +50,7 @@ class Numbers:
         self._stored = self.next
 
     def take(self) -> bytes:
-        """A number as it goes into the option."""
+        """Return the next number in the form of the option."""
         if self.next >= self._stored:
             self._store(self.next + _RESERVED)
         number, self.next = self.next, self.next + 1
@@ -126,7 +126,7 @@ class Message:
 
 @dataclass(frozen=True)
 class Answer:
-    """What the robot said, decrypted."""
+    """Decrypted answer of the robot."""
 
     code: int
     options: dict[int, bytes]
@@ -293,7 +293,7 @@ class Looking:
         self._token = self._device._send(CON, GET, "/state", None, self._queue, echo=echo)
 
     async def picture(self) -> dict[str, Any]:
-        """The next one."""
+        """Return the next state."""
         while True:
             try:
                 answer = await asyncio.wait_for(self._queue.get(), 1.0)

@@ -1,4 +1,4 @@
-"""A teacher whose hand is at the wheels until somebody ends or stops this process, a child of test_links.py.
+"""Teacher that drives by hand until this process is ended or stopped, a child of test_links.py.
 
 Arguments: folder of the device, port of the robot.
 """

@@ -1,4 +1,4 @@
-"""What strangers, and a teacher's device gone mad, may send to a robot. All of it is drawn from one seed."""
+"""Datagrams of strangers and of a faulty device, drawn from one seed."""
 
 import dataclasses
 import random
@@ -66,7 +66,7 @@ class HostileDatagrams:
         self._number = 0
 
     def datagram(self, captured: Sequence[bytes]) -> bytes:
-        """What somebody without a key can send, `captured` in mind: nothing of it may have an effect."""
+        """Return a datagram that a sender without a key can make from `captured`; it must have no effect."""
         share = self._chance.random()
         if share < 0.2:
             return self.noise()
@@ -89,7 +89,7 @@ class HostileDatagrams:
         return noise
 
     def plain(self) -> bytes:
-        """A well-formed CoAP message without protection."""
+        """Return a well-formed CoAP message without protection."""
         chance = self._chance
         message = aiocoap.Message(code=chance.choice((aiocoap.POST, *_METHODS)))
         path, payload = self._almost_right() if chance.random() < 0.7 else (self._strange_path(), self.payload())
@@ -99,7 +99,7 @@ class HostileDatagrams:
         return self._encoded(message)
 
     def mutated(self, datagram: bytes) -> bytes:
-        """With bits flipped, or bytes lost, put in, or doubled; sometimes as it was."""
+        """Return data with bits flipped, or bytes lost, inserted or doubled; sometimes unchanged."""
         chance, data = self._chance, bytearray(datagram)
         for _ in range(chance.choice((0, 0, 1, 1, 1, 2, 4, 16))):
             at = chance.randrange(len(data) + 1)
@@ -117,7 +117,7 @@ class HostileDatagrams:
         return bytes(data[:_MOST_BYTES])
 
     def valid(self, kind: type[Request]) -> Request:
-        """A request that the robot understands, almost at random."""
+        """Return a valid request with random fields."""
         boot, tick = self._now()
         chance = self._chance
         values: dict[str, Any] = {
@@ -173,7 +173,7 @@ class HostileDatagrams:
         return cbor2.dumps(self._item(0))
 
     def request(self) -> aiocoap.Message:
-        """A request for a key holder to protect, which the robot must not carry out."""
+        """Return a request for a key holder to protect, which the robot must refuse."""
         chance = self._chance
         while True:
             message = aiocoap.Message(code=aiocoap.POST)
@@ -217,7 +217,7 @@ class HostileDatagrams:
                 message.opt.add_option(OpaqueOption(aiocoap.numbers.OptionNumber(number), value))
 
     def protected(self, device: OscoreContext, message: aiocoap.Message) -> bytes:
-        """As the holder of the key would send it."""
+        """Return the datagram of a key holder."""
         outer, _ = device.protect(message)
         return self._encoded(outer)
 
@@ -269,7 +269,7 @@ class HostileDatagrams:
 
 
 def is_order(message: aiocoap.Message) -> bool:
-    """Whether the robot has to carry this out when the holder of a key sends it."""
+    """Return whether the robot has to carry out a request of a key holder."""
     path = "/" + "/".join(message.opt.uri_path)
     if message.code == aiocoap.GET:
         return path == "/state"

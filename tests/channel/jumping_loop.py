@@ -24,7 +24,7 @@ _STUCK_S = 30.0
 
 
 class _JumpingSelector(selectors.DefaultSelector):
-    """Where a selector would wait, time passes at once."""
+    """Selector that jumps the clock instead of waiting."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -51,7 +51,7 @@ class JumpingLoop(asyncio.SelectorEventLoop):
         self._clock_resolution = 1e-7  # asyncio's: timers due within it fire together
 
     def time(self) -> float:
-        """Simulated seconds."""
+        """Return the simulated time in seconds."""
         return self._jumping.now_s
 
     def run_in_executor(self, _: Any, func: Callable[..., Any], *args: Any) -> Any:  # type: ignore[override]
@@ -81,7 +81,7 @@ class LoopClock:
 
 
 class _PromptWriter(JournalWriter):
-    """What a tick taught is durable before the next one: the disk takes no simulated time."""
+    """Journal writer that writes the lessons of a tick before the next one, in no simulated time."""
 
     def acknowledged(self) -> list[Acknowledgement]:
         if self.unwritten:

@@ -13,7 +13,7 @@ _LARGEST_DATAGRAM = 65_536
 
 @dataclass(frozen=True, slots=True)
 class Weather:
-    """What happens to datagrams of one direction. Shares are probabilities per datagram."""
+    """Faults of one direction; fractions are probabilities per datagram."""
 
     loss: float = 0.0
     delay_s: float = 0.0
@@ -35,7 +35,7 @@ class Tally:
 
     came: int = 0
     lost: int = 0
-    """By the weather, or while the link was cut."""
+    """Datagrams lost by the weather, or while the link was cut."""
     delivered: int = 0
     """Doubled ones count twice."""
 
@@ -87,24 +87,24 @@ class LossyLink:
 
     @property
     def port(self) -> int:
-        """Where clients find the robot."""
+        """UDP port for the clients."""
         assert self._front is not None
         port: int = self._front.getsockname()[1]
         return port
 
     @property
     def clients(self) -> int:
-        """How many different senders there were."""
+        """Number of different senders."""
         return len(self._behind)
 
     @property
     def up(self) -> Tally:
-        """What was sent to the robot."""
+        """Tally of the datagrams to the robot."""
         return self._up.tally
 
     @property
     def down(self) -> Tally:
-        """What the robot sent."""
+        """Tally of the datagrams from the robot."""
         return self._down.tally
 
     def change_weather(self, *, up: Weather | None = None, down: Weather | None = None) -> None:
@@ -113,7 +113,7 @@ class LossyLink:
         self._down.weather = down or self._down.weather
 
     def cut(self) -> None:
-        """Nothing passes any more, not even what is under way; nobody is told."""
+        """Drop all datagrams, also those under way, without an error to the sender."""
         self._cut = True
 
     def mend(self) -> None:
@@ -144,7 +144,7 @@ class LossyLink:
         try:
             datagram = behind.recv(_LARGEST_DATAGRAM)
         except ConnectionRefusedError:
-            return  # no robot there: over a radio nobody would be told either
+            return  # no robot there: over a radio the sender gets no error either
         self._pass_on(self._down, self._front, datagram, client)
 
     def _pass_on(self, way: _Way, out: socket.socket, datagram: bytes, to: tuple[str, int] | None) -> None:
@@ -188,6 +188,6 @@ class LossyLink:
             else:
                 out.sendto(datagram, to)
         except (BlockingIOError, ConnectionRefusedError):
-            way.tally.lost += 1  # a full buffer, or nobody there: as lost as any other
+            way.tally.lost += 1  # a full buffer, or a closed port: lost like any other
         else:
             way.tally.delivered += 1

@@ -39,7 +39,7 @@ class CheapRobot:
         self.latched = False
 
     def sense(self, now_s: float) -> SensorReadings:
-        """Always fresh."""
+        """Return fresh readings."""
         count = len(SETTINGS.infrared.sensors)
         return SensorReadings(now_s, (self.counts,) * count, 0.0, 0, 0, 0.0, 0, 0.0)
 
@@ -64,12 +64,12 @@ class RobotAtWork:
     robot: CheapRobot
     pairing: Pairing
     other: Pairing
-    """Of another teacher."""
+    """Pairing of another teacher."""
     channel: Channel
     knowledge: Path
     records: list[TickRecord] = field(default_factory=list)
     ended: bool = False
-    """Whether the service has ended; a signal to this process ends it, too."""
+    """True after the service has ended; a signal to this process ends it too."""
 
     @property
     def runtime(self) -> Runtime:
@@ -83,7 +83,7 @@ class RobotAtWork:
 
     @property
     def tick(self) -> int:
-        """Of the newest record."""
+        """Tick of the newest record."""
         return self.records[-1].tick if self.records else 0
 
     def moved_since(self, tick: int) -> list[int]:
@@ -99,7 +99,7 @@ class RobotAtWork:
     async def until(self, holds: Callable[[], bool]) -> None:
         """Wait for something that a tick may have changed; at most a minute of the loop's time."""
         with anyio.fail_after(_LONGEST_S):
-            while not holds():  # noqa: ASYNC110 - a tick tells nobody
+            while not holds():  # noqa: ASYNC110 - a tick sets no event
                 await anyio.sleep(PERIOD_S)
 
     def end(self) -> None:
@@ -151,7 +151,7 @@ async def robot_at_work(folder: Path) -> AsyncIterator[RobotAtWork]:
 
 
 def journal_of(folder: Path) -> list[TeachingEvent]:
-    """What the journal holds when the service has ended."""
+    """Return the lessons in the journal after the end of the service."""
     with Journal.read_only(folder / "lessons.knowledge") as journal:
         return list(journal.events())
 

@@ -11,7 +11,7 @@ from kurt2rt.channel.security.oscore_context import OscoreContext
 
 
 def carried(message: Any) -> Any:
-    """The message as the other side gets it, byte for byte."""
+    """Return the message in the form in which the other side gets it."""
     message.mid, message.mtype = 7, aiocoap.NON
     received = aiocoap.Message.decode(message.encode())
     received.direction = Direction.INCOMING
@@ -28,7 +28,7 @@ def ask(device: OscoreContext, robot: OscoreContext, text: str, *, echo: bytes |
 
 
 def ask_until_fresh(device: OscoreContext, robot: OscoreContext, text: str) -> str:
-    """As `ask`, but the device answers the robot's challenge as RFC 8613, B.1.2, has it."""
+    """Ask like `ask`, with the device's answer to the robot's challenge (RFC 8613, B.1.2)."""
     request = aiocoap.Message(code=aiocoap.POST, payload=text.encode(), uri_path=("lesson",))
     protected, request_id = device.protect(request)
     try:
@@ -46,12 +46,12 @@ def answer_challenge(device: OscoreContext, robot: OscoreContext) -> None:
 
 
 def header_of(context: OscoreContext) -> dict[int, bytes]:
-    """aiocoap's OSCORE header of a request that this context sends."""
+    """Return the OSCORE header, in aiocoap's form, of a request of this context."""
     protected, _ = context.protect(aiocoap.Message(code=aiocoap.POST, uri_path=("hello",)))
     header: dict[int, bytes] = oscore.verify_start(carried(protected))
     return header
 
 
 def sequence_of(folder: Path) -> str:
-    """What is stored of the context's state."""
+    """Return the stored state of the context."""
     return (folder / "sequence.json").read_text(encoding="utf-8")

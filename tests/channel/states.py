@@ -62,5 +62,5 @@ SURPRISED = SurpriseState(tick=1230, level="mid", rla=12, follow_up=15, times=3.
 
 
 def state(**changes: Any) -> State:
-    """The asking robot with a few things otherwise."""
+    """Return the state of an asking robot with some fields changed."""
     return replace(ASKING, **changes)

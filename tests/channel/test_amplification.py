@@ -1,4 +1,4 @@
-"""Without a key nothing gets more than three times the bytes that it sent: its address may be forged."""
+"""Limit of amplification: three times the bytes of a request, because its address may be forged."""
 
 import asyncio
 import random
@@ -16,7 +16,7 @@ from tests.channel.robot_at_work import RobotAtWork, robot_at_work
 
 _AT_MOST = 3
 _RETRIES_S = 4.0
-"""What waits to be confirmed is sent again after 2 to 3 s (RFC 7252, 4.8)."""
+"""Time after which an unconfirmed message was sent again: 2 to 3 s (RFC 7252, 4.8)."""
 
 
 def discovery(kind: Any, token: bytes, number: int, **block: Any) -> bytes:

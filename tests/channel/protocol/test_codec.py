@@ -1,4 +1,4 @@
-"""What goes over the wire comes back the same; what is not right is refused in a sentence, and in no other way."""
+"""Round trips of all messages, and refusals of malformed ones by WireError alone."""
 
 import math
 from dataclasses import astuple, replace
@@ -68,7 +68,7 @@ LEVELS = st.sampled_from((BASIC, MID))
 
 
 def values(check: Check) -> st.SearchStrategy[Any]:
-    """Whatever a check lets pass."""
+    """Return a strategy of all values that a check accepts."""
     match check:
         case Bytes(length=length):
             return st.binary(min_size=length, max_size=length)

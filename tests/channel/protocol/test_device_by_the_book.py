@@ -20,7 +20,7 @@ CHANGED, CONFLICT, BAD_REQUEST, NOT_FOUND = 0x44, 0x89, 0x80, 0x84
 
 @asynccontextmanager
 async def the_robot_and_its_device(folder: Path) -> AsyncIterator[tuple[RobotAtWork, Device]]:
-    """A start of the robot, whose device has not said anything yet."""
+    """Start the robot; its device has sent nothing yet."""
     async with robot_at_work(folder) as at_work, Device(at_work.pairing.device.folder, at_work.port) as device:
         yield at_work, device
 

@@ -1,4 +1,4 @@
-"""What a robot tells of its decision, over the wire and back."""
+"""Facts of a decision over the wire and back."""
 
 import math
 from collections import Counter

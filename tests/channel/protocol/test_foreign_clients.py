@@ -29,7 +29,7 @@ _OSCORE_SWITCH = "-E "
 
 @pytest.fixture
 def coap_client() -> str:
-    """libcoap's client, of Debian's libcoap3-bin."""
+    """Client of libcoap, from Debian's libcoap3-bin."""
     found = next(filter(None, map(shutil.which, _NAMES)), None)
     if found is None:
         if os.environ.get("CI") == "true":
@@ -40,7 +40,7 @@ def coap_client() -> str:
 
 @pytest.fixture
 def oscore_client() -> str:
-    """libcoap's client from 4.3.5 on, where it was built with OSCORE; Debian's is older."""
+    """Client of libcoap from 4.3.5 on, if built with OSCORE; Debian's is older."""
     for found in filter(None, map(shutil.which, _NAMES)):
         usage = subprocess.run([found, "-?"], capture_output=True, text=True, check=False)
         if _OSCORE_SWITCH in usage.stdout + usage.stderr:
@@ -49,7 +49,7 @@ def oscore_client() -> str:
 
 
 async def said(client: str, *arguments: str) -> tuple[str, str]:
-    """What the client printed, and what it complained of."""
+    """Return standard output and standard error of the client."""
     with anyio.fail_after(20.0):
         done = await anyio.run_process([client, "-B", _SECONDS, *arguments], check=False)
     return done.stdout.decode(errors="replace"), done.stderr.decode(errors="replace")
@@ -79,7 +79,7 @@ async def test_a_stranger_cannot_observe(coap_client: str, tmp_path: Path) -> No
 
 @asynccontextmanager
 async def _aiocoap_client(at_work: RobotAtWork, pairing: Pairing) -> AsyncIterator[Any]:
-    """aiocoap's own client with its own OSCORE transport and its own context, on the device's folder as it is."""
+    """OSCORE client of aiocoap with its own context, on the unchanged folder of the device."""
     client = await aiocoap.Context.create_client_context(transports=["oscore", "udp6"])
     keys = oscore.FilesystemSecurityContext(str(pairing.device.folder))
     client.client_credentials[address(at_work, "/*")] = keys
@@ -121,7 +121,7 @@ async def test_aiocoap_oscore_client_observes_and_commands(tmp_path: Path) -> No
 
 @pytest.fixture
 def conf_of(tmp_path: Path) -> Callable[[Pairing], Path]:
-    """libcoap's form of a pairing."""
+    """Write a pairing in the form of libcoap."""
 
     def write(pairing: Pairing) -> Path:
         read = {

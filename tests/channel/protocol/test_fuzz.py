@@ -32,7 +32,7 @@ from tests.channel.jumping_loop import run_jumping
 from tests.channel.robot_at_work import PERIOD_S, RobotAtWork, journal_of, robot_at_work
 from tests.channel.sides import answer_challenge, header_of
 
-# aiocoap's own: a request that is asked anew under the same token before it was looked at.
+# An error of aiocoap: a request repeated under the same token before it was handled.
 pytestmark = pytest.mark.filterwarnings("ignore:coroutine 'Context._render_to_pipe' was never awaited:RuntimeWarning")
 
 _NOWHERE: SocketAddress = ("::ffff:127.0.0.2", 9, 0, 0)
@@ -44,13 +44,13 @@ _TO_LOOPBACK = [
         socket.inet_pton(socket.AF_INET6, "::ffff:127.0.0.1") + struct.pack("I", socket.if_nametoindex("lo")),
     )
 ]
-"""What the kernel tells beside a datagram: where it was sent to."""
+"""Ancillary data of a datagram: its destination address."""
 _SETTLED_S = 1.0
 _PER_TICK = 200
 
 
 class _AllMayPass:
-    """In place of the bucket that lets few strangers in."""
+    """Bucket that lets all strangers in."""
 
     def acquire(self) -> bool:
         return True
@@ -114,15 +114,15 @@ class Target:
         self.device.close()
 
     def feed(self, datagram: bytes, sender: SocketAddress) -> None:
-        """As if the kernel had handed it over."""
+        """Hand a datagram over like the kernel."""
         self._socket.datagram_msg_received(datagram, _TO_LOOPBACK, 0, sender)
 
     def send(self, datagram: bytes, *, stranger: bool) -> None:
-        """Through the kernel."""
+        """Send a datagram through the kernel."""
         (self._stranger if stranger else self._outside).sendto(datagram, ("127.0.0.1", self.at_work.port))
 
     def answers(self) -> tuple[int, int]:
-        """How many datagrams came back to the device and to strangers since the last call."""
+        """Return the number of datagrams to the device and to strangers since the last call."""
         return _drained(self._outside), _drained(self._stranger)
 
     @contextmanager
@@ -135,7 +135,7 @@ class Target:
             gate._strangers = limited
 
     async def capture(self) -> list[bytes]:
-        """What somebody who listens in has of a teacher who took, taught, drove, stopped and resumed."""
+        """Return the datagrams of a teacher who took the robot, taught, drove, stopped and resumed."""
         captured = []
         kinds = (HelloRequest, TakeRequest, AnswerRequest, DriveRequest, StopRequest, ResumeRequest, LessonsRequest)
         for kind in kinds:
@@ -193,7 +193,7 @@ async def _fire(target: Target, captured: Sequence[bytes], count: int, *, from_o
 
 
 async def _teach_once(at_work: RobotAtWork) -> None:
-    """The channel still does what it is for."""
+    """Check that the channel still works."""
     now = asyncio.get_running_loop().time
     async with TeacherClient(at_work.other.device.folder, port=at_work.port, now=now) as teacher:
         assert (await teacher.take()).accepted
@@ -222,7 +222,7 @@ def _strangers(folder: Path, count: int, *, seed: int) -> None:
 
 
 def _gone_mad(folder: Path, count: int, *, seed: int) -> None:
-    """A teacher's device, its key all right, sends what it should not."""
+    """Send invalid requests with a valid key."""
 
     async def story() -> None:
         async with robot_at_work(folder) as at_work:

@@ -31,7 +31,7 @@ from tests.channel.lossy_link import LossyLink, Weather
 from tests.channel.robot_at_work import REACH_TICKS, RobotAtWork, journal_of, robot_at_work
 
 _LONGEST_S = 60.0
-"""Of simulated time, for anything that has to come sooner or later."""
+"""Longest wait for an event, in simulated seconds."""
 _HELD_S = 6.0
 _HOLE_S = 2.0
 _BEAT_S = 0.1
@@ -40,7 +40,7 @@ _FEW = (BAD_LINKS[29],)
 
 @dataclass(frozen=True, slots=True)
 class Length:
-    """How long each part of a story lasts, in simulated seconds."""
+    """Durations of the parts of a story, in simulated seconds."""
 
     lessons_s: float
     driving_s: float
@@ -56,7 +56,7 @@ class Note:
 
     request: Request
     answer: Answer | None = None
-    """None: nobody answered."""
+    """None: no answer came."""
     took_s: float = 0.0
 
 
@@ -101,22 +101,22 @@ class NotingTeacher(TeacherClient):
         return wake
 
     def die(self) -> None:
-        """As if its program was killed: nothing leaves it any more, no goodbye either."""
+        """Kill its program: nothing leaves it any more, no last message either."""
         self._open.requests._robot = None
 
 
 @dataclass
 class Told:
-    """What came of one story."""
+    """Results of one story."""
 
     link: BadLink
     notes: list[Note] = field(default_factory=list)
     stops: Counter[str] = field(default_factory=Counter)
     """False ones, by who drove."""
     stand_ticks: list[int] = field(default_factory=list)
-    """From the last message to standing wheels."""
+    """Ticks from the last message to standing wheels."""
     back_s: list[float] = field(default_factory=list)
-    """From the end of a hole to the next picture."""
+    """Seconds from the end of a hole to the next state."""
 
     def line(self) -> str:
         count = Counter("no answer" if n.answer is None else n.answer.why or "accepted" for n in self.notes)
@@ -308,7 +308,7 @@ class Story:
                     await self._at_work.until(lambda: self._at_work.records[-1].decision.driving)
 
     async def _must_stand(self, lasts_s: float) -> None:
-        """From now on nothing new reaches the robot."""
+        """Check that the wheels stop, from the last message to the robot on."""
         sent = max(self._teacher.sent_ticks)
         await anyio.sleep(lasts_s)
         self._note_standing(sent)
@@ -351,7 +351,7 @@ def _tell(link: BadLink, folder: Path, length: Length) -> Told:
 
 
 def _must_agree(notes: list[Note], events: list[TeachingEvent]) -> None:
-    """The journal holds what the teacher was told that it holds."""
+    """Check that the journal holds the lessons that were acknowledged."""
     written = Counter(event.origin.command_id for event in events)
     lessons = [note for note in notes if isinstance(note.request, AnswerRequest | ReplaceRequest | RewardRequest)]
     assert set(written) <= {_identity(note.request) for note in lessons}
@@ -396,7 +396,7 @@ def test_bad_link_lessons_count_once_and_silence_stops(link: BadLink, tmp_path: 
 
 @asynccontextmanager
 async def _driver(at_work: RobotAtWork) -> AsyncIterator[Process]:
-    """A teacher's program that drives, in real time; killed at the end."""
+    """Run a teacher's program that drives, in real time; kill it at the end."""
     command = [sys.executable, "-m", "tests.channel.driver_process", str(at_work.pairing.device.folder)]
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3])}
     async with await anyio.open_process([*command, str(at_work.port)], env=environment, stderr=None) as process:
@@ -409,7 +409,7 @@ async def _driver(at_work: RobotAtWork) -> AsyncIterator[Process]:
 
 
 async def _must_stand_from(at_work: RobotAtWork, tick: int) -> None:
-    """Nobody drives from this tick on; a second longer than the robot may take is looked at."""
+    """Check that the wheels stand from this tick on, for a second more than the limit."""
     await at_work.until(lambda: at_work.tick >= tick + REACH_TICKS + 100)
     assert at_work.moved_since(tick + REACH_TICKS) == []
 

@@ -39,15 +39,15 @@ def desk() -> ChannelFixture:
 
 
 def picture(desk: ChannelFixture) -> State:
-    """The picture of the newest tick; what comes out of the wire is the same."""
+    """Return the state of the newest tick, checked by a round trip."""
     told = desk.channel._states.build(desk.record)
     assert decode_state(encode_state(told)) == told
     return told
 
 
-async def teach(desk: ChannelFixture, way: str, *, beside: bool = False) -> Outcome | None:
+async def teach(desk: ChannelFixture, way: str, *, alternative: bool = False) -> Outcome | None:
     """Give a lesson of the mid level; return what becomes of it."""
-    return outcome_of(await desk.ask(desk.command(AnswerRequest, way, None, MID, beside)))
+    return outcome_of(await desk.ask(desk.command(AnswerRequest, way, None, MID, alternative)))
 
 
 async def test_the_robot_introduces_its_mid_level(desk: ChannelFixture) -> None:
@@ -103,14 +103,14 @@ async def test_mid_level_correction_and_alternative_are_taught(desk: ChannelFixt
     assert outcome_of(reply) == Outcome.of(
         ResultCode.RLA_CORRECTED, rla=1, level=MID, action="straight_on", was="turn_left"
     )
-    added = await teach(desk, "turn_right", beside=True)
+    added = await teach(desk, "turn_right", alternative=True)
     assert added == Outcome.of(ResultCode.RLA_ADDED, rla=2, level=MID, action="turn_right", next_to=1)
     desk.run()
     told = picture(desk)
     assert told.mid is not None
     assert (told.mid.behaviour, told.mid.rla) == ("straight_on", 1)
     await desk.ask(desk.command(UndoRequest, None))
-    added = await teach(desk, "turn_right", beside=True)
+    added = await teach(desk, "turn_right", alternative=True)
     assert added == Outcome.of(ResultCode.RLA_ADDED, rla=3, level=MID, action="turn_right", next_to=1)
 
 
@@ -212,7 +212,7 @@ async def test_reposition_resets_the_mid_level(desk: ChannelFixture) -> None:
 async def test_mid_level_without_place_still_has_state() -> None:
     desk = ChannelFixture(behaviours=TURNS, mid="places", ground=Yard())
     for way in TURNS[:2]:
-        await teach(desk, way, beside=True)
+        await teach(desk, way, alternative=True)
     desk.runtime.reposition()
     desk.run()
     told = picture(desk)

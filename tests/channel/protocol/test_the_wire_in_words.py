@@ -37,7 +37,7 @@ SAID = TEXT[TEXT.index("### What a teacher says") : TEXT.index("### Versions")]
 
 
 def bodies() -> dict[str, list[str]]:
-    """By path, the words of its body; nested lists are one place."""
+    """Return the words of each body by path; nested lists are one place."""
     found: dict[str, list[str]] = {}
     for row in re.findall(r"^\| \w+ \| (`/.*?) \| (`\[.*?) \|", SAID, re.MULTILINE):
         paths, written = (re.findall(r"`([^`]*)`", column) for column in row)
@@ -67,7 +67,7 @@ def test_every_path_is_explained_with_as_many_places_as_it_takes() -> None:
 
 
 def ranges() -> dict[str, str]:
-    """By word of a body, what it takes."""
+    """Return the allowed values by the word of a body."""
     table = SAID[SAID.index("What each of them takes") : SAID.index("Answers are maps;")]
     return {
         word: text

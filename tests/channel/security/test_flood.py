@@ -73,7 +73,7 @@ class Child:
 
 @asynccontextmanager
 async def child(*arguments: str) -> AsyncIterator[Child]:
-    """A Python process; killed at the end where it still runs."""
+    """Run a Python process; kill it at the end if it still runs."""
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3]), "COLUMNS": "300"}
     async with await anyio.open_process([sys.executable, *arguments], env=environment, stderr=None) as process:
         try:
@@ -85,12 +85,12 @@ async def child(*arguments: str) -> AsyncIterator[Child]:
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """How robot and teacher fared."""
+    """Measurements of robot and teacher."""
 
     resident_kb: list[int]
     """Each second, from before the flood."""
     robot: list[dict[str, Any]]
-    """What a robot process of ours told each second."""
+    """Lines of the robot process, one each second."""
     teacher: dict[str, Any]
 
     @property
@@ -126,7 +126,7 @@ async def _cheap_robot(folder: Path, calm_s: float, flood_s: float, *, collect: 
 
 
 async def _simulated_robot(folder: Path, calm_s: float, flood_s: float) -> tuple[Seen, str]:
-    """The robot program that everybody runs; also its last status line."""
+    """Run the robot program, and return its last status line."""
     pairing = _pairing(folder)
     settings = folder / "flood.yaml"
     settings.write_text(yaml.safe_dump(service_settings(folder).model_dump()), encoding="utf-8")
@@ -147,7 +147,7 @@ def _report(name: str, seen: Seen, more: str = "") -> None:
 
 
 def _append(lines: str) -> None:
-    """To the file that KURT2RT_FLOOD_REPORT names, if any."""
+    """Append to the file that KURT2RT_FLOOD_REPORT names, if any."""
     path = os.environ.get("KURT2RT_FLOOD_REPORT")
     if path:
         with Path(path).open("a", encoding="utf-8") as file:

@@ -15,7 +15,7 @@ from tests.cli.helpers import ROOT, started
 
 
 def opened(folder: Path, chunk: int = CHUNK) -> OscoreContext:
-    """With a clock that was set back to before the pairing: numbers are those that are stored."""
+    """Open a context with a clock before the pairing, so that the stored numbers count."""
     return OscoreContext(folder, chunk=chunk, now=lambda: 0.0)
 
 
@@ -47,7 +47,7 @@ class SlowDisk:
         monkeypatch.setattr(ContextFolder, "write_sequence", slow)
 
     def wait(self) -> None:
-        """Until no thread stores any more."""
+        """Wait until no thread stores any more."""
         for thread in threading.enumerate():
             if thread.name.startswith("oscore"):
                 thread.join(timeout=10)
@@ -201,8 +201,8 @@ def test_aiocoaps_own_context_reads_what_is_left(pairing: Pairing) -> None:
 
 
 def test_a_folder_that_is_not_there_is_told_with_what_to_do(tmp_path: Path) -> None:
-    with pytest.raises(CredentialsError, match=r"no pairing to open .*kurt2rt pair nobody"):
-        OscoreContext(tmp_path / "nobody")
+    with pytest.raises(CredentialsError, match=r"no pairing to open .*kurt2rt pair absent"):
+        OscoreContext(tmp_path / "absent")
 
 
 def _write(name: str, text: str) -> Callable[[Path], None]:

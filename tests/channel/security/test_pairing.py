@@ -171,7 +171,7 @@ class KilledError(BaseException):
 
 
 STEPS = ((os, "fsync"), (os, "open"), (os, "rmdir"), (Path, "rename"), (Path, "mkdir"))
-"""What a change is made of, as seen from the disk."""
+"""Steps of a change on the disk."""
 
 
 def change_until_killed(teachers: Path, devices: Path, steps: int, patch: pytest.MonkeyPatch) -> bool:

@@ -28,7 +28,7 @@ def _paired_s(folder: Path) -> float:
 
 
 def _without_stamp(folder: Path) -> None:
-    """As pairings of earlier versions are."""
+    """Remove the time of the pairing, which earlier versions lack."""
     settings = json.loads((folder / "settings.json").read_text(encoding="utf-8"))
     del settings["paired-at"]
     (folder / "settings.json").write_text(json.dumps(settings), encoding="utf-8")
@@ -45,7 +45,7 @@ class Life:
         self._count = 0
 
     def run(self, seconds: float, per_s: int, *, dies: bool) -> None:
-        """A program, from its start to its end."""
+        """Run a program from its start to its end."""
         context = OscoreContext(self.folder, now=self.clock)
         for _ in range(10):
             self.used += [context.new_sequence_number() for _ in range(round(seconds * per_s / 10))]

@@ -18,7 +18,7 @@ _TAKEN_UP_S = 2.0
 
 
 async def phone_in(folder: Path) -> Path:
-    """A device that is paired, its folder moved elsewhere."""
+    """Pair a device and move its folder elsewhere."""
     paired = pair(folder / "teachers", folder / "devices", "phone")
     await asyncio.sleep(_TAKEN_UP_S)
     elsewhere = folder / "elsewhere"

@@ -36,14 +36,14 @@ class Door:
         return self.robot if sealed.kid == self.robot.recipient_id else None
 
     def stop(self) -> bytes:
-        """A new one of the device."""
+        """Return a new stop of the device."""
         outer, _ = self.device.protect(aiocoap.Message(code=aiocoap.POST, uri_path=("stop",), payload=b"\x82"))
         outer.mid, outer.mtype, outer.token = 7, aiocoap.NON, b"t"
         data: bytes = outer.encode()
         return data
 
     def forged(self, kid: bytes, number: int) -> bytes:
-        """What a stranger makes who has read a key id."""
+        """Return a forged request with a key id that a stranger read."""
         option = b"\x0c" + number.to_bytes(4, "big") + kid
         return bytes((0x50, 2, 0, 1, 0x90 | len(option))) + option + b"\xff" + bytes(30)
 

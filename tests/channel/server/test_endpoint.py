@@ -82,7 +82,7 @@ class Sender(asyncio.DatagramProtocol):
             return aiocoap.Message.decode(await self.received.get())
 
     async def ping(self) -> None:
-        """Until the robot has read all that was sent before."""
+        """Wait until the robot has read all datagrams so far."""
         self.send(PING)
         async with asyncio.timeout(5):
             while await self.received.get() != PONG:
@@ -189,12 +189,12 @@ def random_bytes(chance: random.Random) -> bytes:
 
 
 def random_options(chance: random.Random) -> bytes:
-    """A request as far as the first four bytes tell."""
+    """Return a datagram whose first four bytes are those of a request."""
     return bytes([0x50, aiocoap.POST]) + chance.randbytes(chance.randint(2, 60))
 
 
 def random_reply(chance: random.Random) -> bytes:
-    """An ACK or RST to something that was never sent."""
+    """Return an ACK or RST to a message that was never sent."""
     return bytes([chance.choice([0x60, 0x70]), 0]) + chance.randbytes(2)
 
 

@@ -663,7 +663,7 @@ async def test_health_returns_last_report_to_any_device(desk: ChannelFixture) ->
 
 
 async def test_why_is_limited_to_ten_a_second(desk: ChannelFixture) -> None:
-    """An answer takes a millisecond of the loop, so nobody may have as many as he likes."""
+    """An answer takes a millisecond of the loop, so each device has a limit."""
     desk.run(1)
     at_once = [(await desk.ask(WhyRequest(), "bob")).status for _ in range(20)]
     assert at_once.count(ReplyStatus.DONE) == 5
@@ -779,7 +779,7 @@ async def test_an_appraisal_that_the_critic_has_no_word_for_is_refused(desk: Cha
 
 
 def opinion_at(desk: ChannelFixture, counts: int) -> int | None:
-    """What the critic thinks where the sensors have shown the same for a while."""
+    """Return the critic's opinion after the sensors have shown the same for a while."""
     return desk.channel._states.build(desk.run(400, counts=counts)).opinion
 
 

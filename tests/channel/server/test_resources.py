@@ -63,7 +63,7 @@ class Phone:
         self.keys = keys
 
     async def call(self, message: Any) -> Any:
-        """The answer to a protected request, read with the device's keys."""
+        """Return the answer to a protected request, decrypted with the device's keys."""
         protected, request_id = self.keys.protect(message)
         (event,) = await answers(self.site, carried(protected))
         assert event.is_last
@@ -71,7 +71,7 @@ class Phone:
         return answer
 
     async def post(self, request: Request) -> Any:
-        """The answer to a request of the wire."""
+        """Return the answer to a request of the wire."""
         return await self.call(plain(request.path, payload=encode_request(request), content_format=CONTENT_FORMAT))
 
 
@@ -102,7 +102,7 @@ class School:
 
 
 async def answers(site: RobotSite, message: Any) -> list[Any]:
-    """What a request gets, as aiocoap hears it from the site."""
+    """Return the responses of the site to a request."""
     events: list[Any] = []
     pipe = Pipe(message, logging.getLogger("aiocoap.test"))
     pipe.on_event(_noting(events))
@@ -340,7 +340,7 @@ class Observer:
         return [decode_state(answer.payload).tick for answer in answers]
 
     async def removed(self) -> None:
-        """What aiocoap does when the other side is gone."""
+        """Cancel the request, as aiocoap does for a device that is gone."""
         self._task.cancel()
         await asyncio.wait([self._task])
 
@@ -496,17 +496,17 @@ class Line:
         self._keys = keys
 
     async def plain(self, path: str, code: Any) -> Any:
-        """The answer to a request without keys."""
+        """Return the answer to a request without keys."""
         return await self._response(plain(path, code))
 
     async def call(self, request: Request) -> Any:
-        """The answer to a request of the wire; the robot's first wish for a proof is met."""
+        """Return the answer to a request of the wire, after the robot's first challenge."""
         message = plain(request.path, payload=encode_request(request))
         answer = await self._protected(message)
         return answer if answer.opt.echo is None else await self._protected(message.copy(echo=answer.opt.echo))
 
     def forge(self, count: int) -> None:
-        """Messages in the name of this device that were not made with its keys; nobody waits for an answer."""
+        """Send messages with this device's key id that its keys did not make."""
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as forger:
             for number in range(count):
                 outer, _ = self._keys.protect(plain("/hello"))
@@ -536,8 +536,7 @@ class OnLine:
         desk.run()  # before its first tick a robot has no picture on which anything could be said
 
     async def call(self, request: Request) -> dict[str, Any]:
-        """The answer to a request, while the robot ticks as fast as it does; at most 0.4 s, for what was given on the
-        picture of the request before shall not grow old, a second, where a machine is slow."""
+        """Return the answer to a request while the robot ticks without pause, for at most 0.4 s of robot time."""
         task = asyncio.create_task(self.line.call(request))
         ticks = 0
         while not (await asyncio.wait([task], timeout=ROBOT.can.cycle_s))[0]:
@@ -551,7 +550,7 @@ class OnLine:
 
     @property
     def remembered_requests(self) -> int:
-        """How many aiocoap keeps because they are not answered."""
+        """Return the number of requests that aiocoap keeps for lack of an answer."""
         (tokens,) = self.channel.endpoint._context.request_interfaces
         return len(tokens.incoming_requests)
 

@@ -28,7 +28,7 @@ class Sides:
         self.device, self.robot = OscoreContext(pairing.device.folder), OscoreContext(pairing.teacher)
 
     def datagram(self, message: aiocoap.Message, token: bytes = b"12345678") -> bytes:
-        """A request of the device as it goes over the wire."""
+        """Return a request of the device in its form on the wire."""
         outer, _ = self.device.protect(message)
         outer.mid, outer.mtype, outer.token = 7, aiocoap.NON, token
         data: bytes = outer.encode()
@@ -51,7 +51,7 @@ def stop() -> aiocoap.Message:
 
 
 def aiocoap_takes(robot: OscoreContext, data: bytes) -> bool:
-    """Whether aiocoap finds that the robot's key made it; a copy counts as made by it, too."""
+    """Return whether aiocoap finds the tag valid; a copy counts too."""
     try:
         message = aiocoap.Message.decode(data)
         message.direction = Direction.INCOMING

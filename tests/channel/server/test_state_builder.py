@@ -1,4 +1,4 @@
-"""What the picture says of a robot, tick by tick."""
+"""States of a robot, tick by tick."""
 
 import math
 from dataclasses import replace
@@ -41,7 +41,7 @@ def desk() -> ChannelFixture:
 
 
 def picture(desk: ChannelFixture) -> State:
-    """The picture of the newest tick; what comes out of the wire is the same."""
+    """Return the state of the newest tick, checked by a round trip."""
     told = desk.channel._states.build(desk.record)
     assert decode_state(encode_state(told)) == told
     return told
@@ -227,7 +227,7 @@ async def test_state_names_selected_behaviour_and_its_rlas() -> None:
 
 
 async def drives(desk: ChannelFixture) -> None:
-    """The robot drives by what it was taught, and its teacher looks."""
+    """Let the robot drive by an RLA while its teacher watches."""
     await desk.ask(desk.answer("forward"))
     await desk.stream(desk.watch())
     desk.run()

@@ -140,7 +140,7 @@ async def seen(client: TeacherClient, holds: Callable[[], bool]) -> None:
 
 
 async def eventually(holds: Callable[[], bool]) -> None:
-    """Wait for something that tells nobody."""
+    """Wait for a condition that sets no event."""
     with anyio.fail_after(10.0):
         while not holds():  # noqa: ASYNC110
             await anyio.sleep(0.005)
@@ -177,7 +177,7 @@ async def test_client_pairing_in_use_or_missing_raises(client: TeacherClient, pa
     with pytest.raises(CredentialsError, match="another program uses this pairing"):
         await TeacherClient(pairing.device.folder).__aenter__()
     with pytest.raises(CredentialsError, match="there is no pairing to open"):
-        await TeacherClient(tmp_path / "nobody").__aenter__()
+        await TeacherClient(tmp_path / "missing").__aenter__()
 
 
 def test_a_client_that_is_not_open_says_how_to_open_it(pairing: Pairing) -> None:
@@ -604,7 +604,7 @@ async def test_resume_after_own_stop_names_the_stops_tick(client: TeacherClient,
     await client.stop()
     await client.resume()
     await client.answer("forward")
-    # Answers to other things are no news of the robot to who wants to move it: somebody may have stopped it meanwhile.
+    # Other answers do not show that another teacher stopped the robot meanwhile.
     await client.resume()
     resumes = robot.all_of(ResumeRequest)
     assert [each.seen for each in resumes] == [stopped_tick, stopped_tick]
@@ -625,9 +625,9 @@ async def test_ticks_of_earlier_start_do_not_count(pairing: Pairing) -> None:
             robot.mind = far_on
             await client.stop()
             await first_start.aclose()
-            async with stand_in_robot(teachers, port=robot.port, boot=b"anew") as robot:
+            async with stand_in_robot(teachers, port=robot.port, boot=b"next") as robot:
                 clock.ahead_s += 1.5
-                await seen(client, lambda: client.state is not None and client.state.boot == b"anew")
+                await seen(client, lambda: client.state is not None and client.state.boot == b"next")
                 await client.resume()
                 await client.answer("forward")
                 (resume,), (answer,) = robot.all_of(ResumeRequest), robot.all_of(AnswerRequest)
@@ -923,13 +923,13 @@ async def test_client_after_robot_restart_proves_itself_and_goes_on(pairing: Pai
             assert client.press(0.2, 0.2)
             await robot.hears(DriveRequest)
             await first_start.aclose()
-            async with stand_in_robot(teachers, port=robot.port, boot=b"anew") as robot:
+            async with stand_in_robot(teachers, port=robot.port, boot=b"next") as robot:
                 clock.ahead_s += 1.5
-                await seen(client, lambda: client.state is not None and client.state.boot == b"anew")
+                await seen(client, lambda: client.state is not None and client.state.boot == b"next")
                 assert client.restarts == 1
                 assert not client.pressing
                 assert (await client.answer("forward")).accepted
-                assert robot.all_of(AnswerRequest)[0].boot == b"anew"
+                assert robot.all_of(AnswerRequest)[0].boot == b"next"
                 assert all(each.boot == b"boot" for each in robot.all_of(DriveRequest))
 
 
@@ -985,12 +985,12 @@ async def test_forged_resets_and_errors_only_cost_time(pairing: Pairing) -> None
 
 
 def unauthorised(request: bytes) -> bytes:
-    """A plain 4.01, as whoever does not know the device sends it."""
+    """Return a plain 4.01, the answer to an unknown device."""
     return head_of_answer(request, 0x81)
 
 
 def changed(request: bytes, option: bytes) -> bytes:
-    """A 2.04 that says it is protected."""
+    """Return a 2.04 that pretends to be protected."""
     return head_of_answer(request, 0x44) + bytes([0x90 | len(option)]) + option + b"\xffforged, and not even long"
 
 
@@ -1033,5 +1033,5 @@ def test_only_who_asks_for_the_client_loads_its_network_library() -> None:
         "assert 'aiocoap' in sys.modules",
     )
     subprocess.run([sys.executable, "-c", "; ".join(lines)], check=True)
-    with pytest.raises(AttributeError, match="has no attribute 'Nobody'"):
-        _ = kurt2rt.teacher.Nobody
+    with pytest.raises(AttributeError, match="has no attribute 'Missing'"):
+        _ = kurt2rt.teacher.Missing

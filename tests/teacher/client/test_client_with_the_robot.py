@@ -30,7 +30,7 @@ A_BAD_LINK = Weather(loss=0.1, delay_s=0.005, jitter_s=0.005, doubled=0.05, over
 
 @asynccontextmanager
 async def listening_robot(live: Rig, folder: Path) -> AsyncIterator[int]:
-    """The robot's program with its channel on a free port, which it yields; ended as a service manager does."""
+    """Run the robot's program on a free port and yield its channel; end it like a service manager."""
     opened = anyio.Event()
     ports: list[int] = []
 

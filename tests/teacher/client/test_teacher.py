@@ -144,11 +144,11 @@ def _without_doubles(requests: list[Request]) -> list[Request]:
 
 
 def test_no_robot_is_one_line_that_says_what_to_do(pairing: Pairing) -> None:
-    with pytest.raises(NoAnswerError) as nobody:
+    with pytest.raises(NoAnswerError) as caught:
         Teacher(pairing.device.folder, port=1, connect_s=0.2).open()
-    assert "\n" not in str(nobody.value)
-    assert "no robot answers for 0.2 s" in str(nobody.value)
-    assert str(nobody.value).endswith("start one: kurt2rt run")
+    assert "\n" not in str(caught.value)
+    assert "no robot answers for 0.2 s" in str(caught.value)
+    assert str(caught.value).endswith("start one: kurt2rt run")
     with pytest.raises(CredentialsError, match="there is no pairing to open"):
         Teacher(pairing.device.folder.with_name("nothing")).open()
 
@@ -185,5 +185,5 @@ def test_a_robot_ends_with_the_program_that_started_it(tmp_path: Path, monkeypat
 
 def test_the_package_names_what_it_has() -> None:
     assert kurt2rt.teacher.Teacher is Teacher
-    with pytest.raises(AttributeError, match="no attribute 'Nobody'"):
-        assert kurt2rt.teacher.Nobody
+    with pytest.raises(AttributeError, match="no attribute 'Missing'"):
+        assert kurt2rt.teacher.Missing
