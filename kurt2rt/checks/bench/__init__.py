@@ -1,1 +1,1 @@
-"""The numbers: what the runtime takes, beside a reference measured in the same run, and the goal for it."""
+"""Benchmarks of the runtime, each with a reference from the same run."""

@@ -1,6 +1,6 @@
 """Browser process with the teacher's page open: `python -m kurt2rt.checks.bench.browser PORT COOKIE`.
 
-It says what the page's JavaScript says, at the same pace; there is no picture to paint.
+It sends what the page's JavaScript sends, with the same period, and paints nothing.
 """
 
 import itertools
@@ -23,7 +23,7 @@ _PRESS_S = 0.05
 
 
 class Browser:
-    """One page that has the pad."""
+    """Page with the control lease."""
 
     def __init__(self, page: ClientConnection) -> None:
         self._page = page
@@ -35,7 +35,7 @@ class Browser:
         self._news = anyio.Event()
 
     async def listen(self) -> None:
-        """Take in what the page is told."""
+        """Receive state updates."""
         async for text in self._page:
             told = json.loads(text)
             if told["kind"] == "state":
@@ -44,20 +44,20 @@ class Browser:
                 self._news = anyio.Event()
 
     async def beat(self) -> None:
-        """Say that the page is open and seen."""
+        """Report periodically that the page is open and visible."""
         while True:
             await self._say("beat", picture=self._picture, at_ms=time.monotonic() * 1000)
             await anyio.sleep(_BEAT_S)
 
     async def take(self) -> dict[str, Any]:
-        """Be the teacher."""
+        """Take control of the robot."""
         await self._see(lambda: self._picture is not None)
         await self._say("order", number=next(self._numbers), name="take", arguments={}, picture=self._picture)
         await self._see(lambda: self._teacher is not None)
         return {}
 
     async def press(self, presses: int) -> dict[str, Any]:
-        """Press so many times, forward and backward in turns; when, on the monotonic clock."""
+        """Press alternately forward and backward; return the times on the monotonic clock."""
         made = []
         for _ in range(presses):
             schedule = next(self._schedules)
@@ -82,7 +82,7 @@ class Browser:
 
 
 async def main(port: int, cookie: str) -> None:
-    """Do jobs until the input ends."""
+    """Run jobs until the input ends."""
     host = f"127.0.0.1:{port}"
     async with connect(
         f"ws://{host}/robot", origin=Origin(f"http://{host}"), additional_headers={"Cookie": cookie}, compression=None

@@ -1,4 +1,4 @@
-"""The teacher's channel over UDP, from a teacher's device to the wheels and to the disk."""
+"""Benchmark of the teacher's channel over UDP, from the device to the wheels and to the disk."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ _PAGE_PACKAGES = ("starlette", "uvicorn", "websockets")
 
 @dataclass(frozen=True, slots=True)
 class ChannelLengths:
-    """How much of the channel is measured."""
+    """Numbers of measurements of the channel."""
 
     presses: int
     shifts: LoadShifts
@@ -26,10 +26,10 @@ class ChannelLengths:
 async def measure_channel(
     fixture: BenchFixture, folder: Path, lengths: ChannelLengths, start_job: Callable[[str], OnProgress]
 ) -> tuple[BenchResult, ...]:
-    """Presses, with and without the page; the loop with a teacher there; lessons. Files go to folders in `folder`.
+    """Measure presses with and without the page, the loop with a teacher, and lessons.
 
-    The page is left out where its packages, an extra, are not installed. Raises LessonLostError, KnowledgeError,
-    ChannelError, PartnerLostError, OSError without a timerfd.
+    Files go to folders in `folder`. The page is left out if its optional packages are missing. Raises LessonLostError,
+    KnowledgeError, ChannelError, HelperLostError, OSError without a timerfd.
     """
     results = [
         await measure_presses(fixture, folder / "press", lengths.presses, start_job("pressing, in a teacher's program"))

@@ -1,4 +1,4 @@
-"""How long a teacher at a device waits until he knows that a lesson is safe."""
+"""Benchmark of the time from a lesson at the device to its acknowledgement there."""
 
 import time
 from functools import partial
@@ -15,7 +15,7 @@ from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
 from kurt2rt.platform.ledger import percentiles_of
 
 P99_LIMIT_US = 35_000.0
-"""20 ms until the lesson is durable, 10 ms until a tick sees that, the rest for the way there and back."""
+"""Limit: 20 ms to durability, 10 ms to the next tick, the rest for the network."""
 _LESSONS_AT_ONCE = 10
 _WARMING_UP = 1
 _PATIENCE_S = 10.0
@@ -24,10 +24,10 @@ _PATIENCE_S = 10.0
 async def measure_channel_lessons(
     fixture: BenchFixture, folder: Path, lessons: int, on_progress: OnProgress
 ) -> BenchResult:
-    """From an answer of the teacher's device until it is acknowledged there; files go to `folder`.
+    """Measure the time from a device's answer to its acknowledgement; files go to `folder`.
 
-    In turns with lessons that begin and end in the robot's program. Raises LessonLostError, KnowledgeError,
-    PartnerLostError, OSError without a timerfd.
+    Alternates with lessons inside the robot's program. Raises LessonLostError, KnowledgeError, HelperLostError, OSError
+    without a timerfd.
     """
     took_ns: list[int] = []
     inside_ns: list[int] = []
@@ -55,7 +55,7 @@ async def measure_channel_lessons(
 
 
 async def _teach_inside(robot: OpenRobot, number: int) -> int:
-    """As kurt2rt.checks.bench.lesson does; how long it took, in ns."""
+    """Teach like kurt2rt.checks.bench.lesson; return the time in ns."""
     command_id, gate = f"bench-inside-{number}", robot.gate
     action = tuple(robot.runtime.level.repertoire)[number % 2]
     begun_ns = time.perf_counter_ns()

@@ -1,4 +1,4 @@
-"""What it costs the loop that teachers look at the robot and tell it something all the time."""
+"""Benchmark of the loop's cost of connected teachers."""
 
 import time
 from collections.abc import Sequence
@@ -19,19 +19,19 @@ _SETTLING_S = 0.3
 
 
 class Load(StrEnum):
-    """Who is at the robot."""
+    """Client of the robot."""
 
-    NOBODY = "leave"
-    """And the channel has no part in the rounds: no picture is made."""
+    ALONE = "leave"
+    """No client; the channel has no part in the loop."""
     ONLOOKER = "look"
-    """Gets the pictures."""
+    """Client that receives state updates."""
     TEACHER = "watch"
-    """Gets the pictures, and says that he is there as often as one who drives by hand says where to."""
+    """Client that receives state updates and sends as often as in manual driving."""
 
 
 @dataclass(frozen=True, slots=True)
 class LoadShifts:
-    """How often and how long each company is there; in turns, so what the machine does meanwhile falls on all alike."""
+    """Number and length of the phases, which alternate so that disturbances of the machine affect all loads."""
 
     rounds: int
     ticks: int
@@ -39,45 +39,45 @@ class LoadShifts:
 
 @dataclass(frozen=True, slots=True)
 class LoadPhase:
-    """One company at the robot, for a while."""
+    """Measurements under one load."""
 
     seconds: float
     processor_us: float
-    """That the robot's program took, the simulated robot in it included."""
+    """Processor time of the robot's program with its simulated robot."""
     messages: int
-    """That came in."""
+    """Received messages."""
     missed_ticks: int
 
     @property
     def work_us(self) -> float:
-        """Of the processor, in a second."""
+        """Return the processor time per second."""
         return self.processor_us / self.seconds
 
     @property
     def messages_per_s(self) -> float:
-        """That came in, in a second."""
+        """Return the received messages per second."""
         return self.messages / self.seconds
 
 
 @dataclass(frozen=True, slots=True)
 class LoadPhases:
-    """All stays of one company."""
+    """All phases of one load."""
 
     lateness: Percentiles
     each: tuple[LoadPhase, ...]
 
     @property
     def missed_ticks(self) -> int:
-        """In all stays."""
+        """Return the missed ticks of all phases."""
         return sum(phase.missed_ticks for phase in self.each)
 
 
 async def measure_load(
     fixture: BenchFixture, folder: Path, shifts: LoadShifts, on_progress: OnProgress
 ) -> tuple[BenchResult, ...]:
-    """Lateness and processor time of a robot that drives by its RLAs, with and without company; files go to `folder`.
+    """Measure lateness and processor time of an autonomous robot under each load; files go to `folder`.
 
-    Raises KnowledgeError, PartnerLostError, OSError without a timerfd.
+    Raises KnowledgeError, HelperLostError, OSError without a timerfd.
     """
     ledgers = {load: TickTimer(shifts.rounds * shifts.ticks) for load in Load}
     phases: dict[Load, list[LoadPhase]] = {load: [] for load in Load}
@@ -85,7 +85,7 @@ async def measure_load(
         open_robot(fixture, folder) as robot,
         helper_process("kurt2rt.checks.bench.device", *robot.address) as device,
     ):
-        # It drives in the same way whoever is there.
+        # The motion must not depend on the load.
         robot.runtime.handler.phase = Phase.AUTONOMOUS
         robot.runtime.handler.active_stop = None
         period_s = robot.runtime.robot.can.cycle_s
@@ -105,9 +105,9 @@ async def measure_load(
 
 
 async def _settle(robot: OpenRobot, load: Load) -> None:
-    somebody = load is not Load.NOBODY
-    await robot.gate.until(lambda: (robot.channel.observers > 0) is somebody)
-    robot.gate.open = somebody
+    connected = load is not Load.ALONE
+    await robot.gate.until(lambda: (robot.channel.observers > 0) is connected)
+    robot.gate.open = connected
     await robot.gate.run_ticks(round(_SETTLING_S / robot.runtime.robot.can.cycle_s))
 
 
@@ -127,12 +127,12 @@ async def _measure_phase(robot: OpenRobot, ledger: TickTimer, ticks: int) -> Loa
 
 
 def load_results(phases: dict[Load, LoadPhases], *, period_s: float, driving_share: float) -> tuple[BenchResult, ...]:
-    """How late ticks begin with a teacher there, and what the channel's work is made of."""
-    nobody, onlooker, teacher = (phases[load] for load in Load)
-    late = Reference("alone, p99", nobody.lateness.p99_us, teacher.lateness.p99_us)
-    channel = _more(nobody.each, teacher.each, [1.0] * len(teacher.each))
-    alone_us = percentiles_of([round(phase.work_us * 1e3) for phase in nobody.each]).median_us
-    picture = _more(nobody.each, onlooker.each, [STATES_PER_S] * len(onlooker.each))
+    """Return the lateness with a teacher, and the parts of the channel's processor time. Times in s and us."""
+    alone, onlooker, teacher = (phases[load] for load in Load)
+    late = Reference("alone, p99", alone.lateness.p99_us, teacher.lateness.p99_us)
+    channel = _more(alone.each, teacher.each, [1.0] * len(teacher.each))
+    other_us = percentiles_of([round(phase.work_us * 1e3) for phase in alone.each]).median_us
+    picture = _more(alone.each, onlooker.each, [STATES_PER_S] * len(onlooker.each))
     more_messages = [
         taught.messages_per_s - looked.messages_per_s
         for looked, taught in zip(onlooker.each, teacher.each, strict=True)
@@ -146,13 +146,13 @@ def load_results(phases: dict[Load, LoadPhases], *, period_s: float, driving_sha
             late,
             (BenchGoal("missed", teacher.missed_ticks, 0),),
             f"{STATES_PER_S} pictures out, {fmean(more_messages):.0f} messages in per second; without "
-            f"anybody {nobody.missed_ticks} ticks missed; driving in {driving_share:.0%} of the ticks",
+            f"anybody {alone.missed_ticks} ticks missed; driving in {driving_share:.0%} of the ticks",
         ),
         BenchResult(
             "channel",
             "channel, per second",
             channel,
-            Reference("all else", alone_us, channel.median_us),
+            Reference("all else", other_us, channel.median_us),
             note=f"{channel.median_us / 1e4:.1f} % of a core: processor time of the robot's program with a teacher, "
             "less that without anybody in the same round",
         ),
@@ -162,7 +162,7 @@ def load_results(phases: dict[Load, LoadPhases], *, period_s: float, driving_sha
 
 
 def _more(less: Sequence[LoadPhase], more: Sequence[LoadPhase], things_per_s: Sequence[float]) -> Percentiles:
-    """How much more work there was for each thing, round by round."""
+    """Return the additional work per item, round by round."""
     return percentiles_of(
         [
             round((with_it.work_us - without.work_us) / per_s * 1e3)

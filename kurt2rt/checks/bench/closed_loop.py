@@ -1,4 +1,4 @@
-"""How many times real time a lesson runs in lockstep: world, codec, bus, runtime, teacher, on one core."""
+"""Benchmark of a lesson in lockstep on one core: world, codec, bus, runtime and teacher."""
 
 import time
 from pathlib import Path

@@ -16,24 +16,24 @@ _ENDING_S = 5.0
 
 
 class HelperLostError(RuntimeError):
-    """The process beside the robot's ended or fell silent; what it had to say is on standard error."""
+    """Helper process that ended or did not answer; its error is on standard error."""
 
 
 class HelperProcess:
-    """Does one job at a time."""
+    """Process that does one job at a time."""
 
     def __init__(self, module: str, process: anyio.abc.Process) -> None:
-        """Use `helper_process`."""
+        """Wrap a running process; use `helper_process`."""
         assert process.stdin is not None
         assert process.stdout is not None
         self._module = module
         self.pid = process.pid
-        """Of the process."""
+        """Process id."""
         self._stdin = process.stdin
         self._answers = BufferedByteReceiveStream(process.stdout)
 
     async def ask(self, job: str, *, patience_s: float = 30.0, **fields: Any) -> dict[str, Any]:
-        """Have a job done; its answer. Raises HelperLostError."""
+        """Run a job and return its answer. Raises HelperLostError."""
         try:
             with anyio.fail_after(patience_s):
                 await self._stdin.send(json.dumps({"job": job, **fields}).encode() + b"\n")
@@ -48,7 +48,7 @@ class HelperProcess:
 
 @asynccontextmanager
 async def helper_process(module: str, *arguments: str) -> AsyncIterator[HelperProcess]:
-    """Start `python -m module`; however this ends, the process ends as well."""
+    """Start `python -m module`, and end it with the context."""
     # In a session of its own, so that Ctrl-C reaches the robot first. Its input ends when we do, and so does it.
     process = await anyio.open_process(
         [sys.executable, "-m", module, *arguments],

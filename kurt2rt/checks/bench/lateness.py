@@ -1,14 +1,14 @@
-"""How late ticks begin."""
+"""Result of the lateness benchmark."""
 
 from kurt2rt.checks.bench.real_time import RealTimeRun
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
 
 TIMES_BETTER = 5.0
-"""The p99 is at most a fifth of what a bare asyncio.sleep loop reaches."""
+"""Required ratio of a bare asyncio.sleep loop's p99 to ours."""
 
 
 def lateness_result(run: RealTimeRun) -> BenchResult:
-    """Lateness of the ticks of a run beside that of the bare loop in the same run."""
+    """Return the lateness of a run's ticks with that of the bare loop."""
     reference = Reference("asyncio.sleep, p99", run.asyncio_lateness.p99_us, run.lateness.p99_us)
     return BenchResult(
         "lateness",

@@ -1,4 +1,4 @@
-"""How long the teacher waits until a lesson is safe."""
+"""Benchmark of the time until a lesson is durable."""
 
 import random
 import time
@@ -25,9 +25,9 @@ P99_LIMIT_US = 20_000.0
 async def measure_lessons(
     fixture: BenchFixture, folder: Path, lessons: int, on_progress: OnProgress, patience_s: float = 10.0
 ) -> BenchResult:
-    """Time from a command of the teacher, over the tick that takes it, to the journal in `folder` that has it durable.
+    """Measure the time from a command through the tick to the durable journal in `folder`.
 
-    In turns with a bare fsync there. Raises LessonLostError, KnowledgeError, OSError without a timerfd.
+    Alternates with a bare fsync there. Times in s. Raises LessonLostError, KnowledgeError, OSError without a timerfd.
     """
     period_s = fixture.settings.can.cycle_s
     chance = random.Random(SEED)

@@ -1,4 +1,4 @@
-"""How long the nearest condition is sought."""
+"""Benchmark of the search for the nearest condition."""
 
 import time
 from typing import NamedTuple
@@ -11,15 +11,15 @@ from kurt2rt.core.rla.matching import ConditionIndex, exact_distances
 from kurt2rt.platform.ledger import percentiles_of
 
 DIMENSIONS = 72
-"""Of the basic situation (paper, VI.B.1)."""
+"""Dimensions of the basic situation (paper, VI.B.1)."""
 LARGEST_COUNTS = 600.0
 NOISE_COUNTS = 20.0
 REFERENCE_STRIDE = 10
-"""Calls for one of the brute force, which is slow."""
+"""Calls per call of the slow brute force."""
 
 
 class Size(NamedTuple):
-    """So many RLAs, and the goal for them."""
+    """Number of RLAs with its goal."""
 
     rlas: int
     limit_us: float
@@ -30,11 +30,11 @@ SIZES = (Size(135, 10.0, 5000), Size(1_000, 15.0, 5000), Size(100_000, 1500.0, 4
 
 
 class WrongWinnerError(RuntimeError):
-    """The index and the brute force name different RLAs: the times mean nothing."""
+    """Index and brute force with different winners, which makes the times meaningless."""
 
 
 def measure_match(sizes: tuple[Size, ...], on_progress: OnProgress) -> tuple[BenchResult, ...]:
-    """Nearest of each number of RLAs, in turns with a float64 brute force. Raises WrongWinnerError."""
+    """Measure the match for each number of RLAs, alternating with a float64 brute force. Raises WrongWinnerError."""
     results = []
     for number, size in enumerate(sizes, start=1):
         results.append(_measure(size))

@@ -1,4 +1,4 @@
-"""One core for a while."""
+"""Restriction to one core."""
 
 import os
 from collections.abc import Iterator
@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def on_one_core() -> Iterator[int]:
-    """Keep this thread, and those it starts, to one of the cores it may use; yields which."""
+    """Restrict this thread and its children to one of its allowed cores; yield the core."""
     before = os.sched_getaffinity(0)
     core = max(before)  # interrupts mostly come to the first one
     os.sched_setaffinity(0, {core})

@@ -1,4 +1,4 @@
-"""A robot that is open to teachers over the network, put together as the service does it."""
+"""Robot that is open to teachers over the network, assembled like the service."""
 
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
@@ -28,11 +28,11 @@ _PATIENCE_S = 30.0
 
 
 class PauseGate:
-    """What happens after each tick: what the service does, and a look whether what is waited for has come."""
+    """Callback after each tick: the service's part, and a check of an awaited condition."""
 
     def __init__(self, with_channel: PostTick, without: PostTick) -> None:
         self.open = True
-        """Whether the channel has its part in it."""
+        """True if the channel takes part."""
         self.ticks = 0
         self.driving = 0
         """Ticks in which an action drove the wheels."""
@@ -43,7 +43,7 @@ class PauseGate:
         self._noticed = anyio.Event()
 
     def __call__(self, record: TickRecord) -> None:
-        """The round after one tick."""
+        """Run the service's part after one tick."""
         self.ticks += 1
         self.driving += record.decision.driving
         self.newest = record
@@ -53,21 +53,21 @@ class PauseGate:
             self._noticed.set()
 
     async def until(self, condition: Callable[[], bool]) -> None:
-        """Wait until something is so after a tick; one waits at a time. Raises TimeoutError after half a minute."""
+        """Wait until a condition holds after a tick; one waiter at a time. Raises TimeoutError after 30 s."""
         self._noticed = anyio.Event()
         self._condition = condition
         with anyio.fail_after(_PATIENCE_S):
             await self._noticed.wait()
 
     async def run_ticks(self, ticks: int) -> None:
-        """Let so many ticks go by."""
+        """Wait for a number of ticks."""
         last = self.ticks + ticks
         await self.until(lambda: self.ticks >= last)
 
 
 @dataclass(frozen=True, slots=True)
 class OpenRobot:
-    """Ticks by itself while it is open."""
+    """Robot that ticks by itself inside `open_robot`."""
 
     runtime: Runtime
     writer: JournalWriter
@@ -75,21 +75,21 @@ class OpenRobot:
     observer: ObservedRobot
     clock: LatenessClock
     device: Device
-    """A teacher's device that is paired with it."""
+    """Paired device of a teacher."""
     gate: PauseGate
     pace: LoopPacer
 
     @property
     def address(self) -> tuple[str, ...]:
-        """Folder of the pairing and port, as a program on the device's side wants them."""
+        """Return the folder of the pairing and the port for a helper process."""
         return str(self.device.folder), str(self.channel.endpoint.port)
 
 
 @asynccontextmanager
 async def open_robot(fixture: BenchFixture, folder: Path) -> AsyncIterator[OpenRobot]:
-    """Set the robot down, standing and open to teachers; knowledge and pairing go to `folder`, which is made.
+    """Start a robot that stands and is open to teachers; knowledge and pairing go to a new `folder`.
 
-    Raises KnowledgeError, ChannelError, OSError without a timerfd, and what the block raises as it is.
+    Raises KnowledgeError, ChannelError, OSError without a timerfd, and errors of the block unwrapped.
     """
     pairing = local_pairing(folder / "teachers", folder / "devices")
     service = load_service().model_copy(

@@ -14,14 +14,14 @@ from kurt2rt.teacher.page.server import listen, run_page
 
 
 async def main(folder: Path, port: int) -> None:
-    """Serve the page of the pairing in `folder`, with the robot at `port` of this machine, until the input ends."""
+    """Serve the page of the pairing in `folder` for the robot at the local `port` until the input ends."""
     device = read_device(folder)
     access = Access(device.name, device.token, ())
     with listen(0, everywhere=False) as listener:
         page_port = listener.getsockname()[1]
 
         async def place() -> dict[str, Any]:
-            """Where the page is, and the cookie that opens it."""
+            """Return the port of the page, and the cookie that opens it."""
             return {"port": page_port, "cookie": f"{access.cookie_name}={access.cookie}"}
 
         async def until_ended() -> None:

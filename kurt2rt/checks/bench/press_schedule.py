@@ -1,4 +1,4 @@
-"""Presses of a button: when each was made, when the wheels were told, and how long that took."""
+"""Schedule of presses, and the times from press to wheels."""
 
 import random
 from collections.abc import Iterator, Sequence
@@ -9,42 +9,42 @@ from hal.robot_proxy import RobotProxy
 from kurt2rt.platform.clock import Clock
 
 SPEED_M_S = 0.05
-"""Slow, and in turns forward and backward: the robot stays where it is, and a frame tells whose press it is of."""
+"""Slow speed, alternately forward and backward, so that the robot stays and each frame identifies its press."""
 _HELD_S = (0.10, 0.15)
 _UNTIL_NEXT_S = (0.25, 0.40)
 
 
 class PressSchedule(NamedTuple):
-    """Of one press, in seconds from its beginning; no multiple of anything that the robot does."""
+    """Duration of a press and its interval in s, no multiple of any period of the robot."""
 
     held_s: float
     next_s: float
 
 
 class PressTime(NamedTuple):
-    """A press, where it was made."""
+    """Time and direction of a press."""
 
     at_ns: int
-    """Of the machine's monotonic clock, which all processes share."""
+    """Machine's monotonic clock, which all processes share."""
     forward: bool
 
 
 class PressStart(NamedTuple):
-    """The first CONTROL frame with a speed after one without."""
+    """First CONTROL frame with a speed after one without."""
 
     at_ns: int
     forward: bool
 
 
 def press_schedules(seed: int) -> Iterator[PressSchedule]:
-    """One after another, without end."""
+    """Yield random schedules without end."""
     chance = random.Random(seed)
     while True:
         yield PressSchedule(chance.uniform(*_HELD_S), chance.uniform(*_UNTIL_NEXT_S))
 
 
 def waits_ns(presses: Sequence[PressTime], starts: Sequence[PressStart]) -> list[int]:
-    """From each press to the start of the wheels before the next press; one that did not start them has none."""
+    """Return the times from presses to the start of the wheels, if that came before the next press."""
     waits = []
     for number, press in enumerate(presses):
         until_ns = presses[number + 1].at_ns if number + 1 < len(presses) else None
@@ -57,17 +57,17 @@ def waits_ns(presses: Sequence[PressTime], starts: Sequence[PressStart]) -> list
 
 
 class ObservedRobot(RobotProxy):
-    """A robot of which is noted when its wheels are told to start."""
+    """Robot proxy that records each start of the wheels."""
 
     def __init__(self, robot: Robot, clock: Clock) -> None:
-        """`clock` is the machine's monotonic one."""
+        """`clock`: the machine's monotonic clock."""
         super().__init__(robot)
         self.starts: list[PressStart] = []
         self._clock = clock
         self._stood = True
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
-        """As the robot does; when it returns the frame is on the bus."""
+        """Forward to the robot; afterwards the frame is on the bus."""
         grant = self._robot.drive(wanted, decided_at_s, now_s)
         stands = grant.wheel_speeds == STANDSTILL
         if self._stood and not stands:

@@ -1,4 +1,4 @@
-"""How long it takes from the press of a button until the wheels are told."""
+"""Benchmark of the time from a press to the wheels."""
 
 from collections.abc import Awaitable, Callable
 from contextlib import AsyncExitStack
@@ -21,9 +21,9 @@ _Ask = Callable[..., Awaitable[dict[str, Any]]]
 
 
 async def measure_presses(fixture: BenchFixture, folder: Path, presses: int, on_progress: OnProgress) -> BenchResult:
-    """From a press in a teacher's program to the first CONTROL frame that moves the wheels; files go to `folder`.
+    """Measure from a press in a teacher's program to the first moving CONTROL frame; files go to `folder`.
 
-    Raises KnowledgeError, PartnerLostError, OSError without a timerfd.
+    Raises KnowledgeError, HelperLostError, OSError without a timerfd.
     """
     async with (
         open_robot(fixture, folder) as robot,
@@ -36,7 +36,10 @@ async def measure_presses(fixture: BenchFixture, folder: Path, presses: int, on_
 async def measure_presses_on_page(
     fixture: BenchFixture, folder: Path, presses: int, on_progress: OnProgress
 ) -> BenchResult:
-    """The same from a press on the teacher's page, over its WebSocket and the page's server. Raises as the other."""
+    """Measure from a press on the teacher's page, over WebSocket and page server.
+
+    Raises KnowledgeError, HelperLostError, OSError without a timerfd.
+    """
     async with open_robot(fixture, folder) as robot, AsyncExitStack() as ending:
         page = await ending.enter_async_context(helper_process("kurt2rt.checks.bench.page_process", *robot.address))
         place = await page.ask("place")
@@ -60,7 +63,7 @@ async def _pressed(robot: OpenRobot, ask: _Ask, presses: int, what: str, on_prog
 
 
 def press_result(what: str, waits_ns: list[int], *, lost: int, period_s: float) -> BenchResult:
-    """What became of so many presses, beside the period of the loop."""
+    """Return the result of presses with the period of the loop in s as reference."""
     took = percentiles_of(waits_ns)
     return BenchResult(
         "channel",

@@ -1,4 +1,4 @@
-"""A drive in real time, the whole runtime at work, in turns with a bare asyncio.sleep loop."""
+"""Drive in real time with the whole runtime, alternating with a bare asyncio.sleep loop."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,29 +18,29 @@ from kurt2rt.teacher.scripted.teacher import build_teacher, view_of_tick
 
 @dataclass(frozen=True, slots=True)
 class RealTimeTurns:
-    """How long runtime and reference run, in turns; what the machine does meanwhile falls on both alike."""
+    """Lengths of the alternating turns of runtime and reference, so that disturbances affect both."""
 
     rounds: int
     ticks: int
-    """Of the runtime, in each round."""
+    """Ticks of the runtime per round."""
     reference_ticks: int
-    """Of the bare loop, after them."""
+    """Ticks of the bare loop per round."""
 
 
 @dataclass(frozen=True, slots=True)
 class RealTimeRun:
-    """Where the time of a drive went."""
+    """Timing of a drive."""
 
     ticks: int
-    """Ticks that the run was long, missed ones included."""
+    """Length of the run in ticks, including missed ones."""
     missed_ticks: int
     driving_share: float
     """Share of ticks in which an action drove the wheels."""
     rlas: int
-    """Known at the end."""
+    """RLAs at the end."""
     lateness: Percentiles
     asyncio_lateness: Percentiles
-    """How late the bare loop woke."""
+    """Lateness of the bare loop."""
     tick: Percentiles
     stages: dict[Stage, Percentiles]
 
@@ -48,7 +48,7 @@ class RealTimeRun:
 async def run_in_real_time(
     fixture: BenchFixture, folder: Path, turns: RealTimeTurns, on_progress: OnProgress
 ) -> RealTimeRun:
-    """Drive as the service does, its journal in `folder`. Raises KnowledgeError, OSError without a timerfd."""
+    """Drive like the service, with its journal in `folder`. Raises KnowledgeError, OSError without a timerfd."""
     period_s = fixture.settings.can.cycle_s
     asyncio_ledger = TickTimer()
     driving = 0
@@ -95,7 +95,7 @@ async def run_in_real_time(
 
 
 async def sleep_bare(clock: Clock, ticks: int, period_s: float, ledger: TickTimer) -> None:
-    """Sleep to the next multiple of the period, so many times, and enter how late each sleep ended."""
+    """Sleep to multiples of the period in s and record how late each sleep ended."""
     start_s = clock.now_s()
     number = 0
     for _ in range(ticks):

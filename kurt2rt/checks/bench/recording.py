@@ -1,4 +1,4 @@
-"""What it costs the loop that its run is recorded, and how much of the disk that takes."""
+"""Benchmark of the loop's cost of recording, and of the recording's size."""
 
 import time
 from collections.abc import Callable
@@ -26,20 +26,20 @@ NOTE_LIMIT_US = 50.0
 
 @dataclass(frozen=True, slots=True)
 class RecordedStretch:
-    """A while with or without a recorder."""
+    """Time span with or without a recorder."""
 
     processor_us: float
-    """Of the robot's program, the simulated robot in it included."""
+    """Processor time of the robot's program with its simulated robot."""
     missed_ticks: int
 
 
 @dataclass(frozen=True, slots=True)
 class RecordedDrive:
-    """A drive that was recorded every second stretch."""
+    """Drive with every second stretch recorded."""
 
     period_s: float
     ticks: int
-    """Of each stretch."""
+    """Ticks per stretch."""
     lateness: Percentiles
     alone_lateness: Percentiles
     note: Percentiles
@@ -53,7 +53,7 @@ class RecordedDrive:
 async def measure_recording(
     fixture: BenchFixture, folder: Path, shifts: LoadShifts, on_progress: OnProgress
 ) -> tuple[BenchResult, ...]:
-    """Drive in real time by what is known, in turns with and without a recorder; files go to `folder`.
+    """Drive autonomously, alternately with and without a recorder; files go to `folder`.
 
     Raises KnowledgeError, OSError without a timerfd.
     """
@@ -63,7 +63,10 @@ async def measure_recording(
 async def drive_recorded(
     fixture: BenchFixture, folder: Path, shifts: LoadShifts, on_progress: OnProgress
 ) -> RecordedDrive:
-    """The drive. Raises as `measure_recording`."""
+    """Drive, and return all measurements.
+
+    Raises KnowledgeError, OSError without a timerfd.
+    """
     runs = folder / "runs"
     settings, period_s = fixture.settings, fixture.settings.can.cycle_s
     recording = Recording(runs, budget_of(_BUDGET_MB), "sim")
@@ -120,11 +123,11 @@ async def _stretch(runtime: Runtime, after_tick: Callable[[TickRecord], None], t
 
 
 def _ignore(_: TickRecord) -> None:
-    """Nobody records."""
+    """Ignore the tick."""
 
 
 def recording_results(drive: RecordedDrive) -> tuple[BenchResult, ...]:
-    """How late ticks begin while the run is recorded, what a note takes, and the recorder's work beside the loop."""
+    """Return the lateness while recording, the time of a note, and the recorder thread's work."""
     stretch_s = drive.ticks * drive.period_s
     pairs = list(zip(drive.alone, drive.recorded, strict=True))
     more = percentiles_of([round((each.processor_us - alone.processor_us) / stretch_s * 1e3) for alone, each in pairs])

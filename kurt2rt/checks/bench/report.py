@@ -1,4 +1,4 @@
-"""The report of a benchmark run, for people and for programs."""
+"""Report of a benchmark run for the terminal and as JSON."""
 
 import json
 import os
@@ -16,22 +16,22 @@ from kurt2rt.platform.text_table import TextTable, print_whole
 
 @dataclass(frozen=True, slots=True)
 class BenchMachine:
-    """Where it was measured, and how busy that was with other things."""
+    """Machine of the measurement and its load."""
 
     cores: int
     load_before: tuple[float, float, float]
-    """Load average over 1, 5 and 15 minutes; of the run itself comes about 1."""
+    """Load average over 1, 5 and 15 minutes before the run, which itself adds about 1."""
     python: str
     numpy: str
 
 
 def measure_machine() -> BenchMachine:
-    """The machine as it is now."""
+    """Return the machine's present state."""
     return BenchMachine(len(os.sched_getaffinity(0)), os.getloadavg(), platform.python_version(), np.__version__)
 
 
 def as_json(results: Sequence[BenchResult], machine: BenchMachine) -> str:
-    """A JSON object: the machine, and one object per result with its ratio and with each goal's verdict."""
+    """Return a JSON object with the machine, and each result with its ratio and verdicts."""
     rows = []
     for result in results:
         row = asdict(result)
@@ -44,7 +44,7 @@ def as_json(results: Sequence[BenchResult], machine: BenchMachine) -> str:
 
 
 def print_report(results: Sequence[BenchResult], machine: BenchMachine, console: Console) -> None:
-    """One table, what one has to know to read it, and how busy the machine was."""
+    """Print the table, its notes and the machine's load."""
     table = TextTable()
     for heading in ("what", "median us", "p99 us", "reference", "us", "ratio", "goal: met"):
         number = heading in ("median us", "p99 us", "us", "ratio")

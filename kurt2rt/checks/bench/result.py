@@ -1,4 +1,4 @@
-"""What a benchmark measured, with a reference from the same run and the goals beside it."""
+"""Result of a benchmark with a reference from the same run and its goals."""
 
 from dataclasses import dataclass
 
@@ -7,33 +7,33 @@ from kurt2rt.platform.ledger import Percentiles
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """What else took how long in the same run: a ratio says more about a program than a time on some machine."""
+    """Time of a reference in the same run; the ratio is less dependent on the machine than a time."""
 
     what: str
     took_us: float
     result_us: float
-    """The median or the p99 of the result, whichever is compared."""
+    """Compared median or p99 of the result."""
 
     @property
     def ratio(self) -> float:
-        """How many times longer the reference took."""
+        """Return how many times longer the reference took."""
         return self.took_us / max(self.result_us, 1e-3)
 
 
 @dataclass(frozen=True, slots=True)
 class BenchGoal:
-    """One number and the limit it should keep."""
+    """Measured number and its limit."""
 
     what: str
-    """Names the number and its unit, as in `p99 us`."""
+    """Name of the number with its unit, as in `p99 us`."""
     measured: float
     limit: float
     at_least: bool = False
-    """True where more is better."""
+    """True if larger is better."""
 
     @property
     def met(self) -> bool:
-        """Whether the number keeps its limit."""
+        """Return whether the number keeps its limit."""
         return self.measured >= self.limit if self.at_least else self.measured <= self.limit
 
     def __str__(self) -> str:
@@ -42,7 +42,7 @@ class BenchGoal:
 
 @dataclass(frozen=True, slots=True)
 class BenchResult:
-    """One row of the report."""
+    """Row of the report."""
 
     bench: str
     what: str
@@ -50,4 +50,4 @@ class BenchResult:
     reference: Reference | None = None
     goals: tuple[BenchGoal, ...] = ()
     note: str = ""
-    """What one has to know to read the numbers."""
+    """Remark for the reader of the numbers."""

@@ -1,4 +1,4 @@
-"""What is measured: a robot in its world, a task, and knowledge good enough to drive with."""
+"""Fixture of the benchmarks: a robot in its world, a task, and knowledge to drive with."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -17,24 +17,24 @@ from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.knowledge.journal.writer import JournalWriter, utc_now
 
 OnProgress = Callable[[float], None]
-"""Gets the share of the work that is done, 0 to 1."""
+"""Callback with the finished share of the work, 0 to 1."""
 
 SEED = 1
 
 
 @dataclass(frozen=True, slots=True)
 class BenchFixture:
-    """The robot, where it drives and what it knows."""
+    """Robot, world and knowledge."""
 
     settings: RobotSettings
     task: TaskSettings
     open_simulation: Callable[[str], Simulation]
-    """Sets the robot down in the world that the task is taught in, for a purpose."""
+    """Start the simulation in the task's teaching world, for a named purpose."""
     events: tuple[TeachingEvent, ...] = ()
 
 
 async def learn(fixture: BenchFixture, duration_s: float, on_progress: OnProgress) -> BenchFixture:
-    """The same subject, taught in lockstep for that much simulated time, two thirds of it with corrections."""
+    """Return the fixture taught in lockstep for `duration_s`, two thirds of it with corrections."""
     notebook = InMemoryEventStore()
     task = with_duration(fixture.task, supervised_s=duration_s / 3, corrections_s=duration_s * 2 / 3)
     simulation = fixture.open_simulation("lesson")
@@ -53,14 +53,14 @@ async def learn(fixture: BenchFixture, duration_s: float, on_progress: OnProgres
 
 
 def with_duration(task: TaskSettings, *, supervised_s: float, corrections_s: float) -> TaskSettings:
-    """The task with a lesson of that length."""
+    """Return the task with a lesson of that length."""
     teaching = task.teaching.model_copy(update={"supervised_s": supervised_s, "corrections_s": corrections_s})
     return task.model_copy(update={"teaching": teaching})
 
 
 @contextmanager
 def open_writer(fixture: BenchFixture, path: Path) -> Iterator[JournalWriter]:
-    """A writer on a new knowledge file that holds what the subject was taught. Raises KnowledgeError."""
+    """Open a writer on a new knowledge file with the fixture's lessons. Raises KnowledgeError."""
     with open_knowledge(path, fixture.settings, fixture.task) as journal:
         journal.append([JournalEntry(event, utc_now()) for event in fixture.events])
         with JournalWriter(journal, utc_now) as writer:

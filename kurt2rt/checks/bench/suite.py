@@ -1,4 +1,4 @@
-"""All benchmarks in order, in one run."""
+"""Benchmarks in order, in one run."""
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ from kurt2rt.checks.bench.tick_budget import tick_results
 
 
 class BenchName(StrEnum):
-    """What can be measured."""
+    """Name of a benchmark."""
 
     LATENESS = "lateness"
     TICK = "tick"
@@ -32,15 +32,15 @@ class BenchName(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Lengths:
-    """How much of everything is measured."""
+    """Amount of measurement of each benchmark."""
 
     learning_s: float
-    """Simulated time of the lesson that comes before, for knowledge to drive with."""
+    """Simulated duration of the preceding lesson."""
     turns: RealTimeTurns
     sizes: tuple[Size, ...]
     loop_blocks: int
     loop_block_s: int
-    """Simulated seconds in a block."""
+    """Simulated seconds per block."""
     lessons: int
     channel: ChannelLengths
     recording: LoadShifts
@@ -75,9 +75,9 @@ async def run_suite(
     lengths: Lengths,
     start_job: Callable[[str], OnProgress],
 ) -> tuple[BenchResult, ...]:
-    """Measure what is asked for; files go to `folder`, which must be empty.
+    """Run the named benchmarks; files go to the empty `folder`.
 
-    `start_job` begins a job of that name and gives what is to be told of its progress.
+    `start_job`: called with the name of a job, returns its progress callback.
     """
     results: list[BenchResult] = []
     if any(bench is not BenchName.MATCH for bench in benches):

@@ -1,4 +1,4 @@
-"""What a tick takes of its period, stage by stage."""
+"""Results of the tick's stages against its period."""
 
 from kurt2rt.checks.bench.real_time import RealTimeRun
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
@@ -9,13 +9,13 @@ P99_LIMIT_US = 250.0
 
 
 def tick_results(run: RealTimeRun, period_s: float) -> tuple[BenchResult, ...]:
-    """Each stage of the ticks of a run in real time, and all together beside the period."""
+    """Return each stage of a real-time run's ticks, and their sum against the period in s."""
     whole = share_result("tick", "tick, all stages", run.tick, period_s, "at 100 Hz the caches are cold")
     return (*(BenchResult("tick", f"  {stage.name.lower()}", share) for stage, share in run.stages.items()), whole)
 
 
 def share_result(bench: str, what: str, tick: Percentiles, period_s: float, note: str) -> BenchResult:
-    """What all stages of a tick take together, beside the period."""
+    """Return the sum of a tick's stages against the period in s."""
     return BenchResult(
         bench,
         what,

@@ -1,4 +1,4 @@
-"""The loop of an open robot, and where in the simulated robot's cycle its ticks fall."""
+"""Loop of an open robot with an adjustable phase against the simulated controller's cycle."""
 
 from collections.abc import Callable
 
@@ -8,7 +8,7 @@ from kurt2rt.platform.scheduler import Scheduler
 
 
 class LoopPacer:
-    """Runs the scheduler until `end`."""
+    """Loop that runs the scheduler until `end`."""
 
     def __init__(self, scheduler: Scheduler[TickRecord], clock: Clock) -> None:
         self._scheduler = scheduler
@@ -17,20 +17,20 @@ class LoopPacer:
         self._ended = False
 
     async def run(self, after_tick: Callable[[TickRecord], None]) -> None:
-        """Tick until the end."""
+        """Run ticks until the end."""
         while not self._ended:
             await self._clock.wait_until(self._clock.now_s() + self._shift_s)
             await self._scheduler.run(None, after_tick)
 
     def shift(self, by_s: float) -> None:
-        """Let all later ticks begin so much later in the period.
+        """Delay all later ticks by `by_s` within the period.
 
-        The robot's cycle and ours are not in step, and how punctual the loop is depends on how they meet.
+        Lateness depends on the phase of the two independent cycles.
         """
         self._shift_s = by_s
         self._scheduler.end()
 
     def end(self) -> None:
-        """No tick after the one that is due."""
+        """End after the present tick."""
         self._ended = True
         self._scheduler.end()

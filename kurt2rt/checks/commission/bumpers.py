@@ -1,4 +1,4 @@
-"""Step: which bit of BUMPERC is which bumper?"""
+"""Step that finds the BUMPERC bit of each bumper."""
 
 from functools import reduce
 from operator import and_, or_
@@ -14,7 +14,7 @@ _LOOK_S = 0.3
 
 
 class BumpersStep:
-    """One bumper after the other is pressed and held."""
+    """Step in which the operator presses one bumper after another."""
 
     name = "bumpers"
     title = "Each bumper's bit"
@@ -38,7 +38,7 @@ class BumpersStep:
             return result
         untouched = reduce(or_, heard.bumpers)
         if untouched:
-            result.to_do.append(f"{_bits(untouched)} pressed though nobody touches it: a bumper hangs")
+            result.to_do.append(f"{_bits(untouched)} pressed without a touch: a bumper hangs")
         found: dict[str, int] = {}
         for at, bumper in enumerate(bumpers):
             bit = await _find(stand, bumper.name, untouched, found)
@@ -78,7 +78,7 @@ async def _find(stand: TestStand, name: str, untouched: int, found: dict[str, in
 
 
 def _held(heard: FrameStatistics) -> int:
-    """Bits that are set all the time."""
+    """Return the bits set in every frame."""
     return reduce(and_, heard.bumpers) if heard.bumpers else 0
 
 

@@ -1,4 +1,4 @@
-"""The checklist: steps in their order, each told, taken, judged and kept."""
+"""Checklist of the commissioning steps, with progress saved after each."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -31,15 +31,15 @@ STEPS: tuple[CommissionStep, ...] = (
     BumpersStep(),
     IrCalibrationStep(),
 )
-"""In order: everything that turns the wheels comes while the robot is on its block."""
+"""Steps in order; all that turn the wheels come while the robot is on its block."""
 _AGAIN = "r"
 
 
 class Checklist:
-    """Walks a person through steps; after each one the progress is on the disk."""
+    """Execution of steps with an operator; the progress is saved after each step."""
 
     def __init__(self, stand: TestStand, progress: Progress, path: Path, who: str, now: Callable[[], str]) -> None:
-        """`path` of the progress file; `now` tells date and time in UTC to the minute."""
+        """`path`: of the progress file. `now`: returns date and time in UTC to the minute."""
         self._stand = stand
         self.progress = progress
         self._path = path
@@ -48,14 +48,14 @@ class Checklist:
         self._wheels_are_up = False
 
     async def run(self, chosen: Sequence[CommissionStep], skipped: Sequence[CommissionStep] = ()) -> None:
-        """Take the chosen steps in the checklist's order, note the skipped.
+        """Run the chosen steps in order and record the skipped ones.
 
-        Raises LeftError, BusError, OSError, and SettingsError when what was found before is another robot's.
+        Raises AbortedError, BusError, OSError, and SettingsError if the findings belong to another robot.
         """
         await self._require_same_robot()
         for step in skipped:
             await self._skip(step, "as was wished on the command line", on_purpose=True)
-        # Whoever turns wheels is asked about the block first, in every session.
+        # Every session that turns wheels begins with the question about the block.
         moving = [step for step in chosen if step.moves]
         selected = [
             step for step in STEPS if step in chosen or (step is _OFF_GROUND and moving and step not in skipped)
@@ -93,7 +93,7 @@ class Checklist:
         return result
 
     async def _judge(self, step: CommissionStep, result: StepResult) -> bool:
-        """Tell and keep; returns whether to take it again."""
+        """Report and save the result; return whether to repeat the step."""
         record = StepRecord(
             outcome=result.outcome,
             at=self._now(),
@@ -116,7 +116,7 @@ class Checklist:
         )
 
     async def _require_same_robot(self) -> None:
-        """What was found on one robot, a simulated one perhaps, is not to be taken for another's."""
+        """Raise SettingsError if the findings belong to another robot, perhaps a simulated one."""
         before = self.progress.findings.hardware_id
         if before is None:
             return
@@ -125,12 +125,14 @@ class Checklist:
             raise SettingsError(
                 f"is about a robot of {hardware(before)}, but INFO_1 says {hardware(now)}",
                 where=self._path,
-                do="give this robot another --name, or begin anew with --anew",
+                do="give this robot another --name, or start over with --anew",
             )
 
     async def _skip(self, step: CommissionStep, why: str, *, on_purpose: bool = False) -> None:
-        """Note it. What passed before has still passed, what failed has still failed, unless that is passed over
-        on purpose: then what is to be done is kept.
+        """Record a skipped step.
+
+        An earlier pass stays. An earlier failure stays unless the operator skips it on purpose, which keeps its to-do
+        list.
         """
         before = self.progress.steps.get(step.name)
         if before is not None and before.outcome is StepOutcome.PASSED:
@@ -149,12 +151,12 @@ class Checklist:
 
 
 def open_steps(progress: Progress) -> list[CommissionStep]:
-    """Steps without an outcome; the block under the wheels is none by itself."""
+    """Return the steps without an outcome, except the block under the wheels."""
     return [step for step in STEPS if step is not _OFF_GROUND and step.name not in progress.steps]
 
 
 def steps_to_run(progress: Progress) -> list[CommissionStep]:
-    """Steps that have not passed, as a session takes them when nobody chose any."""
+    """Return the steps that have not passed, which a session runs by default."""
     steps = progress.steps
     return [
         step
@@ -164,7 +166,7 @@ def steps_to_run(progress: Progress) -> list[CommissionStep]:
 
 
 def blocking_failures(progress: Progress) -> list[CommissionStep]:
-    """Steps that failed in a way that forbids to drive this robot."""
+    """Return the failed steps that forbid driving this robot."""
     return [
         step
         for step in STEPS
@@ -175,5 +177,5 @@ def blocking_failures(progress: Progress) -> list[CommissionStep]:
 
 
 def step_named(name: str) -> CommissionStep:
-    """A step by its name. Raises KeyError."""
+    """Return the step of a name. Raises KeyError."""
     return {step.name: step for step in STEPS}[name]

@@ -1,4 +1,4 @@
-"""The person at a terminal: reads, presses Enter, types a word."""
+"""Operator at a terminal."""
 
 from collections.abc import Sequence
 from typing import TextIO
@@ -18,11 +18,11 @@ _MARKS = {
     Tone.TO_DO: "  TO DO: ",
     Tone.BAD: "  ! ",
 }
-"""Lines can be told apart without colours."""
+"""Prefixes that distinguish lines without colours."""
 
 
 class ConsoleOperator:
-    """A person (kurt2rt.checks.commission.operator.Operator) behind a screen and a keyboard."""
+    """Operator (kurt2rt.checks.commission.operator.Operator) with a screen and a keyboard."""
 
     def __init__(self, lines: TextIO, console: Console) -> None:
         self._keyboard = Keyboard(lines)
@@ -33,7 +33,7 @@ class ConsoleOperator:
         self._line(_MARKS[tone] + text, _STYLES.get(tone, ""))
 
     async def answer(self, question: OperatorQuestion) -> str:
-        """Print the question until one of its answers is typed. Raises AbortedError when the input has ended."""
+        """Repeat the question until one of its answers is typed. Raises AbortedError at the end of input."""
         choices = (*question.choices, AnswerChoice(LEAVE, "leave"))
         while True:
             self._line(f"  {question.text}", "cyan")

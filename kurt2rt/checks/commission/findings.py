@@ -1,4 +1,4 @@
-"""What a commissioning found out about a robot, as far as its settings say such things."""
+"""Findings of a commissioning that go into the robot's settings."""
 
 from collections.abc import Mapping
 from typing import Annotated
@@ -10,7 +10,7 @@ from hal.settings import Settings
 
 
 class LawFound(Settings):
-    """An infra-red law fitted to readings before a ruler."""
+    """Infra-red calibration fitted to readings at known distances."""
 
     numerator_counts_m: float
     offset_m: float
@@ -22,13 +22,13 @@ class LawFound(Settings):
 
 
 class Findings(Settings):
-    """Measured values; None or absent: not found out, the settings it began with hold."""
+    """Measured values; None or absent: not measured, the base settings hold."""
 
     hardware_id: int | None = None
     firmware: int | None = None
     speed_mode: SpeedMode | None = None
     full_speed_m_s: float | None = None
-    """100 % in SPEED mode, where that mode answered."""
+    """Speed at 100 % in SPEED mode, if that mode answered."""
     controller_watchdog_s: Annotated[float, Field(gt=0)] | None = None
     channels: Mapping[str, str] = Field(default={})
     """Analog channel by sensor name."""

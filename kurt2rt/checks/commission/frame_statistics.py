@@ -1,4 +1,4 @@
-"""What was heard on the bus in a while, of every kind of frame."""
+"""Statistics of all frames received in a time span."""
 
 import statistics
 from collections import Counter
@@ -10,7 +10,7 @@ from hal.robot_settings import RobotSettings
 
 
 class EncoderFrame(NamedTuple):
-    """Ticks of one ENCODER frame, forward positive, and when it came."""
+    """Ticks of one ENCODER frame, forward positive, with its arrival time."""
 
     time_s: float
     left: int
@@ -18,7 +18,7 @@ class EncoderFrame(NamedTuple):
 
 
 class Identity(NamedTuple):
-    """What INFO_1 or INFO_2 said."""
+    """Content of INFO_1 or INFO_2."""
 
     hardware_id: int
     firmware: int
@@ -27,36 +27,36 @@ class Identity(NamedTuple):
 
 @dataclass(slots=True)
 class FrameStatistics:
-    """Collected by the listener; times are on the bench's clock."""
+    """Frames collected by the listener; times on the test stand's clock."""
 
     arrivals_s: dict[int, list[float]] = field(default_factory=dict)
-    """By identifier, of every frame that is a standard data frame."""
+    """Arrival times of standard data frames by identifier."""
     encoder: list[EncoderFrame] = field(default_factory=list)
     channels: dict[str, list[int]] = field(default_factory=dict)
-    """Counts by analog channel, one for each frame."""
+    """Counts by analog channel, one per frame."""
     bumpers: list[int] = field(default_factory=list)
-    """Bits, one value for each BUMPERC frame."""
+    """Bits, one value per BUMPERC frame."""
     identities: dict[str, list[Identity]] = field(default_factory=dict)
-    """By message name."""
+    """Identities by message name."""
     junk: Counter[str] = field(default_factory=Counter)
-    """What was wrong with frames, and how often."""
+    """Number of invalid frames by fault."""
     control: int = 0
-    """CONTROL frames, ours among them."""
+    """CONTROL frames, including our own."""
 
     def period_s(self, frame_id: int) -> float | None:
-        """Mean period of a frame; None when it came less than twice."""
+        """Return the mean period of a frame; None if it came less than twice."""
         times_s = self.arrivals_s.get(frame_id, [])
         if len(times_s) < 2 or times_s[-1] <= times_s[0]:
             return None
         return (times_s[-1] - times_s[0]) / (len(times_s) - 1)
 
     def median(self, channel: str) -> float | None:
-        """Median counts of a channel; None when it was not heard."""
+        """Return the median counts of a channel; None without a frame."""
         counts = self.channels.get(channel)
         return statistics.median(counts) if counts else None
 
     def wheel_speeds(self, robot: RobotSettings, last_frames: int) -> WheelSpeeds:
-        """Mean speeds over the last ENCODER frames, one for each of the controller's cycles; 0 when none came."""
+        """Return the mean speeds over the last ENCODER frames, one per controller cycle; 0 without frames."""
         frames = self.encoder[-last_frames:]
         if not frames:
             return WheelSpeeds(0.0, 0.0)
@@ -64,10 +64,7 @@ class FrameStatistics:
         return WheelSpeeds(sum(each.left for each in frames) * metres_s, sum(each.right for each in frames) * metres_s)
 
     def rest_began_s(self) -> float | None:
-        """When the wheels had come to rest: the first of the ENCODER frames without a tick that last to the end.
-
-        None when they still turn, or when nothing is heard of them.
-        """
+        """Return the time of the first ENCODER frame of the final rest; None while turning or without frames."""
         rested_s = None
         for frame in reversed(self.encoder):
             if abs(frame.left) > _REST_TICKS or abs(frame.right) > _REST_TICKS:
@@ -77,4 +74,4 @@ class FrameStatistics:
 
 
 _REST_TICKS = 2
-"""An encoder may stand on an edge and flicker."""
+"""Ticks that an encoder on an edge may flicker."""

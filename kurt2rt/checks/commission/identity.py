@@ -1,4 +1,4 @@
-"""Step: who is on the bus, and do all frames come as the settings expect?"""
+"""Step that checks the controller's identity and the periods of all frames."""
 
 from hal.bus import CONTROL_ID
 from hal.codec import load_codec
@@ -13,7 +13,7 @@ _PERIOD_TOLERANCE = 0.2
 
 
 class IdentityStep:
-    """Listens and sends nothing."""
+    """Step that listens and sends nothing."""
 
     name = "identity"
     title = "Who is on the bus?"
@@ -23,7 +23,7 @@ class IdentityStep:
     blocks_driving = True
 
     async def run(self, stand: TestStand, findings: Findings) -> StepResult:
-        """Listen, compare with the settings."""
+        """Listen, and compare with the settings."""
         heard = await stand.listen(_LISTEN_S)
         result = StepResult(findings)
         if not heard.arrivals_s:
@@ -96,7 +96,7 @@ def _judge_junk(heard: FrameStatistics, result: StepResult) -> None:
     for what, count in sorted(heard.junk.items()):
         result.to_do.append(f"{count} x {what}: find who sends it, or the loose contact")
     if heard.control:
-        result.to_do.append(f"{heard.control} CONTROL frames from somebody else: find that program and end it")
+        result.to_do.append(f"{heard.control} CONTROL frames from another program: find that program and end it")
 
 
 _SECOND_CONTROLLER = 0x14

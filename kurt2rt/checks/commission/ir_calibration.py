@@ -1,4 +1,4 @@
-"""Fits the infra-red law, counts = numerator / (distance + offset) - bias, to readings before a ruler."""
+"""Fit of the infra-red calibration, counts = numerator / (distance + offset) - bias."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,10 +11,10 @@ from hal.errors import UserError
 LEAST_DISTANCES = 4
 _OFFSETS_M = np.linspace(0.005, 0.12, 231)
 _SIGMA_COUNTS, _SIGMA_SHARE = 2.5, 0.03
-"""What a reading may be off: a ruler held by hand (3 mm are 2 to 3 %), and the spread between sensors."""
+"""Standard deviation of a reading: a hand-held ruler (3 mm are 2 to 3 %) and the spread of sensors."""
 _OUTLIER_SIGMAS = 4.0
 _OUTLIERS_AT_MOST = 4
-"""One reading in so many may be an outlier."""
+"""Readings per allowed outlier."""
 _WORST_SCATTER = 2.0
 _BIASES = (0.0, 250.0)
 _NEAR_M, _FAR_M = 0.10, 0.60
@@ -23,7 +23,7 @@ _LEAST_RATIO = 2.5
 
 
 class IrCalibrationError(UserError, ValueError):
-    """The readings do not make a law."""
+    """Readings that cannot be fitted."""
 
 
 class IrReading(NamedTuple):
@@ -36,36 +36,36 @@ class IrReading(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class IrLaw:
-    """The law between near and far."""
+    """Calibration between near and far."""
 
     numerator_counts_m: float
     offset_m: float
     bias_counts: float
 
     def counts_at(self, distance_m: float) -> float:
-        """Counts at a distance."""
+        """Return the counts at a distance."""
         return self.numerator_counts_m / (distance_m + self.offset_m) - self.bias_counts
 
     def distance_m(self, counts: float) -> float:
-        """Distance that counts stand for."""
+        """Return the distance of counts."""
         return self.numerator_counts_m / (counts + self.bias_counts) - self.offset_m
 
 
 @dataclass(frozen=True, slots=True)
 class IrFit:
-    """A law and how far each reading lies from it."""
+    """Calibration with the residual of each reading."""
 
     law: IrLaw
     residuals: tuple[float, ...]
-    """Counts, reading minus law, in the order of the readings."""
+    """Counts, reading minus fit, in the order of the readings."""
     outliers: tuple[int, ...]
-    """Which readings were left out of the fit."""
+    """Indices of readings left out of the fit."""
     scatter: float
-    """Root mean square of the residuals of those that were not, in units of what a reading may be off."""
+    """Root mean square of the other residuals in units of the standard deviation."""
 
 
 def fit_law(readings: Sequence[IrReading]) -> IrFit:
-    """Least squares; single readings that do not fit to the others are left out. Raises IrCalibrationError."""
+    """Fit by least squares without single outliers. Raises IrCalibrationError."""
     _require_range(readings)
     kept = list(range(len(readings)))
     fit = _fit(readings, kept)
@@ -83,7 +83,7 @@ def fit_law(readings: Sequence[IrReading]) -> IrFit:
 
 
 def _fit(readings: Sequence[IrReading], kept: Sequence[int]) -> IrFit:
-    """For each offset the law is a straight line in 1 / (distance + offset); the best offset is taken."""
+    """Fit a line in 1 / (distance + offset) for each offset, and take the best offset."""
     distances = np.array([readings[at].distance_m for at in kept])
     counts = np.array([readings[at].counts for at in kept])
     weights = np.array([_sigma(value) ** -2 for value in counts])

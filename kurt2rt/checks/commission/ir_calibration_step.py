@@ -1,4 +1,4 @@
-"""Step: the infra-red law, from a board held at distances by a ruler."""
+"""Step that calibrates the infra-red sensors with a board at ruled distances."""
 
 import statistics
 
@@ -17,7 +17,7 @@ _SECOND_LOOKS = 3
 
 
 class IrCalibrationStep:
-    """Median over a second at each distance, one law for all sensors."""
+    """Step that measures the median over a second at each distance and fits one calibration."""
 
     name = "infrared"
     title = "The infra-red law, by a ruler"
@@ -30,7 +30,7 @@ class IrCalibrationStep:
     blocks_driving = False
 
     async def run(self, stand: TestStand, findings: Findings) -> StepResult:
-        """Ask which sensors, then for the board at each distance."""
+        """Ask for the sensors, then for the board at each distance."""
         result = StepResult(findings.model_copy(update={"law": None}))
         chosen = await _choose(stand, findings)
         await stand.ask(
@@ -134,7 +134,7 @@ async def _read(
 async def _fit_with_second_looks(
     stand: TestStand, readings: list[IrReading], sensors: dict[str, SensorSettings], findings: Findings
 ) -> IrFit:
-    """Fit; what does not fit to the others is asked for once more, a few times at most. Raises IrCalibrationError."""
+    """Fit, and repeat the measurement of a few outliers. Raises IrCalibrationError."""
     looked_twice: set[int] = set()
     while True:
         fit = fit_law(readings)
@@ -159,7 +159,7 @@ def _rows(readings: list[IrReading], fit: IrFit) -> list[str]:
 
 
 def _detection_limit_m(law: IrLaw, floor: float, farthest_m: float) -> float:
-    """Where the law comes down to the reading of an empty room, if that is within what was measured."""
+    """Return the distance at which the calibration falls to the empty reading, at most the farthest measured."""
     return round(min(farthest_m, law.distance_m(floor)), 2)
 
 

@@ -1,4 +1,4 @@
-"""Lines that a person types, one at a time, without holding up the loop."""
+"""Lines of keyboard input without blocking the event loop."""
 
 import io
 import os
@@ -12,8 +12,9 @@ _CHUNK = 4096
 
 
 class Keyboard:
-    """Reads a line when it is asked for one. What was typed at a terminal before that is thrown away: a key that was
-    hit too early must not turn wheels.
+    """Line reader that discards input typed before the question.
+
+    A key hit too early must not turn the wheels.
     """
 
     def __init__(self, lines: TextIO) -> None:
@@ -23,11 +24,11 @@ class Keyboard:
 
     @property
     def echoes(self) -> bool:
-        """True when the terminal itself shows what is typed."""
+        """Return whether the terminal shows the typed text."""
         return self._fd is not None and os.isatty(self._fd)
 
     async def line(self) -> str | None:
-        """The next line without its end; None after the last. A pipe keeps its lines for their questions."""
+        """Return the next line without its end; None at the end of input. Piped lines are not discarded."""
         if self._fd is None:
             text = self._lines.readline()
             return text.rstrip("\r\n") if text else None
@@ -45,7 +46,7 @@ class Keyboard:
 
 
 def _descriptor(lines: TextIO) -> int | None:
-    """Of a terminal, a pipe or a socket; None for what can be read without ever waiting, such as a file."""
+    """Return the descriptor of a terminal, pipe or socket; None for input that never blocks, such as a file."""
     try:
         fd = lines.fileno()
     except (OSError, AttributeError, io.UnsupportedOperation):

@@ -1,4 +1,4 @@
-"""Listens on an end of the bus of its own, to everything: the robot's driver hears only what it drives by."""
+"""Listener to all frames on its own CAN interface; the robot's driver filters for its own."""
 
 import re
 
@@ -10,27 +10,27 @@ from hal.robot import HIGHEST_COUNTS
 from kurt2rt.checks.commission.frame_statistics import EncoderFrame, FrameStatistics, Identity
 
 _DISTANCE_CHANNEL = re.compile(r"ADC(0\d|1[014])|BDC(0\d|1[0-5])")
-"""ADC12 and ADC13 are motor currents."""
+"""Channels of distance sensors; ADC12 and ADC13 are motor currents."""
 
 
 class Listener:
-    """Decodes what one end of the bus hears. It sends nothing."""
+    """Decoder of all frames of one CAN interface. It sends nothing."""
 
     def __init__(self, bus: CanBus, codec: Codec) -> None:
-        """Own an end of the bus."""
+        """Take ownership of the interface."""
         self._bus = bus
         self._codec = codec
         named = {channel for each in codec.by_id.values() for channel in each.signals}
         self._distances = frozenset(filter(_DISTANCE_CHANNEL.fullmatch, named))
         self.channels: set[str] = set()
-        """Analog channels heard so far."""
+        """Analog channels received so far."""
         self.has_bumpers = False
-        """True when BUMPERC was heard so far."""
+        """True once BUMPERC was received."""
         self.hardware_id: int | None = None
-        """As INFO_1 said it last."""
+        """Hardware id of the last INFO_1."""
 
     def poll(self, now_s: float, heard: FrameStatistics) -> None:
-        """Take what waits, on the clock of `now_s`. Raises hal.bus.BusError."""
+        """Collect the waiting frames; their times are on the clock of `now_s`. Raises hal.bus.BusError."""
         messages = self._bus.drain()
         bus_now_s = self._bus.now_s() if messages else None
         for message in messages:
@@ -38,7 +38,7 @@ class Listener:
             self._add(message, now_s - age_s, heard)
 
     def close(self) -> None:
-        """Give the end back."""
+        """Close the interface."""
         self._bus.shutdown()
 
     def _add(self, message: can.Message, at_s: float, heard: FrameStatistics) -> None:

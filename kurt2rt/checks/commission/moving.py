@@ -1,4 +1,4 @@
-"""What the steps that turn the wheels have in common: leave to turn them, how fast, how long, and what stood still."""
+"""Common parts of the steps that turn the wheels."""
 
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings, SpeedMode
@@ -10,11 +10,11 @@ from kurt2rt.checks.commission.test_stand import TestDrive, TestStand
 TEST_SPEED_M_S = 0.15
 DRIVE_S = 1.2
 STEADY_FRAMES = 30
-"""At the end of a drive, when the wheels have their speed."""
+"""Frames at the end of a drive with constant speed."""
 
 
 async def confirm_motion(stand: TestStand, text: str) -> None:
-    """Ask before wheels turn. Raises SkippedError."""
+    """Ask before the wheels turn. Raises SkippedError."""
     question = OperatorQuestion(
         QuestionKind.MOVE, text, (AnswerChoice("", "turn them"), AnswerChoice(SKIP, "do not turn them"))
     )
@@ -23,19 +23,19 @@ async def confirm_motion(stand: TestStand, text: str) -> None:
 
 
 def required_speed_mode(findings: Findings) -> SpeedMode:
-    """The mode that answered. Raises SkippedError when that is not known."""
+    """Return the speed mode that answered. Raises SkippedError if none is known."""
     if findings.speed_mode is None:
         raise SkippedError("no speed mode is known to answer: take the step modes first")
     return findings.speed_mode
 
 
 def steady_speeds(drive: TestDrive, robot: RobotSettings) -> WheelSpeeds:
-    """Speeds of the wheels by the encoders before the brake."""
+    """Return the measured wheel speeds before the brake."""
     return drive.heard.wheel_speeds(robot, STEADY_FRAMES)
 
 
 def standstill_cause(drive: TestDrive) -> str | None:
-    """Why the guard let nothing through; None when it did."""
+    """Return why the guard kept the wheels from turning; None if they could turn."""
     if drive.stopped_by is not None:
         return drive.stopped_by
     if drive.applied == WheelSpeeds(0.0, 0.0):
@@ -44,7 +44,7 @@ def standstill_cause(drive: TestDrive) -> str | None:
 
 
 def require_rest(stand: TestStand, drive: TestDrive, result: StepResult) -> bool:
-    """Whether the brake brought the wheels to rest; says at once what to do when not. No step goes on then."""
+    """Return whether the brake stopped the wheels; otherwise alarm the operator, and the step must end."""
     if drive.rested_after_s is not None:
         return True
     heard = "still turn" if drive.after.encoder else "are not heard of any more"

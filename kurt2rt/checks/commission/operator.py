@@ -1,4 +1,4 @@
-"""The person at the bench, as the checklist sees one: asked, told, free to skip and to leave."""
+"""Protocol of the operator at the test stand, and the questions to them."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -9,37 +9,37 @@ LEAVE = "q"
 
 
 class QuestionKind(StrEnum):
-    """What a question is about."""
+    """Subject of a question."""
 
     BEGIN = "begin"
-    """Whether to begin a step."""
+    """Start of a step."""
     LIFTED = "lifted"
-    """That the wheels are off the ground, in words."""
+    """Confirmation in words that the wheels are off the ground."""
     MOVE = "move"
-    """For leave to turn the wheels."""
+    """Permission to turn the wheels."""
     SEEN = "seen"
-    """Which wheels turned, and which way."""
+    """Observed wheels and directions."""
     CLEAR = "clear"
-    """To take everything away from the sensors."""
+    """Removal of everything in front of the sensors."""
     KEEP = "keep"
-    """Whether what was found before still holds."""
+    """Validity of earlier findings."""
     HAND = "hand"
-    """For a hand before a sensor."""
+    """Hand in front of a sensor."""
     WHICH = "which"
-    """Which sensors to hold a board before."""
+    """Sensors for the calibration."""
     BOARD = "board"
-    """For a board at a distance from a sensor."""
+    """Board at a distance from a sensor."""
     UNTOUCHED = "untouched"
-    """To touch no bumper."""
+    """Release of all bumpers."""
     BUMPER = "bumper"
-    """For a bumper to be pressed."""
+    """Press of a bumper."""
     AFTER_FAILURE = "after failure"
-    """Whether to repeat a step that failed."""
+    """Repetition of a failed step."""
 
 
 @dataclass(frozen=True, slots=True)
 class AnswerChoice:
-    """One short answer; an empty key is Enter alone."""
+    """Short answer; an empty key is Enter alone."""
 
     key: str
     meaning: str
@@ -47,21 +47,21 @@ class AnswerChoice:
 
 @dataclass(frozen=True, slots=True)
 class OperatorQuestion:
-    """What a person is asked to do or to say. Every question can be answered with LEAVE."""
+    """Question or instruction to the operator. LEAVE answers every question."""
 
     about: QuestionKind
     text: str
     choices: tuple[AnswerChoice, ...] = ()
     free: bool = False
-    """True when other answers than the choices have a meaning."""
+    """True if other answers than the choices are valid."""
     subject: str = ""
     """Name of the sensor or bumper."""
     distance_m: float | None = None
-    """Where the board is asked for."""
+    """Requested distance of the board."""
 
 
 class Tone(StrEnum):
-    """How a line is meant."""
+    """Style of a line."""
 
     TITLE = "title"
     PLAIN = "plain"
@@ -72,20 +72,20 @@ class Tone(StrEnum):
 
 
 class Operator(Protocol):
-    """Who stands at the robot."""
+    """Person at the robot."""
 
     async def answer(self, question: OperatorQuestion) -> str:
-        """What is answered: a choice's key, or free words. Raises AbortedError when nobody answers any more."""
+        """Return a choice's key or free text. Raises AbortedError without an answer."""
         ...
 
     def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
-        """Say a line."""
+        """Show a line."""
         ...
 
 
 class AbortedError(Exception):
-    """The person goes; what was done so far is kept."""
+    """End of the session by the operator; the progress is kept."""
 
 
 class SkippedError(Exception):
-    """A step is not done now. The message says why."""
+    """Step that is not run now; the message has the reason."""

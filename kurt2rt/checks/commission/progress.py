@@ -1,4 +1,4 @@
-"""How far a commissioning has come, in a file: it may take days, and nobody types all of it twice."""
+"""Progress of a commissioning in a file, so that it can take several sessions."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -13,7 +13,7 @@ from kurt2rt.platform.durable_files import write_durably
 
 
 class StepRecord(Settings):
-    """How a step ended the last time it was taken."""
+    """Result of the last run of a step."""
 
     outcome: StepOutcome
     at: str
@@ -24,7 +24,7 @@ class StepRecord(Settings):
 
 
 class Progress(Settings):
-    """One robot's commissioning."""
+    """Commissioning of one robot."""
 
     name: str
     base: str
@@ -32,21 +32,21 @@ class Progress(Settings):
     bus: str
     findings: Findings = Findings()
     steps: Mapping[str, StepRecord] = Field(default={})
-    """By the step's name."""
+    """Records by step name."""
 
     def with_step(self, name: str, record: StepRecord, findings: Findings) -> Self:
-        """The same after a step was taken."""
+        """Return the progress with the result of a step."""
         return self.model_copy(update={"steps": {**self.steps, name: record}, "findings": findings})
 
     def save(self, path: Path) -> None:
-        """Write durably, whole or not at all. Raises OSError."""
+        """Write the file atomically and durably. Raises OSError."""
         write_durably(path, self.model_dump_json(indent=2) + "\n")
 
 
 def load_progress(path: Path) -> Progress:
-    """Read what `save` wrote. Raises SettingsError that says what to do, OSError."""
+    """Load a file of `save`. Raises SettingsError, OSError."""
     try:
         return Progress.model_validate_json(path.read_text(encoding="utf-8"))
     except (UnicodeDecodeError, ValidationError) as error:
         first = " ".join(str(error).split())[:120]
-        raise SettingsError(f"cannot be used ({first})", where=path, do="begin anew with --anew") from error
+        raise SettingsError(f"cannot be used ({first})", where=path, do="start over with --anew") from error

@@ -1,4 +1,4 @@
-"""The report of a commissioning: a table of the steps, what is to be done, and the verdict."""
+"""Report of a commissioning: steps, to-do list and verdict."""
 
 from collections.abc import Sequence
 
@@ -13,14 +13,14 @@ _STYLES = {StepOutcome.PASSED: "green", StepOutcome.FAILED: "bold red", StepOutc
 
 
 def passed(progress: Progress, steps: Sequence[CommissionStep]) -> bool:
-    """True when every step did."""
+    """Return whether every step passed."""
     return all(
         step.name in progress.steps and progress.steps[step.name].outcome is StepOutcome.PASSED for step in steps
     )
 
 
 def as_text(progress: Progress, steps: Sequence[CommissionStep]) -> str:
-    """Everything that is kept about each step, to be filed."""
+    """Return the full record of each step as text."""
     verdict = "PASSED" if passed(progress, steps) else "not passed"
     lines = [f"{progress.name} on {progress.bus}, begun with {progress.base}: {verdict}"]
     for step in steps:
@@ -36,7 +36,7 @@ def as_text(progress: Progress, steps: Sequence[CommissionStep]) -> str:
 
 
 def print_report(progress: Progress, steps: Sequence[CommissionStep], console: Console) -> None:
-    """Table, what is to be done, verdict."""
+    """Print table, to-do list and verdict."""
     table = TextTable("step", "outcome", "when (UTC)", "who")
     to_do: list[str] = []
     for step in steps:

@@ -1,4 +1,4 @@
-"""The robot's settings file at the end of a commissioning: complete, valid, and saying what was measured when."""
+"""Settings file of a commissioned robot, with the source of each value."""
 
 import json
 import math
@@ -20,7 +20,7 @@ from kurt2rt.platform.durable_files import write_durably
 
 
 def commissioned_settings(base: RobotSettings, name: str, findings: Findings) -> RobotSettings:
-    """The settings with all that was found out. Raises SettingsError for findings that contradict one another."""
+    """Return the settings with all findings. Raises SettingsError for contradictory findings."""
     content = base.model_dump(mode="json")
     content["name"] = name
     if findings.speed_mode is not None:
@@ -48,7 +48,7 @@ def commissioned_settings(base: RobotSettings, name: str, findings: Findings) ->
 
 
 def robot_file(base: RobotSettings, progress: Progress, steps: Sequence[CommissionStep]) -> str:
-    """Text of the file. Raises SettingsError for findings that contradict one another."""
+    """Return the text of the file. Raises SettingsError for contradictory findings."""
     settings = commissioned_settings(base, progress.name, progress.findings)
     verdict = "PASSED" if passed(progress, steps) else "NOT PASSED"
     head = [
@@ -68,14 +68,14 @@ def robot_file(base: RobotSettings, progress: Progress, steps: Sequence[Commissi
 def write_robot_file(
     path: Path, base: RobotSettings, progress: Progress, steps: Sequence[CommissionStep]
 ) -> RobotSettings:
-    """Write the file and load it as the robot's program will. Raises SettingsError, OSError."""
+    """Write the file and load it like the robot's program. Raises SettingsError, OSError."""
     text = robot_file(base, progress, steps)
     write_durably(path, text)
     return load_robot(str(path))
 
 
 def _require_own_channels(base: RobotSettings, findings: Findings) -> None:
-    """A channel that was found may be one that the table gives to a sensor that was not tried."""
+    """Raise SettingsError if a found channel belongs to an untried sensor of the table."""
     claimed = {channel: name for name, channel in findings.channels.items()}
     for sensor in base.infrared.sensors:
         owner = claimed.get(sensor.channel)
@@ -87,7 +87,7 @@ def _require_own_channels(base: RobotSettings, findings: Findings) -> None:
 
 
 def _bumpers(table: Sequence[BumperSettings], findings: Findings) -> Sequence[BumperSettings]:
-    """The table in the order of the bits that were found."""
+    """Return the table in the order of the found bits."""
     bits = {bumper.name: findings.bumper_bits.get(bumper.name, at) for at, bumper in enumerate(table)}
     if sorted(bits.values()) != list(range(len(table))):
         said = ", ".join(f"{name} {bit}" for name, bit in bits.items())
@@ -98,7 +98,7 @@ def _bumpers(table: Sequence[BumperSettings], findings: Findings) -> Sequence[Bu
 
 
 def _comments(base: RobotSettings, progress: Progress) -> dict[str, str]:
-    """By dotted key, what was measured and when."""
+    """Return the source of each measured value by dotted key."""
     findings = progress.findings
     comments: dict[str, str] = {}
 
@@ -173,7 +173,7 @@ def _commented(line: str, comment: str | None) -> str:
 
 
 def _scalar(value: Any) -> str:
-    """A value on one line; floats without an exponent, which YAML would take for a text."""
+    """Return a value on one line; floats without an exponent, which YAML would read as text."""
     if isinstance(value, dict):
         return "{" + ", ".join(f"{key}: {_scalar(each)}" for key, each in value.items()) + "}"
     if isinstance(value, list):

@@ -1,4 +1,4 @@
-"""Step: which analog channel does each distance sensor answer on?"""
+"""Step that finds the analog channel of each distance sensor."""
 
 from collections.abc import Mapping, Sequence
 
@@ -9,19 +9,19 @@ from kurt2rt.checks.commission.step import StepResult
 from kurt2rt.checks.commission.test_stand import TestStand
 
 SETTLE_S = 0.15
-"""A sensor measures every 38 ms or so."""
+"""Time for a new reading; a sensor measures every 38 ms."""
 _BASELINE_S = 1.0
 _HAND_S = 0.6
 _LEAST_RISE = 60.0
-"""Counts; a hand at 0.2 m rises by about 220 over an empty room, and by 100 over a wall at 0.3 m."""
+"""Counts; a hand at 0.2 m adds about 220 to an empty room, and 100 to a wall at 0.3 m."""
 _CLEARLY = 1.7
-"""So many times the rise of the second channel."""
+"""Required ratio of the two largest rises."""
 _FORGET = "f"
 _ALL = "a"
 
 
 class SensorsStep:
-    """A hand before one sensor after the other; the channel whose counts rise is the sensor's."""
+    """Step in which the counts of the sensor behind the operator's hand rise."""
 
     name = "sensors"
     title = "Each distance sensor's channel"
@@ -34,7 +34,7 @@ class SensorsStep:
     blocks_driving = False
 
     async def run(self, stand: TestStand, findings: Findings) -> StepResult:
-        """Ask for a hand before each sensor of the table."""
+        """Ask for a hand in front of each sensor of the table."""
         sensors = stand.settings.infrared.sensors
         found = await _kept(stand, findings, sensors)
         await stand.ask(
@@ -67,7 +67,7 @@ class SensorsStep:
 
 
 async def _kept(stand: TestStand, findings: Findings, sensors: Sequence[SensorSettings]) -> dict[str, str]:
-    """Channels that were found before and need no hand again."""
+    """Return the channels found before that need no repetition."""
     before = dict(findings.channels)
     missing = [sensor.name for sensor in sensors if sensor.name not in before]
     if not before or not missing:
@@ -75,7 +75,7 @@ async def _kept(stand: TestStand, findings: Findings, sensors: Sequence[SensorSe
     question = OperatorQuestion(
         QuestionKind.KEEP,
         f"{len(before)} channels were found before.",
-        (AnswerChoice("", f"go on with {', '.join(missing)}"), AnswerChoice(_ALL, "ask for all of them anew")),
+        (AnswerChoice("", f"go on with {', '.join(missing)}"), AnswerChoice(_ALL, "ask for all of them again")),
     )
     return {} if await stand.ask(question) == _ALL else before
 
@@ -83,7 +83,7 @@ async def _kept(stand: TestStand, findings: Findings, sensors: Sequence[SensorSe
 async def _find(
     stand: TestStand, sensor: SensorSettings, empty: Mapping[str, float], found: dict[str, str], dead: list[str]
 ) -> str | None:
-    """Ask until a channel is found or the sensor is given up; returns another sensor that has to be asked for again."""
+    """Ask until a channel is found or the sensor is given up; return a sensor to be repeated, if any."""
     tried = False
     while True:
         question = OperatorQuestion(

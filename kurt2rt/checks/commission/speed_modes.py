@@ -1,4 +1,4 @@
-"""Step: which of the firmware's speed modes answers?"""
+"""Step that finds the firmware's working speed mode."""
 
 import math
 from dataclasses import dataclass, field
@@ -19,15 +19,15 @@ from kurt2rt.checks.commission.step import StepResult
 from kurt2rt.checks.commission.test_stand import RAN_AWAY, TURNS_SHARE, TestDrive, TestStand
 
 PREFERENCE = (SpeedMode.SPEED_CM, SpeedMode.SPEED, SpeedMode.RAW)
-"""Closed loops in the controller before the open one; SPEED_CM is the finer of the two."""
+"""Order of preference: closed loops before the open one, the finer SPEED_CM first."""
 _ACCURATE = (0.6, 1.6)
-"""Measured speed against the set point's; outside of it the mode answers, but settings and robot differ."""
+"""Allowed ratio of measured and commanded speed; outside of it settings and robot differ."""
 _TURNS_M_S = TURNS_SHARE * TEST_SPEED_M_S
 _AFTER_RUNAWAY = "an encoder that counts the wrong way does that: go on, step wheels tells which; then repeat this one"
 
 
 class SpeedModesStep:
-    """Tries each mode with a small set point, forward and backward, and watches the encoders."""
+    """Step that drives each mode slowly forward and backward, and reads the encoders."""
 
     name = "modes"
     title = "Which speed mode answers?"
@@ -37,7 +37,7 @@ class SpeedModesStep:
     blocks_driving = True
 
     async def run(self, stand: TestStand, findings: Findings) -> StepResult:
-        """Try all three; the first of the preference that answers is the robot's."""
+        """Try all modes; the first of PREFERENCE that answers is taken."""
         robot = stand.settings
         result = StepResult(findings.model_copy(update={"speed_mode": None, "full_speed_m_s": None}))
         trials: list[_Trial] = []
@@ -62,32 +62,32 @@ class SpeedModesStep:
 
 @dataclass(slots=True)
 class _Trial:
-    """A mode and what came of its drives: forward and, unless that was cut short, backward."""
+    """Drives in one mode: forward and, unless cut short, backward."""
 
     mode: SpeedMode
     drives: list[TestDrive] = field(default_factory=list)
 
     def standstill_cause(self) -> str | None:
-        """Why the wheels were kept from turning."""
+        """Return why the wheels were kept from turning."""
         return next((why for why in map(standstill_cause, self.drives) if why is not None), None)
 
     def answers(self, robot: RobotSettings) -> bool:
-        """Whether wheels turned both ways."""
+        """Return whether the wheels turned both ways."""
         return self.standstill_cause() is None and all(
             _fastest_m_s(drive, robot) >= _TURNS_M_S for drive in self.drives
         )
 
     def share(self, robot: RobotSettings) -> float:
-        """Measured speed of the faster side against the set point's."""
+        """Return the ratio of measured and commanded speed of the faster side."""
         measured_m_s = sum(_fastest_m_s(drive, robot) for drive in self.drives) / len(self.drives)
         return measured_m_s / abs(self.drives[0].applied.left_m_s)
 
     def full_speed_m_s(self, robot: RobotSettings) -> float:
-        """What 100 % are, where the mode is SPEED."""
+        """Return the speed at 100 % in SPEED mode."""
         return round(robot.motors.full_speed_m_s * self.share(robot), 3)
 
     def text(self, robot: RobotSettings) -> str:
-        """One line of what came."""
+        """Return the result in one line."""
         stood = self.standstill_cause()
         if stood is not None:
             return f"{self.mode}: not tried out, {stood}"
@@ -99,7 +99,7 @@ class _Trial:
         return said + (f"; 100 % are {self.full_speed_m_s(robot):.2f} m/s" if self.mode is SpeedMode.SPEED else "")
 
     def problem(self, robot: RobotSettings) -> str:
-        """What is wrong with a mode that the firmware knows; empty when nothing is."""
+        """Return the fault of a mode that the firmware knows; empty without one."""
         stood = self.standstill_cause()
         if stood == RAN_AWAY:
             return f"{self.mode}: {RAN_AWAY} and were braked; {_AFTER_RUNAWAY}"
@@ -116,7 +116,7 @@ class _Trial:
 
 
 def _conclude(trials: list[_Trial], robot: RobotSettings, result: StepResult) -> StepResult:
-    """The first mode that answers is taken; what is wrong with those after it is no matter."""
+    """Take the first mode that answers; faults of later modes do not matter."""
     for trial in trials:
         problem = trial.problem(robot)
         if problem:

@@ -1,4 +1,4 @@
-"""A step of the checklist and what comes of it."""
+"""Protocol and result of a checklist step."""
 
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -10,7 +10,7 @@ from kurt2rt.checks.commission.test_stand import TestStand
 
 
 class StepOutcome(StrEnum):
-    """How a step ended."""
+    """Outcome of a step."""
 
     PASSED = "passed"
     FAILED = "failed"
@@ -19,45 +19,45 @@ class StepOutcome(StrEnum):
 
 @dataclass(slots=True)
 class StepResult:
-    """What a step measured. It passed when nothing is left to do."""
+    """Measurements of a step. It passed if the to-do list is empty."""
 
     findings: Findings
     measured: list[str] = field(default_factory=list)
     to_do: list[str] = field(default_factory=list)
-    """One instruction for each thing that is wrong."""
+    """Instruction for each fault."""
 
     unprinted: list[str] = field(default_factory=list)
-    """Those of the measured lines that the person has not heard yet."""
+    """Measured lines that were not shown yet."""
 
     def note(self, line: str) -> None:
-        """A measured line, for the end of the step."""
+        """Add a measured line for the end of the step."""
         self.measured.append(line)
         self.unprinted.append(line)
 
     def tell(self, stand: TestStand, line: str) -> None:
-        """A measured line, told at once."""
+        """Add a measured line and show it at once."""
         self.measured.append(line)
         stand.tell(line, Tone.MEASURED)
 
     @property
     def outcome(self) -> StepOutcome:
-        """Passed or failed."""
+        """Return passed or failed."""
         return StepOutcome.FAILED if self.to_do else StepOutcome.PASSED
 
 
 class CommissionStep(Protocol):
-    """One step. `run` may be called again; it then starts over."""
+    """Step of the checklist. `run` starts over at each call."""
 
     name: str
-    """What --only and --skip call it."""
+    """Name for --only and --skip."""
     title: str
     why: str
     what_to_do: str
     moves: bool
-    """True when the wheels turn."""
+    """True if the wheels turn."""
     blocks_driving: bool
-    """True when a robot that failed here must not be driven, so that no settings file is written."""
+    """True if a failure forbids driving, so that no settings file is written."""
 
     async def run(self, stand: TestStand, findings: Findings) -> StepResult:
-        """Take the step; `findings` are those of the steps before. Raises SkippedError, LeftError, BusError."""
+        """Run the step with the findings so far. Raises SkippedError, AbortedError, BusError."""
         ...

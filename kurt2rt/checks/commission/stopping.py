@@ -1,4 +1,4 @@
-"""Step: do the wheels stand when they are braked, and by themselves when nobody speaks to the controller?"""
+"""Step that checks the brake and the controller's own watchdog."""
 
 import statistics
 
@@ -23,7 +23,7 @@ _FORWARD = WheelSpeeds(TEST_SPEED_M_S, TEST_SPEED_M_S)
 
 
 class StoppingStep:
-    """The brake, then the controller's own watchdog."""
+    """Step that brakes, then lets the controller's watchdog expire."""
 
     name = "stop"
     title = "Emergency stop and the controller's own watchdog"
@@ -33,7 +33,7 @@ class StoppingStep:
     blocks_driving = True
 
     async def run(self, stand: TestStand, findings: Findings) -> StepResult:
-        """Brake; fall silent."""
+        """Brake while driving, then stop sending while driving."""
         mode = required_speed_mode(findings)
         result = StepResult(findings.model_copy(update={"controller_watchdog_s": None}))
         await confirm_motion(stand, "All wheels turn forward; then the brake.")
@@ -81,7 +81,7 @@ def _judge_watchdog(stand: TestStand, drive: TestDrive, result: StepResult) -> N
 
 
 def _fell_after_s(stand: TestStand, drive: TestDrive) -> float:
-    """From the last CONTROL to the first ENCODER frame that is clearly slower than the ones before."""
+    """Return the time from the last CONTROL to the first clearly slower ENCODER frame."""
     before = drive.heard.encoder[-30:]
     steady_ticks = statistics.mean(abs(each.left) + abs(each.right) for each in before)
     from_s = drive.heard.encoder[-1].time_s

@@ -1,4 +1,4 @@
-"""The bench: the robot on its block, what is heard of it, time, and the person beside it."""
+"""Test stand: the robot on its block, its frames, the clock and the operator."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -21,41 +21,46 @@ from kurt2rt.platform.clock import Clock
 RAN_AWAY = "the wheels ran away"
 UNANSWERED = "a side does not turn, or its encoder counts nothing"
 TURNS_SHARE = 0.1
-"""A side that reaches so much of the set point turns. Little, for the ticks of another variant of the robot are four
-times as long, and its wheels seem slow."""
+"""Fraction of the set point at which a side turns.
+
+Small, because encoders of another variant have a quarter of the ticks.
+"""
 _RUNAWAY_FACTOR, _RUNAWAY_MARGIN_M_S = 2.5, 0.1
 _RUNAWAY_FRAMES = 5
 _ANSWER_S = 0.7
-"""Time for the wheels to have their speed, and 30 frames of it."""
+"""Time for the wheels to reach their speed, plus 30 frames."""
 _ANSWER_FRAMES = 10
 _BREATH_S = 0.1
-"""Before the wheels turn: the senses are fresh then, and whatever held up the loop is over."""
+"""Time before the wheels turn, for fresh sensor readings and an idle loop."""
 _IDENTITY_S = 0.25
-"""INFO_1 comes every 0.1 s."""
+"""Time for INFO_1, which comes every 0.1 s."""
 _HALT_S = 1.5
 _REST_S = 0.1
 
 
 @dataclass(frozen=True, slots=True)
 class TestDrive:
-    """What came of an order to turn the wheels; they were braked after it."""
+    """Result of a drive that ended in a brake."""
 
     heard: FrameStatistics
-    """While the order held."""
+    """Frames during the drive."""
     after: FrameStatistics
-    """From then on, until they rested."""
+    """Frames from its end to the rest."""
     applied: WheelSpeeds
-    """Set points of the last frame of the order."""
+    """Set points of the last frame."""
     reasons: tuple[GuardReason, ...]
-    """The guard's, of that frame."""
+    """Guard reasons of the last frame."""
     stopped_by: str | None
-    """Why it was ended early."""
+    """Reason of an early end."""
     rested_after_s: float | None
-    """From the end of the order until the encoders stood; None when they did not, or were not heard."""
+    """Time from the end of the drive to the rest; None if the wheels turned on or no frame came."""
 
 
 class TestStand:
-    """Ticks every cycle. The robot is opened when it first has to move, and is braked whenever it does not."""
+    """Loop of the commissioning.
+
+    The robot is opened before its first motion, and braked whenever it need not move.
+    """
 
     def __init__(
         self,
@@ -67,7 +72,7 @@ class TestStand:
         *,
         second_guard: bool,
     ) -> None:
-        """`second_guard`: wake the robot's watchdog, which lives in real time."""
+        """`second_guard`: start the robot's watchdog, which runs in real time."""
         self.settings = settings
         self._open_robot = open_robot
         self._listener = listener
@@ -90,11 +95,11 @@ class TestStand:
         self._listener.close()
 
     def tell(self, text: str, tone: Tone = Tone.PLAIN) -> None:
-        """Say a line to the person."""
+        """Show a line to the operator."""
         self._operator.tell(text, tone)
 
     async def ask(self, question: OperatorQuestion) -> str:
-        """The person's answer; the robot stands meanwhile. Raises AbortedError, also when the answer is to leave."""
+        """Return the operator's answer; the robot stands meanwhile. Raises AbortedError, also for LEAVE."""
         answers: list[str] = []
         gone = False
 
@@ -115,29 +120,30 @@ class TestStand:
         return answers[0]
 
     async def listen(self, seconds: float) -> FrameStatistics:
-        """What is heard in a while in which the robot stands; nothing is sent before the wheels first turned."""
+        """Return the frames of a time span at standstill; nothing is sent before the first motion."""
         heard = FrameStatistics()
         for _ in range(self._ticks(seconds)):
             await self._tick(heard, STANDSTILL)
         return heard
 
     async def hardware_id(self) -> int | None:
-        """As INFO_1 says it; None when that does not come. The robot stands while it is waited for."""
+        """Return the hardware id of INFO_1, waiting for it at standstill; None if it does not come."""
         if self._listener.hardware_id is None:
             await self.listen(_IDENTITY_S)
         return self._listener.hardware_id
 
     async def drive(self, mode: SpeedMode, wanted: WheelSpeeds, seconds: float) -> TestDrive:
-        """Turn the wheels in a speed mode for so long, then brake; sooner when the guard or a runaway stops them, or
-        when nothing is counted of a side that is to turn.
+        """Turn the wheels in a speed mode, then brake.
+
+        Brakes early if the guard stops them, if they run away, or if a driven side counts no ticks.
         """
         robot = await self._prepared_robot(mode)
         return await self._brake(robot, await self._drive_steadily(robot, wanted, seconds))
 
     async def stop_sending(self, mode: SpeedMode, wanted: WheelSpeeds, seconds: float, silent_s: float) -> TestDrive:
-        """As `drive`, but then no CONTROL is sent for at most `silent_s`, until the wheels rest by themselves.
+        """Drive, then send no CONTROL for at most `silent_s`, until the wheels rest by themselves.
 
-        `rested_after_s` counts from the last CONTROL frame, and is None when they had to be braked in the end.
+        `rested_after_s` counts from the last CONTROL frame, and is None if the wheels had to be braked.
         """
         robot = await self._prepared_robot(mode)
         drive = await self._drive_steadily(robot, wanted, seconds)
@@ -177,7 +183,7 @@ class TestStand:
         return TestDrive(heard, FrameStatistics(), self._result.wheel_speeds, self._result.reasons, stopped_by, None)
 
     def _unanswered(self, heard: FrameStatistics, wanted: WheelSpeeds) -> bool:
-        """Whether a side that was told to turn is not counted to."""
+        """Return whether a driven side counts too few ticks."""
         counted = heard.wheel_speeds(self.settings, _ANSWER_FRAMES)
         return any(abs(its) < TURNS_SHARE * abs(told) for its, told in zip(counted, wanted, strict=True))
 
@@ -186,7 +192,7 @@ class TestStand:
         return await self._until_rest(drive, _HALT_S, STANDSTILL)
 
     async def _until_rest(self, drive: TestDrive, at_most_s: float, wanted: WheelSpeeds | None) -> TestDrive:
-        """The same drive with what came after it, and when the wheels rested."""
+        """Return the drive with the frames after it and the time of rest."""
         from_s = self._clock.now_s()
         after = FrameStatistics()
         rested_s = None
@@ -198,7 +204,7 @@ class TestStand:
         return replace(drive, after=after, rested_after_s=None if rested_s is None else max(0.0, rested_s - from_s))
 
     async def _prepared_robot(self, mode: SpeedMode) -> Kurt2:
-        """The robot, opened for this mode, braked, its senses fresh."""
+        """Return the robot, opened for this mode and braked, with fresh readings."""
         if self._robot is None or self._mode is not mode:
             self._close_robot()
             listener = self._listener
@@ -222,7 +228,7 @@ class TestStand:
         return max(1, round(seconds / self._cycle_s))
 
     async def _tick(self, heard: FrameStatistics, wanted: WheelSpeeds | None) -> None:
-        """One cycle; no CONTROL is sent when nothing is wanted."""
+        """Run one cycle; without a set point no CONTROL is sent."""
         # Ticks that were missed are skipped, not caught up.
         self._deadline_s = max(self._deadline_s + self._cycle_s, self._clock.now_s())
         await self._clock.wait_until(self._deadline_s)
@@ -237,7 +243,7 @@ class TestStand:
 
 
 def _stopped_by(robot: Kurt2) -> str | None:
-    """Why the robot is to stay stopped; None when it is not."""
+    """Return the reason of a latch; None without one."""
     health = robot.health
     if health.latched is None:
         return None

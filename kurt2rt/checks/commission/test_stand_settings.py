@@ -1,4 +1,4 @@
-"""The robot's settings while it is commissioned: slow, patient, and without what it does not have."""
+"""Robot settings for the test stand: slow, tolerant, without missing parts."""
 
 from collections.abc import Collection
 
@@ -7,16 +7,18 @@ from hal.robot_settings import RobotSettings, SpeedMode
 MAXIMUM_SPEED_M_S = 0.2
 ACCELERATION_M_S2 = 0.5
 PATIENCE_S = 0.5
-"""How long infra-red and bumpers may be silent: with the wheels in the air nobody drives by them, and a controller that
-sends them at another pace than the table says is what the checklist is there to find."""
+"""Allowed silence of infra-red and bumpers.
+
+With the wheels in the air they are not needed, and the checklist must find controllers with other periods.
+"""
 
 
 def test_stand_settings(
     robot: RobotSettings, mode: SpeedMode, channels: Collection[str], *, has_bumpers: bool
 ) -> RobotSettings:
-    """What the guard is given for the wheels' tests in a speed mode; only analog channels that were heard count.
+    """Return the guard settings for wheel tests in a speed mode, with the received analog channels only.
 
-    Without any channel the table is left as it is, and the guard will not let the wheels turn.
+    Without any channel the sensor table stays, and the guard will not let the wheels turn.
     """
     sensors = tuple(sensor for sensor in robot.infrared.sensors if sensor.channel in channels)
     limits = robot.guard

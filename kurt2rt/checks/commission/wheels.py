@@ -1,4 +1,4 @@
-"""Step: does each side's order turn that side, forward when it says forward, and does its encoder say the same?"""
+"""Step that checks side and direction of motors and encoders."""
 
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
@@ -22,7 +22,7 @@ _YES = "y"
 
 
 class WheelsStep:
-    """Each side alone, both ways; a person's eyes tell motors from encoders."""
+    """Step that turns each side both ways; the operator's eyes tell motors from encoders."""
 
     name = "wheels"
     title = "Each wheel's side and direction"
@@ -32,7 +32,7 @@ class WheelsStep:
     blocks_driving = True
 
     async def run(self, stand: TestStand, findings: Findings) -> StepResult:
-        """Four drives and four looks."""
+        """Drive each side both ways and ask for the observation."""
         mode = required_speed_mode(findings)
         result = StepResult(findings)
         trials: list[WheelTrial] = []
@@ -77,8 +77,10 @@ def _sign(speed_m_s: float) -> int:
 
 
 async def _seen(stand: TestStand, ordered: Motion, counted: Motion) -> Motion:
-    """What a person saw. Enter alone is no answer: with motors and encoders exchanged only eyes tell. Nor is yes, where
-    the encoders disagree with the order.
+    """Return the operator's observation.
+
+    Enter alone is no answer: with motors and encoders exchanged only eyes tell. Nor is yes, if the encoders disagree
+    with the command.
     """
     as_ordered = (AnswerChoice(_YES, f"yes, {ordered}"),) if counted == ordered else ()
     text = (

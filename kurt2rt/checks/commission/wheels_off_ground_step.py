@@ -1,4 +1,4 @@
-"""Step: the wheels are off the ground, in the person's own words."""
+"""Step that confirms that the wheels are off the ground."""
 
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, SkippedError, Tone
@@ -9,17 +9,17 @@ WORDS = "wheels up"
 
 
 class WheelsOffGroundStep:
-    """Asked anew in every session: a block that stood there yesterday proves nothing."""
+    """Step of every session: yesterday's block proves nothing."""
 
     name = "lifted"
     title = "Wheels off the ground"
-    why = "Nobody knows yet which way this robot turns its wheels, nor whether it stops when it is told to."
+    why = "It is not known yet which way this robot turns its wheels, nor whether it stops on command."
     what_to_do = "Put the robot on a block so that all six wheels turn freely; cables, sleeves and fingers away."
     moves = False
     blocks_driving = True
 
     async def run(self, stand: TestStand, findings: Findings) -> StepResult:
-        """Ask until the words are typed."""
+        """Ask until the words are typed. Raises SkippedError."""
         question = OperatorQuestion(
             QuestionKind.LIFTED,
             f"When no wheel touches anything, type: {WORDS}",

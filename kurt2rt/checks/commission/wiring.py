@@ -1,30 +1,30 @@
-"""From what was ordered, seen and counted to what has to be rewired."""
+"""Wiring faults from commanded, observed and counted motions."""
 
 from enum import IntEnum
 from typing import NamedTuple
 
 
 class WheelSide(IntEnum):
-    """A side of the robot; its place in a Motion."""
+    """Side of the robot; its index in a Motion."""
 
     LEFT = 0
     RIGHT = 1
 
     @property
     def word(self) -> str:
-        """As a person says it."""
+        """Return the side in lower case."""
         return self.name.lower()
 
 
 class Motion(NamedTuple):
-    """Which sides turn and which way: 1 forward, -1 back, 0 not."""
+    """Motion of both sides: 1 forward, -1 back, 0 not."""
 
     left: int
     right: int
 
     @property
     def only(self) -> tuple[WheelSide, int] | None:
-        """The one side that turns, and its sign; None when none or both do."""
+        """Return the one turning side and its sign; None if none or both turn."""
         if bool(self.left) == bool(self.right):
             return None
         return (WheelSide.LEFT, self.left) if self.left else (WheelSide.RIGHT, self.right)
@@ -42,12 +42,12 @@ STILL = Motion(0, 0)
 
 
 def single_side(side: WheelSide, sign: int) -> Motion:
-    """Only this side turns."""
+    """Return the motion of one side."""
     return Motion(sign, 0) if side is WheelSide.LEFT else Motion(0, sign)
 
 
 class WheelTrial(NamedTuple):
-    """One order, what a person saw of it and what the encoders counted."""
+    """Command, the operator's observation and the encoders' motion."""
 
     ordered: Motion
     seen: Motion
@@ -55,9 +55,9 @@ class WheelTrial(NamedTuple):
 
 
 def parse_seen(answer: str) -> Motion | None:
-    """What a person typed: none; left, right or both with forward or back; None when it cannot be understood.
+    """Parse the operator's words; None if they cannot be understood.
 
-    Each word may be cut short.
+    Valid are none, or left, right or both with forward or back. Each word may be cut short.
     """
     words = answer.split()
     if not words:
@@ -74,7 +74,7 @@ def parse_seen(answer: str) -> Motion | None:
 
 
 def wiring_advice(trials: list[WheelTrial]) -> list[str]:
-    """Instructions, motors before encoders; empty when all is as it should be. `trials`: each side, both ways."""
+    """Return instructions, motors before encoders; empty without a fault. `trials`: each side, both ways."""
     motors = [(trial.ordered, trial.seen) for trial in trials]
     encoders = [(trial.seen, trial.counted) for trial in trials]
     return _judge(motors, _MOTORS) + _judge(encoders, _ENCODERS)
@@ -102,7 +102,7 @@ _ENCODERS = _Words(
 
 
 def _judge(pairs: list[tuple[Motion, Motion]], words: _Words) -> list[str]:
-    """From causes, each of one side, to effects."""
+    """Return the faults from causes of one side and their effects."""
     effects = {side: _effect_of(side, pairs) for side in WheelSide}
     swapped = all(effect is not None and effect[0] is not side for side, effect in effects.items())
     found = [words.swapped] if swapped else []
@@ -123,7 +123,7 @@ def _judge(pairs: list[tuple[Motion, Motion]], words: _Words) -> list[str]:
 
 
 def _effect_of(side: WheelSide, pairs: list[tuple[Motion, Motion]]) -> tuple[WheelSide, int] | None:
-    """Which side answers to a side, and whether the same way (1) or the other (-1); None when no one side does."""
+    """Return the side that answers to a side, and 1 or -1 for its direction; None unless it is unique."""
     answers = set()
     for cause, effect in pairs:
         if cause.only is None or cause.only[0] is not side:

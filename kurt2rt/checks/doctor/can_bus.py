@@ -1,4 +1,4 @@
-"""CAN: does the kernel speak it, which interfaces are there, and can there be a virtual one?"""
+"""Checks of CAN: kernel support, interfaces, and a virtual one."""
 
 import os
 import socket
@@ -11,7 +11,7 @@ from kurt2rt.checks.doctor.sysfs import read_attribute
 NET_FOLDER = Path("/sys/class/net")
 MODULES_FOLDER = Path("/lib/modules", os.uname().release)
 BIT_RATE_BIT_S = 1_000_000
-"""KURT2's, as in config/robots/kurt2.yaml; held here too, for a doctor must not fail over a file that is broken."""
+"""Bit rate of KURT2 as in config/robots/kurt2.yaml; repeated here so that a broken file does not stop the doctor."""
 
 _ARPHRD_CAN = 280
 _IFF_UP = 1
@@ -24,7 +24,7 @@ def _open_can_socket() -> socket.socket:
 def check_can_kernel(
     open_socket: Callable[[], socket.socket] = _open_can_socket, modules: Path = MODULES_FOLDER
 ) -> CheckResult:
-    """Can a CAN socket be opened?"""
+    """Check that a CAN socket can be opened."""
     try:
         open_socket().close()
     except (OSError, AttributeError) as error:  # AttributeError: a Python that was built without CAN
@@ -34,7 +34,7 @@ def check_can_kernel(
 
 
 def check_can_interfaces(net: Path = NET_FOLDER) -> tuple[CheckResult, ...]:
-    """Which CAN interfaces with hardware are there, and are they up? One finding each, or one that there is none."""
+    """Check each CAN interface with hardware; one finding if there is none."""
     interfaces = [each for each in _can_interfaces(net) if not _is_virtual(each)]
     if not interfaces:
         values = {"folder": str(net), "up": _up_command("can0")}
@@ -43,7 +43,7 @@ def check_can_interfaces(net: Path = NET_FOLDER) -> tuple[CheckResult, ...]:
 
 
 def check_vcan(net: Path = NET_FOLDER, modules: Path = MODULES_FOLDER) -> CheckResult:
-    """Is there a virtual CAN interface? Only tests over the kernel's CAN want one."""
+    """Check for a virtual CAN interface, which only tests need."""
     interfaces = [each for each in _can_interfaces(net) if _is_virtual(each)]
     for each in interfaces:
         if _is_up(each):
@@ -84,6 +84,6 @@ def _up_command(name: str) -> str:
 
 
 def _has_module(module: str, modules: Path) -> bool:
-    """Does the running kernel have this module, loadable or built in?"""
+    """Return whether the running kernel has this module, loadable or built in."""
     lists = [modules / "modules.dep", modules / "modules.builtin"]
     return any(f"/{module}.ko" in each.read_text(encoding="utf-8") for each in lists if each.is_file())

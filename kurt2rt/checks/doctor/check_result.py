@@ -6,7 +6,7 @@ from enum import StrEnum
 
 
 class CheckStatus(StrEnum):
-    """How well the machine serves in one respect."""
+    """Suitability of the machine in one respect."""
 
     OK = "ok"
     WARNING = "warning"

@@ -1,4 +1,4 @@
-"""The examination: every check, in the order in which a reader wants them."""
+"""List of all checks in the order of the report."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from kurt2rt.checks.doctor.timer import check_clock, check_timer
 
 
 def run_checks(folder: Path, ticks: int = 100) -> tuple[CheckResult, ...]:
-    """Look at this machine; `folder` is where knowledge is kept. Changes nothing. Takes 20 ms for each of the ticks."""
+    """Run all checks; `folder` is that of the knowledge. Changes nothing. Takes 20 ms per tick."""
     return (
         check_python(),
         check_timer(ticks),

@@ -1,4 +1,4 @@
-"""The folder where knowledge is kept: can it be written, has it room, and how long does a lesson take to be durable?"""
+"""Checks of the knowledge folder: permission, space and time to durability."""
 
 import shutil
 import statistics
@@ -11,14 +11,14 @@ from kurt2rt.platform.fsync_probe import fsync_ns
 
 SYNC_TIMES = 20
 SYNC_LIMIT_S = 0.02
-"""A lesson is acknowledged within 20 ms, of which one fsync is most (design, Knowledge)."""
+"""Limit of one fsync, the largest part of the 20 ms to a lesson's acknowledgement (design, Knowledge)."""
 LEAST_BYTES = 64 * 1024 * 1024
 WANTED_BYTES = 1024 * 1024 * 1024
-"""Recorded runs take most of it."""
+"""Recommended free space, most of it for recorded runs."""
 
 
 def check_disk(folder: Path) -> tuple[CheckResult, ...]:
-    """All about the folder, which need not be there: then its nearest parent is judged. Leaves nothing behind."""
+    """Check the folder, or its nearest parent if it is missing. Leaves nothing behind."""
     folder = folder.absolute()
     try:
         place = next(each for each in (folder, *folder.parents) if each.exists() or each.is_symlink())
@@ -43,7 +43,7 @@ def _check_folder(folder: Path, place: Path) -> CheckResult:
 
 
 def check_free_space(folder: Path, least_bytes: int = LEAST_BYTES, wanted_bytes: int = WANTED_BYTES) -> CheckResult:
-    """Is there room for knowledge and for recorded runs?"""
+    """Check the space for knowledge and recorded runs."""
     free_bytes = shutil.disk_usage(folder).free
     values = {"free_gb": free_bytes / 1e9}
     if free_bytes < wanted_bytes:
@@ -53,7 +53,7 @@ def check_free_space(folder: Path, least_bytes: int = LEAST_BYTES, wanted_bytes:
 
 
 def check_sync(folder: Path, limit_s: float = SYNC_LIMIT_S) -> CheckResult:
-    """How long does the disk take until a page is durable?"""
+    """Measure the time until a page is durable, against a limit in s."""
     with (folder / "sync").open("wb", buffering=0) as file:
         took_s = [fsync_ns(file) / 1e9 for _ in range(SYNC_TIMES)]
     median_s = statistics.median(took_s)

@@ -90,7 +90,7 @@ _TEXTS: Mapping[Code, FindingText] = {
     ),
     Code.SQLITE: FindingText("SQLite", "{version}"),
     Code.SQLITE_OLD: FindingText("SQLite", "{version}", "use a Python that brings SQLite {least} or newer"),
-    Code.SQLITE_LOG: FindingText("SQLite log", "write-ahead log works beside a reader"),
+    Code.SQLITE_LOG: FindingText("SQLite log", "write-ahead log works next to a reader"),
     Code.SQLITE_LOG_FAILS: FindingText(
         "SQLite log", "does not work in this folder: {fault}", "give a folder on a local disk with --folder"
     ),

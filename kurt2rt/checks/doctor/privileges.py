@@ -1,4 +1,4 @@
-"""What the kernel lets this user do: real-time priority and locked memory."""
+"""Checks of the user's permissions: real-time priority and locked memory."""
 
 import os
 import resource
@@ -13,7 +13,7 @@ SELF_STATUS = Path("/proc/self/status")
 _CAP_IPC_LOCK = 14
 _CAP_SYS_NICE = 23
 _HIGHEST_PRIORITY = UNIT_PRIORITY + 1
-"""Of the threads that have to overtake a loop that hangs."""
+"""Priority of the threads that must preempt a hanging loop."""
 _MIB = 1024 * 1024
 
 
@@ -22,9 +22,10 @@ def check_real_time_priority(
     set_scheduler: Callable[[int, int, os.sched_param], None] = os.sched_setscheduler,
     status: Path = SELF_STATUS,
 ) -> CheckResult:
-    """Does the kernel grant SCHED_FIFO at the priorities of a unit? The trial decides: a control group may refuse.
+    """Check that the kernel grants SCHED_FIFO at the service's priorities.
 
-    The trial is made by a thread that then ends, so nothing keeps the priority. Limit and capability are shown.
+    A trial decides, because a control group may refuse. It runs in a thread that ends, so that nothing keeps the
+    priority.
     """
     if limit is None:
         limit = resource.getrlimit(resource.RLIMIT_RTPRIO)[0]
@@ -40,7 +41,7 @@ def check_real_time_priority(
 
 
 def check_memory_lock(limit_bytes: int | None = None, status: Path = SELF_STATUS) -> CheckResult:
-    """May a process as large as this one lock its memory, so that no tick waits for a page from the disk?"""
+    """Check that a process of this size may lock its memory against page faults."""
     if limit_bytes is None:
         limit_bytes = resource.getrlimit(resource.RLIMIT_MEMLOCK)[0]
     if limit_bytes == resource.RLIM_INFINITY:

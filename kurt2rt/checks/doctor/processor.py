@@ -1,4 +1,4 @@
-"""The processor: its cores, how they are clocked, and how many of them numpy takes."""
+"""Checks of the processor: cores, clock and numpy's threads."""
 
 import os
 from collections import Counter
@@ -14,7 +14,7 @@ CPU_FOLDER = Path("/sys/devices/system/cpu")
 
 
 def check_cores(usable: int | None = None) -> CheckResult:
-    """Is there a core for the ticks and another for everything else?"""
+    """Check for a core for the ticks and another for everything else."""
     if usable is None:
         usable = len(os.sched_getaffinity(0))
     values = {"usable": usable, "cores": os.cpu_count() or usable}
@@ -24,7 +24,7 @@ def check_cores(usable: int | None = None) -> CheckResult:
 
 
 def check_governor(cpu_folder: Path = CPU_FOLDER) -> CheckResult:
-    """Do the cores stay at full clock? One that sleeps between ticks wakes late and slow."""
+    """Check that the cores stay at full clock; a core that idles between ticks wakes late and slow."""
     files = sorted(cpu_folder.glob("cpu[0-9]*/cpufreq/scaling_governor"))
     governors = Counter(governor for governor in map(read_attribute, files) if governor)
     if not governors:
@@ -38,7 +38,7 @@ def check_governor(cpu_folder: Path = CPU_FOLDER) -> CheckResult:
 
 
 def check_blas_threads() -> CheckResult:
-    """Does numpy's linear algebra keep to one thread? A match is too small to be shared out, and helpers spin."""
+    """Check that numpy's linear algebra uses one thread; a match is too small for more, and idle threads spin."""
     libraries = [each for each in threadpool_info() if each["user_api"] == "blas"]
     found = ", ".join(f"{each['internal_api']} {each['num_threads']}" for each in libraries) or "no BLAS that tells"
     values = {"numpy": np.__version__, "libraries": found}

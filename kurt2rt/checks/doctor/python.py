@@ -1,4 +1,4 @@
-"""Python itself and the packages that only some commands need."""
+"""Checks of Python and of the optional packages."""
 
 import subprocess
 import sys
@@ -10,7 +10,7 @@ LEAST_PYTHON = (3, 11)
 
 
 def check_python(found: tuple[int, int, int] = sys.version_info[:3]) -> CheckResult:
-    """Is Python new enough?"""
+    """Check that Python is new enough."""
     name = ".".join(map(str, found))
     if found[:2] < LEAST_PYTHON:
         least = ".".join(map(str, LEAST_PYTHON))
@@ -19,9 +19,9 @@ def check_python(found: tuple[int, int, int] = sys.version_info[:3]) -> CheckRes
 
 
 def check_package(name: str, used_for: str, python: str = sys.executable) -> CheckResult:
-    """Can a package of the `simulation` extra be imported?
+    """Check that a package of the `simulation` extra can be imported.
 
-    It is tried in a process of its own: a broken native library may take the whole interpreter with it.
+    The import runs in another process, because a broken native library may crash the interpreter.
     """
     fault = _import_fault(name, python)
     if fault:
@@ -33,7 +33,7 @@ def check_package(name: str, used_for: str, python: str = sys.executable) -> Che
 
 
 def _import_fault(name: str, python: str) -> str:
-    """Last line of what went wrong; empty when nothing did."""
+    """Return the last line of the import's error; empty without one."""
     try:
         trial = subprocess.run([python, "-c", f"import {name}"], capture_output=True, text=True, check=False)
     except OSError as error:

@@ -1,4 +1,4 @@
-"""The doctor's report, for people and for programs."""
+"""Report of the doctor for the terminal and as JSON."""
 
 import json
 from collections import Counter
@@ -15,7 +15,7 @@ _STYLES = {CheckStatus.OK: "green", CheckStatus.WARNING: "yellow", CheckStatus.M
 
 
 def as_json(findings: Sequence[CheckResult]) -> str:
-    """A JSON list with one object per finding."""
+    """Return a JSON list with one object per finding."""
     return json.dumps([_row(finding) for finding in findings], indent=2)
 
 
@@ -32,7 +32,7 @@ def _row(finding: CheckResult) -> dict[str, object]:
 
 
 def print_report(findings: Sequence[CheckResult], console: Console) -> None:
-    """Table of what was found, then what to do, then the summary."""
+    """Print the findings, the instructions and the summary."""
     table = TextTable("subject", "status", "found")
     for finding in findings:
         text = text_of(finding)
@@ -48,7 +48,7 @@ def print_report(findings: Sequence[CheckResult], console: Console) -> None:
 
 
 def summary(findings: Sequence[CheckResult]) -> str:
-    """One line: how many are how, and whether `kurt2rt run` can do with it."""
+    """Return the number of findings by status, and whether `kurt2rt run` can start."""
     counts = Counter(finding.status for finding in findings)
     numbers = ", ".join(f"{counts[status]} {status}" for status in CheckStatus)
     wanting = ", ".join(text_of(finding).subject for finding in findings if finding.forbids_run)

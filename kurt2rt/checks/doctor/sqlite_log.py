@@ -1,4 +1,4 @@
-"""SQLite and its write-ahead log, on which the knowledge journal stands."""
+"""Checks of SQLite and its write-ahead log, which the journal needs."""
 
 import sqlite3
 from contextlib import closing
@@ -7,11 +7,11 @@ from pathlib import Path
 from kurt2rt.checks.doctor.check_result import CheckResult, CheckStatus, FindingCode
 
 LEAST_SQLITE = (3, 37, 0)
-"""The first with STRICT tables."""
+"""First version with STRICT tables."""
 
 
 def check_sqlite(found: tuple[int, ...] = sqlite3.sqlite_version_info) -> CheckResult:
-    """Is Python's SQLite new enough for the journal?"""
+    """Check that Python's SQLite is new enough for the journal."""
     name = ".".join(map(str, found))
     if found < LEAST_SQLITE:
         least = ".".join(map(str, LEAST_SQLITE))
@@ -20,7 +20,7 @@ def check_sqlite(found: tuple[int, ...] = sqlite3.sqlite_version_info) -> CheckR
 
 
 def check_sqlite_log(folder: Path) -> CheckResult:
-    """Does a write-ahead log work in this folder? It does not on most network disks, whatever they answer."""
+    """Check that a write-ahead log works in this folder; on most network disks it does not."""
     path = folder / "log.sqlite"
     try:
         with closing(_connect(path)) as writer, closing(_connect(path)) as reader:
@@ -37,7 +37,7 @@ def _connect(path: Path) -> sqlite3.Connection:
 
 
 def log_fault(writer: sqlite3.Connection, reader: sqlite3.Connection) -> str:
-    """What goes wrong when a lesson is written while another program reads; empty when nothing does."""
+    """Return the fault of a write during another program's read; empty without one."""
     (mode,) = writer.execute("PRAGMA journal_mode = WAL").fetchone()
     if mode != "wal":
         return f"journal mode stays {mode}"

@@ -1,4 +1,4 @@
-"""The timer that paces the ticks: is it there, and how late does it wake us?"""
+"""Checks of the timer that paces the ticks."""
 
 import statistics
 import time
@@ -17,24 +17,24 @@ from kurt2rt.platform.timerfd_clock import TimerfdClock
 
 PERIOD_S = 0.01
 TOLERABLE_MEDIAN_S = 0.001
-"""A timer file descriptor is some 0.1 ms late, the event loop's own sleeping 1 ms: beyond that it is worth a look."""
+"""Limit of the median lateness; a timerfd is about 0.1 ms late, the event loop's sleep 1 ms."""
 COARSE_RESOLUTION_S = 1e-6
-"""With high-resolution timers the kernel says 1 ns; without them one jiffy, 1 to 10 ms."""
+"""Limit of the resolution: 1 ns with high-resolution timers, 1 to 10 ms without."""
 SLOW_CLOCK_SOURCES = frozenset({"hpet", "acpi_pm", "pit", "jiffies"})
-"""Reading these takes a system call of a microsecond or more."""
+"""Clock sources that take a microsecond or more to read."""
 CLOCK_SOURCE = Path("/sys/devices/system/clocksource/clocksource0/current_clocksource")
 
 
 @dataclass(frozen=True, slots=True)
 class Lateness:
-    """How late a clock woke us."""
+    """Lateness of a clock's waits."""
 
     median_s: float
     worst_s: float
 
 
 async def measure_lateness(clock: Clock, ticks: int, period_s: float) -> Lateness:
-    """Wait for so many deadlines, a period apart, and see how late each wait returned."""
+    """Wait for periodic deadlines (s) and return how late each wait ended."""
     start_s = clock.now_s()
     late_s = []
     for number in range(1, ticks + 1):
@@ -49,7 +49,7 @@ def check_timer(
     period_s: float = PERIOD_S,
     open_clock: Callable[[], AbstractContextManager[Clock]] = TimerfdClock,
 ) -> CheckResult:
-    """Is there a timer file descriptor, and how late is it beside asyncio.sleep? Takes 2 x ticks x period_s."""
+    """Check for a timerfd, and compare its lateness with asyncio.sleep. Takes 2 x ticks x period_s."""
 
     async def both() -> tuple[Lateness, Lateness]:
         with open_clock() as clock:
@@ -75,7 +75,7 @@ def check_timer(
 
 
 def check_clock(resolution_s: float | None = None, source: Path = CLOCK_SOURCE) -> CheckResult:
-    """Is the monotonic clock fine and quick to read?"""
+    """Check the resolution (s) and the source of the monotonic clock."""
     if resolution_s is None:
         resolution_s = time.get_clock_info("monotonic").resolution
     name = read_attribute(source) or "unknown"

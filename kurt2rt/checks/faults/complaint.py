@@ -87,7 +87,7 @@ _TEXTS: Mapping[ComplaintCode, str] = {
         "{side} from {from_m_s:.2f} to {to_m_s:.2f} m/s in {within_ms:.0f} ms, allowed are {allowed_m_s:.3f} m/s"
     ),
     ComplaintCode.DROVE_THOUGH: "drives though {cause}",
-    ComplaintCode.DROVE_UNTOLD: "drives though {must_stand}, and nobody said resume",
+    ComplaintCode.DROVE_UNTOLD: "drives though {must_stand}, without a resume",
     ComplaintCode.TICKS_UNACCOUNTED: "tick {tick}: {done} done and {missed} missed are not as many",
     ComplaintCode.OFF_DEADLINE: "tick {tick} is {late_s:.6f} s off its deadline",
     ComplaintCode.ENDED_UNEXPECTEDLY: "{error}",

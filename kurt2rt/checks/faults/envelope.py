@@ -1,7 +1,6 @@
-"""The motion envelope, judged from frames alone: an independent second opinion on the guard.
+"""Motion envelope judged from CAN frames alone, independent of the guard.
 
-It shares no code with the guard nor with the codec that the guard writes frames by, so that neither can hide an error
-of the other's.
+It shares no code with the guard or the guard's codec, so that an error of one cannot hide an error of the other.
 """
 
 import struct
@@ -16,11 +15,11 @@ _BRAKE_PAYLOAD = bytes((0, 0, 0x01, 0x03, 0xFF, 0x01, 0x03, 0xFF))
 """RAW, both sides: brake, no drive (docs/the-robot.md#control-modes)."""
 _ROUNDING = 1e-6
 _MOST_UNDER_WAY = 2048
-"""Frames that may be on their way to the robot; what is older was lost."""
+"""Frames in transit that are remembered; an older frame counts as lost."""
 
 
 class WheelCommand(NamedTuple):
-    """What a CONTROL frame tells the wheels."""
+    """Command of a CONTROL frame to the wheels."""
 
     left_m_s: float
     right_m_s: float
@@ -28,7 +27,7 @@ class WheelCommand(NamedTuple):
 
     @property
     def standing(self) -> bool:
-        """Whether both sides are told to stand."""
+        """Return whether both sides are commanded to stand."""
         return self.left_m_s == 0.0 and self.right_m_s == 0.0
 
 
@@ -36,7 +35,7 @@ _BRAKE = WheelCommand(0.0, 0.0, brake=True)
 
 
 def decode_command(payload: bytes) -> WheelCommand | None:
-    """What a payload says; None for one that the robot does not understand or that this guard never says."""
+    """Return the command of a payload; None if the robot or this guard does not use it."""
     if payload == _BRAKE_PAYLOAD:
         return _BRAKE
     if len(payload) != _SET_POINT.size:
@@ -53,7 +52,7 @@ class _SentFrame(NamedTuple):
 
 
 class _FramesInTransit:
-    """The newest frames that were put and have not arrived, in memory of one size: what watches must not grow."""
+    """Newest frames that have not arrived, in a buffer of constant size, because a soak measures memory."""
 
     _ROW = struct.Struct("=qdddd???")
 
@@ -61,22 +60,12 @@ class _FramesInTransit:
         self._rows = bytearray(self._ROW.size * _MOST_UNDER_WAY)
 
     def put(self, number: int, put: _SentFrame) -> None:
-        left_m_s, right_m_s, brake = (0.0, 0.0, False) if put.told is None else put.told
-        self._ROW.pack_into(
-            self._rows,
-            self._place(number),
-            number + 1,
-            put.at_s,
-            put.age_s,
-            left_m_s,
-            right_m_s,
-            brake,
-            put.told is not None,
-            put.bumper_pressed,
-        )
+        command = (0.0, 0.0, False) if put.told is None else put.told
+        row = (number + 1, put.at_s, put.age_s, *command, put.told is not None, put.bumper_pressed)
+        self._ROW.pack_into(self._rows, self._place(number), *row)
 
     def pop(self, number: int) -> _SentFrame | None:
-        """None where it has arrived already, or was put too long ago."""
+        """Remove and return a frame; None if it has arrived already or is too old."""
         place = self._place(number)
         put, at_s, age_s, left_m_s, right_m_s, brake, is_told, bumper_pressed = self._ROW.unpack_from(self._rows, place)
         if put != number + 1:
@@ -89,24 +78,24 @@ class _FramesInTransit:
 
 
 class Envelope:
-    """Follows all frames of one driver; `violations` holds what was beyond the limits."""
+    """Check of all frames of one driver; `violations` holds the frames beyond the limits."""
 
     def __init__(self, limits: EnvelopeSettings, slew_share: float = 1.0) -> None:
-        """`slew_share`: so many times the slew limits are allowed; may be changed later."""
+        """`slew_share`: allowed multiple of the slew limits; it may be changed later."""
         self.violations: list[Complaint] = []
         self.frames = 0
-        """Handed to the bus."""
+        """Frames handed to the bus."""
         self.oldest_age_s = 0.0
-        """Of the commands that moved the robot, when they were put on the bus."""
+        """Largest age of a moving command when it was put on the bus."""
         self.old_frames = 0
-        """Set points that were older than that when they arrived at the robot."""
+        """Set points that exceeded the age limit on arrival at the robot."""
         self.unintelligible = 0
-        """Frames that arrived garbled; the robot does not obey them."""
+        """Garbled frames that arrived; the robot ignores them."""
         self.slew_share = slew_share
         self.clock_is_faulty = False
-        """While the driver's clock jumps, every frame may gain or lose what is allowed in the longest step."""
+        """True while the driver's clock jumps: each frame may change speed by the longest step."""
         self.bumper_pressed = False
-        """While the driver sees one pressed: a wheel that drives against it stops, and may turn round, at once."""
+        """True while the driver reads a pressed bumper: the blocked wheels stop and may reverse at once."""
         self._limits = limits
         self._in_transit = _FramesInTransit()
         self._last_put: _SentFrame | None = None
@@ -114,7 +103,7 @@ class Envelope:
         self._arrived_number = 0
 
     def on_sent(self, number: int, at_s: float, payload: bytes, age_s: float, *, latched: bool) -> None:
-        """The driver hands a frame to its bus; `age_s`: since its decision began."""
+        """Check a frame that the driver hands to its bus. `age_s`: time since its decision began."""
         self.frames += 1
         told = decode_command(payload)
         put = _SentFrame(at_s, age_s, told, self.bumper_pressed)
@@ -137,7 +126,7 @@ class Envelope:
         self._last_put = put
 
     def on_arrived(self, number: int, at_s: float, payload: bytes) -> WheelCommand | None:
-        """A frame arrives at the robot; returns what it tells, None where it is not understood."""
+        """Check a frame that arrives at the robot; return its command, None for an unknown payload."""
         told = decode_command(payload)
         if told is None:
             self.unintelligible += 1

@@ -1,4 +1,4 @@
-"""The runtime's clock in a drill, sound or not."""
+"""Clocks of a fault scenario: simulated time, and a faulty one."""
 
 import math
 
@@ -12,18 +12,18 @@ _WAITS_PER_CHECKPOINT = 100
 
 
 class RigClock:
-    """Simulated time as the runtime's clock (kurt2rt.platform.clock.Clock): waiting makes it pass."""
+    """Clock of the runtime in simulated time (kurt2rt.platform.clock.Clock): waiting advances the time."""
 
     def __init__(self, time: SimulatedTime) -> None:
         self._time = time
         self._waits = 0
 
     def now_s(self) -> float:
-        """Simulated time."""
+        """Return simulated time."""
         return self._time.now_s()
 
     async def wait_until(self, deadline_s: float) -> None:
-        """Let the world go on until the deadline."""
+        """Advance the world to the deadline."""
         self._time.run_until(deadline_s)
         self._waits += 1
         if self._waits % _WAITS_PER_CHECKPOINT == 0:
@@ -31,14 +31,14 @@ class RigClock:
 
 
 class BrokenClockError(OSError):
-    """The clock cannot be read."""
+    """Clock that cannot be read."""
 
 
 class FaultyClock:
-    """A clock that fails, and wakes the loop by its own wrong time, as the kernel's timers would.
+    """Faulty clock that wakes the loop by its own time, like the kernel's timers.
 
-    off: neither read nor waited for. stuck: it stands still. garbage: it is not a number. wrong: it was set back.
-    slow: it runs at half speed. delayed: it lags behind. intermittent: it jumps ahead and back.
+    off: reading and waiting fail. stuck: it stops. garbage: NaN. wrong: set back. slow: half speed. delayed: it lags.
+    intermittent: it jumps ahead and back.
     """
 
     def __init__(self, time: SimulatedTime, disturbance: RigDisturbance) -> None:
@@ -47,14 +47,14 @@ class FaultyClock:
         self._sound = RigClock(time)
 
     def now_s(self) -> float:
-        """The wrong time. Raises BrokenClockError when it is off."""
+        """Return the faulty time. Raises BrokenClockError for kind off."""
         disturbance, true_s = self._disturbance, self._time.now_s()
         if disturbance.kind == "garbage" and disturbance.acts(true_s):
             return math.nan
         return self._shown_s(true_s)
 
     async def wait_until(self, deadline_s: float) -> None:
-        """Return when it shows the deadline. Raises BrokenClockError when it is off."""
+        """Wait until the faulty time reaches the deadline. Raises BrokenClockError for kind off."""
         begin_s, end_s = self._disturbance.begin_s, self._disturbance.end_s
         while (now_s := self._time.now_s()) < end_s:
             if self._shown_s(now_s) >= deadline_s:

@@ -1,4 +1,4 @@
-"""A disk that fails under the journal, in step with simulated time."""
+"""Journal on a faulty disk, synchronised with simulated time."""
 
 import sqlite3
 import time
@@ -18,26 +18,26 @@ from kurt2rt.knowledge.knowledge_error import from_sqlite
 
 _LOOK_S = 0.0002
 _PATIENCE_S = 20.0
-"""Real time that the writer's thread may take to do what it is about."""
+"""Real time limit for the writer thread."""
 
 
 class DiskOutOfStepError(RuntimeError):
-    """The writer's thread did not do in time what it has to."""
+    """Writer thread that exceeded its real time limit."""
 
 
 class FaultyJournal(Journal):
-    """A journal whose writes fail or wait; used by the writer's thread, while the drill's thread rules over time."""
+    """Journal whose writes fail or block, called by the writer thread while the scenario advances time."""
 
     disturbance: RigDisturbance | None = None
-    """None: the disk is sound."""
+    """None: no fault."""
     simulated: SimulatedTime
     waits_until_s: float | None = None
-    """Simulated time until which a write waits; None while none does."""
+    """Simulated end of a blocking write; None without one."""
     is_over = False
-    """The drill is over: nothing fails or waits any more."""
+    """True at the end of the scenario: writes neither fail nor block any more."""
 
     def append(self, entries: Sequence[JournalEntry]) -> list[Receipt]:
-        """Write, with what the fault does to it. Raises KnowledgeError."""
+        """Write the entries under the fault. Raises KnowledgeError."""
         now_s = self.simulated.now_s()
         disturbance = self.disturbance
         if self.is_over or disturbance is None or not disturbance.acts(now_s):
@@ -67,10 +67,10 @@ class FaultyJournal(Journal):
 
 
 class FailingDisk:
-    """A knowledge file and its writer, which the drill keeps in step; a LessonKeeper.
+    """Knowledge file with its writer in step with simulated time (EventStore).
 
-    off and intermittent: an error. stuck: a write does not come back. garbage: the file is damaged. wrong: another
-    file is there. slow: each write takes long. delayed: each is done at once and comes back late.
+    off, intermittent: an error. stuck: a write blocks. garbage: the file is damaged. wrong: another file is in its
+    place. slow: each write takes long. delayed: each write returns late.
     """
 
     def __init__(
@@ -82,9 +82,9 @@ class FailingDisk:
         task: TaskSettings,
     ) -> None:
         self.submitted: list[str] = []
-        """Command ids of the lessons handed over."""
+        """Command ids of the submitted lessons."""
         self.acknowledged: list[str] = []
-        """Of those said to be durable."""
+        """Command ids of the lessons acknowledged as durable."""
         self._simulated = simulated
         self._disturbance = disturbance
         self._path, self._settings, self._task = path, settings, task
@@ -100,16 +100,19 @@ class FailingDisk:
 
     @property
     def error(self) -> str | None:
-        """As the writer says it."""
+        """Return the writer's error."""
         return self._writer.error
 
     def submit(self, event: TeachingEvent) -> None:
-        """Keep a lesson."""
+        """Submit a lesson to the writer."""
         self.submitted.append(event.origin.command_id)
         self._writer.submit(event)
 
     def keep_in_step(self) -> None:
-        """Wait in real time until the thread has done all that it can do at this moment. Raises DiskOutOfStepError."""
+        """Wait in real time until the writer thread is idle at this simulated time.
+
+        Raises DiskOutOfStepError.
+        """
         give_up_s = time.monotonic() + _PATIENCE_S
         while not self._in_step():
             if time.monotonic() > give_up_s:
@@ -118,7 +121,7 @@ class FailingDisk:
         self.acknowledged += [each.command_id for each in self._writer.acknowledged() if each.sequence is not None]
 
     def close(self) -> None:
-        """Write what is left and close the file; may be called twice. Raises KnowledgeError."""
+        """Write the rest and close the file; idempotent. Raises KnowledgeError."""
         self._journal.is_over = True
         self._writer.close()
 
@@ -145,7 +148,7 @@ class FailingDisk:
 
 
 def schedule_file_swap(simulated: SimulatedTime, disturbance: RigDisturbance, path: Path) -> None:
-    """Another file stands in the place of this one, for the disturbance's span."""
+    """Replace the file by another one for the span of the disturbance."""
     away = path.with_name(f"{path.name}.away")
     simulated.at(disturbance.begin_s, lambda: _swap_out(path, away))
     simulated.at(disturbance.end_s, lambda: _swap_back(away, path))

@@ -1,4 +1,4 @@
-"""A layer that fails at the wheels, and takes its tick along."""
+"""Faulty decision layer that blocks or fails the tick."""
 
 import math
 
@@ -13,15 +13,15 @@ _TURNS_ROUND_EVERY_S = 0.3
 
 
 class BrokenTickError(RuntimeError):
-    """A tick ended in an error of the program."""
+    """Tick that ends in a program error."""
 
 
 class FaultyLevel:
-    """Stands before the layer that decides (kurt2rt.core.decision.level.Level).
+    """Wrapper of the deciding layer (kurt2rt.core.decision.level.Level).
 
-    off: it raises. stuck: it comes back when the fault is over. garbage: it wants what is no number. wrong: it wants
-    far too much, and turns round, also when it was told to stand. slow: each decision takes longer than it may be old.
-    delayed: each takes longer than a period, but is young enough. intermittent: it hangs now and then.
+    off: it raises. stuck: it blocks until the end of the fault. garbage: NaN speeds. wrong: excessive speed with
+    reversals, also against a stop. slow: each decision exceeds the age limit. delayed: each decision exceeds a period,
+    not the age limit. intermittent: it blocks now and then.
     """
 
     def __init__(self, time: SimulatedTime, disturbance: RigDisturbance) -> None:
@@ -29,10 +29,10 @@ class FaultyLevel:
         self._disturbance = disturbance
         self._hung = -1
         self.inner: Level | None = None
-        """The layer that really decides; set before the first tick."""
+        """Deciding layer; set before the first tick."""
 
     def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
-        """The decision, or what the fault makes of it. Raises BrokenTickError."""
+        """Return the decision under the fault. Raises BrokenTickError."""
         assert self.inner is not None
         decision = self.inner.decide(situation, senses, stand_because)
         disturbance, now_s = self._disturbance, self._time.now_s()
@@ -60,7 +60,7 @@ class FaultyLevel:
 
 
 def _driving(decision: Decision) -> Decision:
-    """The decision of a level that heard nobody tell it to stand."""
+    """Return the decision of a level that ignores a stop."""
     if decision.driving or decision.match is None:
         return decision
     rla = decision.match.rla

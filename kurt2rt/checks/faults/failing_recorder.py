@@ -1,4 +1,4 @@
-"""A CAN log whose writer fails, in step with simulated time."""
+"""CAN log with a faulty writer, synchronised with simulated time."""
 
 import threading
 import time
@@ -16,7 +16,7 @@ _ROOM_FRAMES = 500
 
 
 class _FailingWriter:
-    """Where the log puts its frames (kurt2rt.runs.recording.frame_writer.FrameWriter)."""
+    """Faulty destination of the log (kurt2rt.runs.recording.frame_writer.FrameWriter)."""
 
     def __init__(self, simulated: SimulatedTime, disturbance: RigDisturbance) -> None:
         self.waits_until_s: float | None = None
@@ -25,7 +25,7 @@ class _FailingWriter:
         self._disturbance = disturbance
 
     def write(self, frames: Sequence[can.Message]) -> None:
-        """Frames, with what the fault does to it. Raises OSError and worse."""
+        """Write frames under the fault. Raises OSError, AttributeError."""
         now_s = self._simulated.now_s()
         if self._disturbance.acts(now_s):
             match self._disturbance.kind:
@@ -42,7 +42,7 @@ class _FailingWriter:
                     self._wait(now_s + self._disturbance.delay_s)
 
     def close(self) -> None:
-        """No more comes."""
+        """Do nothing."""
 
     def _wait(self, until_s: float) -> None:
         self.waits_until_s = until_s
@@ -52,10 +52,10 @@ class _FailingWriter:
 
 
 class FailingRecorder:
-    """The log (hal.tap.Tap), its thread kept in step: it writes every 0.1 s of simulated time unless it still hangs.
+    """CAN log (hal.tap.Tap) whose thread writes every 0.1 s of simulated time unless it still blocks.
 
-    off, garbage and intermittent: errors. stuck: a write does not come back, and there is room for half a second.
-    wrong: the writer changes the frames that it gets. slow and delayed: each write takes long.
+    off, garbage, intermittent: errors. stuck: a write blocks, with room for half a second. wrong: the writer changes
+    its frames. slow, delayed: each write takes long.
     """
 
     def __init__(self, simulated: SimulatedTime, disturbance: RigDisturbance) -> None:
@@ -68,22 +68,22 @@ class FailingRecorder:
         self._plan()
 
     def on_rx(self, frame: can.Message, age_s: float) -> None:
-        """A frame that came in."""
+        """Note a received frame of age `age_s`."""
         self._noted += 1
         self._log.on_rx(frame, age_s)
 
     def on_tx(self, frame: can.Message) -> None:
-        """A frame that went out."""
+        """Note a sent frame."""
         self._noted += 1
         self._log.on_tx(frame)
 
     @property
     def lost(self) -> int:
-        """Frames that are not in the file, as the log counts them."""
+        """Return the log's own count of lost frames."""
         return self._log.lost
 
     def close(self) -> None:
-        """The drill is over: nobody waits any more."""
+        """End the fault and the thread, and write the rest."""
         self._writer.is_over = True
         if self._thread is not None:
             self._thread.join()
@@ -111,7 +111,7 @@ class FailingRecorder:
             self._keep_in_step()
 
     def _keep_in_step(self) -> None:
-        """Wait in real time until the writer is done, or hangs until later."""
+        """Wait in real time until the writer is idle, or blocks beyond this simulated time."""
         while self._thread is not None:
             waits_until_s = self._writer.waits_until_s
             if waits_until_s is not None and self._simulated.now_s() < waits_until_s:

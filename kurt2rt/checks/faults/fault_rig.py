@@ -1,4 +1,4 @@
-"""What a drill needs of the place where it happens: a robot in simulated time, with a fault that comes and goes."""
+"""Protocols of the rig for a fault scenario: a robot in simulated time with one fault."""
 
 from collections.abc import Callable
 from typing import Protocol
@@ -9,99 +9,102 @@ from kurt2rt.checks.faults.table import Kind
 
 
 class SimulatedTime(Protocol):
-    """Time that passes when told to, and what is planned in it."""
+    """Simulated time that advances on request, with scheduled events."""
 
     def now_s(self) -> float:
-        """The present in seconds."""
+        """Return the present in seconds."""
         ...
 
     def at(self, time_s: float, act: Callable[[], None]) -> None:
-        """Have something done at a moment."""
+        """Schedule a call at a time in s."""
         ...
 
     def every(self, period_s: float, first_s: float, act: Callable[[], None]) -> None:
-        """Have something done again and again."""
+        """Schedule a periodic call, times in s."""
         ...
 
     def run_until(self, time_s: float) -> None:
-        """Let time pass: the world goes on, and so does the second guard."""
+        """Advance the world and the watchdog to a time in s."""
         ...
 
 
 class RigDisturbance(Protocol):
-    """What is wrong, from when to when."""
+    """Fault with its time span."""
 
     @property
     def kind(self) -> Kind:
-        """In which way."""
+        """Return the kind of fault."""
         ...
 
     @property
     def begin_s(self) -> float:
-        """From this time on."""
+        """Return the start."""
         ...
 
     @property
     def end_s(self) -> float:
-        """Until then."""
+        """Return the end."""
         ...
 
     @property
     def period_s(self) -> float:
-        """As CaseSettings has it."""
+        """Return the period of CaseSettings."""
         ...
 
     @property
     def delay_s(self) -> float:
-        """As CaseSettings has it."""
+        """Return the delay of CaseSettings."""
         ...
 
     def acts(self, now_s: float) -> bool:
-        """Whether it does harm at this time."""
+        """Return whether the fault is active at this time in s."""
         ...
 
 
 class FaultRig(Protocol):
-    """Robot, bus and driver."""
+    """Robot, bus and driver with one fault."""
 
     on_sent: Callable[[int, bytes], None]
-    """Called with number and payload of each frame that the driver hands to its bus."""
+    """Callback with number and payload of each frame that the driver hands to its bus."""
     on_control: Callable[[int, bytes], None]
-    """Called for each of them that arrives at the robot's end as CONTROL, with the same number."""
+    """Callback with number and payload of each CONTROL that arrives at the robot."""
 
     @property
     def time(self) -> SimulatedTime:
-        """The time of all of it."""
+        """Return the simulated time."""
         ...
 
     @property
     def disturbance(self) -> RigDisturbance:
-        """The fault."""
+        """Return the fault."""
         ...
 
     @property
     def robot(self) -> Kurt2:
-        """The driver that is there now."""
+        """Return the present driver."""
         ...
 
     def restart_driver(self) -> Kurt2:
-        """A driver that knows nothing takes the place of the one that was there."""
+        """Replace the driver by a new one, like a restart of its process."""
         ...
 
     def attach_tap(self, tap: Tap) -> None:
-        """Somebody looks on at the driver's end of the bus."""
+        """Attach a tap to the driver's interface."""
         ...
 
     def close(self) -> None:
-        """Give the bus back."""
+        """Close driver and bus."""
         ...
 
 
 class RigFactory(Protocol):
-    """Opens rigs."""
+    """Factory of rigs."""
 
     def open(
         self, target: str, kind: Kind, *, begin_s: float, end_s: float, period_s: float, delay_s: float, seed: int
     ) -> FaultRig:
-        """The place where `target` is disturbed; one that is no part of robot or bus is left to the caller."""
+        """Return a rig in which `target` has a fault from `begin_s` to `end_s`.
+
+        A target that is no part of robot or bus is left to the caller.
+        """
         ...

@@ -1,4 +1,4 @@
-"""Holds what a drill came to against what the table says."""
+"""Comparison of a scenario's outcome with its row in the fault table."""
 
 from typing import NamedTuple
 
@@ -7,19 +7,22 @@ from kurt2rt.checks.faults.outcome import LOST_FRAMES, FaultOutcome
 from kurt2rt.checks.faults.table import CaseSettings
 
 _MOMENT_S = 0.03
-"""A robot that turns round stands for a tick or two on its way."""
+"""Longest standstill of a robot that reverses, some ticks."""
 
 
 class FaultVerdict(NamedTuple):
-    """Whether a case is as it must be."""
+    """Result of one case."""
 
     passed: bool
     complaints: tuple[Complaint, ...]
-    """Deviations from the row; of a known gap those that the gap excuses."""
+    """Deviations from the row, including those that a known gap excuses."""
 
 
 def judge(must: CaseSettings, outcome: FaultOutcome) -> FaultVerdict:
-    """A known gap passes as long as it is one, and excuses nothing beyond the envelope."""
+    """Judge an outcome.
+
+    A known gap passes while it exists, and excuses no violation of the envelope.
+    """
     behaviour = (
         *_standstill_complaints(must, outcome),
         *_latch_complaints(must, outcome),

@@ -1,4 +1,4 @@
-"""Watches a drill: what the driver said, what arrived at the robot, and when."""
+"""Observer of a fault scenario at both ends of the bus."""
 
 from typing import NamedTuple
 
@@ -11,22 +11,22 @@ from kurt2rt.core.tick import TickRecord
 
 
 class Stand(NamedTuple):
-    """A span in which the robot's end of the bus knew nothing but to stand."""
+    """Time span in which the robot had to stand."""
 
     from_s: float
     to_s: float
 
 
 class WheelObserver(RobotProxy):
-    """Sees both ends of the bus, and is the robot for the tick."""
+    """Observer of both ends of the bus, and the tick's robot (RobotProxy)."""
 
     def __init__(self, rig: FaultRig, envelope: Envelope, controller_watchdog_s: float) -> None:
         super().__init__(rig.robot)
         self.envelope = envelope
         self.latched: tuple[float, str] | None = None
-        """When the guard first stopped for good, and its word."""
+        """Time and reason of the guard's first latch; None without one."""
         self.drove_at_s: list[float] = []
-        """Times of ticks whose set points moved the robot."""
+        """Times of ticks with moving set points."""
         self._rig = rig
         self._begin_s = rig.disturbance.begin_s
         self._controller_watchdog_s = controller_watchdog_s
@@ -37,11 +37,11 @@ class WheelObserver(RobotProxy):
         rig.on_control = self._on_arrival
 
     def attach(self, robot: Robot) -> None:
-        """Another driver has taken the place of the one that was there."""
+        """Observe another driver."""
         self._robot = robot
 
     def on_tick(self, record: TickRecord) -> None:
-        """A tick is over."""
+        """Record set points and causes of a tick."""
         now_s = self._rig.time.now_s()
         if record.guard_result.wheel_speeds != STANDSTILL:
             self.drove_at_s.append(now_s)
@@ -54,7 +54,10 @@ class WheelObserver(RobotProxy):
             self._causes.append((now_s, (*cause, *record.guard_result.reasons)))
 
     def standstills(self, begin_s: float, end_s: float) -> list[Stand]:
-        """When the robot was told to stand, or heard nothing for so long that its own watchdog stopped it."""
+        """Return the spans from `begin_s` to `end_s` in which the robot had to stand.
+
+        It was commanded to, or its own watchdog had expired.
+        """
         stands: list[Stand] = []
         state, since_s, heard_at_s = True, 0.0, 0.0
         heard = [each for each in self._arrivals if each[0] < end_s]
@@ -73,17 +76,17 @@ class WheelObserver(RobotProxy):
         return [Stand(max(each.from_s, begin_s), each.to_s) for each in stands if each.to_s > begin_s]
 
     def causes_from(self, time_s: float) -> tuple[str, ...]:
-        """Why the driver told the robot to stand, the first time from a moment on."""
+        """Return the causes of the first standstill command from a time on."""
         first_s = next((at_s for at_s, _ in self._causes if at_s >= time_s), None)
         return tuple(dict.fromkeys(word for at_s, words in self._causes if at_s == first_s for word in words))
 
     def sense(self, now_s: float) -> SensorReadings:
-        """A tick begins: from here on its decision ages."""
+        """Read the sensors; the age of the next decision counts from now."""
         self._sensed_at_s = self._rig.time.now_s()
         return self._robot.sense(now_s)
 
     def close(self) -> None:
-        """Left to the place."""
+        """Do nothing: the rig closes the robot."""
 
     def _on_sent(self, number: int, payload: bytes) -> None:
         now_s, latched = self._rig.time.now_s(), self._rig.robot.health.latched

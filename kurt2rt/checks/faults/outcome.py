@@ -1,4 +1,4 @@
-"""What a drill came to."""
+"""Outcome of a fault scenario."""
 
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -7,48 +7,48 @@ from kurt2rt.checks.faults.complaint import Complaint
 from kurt2rt.checks.faults.table import Kind, Target
 
 LOST_FRAMES = "lost frames"
-"""In `FaultOutcome.counted`: those that are not in the CAN log."""
+"""Key in `FaultOutcome.counted` for frames missing in the CAN log."""
 
 
 class Standstill(NamedTuple):
-    """The robot's end of the bus knows nothing but to stand."""
+    """Standstill of the robot by the commands on its end of the bus."""
 
     after_s: float
     because: tuple[str, ...]
-    """The driver's words in the first tick from then on in which it told the robot to stand."""
+    """Causes in the driver's first tick from then on that commanded a standstill."""
 
 
 @dataclass(frozen=True, slots=True)
 class FaultOutcome:
-    """One fault, once. Times count from the fault's beginning."""
+    """Outcome of one fault; times count from its beginning."""
 
     target: Target
     kind: Kind
     seed: int
     first: Standstill | None
-    """The first one during the fault; None when it never stood."""
+    """First standstill during the fault; None without one."""
     last: Standstill | None
-    """The one that lasted until the fault was over; None when it drove then."""
+    """Standstill that lasted to the end of the fault; None if the robot drove then."""
     went_on: bool
-    """Whether it drove again during the fault after it had stood."""
+    """True if it drove again during the fault after a standstill."""
     longest_stand_s: float
-    """During the fault."""
+    """Longest standstill during the fault."""
     latched: str | None
-    """Why it was stopped for good when the fault was over, in the guard's word; None when it was not."""
+    """Guard's latch reason at the end of the fault; None without a latch."""
     latched_after_s: float | None
     ended_by: str
-    """The error that ended the service; empty when none did."""
+    """Error that ended the service; empty without one."""
     drove_by_itself: bool
-    """Whether it drove when the fault was over, before anybody said anything."""
+    """True if it drove after the fault without a command of a teacher."""
     drove_when_told: bool
-    """Whether it drove in the end."""
+    """True if it drove in the end."""
     oldest_age_s: float
-    """Of the commands that moved the robot, when they were put on the bus."""
+    """Largest age of a moving command when it was put on the bus."""
     old_frames: int
-    """Set points that were older than allowed when they arrived at the robot."""
+    """Set points that exceeded the age limit on arrival at the robot."""
     frames: int
-    """CONTROL frames that the driver sent."""
+    """CONTROL frames of the driver."""
     counted: dict[str, int]
-    """What was lost, refused or not understood."""
+    """Numbers of lost, refused and garbled messages."""
     problems: tuple[Complaint, ...] = field(default=())
-    """Everything beyond the envelope, and what went wrong beside the robot's motion."""
+    """Violations of the envelope, lost lessons and miscounted frames."""

@@ -1,4 +1,4 @@
-"""The report of a run of faults, for people and for programs."""
+"""Report of the fault cases for the terminal and as JSON."""
 
 import json
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ from kurt2rt.platform.text_table import TextTable, print_whole
 
 
 def print_report(trials: Sequence[FaultTrial], times: Sequence[StopTime], console: Console) -> None:
-    """What each fault led to, the stop times, and what is not as it must be."""
+    """Print the outcome of each fault, the stop times and the deviations."""
     cells: dict[tuple[Target, Kind], list[FaultTrial]] = {}
     for trial in trials:
         cells.setdefault((trial.case.target, trial.case.kind), []).append(trial)
@@ -41,7 +41,7 @@ def print_report(trials: Sequence[FaultTrial], times: Sequence[StopTime], consol
 
 
 def as_json(trials: Sequence[FaultTrial], times: Sequence[StopTime]) -> str:
-    """A JSON object: stop times, and each trial with what had to be, what was, and what is wrong with it."""
+    """Return a JSON object with the stop times, and each trial with its row, outcome and deviations."""
     return json.dumps(
         {
             "stop_times": [{**asdict(each), "met": each.met} for each in times],

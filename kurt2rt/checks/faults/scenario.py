@@ -1,4 +1,4 @@
-"""A drill: the robot drives, something fails for a while, and is well again."""
+"""Fault scenario: the robot drives, one part fails for a while and recovers."""
 
 import random
 from contextlib import ExitStack
@@ -29,11 +29,11 @@ from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 
 
 class DidNotDriveError(UserError):
-    """The robot stood before the fault began, so the fault's effect cannot be seen."""
+    """Robot that stood before the fault, which hides the fault's effect."""
 
 
 class _Scenario:
-    """One drill in its place."""
+    """One scenario on its rig."""
 
     def __init__(
         self,
@@ -75,7 +75,7 @@ class _Scenario:
         self._script.begin(self._runtime, self._link)
 
     async def run(self) -> None:
-        """All of it."""
+        """Run to the end, with a restart of the service if the fault ended it."""
         await self._serve()
         if self._time.now_s() < self._script.resume_at_s:  # the service has ended before its time
             self._time.run_until(self._script.resume_at_s)
@@ -83,7 +83,7 @@ class _Scenario:
             await self._serve()
 
     def outcome(self, seed: int, problems: tuple[Complaint, ...]) -> FaultOutcome:
-        """What it came to."""
+        """Return the outcome."""
         observer, resume_at_s = self._observer, self._script.resume_at_s
         begin_s, end_s = self._rig.disturbance.begin_s, self._rig.disturbance.end_s
         stands = observer.standstills(begin_s, end_s)
@@ -141,7 +141,7 @@ class _Scenario:
         self._latched = self._rig.robot.health.latched
 
     async def _serve(self) -> None:
-        """As kurt2rt.service.serve does: whatever ends the loop, the wheels stand before anything else ends."""
+        """Run the loop like kurt2rt.service.serve: after any error the wheels stop first."""
         try:
             await self._runtime.scheduler.run(None, self._after_tick)
         except DidNotDriveError:
@@ -151,7 +151,7 @@ class _Scenario:
             self._ended_by = repr(error)
 
     def _restart(self) -> None:
-        """What a supervisor does, and a teacher afterwards."""
+        """Restart driver and runtime like a supervisor, and resume like a teacher."""
         events = tuple(self._keeper.events) if isinstance(self._keeper, InMemoryEventStore) else ()
         self._observer.attach(self._rig.restart_driver())
         self._level = None
@@ -177,7 +177,7 @@ async def run_scenario(
     seed: int,
     folder: Path,
 ) -> FaultOutcome:
-    """Try one case. `folder`: empty, for a knowledge file. Raises DidNotDriveError, KnowledgeError."""
+    """Run one case. `folder`: empty, for a knowledge file. Raises DidNotDriveError, KnowledgeError."""
     schedule = table.schedule
     rig = rigs.open(
         case.target,

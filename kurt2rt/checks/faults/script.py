@@ -1,4 +1,4 @@
-"""What people do during a drill: answer the robot, teach, say stop, and say what lets it drive on."""
+"""Teacher of a fault scenario: answers, lessons, stop and resume."""
 
 from collections.abc import Callable
 
@@ -15,7 +15,7 @@ _LESSON_EVERY_S = 0.25
 
 
 class Script:
-    """Acts at moments of simulated time, and after each tick."""
+    """Commands at simulated times and after ticks."""
 
     def __init__(self, rig: FaultRig, case: FaultCase, table: FaultTable) -> None:
         self._time = rig.time
@@ -23,7 +23,7 @@ class Script:
         self._action = table.action
         self._begin_s, self._end_s = rig.disturbance.begin_s, rig.disturbance.end_s
         self.resume_at_s = self._end_s + table.schedule.settles_s
-        """When somebody says what lets the robot drive on; until then it may do so by itself."""
+        """Time at which the teacher resumes the robot; before it the robot may drive by itself."""
         self.over_at_s = self.resume_at_s
         if case.must.ends_by != "itself":
             self.over_at_s += table.schedule.drives_again_s
@@ -32,7 +32,7 @@ class Script:
         self._link: TeacherLink | None = None
 
     def begin(self, runtime: Runtime, link: TeacherLink | None) -> None:
-        """The robot's program runs; `link` is that of a teacher who drives by hand."""
+        """Schedule the commands. `link`: of a teacher who drives manually."""
         self._runtime, self._link = runtime, link
         at, must = self._time.at, self._case.must
         if link is not None:
@@ -53,17 +53,17 @@ class Script:
                 at(self._begin_s + number * _LESSON_EVERY_S, self._command_sender(lesson))
 
     def restart(self, runtime: Runtime) -> None:
-        """The program was started anew; it stands, and is told to drive."""
+        """Stop and resume the restarted program."""
         self._runtime, self._link = runtime, None
         runtime.handler.stop(STARTED)
         self.resume()
 
     def resume(self) -> None:
-        """The robot may drive on."""
+        """Send the command to resume."""
         self._send(Resume("resume", _TEACHER))
 
     def after_tick(self, record: TickRecord) -> None:
-        """See the robot; answer where it asks, while nothing is wrong."""
+        """Answer a question while no fault is active."""
         if self._link is not None:
             self._link.set_displayed_tick(record.tick)
         elif record.decision.asking and not self._begin_s <= self._time.now_s() < self.resume_at_s:

@@ -1,4 +1,4 @@
-"""How long it takes from the cause to the standstill on the bus."""
+"""Times from a fault to the standstill on the bus."""
 
 import statistics
 from collections.abc import Sequence
@@ -10,7 +10,7 @@ from kurt2rt.checks.faults.table import FaultTable
 
 @dataclass(frozen=True, slots=True)
 class StopTime:
-    """One of the design's stop times, over all seeds that were tried."""
+    """Measured stop time of the design over all seeds."""
 
     what: str
     goal_s: float
@@ -20,12 +20,12 @@ class StopTime:
 
     @property
     def met(self) -> bool:
-        """Whether even the worst one is within the goal."""
+        """Return whether the worst time meets the goal."""
         return self.worst_s <= self.goal_s
 
 
 def stop_times(table: FaultTable, trials: Sequence[FaultTrial]) -> list[StopTime]:
-    """Those of the table's stop times that were tried and led to a standstill."""
+    """Return the table's stop times that were measured."""
     found = []
     for wanted in table.stop_times:
         took_s = [

@@ -1,4 +1,4 @@
-"""Tries cases of the table, one after the other, and says of each whether it is as it must be."""
+"""Execution of fault cases one after another."""
 
 import tempfile
 from collections.abc import Callable, Iterable, Sequence
@@ -15,7 +15,7 @@ from kurt2rt.core.task_settings import TaskSettings
 
 
 class FaultTrial(NamedTuple):
-    """A case, tried with one seed."""
+    """Case with one seed, its outcome and verdict."""
 
     case: FaultCase
     outcome: FaultOutcome
@@ -25,7 +25,10 @@ class FaultTrial(NamedTuple):
 async def try_case(
     rigs: RigFactory, case: FaultCase, table: FaultTable, settings: RobotSettings, task: TaskSettings, seed: int
 ) -> FaultTrial:
-    """Try one case. The seed makes noise, and the phases of fault, ticks and watchdog. Raises DidNotDriveError."""
+    """Run one case.
+
+    The seed determines noise and the phases of fault, ticks and watchdog. Raises DidNotDriveError.
+    """
     with tempfile.TemporaryDirectory(prefix="kurt2rt-faults-") as folder:
         outcome = await run_scenario(rigs, case, table, settings, task, seed=seed, folder=Path(folder))
     return FaultTrial(case, outcome, judge(case.must, outcome))
@@ -40,7 +43,7 @@ async def try_cases(
     seeds: Sequence[int],
     on_done: Callable[[FaultTrial], None],
 ) -> list[FaultTrial]:
-    """Try each case with each seed; `on_done` hears of every trial. Raises DidNotDriveError."""
+    """Run each case with each seed; `on_done` is called after each. Raises DidNotDriveError."""
     trials = []
     for case in cases:
         for seed in seeds:

@@ -1,4 +1,4 @@
-"""Schema of `config/faults/*.yaml`: what fails, in which way, and what the robot must do then."""
+"""Schema of `config/faults/*.yaml`: faults and the required reaction of the robot."""
 
 from collections.abc import Iterator
 from typing import Annotated, Literal, NamedTuple, Self, get_args
@@ -21,19 +21,20 @@ Target = Literal[
     "tick",
     "recorder",
 ]
-"""What can fail. bus_in is the way from robot to notebook, bus_out the one back."""
+"""Part that fails; bus_in is the direction from robot to notebook, bus_out the opposite one."""
 
 Kind = Literal["off", "stuck", "garbage", "wrong", "slow", "delayed", "intermittent"]
-"""The ways in which it fails: gives nothing, repeats itself, gives nonsense, gives what is plausible and false, comes
-less often, comes late, comes and goes."""
+"""Kind of fault: no output, repeated output, nonsense, plausible but false, rarer, late, on and off."""
 
 LeadsTo = Literal["stands", "asks", "stutters", "drives_on"]
-"""stands: until the fault is over at least. asks: stands because it does not know the situation. stutters: stands for
-moments. drives_on: never stands."""
+"""Required reaction.
+
+stands: at least until the end of the fault. asks: stands because the situation is unknown. stutters: stands for
+moments. drives_on: never stands.
+"""
 
 EndsBy = Literal["itself", "resume", "press", "restart"]
-"""What makes it drive again when the fault is over: nothing else, a teacher's resume, a new press of the hand, a new
-start of the program and a resume."""
+"""Condition to drive again after the fault: nothing, a teacher's resume, a new press, a restart with a resume."""
 
 TARGETS: tuple[Target, ...] = get_args(Target)
 KINDS: tuple[Kind, ...] = get_args(Kind)
@@ -42,53 +43,51 @@ Seconds = Annotated[float, Field(gt=0, le=10)]
 
 
 class EnvelopeSettings(Settings):
-    """The limits of every frame that moves the robot, written down a second time, apart from the guard's own."""
+    """Limits of every moving frame, written down a second time, independent of the guard's."""
 
     speed_m_s: Annotated[float, Field(gt=0, le=3)]
     acceleration_m_s2: Annotated[float, Field(gt=0, le=20)]
     braking_m_s2: Annotated[float, Field(gt=0, le=20)]
     resolution_m_s: Annotated[float, Field(gt=0, le=0.1)]
     longest_step_s: Seconds
-    """From one frame to the next no more speed is gained or lost than in so long, however late the tick was; and so
-    much at once after a brake, for the guard counts from its last set point."""
+    """Longest step in which speed may change, also after a brake, when the guard starts at its last set point."""
     command_age_s: Seconds
     controller_watchdog_s: Seconds
 
 
 class CaseSettings(Settings):
-    """One case: how it fails, and what must come of it."""
+    """Fault of one case and the required reaction."""
 
     period_s: Seconds = 1.0
-    """slow: between two that come, or time constant. intermittent: each span of failing, and each of working."""
+    """slow: interval between two outputs, or time constant. intermittent: span of each failure and recovery."""
     delay_s: Seconds = 1.0
-    """How late, or how long something hangs each time."""
+    """Delay, or duration of each blocking call."""
     lasts_s: Seconds | None = None
-    """Where it is not the schedule's time."""
+    """Duration; None: the schedule's."""
     stop_said_after_s: Seconds | None = None
-    """A teacher says stop so long after the fault began, to see whether the robot still obeys."""
+    """Time from the fault to a teacher's stop; None: no stop."""
     leads_to: LeadsTo
     because: str | tuple[str, ...] = ()
-    """Word of the guard, or cause of the decision, for the standstill; one of several where chance has a say."""
+    """Guard reason or decision cause of the standstill; any one of several."""
     within_s: Seconds | None = None
-    """From the fault's beginning to the standstill at the robot's end of the bus, the first one of a robot that
-    stutters."""
+    """Limit from the fault to the (first) standstill on the robot's end of the bus."""
     latches: str | None = None
-    """Word of the guard for which it stays stopped in the end."""
+    """Guard reason of the final latch."""
     latches_within_s: Seconds | None = None
     ends_by: EndsBy
     counts: str | None = None
-    """What is lost or refused, and must be counted."""
+    """Counter that must be positive."""
     old_frames: Annotated[int, Field(ge=0, le=10)] = 0
-    """Set points older than the command's age may arrive at the robot, where frames are held up behind the guard."""
+    """Allowed set points beyond the age limit on arrival, if frames are delayed after the guard."""
     slew_share: Annotated[float, Field(ge=1, le=3)] = 1.0
-    """So many times the slew limit, where the clock itself is wrong by which slew is measured."""
+    """Allowed multiple of the slew limit, if the clock that measures slew is faulty."""
     known_gap: str | None = None
-    """What the program does worse than this row says, and why; the row fails when that is mended."""
+    """Known deviation and its reason; the row fails once the deviation is gone."""
     why: str
 
     @property
     def words(self) -> tuple[str, ...]:
-        """Those of `because`."""
+        """Return `because` as a tuple."""
         return (self.because,) if isinstance(self.because, str) else self.because
 
     @model_validator(mode="after")
@@ -99,39 +98,39 @@ class CaseSettings(Settings):
         if (self.latches is None) is not (self.latches_within_s is None):
             raise ValueError("latches and latches_within_s belong together")
         if self.leads_to in ("drives_on", "stutters") and (self.ends_by != "itself" or self.latches):
-            raise ValueError("a robot that goes on needs nobody to make it go on")
+            raise ValueError("a robot that goes on needs no command to go on")
         return self
 
 
 class ScheduleSettings(Settings):
-    """A drill's times."""
+    """Times of a scenario."""
 
     begins_at_s: Seconds
     lasts_s: Seconds
     settles_s: Seconds
-    """After the fault is over; by then it drives again by itself, or never will."""
+    """Time after the fault in which the robot may drive again by itself."""
     drives_again_s: Seconds
-    """After a teacher has said what ends it."""
+    """Time to drive again after the teacher's command."""
 
 
 class StopTimeSettings(Settings):
-    """One stop time to measure: a cell of the table, and the goal."""
+    """Stop time to measure: a cell of the table, and the goal."""
 
     what: str
     target: Target
     kind: Kind
     goal_s: Seconds
-    """From the cause to the frame on the bus."""
+    """Limit from the cause to the frame on the bus."""
 
 
 class FaultTable(Settings):
-    """All of it: twelve targets, seven kinds each."""
+    """Table of twelve targets and seven kinds."""
 
     name: str
     robot: str
     task: str
     action: str
-    """What the robot is taught to do in the one situation of the hall."""
+    """Action taught for the corridor's only situation."""
     schedule: ScheduleSettings
     envelope: EnvelopeSettings
     stop_times: tuple[StopTimeSettings, ...]
@@ -146,7 +145,7 @@ class FaultTable(Settings):
 
 
 class FaultCase(NamedTuple):
-    """A cell of the table."""
+    """Cell of the table."""
 
     target: Target
     kind: Kind
@@ -157,14 +156,14 @@ class FaultCase(NamedTuple):
 
 
 def load_faults(name_or_path: str = "kurt2") -> FaultTable:
-    """A shipped table by name, or one by path. Raises hal.settings.SettingsError."""
+    """Load a shipped table by name, or one by path. Raises SettingsError."""
     return load_settings(find_config("faults", name_or_path), FaultTable)
 
 
 def cases_of(
     table: FaultTable, targets: tuple[Target, ...] = TARGETS, kinds: tuple[Kind, ...] = KINDS
 ) -> Iterator[FaultCase]:
-    """The cases of these targets and kinds, row by row."""
+    """Yield the cases of these targets and kinds, row by row."""
     for target in targets:
         for kind in kinds:
             yield FaultCase(target, kind, table.cases[target][kind])

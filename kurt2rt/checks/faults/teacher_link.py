@@ -1,4 +1,4 @@
-"""A teacher who drives by hand, over a link that fails."""
+"""Manual driving over a faulty link."""
 
 import random
 from collections.abc import Awaitable, Coroutine
@@ -23,19 +23,18 @@ _ROUNDING_S = 1e-9
 
 
 class TeacherLink:
-    """Messages of a press, as bytes, on their way from the teacher's device to the robot's reception.
+    """Messages of a press, as bytes, from the teacher's device to the robot's request handler.
 
-    Past the keys: what they would refuse already, garbled bytes and copies, has to be refused by the rules behind them.
-
-    off: none arrives. stuck: the last one arrives again and again. garbage: bytes of chance. wrong: well-formed, and
-    far too fast. slow: few. delayed: late. intermittent: none for a while, again and again.
+    They enter after OSCORE, so the rules after it must refuse garbled bytes and copies. off: none arrives. stuck: the
+    last one repeats. garbage: random bytes. wrong: well-formed and too fast. slow: few. delayed: late. intermittent: on
+    and off.
     """
 
     def __init__(
         self, time: SimulatedTime, disturbance: RigDisturbance, runtime: Runtime, chance: random.Random
     ) -> None:
         self.refused = 0
-        """Messages that were not understood or not taken."""
+        """Messages that were not understood or refused."""
         self._time = time
         self._disturbance = disturbance
         self._chance = chance
@@ -47,15 +46,15 @@ class TeacherLink:
         self._passed_at_s = disturbance.begin_s
 
     def press(self) -> None:
-        """A new press begins."""
+        """Begin a new press."""
         self._press_id += 1
 
     def set_displayed_tick(self, tick: int) -> None:
-        """The newest picture of the robot is of this tick, and the teacher sees it at once."""
+        """Set the tick of the newest state on the teacher's display."""
         self._handler.tick = tick
 
     def beat(self) -> None:
-        """Send what is due; call it every BEAT_S."""
+        """Send the message that is due; call it every BEAT_S."""
         if not self._press_id:
             return
         disturbance, now_s = self._disturbance, self._time.now_s()
@@ -84,7 +83,7 @@ class TeacherLink:
                 self._time.at(now_s + disturbance.delay_s, lambda: self._arrive(*message))
 
     def start(self) -> None:
-        """From now on the device sends."""
+        """Start to send periodically."""
         self._time.every(BEAT_S, self._time.now_s(), self.beat)
 
     def _message(self, left_m_s: float, right_m_s: float) -> bytes:
@@ -102,35 +101,35 @@ class TeacherLink:
 
 
 class _NoCopies:
-    """No request asks for a copy here (kurt2rt.channel.server.dependencies.Copies)."""
+    """Copies that are never requested (kurt2rt.channel.server.off_tick_requests.Copies)."""
 
     def save(self, label: str) -> Awaitable[SavedCopy]:
-        """Never asked."""
+        """Raise NotImplementedError."""
         raise NotImplementedError(label)
 
     def export(self) -> Awaitable[SavedCopy]:
-        """Never asked."""
+        """Raise NotImplementedError."""
         raise NotImplementedError
 
     def package(self) -> Awaitable[SavedCopy]:
-        """Never asked."""
+        """Raise NotImplementedError."""
         raise NotImplementedError
 
     def examine(self) -> Awaitable[None]:
-        """Never asked."""
+        """Raise NotImplementedError."""
         raise NotImplementedError
 
     def settle(self) -> Awaitable[None]:
-        """Never asked."""
+        """Raise NotImplementedError."""
         raise NotImplementedError
 
     def read(self, name: str, offset: int, most_bytes: int) -> Awaitable[FilePart]:
-        """Never asked."""
+        """Raise NotImplementedError."""
         raise NotImplementedError(name)
 
 
 def _at_once(answering: Coroutine[Any, Any, Reply]) -> Reply:
-    """The reply of a request that waits for nothing, as those of a stream are."""
+    """Return the reply of a request that never waits."""
     try:
         answering.send(None)
     except StopIteration as done:

@@ -1,4 +1,4 @@
-"""What must hold after a soak."""
+"""Judgement of a soak's measurements."""
 
 from collections.abc import Sequence
 from statistics import median
@@ -14,13 +14,13 @@ _ABOUT_S = 600.0
 
 
 def memory_base_mb(minutes: Sequence[SoakMinute]) -> float | None:
-    """Memory at the end of the first hour, the median of its last ten minutes; None for a shorter soak."""
+    """Return the median memory of the last ten minutes of the first hour in MB; None for a shorter soak."""
     base = [each.resident_mb for each in minutes if HOUR_S - _ABOUT_S < each.at_s <= HOUR_S]
     return median(base) if base and minutes[-1].at_s > HOUR_S else None
 
 
 def memory_check(minutes: Sequence[SoakMinute], limits: LimitSettings) -> SoakCheck:
-    """No growth after the first hour: the median of any ten minutes against the last ten of that hour."""
+    """Compare the median memory of each later ten minutes with the end of the first hour."""
     base_mb = memory_base_mb(minutes)
     later = [each for each in minutes if each.at_s > HOUR_S]
     if base_mb is None or len(later) < _ABOUT_S / 60:
@@ -35,9 +35,9 @@ def memory_check(minutes: Sequence[SoakMinute], limits: LimitSettings) -> SoakCh
 
 
 def format_memory_growth(minutes: Sequence[SoakMinute], starts: Sequence[SoakStart]) -> str:
-    """What memory grew by after the first hour, apart: what programs left behind, and what knowledge takes.
+    """Describe the growth after the first hour: memory left by programs, and memory for knowledge.
 
-    Empty for a soak that has not had an hour and two programs.
+    Empty for a soak shorter than an hour and two programs.
     """
     base_mb = memory_base_mb(minutes)
     first = [each.left_mb for each in starts if each.at_s + each.lasted_s <= HOUR_S]
@@ -57,7 +57,7 @@ def format_memory_growth(minutes: Sequence[SoakMinute], starts: Sequence[SoakSta
 
 
 def steady_check(minutes: Sequence[SoakMinute]) -> SoakCheck:
-    """As many files and threads at the end as after the first minutes."""
+    """Compare the open files and threads at the end with the first minute."""
     if len(minutes) < 2:
         return SoakCheck(CheckCode.FILES_AND_THREADS, passed=True, values={}, judged=False)
     first, last = minutes[0], minutes[-1]
@@ -70,14 +70,14 @@ def steady_check(minutes: Sequence[SoakMinute]) -> SoakCheck:
 
 
 def fault_check(faults: Sequence[FaultResult]) -> SoakCheck:
-    """Each fault led to the standstill that it must lead to."""
+    """Check that each fault led to its required standstill."""
     wrong = sum(bool(each.complaints) for each in faults)
     values = {"faults": len(faults), "drove": sum(each.drove for each in faults), "wrong": wrong}
     return SoakCheck(CheckCode.FAULTS, not wrong, values)
 
 
 def starts_check(starts: Sequence[SoakStart], unexpected: Sequence[Complaint]) -> SoakCheck:
-    """The program ended only where a fault must end it, and left every lesson."""
+    """Check that the program ended only by faults that end it, without lost lessons."""
     lost = sum(each.complaint is not None for each in starts)
     ended = sum(bool(each.ended_by) for each in starts)
     values = {"starts": len(starts), "ended": ended, "unexpected": len(unexpected), "lost": lost}
@@ -85,5 +85,5 @@ def starts_check(starts: Sequence[SoakStart], unexpected: Sequence[Complaint]) -
 
 
 def envelope_check(complaints: Complaints, frames: int) -> SoakCheck:
-    """Nothing that the witness of every tick complained about."""
+    """Check that the observer of every tick has no complaint."""
     return SoakCheck(CheckCode.ENVELOPE, complaints.count == 0, {"complaints": complaints.count, "frames": frames})

@@ -1,4 +1,4 @@
-"""A list on the disk: what a soak notes minute by minute must not be what its memory grows by."""
+"""List in a file, so that a soak's notes do not grow its memory."""
 
 import os
 import pickle
@@ -10,10 +10,10 @@ _T = TypeVar("_T")
 
 
 class Spool(Generic[_T]):
-    """Only appended to, and read from its beginning; in a nameless file that goes with the program."""
+    """Append-only list of pickled values in a temporary file without name."""
 
     def __init__(self) -> None:
-        """Raises OSError."""
+        """Open the file. Raises OSError."""
         # At once: a file that is opened with the first note would count as one more than at the beginning.
         self._file: BinaryIO = tempfile.TemporaryFile()  # noqa: SIM115  # until `close`
         self._length = 0
@@ -28,12 +28,12 @@ class Spool(Generic[_T]):
             yield pickle.load(self._file)
 
     def append(self, value: _T) -> None:
-        """Add one that can be pickled. Raises OSError."""
+        """Append a value that can be pickled. Raises OSError."""
         self._file.seek(0, os.SEEK_END)
         pickle.dump(value, self._file)
         self._length += 1
 
     def close(self) -> None:
-        """Give the file back, with all that was noted."""
+        """Close the file and drop all values."""
         self._file.close()
         self._length = 0

@@ -1,4 +1,4 @@
-"""The program's clock: simulated time, wrong for a while."""
+"""Program clock of a soak with temporary faults."""
 
 from kurt2rt.checks.faults.failing_clock import FaultyClock, RigClock
 from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
@@ -6,7 +6,7 @@ from kurt2rt.platform.clock import Clock
 
 
 class SoakClock:
-    """A clock (kurt2rt.platform.clock.Clock) that may fail and be well again; what it lost it does not get back."""
+    """Clock (kurt2rt.platform.clock.Clock) with temporary faults; time lost in a fault stays lost."""
 
     def __init__(self, time: SimulatedTime) -> None:
         self._time = time
@@ -15,18 +15,18 @@ class SoakClock:
         self._behind_s = 0.0
 
     def disturb(self, disturbance: RigDisturbance) -> None:
-        """From now on it is wrong."""
+        """Start a fault."""
         self._inner = FaultyClock(self._time, disturbance)
 
     def clear(self) -> None:
-        """It is right again. Not to be called before the disturbance's end."""
+        """End the fault; call it after the disturbance's end."""
         self._behind_s += self._time.now_s() - self._inner.now_s()
         self._inner = self._sound
 
     def now_s(self) -> float:
-        """The time, or a wrong one. Raises BrokenClockError while it is off."""
+        """Return the time under the fault. Raises BrokenClockError for kind off."""
         return self._inner.now_s() - self._behind_s
 
     async def wait_until(self, deadline_s: float) -> None:
-        """Let the world go on until it shows the deadline. Raises BrokenClockError while it is off."""
+        """Advance the world until the clock shows the deadline. Raises BrokenClockError for kind off."""
         await self._inner.wait_until(deadline_s + self._behind_s)

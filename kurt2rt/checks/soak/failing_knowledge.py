@@ -1,4 +1,4 @@
-"""The knowledge file of a soak and its writer, on a disk that may fail, in step with simulated time."""
+"""Knowledge file of a soak on a faulty disk, synchronised with simulated time."""
 
 import time
 from itertools import chain
@@ -15,22 +15,22 @@ from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter, Ret
 
 _LOOK_S = 0.0002
 _PATIENCE_S = 30.0
-"""Real time that the writer's thread may take to do what it is about."""
+"""Real time limit for the writer thread."""
 _FAIL = ("off", "intermittent", "garbage", "wrong")
 
 
 def open_soak_knowledge(path: Path, settings: RobotSettings, task: TaskSettings) -> OpenedKnowledge:
-    """What the file holds already, with its journal closed: the soak's own, which may fail, takes its place."""
+    """Return the file's content with its journal closed; SoakKnowledge opens a faulty one."""
     opened = open_for_teaching(path, settings, task)
     opened.journal.close()
     return opened
 
 
 class SoakKnowledge:
-    """Made of what was opened for one start of the program; closed by `close`."""
+    """Knowledge file of one program start, closed by `close`."""
 
     def __init__(self, path: Path, opened: OpenedKnowledge, simulated: SimulatedTime) -> None:
-        """`opened`: by `open_soak_knowledge`, at `path`. Raises KnowledgeError."""
+        """Open the faulty journal. `opened`: result of `open_soak_knowledge` for `path`. Raises KnowledgeError."""
         self._path = path
         self._simulated = simulated
         self._disturbance: RigDisturbance | None = None
@@ -42,30 +42,30 @@ class SoakKnowledge:
         retry = RetryDelays(first_s=0.001, longest_s=0.001)
         self.writer = JournalWriter(self._journal, utc_now, retry, clock=simulated.now_s)
         self.submitted: list[str] = []
-        """Command ids of the lessons of this start, in order; whoever sees them notes them here."""
+        """Command ids of this start's lessons in order; the caller appends them."""
         self.acknowledged: list[str] = []
-        """Of those said to be durable."""
+        """Command ids of the lessons acknowledged as durable."""
 
     @property
     def lessons(self) -> int:
-        """Of all of the file so far."""
+        """Return the number of lessons in the file so far."""
         return len(self._before) + len(self.submitted)
 
     def disturb(self, disturbance: RigDisturbance) -> None:
-        """From now on the disk fails. Raises DiskOutOfStepError."""
+        """Start a fault. Raises DiskOutOfStepError."""
         self.keep_in_step(with_statistics=True)
         self._disturbance = self._journal.disturbance = disturbance
         if disturbance.kind == "wrong":
             schedule_file_swap(self._simulated, disturbance, self._path)
 
     def clear(self) -> None:
-        """It is sound again."""
+        """End the fault."""
         self._disturbance = self._journal.disturbance = None
 
     def keep_in_step(self, *, with_statistics: bool = False) -> None:
-        """Wait in real time until the thread has done what it can do at this moment. Raises DiskOutOfStepError.
+        """Wait in real time until the writer thread is idle at this simulated time.
 
-        `with_statistics`: statistics, too, of which nobody says whether they wait.
+        `with_statistics`: wait for statistics, too, which do not count as unwritten. Raises DiskOutOfStepError.
         """
         if self._disturbance is None and not self.writer.unwritten and not with_statistics:
             return
@@ -78,12 +78,12 @@ class SoakKnowledge:
             raise DiskOutOfStepError(f"statistics wait; {self.writer.error}")
 
     def on_acknowledged(self, acknowledgement: Acknowledgement) -> None:
-        """A lesson is durable, or never can be."""
+        """Note a lesson that is durable or failed."""
         if acknowledgement.sequence is not None:
             self.acknowledged.append(acknowledgement.command_id)
 
     def close(self) -> None:
-        """Write what is left and close the file. Raises KnowledgeError."""
+        """Write the rest and close the file. Raises KnowledgeError."""
         self._journal.is_over = True
         self.writer.close(_PATIENCE_S)
         for acknowledgement in self.writer.acknowledged():

@@ -1,4 +1,4 @@
-"""The layer at the wheels, which may fail and take its tick along."""
+"""Decision layer of a soak with temporary faults."""
 
 from hal.robot import SensorReadings
 from kurt2rt.checks.faults.failing_level import FaultyLevel
@@ -9,25 +9,25 @@ from kurt2rt.core.perception.perception import Situation
 
 
 class SoakLevel:
-    """Stands before the layer that decides (kurt2rt.core.decision.level.Level)."""
+    """Wrapper of the deciding layer (kurt2rt.core.decision.level.Level) with temporary faults."""
 
     def __init__(self, time: SimulatedTime) -> None:
         self._time = time
         self._disturbed: FaultyLevel | None = None
         self.inner: Level | None = None
-        """The layer that really decides; set before the first tick."""
+        """Deciding layer; set before the first tick."""
 
     def disturb(self, disturbance: RigDisturbance) -> None:
-        """From now on it fails."""
+        """Start a fault."""
         self._disturbed = FaultyLevel(self._time, disturbance)
         self._disturbed.inner = self.inner
 
     def clear(self) -> None:
-        """It is sound again."""
+        """End the fault."""
         self._disturbed = None
 
     def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
-        """The decision, or what a fault makes of it. Raises BrokenTickError."""
+        """Return the decision under the fault. Raises BrokenTickError."""
         level = self._disturbed or self.inner
         assert level is not None
         return level.decide(situation, senses, stand_because)

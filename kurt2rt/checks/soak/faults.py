@@ -1,4 +1,4 @@
-"""Makes things fail at random times, and looks whether each fault led to what it must."""
+"""Random faults of a soak and their judgement."""
 
 import random
 from collections.abc import Callable
@@ -23,32 +23,32 @@ _HAND_FIRST_S, _SOUND_FIRST_S = 1.0, 0.1
 
 
 class FaultResult(NamedTuple):
-    """One fault, and what it came to."""
+    """Result of one fault."""
 
     at_s: float
     target: Target
     kind: Kind
     drove: bool
-    """Whether the robot was driving when it began."""
+    """True if the robot drove when the fault began."""
     stood_after_s: float | None
-    """Until its first standstill; None where it drove all the while."""
+    """Time to the first standstill; None without one."""
     latched: str | None
-    """Why the robot was stopped for good at its end."""
+    """Guard's latch reason at the end; None without a latch."""
     complaints: tuple[Complaint, ...] = ()
 
 
 class SoakFaults:
-    """One fault at a time, each case of the table as often as any other."""
+    """Sequence of single faults, each case of the table equally often."""
 
     def __init__(self, rig: SoakRig, observer: SoakObserver, table: FaultTable, gap_s: float, seed: int) -> None:
         self.results: Spool[FaultResult] = Spool()
         self.may_end_program = False
-        """Whether the program that runs may end by the fault that acts."""
+        """True if the active fault may end the program."""
         self.acting: FaultCase | None = None
         self.acts_until_s = 0.0
-        """Of the newest fault."""
+        """End of the newest fault."""
         self.program: ProgramRun | None = None
-        """The program that runs; None while none does."""
+        """Running program; None between two starts."""
         self._rig, self._observer, self._table = rig, observer, table
         self._gap_s = gap_s
         self._chance = random.Random(f"faults, seed {seed}")
@@ -75,7 +75,7 @@ class SoakFaults:
             self._chance.shuffle(self._deck)
         case = self.acting = self._deck.pop()
         must, now_s = case.must, time.now_s()
-        # What repeats itself must have been heard, and somebody has to drive by hand already when his link fails.
+        # A repeated message must have been received once, and manual driving must have begun before its link fails.
         begin_s = now_s + (_HAND_FIRST_S if case.target == "teacher_link" else _SOUND_FIRST_S)
         end_s = begin_s + (must.lasts_s or self._table.schedule.lasts_s)
         self.acts_until_s = end_s
@@ -122,7 +122,7 @@ class SoakFaults:
         return do
 
     def _judge(self) -> None:
-        """The fault is over in this moment."""
+        """Judge the fault at its end."""
         case, robot, observer = self.acting, self._rig.robot, self._observer
         assert case is not None
         assert self._disturbance is not None
@@ -151,7 +151,7 @@ class SoakFaults:
 
     @property
     def lossy(self) -> bool:
-        """Whether the wire itself holds frames up."""
+        """Return whether the wire itself delays frames."""
         return self.program is not None and self.program.wire == "failing"
 
     def _end(self) -> None:

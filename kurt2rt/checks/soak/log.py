@@ -1,4 +1,4 @@
-"""Minute by minute: what the robot did and what its program took of the machine."""
+"""Minute log of the robot's activity and the program's resources."""
 
 from hal.robot import STANDSTILL
 from kurt2rt.checks.soak.disk_list import Spool
@@ -10,7 +10,7 @@ from kurt2rt.core.tick import TickRecord
 
 
 class MinuteLog:
-    """Counts ticks, and makes a line of them when a minute is over."""
+    """Counter of ticks, summed up each minute."""
 
     def __init__(self) -> None:
         self.minutes: Spool[SoakMinute] = Spool()
@@ -18,7 +18,7 @@ class MinuteLog:
         self._worst_late_s = 0.0
 
     def on_tick(self, record: TickRecord, late_s: float, missed: int) -> None:
-        """A tick is over: so late, after so many that were missed."""
+        """Count a tick: its lateness, and the ticks missed before it."""
         self._ticks += 1
         self._drives += record.guard_result.wheel_speeds != STANDSTILL
         self._asks += record.decision.asking
@@ -27,7 +27,7 @@ class MinuteLog:
         self._worst_late_s = max(self._worst_late_s, late_s)
 
     def end_minute(self, at_s: float, program: ProgramRun, mood: str) -> None:
-        """A minute is over."""
+        """Append the minute's sums."""
         ticks = max(1, self._ticks)
         self.minutes.append(
             SoakMinute(

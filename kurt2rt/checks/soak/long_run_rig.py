@@ -1,4 +1,4 @@
-"""What a soak needs of the place where it happens: a robot in simulated time on which anything may fail."""
+"""Protocol of the rig for a soak: a robot in simulated time with changing faults."""
 
 from collections.abc import Callable
 from typing import Protocol
@@ -10,64 +10,64 @@ from kurt2rt.checks.faults.table import Kind
 
 
 class SoakRig(Protocol):
-    """Robot, bus and driver, one driver after another."""
+    """Robot, bus and a sequence of drivers."""
 
     on_sent: Callable[[int, bytes], None]
-    """Called with number and payload of each CONTROL that a driver hands to its bus."""
+    """Callback with number and payload of each CONTROL that a driver hands to its bus."""
     on_control: Callable[[int, bytes, float], None]
-    """Called for each of them that the robot takes, with the same number and the time of its arrival in s."""
+    """Callback with number, payload and arrival time in s of each CONTROL that the robot receives."""
     turned_m: list[float]
-    """Way of the rims so far, left and right, forward counts positive."""
+    """Distance rolled by the rims, left and right, forward positive."""
     crashes: int
-    """How often the robot's controller went dead and was switched off and on."""
+    """Crashes of the robot's controller, each followed by a power cycle."""
     robot: Kurt2 | None
-    """The driver that is there now."""
+    """Present driver; None between two drivers."""
 
     @property
     def time(self) -> SimulatedTime:
-        """The time of all of it."""
+        """Return the simulated time."""
         ...
 
     @property
     def position_m(self) -> tuple[float, float]:
-        """Where the robot really is."""
+        """Return the true position."""
         ...
 
     @property
     def collisions(self) -> int:
-        """Contacts so far."""
+        """Return the number of contacts."""
         ...
 
     def start_driver(self, wire: str) -> Kurt2:
-        """A driver that knows nothing comes to the bus, over a wire by name or `none`."""
+        """Start a new driver over a wire given by name, or `none`."""
         ...
 
     def end_driver(self) -> None:
-        """The driver's process is over."""
+        """End the driver, like the end of its process."""
         ...
 
     def begin(
         self, target: str, kind: Kind, *, begin_s: float, end_s: float, period_s: float, delay_s: float
     ) -> RigDisturbance:
-        """Something is going to fail; one that is no part of robot or bus is left to the caller."""
+        """Schedule a fault; a target that is no part of robot or bus is left to the caller. Times in s."""
         ...
 
     def end(self) -> None:
-        """All is well again."""
+        """Remove the fault."""
         ...
 
     def attach_tap(self, tap: Tap | None) -> None:
-        """Somebody looks on at the driver's end of the bus; None: nobody."""
+        """Attach a tap to the driver's interface; None detaches it."""
         ...
 
     def reposition(self) -> None:
-        """Somebody sets the robot down at a start pose."""
+        """Reposition the robot at a start pose."""
         ...
 
     def power_cycle(self) -> None:
-        """Somebody switches the robot's controller off and on."""
+        """Power-cycle the robot's controller."""
         ...
 
     def close(self) -> None:
-        """Give the bus back."""
+        """Close driver and bus."""
         ...

@@ -1,4 +1,4 @@
-"""Watches every tick of a soak from both ends of the bus: envelope, standstill, and tick accounting."""
+"""Observer of every tick of a soak at both ends of the bus: envelope, standstill, tick accounting."""
 
 import math
 
@@ -19,7 +19,7 @@ _ROUNDING_S = 1e-6
 
 
 class Complaints:
-    """What is not as it must be: all of it counted, the first ones kept."""
+    """Counter of complaints that stores the first ones."""
 
     def __init__(self) -> None:
         self.count = 0
@@ -33,20 +33,20 @@ class Complaints:
 
 
 class SoakObserver:
-    """Sees what drivers say, what arrives at the robot, and each tick's record (and is, for the tick, the robot)."""
+    """Observer of sent and received frames and of tick records, and the tick's robot."""
 
     def __init__(self, rig: SoakRig, limits: EnvelopeSettings) -> None:
         self.envelope = Envelope(limits)
         self.complaints = Complaints()
-        """Of the motion envelope, of standing, and of accounting."""
+        """Complaints about envelope, standstill and tick accounting."""
         self.ticks = self.missed_ticks = 0
-        """Of all starts so far."""
+        """Ticks of all starts."""
         self.late_s = 0.0
-        """Of the newest tick, against its deadline, on the program's clock."""
+        """Lateness of the newest tick on the program's clock."""
         self.resumes = 0
-        """How often the robot was told to drive on, and might."""
+        """Accepted commands to resume."""
         self.clock_is_faulty = False
-        """While the program's clock itself fails, deadlines by it say nothing."""
+        """True while the program's clock fails; deadlines are not judged then."""
         self._rig = rig
         self._robot: Robot | None = None
         self._limits = limits
@@ -54,7 +54,7 @@ class SoakObserver:
         self._told_standing = True
         self.stood_at_s: float | None = None
         self.slowest_m_s = 0.0
-        """That a side was told since a standstill was looked for."""
+        """Slowest set point of a side since `watch_for_standstill`."""
         self._heard_at_s = 0.0
         self._must_stand = ""
         self._begun_s: float | None = None
@@ -63,14 +63,14 @@ class SoakObserver:
         rig.on_control = self._on_arrival
 
     def attach(self, robot: Robot, period_s: float) -> None:
-        """A program was started anew: it must stand until it is told to drive."""
+        """Observe a restarted program, which must stand until it is resumed."""
         self._robot = robot
         self._period_s = period_s
         self._must_stand = "the program was started"
         self._begun_s = None
 
     def on_tick(self, record: TickRecord, ledger: TickTimer, begun_s: float) -> None:
-        """A tick is over; `begun_s`: when the program's loop began, on its own clock."""
+        """Check a tick. `begun_s`: start of the program's loop on its own clock."""
         now_s = self._rig.time.now_s()
         moves = record.guard_result.wheel_speeds != STANDSTILL
         if moves and not record.decision.driving:
@@ -97,16 +97,16 @@ class SoakObserver:
 
     @property
     def stands(self) -> bool:
-        """Whether the robot's end of the bus knows nothing but to stand, for it was told so or hears nothing."""
+        """Return whether the robot must stand: it was commanded to, or receives nothing."""
         return self._told_standing or self._silent
 
     def watch_for_standstill(self) -> None:
-        """From now on `stood_at_s` is that of the first standstill."""
+        """Reset `stood_at_s` to the next standstill."""
         self.stood_at_s = None
         self.slowest_m_s = math.inf
 
     def first_standstill_s(self) -> float | None:
-        """When the robot's end of the bus first knew nothing but to stand, since it was looked for."""
+        """Return the time of the first standstill since `watch_for_standstill`; None without one."""
         if self.stood_at_s is None and self._silent:
             return self._heard_at_s + self._limits.controller_watchdog_s
         return self.stood_at_s
@@ -116,7 +116,7 @@ class SoakObserver:
         return self._rig.time.now_s() - self._heard_at_s >= self._limits.controller_watchdog_s
 
     def sense(self, now_s: float) -> SensorReadings:
-        """A tick begins: from here on its decision ages."""
+        """Read the sensors; the age of the next decision counts from now."""
         self._sensed_at_s = self._rig.time.now_s()
         assert self._robot is not None
         senses = self._robot.sense(now_s)
@@ -124,22 +124,22 @@ class SoakObserver:
         return senses
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
-        """As the robot does."""
+        """Forward to the robot."""
         assert self._robot is not None
         return self._robot.drive(wanted, decided_at_s, now_s)
 
     def emergency_stop(self, reason: GuardReason) -> None:
-        """As the robot does."""
+        """Forward to the robot."""
         assert self._robot is not None
         self._robot.emergency_stop(reason)
 
     def release(self) -> None:
-        """As the robot does."""
+        """Forward to the robot."""
         assert self._robot is not None
         self._robot.release()
 
     def close(self) -> None:
-        """Left to the place."""
+        """Do nothing: the rig closes the robot."""
 
     def _on_sent(self, number: int, payload: bytes) -> None:
         now_s, robot = self._rig.time.now_s(), self._rig.robot

@@ -1,15 +1,15 @@
-"""What the encoders counted on a sound bus, against what the wheels turned."""
+"""Comparison of encoder ticks and true wheel rotation."""
 
 from hal.robot import SensorReadings
 from kurt2rt.checks.soak.long_run_rig import SoakRig
 
 
 class OdometryCheck:
-    """From one look to the next; looks with a fault between them, or a hand that picked the robot up, say nothing."""
+    """Comparison from minute to minute, skipped after a fault or a repositioning."""
 
     def __init__(self, rig: SoakRig, metres_per_tick: float) -> None:
         self.worst_m = 0.0
-        """The greatest difference of any side between two looks."""
+        """Largest difference of a side in one interval."""
         self._rig = rig
         self._metres_per_tick = metres_per_tick
         self._ticks = [0, 0]
@@ -17,16 +17,16 @@ class OdometryCheck:
         self._valid = False
 
     def on_tick(self, senses: SensorReadings) -> None:
-        """A tick's counts."""
+        """Add a tick's encoder counts."""
         self._ticks[0] += senses.encoder_left_ticks
         self._ticks[1] += senses.encoder_right_ticks
 
     def invalidate(self) -> None:
-        """Until the next look nothing is said."""
+        """Skip the next comparison."""
         self._valid = False
 
     def compare(self) -> None:
-        """Compare, and begin anew."""
+        """Compare the interval and begin the next one."""
         if self._valid:
             for ticks, turned_m, before_m in zip(self._ticks, self._rig.turned_m, self._turned_m, strict=True):
                 self.worst_m = max(self.worst_m, abs(ticks * self._metres_per_tick - (turned_m - before_m)))

@@ -1,4 +1,4 @@
-"""Somebody who looks after the robot itself: picks it up where it is stuck, and switches it off and on."""
+"""Simulated operator who repositions a stuck robot and power-cycles it."""
 
 import math
 
@@ -12,14 +12,14 @@ _DRIVES = (Cause.RLA, Cause.HELD, Cause.TEACHER)
 
 
 class SoakOperator:
-    """Sets the robot down elsewhere when it has been about where it is for too long though it would drive.
+    """Operator who repositions a robot that has not moved for too long though it wants to drive.
 
-    Where that does not help he switches it off and on: a frame of noise may have switched its motors off.
+    If that does not help, the controller is power-cycled: a noise frame may have switched its motors off.
     """
 
     def __init__(self, rig: SoakRig, after_s: float, period_s: float) -> None:
         self.set_down = self.switched_on = 0
-        """How often."""
+        """Numbers of repositionings and power cycles."""
         self._rig = rig
         self._most_ticks = round(after_s / period_s)
         self._ticks = 0
@@ -28,7 +28,7 @@ class SoakOperator:
         self._resume_in_vain = False
 
     def on_tick(self, record: TickRecord) -> bool:
-        """See a tick; True where the robot was picked up after it."""
+        """Judge a tick; return whether the robot was repositioned after it."""
         if not record.guard_result.latched:
             self._resume_in_vain = False
         elif _was_resumed(record):

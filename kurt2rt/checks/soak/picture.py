@@ -1,4 +1,4 @@
-"""The picture of a soak: memory, what the robot did, lateness, and faults over the hours."""
+"""Picture of a soak: memory, activity, lateness and faults over the hours."""
 
 from collections.abc import Sequence
 from pathlib import Path

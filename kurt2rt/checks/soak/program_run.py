@@ -1,4 +1,4 @@
-"""One start of the robot's program until its end, in simulated time, with what `kurt2rt run` has in its loop."""
+"""One start of the robot's program in simulated time, with the loop parts of `kurt2rt run`."""
 
 import random
 import traceback
@@ -32,14 +32,14 @@ from kurt2rt.teacher.client.manual_drive import BEAT_S
 
 _READY_AFTER_S = 3.0
 _FIRST_DAY = datetime(2000, 1, 1, tzinfo=UTC)
-"""When simulated time begins, in the names of recordings."""
+"""Origin of simulated time in the names of recordings."""
 _WRITES_EVERY_TICKS = 10
 _POLL_EVERY_TICKS = 1000
-"""Each waits for the disk, which does not become quicker in simulated time."""
+"""Period of the recorder's sync; the disk is not faster in simulated time."""
 
 
 class ProgramRun:
-    """Opened knowledge, runtime, rounds and writer; `run` until it ends, then `close`."""
+    """Program from start to end: `run`, then `close`."""
 
     def __init__(
         self,
@@ -55,14 +55,14 @@ class ProgramRun:
         wire: str,
         seed: int,
     ) -> None:
-        """`number`: of this start. Raises KnowledgeError, SettingsError."""
+        """Open the knowledge and start the driver. `number`: of this start. Raises KnowledgeError, SettingsError."""
         self.wire = wire
         self.refused = 0
         """Commands that the robot refused."""
         self.most_waiting = 0
-        """Commands in the inbox when a tick took them."""
+        """Largest number of commands in the inbox at a tick."""
         self.ended_by = ""
-        """The error that ended the program; empty when none did."""
+        """Error that ended the program; empty without one."""
         self._rig, self._observer, self._teacher = rig, observer, teacher
         self._settings = settings
         self._time = rig.time
@@ -100,13 +100,13 @@ class ProgramRun:
 
     @property
     def ready(self) -> bool:
-        """Whether something may fail: it runs, and has run for a moment."""
+        """Return whether the program has run long enough for a fault."""
         return self._started_s is not None and self._time.now_s() - self._started_s > _READY_AFTER_S
 
     async def run(self, on_tick: Callable[[TickRecord], None], is_over: Callable[[], bool]) -> None:
-        """As kurt2rt.service.serve does: whatever ends the loop, the wheels stand before anything else ends.
+        """Run the loop like kurt2rt.service.serve: after any error the wheels stop first.
 
-        `is_over`: asked after each tick.
+        `is_over`: called after each tick.
         """
         runtime = self.runtime
         self._started_s = self._time.now_s()
@@ -139,7 +139,7 @@ class ProgramRun:
         return self.knowledge.lost_lessons()
 
     def take_manual_control(self, disturbance: RigDisturbance) -> None:
-        """Somebody takes the robot and drives it by hand, over a link that will fail."""
+        """Drive manually over a link with a scheduled fault."""
         link = self._link = TeacherLink(self._time, disturbance, self.runtime, self._chance)
         self._presses += 1
         for _ in range(self._presses):  # a press has a larger number than that of any press before
@@ -149,18 +149,18 @@ class ProgramRun:
         self._beat(link)
 
     def repeat_known_lesson(self) -> None:
-        """A lesson that changes nothing."""
+        """Teach a lesson that changes nothing."""
         rla = next(iter(self.runtime.level.system.rlas), None)
         if rla is not None:
             self._lessons_sent += 1
             self._put(ReplaceAction(f"known-{self._number}-{self._lessons_sent}", NAME, rla.rla_id, rla.action))
 
     def stop(self) -> None:
-        """The teacher sees that something is wrong."""
+        """Send the teacher's stop."""
         self._put(self._teacher.stop())
 
     def clear(self, target: Target) -> None:
-        """What failed is sound again."""
+        """End the fault of a target."""
         match target:
             case "clock":
                 self.clock.clear()
@@ -193,7 +193,7 @@ class ProgramRun:
             self._put(command)
 
     def _beat(self, link: TeacherLink) -> None:
-        """The device of the hand sends, until somebody has ended it."""
+        """Send periodically until the link is replaced."""
         if self._link is link:
             link.beat()
             self._time.at(self._time.now_s() + BEAT_S, lambda: self._beat(link))
@@ -206,6 +206,6 @@ class ProgramRun:
 
 
 def _format_error(error: Exception) -> str:
-    """What it is, and where in the program."""
+    """Return the error and its place in the program."""
     *_, where = traceback.extract_tb(error.__traceback__)
     return f"{error!r} in {Path(where.filename).name}, line {where.lineno}"

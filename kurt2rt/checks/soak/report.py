@@ -1,4 +1,4 @@
-"""The report of a soak, for people and for programs."""
+"""Report of a soak for the terminal and as JSON."""
 
 import json
 from collections.abc import Sequence
@@ -18,11 +18,11 @@ from kurt2rt.checks.soak.result import SoakResult
 from kurt2rt.platform.text_table import TextTable, print_whole
 
 _TOLD = 10
-"""Complaints that are shown; all that were kept are in the JSON."""
+"""Complaints that are shown; all stored ones are in the JSON."""
 
 
 def print_report(result: SoakResult, console: Console) -> None:
-    """What had to hold and whether it did, what failed and what came of it, and the numbers of the day."""
+    """Print the checks, the faults and the day's numbers."""
     hours = result.simulated_s / 3600.0
     pace = result.simulated_s / max(result.took_s, 1e-9)
     print_whole(
@@ -43,7 +43,7 @@ def print_report(result: SoakResult, console: Console) -> None:
 
 
 def as_json(result: SoakResult) -> str:
-    """A JSON object with everything in it; tuples with names as objects."""
+    """Return a JSON object of the whole result, named tuples as objects."""
     plain: dict[str, Any] = asdict(result)
     plain["minutes"] = [each._asdict() for each in result.minutes]
     plain["checks"] = [

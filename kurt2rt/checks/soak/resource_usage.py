@@ -1,4 +1,4 @@
-"""What the program takes of its machine."""
+"""Resources that the program takes of its machine."""
 
 import ctypes
 import gc
@@ -10,7 +10,7 @@ import psutil
 
 _MB = 1e6
 _USUAL_OBJECT_BYTES = 95
-"""Mean of what Python's own allocator held in soaks."""
+"""Mean size of a block of Python's allocator, measured in soaks."""
 
 
 _MALLINFO = (
@@ -26,7 +26,7 @@ class _MallInfo(ctypes.Structure):
 
 
 def resident_mb() -> float:
-    """Memory that is in use now, in 10^6 bytes; what the allocator holds and nobody uses is given back first."""
+    """Return the resident memory in 10^6 bytes, after free heap memory was returned to the OS."""
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
     if trim is not None:
         trim(0)
@@ -34,7 +34,7 @@ def resident_mb() -> float:
 
 
 def used_mb() -> float:
-    """Of the same what is in use by objects, without the gaps between them; to some percent."""
+    """Return the memory of live objects in MB without heap gaps, to some percent."""
     # Python's own allocator tells how many small objects it holds, and the C library how much all else takes.
     told = getattr(ctypes.CDLL(None), "mallinfo2", None)
     if told is None:
@@ -45,16 +45,16 @@ def used_mb() -> float:
 
 
 def open_files() -> int:
-    """File descriptors."""
+    """Return the number of file descriptors."""
     return int(psutil.Process().num_fds())
 
 
 def threads() -> int:
-    """Of Python."""
+    """Return the number of Python threads."""
     return threading.active_count()
 
 
 def objects_by_type(most: int = 40) -> dict[str, int]:
-    """How many objects of which types the collector knows, the most frequent ones. Takes a moment."""
+    """Return the most frequent types of the garbage collector's objects. Slow."""
     counted = Counter(type(each).__qualname__ for each in gc.get_objects())
     return dict(counted.most_common(most))

@@ -1,4 +1,4 @@
-"""What a soak came to."""
+"""Result of a soak."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,7 +10,7 @@ from kurt2rt.checks.soak.faults import FaultResult
 
 
 class SoakMinute(NamedTuple):
-    """A minute of simulated time, as it was at its end."""
+    """Sums of one simulated minute."""
 
     at_s: float
     resident_mb: float
@@ -18,17 +18,17 @@ class SoakMinute(NamedTuple):
     threads: int
     rlas: int
     lessons: int
-    """Of all of the knowledge file so far."""
+    """Lessons in the knowledge file."""
     drives: float
-    """Share of its ticks in which the wheels were told to turn."""
+    """Fraction of ticks with moving wheels."""
     asks: float
     stopped: float
-    """Share in which the robot stood for good: an alarm, a teacher's stop, or nobody there."""
+    """Fraction of ticks in an alarm, a teacher's stop, or without a teacher."""
     worst_late_s: float
-    """Of its ticks, against their deadlines, in simulated time."""
+    """Largest lateness of a tick in simulated time."""
     missed_ticks: int
     mood: str
-    """Of the teacher."""
+    """Mood of the teacher."""
 
 
 class SoakStart(NamedTuple):
@@ -38,11 +38,11 @@ class SoakStart(NamedTuple):
     lasted_s: float
     wire: str
     ended_by: str
-    """The error that ended it; empty where it was told to."""
+    """Error that ended it; empty for a requested end."""
     complaint: Complaint | None = None
-    """What was wrong with the knowledge file that it left."""
+    """Deviation of the knowledge file from the lessons."""
     left_mb: float = 0.0
-    """What objects took when it was over, with all that it knew: what grows here is no knowledge."""
+    """Memory of live objects after the end; its growth is no knowledge."""
 
 
 class CheckCode(StrEnum):
@@ -60,7 +60,7 @@ class CheckCode(StrEnum):
 
 
 class SoakCheck(NamedTuple):
-    """Whether a property held, with the numbers that were measured."""
+    """Result of one check with its numbers."""
 
     code: CheckCode
     passed: bool
@@ -72,7 +72,7 @@ class SoakCheck(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class SoakResult:
-    """All of it."""
+    """Result of the whole soak."""
 
     name: str
     seed: int
@@ -82,20 +82,20 @@ class SoakResult:
     ticks: int
     missed_ticks: int
     frames: int
-    """CONTROL frames that were held against the envelope."""
+    """CONTROL frames checked against the envelope."""
     checks: tuple[SoakCheck, ...]
     minutes: tuple[SoakMinute, ...]
     starts: tuple[SoakStart, ...]
     faults: tuple[FaultResult, ...]
     complaints: tuple[Complaint, ...]
-    """The first ones."""
+    """First complaints."""
     counted: dict[str, int]
     objects: dict[str, dict[str, int]] = field(default_factory=dict)
-    """How many objects of which types there were, by the hour."""
+    """Numbers of objects by type and hour."""
     grown_kb: dict[str, float] = field(default_factory=dict)
-    """By module, since the end of the first hour, where that was asked for."""
+    """Growth by module since the end of the first hour, if traced."""
 
     @property
     def passed(self) -> bool:
-        """Whether everything held."""
+        """Return whether every check passed."""
         return all(check.passed for check in self.checks)

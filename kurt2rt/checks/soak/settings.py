@@ -1,4 +1,4 @@
-"""Schema of `config/soak/*.yaml`: what a day of the robot is like."""
+"""Schema of `config/soak/*.yaml`: one simulated day of the robot."""
 
 from typing import Annotated, Self
 
@@ -9,35 +9,35 @@ from hal.settings import Settings, find_config, load_settings
 Seconds = Annotated[float, Field(ge=0, le=100_000)]
 Share = Annotated[float, Field(ge=0, le=1)]
 Span = tuple[Seconds, Seconds]
-"""Anything between the two, by chance."""
+"""Range of a random value."""
 
 
 class MoodSettings(Settings):
-    """How a teacher is for a while."""
+    """Behaviour of a teacher for a while."""
 
     share: Share
-    """How often it is the mood that comes next."""
+    """Probability of this mood being the next."""
     lasts_s: Span
     phase: Annotated[int, Field(ge=1, le=5)]
-    """The training phase that begins with it."""
+    """Training phase at its beginning."""
     reaction_s: Seconds
-    """From a question to its answer, and from an alarm to `resume`."""
+    """Time from a question to its answer, and from an alarm to `resume`."""
     patience_s: Seconds
     error_rate: Share
-    """Share of answers and corrections that are wrong."""
+    """Share of wrong answers and corrections."""
     most_corrections: Annotated[int, Field(ge=0, le=100_000)]
-    """Then he only answers, for as long as the mood lasts; the first ones of a day do not count."""
+    """Corrections in one mood, then answers only; the day's first ones do not count."""
     stops_every_s: Seconds = 0.0
-    """Mean time from one stop to the next; 0: never. So with the others."""
+    """Mean interval between stops; 0: never. The other intervals have the same meaning."""
     undoes_every_s: Seconds = 0.0
     rewards_every_s: Seconds = 0.0
     appraises_every_s: Seconds = 0.0
     there: bool = True
-    """False: nobody is heard, and the robot stands."""
+    """False: no command is sent, and the robot stands."""
 
 
 class LimitSettings(Settings):
-    """What must not be exceeded."""
+    """Limits of the checks."""
 
     memory_mb: Annotated[float, Field(gt=0, le=1000)]
     waiting: Annotated[int, Field(gt=0, le=10_000)]
@@ -45,7 +45,7 @@ class LimitSettings(Settings):
 
 
 class SoakSettings(Settings):
-    """All of it."""
+    """Schedule, faults and teacher of a soak."""
 
     name: str
     faults: str
@@ -71,5 +71,5 @@ class SoakSettings(Settings):
 
 
 def load_soak(name_or_path: str = "day") -> SoakSettings:
-    """A shipped day by name, or one by path. Raises hal.settings.SettingsError."""
+    """Load a shipped day by name, or one by path. Raises SettingsError."""
     return load_settings(find_config("soak", name_or_path), SoakSettings)

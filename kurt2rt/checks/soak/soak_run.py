@@ -1,4 +1,4 @@
-"""The day: start after start of the program, fault after fault, mood after mood."""
+"""Simulated day: starts of the program, faults and moods in sequence."""
 
 import gc
 import random
@@ -12,7 +12,7 @@ from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
 from kurt2rt.checks.faults.table import FaultTable
 from kurt2rt.checks.soak.checks import HOUR_S, envelope_check, fault_check, memory_check, starts_check, steady_check
 from kurt2rt.checks.soak.disk_list import Spool
-from kurt2rt.checks.soak.faults import SoakFaults
+from kurt2rt.checks.soak.faults import FaultResult, SoakFaults
 from kurt2rt.checks.soak.log import MinuteLog
 from kurt2rt.checks.soak.long_run_rig import SoakRig
 from kurt2rt.checks.soak.observer import SoakObserver
@@ -20,7 +20,7 @@ from kurt2rt.checks.soak.odometry import OdometryCheck
 from kurt2rt.checks.soak.operator import SoakOperator
 from kurt2rt.checks.soak.program_run import ProgramRun
 from kurt2rt.checks.soak.resource_usage import objects_by_type, used_mb
-from kurt2rt.checks.soak.result import CheckCode, SoakCheck, SoakResult, SoakStart
+from kurt2rt.checks.soak.result import CheckCode, SoakCheck, SoakMinute, SoakResult, SoakStart
 from kurt2rt.checks.soak.settings import SoakSettings
 from kurt2rt.checks.soak.teacher import SoakTeacher
 from kurt2rt.core.task_settings import TaskSettings
@@ -33,11 +33,11 @@ from kurt2rt.service.settings import ServiceSettings
 _MINUTE_S = 60.0
 _LEAST_RUN_S = 5.0
 _MOST_UNEXPECTED = 20
-"""Ends of the program after which there is nothing to be learnt from more of them."""
+"""Unexpected ends after which the soak stops."""
 
 
 class SoakRun:
-    """One soak, in its place."""
+    """One soak on its rig."""
 
     def __init__(
         self,
@@ -52,7 +52,7 @@ class SoakRun:
         seed: int,
         by_module: bool = False,
     ) -> None:
-        """`service`: with this soak's knowledge file. `by_module`: trace memory, which takes four times as long."""
+        """`service`: with the soak's knowledge file. `by_module`: trace memory, four times slower."""
         self._rig, self._soak, self._settings, self._task, self._service = rig, soak, settings, task, service
         self._recording = recording
         self._seed = seed
@@ -79,11 +79,11 @@ class SoakRun:
         self._cut_short = False
 
     def end(self) -> None:
-        """End as soon as nothing fails; what was seen until then is judged. From a signal handler, too."""
+        """End after the active fault; the results so far are judged. Safe in a signal handler."""
         self._cut_short = True
 
     async def run(self, hours: float, on_progress: Callable[[float], None]) -> SoakResult:
-        """So many simulated hours; `on_progress` gets simulated seconds; once only.
+        """Run for `hours` of simulated time, once; `on_progress` gets simulated seconds.
 
         Raises KnowledgeError, DiskOutOfStepError, OSError.
         """
@@ -102,7 +102,7 @@ class SoakRun:
         while not self._cut_short and clock.now_s() < end_s - _LEAST_RUN_S and len(self._unexpected) < _MOST_UNEXPECTED:
             until_s = min(end_s, clock.now_s() + self._chance.uniform(*self._soak.lives_s))
             start = await self._run_program(until_s, on_progress)
-            # A fault that ended the program is over before somebody starts it anew.
+            # A fault that ended the program must be over before the restart.
             clock.run_until(max(clock.now_s(), self._faults.acts_until_s) + self._chance.uniform(*self._soak.down_s))
             # On a robot the end of the program takes all that it knew along; two at a time would count twice.
             gc.collect()
@@ -196,7 +196,7 @@ class SoakRun:
             self._first_hour = tracemalloc.take_snapshot()
 
     def _result(self, simulated_s: float, took_s: float) -> SoakResult:
-        observer, limits = self._observer, self._soak.limits
+        observer = self._observer
         minutes, starts, faults = tuple(self._log.minutes), tuple(self._starts), tuple(self._faults.results)
         frames = observer.envelope.frames
         counted = {
@@ -208,8 +208,30 @@ class SoakRun:
             "commands": self._teacher.sent,
             "old set points": observer.envelope.old_frames,
         }
-        checks = (
-            envelope_check(observer.complaints, frames),
+        return SoakResult(
+            name=self._soak.name,
+            seed=self._seed,
+            simulated_s=simulated_s,
+            took_s=took_s,
+            ticks=observer.ticks,
+            missed_ticks=observer.missed_ticks,
+            frames=frames,
+            checks=self._checks(minutes, starts, faults),
+            minutes=minutes,
+            starts=starts,
+            faults=faults,
+            complaints=(*observer.complaints.stored, *self._unexpected),
+            counted=counted,
+            objects=self._objects,
+            grown_kb=self._grown_kb(),
+        )
+
+    def _checks(
+        self, minutes: tuple[SoakMinute, ...], starts: tuple[SoakStart, ...], faults: tuple[FaultResult, ...]
+    ) -> tuple[SoakCheck, ...]:
+        observer, limits = self._observer, self._soak.limits
+        return (
+            envelope_check(observer.complaints, observer.envelope.frames),
             fault_check(faults),
             starts_check(starts, self._unexpected),
             memory_check(minutes, limits),
@@ -235,23 +257,6 @@ class SoakRun:
                 },
             ),
             SoakCheck(CheckCode.TEACHING_CLOCK, self._session_off == 0, {"ticks": self._session_off}),
-        )
-        return SoakResult(
-            name=self._soak.name,
-            seed=self._seed,
-            simulated_s=simulated_s,
-            took_s=took_s,
-            ticks=observer.ticks,
-            missed_ticks=observer.missed_ticks,
-            frames=frames,
-            checks=checks,
-            minutes=minutes,
-            starts=starts,
-            faults=faults,
-            complaints=(*observer.complaints.stored, *self._unexpected),
-            counted=counted,
-            objects=self._objects,
-            grown_kb=self._grown_kb(),
         )
 
     def _grown_kb(self) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""A teacher of changing patience."""
+"""Scripted teacher of changing moods."""
 
 import random
 
@@ -30,19 +30,19 @@ _TAKES_EVERY_TICKS = 20
 _STOPS_FOR_S = (0.3, 3.0)
 _LEAST_REACTION_S = 0.3
 _MARGIN = 0.7
-"""Praise is more frequent than blame."""
+"""Probability of a positive reward."""
 
 
 class SoakTeacher:
-    """Goes from mood to mood; outlives the robot's program, and sees at each of its starts a robot that stands."""
+    """Teacher who changes moods, outlives the program and resumes it after each start."""
 
     def __init__(
         self, soak: SoakSettings, task: TaskSettings, robot: RobotSettings, actions: tuple[str, ...], seed: int
     ) -> None:
         self.mood = ""
-        """The present one; empty before the first tick."""
+        """Present mood; empty before the first tick."""
         self.sent = 0
-        """Commands so far, signs of being there left out."""
+        """Commands so far, without signs of presence."""
         self._soak, self._task, self._robot, self._actions = soak, task, robot, actions
         self._period_s = robot.can.cycle_s
         self._chance = random.Random(f"teacher of {soak.name}, seed {seed}")
@@ -59,13 +59,13 @@ class SoakTeacher:
         self._started_anew = True
 
     def program_started(self) -> None:
-        """The robot's program was started anew: it knows nothing of sessions, phases and teachers."""
+        """Reset what a restarted program has lost: session, phase and teacher."""
         self._started_anew = True
 
     def watch(self, record: TickRecord, *, hand: bool, taken: bool) -> list[Command]:
-        """See a tick; what the teacher says to it.
+        """Return the commands after a tick.
 
-        `hand`: somebody else drives by hand just now; `taken`: that one has the robot still.
+        `hand`: another teacher drives manually. `taken`: that teacher still has control.
         """
         if self._mood_left == 0:
             self._change_mood()
@@ -80,7 +80,7 @@ class SoakTeacher:
         return said + commands
 
     def stop(self) -> Command:
-        """What a teacher says who sees that something is wrong."""
+        """Return the command to stop."""
         return Stop(self._next_id(), NAME)
 
     def _commands(self, record: TickRecord) -> list[Command]:
@@ -120,7 +120,7 @@ class SoakTeacher:
         return [Take(self._next_id(), NAME)] if record.tick % _TAKES_EVERY_TICKS == 0 else []
 
     def _resume(self, record: TickRecord) -> list[Command]:
-        """What lets a robot drive on that stands for good, some time after he has seen it."""
+        """Return the command to resume after a reaction time."""
         self._stopped_ticks += 1
         waits = self._resumes_in or round(max(_LEAST_REACTION_S, self._settings.reaction_s) / self._period_s)
         if self._stopped_ticks < waits:

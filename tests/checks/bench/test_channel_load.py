@@ -18,7 +18,7 @@ def stay(work_us: float, messages: int, missed: int = 0) -> LoadPhase:
 def test_what_a_picture_and_a_message_take_is_told_from_who_was_there() -> None:
     late, work, picture, message = load_results(
         {
-            Load.NOBODY: phases(200.0, stay(100_000.0, 0), stay(110_000.0, 0)),
+            Load.ALONE: phases(200.0, stay(100_000.0, 0), stay(110_000.0, 0)),
             Load.ONLOOKER: phases(250.0, stay(108_000.0, 2), stay(118_000.0, 2)),
             Load.TEACHER: phases(400.0, stay(124_000.0, 66), stay(134_000.0, 66)),
         },
@@ -39,7 +39,7 @@ def test_what_a_picture_and_a_message_take_is_told_from_who_was_there() -> None:
 def test_a_missed_tick_misses_the_goal() -> None:
     late, *_ = load_results(
         {
-            Load.NOBODY: phases(200.0, stay(100_000.0, 0)),
+            Load.ALONE: phases(200.0, stay(100_000.0, 0)),
             Load.ONLOOKER: phases(200.0, stay(110_000.0, 2)),
             Load.TEACHER: phases(410.0, stay(150_001.0, 66, missed=1)),
         },

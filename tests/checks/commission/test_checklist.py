@@ -194,5 +194,5 @@ def test_a_damaged_progress_file_is_named(tmp_path: Path) -> None:
     path = tmp_path / "robot.json"
     Progress(name="tested", base="kurt2", bus="can0").save(path)
     path.write_text(path.read_text()[:20])
-    with pytest.raises(SettingsError, match=r"robot.json: cannot be used .*begin anew with --anew"):
+    with pytest.raises(SettingsError, match=r"robot.json: cannot be used .*start over with --anew"):
         load_progress(path)

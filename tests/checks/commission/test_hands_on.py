@@ -152,7 +152,7 @@ async def test_a_bumper_that_hangs_is_named_by_its_bit(tmp_path: Path) -> None:
         session = Session(workshop, tmp_path)
         await session.run("bumpers")
     assert session.to_do("bumpers") == (
-        "bit 2 pressed though nobody touches it: a bumper hangs",
+        "bit 2 pressed without a touch: a bumper hangs",
         "front right: no bit answered, or it was skipped; check its switch and its plug",
     )
 

@@ -88,7 +88,7 @@ async def test_junk_strangers_and_another_sender_of_control_are_found(tmp_path: 
     assert session.to_do("identity") == (
         "1 x ADC00 above 1023 counts: find who sends it, or the loose contact",
         "1 x extended or remote frames: find who sends it, or the loose contact",
-        "1 CONTROL frames from somebody else: find that program and end it",
+        "1 CONTROL frames from another program: find that program and end it",
     )
     assert "not in the CAN database, ignored: 0x123" in session.measured("identity")
 

@@ -63,7 +63,7 @@ def test_a_missing_case_is_named(tmp_path: Path) -> None:
         ("tick", "garbage", {"within_s": None}, "because and within_s"),
         ("tick", "wrong", {"because": "slew limit"}, "because and within_s"),
         ("tick", "stuck", {"latches_within_s": None}, "belong together"),
-        ("tick", "wrong", {"ends_by": "resume"}, "needs nobody"),
+        ("tick", "wrong", {"ends_by": "resume"}, "needs no command"),
         ("disk", "slow", {"leads_to": "runs away"}, "drives_on"),
     ],
 )
