@@ -11,33 +11,38 @@ from rich.progress import Progress
 
 from hal.robot_settings import load_robot
 from kurt2rt.checks.bench.report import as_json, measure_machine, print_report
+from kurt2rt.checks.bench.result import BenchResult
 from kurt2rt.checks.bench.robot_under_test import SEED, BenchFixture, OnProgress
-from kurt2rt.checks.bench.suite import FULL, QUICK, BenchName, run_suite
+from kurt2rt.checks.bench.suite import FULL, QUICK, BenchName, Lengths, run_suite
 from kurt2rt.cli.json_output import AsJson, JsonFile, require_json_file
 from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_settings import load_task
 
+_ALL = ",".join(BenchName)
+
+_Quick = Annotated[bool, typer.Option("--quick", help="Measure less, in under a minute; rare lateness may hide.")]
+_Only = Annotated[
+    str, typer.Option(metavar="NAME,...", help=f"Measure only these: {', '.join(BenchName)}.", show_default=False)
+]
+_Folder = Annotated[
+    Path, typer.Option(exists=True, file_okay=False, writable=True, help="A folder on the disk to measure.")
+]
+
 
 def bench(
     file: JsonFile = None,
-    quick: Annotated[
-        bool, typer.Option("--quick", help="Measure less, in under a minute; rare lateness may hide.")
-    ] = False,
-    only: Annotated[
-        str, typer.Option(metavar="NAME,...", help=f"Measure only these: {', '.join(BenchName)}.", show_default=False)
-    ] = ",".join(BenchName),
+    quick: _Quick = False,
+    only: _Only = _ALL,
     json: AsJson = False,
-    folder: Annotated[
-        Path, typer.Option(exists=True, file_okay=False, writable=True, help="A folder on the disk to measure.")
-    ] = Path(),
+    folder: _Folder = Path(),
 ) -> None:
     """Measure what the runtime takes, on this machine, with the simulated robot: 6 minutes.
 
-    lateness  how late ticks begin in a minute of driving; asyncio.sleep beside it
+    lateness  how late ticks begin in a minute of driving; with asyncio.sleep
     tick      what each stage of these ticks takes
-    match     how long the nearest RLA is sought; a brute force beside it
+    match     how long the nearest RLA is sought; with a brute force
     loop      how many times real time a lesson in lockstep runs on one core
-    lesson    how long a teacher waits until a lesson is durable; fsync beside it
+    lesson    how long a teacher waits until a lesson is durable; with fsync
     channel   over UDP: from a press to the wheels, also on the teacher's page;
               what it costs the loop that a teacher is there; lessons until
               answered
@@ -51,17 +56,27 @@ def bench(
         kurt2rt bench --quick
         kurt2rt bench --only match,lesson --json
     """
-    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from simbridge.simulation import Kurt2SimulationFactory
-
     benches = _chosen(only)
     require_json_file(file, as_json=json)
     machine = measure_machine()
+    results = _measure(benches, folder, QUICK if quick else FULL)
+    if json and file is None:
+        typer.echo(as_json(results, machine))
+    else:
+        print_report(results, machine, console_of())
+    if file is not None:
+        file.write_text(as_json(results, machine) + "\n", encoding="utf-8")
+
+
+def _measure(benches: frozenset[BenchName], folder: Path, lengths: Lengths) -> tuple[BenchResult, ...]:
+    # Late import: the simulator is an extra that a robot does not need.
+    from simbridge.simulation import Kurt2SimulationFactory
+
     settings = load_robot()
     task = load_task("wall_following")
     factory = Kurt2SimulationFactory(settings)
     fixture = BenchFixture(settings, task, lambda purpose: factory.open(task.teaching.world, SEED, purpose))
-    # A bar that redraws itself would do so in the middle of what is measured.
+    # No automatic refresh: it would run in the middle of a measurement.
     with (
         Progress(console=Console(stderr=True), auto_refresh=False) as progress,
         tempfile.TemporaryDirectory(prefix=".kurt2rt-bench-", dir=folder) as scratch,
@@ -72,13 +87,7 @@ def bench(
             progress.refresh()
             return lambda share: progress.update(task_id, completed=share, refresh=True)
 
-        results = anyio.run(run_suite, benches, fixture, Path(scratch), QUICK if quick else FULL, start_job)
-    if json and file is None:
-        typer.echo(as_json(results, machine))
-    else:
-        print_report(results, machine, console_of())
-    if file is not None:
-        file.write_text(as_json(results, machine) + "\n", encoding="utf-8")
+        return anyio.run(run_suite, benches, fixture, Path(scratch), lengths, start_job)
 
 
 def _chosen(names: str) -> frozenset[BenchName]:

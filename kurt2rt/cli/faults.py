@@ -1,5 +1,7 @@
 """`kurt2rt faults`."""
 
+from collections.abc import Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, get_args
 
 import anyio
@@ -8,7 +10,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from hal.robot_settings import load_robot
-from kurt2rt.checks.faults.table import KINDS, TARGETS, Kind, Target, cases_of, load_faults
+from kurt2rt.checks.faults.table import KINDS, TARGETS, FaultCase, FaultTable, Kind, Target, cases_of, load_faults
 from kurt2rt.cli.json_output import AsJson, JsonFile, require_json_file
 from kurt2rt.cli.tables import console_of
 from kurt2rt.core.task_settings import load_task
@@ -17,24 +19,30 @@ if TYPE_CHECKING:
     from kurt2rt.checks.faults.suite import FaultTrial
 
 
+_TargetNames = Annotated[
+    list[str] | None,
+    typer.Option(help=f"Try only what fails here; repeat for several: {', '.join(TARGETS)}.", show_default=False),
+]
+_KindNames = Annotated[
+    list[str] | None,
+    typer.Option(help=f"Try only what fails so; repeat for several: {', '.join(KINDS)}.", show_default=False),
+]
+_Seeds = Annotated[
+    int,
+    typer.Option(
+        metavar="N", min=1, help="Try each case with so many seeds: noise, and the moment in a cycle when it fails."
+    ),
+]
+_Table = Annotated[str, typer.Option(help="What must come of what, by name (config/faults) or a path.")]
+
+
 def faults(
     file: JsonFile = None,
-    target: Annotated[
-        list[str] | None,
-        typer.Option(help=f"Try only what fails here; repeat for several: {', '.join(TARGETS)}.", show_default=False),
-    ] = None,
-    kind: Annotated[
-        list[str] | None,
-        typer.Option(help=f"Try only what fails so; repeat for several: {', '.join(KINDS)}.", show_default=False),
-    ] = None,
-    seeds: Annotated[
-        int,
-        typer.Option(
-            metavar="N", min=1, help="Try each case with so many seeds: noise, and the moment in a cycle when it fails."
-        ),
-    ] = 1,
+    target: _TargetNames = None,
+    kind: _KindNames = None,
+    seeds: _Seeds = 1,
     json: AsJson = False,
-    table: Annotated[str, typer.Option(help="What must come of what, by name (config/faults) or a path.")] = "kurt2",
+    table: _Table = "kurt2",
 ) -> None:
     """Break everything that can break, on the simulated robot, and see that it stands: 10 seconds.
 
@@ -53,30 +61,13 @@ def faults(
         kurt2rt faults
         kurt2rt faults --target tick --kind stuck --seeds 5
     """
-    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it, and without the drills.
+    # Late imports: the simulator is an extra that a robot does not need.
     from kurt2rt.checks.faults.report import as_json, print_report
     from kurt2rt.checks.faults.stop_times import stop_times
-    from kurt2rt.checks.faults.suite import try_cases
-    from simbridge.faults.fault_rig import FaultRigFactory
 
     require_json_file(file, as_json=json)
-    targets, kinds = _targets(target), _kinds(kind)
     chosen = load_faults(table)
-    settings = load_robot(chosen.robot)
-    task = load_task(chosen.task)
-    with Progress(console=Console(stderr=True)) as progress:
-        bar = progress.add_task("faults", total=len(targets) * len(kinds) * seeds)
-
-        def on_done(trial: "FaultTrial") -> None:
-            progress.update(bar, advance=1, description=str(trial.case))
-
-        async def run() -> "list[FaultTrial]":
-            cases = cases_of(chosen, targets, kinds)
-            return await try_cases(
-                FaultRigFactory(settings), cases, chosen, settings, task, range(1, seeds + 1), on_done
-            )
-
-        trials = anyio.run(run)
+    trials = _try(chosen, list(cases_of(chosen, _targets(target), _kinds(kind))), seeds)
     times = stop_times(chosen, trials)
     if json and file is None:
         typer.echo(as_json(trials, times))
@@ -86,6 +77,22 @@ def faults(
         file.write_text(as_json(trials, times) + "\n", encoding="utf-8")
     if not all(trial.verdict.passed for trial in trials):
         raise typer.Exit(1)
+
+
+def _try(table: FaultTable, cases: Sequence[FaultCase], seeds: int) -> "list[FaultTrial]":
+    from kurt2rt.checks.faults.suite import try_cases
+    from simbridge.faults.fault_rig import FaultRigFactory
+
+    settings, task = load_robot(table.robot), load_task(table.task)
+    with Progress(console=Console(stderr=True)) as progress:
+        bar = progress.add_task("faults", total=len(cases) * seeds)
+
+        def on_done(trial: "FaultTrial") -> None:
+            progress.update(bar, advance=1, description=str(trial.case))
+
+        rigs = FaultRigFactory(settings)
+        run = partial(try_cases, seeds=range(1, seeds + 1), on_done=on_done)
+        return anyio.run(run, rigs, cases, table, settings, task)
 
 
 def _targets(names: list[str] | None) -> tuple[Target, ...]:

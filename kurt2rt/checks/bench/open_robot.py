@@ -120,7 +120,16 @@ async def open_robot(fixture: BenchFixture, folder: Path) -> AsyncIterator[OpenR
                 pace = LoopPacer(runtime.scheduler, clock)
                 tasks.start_soon(pace.run, gate)
                 try:
-                    yield OpenRobot(runtime, writer, channel, observer, clock, pairing.device, gate, pace)
+                    yield OpenRobot(
+                        runtime=runtime,
+                        writer=writer,
+                        channel=channel,
+                        observer=observer,
+                        clock=clock,
+                        device=pairing.device,
+                        gate=gate,
+                        pace=pace,
+                    )
                 except Exception as error:  # noqa: BLE001  # raised below: a task group would wrap it
                     failed = error
                 pace.end()

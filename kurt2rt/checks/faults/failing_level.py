@@ -65,3 +65,28 @@ def _driving(decision: Decision) -> Decision:
         return decision
     rla = decision.match.rla
     return decision._replace(cause=Cause.RLA, action=rla.action, rla_id=rla.rla_id)
+
+
+class SoakLevel:
+    """Wrapper of the deciding layer (kurt2rt.core.decision.level.Level) with temporary faults."""
+
+    def __init__(self, time: SimulatedTime) -> None:
+        self._time = time
+        self._disturbed: FaultyLevel | None = None
+        self.inner: Level | None = None
+        """Deciding layer; set before the first tick."""
+
+    def disturb(self, disturbance: RigDisturbance) -> None:
+        """Start a fault."""
+        self._disturbed = FaultyLevel(self._time, disturbance)
+        self._disturbed.inner = self.inner
+
+    def clear(self) -> None:
+        """End the fault."""
+        self._disturbed = None
+
+    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
+        """Return the decision under the fault. Raises BrokenTickError."""
+        level = self._disturbed or self.inner
+        assert level is not None
+        return level.decide(situation, senses, stand_because)

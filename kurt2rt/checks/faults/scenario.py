@@ -3,6 +3,7 @@
 import random
 from contextlib import ExitStack
 from pathlib import Path
+from typing import NamedTuple
 
 from hal.errors import UserError
 from hal.guard_reason import GuardReason
@@ -25,11 +26,17 @@ from kurt2rt.core.tick import EventStore, InMemoryEventStore, TickRecord
 from kurt2rt.platform.clock import Clock
 from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 
-"""The word with which the service stops the robot when its loop ends, for whatever reason."""
-
 
 class DidNotDriveError(UserError):
     """Robot that stood before the fault, which hides the fault's effect."""
+
+
+class _Parts(NamedTuple):
+    """Parts of a scenario that outlive the driver, and its randomness."""
+
+    keeper: EventStore
+    recorder: FailingRecorder | None
+    chance: random.Random
 
 
 class _Scenario:
@@ -42,17 +49,14 @@ class _Scenario:
         table: FaultTable,
         settings: RobotSettings,
         task: TaskSettings,
-        chance: random.Random,
-        keeper: EventStore,
-        recorder: FailingRecorder | None,
+        parts: _Parts,
     ) -> None:
         self._rig = rig
         self._case = case
         self._settings = settings
         self._task = task
-        self._keeper = keeper
+        self._keeper, self._recorder, chance = parts
         self._time = rig.time
-        self._recorder = recorder
         self._script = Script(rig, case, table)
         self._observer = WheelObserver(
             rig, Envelope(table.envelope, case.must.slew_share), table.envelope.controller_watchdog_s
@@ -70,8 +74,8 @@ class _Scenario:
         self._link: TeacherLink | None = None
         if case.target == "teacher_link":
             self._link = TeacherLink(self._time, rig.disturbance, self._runtime, chance)
-        if recorder is not None:
-            rig.attach_tap(recorder)
+        if self._recorder is not None:
+            rig.attach_tap(self._recorder)
         self._script.begin(self._runtime, self._link)
 
     async def run(self) -> None:
@@ -201,7 +205,7 @@ async def run_scenario(
         if case.target == "recorder":
             recorder = FailingRecorder(rig.time, rig.disturbance)
             stack.callback(recorder.close)
-        running = _Scenario(rig, case, table, settings, task, chance, keeper, recorder)
+        running = _Scenario(rig, case, table, settings, task, _Parts(keeper, recorder, chance))
         await running.run()
         problems: list[Complaint | None] = []
         if disk is not None:

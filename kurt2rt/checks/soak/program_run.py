@@ -5,29 +5,30 @@ import traceback
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import NamedTuple
 
 from hal.guard_reason import GuardReason
-from hal.robot_settings import RobotSettings
 from kurt2rt.checks.faults.complaint import Complaint
+from kurt2rt.checks.faults.failing_clock import SoakClock
+from kurt2rt.checks.faults.failing_level import SoakLevel
 from kurt2rt.checks.faults.fault_rig import RigDisturbance
 from kurt2rt.checks.faults.table import Target
 from kurt2rt.checks.faults.teacher_link import TEACHER, TeacherLink
-from kurt2rt.checks.soak.failing_clock import SoakClock
 from kurt2rt.checks.soak.failing_knowledge import SoakKnowledge, open_soak_knowledge
-from kurt2rt.checks.soak.failing_level import SoakLevel
 from kurt2rt.checks.soak.long_run_rig import SoakRig
 from kurt2rt.checks.soak.observer import SoakObserver
 from kurt2rt.checks.soak.teacher import NAME, SoakTeacher
 from kurt2rt.core.decision.active_stop import STARTED
-from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Command, ReplaceAction, Take
 from kurt2rt.core.teaching.inbox import InboxFullError
 from kurt2rt.core.tick import TickRecord
+from kurt2rt.knowledge.journal.loading import OpenedKnowledge
 from kurt2rt.platform.gc_control import gc_frozen
+from kurt2rt.runs.recording.recorder import RunRecorder
 from kurt2rt.runs.recording.recording import Recording, RunContext
+from kurt2rt.runtime import Runtime
 from kurt2rt.service.assembly import RunSettings, assemble_service
 from kurt2rt.service.post_tick import PostTick, ProgramConsole
-from kurt2rt.service.settings import ServiceSettings
 from kurt2rt.teacher.client.manual_drive import BEAT_S
 
 _READY_AFTER_S = 3.0
@@ -38,6 +39,14 @@ _POLL_EVERY_TICKS = 1000
 """Period of the recorder's sync; the disk is not faster in simulated time."""
 
 
+class ProgramStart(NamedTuple):
+    """Number of a start, its wire by name or `none`, and the seed of the soak."""
+
+    number: int
+    wire: str
+    seed: int
+
+
 class ProgramRun:
     """Program from start to end: `run`, then `close`."""
 
@@ -46,17 +55,13 @@ class ProgramRun:
         rig: SoakRig,
         observer: SoakObserver,
         teacher: SoakTeacher,
-        settings: RobotSettings,
-        task: TaskSettings,
-        service: ServiceSettings,
-        *,
+        run_settings: RunSettings,
         recording: Recording,
-        number: int,
-        wire: str,
-        seed: int,
+        start: ProgramStart,
     ) -> None:
-        """Open the knowledge and start the driver. `number`: of this start. Raises KnowledgeError, SettingsError."""
-        self.wire = wire
+        """Open the knowledge and start the driver. Raises KnowledgeError, SettingsError."""
+        settings, service = run_settings.robot, run_settings.service
+        self.wire = start.wire
         self.refused = 0
         """Commands that the robot refused."""
         self.most_waiting = 0
@@ -66,37 +71,39 @@ class ProgramRun:
         self._rig, self._observer, self._teacher = rig, observer, teacher
         self._settings = settings
         self._time = rig.time
-        self._number = number
+        self._number = start.number
         self._presses = 0
         self._lessons_sent = self._recorded_at = self._polled_at = 0
-        self._chance = random.Random(f"life {number}, seed {seed}")
+        self._chance = random.Random(f"life {start.number}, seed {start.seed}")
         self._started_s: float | None = None
         self._begun_s = 0.0
         self._checkpoint_ticks = round(service.checkpoint_period_s / settings.can.cycle_s)
         self._link: TeacherLink | None = None
         path = Path(service.knowledge)
-        opened = open_soak_knowledge(path, settings, task)
+        opened = open_soak_knowledge(path, settings, run_settings.task)
         self.knowledge = SoakKnowledge(path, opened, rig.time)
-        robot = rig.start_driver(wire)
-        observer.attach(robot, settings.can.cycle_s)
+        observer.attach(rig.start_driver(start.wire), settings.can.cycle_s)
         teacher.program_started()
         self.clock = SoakClock(rig.time)
         self.level = SoakLevel(rig.time)
-        context = RunContext(f"{number:016x}", service.knowledge, attended=True, stopped=STARTED)
-        run_settings = RunSettings(settings, task, service)
-        assembled = assemble_service(
-            observer, run_settings, opened, self.knowledge.writer, self.clock, context, self.level
+        self.runtime, self.recorder, self._post_tick = self._assemble(run_settings, opened, recording)
+
+    def _assemble(
+        self, run_settings: RunSettings, opened: OpenedKnowledge, recording: Recording
+    ) -> tuple[Runtime, RunRecorder, PostTick]:
+        context = RunContext(f"{self._number:016x}", run_settings.service.knowledge, attended=True, stopped=STARTED)
+        service = assemble_service(
+            self._observer, run_settings, opened, self.knowledge.writer, self.clock, context, self.level
         )
-        self.runtime = assembled.runtime
-        self.level.inner = self.runtime.level
+        self.level.inner = service.runtime.level
+        started = _FIRST_DAY + timedelta(seconds=self._time.now_s())
+        # Without its thread: the loop calls it, as far as simulated time has gone.
+        recorder = recording.recorder(run_settings.robot, run_settings.task, opened, context, started=started)
+        recorder.poll()
         console = ProgramConsole(
             status=lambda _: None, question=lambda _: None, acknowledged=self.knowledge.on_acknowledged
         )
-        started = _FIRST_DAY + timedelta(seconds=rig.time.now_s())
-        # Without its thread: it writes when it is told to, as far as simulated time has gone.
-        self.recorder = recording.recorder(settings, task, opened, context, started=started)
-        self.recorder.poll()
-        self._post_tick = PostTick(assembled, console, recorder=self.recorder)
+        return service.runtime, recorder, PostTick(service, console, recorder=recorder)
 
     @property
     def ready(self) -> bool:

@@ -7,7 +7,6 @@ import tracemalloc
 from collections.abc import Callable
 from pathlib import Path
 
-from hal.robot_settings import RobotSettings
 from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
 from kurt2rt.checks.faults.table import FaultTable
 from kurt2rt.checks.soak.checks import HOUR_S, envelope_check, fault_check, memory_check, starts_check, steady_check
@@ -18,17 +17,16 @@ from kurt2rt.checks.soak.long_run_rig import SoakRig
 from kurt2rt.checks.soak.observer import SoakObserver
 from kurt2rt.checks.soak.odometry import OdometryCheck
 from kurt2rt.checks.soak.operator import SoakOperator
-from kurt2rt.checks.soak.program_run import ProgramRun
+from kurt2rt.checks.soak.program_run import ProgramRun, ProgramStart
 from kurt2rt.checks.soak.resource_usage import objects_by_type, used_mb
 from kurt2rt.checks.soak.result import CheckCode, SoakCheck, SoakMinute, SoakResult, SoakStart
 from kurt2rt.checks.soak.settings import SoakSettings
 from kurt2rt.checks.soak.teacher import SoakTeacher
-from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.runs.recording.recording import Recording
-from kurt2rt.service.settings import ServiceSettings
+from kurt2rt.service.assembly import RunSettings
 
 _MINUTE_S = 60.0
 _LEAST_RUN_S = 5.0
@@ -44,16 +42,15 @@ class SoakRun:
         rig: SoakRig,
         soak: SoakSettings,
         table: FaultTable,
-        settings: RobotSettings,
-        task: TaskSettings,
-        service: ServiceSettings,
+        run_settings: RunSettings,
         recording: Recording,
         *,
         seed: int,
         by_module: bool = False,
     ) -> None:
-        """`service`: with the soak's knowledge file. `by_module`: trace memory, four times slower."""
-        self._rig, self._soak, self._settings, self._task, self._service = rig, soak, settings, task, service
+        """`run_settings`: with the soak's knowledge file. `by_module`: trace memory, four times slower."""
+        settings, task = run_settings.robot, run_settings.task
+        self._rig, self._soak, self._run_settings = rig, soak, run_settings
         self._recording = recording
         self._seed = seed
         self._by_module = by_module
@@ -113,18 +110,8 @@ class SoakRun:
         wires = self._soak.wires
         (wire,) = self._chance.choices(list(wires), list(wires.values()))
         begun_s = self._rig.time.now_s()
-        program = ProgramRun(
-            self._rig,
-            self._observer,
-            self._teacher,
-            self._settings,
-            self._task,
-            self._service,
-            recording=self._recording,
-            number=len(self._starts) + 1,
-            wire=wire,
-            seed=self._seed,
-        )
+        start = ProgramStart(len(self._starts) + 1, wire, self._seed)
+        program = ProgramRun(self._rig, self._observer, self._teacher, self._run_settings, self._recording, start)
         self._missed_before = 0
         self._session_from = None
         self._odometry.invalidate()

@@ -12,6 +12,7 @@ from kurt2rt.checks.soak.soak_run import SoakRun
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.runs.recording.recording import Recording
 from kurt2rt.runs.recording.run_files import budget_of
+from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.settings import ServiceSettings, load_service
 from simbridge.faults.long_run_rig import LongRunRig
 
@@ -46,7 +47,7 @@ def soaked(folder: Path, minutes: float, soak: SoakSettings, seed: int = 1) -> S
     """What a day comes to."""
     place = LongRunRig(ROBOT, soak.world, seed)
     try:
-        day = SoakRun(place, soak, TABLE, ROBOT, TASK, service_in(folder), recording_in(folder), seed=seed)
+        day = SoakRun(place, soak, TABLE, RunSettings(ROBOT, TASK, service_in(folder)), recording_in(folder), seed=seed)
         return anyio.run(day.run, minutes / 60.0, lambda _: None)
     finally:
         place.close()

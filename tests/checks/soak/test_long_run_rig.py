@@ -8,7 +8,7 @@ import pytest
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.checks.faults.envelope import Envelope
-from kurt2rt.checks.soak.failing_clock import SoakClock
+from kurt2rt.checks.faults.failing_clock import SoakClock
 from simbridge.faults.event_scheduler import EventScheduler
 from simbridge.faults.long_run_rig import LongRunRig
 from simbridge.faults.timed_fault import TimedFault

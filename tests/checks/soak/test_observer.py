@@ -9,12 +9,13 @@ import pytest
 from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.checks.faults.complaint import ComplaintCode
 from kurt2rt.checks.soak.observer import SoakObserver
-from kurt2rt.checks.soak.program_run import ProgramRun
+from kurt2rt.checks.soak.program_run import ProgramRun, ProgramStart
 from kurt2rt.checks.soak.teacher import SoakTeacher
 from kurt2rt.core import tick
 from kurt2rt.core.decision.decision import Cause, Decision
 from kurt2rt.core.decision.level import Level
 from kurt2rt.core.perception.perception import Situation
+from kurt2rt.service.assembly import RunSettings
 from simbridge.faults.long_run_rig import LongRunRig
 from tests.checks.soak.helpers import DAY, PATIENT, ROBOT, TABLE, TASK, recording_in, service_in
 
@@ -48,18 +49,8 @@ def started(folder: Path, place: LongRunRig, observer: SoakObserver, **moods: ob
     """A program with a teacher of one mood."""
     soak = DAY.model_copy(update={"moods": moods})
     teacher = SoakTeacher(soak, TASK, ROBOT, ("forward", "stand"), seed=1)
-    return ProgramRun(
-        place,
-        observer,
-        teacher,
-        ROBOT,
-        TASK,
-        service_in(folder),
-        recording=recording_in(folder),
-        number=1,
-        wire="none",
-        seed=1,
-    )
+    run_settings = RunSettings(ROBOT, TASK, service_in(folder))
+    return ProgramRun(place, observer, teacher, run_settings, recording_in(folder), ProgramStart(1, "none", 1))
 
 
 def run(program: ProgramRun, place: LongRunRig, until_s: float) -> None:
