@@ -39,7 +39,7 @@ def ended(exam: LiveExam) -> ExamStatus:
     return exam.status
 
 
-def test_a_verdict_comes_with_the_picture_and_the_copy_is_deleted(copy: Path, tmp_path: Path) -> None:
+def test_live_exam_returns_verdict_and_picture(copy: Path, tmp_path: Path) -> None:
     drawn = "open(sys.argv[1], 'wb').close()"
     with saying("a word of some library", json.dumps(EXAM.plain_of(OVER)), after=drawn) as exam:
         exam.begin(copy, tmp_path / "exam.png")
@@ -100,9 +100,7 @@ def test_its_process_draws_and_judges(tmp_path: Path, capsys: pytest.CaptureFixt
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
-def test_exam_process_with_a_policy_that_gets_nowhere_does_not_judge(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_exam_process_without_a_measure_does_not_judge(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     repertoire = yaml.safe_load((CONFIG_DIR / "repertoires" / "basic.yaml").read_text(encoding="utf-8"))
     for action in repertoire["actions"]:
         action |= {key: round(speed / 10, 2) for key, speed in action.items() if key in ("left_m_s", "right_m_s")}

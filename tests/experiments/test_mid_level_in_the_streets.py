@@ -86,9 +86,7 @@ def simulation() -> Iterator[Kurt2Simulation]:
         yield simulation
 
 
-async def test_it_asks_the_way_is_taught_a_few_junctions_and_another_day_goes_on_by_what_it_knows(
-    simulation: Kurt2Simulation, tmp_path: Path
-) -> None:
+async def test_mid_level_asks_learns_and_continues_later(simulation: Kurt2Simulation, tmp_path: Path) -> None:
     path, clock = tmp_path / "streets.knowledge", LockstepClock(simulation.step)
     where_it_began = simulation.simulated_robot.pose
     with closing(Service(simulation, clock, path)) as first:

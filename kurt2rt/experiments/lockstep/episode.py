@@ -37,14 +37,14 @@ class Episode(ABC):
         """Build the task's metric at the robot's pose; on a route, place the robot on the route first.
 
         Args:
-            simulation: world of the drive, stepped by the runtime's clock.
+            simulation: world that the runtime's clock steps.
             runtime: robot mind that drives.
             chance: random choices of the metric and of repositioning.
             stuck_after_s: time within the task's `exam.stuck_within_m` after which the robot is stuck.
             on_progress: called once a second with the simulated seconds.
 
         Raises:
-            hal.settings.SettingsError: the world lacks what the metric needs.
+            hal.settings.SettingsError: the world does not fit the metric.
         """
         task, period_s = runtime.task, runtime.robot.can.cycle_s
         self.simulation = simulation
@@ -62,7 +62,6 @@ class Episode(ABC):
         self.unknown_ticks = 0
         """Ticks in situations that the robot does not know."""
         self.latched_ticks = 0
-        """Ticks since the guard latched; 0 while it is not latched."""
         self.asking = False
         self.distance_travelled_m = 0.0
         """Distance on the robot's own wheels."""

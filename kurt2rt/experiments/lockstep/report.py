@@ -203,6 +203,12 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
         numbers = (lesson.seed, len(lesson.rlas), lesson.asks, lesson.corrections, lesson.rescues)
         seeds.add_row(*map(str, numbers), *cells)
 
+    by_world = [[result.exams[place].learned for result in results] for place in range(len(worlds))]
+    measures = _render_measures("Measures, median", worlds, by_world)
+    return Group(seeds, _render_medians(results, task), _render_success(results), *measures)
+
+
+def _render_medians(results: Sequence[CurriculumResult], task: TaskSettings) -> TextTable:
     summary = TextTable(title=f"{len(results)} seeds")
     for heading in ("", "median", "quartiles", "paper"):
         summary.add_column(heading, number=bool(heading))
@@ -215,7 +221,12 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
     for name, values, paper in counted:
         low, median, high = quartiles(values)
         summary.add_row(name, f"{median:.0f}", f"{low:.0f} to {high:.0f}", paper)
+    return summary
 
+
+def _render_success(results: Sequence[CurriculumResult]) -> TextTable:
+    worlds = [each.learned.world for each in results[0].exams]
+    unit = results[0].exams[0].learned.unit
     success = TextTable(title="Exams without teacher")
     for heading in ("world", "success", "95 % interval", "collided", "stuck", f"{unit}, median", "unknown, median"):
         success.add_column(heading, number=heading != "world")
@@ -233,5 +244,4 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
             f"{quartiles([each.learned.progress for each in exams])[1]:.2f}",
             f"{quartiles([each.learned.share_unknown for each in exams])[1]:.1%}",
         )
-    by_world = [[result.exams[place].learned for result in results] for place in range(len(worlds))]
-    return Group(seeds, summary, success, *_render_measures("Measures, median", worlds, by_world))
+    return success

@@ -1,12 +1,12 @@
 """Guided tour of one robot, then its drives to goals."""
 
 import random
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import closing
 from pathlib import Path
 
 from behaviors.metrics.streets import ALONG
-from behaviors.metrics.town import Street
+from behaviors.metrics.town import Street, Town
 from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
@@ -15,9 +15,8 @@ from kurt2rt.experiments.lockstep.lesson_keeping import lessons_kept
 from kurt2rt.experiments.lockstep.runtimes import build_unattended_runtime
 from kurt2rt.experiments.navigation.exam import GoalsRun
 from kurt2rt.experiments.navigation.goals import choose_goals
-from kurt2rt.experiments.navigation.guided_tour import guided_tour, navigation_settings, street_tracker
-from kurt2rt.experiments.navigation.outcome import ErrandsOutcome, Place, Strategy
-from kurt2rt.experiments.study.provenance import Provenance
+from kurt2rt.experiments.navigation.guided_tour import TourResult, guided_tour, navigation_settings, street_tracker
+from kurt2rt.experiments.navigation.outcome import ErrandsOutcome, ErrandsRun, Place, Strategy
 from kurt2rt.knowledge.journal.loading import read_lessons
 
 PLANNING: tuple[Strategy, ...] = ("planning",)
@@ -34,31 +33,28 @@ async def teach_and_send(
     seed: int,
     strategies: Sequence[Strategy],
     report: Report,
-    made_of: Provenance | None = None,
 ) -> ErrandsOutcome:
-    """Teach into a file that holds the streets, and send the robot to its goals, once in each of these ways.
+    """Teach into a file that holds the streets, and send the robot to its goals once by each strategy.
 
-    Raises KnowledgeError, SettingsError, LessonLostError.
+    Raises:
+        KnowledgeError: the file cannot be read.
+        hal.settings.SettingsError: the task has no goals, or the world no streets.
+        LessonLostError: the robot refused a command, or a lesson was not stored.
     """
-    world, exam_world = task.teaching.world, task.exam.worlds[0]
-    whole_s = task.teaching.duration_s
+    world, whole_s = task.teaching.world, task.teaching.duration_s
     with lessons_kept(knowledge, settings, task) as keeping:
+        on_progress = keeping.telling(report, f"led about world {world}", whole_s)
         with closing(factory.open(world, seed, "errands")) as simulation:
-            led = await guided_tour(
-                simulation,
-                settings,
-                task,
-                keeping.training,
-                seed=seed,
-                on_progress=keeping.telling(report, f"led about world {world}", whole_s),
-            )
+            led = await guided_tour(simulation, settings, task, keeping.training, seed=seed, on_progress=on_progress)
         keeping.end(led.saved)
         report(f"led about world {world}", whole_s, whole_s)
     events = read_lessons(knowledge, settings, task)
-    course, town = navigation_settings(task), street_tracker(factory.plan_of(exam_world), task).town
+    exam_world = task.exam.worlds[0]
+    town = street_tracker(factory.plan_of(exam_world), task).town
     start = town.street_at(led.home)
-    assert start is not None  # the lesson began there
-    goals = choose_goals(town, led.named, led.streets, start, course, random.Random(f"errands of robot {seed}"))
+    assert start is not None  # the tour began there
+    chance = random.Random(f"errands of robot {seed}")
+    goals = choose_goals(town, led.named, led.streets, start, navigation_settings(task), chance)
     runs = []
     for how in strategies:
         with closing(factory.open(exam_world, seed, "errands without teacher")) as simulation:
@@ -69,8 +65,11 @@ async def teach_and_send(
 
             run = GoalsRun(simulation, runtime, goals, how=how, seed=seed, on_goal=on_goal)
             runs.append(await run.drive(led.home))
+    return _outcome(seed, led, town, runs)
+
+
+def _outcome(seed: int, led: TourResult, town: Town, runs: Iterable[ErrandsRun]) -> ErrandsOutcome:
     return ErrandsOutcome(
-        made_of=made_of,
         seed=seed,
         teaching_s=led.teaching_s,
         ways=led.ways,

@@ -97,22 +97,12 @@ def make_plan(
     """
     paper = extent.paper(paper)
     chosen = _chosen(paper, extent, tasks)
-    loaded = {each.task: load_task(each.task) for each in chosen}
-    names = [task.name for task in loaded.values()]
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise StudyError(f"two tasks have the name {', '.join(twice)}", do="give one of them another name in its file")
-    for each in chosen:
-        _require_exams_in(each.asked, loaded[each.task])
+    _require_tasks(chosen, factory)
     taught = [
         (each, reading, extent.task(load_task(each.task, plain=reading == "plain")))
         for reading in readings
         for each in chosen
     ]
-    for each in chosen:
-        task = loaded[each.task]
-        generated = each.unseen.names if each.unseen else ()
-        require_course(factory, task, (task.teaching.world, *task.exam.worlds, *generated))
     source = source_of(factory)
     common = JobParts(factory=factory, robot=robot, results=results)
     fingerprints = Fingerprints(factory, robot, source, ("paper", "plain", *PHASES))
@@ -156,6 +146,20 @@ def _chosen(paper: PaperSettings, extent: Extent, tasks: Sequence[str]) -> list[
         asked = {_file_of(name): ExperimentSettings(task=name, title=Path(name).stem) for name in tasks}
         return [known.get(file, own) for file, own in asked.items()]
     return [each for each in paper.experiments if extent.tasks is None or each.task in extent.tasks]
+
+
+def _require_tasks(chosen: Sequence[ExperimentSettings], factory: SimulationFactory) -> None:
+    loaded = {each.task: load_task(each.task) for each in chosen}
+    names = [task.name for task in loaded.values()]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise StudyError(f"two tasks have the name {', '.join(twice)}", do="give one of them another name in its file")
+    for each in chosen:
+        _require_exams_in(each.asked, loaded[each.task])
+    for each in chosen:
+        task = loaded[each.task]
+        generated = each.unseen.names if each.unseen else ()
+        require_course(factory, task, (task.teaching.world, *task.exam.worlds, *generated))
 
 
 def _file_of(task: str) -> Path:

@@ -41,9 +41,7 @@ def driven(*rounds: list[Point]) -> float:
         ([WEST_LEFT[:120], WEST_LEFT[:120][::-1]], 0.0),  # turned back on the way
     ],
 )
-def test_each_whole_round_that_follows_one_about_the_other_post_is_half_an_eight(
-    rounds: list[list[Point]], progress: float
-) -> None:
+def test_eights_round_about_other_post_counts_half(rounds: list[list[Point]], progress: float) -> None:
     assert driven(*rounds) == progress
 
 

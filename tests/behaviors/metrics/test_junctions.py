@@ -43,7 +43,7 @@ def passed(course: TaskMetric) -> tuple[float, float]:
 
 @pytest.mark.parametrize("behaviour", ALL)
 @pytest.mark.parametrize("taken", ALL)
-def test_a_junction_is_right_when_it_is_left_through_the_side_that_was_asked_for(behaviour: str, taken: str) -> None:
+def test_junctions_required_side_counts_as_right(behaviour: str, taken: str) -> None:
     course = set_down((behaviour,))
     follow(course, [SOUTH_OF_A_CROSSING, CROSSING, WAYS_ON[taken]])
     assert passed(course) == (1.0, float(taken == behaviour))
@@ -65,7 +65,7 @@ def test_a_junction_is_passed_only_once_it_is_left_behind() -> None:
     assert passed(course) == (1.0, 1.0)
 
 
-def test_who_turns_back_on_the_way_has_not_done_what_was_asked() -> None:
+def test_junctions_turning_back_counts_as_wrong() -> None:
     course = set_down(("turn_left",))
     follow(course, [SOUTH_OF_A_CROSSING, (2.2, 1.7), (2.2, 0.9)])
     assert passed(course) == (0.0, 0.0)  # it may turn again
@@ -76,7 +76,7 @@ def test_who_turns_back_on_the_way_has_not_done_what_was_asked() -> None:
 
 
 @pytest.mark.parametrize("way", [[SOUTH_OF_A_CROSSING, (2.2, 1.6)], [SOUTH_OF_A_CROSSING, CROSSING]])
-def test_who_ends_early_has_not_done_what_was_asked(way: list[Point]) -> None:
+def test_junctions_abort_counts_as_wrong(way: list[Point]) -> None:
     course = set_down(("turn_left",))
     follow(course, way)
     assert passed(course) == (0.0, 0.0)  # nor does it count where the time is over
@@ -84,7 +84,7 @@ def test_who_ends_early_has_not_done_what_was_asked(way: list[Point]) -> None:
     assert passed(course) == (1.0, 0.0)
 
 
-def test_who_ends_early_where_nothing_could_be_asked_has_done_nothing_wrong() -> None:
+def test_junctions_abort_without_requirement_counts_nothing() -> None:
     course = set_down(("straight_on",), (2.2, 4.9))  # the northern border ends that street
     course.abort()
     assert passed(course) == (0.0, 0.0)
@@ -93,7 +93,7 @@ def test_who_ends_early_where_nothing_could_be_asked_has_done_nothing_wrong() ->
     assert passed(course) == (0.0, 0.0)
 
 
-def test_what_is_wanted_changes_where_a_junction_is_left_behind_and_is_always_possible() -> None:
+def test_junctions_behaviour_changes_after_each_junction() -> None:
     course = set_down(ALL, (1.3, 0.4), 0.0)  # along the southern border: streets go on ahead and to the left
     asked = []
     for x_m in (1.3, 3.1):
@@ -109,7 +109,7 @@ def test_what_is_wanted_changes_where_a_junction_is_left_behind_and_is_always_po
     assert findings["junctions, turn_right"] == 0.0
 
 
-def test_all_behaviours_are_asked_for_by_chance_and_the_same_chance_asks_the_same() -> None:
+def test_junctions_behaviours_follow_the_seed() -> None:
     def asked(seed: int) -> list[str]:
         course = in_manhattan(ALL, seed)
         behaviours = []
@@ -122,7 +122,7 @@ def test_all_behaviours_are_asked_for_by_chance_and_the_same_chance_asks_the_sam
     assert asked(1) == asked(1) != asked(2)
 
 
-def test_straight_on_at_a_t_is_stranded_and_set_down_elsewhere_it_goes_on() -> None:
+def test_junctions_straight_on_at_a_t_needs_reset() -> None:
     course = set_down(("straight_on",), (2.2, 4.9))  # the northern border ends that street
     follow(course, [(2.2, 4.9), (2.2, 5.3)])
     assert not course.needs_reset
@@ -134,7 +134,7 @@ def test_straight_on_at_a_t_is_stranded_and_set_down_elsewhere_it_goes_on() -> N
     assert passed(course) == (1.0, 1.0)
 
 
-def test_a_robot_that_turned_back_is_asked_for_something_possible_where_it_comes_to() -> None:
+def test_junctions_after_turning_back_require_a_possible_way() -> None:
     course = set_down(ALL, (4.9, 0.4), 180.0)  # towards a T, with streets ahead and to the right
     follow(course, [(4.9, 0.4), (5.0, 0.4), (5.5, 0.4)])  # but it came to the corner, where only a left turn is left
     assert course.behaviour == "turn_left"
@@ -147,7 +147,7 @@ def test_set_down_within_a_junction_it_is_not_judged_there() -> None:
     assert passed(course) == (0.0, 0.0)
 
 
-def test_the_lateral_deviation_is_that_from_the_middle_of_the_streets_only() -> None:
+def test_lateral_deviation_counts_in_streets_only() -> None:
     course = set_down(("straight_on",))
     follow(course, [(2.25, 0.9), (2.25, 1.7)])
     assert course.findings["lateral deviation, m"] == pytest.approx(0.05, abs=0.002)
@@ -155,12 +155,12 @@ def test_the_lateral_deviation_is_that_from_the_middle_of_the_streets_only() -> 
     assert course.findings["lateral deviation, m"] == pytest.approx(0.05, abs=0.002)
 
 
-def test_streets_of_other_widths_and_missing_blocks_have_a_map_too() -> None:
+def test_street_map_handles_widths_and_missing_blocks() -> None:
     course = course_in("streets-3", SETTINGS, ALL)
     assert course.unit == "junctions"
 
 
-def test_a_world_without_streets_and_a_task_with_other_behaviours_are_refused() -> None:
+def test_junctions_refuse_other_worlds_and_behaviours() -> None:
     with pytest.raises(SettingsError, match="course junctions: world A has no streets that meet"):
         course_in("a", SETTINGS, ALL)
     with pytest.raises(SettingsError, match="must be among straight_on, turn_left, turn_right"):

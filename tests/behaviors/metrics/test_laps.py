@@ -40,7 +40,7 @@ def test_the_distance_error_is_that_to_the_nearest_wall() -> None:
         simulation.close()
 
 
-def test_what_was_carried_is_no_lap() -> None:
+def test_laps_repositioning_counts_no_lap() -> None:
     simulation = STAGE.open("one_object", 1, "test")
     try:
         course = laps_in(simulation)
@@ -56,7 +56,7 @@ def test_what_was_carried_is_no_lap() -> None:
 
 
 @pytest.mark.parametrize(("towards_rad", "sign"), [(math.pi / 2, 1), (-math.pi / 2, -1)])
-def test_what_it_drives_itself_along_the_wall_is_and_backwards_counts_against(towards_rad: float, sign: int) -> None:
+def test_laps_count_forwards_and_subtract_backwards(towards_rad: float, sign: int) -> None:
     simulation = STAGE.open("one_object", 1, "test")
     try:
         course = laps_in(simulation)
@@ -75,7 +75,7 @@ def test_what_it_drives_itself_along_the_wall_is_and_backwards_counts_against(to
         simulation.close()
 
 
-def test_least_progress_of_laps_and_way_is_a_tenth_of_a_metre_a_second() -> None:
+def test_least_progress_is_a_tenth_of_a_metre_a_second() -> None:
     simulation = STAGE.open("one_object", 1, "test")
     try:
         assert simulation.lap_m == pytest.approx(4 * (4.4 - 2 * 0.35))

@@ -20,13 +20,13 @@ def driven(radius_m: float, to_deg: float, settings: RoundsSettings = LEFT) -> R
     return rounds
 
 
-def test_rounds_with_the_post_on_the_left_are_counted_with_fractions() -> None:
+def test_rounds_with_the_post_on_the_left_count_fractions() -> None:
     assert driven(0.5, 900.0).progress == pytest.approx(2.5, abs=1e-6)
     assert driven(0.5, 900.0, RIGHT).progress == pytest.approx(-2.5, abs=1e-6)
     assert driven(0.5, -900.0, RIGHT).progress == pytest.approx(2.5, abs=1e-6)
 
 
-def test_the_distance_error_is_measured_from_the_robots_centre_to_the_posts_face() -> None:
+def test_rounds_distance_error_ends_at_the_face_of_the_post() -> None:
     assert driven(0.5, 720.0).findings == {"distance error, m": pytest.approx(0.0, abs=1e-3)}
     assert driven(0.6, 720.0).findings == {"distance error, m": pytest.approx(0.1, abs=1e-3)}
 
@@ -35,7 +35,7 @@ def test_rounds_out_of_sight_of_the_post_count_for_nothing() -> None:
     assert driven(0.9, 720.0).progress == 0.0
 
 
-def test_what_lies_between_here_and_where_a_hand_puts_it_was_not_driven() -> None:
+def test_rounds_repositioning_counts_no_angle() -> None:
     rounds = driven(0.5, 90.0)
     put(rounds, (1.5, 2.0), 0.0)
     assert rounds.progress == pytest.approx(0.25, abs=1e-6)

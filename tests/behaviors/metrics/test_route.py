@@ -61,7 +61,7 @@ def with_a_choice(course: FixedRoute) -> None:
         drive(course, 1)
 
 
-def test_it_begins_in_the_middle_of_the_first_street_and_says_what_is_right_at_its_end() -> None:
+def test_route_begins_in_the_middle_of_the_first_street() -> None:
     course = set_down()
     assert isinstance(course, RouteMetric)
     assert course.reset_pose == course.route.legs[0].middle
@@ -70,7 +70,7 @@ def test_it_begins_in_the_middle_of_the_first_street_and_says_what_is_right_at_i
     assert (passed, inside, here, MEANING[after]) == (0, False, course.behaviour, course.route.quarters[1])
 
 
-def test_round_the_route_every_decision_is_right_and_the_next_one_is_said_where_a_junction_is_left() -> None:
+def test_route_without_errors_counts_every_decision_right() -> None:
     course = set_down()
     asked = []
     for _ in range(16):
@@ -92,7 +92,7 @@ def test_within_a_junction_the_decision_is_still_the_one_there() -> None:
     assert (course.ahead.inside, course.behaviour) == (True, before)
 
 
-def test_a_wrong_way_counts_and_it_is_set_down_where_it_should_be() -> None:
+def test_route_wrong_way_counts_and_resets_to_the_right_street() -> None:
     course = set_down()
     with_a_choice(course)
     place = course.ahead.passed
@@ -108,7 +108,7 @@ def test_a_wrong_way_counts_and_it_is_set_down_where_it_should_be() -> None:
     assert course.progress == place + 3.0
 
 
-def test_who_turns_back_on_the_way_did_wrong_and_tries_again() -> None:
+def test_route_turning_back_counts_as_wrong_and_repeats() -> None:
     course = set_down()
     drive(course, 1)
     follow(course, [middle(course.route.legs[1]), corner(course.route.legs[0])])
@@ -128,7 +128,7 @@ def test_turning_back_in_a_junction_is_wrong() -> None:
     assert abs(course.passages[-1].taken or 0) == 2
 
 
-def test_stuck_in_a_street_it_tries_again_and_stuck_in_a_junction_it_goes_on_behind_it() -> None:
+def test_route_reset_repeats_a_street_and_skips_a_junction() -> None:
     course = set_down()
     first, second = course.route.legs[:2]
     assert course.reset_pose == first.middle
@@ -141,14 +141,14 @@ def test_stuck_in_a_street_it_tries_again_and_stuck_in_a_junction_it_goes_on_beh
     assert (course.ahead.passed, course.ahead.inside) == (1, False)
 
 
-def test_who_ends_early_has_not_done_what_was_right() -> None:
+def test_route_abort_counts_as_wrong() -> None:
     course = set_down()
     drive(course, 2)
     course.abort()
     assert (course.progress, course.findings["junctions"]) == (2.0, 3.0)
 
 
-def test_the_route_is_that_of_its_seed_whatever_the_chance_of_the_drive() -> None:
+def test_route_depends_on_its_seed_only() -> None:
     settings = RouteSettings(kind="route", decisions=12, seed=3)
     routes = []
     for seed in (1, 2):
@@ -158,7 +158,7 @@ def test_the_route_is_that_of_its_seed_whatever_the_chance_of_the_drive() -> Non
     assert routes[0] == routes[1] != a_route(4, 12)
 
 
-def test_a_world_without_streets_other_behaviours_and_an_impossible_number_are_refused() -> None:
+def test_route_refuses_other_worlds_behaviours_and_numbers() -> None:
     settings = RouteSettings(kind="route")
     with pytest.raises(SettingsError, match="course route: world A has no streets that meet"):
         course_in("a", settings, ALL)

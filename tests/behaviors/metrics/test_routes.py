@@ -23,7 +23,7 @@ def drawn(decisions: int, seed: int, quarters: Sequence[int] = ALL) -> Route:
 
 
 @pytest.mark.parametrize("decisions", [4, 8, 12, 16])
-def test_a_route_is_a_closed_loop_along_streets_that_never_turns_back(decisions: int) -> None:
+def test_random_route_is_a_loop_without_turning_back(decisions: int) -> None:
     for seed in range(10):
         legs = drawn(decisions, seed).legs
         assert len(legs) == decisions
@@ -36,7 +36,7 @@ def test_a_route_is_a_closed_loop_along_streets_that_never_turns_back(decisions:
             assert ahead == pytest.approx((1.8 * along[0], 1.8 * along[1]))  # to the next junction, and no farther
 
 
-def test_a_leg_begins_halfway_between_its_junctions_and_looks_ahead() -> None:
+def test_leg_middle_lies_between_its_junctions() -> None:
     for leg in drawn(8, 1).legs:
         x_m, y_m, _ = leg.middle
         assert streets().next_junction(leg.middle, leg.way) == leg.junction
@@ -55,7 +55,7 @@ def test_seeds_draw_many_routes_and_the_same_seed_the_same_one() -> None:
     assert len({drawn(12, seed).quarters for seed in range(20)}) > 10
 
 
-def test_what_cannot_be_asked_for_is_in_no_route() -> None:
+def test_random_route_has_allowed_turns_only() -> None:
     assert set(drawn(4, 1, (1,)).quarters) == {1}
     with pytest.raises(SettingsError, match="have no loop of 5 decisions"):
         drawn(5, 1)

@@ -35,7 +35,7 @@ def test_manhattan_has_24_streets_two_ways_and_104_ways_on(town: Town) -> None:
     assert sum(len(town.on_from(each)) for each in town.streets) == 104
 
 
-def test_what_leads_on_from_a_street_depends_on_where_it_ends(town: Town) -> None:
+def test_on_from_depends_on_the_end_of_the_street(town: Town) -> None:
     inner = town.on_from(street(town, 1.3, 2.2, Side.EAST))
     assert set(inner) == set(BEHAVIOURS)
     assert inner["turn_left"].way is Side.NORTH
@@ -67,7 +67,7 @@ def test_ways_are_measured_from_where_one_is_to_where_one_comes(town: Town) -> N
     assert length_m(way, Pose(1.9, 2.2, 0.0), Pose(2.2, 2.8, math.pi / 2)) == pytest.approx(0.9)
 
 
-def test_the_walk_notes_each_street_once_and_breaks_where_the_robot_was_set_down() -> None:
+def test_tracker_lists_streets_once_and_marks_resets() -> None:
     assert isinstance(COURSE, ErrandsSettings)
     walk = COURSE.walk_in(PLAN, BEHAVIOURS)
     walk.reset(Pose(1.3, 2.2, 0.0))

@@ -54,7 +54,7 @@ def test_the_teacher_says_go_and_the_lesson_goes_on(tmp_path: Path) -> None:
     assert abs(end.x_m - a_second_later.x_m) + abs(end.y_m - a_second_later.y_m) > 0.2
 
 
-def test_an_alarm_that_the_end_of_what_was_shown_lifts_is_one_all_the_same(tmp_path: Path) -> None:
+def test_alarm_ended_by_a_demonstration_counts_once(tmp_path: Path) -> None:
     async def lesson() -> TrainingResult:
         # Shown from 4.5 s on; the alarm comes at 5 s, and Resume before the second is over after which he says Go.
         plan = LessonPlan(((Phase.CRITIC, 8.0),), signs="judge", set_down_every_s=4.5, shown_s=1.0)

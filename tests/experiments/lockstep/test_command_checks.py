@@ -56,13 +56,13 @@ def test_an_answer_that_the_repertoire_lacks_ends_the_lesson(tmp_path: Path) -> 
         teach(tmp_path / "knowledge", task)
 
 
-def test_the_teachers_own_drive_names_the_action_that_the_repertoire_lacks(tmp_path: Path) -> None:
+def test_teacher_policy_names_an_unknown_action(tmp_path: Path) -> None:
     task = without(tmp_path, "forward", "along_left_wall", "curve_left")
     with pytest.raises(UnknownActionError, match=r"the policy says '\w+', which the repertoire lacks; .*: bear_left, "):
         examined(task)
 
 
-def test_a_behaviour_that_the_task_does_not_teach_ends_lesson_and_exam(tmp_path: Path) -> None:
+def test_unknown_behaviour_ends_lesson_and_exam(tmp_path: Path) -> None:
     with pytest.raises(LessonLostError, match=r"lesson-1-after-0-1: there is no taught behaviour 'fly'; .* course fly"):
         teach(tmp_path / "knowledge", FLYING)
     with pytest.raises(LessonLostError, match="the robot refused exam-1: there is no taught behaviour 'fly'"):

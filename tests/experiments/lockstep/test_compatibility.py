@@ -21,7 +21,7 @@ def test_a_course_that_a_world_cannot_give_is_refused(task: str, worlds: tuple[s
         require_course(STAGE, load_task(task), [fits, does_not])
 
 
-def test_behaviours_that_mean_no_way_through_a_junction_are_refused() -> None:
+def test_require_course_refuses_behaviours_without_an_exit() -> None:
     task = load_task("streets").model_copy(update={"behaviours": ("fly",)})
     with pytest.raises(SettingsError, match="behaviours must be among straight_on"):
         require_course(STAGE, task, ["manhattan"])

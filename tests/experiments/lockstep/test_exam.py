@@ -35,7 +35,7 @@ def knows_only(action: str) -> RlaCreated:
     return RlaCreated(Rla(1, (0.0,) * 72, action, 1e5, Origin("c-1", "Ann", Phase.SUPERVISED, 1)))
 
 
-def test_a_robot_that_knows_nothing_stands_until_the_exam_ends_it() -> None:
+def test_exam_of_an_untaught_robot_ends_stuck() -> None:
     learned = exam_of([], short_task(exam_s=20.0, stuck_after_s=1.5)).learned
     assert learned.stuck
     assert learned.duration_s == pytest.approx(1.51)
@@ -46,7 +46,7 @@ def test_a_robot_that_knows_nothing_stands_until_the_exam_ends_it() -> None:
     assert (learned.collisions, learned.action_changes_per_s) == (0, 0.0)
 
 
-def test_the_junction_that_a_stuck_robot_was_asked_for_counts_as_wrong() -> None:
+def test_exam_stuck_robot_fails_its_junction() -> None:
     task = load_task("streets")
     exam = task.exam.model_copy(update={"duration_s": 2.0, "stuck_after_s": 1.5})
     learned = exam_of([], task.model_copy(update={"exam": exam})).learned
@@ -97,7 +97,7 @@ def test_an_exam_starts_where_the_task_says(start: str, *, at_a_start_pose: bool
         assert math.dist(here, result.teacher.trail[0]) < 0.1
 
 
-def test_where_an_exam_starts_in_sight_is_decided_by_its_seed() -> None:
+def test_exam_start_in_sight_follows_the_seed() -> None:
     first, again, other = examined_from("in_sight"), examined_from("in_sight"), examined_from("in_sight", seed=2)
     assert first == again
     assert first.learned.trail[0] != other.learned.trail[0]
@@ -114,7 +114,7 @@ def test_a_taught_robot_drives_by_what_it_was_taught(taught: Taught) -> None:
     assert exam_of(taught.events, task, seed=2).learned.trail != first.learned.trail
 
 
-def test_where_it_asks_the_wheels_are_told_to_stand(taught: Taught) -> None:
+def test_exam_question_commands_standstill(taught: Taught) -> None:
     task = short_task(radius=150.0)
     simulation = STAGE.open("a", 1, "exam")
     records: list[TickRecord] = []

@@ -31,7 +31,7 @@ def test_a_robot_that_knows_nothing_asks_is_taught_and_drives(taught: Taught) ->
     assert taught.reported_s == [*map(float, range(1, 16)), 15.0]
 
 
-def test_what_the_result_says_is_what_stands_in_the_file(taught: Taught) -> None:
+def test_training_result_equals_the_knowledge_file(taught: Taught) -> None:
     result = taught.result
     with Journal.read_only(taught.knowledge) as journal:
         assert check_knowledge(journal) == []
@@ -45,7 +45,7 @@ def test_what_the_result_says_is_what_stands_in_the_file(taught: Taught) -> None
     assert read_lessons(taught.knowledge, ROBOT, taught.task) == taught.events
 
 
-def test_the_teacher_only_answers_at_first_and_then_corrects_as_well(taught: Taught) -> None:
+def test_teacher_corrects_from_phase_2_on(taught: Taught) -> None:
     origins = [event.origin for event in taught.events]
     assert [each.phase for each in origins] == sorted(each.phase for each in origins)
     assert all((each.phase is Phase.SUPERVISED) is (each.tick <= 900) for each in origins)
@@ -59,13 +59,13 @@ def test_it_is_told_of_every_lesson_that_is_saved(taught: Taught) -> None:
     assert [each.sequence for each in taught.saved] == list(range(1, len(taught.events) + 1))
 
 
-def test_it_is_told_of_a_lesson_that_is_saved_after_the_last_progress(tmp_path: Path) -> None:
+def test_on_saved_reports_the_last_lesson(tmp_path: Path) -> None:
     taught = teach(tmp_path / "knowledge", short_task(1.5, 0.0))
     assert len(taught.events) == 1
     assert [each.sequence for each in taught.saved] == [1]
 
 
-def test_the_same_seed_gives_the_same_knowledge_and_the_same_trail(taught: Taught, tmp_path: Path) -> None:
+def test_same_seed_gives_the_same_knowledge_and_trail(taught: Taught, tmp_path: Path) -> None:
     again = teach(tmp_path / "again")
     # Counters are compared by what they counted.
     assert replace(again.result, statistics=taught.result.statistics) == taught.result

@@ -44,7 +44,7 @@ def test_the_plan_of_a_task_is_its_own_lesson() -> None:
     assert plan_of(task).duration_s == task.teaching.duration_s
 
 
-def test_in_phase_3_rewards_are_lessons_and_what_they_made_is_saved(taught: Taught, tmp_path: Path) -> None:
+def test_phase_3_stores_rewards_and_values(taught: Taught, tmp_path: Path) -> None:
     result, events = go_on(taught, tmp_path, of_phase(Phase.REINFORCEMENT, signs="judge"))
     rewards = [event for event in events if isinstance(event, RlaRewarded)]
     assert len(rewards) == result.positive_rewards + result.negative_rewards - result.refused_signals > 0
@@ -55,7 +55,7 @@ def test_in_phase_3_rewards_are_lessons_and_what_they_made_is_saved(taught: Taug
         assert journal.statistics().values == result.saved.values
 
 
-def test_in_phase_4_the_critic_is_taught_where_the_robot_is_set_down(taught: Taught, tmp_path: Path) -> None:
+def test_phase_4_teaches_the_critic_after_repositioning(taught: Taught, tmp_path: Path) -> None:
     times = SignalTimes(good_every_s=1.0)
     plan = of_phase(Phase.CRITIC, 12.0, signs="judge", times=times, set_down_every_s=4.0, shown_s=1.0)
     result, events = go_on(taught, tmp_path, plan)
@@ -68,7 +68,7 @@ def test_in_phase_4_the_critic_is_taught_where_the_robot_is_set_down(taught: Tau
     assert len(result.agreement) == 1
 
 
-def test_in_phase_5_nobody_answers_and_a_robot_that_knows_nothing_is_set_down_elsewhere(tmp_path: Path) -> None:
+def test_phase_5_rescues_an_untaught_robot(tmp_path: Path) -> None:
     task = short_task()
     task = task.model_copy(update={"teaching": task.teaching.model_copy(update={"rescue_after_s": 1.5})})
 
@@ -123,9 +123,7 @@ def rival(action: str) -> RlaCreated:
         (Statistics(values={2: 0.4}), False),
     ],
 )
-def test_an_exam_after_phase_5_asks_the_competitor_that_phase_5_held_best(
-    alone: Statistics | None, drives: bool
-) -> None:
+def test_exam_after_phase_5_uses_its_values(alone: Statistics | None, drives: bool) -> None:
     task = short_task(exam_s=2.0, radius=1e5)
 
     async def drive() -> float:
@@ -143,7 +141,7 @@ def test_an_exam_after_phase_5_asks_the_competitor_that_phase_5_held_best(
     assert (anyio.run(drive) > 0.3) is drives
 
 
-def test_a_lesson_that_ends_in_phase_5_tells_what_that_held_rlas_to_be_worth(taught: Taught, tmp_path: Path) -> None:
+def test_training_ending_in_phase_5_returns_its_values(taught: Taught, tmp_path: Path) -> None:
     assert taught.result.autonomous_values is None
     result, _ = go_on(taught, tmp_path, of_phase(Phase.AUTONOMOUS, 2.0))
     assert result.autonomous_values == Statistics()  # nobody was trusted

@@ -114,7 +114,7 @@ def test_each_exam_is_a_row_with_its_verdict() -> None:
     assert ["C", "8.00", "9.00", "0", "after 123 s", "3.4%", "no"] in rows
 
 
-def test_a_comparison_with_a_teacher_who_did_not_do_well_is_shown_as_such() -> None:
+def test_render_exams_marks_a_failed_teacher() -> None:
     def told(**teacher: Any) -> str:
         compared = world_result(exam_result())
         rows = printed(render_exams([replace(compared, teacher=replace(compared.teacher, **teacher))], short_task()))
@@ -126,7 +126,7 @@ def test_a_comparison_with_a_teacher_who_did_not_do_well_is_shown_as_such() -> N
     assert told(collisions=1) == told(alarm="bus lost") == told(stuck=True) == "9.00 (failed)"
 
 
-def test_render_exams_with_a_teacher_that_gets_nowhere_is_not_judged() -> None:
+def test_render_exams_without_a_measure_is_not_judged() -> None:
     exams = [world_result(exam_result("b")), world_result(exam_result("cave", collisions=2), teachers_laps=0.0)]
     rows = printed(render_exams(exams, short_task()))
     assert ["B", "8.00", "9.00", "0", "no", "3.4%", "yes"] in rows
@@ -138,7 +138,7 @@ def test_render_exams_with_a_teacher_that_gets_nowhere_is_not_judged() -> None:
     assert told == [(True, "passed"), (False, "not_judged")]
 
 
-def test_render_seeds_counts_an_exam_that_is_not_judged_neither_way() -> None:
+def test_render_seeds_leaves_out_exams_not_judged() -> None:
     results = [
         replace(
             curriculum_result(seed, 80),

@@ -27,7 +27,7 @@ TRAVELLING = [Position(0.003 * i, 0.0) for i in ticks(20)]
 
 
 @pytest.mark.parametrize("path", [STANDING, CIRCLING])
-def test_standing_and_going_round_in_circles_is_no_way_once_the_window_is_full(path: list[Position]) -> None:
+def test_stuck_detector_full_window_in_place_is_stuck(path: list[Position]) -> None:
     assert stuck_after_s(StuckDetector(5.0, PERIOD_S), path) == 5.0
 
 

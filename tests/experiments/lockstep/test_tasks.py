@@ -80,7 +80,7 @@ def test_every_task_has_a_plain_reading_of_the_paper(name: str) -> None:
     ],
     ids=str,
 )
-def test_another_reading_of_the_paper_is_not_called_the_plain_one(change: dict[str, str]) -> None:
+def test_other_reading_is_not_called_plain(change: dict[str, str]) -> None:
     (key,) = change
     with pytest.raises(SettingsError, match=rf"circle\.yaml: {key}: "):
         load_task("circle", changes=change)
@@ -108,7 +108,7 @@ def test_the_robot_is_set_down_anew_where_the_task_says_so(tmp_path: Path) -> No
     assert len(places) > 8
 
 
-def test_a_robot_that_can_only_go_straight_is_set_down_elsewhere_at_the_end_of_its_street() -> None:
+def test_straight_on_is_repositioned_at_the_end_of_its_street() -> None:
     drive = teachers_drive(lasting("straight_on", exam_s=16.0))
     steps_m = [abs(b.x_m - a.x_m) + abs(b.y_m - a.y_m) for a, b in zip(drive.trail, drive.trail[1:], strict=False)]
     assert max(steps_m) > 0.5  # through the air
@@ -116,7 +116,7 @@ def test_a_robot_that_can_only_go_straight_is_set_down_elsewhere_at_the_end_of_i
     assert drive.findings["junctions"] == drive.findings["junctions right"] > 0.0
 
 
-def test_what_is_replaced_too_often_is_deleted(tmp_path: Path) -> None:
+def test_rla_replaced_too_often_is_deleted(tmp_path: Path) -> None:
     task = lasting("wall_following", 5.0, 10.0)
     strict = task.teaching.teacher.model_copy(update={"delete_after": 1, "error_rate": 0.3})
     replacing = task.learning.model_copy(update={"insert_beyond_share": 1.0})

@@ -29,7 +29,7 @@ def test_the_work_of_the_hands_is_load_too() -> None:
     assert load.minutes == (WorkloadMinute(set_down=2), WorkloadMinute(shown=1, rescued=1, go=1))
 
 
-def test_what_teaches_nothing_is_no_load() -> None:
+def test_workload_leaves_out_other_commands() -> None:
     load = TeacherWorkload(ticks=100, period_s=0.01)
     load.count(1, SetPhase("1", "Ann", Phase.CRITIC))
     load.count(2, Pursue("2", "Ann", ""))

@@ -30,7 +30,7 @@ def walk(town: Town, *steps: str) -> list[Street | None]:
     return led
 
 
-def test_of_all_pieces_of_the_lesson_from_here_to_there_the_shortest_counts(town: Town) -> None:
+def test_demonstrated_m_is_the_shortest_piece(town: Town) -> None:
     led = walk(town, *["turn_left"] * 4, "straight_on")
     first, second = led[0], led[1]
     assert first is not None
@@ -51,7 +51,7 @@ def test_a_way_ends_where_the_robot_was_set_down(town: Town) -> None:
     assert demonstrated_m([led[0], led[1], None, led[1], led[2]], start, goal) == math.inf
 
 
-def test_goals_are_far_enough_never_demonstrated_and_each_begins_where_the_last_one_is(town: Town) -> None:
+def test_choose_goals_are_far_new_and_successive(town: Town) -> None:
     led = walk(town, "turn_left", "turn_right")
     named = {
         "near": street(town, 3.1, 2.2, Side.EAST),
@@ -68,7 +68,7 @@ def test_goals_are_far_enough_never_demonstrated_and_each_begins_where_the_last_
     assert "near" not in {goals[0].name}
 
 
-def test_where_everything_was_demonstrated_there_is_nothing_to_be_sent_to(town: Town) -> None:
+def test_choose_goals_of_demonstrated_ways_is_empty(town: Town) -> None:
     steps = ["straight_on", "straight_on", "turn_left"]
     led = walk(town, *steps)
     start, goal = led[0], led[-1]

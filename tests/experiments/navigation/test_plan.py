@@ -61,7 +61,7 @@ def test_streets_and_errands_are_one_robots_knowledge(done: Done) -> None:
     assert len(ways) == done.outcome.mid_rlas >= 1
 
 
-def test_what_is_done_is_not_done_again(done: Done) -> None:
+def test_run_missing_skips_finished_jobs(done: Done) -> None:
     assert missing_time_s(done.plan, done.results) == 0.0
 
 
@@ -83,7 +83,7 @@ def test_a_task_without_errands_has_none_to_run() -> None:
 
 
 @pytest.mark.deep
-def test_a_robot_that_was_led_about_reaches_what_it_was_never_led_to(tmp_path: Path) -> None:
+def test_navigation_reaches_goals_without_demonstration(tmp_path: Path) -> None:
     done = carried_out(tmp_path, 1165.0, 800.0, 120.0)
     planned, by_chance, _ = done.outcome.runs
     assert len(planned.errands) == 20

@@ -47,7 +47,7 @@ def robot(seed: int, *runs: ErrandsRun) -> ErrandsOutcome:
 GOOD = run(*[errand()] * 20)
 
 
-def test_a_goal_counts_where_the_way_was_short_and_nothing_was_touched() -> None:
+def test_goal_counts_if_short_and_without_collision() -> None:
     mixed = run(errand(), errand(1.4), errand(why_not="stuck"), errand(collisions=1))
     assert mixed.good(1.3) == 1
     assert len(mixed.reached) == 2
@@ -70,7 +70,7 @@ def test_robots_that_settings_were_chosen_on_are_not() -> None:
     assert "20" in table.note
 
 
-def test_controls_stand_beside_the_plan_and_what_replay_would_come_to() -> None:
+def test_runs_table_lists_controls_and_demonstrations() -> None:
     by_chance = run(errand(why_not="astray"), errand(1.2), how="chance")
     table = runs_table([robot(1, run(errand(demonstrated=None), errand(demonstrated=2.0)), by_chance)], settings())
     assert [row[:2] for row in table.rows] == [

@@ -26,7 +26,7 @@ SHIPPED = yaml.safe_load((CONFIG_DIR / "paper" / "basic_level.yaml").read_text()
         ({"worlds": ["a", "nowhere"]}, "worlds.1: nowhere: no such file in worlds"),
     ],
 )
-def test_what_is_not_there_is_named_with_file_and_key(changed: dict[str, Any], said: str, tmp_path: Path) -> None:
+def test_load_paper_names_file_and_key_of_missing_parts(changed: dict[str, Any], said: str, tmp_path: Path) -> None:
     path = tmp_path / "mine.yaml"
     path.write_text(yaml.safe_dump(SHIPPED | changed))
     with pytest.raises(SettingsError) as caught:
@@ -34,5 +34,5 @@ def test_what_is_not_there_is_named_with_file_and_key(changed: dict[str, Any], s
     assert str(caught.value).startswith(f"{path}: {said}")
 
 
-def test_what_is_shipped_has_everything() -> None:
+def test_load_paper_accepts_the_shipped_settings() -> None:
     assert load_paper(factory=STAGE) == load_paper()

@@ -40,9 +40,7 @@ def test_each_job_leaves_its_result_and_each_robot_its_knowledge(tiny: Tiny) -> 
     assert {job.radius for job in growth} == {load_task("wall_following").learning.radius}  # as it is shipped
 
 
-def test_an_interrupted_run_does_only_what_is_missing_and_comes_to_the_same_byte_for_byte(
-    tiny: Tiny, tmp_path: Path
-) -> None:
+def test_interrupted_run_completes_to_equal_bytes(tiny: Tiny, tmp_path: Path) -> None:
     results = Results(tmp_path)
     plan = tiny_plan(results, "eight")
     first, second = (job.file for job in plan.jobs)
@@ -99,7 +97,7 @@ def test_the_report_says_how_it_was_made_and_that_it_is_a_part(tiny: Tiny) -> No
     assert "MISSED" not in text  # seconds of teaching judge nothing
 
 
-def test_what_is_filled_into_the_report_is_escaped(tiny: Tiny, tmp_path: Path) -> None:
+def test_report_escapes_its_values(tiny: Tiny, tmp_path: Path) -> None:
     evil = [replace(tiny.pictures[1], caption="<script>alert(1)</script>")]
     report = tmp_path / "report.html"
     write_report(tiny.study, evil, "kurt2rt paper --task a<b", report)
@@ -115,7 +113,7 @@ def test_both_readings_have_their_tables(tiny: Tiny, how: str) -> None:
         assert (how + what).lower() in titles
 
 
-def test_the_report_tells_every_setting_of_learning_and_exams_and_what_success_is(tiny: Tiny) -> None:
+def test_report_lists_all_settings(tiny: Tiny) -> None:
     learning, exams = learning_table(tiny.study), exams_table(tiny.study)
     shipped, plain = (
         dict(zip(learning.columns, row, strict=True)) for row in learning.rows if row[0] == "wall following"

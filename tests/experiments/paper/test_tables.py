@@ -22,7 +22,7 @@ def verdicts_of(table: Table) -> dict[str, tuple[str, ...]]:
     return {row[1]: row[2:] for row in table.rows}
 
 
-def test_what_was_taught_stands_beside_the_paper() -> None:
+def test_knowledge_table_has_the_papers_numbers() -> None:
     summary = summary_of("wall_following", [robot(seed, rlas, drive()) for seed, rlas in ((1, 80), (2, 90), (3, 99))])
     table = knowledge_table([summary], "what was taught")
     assert table.title == "What was taught"
@@ -30,7 +30,7 @@ def test_what_was_taught_stands_beside_the_paper() -> None:
     assert "3 robots" in table.note
 
 
-def test_a_teaching_time_that_the_paper_does_not_tell_is_not_made_up() -> None:
+def test_knowledge_table_leaves_unknown_times_out() -> None:
     table = knowledge_table([summary_of("turn_left", [robot(1, 40, drive("manhattan"))])], "what was taught")
     assert table.rows[0][3:6] == ("43", "345", "not told")
 
@@ -48,7 +48,7 @@ def test_success_and_collisions_come_with_intervals() -> None:
     assert b == ("wall following", "B", "1 of 3", "6% to 79%", "1", "1", "3.00", "0.00 to 8.77")
 
 
-def test_generated_worlds_are_one_row_and_each_is_named_with_its_robot() -> None:
+def test_exam_table_has_one_row_of_generated_worlds() -> None:
     robots = [
         robot(
             100, 80, drive("a"), drive("rooms-100"), drive("rooms-102", succeeded=False, stuck=True, duration_s=99.0)
@@ -60,7 +60,7 @@ def test_generated_worlds_are_one_row_and_each_is_named_with_its_robot() -> None
     assert generated[:3] == ("wall following", "3 of rooms-100..129", "2 of 3")
 
 
-def test_each_generated_world_is_told_with_the_robot_that_drove_in_it() -> None:
+def test_unseen_table_names_world_and_robot() -> None:
     robots = [robot(seed, 80, *(drive(f"rooms-{room}") for room in range(seed, 130, 2))) for seed in (100, 101)]
     rows = unseen_table(summary_of("wall_following", robots)).rows
     assert len(rows) == 30
@@ -68,7 +68,7 @@ def test_each_generated_world_is_told_with_the_robot_that_drove_in_it() -> None:
     assert [row[1] for row in rows[:4]] == ["100", "101", "100", "101"]
 
 
-def test_a_generated_world_that_several_robots_drove_in_is_told_for_each_and_one_that_none_did_is_left_out() -> None:
+def test_unseen_table_has_a_row_for_each_drive() -> None:
     robots = [robot(seed, 80, drive("rooms-101", collisions=seed - 100)) for seed in (121, 101)]
     rows = unseen_table(summary_of("wall_following", robots)).rows
     assert [row[:4] for row in rows] == [("rooms-101", "101", "yes", "1"), ("rooms-101", "121", "yes", "21")]
@@ -104,7 +104,7 @@ def test_comparisons_with_a_teacher_who_did_not_do_well_are_told() -> None:
     assert told == ["8.0 (9.0) laps", "8.0 (9.0, failed) laps", "8.0 (0.0, got nowhere) laps"]
 
 
-def test_exams_with_a_teacher_that_gets_nowhere_count_neither_way() -> None:
+def test_exams_without_a_measure_count_neither_way() -> None:
     nowhere = drive("rooms-100", teachers_progress=0.0)
     robots = [
         robot(1, 80, drive("a"), drive("b", teachers_progress=2.0, least_progress=2.0), nowhere),
@@ -122,7 +122,7 @@ def test_exams_with_a_teacher_that_gets_nowhere_count_neither_way() -> None:
     assert said["success in B"] == ("at least 0 of 0", "0 of 0, 3 not judged", "not judged")
 
 
-def test_behaviours_taught_in_common_stand_beside_the_papers_parts() -> None:
+def test_behaviour_table_has_the_papers_parts() -> None:
     found = {
         "junctions": 9.0,
         "junctions right": 8.0,
@@ -140,7 +140,7 @@ def test_behaviours_taught_in_common_stand_beside_the_papers_parts() -> None:
     )
 
 
-def test_what_is_missed_is_said_in_a_word() -> None:
+def test_targets_table_marks_missed_targets() -> None:
     robots = [
         robot(seed, 92, drive("a"), drive("b", succeeded=seed < 18), drive("c", succeeded=seed < 17))
         for seed in range(20)
@@ -160,7 +160,7 @@ def test_what_is_missed_is_said_in_a_word() -> None:
     assert capture.get().count("MISSED") == 2
 
 
-def test_where_there_is_a_reason_nothing_is_judged() -> None:
+def test_targets_table_with_a_reason_judges_nothing() -> None:
     table = paper_targets_table([summary_of("wall_following", [robot(1, 9, drive())])], "what was asked", ["Too few."])
     assert {row[-1] for row in table.rows} == {"not judged"}
     assert table.note == "Not judged. Too few."

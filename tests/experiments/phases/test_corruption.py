@@ -59,7 +59,7 @@ def test_the_same_seed_spoils_the_same_and_another_one_others() -> None:
     )
 
 
-def test_what_the_critic_was_shown_is_not_what_it_is_examined_on() -> None:
+def test_corrupt_differs_by_purpose() -> None:
     rlas, steps = system(*SET).rlas, {step.name: step for step in steps_of(load_task("wall_following"))}
 
     def wrong_at(name: str, seed: int) -> set[tuple[int, str]]:
@@ -85,7 +85,7 @@ def test_wrong_actions_are_motor_primitives_of_the_repertoire() -> None:
     assert len(primitives("basic")) == 14
 
 
-def test_a_critic_goes_over_to_another_set_with_what_it_agreed_with() -> None:
+def test_critics_lessons_carry_its_agreement() -> None:
     corrected = ActionReplaced(60, "good", "bad", origin("c"))
     agreed = Appraised("good", 1, 5, origin("a"))
     history: list[TeachingEvent] = [
@@ -102,7 +102,7 @@ def test_a_critic_goes_over_to_another_set_with_what_it_agreed_with() -> None:
     assert {rla.action for rla in there.rlas} == {"forward"}
 
 
-def test_a_shuffled_critic_has_the_same_opinions_elsewhere_and_is_trusted_all_the_same() -> None:
+def test_shuffled_critic_keeps_opinions_and_trust() -> None:
     appraisals = system(*SET, *CRITICS).rlas_at(CRITIC)
     lessons = list(shuffled(appraisals, SETTINGS, seed=3, period_s=PERIOD_S))
     dealt = system(*SET, *lessons).rlas_at(CRITIC)

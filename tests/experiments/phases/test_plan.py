@@ -26,7 +26,7 @@ def with_phases(**changed: float) -> TaskSettings:
     return TASK.model_copy(update={"phases": TASK.phases.model_copy(update=changed)})
 
 
-def test_jobs_come_in_waves_of_which_each_needs_only_those_before() -> None:
+def test_waves_need_only_the_waves_before() -> None:
     waves = [{job.step for job in wave} for wave in planned().waves]
     assert waves[0] == {PHASE_2}
     place = {step: number for number, wave in enumerate(waves) for step in wave}
@@ -39,7 +39,7 @@ def test_every_job_keeps_its_result_in_a_file_of_its_own() -> None:
     assert len({job.file for job in jobs}) == len(jobs) == 2 * 14
 
 
-def test_who_blames_by_chance_blames_each_robot_as_often_as_its_rewards_did(tmp_path: Path) -> None:
+def test_random_penalties_equal_those_of_the_rewards(tmp_path: Path) -> None:
     results = Results(tmp_path)
     jobs = {(job.step, job.file): job for job in make_plan(TASK, (100, 101), STAGE, ROBOT, results, source_of=str).jobs}
     by_step = {step: [job for (name, _), job in jobs.items() if name == step] for step in (REWARDS, BLAME_BY_CHANCE)}
@@ -51,14 +51,14 @@ def test_who_blames_by_chance_blames_each_robot_as_often_as_its_rewards_did(tmp_
     assert [each.blame_by_chance for each in told if each] == [37, 5]
 
 
-def test_another_time_of_one_step_makes_only_what_follows_from_it_anew() -> None:
+def test_changed_step_changes_following_steps_only() -> None:
     before = {job.file: job.made_of for job in planned().jobs}
     after = {job.file: job.made_of for job in planned(with_phases(autonomy_s=77.0)).jobs}
     changed = {Path(file).parent.name for file in before if before[file] != after[file]}
     assert changed == {PHASE_5, LONG_RUN}
 
 
-def test_another_time_of_phase_4_makes_all_critics_anew_and_no_rewards() -> None:
+def test_changed_phase_4_changes_all_critics() -> None:
     before = {job.step: job.made_of for job in planned().jobs}
     after = {job.step: job.made_of for job in planned(with_phases(critic_s=77.0)).jobs}
     assert before[CRITIC_ALONE].differences(after[CRITIC_ALONE]) == ["task"]
@@ -84,7 +84,7 @@ def test_quick_is_every_step_for_seconds() -> None:
     assert sum(job.robot_time_s for job in quick.jobs) < 1200
 
 
-def test_what_is_done_every_so_often_and_what_has_to_be_heard_first_is_less_in_a_quick_run() -> None:
+def test_quick_plan_shortens_intervals_and_thresholds() -> None:
     quick, whole = planned(quick=True).task, TASK
     assert quick.phases is not None
     assert whole.phases is not None

@@ -38,7 +38,7 @@ def test_each_step_stands_behind_those_it_needs() -> None:
     assert done <= set(TITLES)
 
 
-def test_every_repair_begins_with_the_same_wrong_set_at_the_same_place_for_the_same_time() -> None:
+def test_repairs_share_set_place_and_time() -> None:
     repairs = [STEPS[name] for name in (ASKS, UNKNOWN_BAD, BLAME_BY_CHANCE, REWARDS)]
     for step in (*repairs, STEPS[CORRUPTED], STEPS[CRITIC_ALONE], STEPS[SHUFFLED]):
         assert (step.after, step.corrupted) == (PHASE_2, 0.18)
@@ -75,7 +75,7 @@ def test_nobody_teaches_where_the_robot_is_alone() -> None:
 
 
 @pytest.mark.parametrize("name", ["wall_following", "fleeing", "eight"])
-def test_where_the_robot_is_alone_no_hand_sets_it_down_unless_it_is_stuck(name: str) -> None:
+def test_autonomous_steps_plan_no_repositioning(name: str) -> None:
     task = load_task(name)
     plans = [step.plan for step in steps_of(task) if step.plan and step.plan.phases[0][0] is Phase.AUTONOMOUS]
     assert len(plans) == 5

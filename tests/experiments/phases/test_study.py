@@ -36,7 +36,7 @@ def lessons(tiny: Tiny, step: str) -> list[TeachingEvent]:
     )
 
 
-def test_every_stage_is_there_and_every_step_leaves_what_the_robot_knows(tiny: Tiny) -> None:
+def test_phases_run_stores_stages_and_knowledge(tiny: Tiny) -> None:
     assert set(tiny.study.stages) == set(ALL)
     assert tiny.results.missing(tiny.plan.jobs) == []
     kept = {path.parent.name for path in tiny.results.folder.glob("knowledge/*/*.knowledge")}
@@ -45,7 +45,7 @@ def test_every_stage_is_there_and_every_step_leaves_what_the_robot_knows(tiny: T
     assert long_run.exams == ()
 
 
-def test_what_phase_1_taught_is_the_beginning_of_what_both_did(tiny: Tiny) -> None:
+def test_phase_1_lessons_begin_those_of_phase_2(tiny: Tiny) -> None:
     (one,), (two,) = tiny.study.stages[PHASE_1], tiny.study.stages[PHASE_2]
     assert (
         0
@@ -83,7 +83,7 @@ def test_phase_4_changes_the_critic_alone(tiny: Tiny) -> None:
     assert all(isinstance(event, RlaCreated | Appraised | ActionReplaced) for event in brought)
 
 
-def test_an_interrupted_run_does_only_what_is_missing_and_comes_to_the_same(tiny: Tiny, tmp_path: Path) -> None:
+def test_interrupted_run_completes_to_equal_results(tiny: Tiny, tmp_path: Path) -> None:
     results = Results(tmp_path)
     plan = tiny_plan(results)
     left_out = {job.file for job in plan.jobs if job.step in (CORRUPTED, LONG_RUN)}
@@ -110,7 +110,7 @@ def test_the_critic_is_judged_where_nothing_is_taught(tiny: Tiny) -> None:
     assert 0 < sum(each.ticks for each in judged.judgements) <= 100
 
 
-def test_knowledge_that_is_gone_while_its_result_stands_is_told_with_what_to_delete(tmp_path: Path) -> None:
+def test_missing_knowledge_raises_study_error(tmp_path: Path) -> None:
     results = Results(tmp_path)
     plan = tiny_plan(results)
     (job,) = [job for job in plan.jobs if job.step == CORRUPTED]
@@ -123,7 +123,7 @@ def test_results_that_are_not_there_are_not_shown(tiny: Tiny, tmp_path: Path) ->
         read_study(tiny.plan, Results(tmp_path))
 
 
-def test_the_report_holds_every_figure_and_every_table_and_needs_nothing_else(tiny: Tiny) -> None:
+def test_report_holds_all_figures_and_tables(tiny: Tiny) -> None:
     text = tiny.report.read_text(encoding="utf-8")
     page = Page(text)
     assert [each.path.name for each in tiny.pictures] == [

@@ -20,7 +20,7 @@ def test_robots_are_compared_with_themselves_world_by_world() -> None:
     assert found["c", "success"].surely_better
 
 
-def test_what_stays_as_it_is_is_neither_better_nor_worse() -> None:
+def test_paired_equal_stages_are_neither_better_nor_worse() -> None:
     robots = [stage("x", exam("a", collisions=n)) for n in range(5)]
     for each in paired(robots, robots):
         assert not each.surely_better
@@ -28,7 +28,7 @@ def test_what_stays_as_it_is_is_neither_better_nor_worse() -> None:
         assert each.better == each.worse == 0
 
 
-def test_a_critic_is_measured_by_what_is_bad_and_what_it_calls_so() -> None:
+def test_score_of_measures_precision_and_recall() -> None:
     told = [(-1, -1, 30), (-1, 0, 10), (0, -1, 20), (1, 1, 5), (1, None, 15), (0, 0, 20)]
     score = score_of([Judgement(judged=judged, said=said, ticks=ticks) for judged, said, ticks in told])
     assert (score.precision, score.recall, score.silent) == (0.6, 0.75, 0.15)

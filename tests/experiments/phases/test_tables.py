@@ -30,7 +30,7 @@ def test_nothing_is_judged_where_there_is_a_reason_not_to() -> None:
     assert {row[-1] for row in judged.rows} <= {"met", "MISSED"}
 
 
-def test_where_the_teacher_failed_himself_stands_beside_what_he_reaches() -> None:
+def test_teachers_table_names_failed_seeds() -> None:
     told = replace(study(3), teachers=((exam(),), (exam(succeeded=False, collisions=1),), (exam(progress=9.0),)))
     row = cells(teachers_table(told), 0)
     assert (row["without fault"], row["seeds that failed"], row["progress"]) == ("2 of 3", "101", "8.0 laps")

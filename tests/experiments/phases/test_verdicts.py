@@ -57,7 +57,7 @@ def intact(*after: ExamOutcome) -> dict[str, Verdict]:
     }
 
 
-def test_an_intact_set_that_stays_as_it_is_is_not_worse_by_any_measure() -> None:
+def test_intact_unchanged_set_is_not_worse() -> None:
     told = intact(*[exam()] * 20)
     assert (told["success"].values["after"], told["success"].values["no_longer_clean"]) == (1.0, 0)
     assert (told["progress"].values["after"], told["progress"].values["worst"]) == (8.0, 0.0)
@@ -65,7 +65,7 @@ def test_an_intact_set_that_stays_as_it_is_is_not_worse_by_any_measure() -> None
     assert len(told) == 5
 
 
-def test_one_robot_that_is_clean_no_more_is_worse_however_many_are() -> None:
+def test_intact_one_robot_no_longer_clean_is_worse() -> None:
     told = intact(exam(succeeded=False, collisions=1), *[exam()] * 19)
     for measure, mean in (("success", 0.95), ("collisions in 10 min", 0.1)):
         assert told[measure].result is Result.MISSED
@@ -74,7 +74,7 @@ def test_one_robot_that_is_clean_no_more_is_worse_however_many_are() -> None:
     assert told["progress"].met
 
 
-def test_what_is_measured_may_be_worse_by_the_margin_at_the_bad_end_of_its_interval() -> None:
+def test_intact_measure_may_be_worse_by_the_margin() -> None:
     for progress, result in ((7.85, Result.MET), (7.83, Result.MISSED)):
         verdict = intact(*[exam(progress=progress)] * 20)["progress"]
         assert verdict.result is result

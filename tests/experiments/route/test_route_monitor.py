@@ -73,7 +73,7 @@ class Watched:
         return [wrong.layer for wrong in self.watching.wrong]
 
 
-def test_what_is_right_is_nobodys_fault() -> None:
+def test_route_monitor_right_decision_has_no_fault() -> None:
     watched = Watched()
     for turn in (0, 1, -1) * 6:
         watched.junction(turn, turn, turn, turn)
@@ -81,7 +81,7 @@ def test_what_is_right_is_nobodys_fault() -> None:
     assert watched.blamed == []
 
 
-def test_the_basic_level_that_was_told_right_and_did_otherwise_is_to_blame() -> None:
+def test_route_monitor_wrong_drive_is_basic() -> None:
     watched = Watched()
     watched.junction(1, 1, 0, 0)
     watched.junction(0, 0, 0, 0)
@@ -90,7 +90,7 @@ def test_the_basic_level_that_was_told_right_and_did_otherwise_is_to_blame() -> 
     assert (wrong.leg, wrong.x_m, wrong.y_m) == (0, 1.0, 2.0)
 
 
-def test_the_mid_level_that_had_noticed_everything_and_wanted_otherwise_is_to_blame() -> None:
+def test_route_monitor_wrong_choice_is_mid() -> None:
     watched = Watched()
     watched.junction(0, 0, 0, 0)
     watched.junction(1, -1, -1, -1)
@@ -98,20 +98,20 @@ def test_the_mid_level_that_had_noticed_everything_and_wanted_otherwise_is_to_bl
 
 
 @pytest.mark.parametrize("noticed", [None, 1])
-def test_where_it_had_missed_a_junction_or_mistaken_it_the_symbols_are_to_blame(noticed: int | None) -> None:
+def test_route_monitor_missed_junction_is_symbols(noticed: int | None) -> None:
     watched = Watched()
     watched.junction(0, 0, 0, noticed)
     watched.junction(1, -1, -1, -1)
     assert watched.blamed == ["symbols"]
 
 
-def test_told_something_else_on_the_way_through_the_symbols_are_to_blame() -> None:
+def test_route_monitor_changed_command_is_symbols() -> None:
     watched = Watched()
     watched.junction(1, 1, -1, -1, within=-1)
     assert watched.blamed == ["symbols"]
 
 
-def test_an_unknown_history_in_the_street_is_the_mid_levels_fault_a_stuck_robot_the_basic_levels() -> None:
+def test_route_monitor_unknown_history_is_mid_stuck_is_basic() -> None:
     watched = Watched()
     watched.junction(0, 0, 0, 0)
     watched.look(0, asks=True)
@@ -125,7 +125,7 @@ def test_an_unknown_history_in_the_street_is_the_mid_levels_fault_a_stuck_robot_
     assert watched.blamed == ["basic"]
 
 
-def test_stuck_just_behind_a_junction_that_it_is_still_to_notice_is_the_basic_levels_fault() -> None:
+def test_route_monitor_stuck_after_a_junction_is_basic() -> None:
     watched = Watched()
     for turn in (0, 1, -1) * 5:
         watched.junction(turn, turn, turn, turn)

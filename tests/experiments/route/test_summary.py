@@ -73,7 +73,7 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
     return Done(results, plan, study, pictures, report, progress)
 
 
-def test_the_streets_are_taught_once_and_every_way_of_teaching_goes_on_from_them(done: Done) -> None:
+def test_route_run_teaches_the_streets_once(done: Done) -> None:
     (basic,) = done.plan.basic_jobs
     assert basic.knowledge.is_file()
     taught, commanded = (summary.outcomes[0] for summary in done.study.summaries)
@@ -83,7 +83,7 @@ def test_the_streets_are_taught_once_and_every_way_of_teaching_goes_on_from_them
     assert done.progress[-1].done_s == 10.0 + 2 * (8.0 + 3.0)
 
 
-def test_what_the_mid_level_was_taught_stands_in_its_file(done: Done) -> None:
+def test_route_run_stores_the_mid_level(done: Done) -> None:
     job = done.plan.experiments[0].jobs[0]
     with Journal.read_only(job.knowledge) as journal:
         system = fold_journal(journal, job.task.learning.radius)
@@ -95,14 +95,14 @@ def test_what_the_mid_level_was_taught_stands_in_its_file(done: Done) -> None:
     assert system.knowledge_hash() == outcome.knowledge_hash
 
 
-def test_done_again_nothing_is_left_to_do_and_other_settings_are_refused(done: Done) -> None:
+def test_route_run_repeated_does_nothing(done: Done) -> None:
     again = a_programme(done.results)
     assert missing_time_s(again, done.results) == 0.0
     with pytest.raises(StudyError, match="made with other settings"):
         done.results.missing(a_programme(done.results, teaching_s=13.0).jobs)
 
 
-def test_robots_that_know_the_streets_already_are_taught_the_route_only(done: Done, tmp_path: Path) -> None:
+def test_basic_folder_skips_the_streets(done: Done, tmp_path: Path) -> None:
     folder = done.plan.basic_jobs[0].knowledge.parent
     plan = a_programme(Results(tmp_path), folder)
     assert plan.basic_jobs == ()
@@ -123,5 +123,5 @@ def test_pictures_and_report_show_every_way_of_teaching(done: Done) -> None:
         assert table.title in text
 
 
-def test_the_streets_are_the_task_whose_knowledge_the_route_goes_on_in() -> None:
+def test_basic_task_of_is_the_named_system() -> None:
     assert basic_task_of(load_task("route")).name == "streets"

@@ -49,6 +49,6 @@ def test_begun_anew_the_phases_go_on() -> None:
     assert once.phases == ((Phase.SUPERVISED, 100.0), (Phase.CORRECTIONS, 300.0))
 
 
-def test_whoever_only_answers_stays_in_phase_1_and_the_basic_level_may_be_left_alone() -> None:
+def test_only_answers_plan_stays_in_phase_1() -> None:
     assert {phase for plan in named("only-answers").plans(route(), 2) for phase, _ in plan.phases} == {Phase.SUPERVISED}
     assert [plan.corrects_basic for plan in named("basic-not-corrected").plans(route(), 2)] == [False, False]

@@ -8,14 +8,14 @@ from kurt2rt.experiments.study.intervals import difference_of, fall_of, poisson_
 from tests.examples import examples
 
 
-def test_where_nothing_happened_the_upper_end_is_poissons() -> None:
+def test_rate_of_no_events_ends_at_poissons_bound() -> None:
     # The exact upper limit of a count of 0 is 3.689 (Garwood 1936).
     rate = rate_of([0, 0, 0, 0], [0.5, 0.5, 0.5, 0.5])
     assert (rate.value, rate.low) == (0.0, 0.0)
     assert rate.high == pytest.approx(3.689 / 2.0, abs=1e-3)
 
 
-def test_collisions_of_one_bad_robot_are_less_sure_than_those_of_many() -> None:
+def test_rate_of_clustered_events_has_a_wider_interval() -> None:
     clustered = rate_of([20, *[0] * 19], [1.0] * 20)
     spread = rate_of([1] * 20, [1.0] * 20)
     assert clustered.value == spread.value == 1.0
@@ -69,7 +69,7 @@ def test_one_more_event_moves_both_ends_up_or_not_at_all(robots: list[tuple[int,
     assert more.high >= rate.high
 
 
-def test_the_same_change_in_every_robot_is_sure_and_one_robot_says_nothing() -> None:
+def test_difference_of_equal_changes_is_a_point() -> None:
     assert difference_of([0.5, 0.5, 0.5]) == (0.5, 0.5, 0.5)
     assert difference_of([0.5]) == (0.5, -math.inf, math.inf)
 

@@ -28,13 +28,13 @@ class Job:
 JOBS = [Job("short", 10.0), Job("long", 40.0), Job("middle", 20.0)]
 
 
-def test_the_longest_job_comes_first_and_results_keep_their_order() -> None:
+def test_run_jobs_starts_the_longest_and_keeps_order() -> None:
     done: list[int] = []
     assert run_jobs(JOBS, 1, on_done=done.append) == ["short done", "long done", "middle done"]
     assert done == [1, 2, 0]
 
 
-def test_how_far_it_is_is_told_in_robot_time() -> None:
+def test_run_jobs_progress_is_in_robot_time() -> None:
     told: list[PoolProgress] = []
     run_jobs(JOBS, 1, on_progress=told.append)
     assert told == [
@@ -48,7 +48,7 @@ def test_how_far_it_is_is_told_in_robot_time() -> None:
     ]
 
 
-def test_what_a_job_raises_ends_the_others() -> None:
+def test_run_jobs_error_ends_other_jobs() -> None:
     done: list[int] = []
     with pytest.raises(RuntimeError, match="middle fails") as caught:
         run_jobs([JOBS[0], JOBS[1], Job("middle", 20.0, fails=True)], 1, on_done=done.append)
@@ -70,7 +70,7 @@ def test_other_processes_come_to_the_same() -> None:
 
 
 @pytest.mark.deep
-def test_what_a_job_raises_in_another_process_names_it_too() -> None:
+def test_run_jobs_error_in_a_process_names_the_job() -> None:
     with pytest.raises(RuntimeError, match="middle fails") as caught:
         run_jobs([JOBS[0], Job("middle", 20.0, fails=True)], 2)
     assert caught.value.__notes__ == ["middle"]

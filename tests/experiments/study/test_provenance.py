@@ -60,7 +60,7 @@ def test_a_change_in_the_file_of_a_mid_level_shows(tmp_path: Path) -> None:
     assert made.differences(Fingerprints(STAGE, ROBOT, "s").of(task, ("manhattan",))) == ["task"]
 
 
-def test_what_the_paper_reports_decides_nothing(fingerprints: Fingerprints) -> None:
+def test_fingerprints_ignore_the_papers_numbers(fingerprints: Fingerprints) -> None:
     other = TASK.model_copy(update={"paper": TASK.paper.model_copy(update={"rlas": 1})})
     assert fingerprints.of(other, ("a",)) == fingerprints.of(TASK, ("a",))
 

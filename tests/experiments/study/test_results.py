@@ -57,7 +57,7 @@ def test_a_file_that_is_no_result_is_named(tmp_path: Path) -> None:
         Results(tmp_path).missing(JOBS)
 
 
-def test_a_result_that_lacks_something_is_found_before_anything_runs(tmp_path: Path) -> None:
+def test_missing_raises_for_an_incomplete_result(tmp_path: Path) -> None:
     results = Results(tmp_path)
     results.write(JOBS[0], robot(1, 90, drive()))
     content = json.loads((tmp_path / JOBS[0].file).read_text())
@@ -78,7 +78,7 @@ def test_two_runs_do_not_write_into_one_folder(tmp_path: Path) -> None:
         pass
 
 
-def test_what_an_interrupted_run_had_begun_is_cleared_away(tmp_path: Path) -> None:
+def test_held_removes_unfinished_folders(tmp_path: Path) -> None:
     results = Results(tmp_path / "new")
     with results.held(), results.scratch() as scratch:
         begun = scratch / "knowledge"

@@ -42,7 +42,7 @@ def test_two_fresh_processes_come_to_the_same_as_this_one(tmp_path: Path) -> Non
 
 
 @pytest.mark.deep
-def test_what_fails_in_a_process_is_said_before_the_others_are_through(tmp_path: Path) -> None:
+def test_run_seeds_reports_an_error_at_once(tmp_path: Path) -> None:
     first, second = jobs(tmp_path)
     failing = replace(first, worlds=("nowhere",))
     others = [replace(second, seed=seed, knowledge=tmp_path / f"{seed}.knowledge") for seed in range(10, 30)]

@@ -14,7 +14,7 @@ from tests.experiments.helpers import ROBOT, STAGE, teach
 QUIET = SurpriseCounts("nothing", 200, 4, 10, 0, 0, 0.0)
 
 
-def test_a_table_has_a_row_for_each_difference_and_the_robots_together() -> None:
+def test_surprise_table_has_a_row_for_each_difference() -> None:
     one = (QUIET, SurpriseCounts("set down elsewhere", 100, 20, 30, 10, 8, 0.05))
     other = (replace(QUIET, surprising=8), SurpriseCounts("set down elsewhere", 100, 10, 30, 10, 6, 0.15))
     table: Table = surprise_table([one, other])
@@ -33,7 +33,7 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, TaskSettings
 
 
 @pytest.mark.deep
-def test_on_known_ground_little_is_surprising_and_more_where_something_is_different(
+def test_changes_are_more_surprising_than_known_ground(
     taught: tuple[Path, TaskSettings],
 ) -> None:
     knowledge, task = taught
