@@ -1,5 +1,7 @@
 """Codec of the health report, for JSON and CBOR."""
 
+from typing import Any
+
 from kurt2rt.channel.protocol.cbor_schema import COUNT, LINE, NAME, Form, MapOf, MayLack
 from kurt2rt.channel.protocol.health import (
     BusHealth,
@@ -23,20 +25,14 @@ MOST_ROWS = 16
 _TIME = Float(1e12)
 
 
-def _trouble(
-    about: str,
-    what: str,
-    since_s: float,
-    to_do: str,
-    urgent: bool,
-    code: str = "",
-    name: str = "",
-    numbers: tuple[float, ...] = (),
-    line: str = "",
-) -> Trouble:
-    """Return a trouble; an older robot, or a code that is not known here, gives OTHER with its text."""
+def _trouble(about: str, what: str, since_s: float, to_do: str, urgent: bool, **coded: Any) -> Trouble:
+    """Return a trouble; an older robot, or a code that is not known here, gives OTHER with its text.
+
+    `coded` holds `code`, `name`, `numbers` and `line`, which older robots leave out.
+    """
+    code, numbers = coded.pop("code", ""), coded.get("numbers", ())
     if code in TroubleCode.__members__.values() and len(numbers) >= numbers_of(TroubleCode(code)):
-        return Trouble(TroubleCode(code), since_s, urgent, name, numbers, line)
+        return Trouble(TroubleCode(code), since_s, urgent, **coded)
     return Trouble(TroubleCode.OTHER, since_s, urgent, about, (), f"{what}; {to_do}" if to_do else what)
 
 

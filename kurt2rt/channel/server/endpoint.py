@@ -173,6 +173,19 @@ def _never(_: Any) -> bool:
     return False
 
 
+def _unless_reachable(
+    end_all: Callable[[Exception, Any], None], is_reachable: Callable[[Any], bool]
+) -> Callable[[Exception, Any], None]:
+    """Return `end_all`, which ends all observations of a sender, without effect on one that is certainly there."""
+
+    def dispatch_error(error: Exception, remote: Any) -> None:
+        # aiocoap ends all observations of a device for one message that it did not confirm in time.
+        if not (isinstance(error, ConRetransmitsExceeded) and is_reachable(remote)):
+            end_all(error, remote)
+
+    return dispatch_error
+
+
 async def open_endpoint(
     site: Site,
     host: str,
@@ -215,12 +228,5 @@ async def open_endpoint(
     answered.tokens = tokens
     opened: _Socket = tokens.token_interface.message_interface
     opened.filter = datagram_filter
-    end_all = tokens.dispatch_error
-
-    def dispatch_error(error: Exception, remote: Any) -> None:
-        # aiocoap ends all observations of a device for one message that it did not confirm in time.
-        if not (isinstance(error, ConRetransmitsExceeded) and is_reachable(remote)):
-            end_all(error, remote)
-
-    tokens.dispatch_error = dispatch_error
+    tokens.dispatch_error = _unless_reachable(tokens.dispatch_error, is_reachable)
     return Endpoint(context, opened, bound.getsockname()[1], datagram_filter, counters, failures)

@@ -90,8 +90,8 @@ class Target:
     def __init__(self, at_work: RobotAtWork, device: OscoreContext, seed: int) -> None:
         self.at_work = at_work
         self.device = device
-        reception: Any = at_work.channel.handler
-        self.hostile = HostileDatagrams(seed, lambda: (reception._parts.boot, reception.tick))
+        handler: Any = at_work.channel.handler
+        self.hostile = HostileDatagrams(seed, lambda: (handler._parts.boot, handler.tick))
         self.errors: list[str] = []
         self._endpoint: Any = at_work.channel.endpoint
         keys: Any = at_work.channel.site._keys

@@ -121,8 +121,8 @@ def test_every_key_of_hello_is_explained(tmp_path: Path) -> None:
 
     async def story() -> None:
         async with robot_at_work(tmp_path) as at_work:
-            reception: Any = at_work.channel.handler
-            told.append({*reception._hello, "tick"})
+            handler: Any = at_work.channel.handler
+            told.append({*handler._hello, "tick"})
 
     run_jumping(story)
     table = SAID[SAID.index("`/hello` answers:") :]

@@ -562,10 +562,10 @@ async def on_line(folder: Path) -> AsyncIterator[OnLine]:
     keys = OscoreContext(pairing.device.folder)
     answer_challenge(keys, teachers.find(header_of(keys)))
     desk = ChannelFixture()
-    safekeeping = JournalStatus(lambda: desk.unwritten, lambda: None, lambda _: "")
+    journal = JournalStatus(lambda: desk.unwritten, lambda: None, lambda _: "")
     coap = await aiocoap.Context.create_client_context(transports=["udp6"])
-    surroundings = ChannelDependencies(safekeeping, desk.shelf, lambda: "", None)
-    async with open_channel(desk.runtime, teachers, 0, surroundings) as channel:
+    dependencies = ChannelDependencies(journal, desk.shelf, lambda: "", None)
+    async with open_channel(desk.runtime, teachers, 0, dependencies) as channel:
         yield OnLine(desk, channel, Line(coap, channel.endpoint.port, keys))
     await coap.shutdown()
     keys.close()
@@ -615,10 +615,8 @@ async def test_channel_without_paired_device_listens_on_loopback(tmp_path: Path)
     local_pairing(tmp_path / "teachers", tmp_path / "devices")
     teachers = Teachers(tmp_path / "teachers")
     desk = ChannelFixture()
-    safekeeping = JournalStatus(lambda: 0, lambda: None, lambda _: "")
-    async with open_channel(
-        desk.runtime, teachers, 0, ChannelDependencies(safekeeping, desk.shelf, str, None)
-    ) as channel:
+    journal = JournalStatus(lambda: 0, lambda: None, lambda _: "")
+    async with open_channel(desk.runtime, teachers, 0, ChannelDependencies(journal, desk.shelf, str, None)) as channel:
         (tokens,) = channel.endpoint._context.request_interfaces
         transport = tokens.token_interface.message_interface.transport
         assert transport.get_extra_info("socket").getsockname()[0] == "::ffff:127.0.0.1"
@@ -631,10 +629,8 @@ async def test_channel_damaged_pairing_is_reported_and_others_work(tmp_path: Pat
     damaged.write_text("{}", encoding="utf-8")
     desk = ChannelFixture()
     teachers = Teachers(tmp_path / "teachers")
-    safekeeping = JournalStatus(int, lambda: None, str)
-    async with open_channel(
-        desk.runtime, teachers, 0, ChannelDependencies(safekeeping, desk.shelf, str, None)
-    ) as channel:
+    journal = JournalStatus(int, lambda: None, str)
+    async with open_channel(desk.runtime, teachers, 0, ChannelDependencies(journal, desk.shelf, str, None)) as channel:
         assert teachers.names == ("local",)
         assert "the pairing is damaged" in channel.trouble
         assert "kurt2rt pair bob --renew" in channel.trouble
