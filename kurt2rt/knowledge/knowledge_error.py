@@ -4,7 +4,7 @@ import sqlite3
 from pathlib import Path
 
 from hal.errors import UserError
-from kurt2rt.knowledge.knowledge_code import TEXTS, KnowledgeCode
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 
 
 class KnowledgeError(UserError):
@@ -12,10 +12,9 @@ class KnowledgeError(UserError):
 
     def __init__(self, code: KnowledgeCode, *, where: object = "", **fields: object) -> None:
         """Fill the code's text with `fields`; `where` names the file, with the row if it is about one."""
-        what, do = TEXTS[code]
         # Texts of exceptions only: the error crosses processes, and not every exception can.
         self.fields = {key: str(each) if isinstance(each, BaseException) else each for key, each in fields.items()}
-        super().__init__(what.format_map(self.fields), where=where, do=do.format_map(self.fields))
+        super().__init__(code.what.format_map(self.fields), where=where, do=code.do.format_map(self.fields))
         self.code = code
 
     def __reduce__(self) -> tuple[object, ...]:

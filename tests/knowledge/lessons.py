@@ -85,9 +85,14 @@ def entry(rla_id: int) -> JournalEntry:
 
 def begun(path: Path, lessons: int = 3) -> Path:
     """Make a knowledge file with some lessons, closed; return its path."""
-    with Journal.open(path, BINDING) as journal:
-        journal.append([entry(number) for number in range(1, lessons + 1)])
+    append(path, *(created(number) for number in range(1, lessons + 1)))
     return path
+
+
+def append(path: Path, *events: TeachingEvent, binding: KnowledgeBinding = BINDING, stamp: str = STAMP) -> None:
+    """Append events to the knowledge file at `path`, which is made if it is missing."""
+    with Journal.open(path, binding) as journal:
+        journal.append([JournalEntry(event, stamp) for event in events])
 
 
 def as_written_by(version: int, event: TeachingEvent) -> str:

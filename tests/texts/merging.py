@@ -7,7 +7,7 @@ from string import Formatter
 from kurt2rt.cli.knowledge.merge import format_left_out, format_reason, format_state
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.rla import ASK
-from kurt2rt.knowledge.knowledge_code import TEXTS, KnowledgeCode
+from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.versions.merge import Conflict, ConflictCode, NameState, RlaState
 from kurt2rt.knowledge.versions.merge_writer import LeftOutCode, LeftOutReward
@@ -39,6 +39,6 @@ def conflicts() -> Iterator[tuple[str, str]]:
 def knowledge_errors() -> Iterator[tuple[str, str]]:
     """Yield the error of each code, with names of its fields for their values."""
     for code in KnowledgeCode:
-        names = {name for text in TEXTS[code] for _, name, _, _ in Formatter().parse(text) if name}
+        names = {name for text in (code.what, code.do) for _, name, _, _ in Formatter().parse(text) if name}
         fields = {name: 14.2 if name == "at_s" else name.upper() for name in names}
         yield code, str(KnowledgeError(code, where="mine.knowledge", **fields))

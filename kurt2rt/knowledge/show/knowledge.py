@@ -8,6 +8,7 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from kurt2rt.core.perception.definition import AVERAGED
+from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.rla import (
     BASIC,
     CRITIC,
@@ -102,17 +103,11 @@ def render_lessons(journal: Journal, limit: int | None = None, taught_by: str | 
 
     `taught_by`: only those of that teacher.
     """
-    entries = journal.entries()
-    everybodys = fold_entries(journal, entries, radius=math.inf).lessons
-    records = [record for record in everybodys if taught_by in (None, record.event.origin.teacher)]
-    stamps = {entry.event.origin.command_id: entry.stamped_at for entry in entries}
-    undone_by = {
-        entry.event.lesson: entry.event.origin.teacher for entry in entries if isinstance(entry.event, LessonUndone)
-    }
+    records, stamps, undone_by = _read_lessons(journal, taught_by)
     table = TextTable()
     for heading in ("lesson", "id", "taught (UTC), by", "undone by"):
         table.add_column(heading)
-    for record in records[::-1][:limit]:
+    for record in records[:limit]:
         origin = record.event.origin
         table.add_row(
             printable(record.text),
@@ -184,13 +179,7 @@ def _rla_as_data(
 
 def lessons_data(journal: Journal, limit: int | None = None, taught_by: str | None = None) -> dict[str, Any]:
     """Return the lessons that `render_lessons` shows, for JSON. Raises KnowledgeError."""
-    entries = journal.entries()
-    stamps = {entry.event.origin.command_id: entry.stamped_at for entry in entries}
-    undone_by = {
-        entry.event.lesson: entry.event.origin.teacher for entry in entries if isinstance(entry.event, LessonUndone)
-    }
-    everybodys = fold_entries(journal, entries, radius=math.inf).lessons
-    records = [record for record in everybodys if taught_by in (None, record.event.origin.teacher)][::-1]
+    records, stamps, undone_by = _read_lessons(journal, taught_by)
     shown = records[:limit]
     return {
         "file": str(journal.path),
@@ -206,6 +195,18 @@ def lessons_data(journal: Journal, limit: int | None = None, taught_by: str | No
         ],
         "older": len(records) - len(shown),
     }
+
+
+def _read_lessons(journal: Journal, taught_by: str | None) -> tuple[list[LessonRecord], dict[str, str], dict[str, str]]:
+    """Return the lessons, newest first, and by command id the stamps and the teachers of undos."""
+    entries = journal.entries()
+    lessons = fold_entries(journal, entries, radius=math.inf).lessons
+    records = [record for record in lessons[::-1] if taught_by in (None, record.event.origin.teacher)]
+    stamps = {entry.event.origin.command_id: entry.stamped_at for entry in entries}
+    undone_by = {
+        entry.event.lesson: entry.event.origin.teacher for entry in entries if isinstance(entry.event, LessonUndone)
+    }
+    return records, stamps, undone_by
 
 
 def _empty_table(*, named: bool, any_value: bool, wide: bool) -> TextTable:

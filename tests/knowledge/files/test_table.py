@@ -16,6 +16,7 @@ from tests.knowledge.lessons import (
     BINDING,
     STAMP,
     WITH_CRITIC,
+    append,
     appraisal,
     created,
     deleted,
@@ -73,8 +74,7 @@ def test_export_table_has_a_row_per_living_rla(path: Path, tmp_path: Path) -> No
 def test_export_table_numbers_and_names_are_exact(path: Path, tmp_path: Path) -> None:
     condition = (0.1 + 0.2, 1 / 3, -0.0, 5e-324)
     rla = replace(created(1).rla, condition=condition, action='left, "hard"\n;', radius=1e300)
-    with Journal.open(path, BINDING) as journal:
-        journal.append([JournalEntry(RlaCreated(rla), STAMP)])
+    append(path, RlaCreated(rla))
     (_, row) = exported(path, tmp_path)
 
     assert (row[1], float(row[2])) == (rla.action, rla.radius)
@@ -119,8 +119,7 @@ def test_export_table_appraisal_rlas_have_own_columns(path: Path, tmp_path: Path
 @pytest.mark.parametrize("begin", ["=", "+", "-", "@", "\t", "\r", "\uff1d"])
 def test_export_table_formula_text_is_quoted(path: Path, tmp_path: Path, begin: str) -> None:
     rla = replace(created(1).rla, action=f"{begin}HYPERLINK(A1)", behaviour=f"{begin}1+1")
-    with Journal.open(path, BINDING) as journal:
-        journal.append([JournalEntry(RlaCreated(rla), STAMP)])
+    append(path, RlaCreated(rla))
     (heading, row) = exported(path, tmp_path)
 
     assert row[1] == f"'{begin}HYPERLINK(A1)"
@@ -130,6 +129,5 @@ def test_export_table_formula_text_is_quoted(path: Path, tmp_path: Path, begin: 
 
 def test_export_table_number_text_is_not_quoted(path: Path, tmp_path: Path) -> None:
     rla = replace(created(1).rla, action="-1.5e3")
-    with Journal.open(path, BINDING) as journal:
-        journal.append([JournalEntry(RlaCreated(rla), STAMP)])
+    append(path, RlaCreated(rla))
     assert exported(path, tmp_path)[1][1] == "-1.5e3"

@@ -20,6 +20,7 @@ from tests.knowledge.lessons import (
     BINDING,
     STAMP,
     WITH_CRITIC,
+    append,
     as_written_by,
     begun,
     created,
@@ -256,8 +257,7 @@ def test_read_only_leaves_the_log_of_a_killed_robot(tmp_path: Path, path: Path) 
 
 def test_read_only_robot_starts_and_ends_keeps_lessons(path: Path) -> None:
     with Journal.read_only(begun(path)) as look:
-        with Journal.open(path, BINDING) as journal:
-            journal.append([entry(4)])
+        append(path, created(4))
         assert len(look.events()) == 4
     assert set(contents(path.parent)) == {path.name, f"{path.name}.lock"}
     with Journal.open(path, BINDING) as journal:

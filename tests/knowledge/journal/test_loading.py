@@ -25,6 +25,7 @@ from tests.knowledge.lessons import (
     CIRCUMSTANCES,
     STAMP,
     WITH_CRITIC,
+    append,
     appraisal,
     begun,
     created,
@@ -137,8 +138,7 @@ def test_open_missing_level_is_added_and_extra_level_kept(path: Path) -> None:
 def test_open_other_level_features_are_refused_with_difference(
     path: Path, features: LevelFeatures, difference: str
 ) -> None:
-    with Journal.open(path, WITH_CRITIC) as journal:
-        journal.append([JournalEntry(appraisal(1), STAMP)])
+    append(path, appraisal(1), binding=WITH_CRITIC)
     other = replace(BINDING, levels={CRITIC: features})
     require_refused(path, KnowledgeCode.OTHER_LEVEL_FEATURES, other, level=CRITIC, difference=difference)
 

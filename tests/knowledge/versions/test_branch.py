@@ -12,7 +12,7 @@ from kurt2rt.knowledge.journal.fold import check_knowledge
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.versions.branch import BranchOrigin, BranchResult, branch, branch_origin
-from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, replaced
+from tests.knowledge.lessons import BINDING, STAMP, append, begun, created, deleted, replaced
 from tests.knowledge.refusals import refused
 
 LATER = "2004-04-26T11:00:00.000+00:00"
@@ -92,8 +92,7 @@ def test_branch_while_written_is_of_one_moment(taught: Path, tmp_path: Path, mon
 
 
 def test_branch_misfit_lessons_are_refused(taught: Path, tmp_path: Path) -> None:
-    with Journal.open(taught, BINDING) as journal:
-        journal.append([JournalEntry(deleted(77), LATER)])
+    append(taught, deleted(77), stamp=LATER)
     with refused(KnowledgeCode.NOT_BUILT, taught, cause=KnowledgeCode.LESSON_MISFIT):
         branch(taught, tmp_path / "b", None, stamp=NOW)
     assert not (tmp_path / "b").exists()

@@ -41,6 +41,7 @@ from tests.knowledge.lessons import (
     BINDING,
     STAMP,
     WITH_CRITIC,
+    append,
     begun,
     created,
     deleted,
@@ -60,11 +61,6 @@ def at(rla_id: int, x: float, action: str = "forward", command_id: str | None = 
     """Return the creation of an RLA in one dimension."""
     event = created(rla_id, command_id, action)
     return RlaCreated(replace(event.rla, condition=(x, 0.0, 0.0, 0.0)))
-
-
-def append(path: Path, *events: TeachingEvent) -> None:
-    with Journal.open(path, BINDING) as journal:
-        journal.append([JournalEntry(event, STAMP) for event in events])
 
 
 @pytest.fixture

@@ -20,7 +20,7 @@ from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.versions.undo import apply_plan, plan_redo, plan_undo
 from tests.core.reinforcement.helpers import SIGNALS_ONLY, Track
 from tests.core.rla.helpers import created as known_at
-from tests.knowledge.lessons import BINDING, STAMP, begun, created, deleted, origin, replaced, rewarded
+from tests.knowledge.lessons import BINDING, STAMP, append, begun, created, deleted, origin, replaced, rewarded
 from tests.knowledge.refusals import refused
 from tests.teacher.helpers import teach
 
@@ -53,8 +53,7 @@ def redo(path: Path, lesson: str | None = None) -> LessonRecord:
 
 def test_undo_without_id_takes_the_newest_lesson(path: Path) -> None:
     begun(path, lessons=2)
-    with Journal.open(path, BINDING) as journal:
-        journal.append([JournalEntry(deleted(1), STAMP)])
+    append(path, deleted(1))
 
     assert undo(path) == LessonRecord(deleted(1), undone=True)
     assert rlas(path) == (created(1).rla, created(2).rla)
@@ -84,11 +83,9 @@ def test_redo_last_undo_comes_first_with_its_value(path: Path) -> None:
 def test_redo_lesson_whose_place_is_taken_is_refused(path: Path) -> None:
     begun(path)
     undo(path, "create-3")
-    with Journal.open(path, BINDING) as journal:
-        journal.append([JournalEntry(replaced(1, "left", "forward"), STAMP)])
+    append(path, replaced(1, "left", "forward"))
     undo(path)
-    with Journal.open(path, BINDING) as journal:
-        journal.append([JournalEntry(replaced(1, "right", "forward"), STAMP)])
+    append(path, replaced(1, "right", "forward"))
     for lesson, outcome in {
         "replace-1-left": RefusalCode.TAUGHT_INSTEAD,
         "create-1": RefusalCode.STANDS_ALREADY,
@@ -103,8 +100,7 @@ def test_apply_plan_changed_file_is_refused(path: Path) -> None:
     begun(path, lessons=2)
     planned = plan_undo(path, teacher="command line")
     assert [record.event for record in planned.lessons] == [created(2)]
-    with Journal.open(path, BINDING) as journal:
-        journal.append([JournalEntry(created(3), STAMP)])
+    append(path, created(3))
     apply_plan(planned, STAMP)  # not the lesson that came meanwhile
     assert rlas(path) == (created(1).rla, created(3).rla)
     with refused(KnowledgeCode.LESSON_REFUSED, outcome=RefusalCode.UNDONE_ALREADY):
@@ -141,8 +137,7 @@ def test_redo_all_of_a_teacher_restores_all(path: Path) -> None:
 def test_redo_all_of_a_teacher_skips_replaced_lessons(path: Path) -> None:
     begun(path, lessons=2)
     undo(path)
-    with Journal.open(path, BINDING) as journal:
-        journal.append([JournalEntry(replaced(1, "left", "forward"), STAMP)])
+    append(path, replaced(1, "left", "forward"))
     undo(path)
     with Journal.open(path, BINDING) as journal:
         instead = replace(replaced(1, "right", "forward"), origin=replace(origin("instead"), teacher="Joachim"))
@@ -178,8 +173,7 @@ def test_undo_is_an_event_with_its_teacher(path: Path) -> None:
 
 def test_undo_refused_lesson_writes_nothing(path: Path) -> None:
     begun(path)
-    with Journal.open(path, BINDING) as journal:
-        journal.append([JournalEntry(replaced(1, "left", "forward"), STAMP)])
+    append(path, replaced(1, "left", "forward"))
     for lesson, outcome in {"create-1": RefusalCode.TAUGHT_AFTER, "create-9": RefusalCode.NO_SUCH_LESSON}.items():
         with refused(KnowledgeCode.LESSON_REFUSED, path, outcome=outcome):
             undo(path, lesson)
