@@ -21,9 +21,9 @@ AsJson = Annotated[
 
 JsonFile = Annotated[
     Path | None,
-    typer.Argument(hidden=True, metavar=" ", dir_okay=False, help="File that gets the JSON, beside the printed table."),
+    typer.Argument(hidden=True, metavar=" ", dir_okay=False, help="File that gets the JSON, in addition to the table."),
 ]
-"""Of commands whose --json once took a file."""
+"""Argument of commands whose --json once took a file."""
 
 
 def require_json_file(file: Path | None, *, as_json: bool) -> None:

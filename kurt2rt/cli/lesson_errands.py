@@ -1,12 +1,10 @@
 """`kurt2rt lesson errands`: robots that know the streets are led about a town, and sent to places."""
 
-from collections.abc import Sequence
-from pathlib import Path
+import typer
 
 from behaviors.metrics.errands import ErrandsSettings
-from hal.robot_settings import RobotSettings
-from hal.simulation import SimulationFactory
 from kurt2rt.cli.json_output import print_json
+from kurt2rt.cli.lesson_options import ERRANDS, LessonOptions, LessonSetup
 from kurt2rt.cli.progress import one_bar
 from kurt2rt.cli.tables import console_of, tables_of
 from kurt2rt.core.task_settings import TaskSettings
@@ -19,42 +17,43 @@ from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.table import as_rich
 from kurt2rt.platform.text_table import print_whole
 
-ERRANDS = Path("results/errands")
-"""Where what is made goes, unless said otherwise."""
-
 
 def runs_errands(task: TaskSettings) -> bool:
-    """Whether it is one of these."""
+    """Return whether the task is driven to places of a town."""
     return isinstance(task.course, ErrandsSettings)
 
 
-def errands(
-    factory: SimulationFactory,
-    robot: RobotSettings,
-    task: TaskSettings,
-    *,
-    seeds: Sequence[int],
-    basic: Path | None,
-    controls: bool,
-    jobs: int,
-    out: Path,
-    as_json: bool,
-) -> None:
-    """Lead robots about and send them to goals; what is done already is kept. Prints tables and draws each robot."""
+def errands(setup: LessonSetup, options: LessonOptions) -> None:
+    """Lead robots through a town and send them to places; print tables and draw each robot.
+
+    Results that are in the folder already are kept. Raises typer.BadParameter for options of other lessons.
+    """
     # Not at the top: drawing is an extra, and every command is loaded where --help is said.
     from kurt2rt.experiments.navigation.figures import draw_errands
 
+    if options.decisions or options.knowledge is not None:
+        raise typer.BadParameter("errands take neither --decisions nor --knowledge; leave them out")
+    factory, task, out = setup.factory, setup.task, options.out or ERRANDS
     results = Results(out)
-    plan = make_plan(task, basic_task_of(task), seeds, factory, robot, results, basic_folder=basic, controls=controls)
+    plan = make_plan(
+        task,
+        basic_task_of(task),
+        options.all_seeds,
+        factory,
+        setup.robot,
+        results,
+        basic_folder=options.basic,
+        controls=options.controls,
+    )
     with results.held(), one_bar(missing_time_s(plan, results)) as bar:
-        run_missing(plan, results, jobs, bar.look)
+        run_missing(plan, results, options.jobs, bar.look)
         bar.say("pictures")
         outcomes = read_outcomes(plan, results)
         pictures = []
         for outcome in outcomes:
             pictures.append(out / f"{task.name}-{outcome.seed}.png")
             draw_errands(factory, task.exam.worlds[0], outcome, pictures[-1])
-    if as_json:
+    if options.as_json:
         print_json({"tables": tables_of(all_tables(outcomes, navigation_settings(task))), "pictures": pictures})
         return
     pictures_told = f"pictures  {pictures[0]}{' ...' if len(pictures) > 1 else ''}"

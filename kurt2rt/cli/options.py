@@ -10,6 +10,7 @@ import typer
 from config import CONFIG_DIR
 
 _NAME_OR_PATH = "NAME|PATH"
+_MOST_SEEDS = 100_000
 
 
 def _names_in(kind: str) -> Callable[[str], list[str]]:
@@ -106,7 +107,7 @@ def results_option(default: str) -> Any:
 
 
 def changes_of(words: list[str] | None) -> dict[str, str]:
-    """What --set says, by key. Raises typer.BadParameter."""
+    """Return the values of --set by key. Raises typer.BadParameter."""
     changes = {}
     for word in words or ():
         key, equals, value = word.partition("=")
@@ -114,3 +115,26 @@ def changes_of(words: list[str] | None) -> dict[str, str]:
             raise typer.BadParameter(f"{word!r} is no KEY=VALUE; give e.g. learning.past_weight=1", param_hint="--set")
         changes[key] = value
     return changes
+
+
+def parse_seeds(text: str) -> list[int]:
+    """Return the seeds of `100-119` or `1,5,7-9`. Raises typer.BadParameter."""
+    seeds: list[int] = []
+    try:
+        for part in text.split(","):
+            seeds.extend(_seeds_of(part))
+    except ValueError as error:
+        raise typer.BadParameter(f"{text!r} is no list of seeds; give e.g. 100-119 or 1,5,7-9") from error
+    if len(seeds) > _MOST_SEEDS:
+        raise typer.BadParameter(f"{text!r} names too many seeds, allowed are {_MOST_SEEDS} at most")
+    if len(set(seeds)) != len(seeds):
+        raise typer.BadParameter(f"{text!r} names a seed twice; give e.g. 100-119 or 1,5,7-9")
+    return seeds
+
+
+def _seeds_of(part: str) -> range:
+    first, _, last = part.partition("-")
+    seeds = range(int(first), int(last or first) + 1)
+    if not seeds:
+        raise ValueError(f"{part} ends before it begins")
+    return seeds[: _MOST_SEEDS + 1]

@@ -9,8 +9,7 @@ import typer
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson
-from kurt2rt.cli.lesson import parse_seeds
-from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, results_option, seeds_option, task_option
+from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, parse_seeds, results_option, seeds_option, task_option
 from kurt2rt.cli.progress import one_bar
 from kurt2rt.cli.tables import print_study
 
@@ -64,6 +63,10 @@ def paper(options: _Options) -> None:
         kurt2rt paper --quick
         kurt2rt paper --task circle --task eight
     """
+    _run_study(options)
+
+
+def _run_study(options: _Options) -> None:
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
     from kurt2rt.experiments.paper.eligibility import reasons_not_to_judge
     from kurt2rt.experiments.paper.extent import QUICK, WHOLE
@@ -105,7 +108,7 @@ def paper(options: _Options) -> None:
 
 
 def _command(*, quick: bool, seeds: str, tasks: list[str], plain: bool) -> str:
-    """What was typed as far as it decides the numbers; no paths of this machine."""
+    """Return the command as far as it decides the numbers, without paths of this machine."""
     words = ["kurt2rt paper", *(["--quick"] if quick else []), f"--seeds {seeds}"]
     words += [f"--task {Path(name).name}" for name in tasks]
     return " ".join([*words, *([] if plain else ["--no-plain"])])

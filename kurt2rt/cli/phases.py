@@ -9,8 +9,16 @@ import typer
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson
-from kurt2rt.cli.lesson import parse_seeds
-from kurt2rt.cli.options import ALL_PROCESSORS, Changes, Jobs, changes_of, results_option, seeds_option, task_option
+from kurt2rt.cli.options import (
+    ALL_PROCESSORS,
+    Changes,
+    Jobs,
+    changes_of,
+    parse_seeds,
+    results_option,
+    seeds_option,
+    task_option,
+)
 from kurt2rt.cli.progress import one_bar
 from kurt2rt.cli.tables import print_study
 
@@ -86,6 +94,6 @@ def phases(options: _Options) -> None:
 
 
 def _command(*, quick: bool, seeds: str, task: str, changes: list[str]) -> str:
-    """What was typed as far as it decides the numbers; no paths of this machine."""
+    """Return the command as far as it decides the numbers, without paths of this machine."""
     words = ["kurt2rt phases", *(["--quick"] if quick else []), f"--task {Path(task).name}", f"--seeds {seeds}"]
     return " ".join([*words, *(f"--set {each}" for each in changes)])

@@ -121,7 +121,7 @@ class _Options:
         typer.Option(
             "--service",
             help="As a unit runs it (kurt2rt service): wait for bus, disk and network as long as it takes, stand until "
-            "Go, and read the settings anew at SIGHUP.",
+            "Go, and read the settings again at SIGHUP.",
         ),
     ] = False
     seconds: Annotated[

@@ -129,7 +129,7 @@ def uninstall(name: UnitName = "kurt2rt") -> None:
 
 
 def _unit(robot: str, settings: str, name: str, *, page: bool) -> tuple[Unit, RequiredAccess]:
-    """The unit, and what it needs to get at. Raises SettingsError, UnitError."""
+    """Return the unit, and the files and folders that it needs. Raises SettingsError, UnitError."""
     require_name(name)
     found = find_config("runtime", settings)
     loaded = load_service(settings)
@@ -156,7 +156,7 @@ def _unit(robot: str, settings: str, name: str, *, page: bool) -> tuple[Unit, Re
 
 
 def _as_the_service_finds(key: str, given: str, state: Path) -> Path:
-    """The file of a setting that names one. Raises SettingsError; UnitError where the service would find another."""
+    """Return the file that a setting names. Raises SettingsError; UnitError if the service would find another file."""
     found = find_config(key + "s", given)
     if found == Path(given) and not found.is_absolute():
         raise UnitError(

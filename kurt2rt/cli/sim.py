@@ -5,6 +5,7 @@ import signal
 import sys
 import time
 from contextlib import ExitStack
+from dataclasses import dataclass
 from types import FrameType
 from typing import Annotated
 
@@ -12,42 +13,49 @@ import typer
 from rich.console import Console
 
 from hal.bus import open_bus
-from hal.robot_settings import load_robot
+from hal.robot_settings import RobotSettings, load_robot
 from hal.settings import SettingsError
+from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import RobotName, world_option
 from kurt2rt.platform.signal_handlers import SignalHandlers
 from kurt2rt.platform.switch_interval import short_switch_interval
 from kurt2rt.service.console_thread import ConsoleThread
 
-_ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-_LOOK_S = 0.05
+_END_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+_POLL_S = 0.05
 _STATUS_S = 1.0
 
 
-def sim(
+@dataclass(frozen=True, slots=True)
+class _Options:
+    """Options of `kurt2rt sim`."""
+
     bus: Annotated[
         str,
         typer.Option(
             help="Where the robot is: shared:NAME, a bus between programs of this machine that needs no CAN; or a "
             "SocketCAN interface such as vcan0."
         ),
-    ] = "shared:kurt2",
-    world: Annotated[str, world_option("Default: a.")] = "a",
+    ] = "shared:kurt2"
+    world: Annotated[str, world_option("Default: a.")] = "a"
     start: Annotated[
         int | None,
         typer.Option(metavar="N", min=1, help="Start pose of the world, 1, 2, ...; default: the seed decides."),
-    ] = None,
+    ] = None
     seed: Annotated[
         int, typer.Option(metavar="N", min=0, help="Decides the robot's sensors, its noise and where it starts.")
-    ] = 1,
-    robot: RobotName = "kurt2",
+    ] = 1
+    robot: RobotName = "kurt2"
     seconds: Annotated[
         float | None, typer.Option(metavar="SECONDS", min=0.1, help="Switch off after so long; default: on Ctrl-C.")
-    ] = None,
+    ] = None
     while_stdin: Annotated[
         bool, typer.Option("--while-stdin", help="Switch off when the standard input ends, for use in scripts.")
-    ] = False,
-) -> None:
+    ] = False
+
+
+@takes_options(_Options)
+def sim(options: _Options) -> None:
     """Simulate a KURT2 on a CAN bus, in real time: controllers, sensors and wheels in a world.
 
     For all that talks to it this is the robot: it obeys CONTROL, sends telemetry
@@ -70,73 +78,88 @@ def sim(
     it is simulated. A bus that goes down does not switch it off: it stands, and
     goes on when the bus is back. Ctrl-C, or SIGTERM, switches it off.
     """
-    if seconds is not None and not math.isfinite(seconds):
-        raise typer.BadParameter("a number of seconds has an end", param_hint="--seconds")
-    if bus.startswith("virtual:"):
-        raise typer.BadParameter(
-            "nobody outside this program hears a virtual bus; give shared:NAME", param_hint="--bus"
-        )
+    if options.seconds is not None and not math.isfinite(options.seconds):
+        raise typer.BadParameter("must be a finite number of seconds", param_hint="--seconds")
+    if options.bus.startswith("virtual:"):
+        raise typer.BadParameter("a virtual bus reaches no other program; give shared:NAME", param_hint="--bus")
+    settings = load_robot(options.robot)
+    _simulate(options, settings)
+
+
+def _simulate(options: _Options, settings: RobotSettings) -> None:
     # Here, because a robot carries no simulator: the packages it needs are an extra.
     from simbridge.sim_console import News, SimConsole, StatusLine, TypedLines
     from simbridge.simulated_world import Kurt2World
     from simbridge.standalone import StandaloneRobot
     from simbridge.worlds.world_loading import load_world
 
-    settings = load_robot(robot)
-    ground_plan = load_world(world, settings)
-    if start is not None and start > len(ground_plan.start_poses):
+    ground_plan = load_world(options.world, settings)
+    poses = len(ground_plan.start_poses)
+    if options.start is not None and options.start > poses:
         raise SettingsError(
-            f"has {len(ground_plan.start_poses)} start poses, there is none of number {start}", where=f"world {world}"
+            f"has {poses} start poses, there is none of number {options.start}", where=f"world {options.world}"
         )
-    console = Console()
-
-    def tell(text: str) -> None:
-        console.print(text, markup=False, highlight=False, soft_wrap=True)
-
-    with ExitStack() as ending:
-        end = _Wish()
-        # Started in the background it would be halted where it looks what was typed, but for SIGTTIN.
-        ending.enter_context(SignalHandlers({**dict.fromkeys(_ENDING, end.note), signal.SIGTTIN: signal.SIG_IGN}))
-        printer = ending.enter_context(ConsoleThread())
-
-        def say(text: str) -> None:
-            printer.submit(lambda: tell(text))
-
-        standalone = StandaloneRobot(settings, ground_plan, open_bus(bus), seed, start=start)
-        say(f"a simulated {settings.name} in world {world} is on bus {bus}; type help, Ctrl-C switches it off")
-        ending.enter_context(short_switch_interval())
-        ending.enter_context(standalone)
+    with ExitStack() as stack:
+        end = _EndRequest()
+        # Without SIGTTIN ignored, a process in the background would be halted as it reads the keyboard.
+        stack.enter_context(
+            SignalHandlers({**dict.fromkeys(_END_SIGNALS, end.on_signal), signal.SIGTTIN: signal.SIG_IGN})
+        )
+        output = _Output(stack.enter_context(ConsoleThread()))
+        standalone = StandaloneRobot(settings, ground_plan, open_bus(options.bus), options.seed, start=options.start)
+        output.log(
+            f"a simulated {settings.name} in world {options.world} is on bus {options.bus}; "
+            "type help, Ctrl-C switches it off"
+        )
+        stack.enter_context(short_switch_interval())
+        stack.enter_context(standalone)
         simulation = standalone.simulation
-        desk = SimConsole(
-            standalone, ground_plan, Kurt2World(standalone.robot, ground_plan, settings.geometry, simulation)
-        )
-        keyboard, news, line = TypedLines(sys.stdin), News(standalone), StatusLine(standalone)
-        ends_at_s = math.inf if seconds is None else time.monotonic() + seconds
+        world = Kurt2World(standalone.robot, ground_plan, settings.geometry, simulation)
+        console, keyboard = SimConsole(standalone, ground_plan, world), TypedLines(sys.stdin)
+        news, line = News(standalone), StatusLine(standalone)
+        ends_at_s = math.inf if options.seconds is None else time.monotonic() + options.seconds
         status_at_s = time.monotonic() + _STATUS_S
-        while not end.came:
-            time.sleep(_LOOK_S)
+        while not end.requested:
+            time.sleep(_POLL_S)
             for typed in keyboard.typed():
-                say(desk.obey(typed))
+                output.log(console.obey(typed))
             for each in news.since():
-                say(each)
+                output.log(each)
             now_s = time.monotonic()
             if now_s >= status_at_s:
                 status_at_s += _STATUS_S
-                say(line.next())
-            if now_s >= ends_at_s or simulation.error is not None or (while_stdin and keyboard.ended):
+                output.log(line.next())
+            if now_s >= ends_at_s or simulation.error is not None or (options.while_stdin and keyboard.ended):
                 break
-    robot_now = standalone.robot
-    tell(
-        f"switched off after {robot_now.time_s:.2f} s: {robot_now.collisions} collisions, "
-        f"{simulation.missed_cycles} cycles missed, state {robot_now.state_hash()[:16]}"
+    robot = standalone.robot
+    output.print(
+        f"switched off after {robot.time_s:.2f} s: {robot.collisions} collisions, "
+        f"{simulation.missed_cycles} cycles missed, state {robot.state_hash()[:16]}"
     )
 
 
-class _Wish:
-    """Whether somebody wants the program to end: signals only note it, and it ends where it looks."""
+class _Output:
+    """Lines on standard output, printed by a thread while the simulation runs."""
+
+    def __init__(self, printer: ConsoleThread) -> None:
+        self._console = Console()
+        self._printer = printer
+
+    def log(self, text: str) -> None:
+        """Print a line soon; never waits."""
+        self._printer.submit(lambda: self.print(text))
+
+    def print(self, text: str) -> None:
+        """Print a line; waits for the terminal."""
+        self._console.print(text, markup=False, highlight=False, soft_wrap=True)
+
+
+class _EndRequest:
+    """Flag that a signal sets; the loop of the simulation reads it."""
 
     def __init__(self) -> None:
-        self.came = False
+        self.requested = False
 
-    def note(self, _number: int, _frame: FrameType | None) -> None:
-        self.came = True
+    def on_signal(self, _number: int, _frame: FrameType | None) -> None:
+        """Request the end."""
+        self.requested = True

@@ -77,7 +77,7 @@ def status(options: _Options) -> None:
         kurt2rt status --watch
         kurt2rt status --as phone
 
-    A robot program tells it beside its knowledge file, whether it listens to
+    A robot program tells it next to its knowledge file, whether it listens to
     teachers or not, to its own user and to root. Ends with code 1 where
     something urgent is wrong: the robot stands because of it, or lessons are at
     risk; with 2 where no robot program runs.
@@ -88,11 +88,11 @@ def status(options: _Options) -> None:
     if options.name is not None:
         reports = _over_the_channel(read_device(Path(service.devices) / options.name), options.robot, options.port)
     else:
-        beside = Path(service.knowledge)
+        default = Path(service.knowledge)
         if options.task is not None:
-            beside = beside.with_name(f"{load_task(options.task).name}.knowledge")
+            default = default.with_name(f"{load_task(options.task).name}.knowledge")
         _require_name(options.knowledge)
-        reports = read_reports(status_socket_path(options.knowledge or beside), _PATIENCE_S)
+        reports = read_reports(status_socket_path(options.knowledge or default), _PATIENCE_S)
     newest = _show(reports, watch=options.watch, json=options.json)
     if newest.urgent:
         raise typer.Exit(1)
@@ -126,7 +126,7 @@ def _screen(first: HealthReport, *, watch: bool, json: bool) -> Iterator[Callabl
 
 
 def as_rich(report: HealthReport) -> Group:
-    """The report as a table, its troubles below."""
+    """Return the report as a table, with its troubles below."""
     table = TextTable()
     table.add_column("", whole=True)
     table.add_column("")
@@ -148,7 +148,7 @@ def _line(report: HealthReport) -> str:
 
 
 def _over_the_channel(device: Device, host: str | None, port: int | None) -> Iterator[HealthReport]:
-    """Ask once a second. Raises StatusError when nobody answers, CredentialsError."""
+    """Ask once a second. Raises StatusError if no robot answers, CredentialsError."""
     with anyio.from_thread.start_blocking_portal() as portal, _asking(portal, device, host, port) as client:
         last = None
         while True:
@@ -175,7 +175,7 @@ def _asking(
 
 
 async def _look_away(client: TeacherClient) -> None:
-    """Whoever asks how the robot is does not look at it: it is not told that its teacher is there."""
+    """Stop reporting presence: a program that asks for the status does not watch the robot."""
     client.watching = False
 
 

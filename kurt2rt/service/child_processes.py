@@ -21,7 +21,7 @@ _LAST_LINES_S = 0.5
 
 
 @dataclass
-class _Companion:
+class _Child:
     """One child process and its restart."""
 
     name: str
@@ -69,10 +69,10 @@ class ChildProcesses:
         self._log = log
         self._program = start_command() if start is None else start
         self._poll_s = poll_s
-        self._children: list[_Companion] = []
+        self._children: list[_Child] = []
         self._ends = threading.Event()
         # A daemon, because a fork may hang with the disk.
-        self._looking = threading.Thread(target=self._poll_all, name="companions", daemon=True)
+        self._looking = threading.Thread(target=self._poll_all, name="children", daemon=True)
 
     @property
     def trouble(self) -> str:
@@ -91,8 +91,18 @@ class ChildProcesses:
         command = (*self._program, *words, "--settings", self._settings, "--while-stdin")
         process, read_line = _started(command), on_line or self._log
         reader = _read(process, read_line)
-        companion = _Companion(name, command, restarts, process, time.monotonic(), self._poll_s, read_line, reader)
-        self._children.append(companion)
+        self._children.append(
+            _Child(
+                name=name,
+                command=command,
+                restarts=restarts,
+                process=process,
+                started_s=time.monotonic(),
+                pause_s=self._poll_s,
+                on_line=read_line,
+                reader=reader,
+            )
+        )
 
     def __enter__(self) -> Self:
         self._looking.start()
@@ -120,38 +130,38 @@ class ChildProcesses:
             for each in tuple(self._children):
                 self._poll(each, time.monotonic())
 
-    def _poll(self, companion: _Companion, now_s: float) -> None:
-        if companion.restart_at_s is not None:
-            if now_s >= companion.restart_at_s:
-                self._restart(companion, now_s)
+    def _poll(self, child: _Child, now_s: float) -> None:
+        if child.restart_at_s is not None:
+            if now_s >= child.restart_at_s:
+                self._restart(child, now_s)
             return
-        code = companion.process.poll()
-        if code is None or companion.trouble or (code == 0 and not companion.restarts):
+        code = child.process.poll()
+        if code is None or child.trouble or (code == 0 and not child.restarts):
             return
-        companion.reader.join(_LAST_LINES_S)
-        ended = f"{companion.name} ended ({_cause(code)})"
-        if not companion.restarts:
-            companion.trouble = f"{ended}; start it again by hand"
+        child.reader.join(_LAST_LINES_S)
+        ended = f"{child.name} ended ({_cause(code)})"
+        if not child.restarts:
+            child.trouble = f"{ended}; start it again by hand"
         else:
-            if now_s - companion.started_s > LONGEST_PAUSE_S:
-                companion.pause_s = self._poll_s
-            companion.restart_at_s = now_s + companion.pause_s
-            companion.trouble = f"{ended}; it is started again in {companion.pause_s:g} s"
-            companion.pause_s = min(2 * companion.pause_s, LONGEST_PAUSE_S)
-        self._log(companion.trouble)
+            if now_s - child.started_s > LONGEST_PAUSE_S:
+                child.pause_s = self._poll_s
+            child.restart_at_s = now_s + child.pause_s
+            child.trouble = f"{ended}; it is started again in {child.pause_s:g} s"
+            child.pause_s = min(2 * child.pause_s, LONGEST_PAUSE_S)
+        self._log(child.trouble)
 
-    def _restart(self, companion: _Companion, now_s: float) -> None:
-        assert companion.process.stdin is not None
-        companion.process.stdin.close()
+    def _restart(self, child: _Child, now_s: float) -> None:
+        assert child.process.stdin is not None
+        child.process.stdin.close()
         try:
-            companion.process = _started(companion.command)
+            child.process = _started(child.command)
         except OSError as error:
-            companion.trouble = f"{companion.name} cannot be started ({error}); kurt2rt has to be installed whole"
-            companion.restart_at_s = now_s + LONGEST_PAUSE_S
-            self._log(companion.trouble)
+            child.trouble = f"{child.name} cannot be started ({error}); kurt2rt has to be installed whole"
+            child.restart_at_s = now_s + LONGEST_PAUSE_S
+            self._log(child.trouble)
         else:
-            companion.reader = _read(companion.process, companion.on_line)
-            companion.started_s, companion.restart_at_s, companion.trouble = now_s, None, ""
+            child.reader = _read(child.process, child.on_line)
+            child.started_s, child.restart_at_s, child.trouble = now_s, None, ""
 
 
 def _started(command: tuple[str, ...]) -> "subprocess.Popen[bytes]":
@@ -172,7 +182,7 @@ def _read(process: "subprocess.Popen[bytes]", hear: Callable[[str], None]) -> th
             for line in lines:
                 hear(line.decode(errors="replace").rstrip())
 
-    thread = threading.Thread(target=read, name="companion's lines", daemon=True)
+    thread = threading.Thread(target=read, name="child's lines", daemon=True)
     thread.start()
     return thread
 

@@ -69,7 +69,7 @@ def test_a_page_that_died_is_told_and_comes_back(tmp_path: Path, kurt2rt_process
     program.wait_for("/pair?token=")
     (page,) = children_of(program.process.pid)
     os.kill(page, signal.SIGKILL)
-    assert "the teacher's page ended (signal 9); it is started anew" in program.wait_for("the teacher's page ended")
+    assert "the teacher's page ended (signal 9); it is started again" in program.wait_for("the teacher's page ended")
     program.wait_for("/pair?token=")
     assert children_of(program.process.pid) != [page]
     assert program.end(signal.SIGTERM).exit_code == 0

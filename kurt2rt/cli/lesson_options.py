@@ -1,0 +1,97 @@
+"""Options of `kurt2rt lesson`, and the simulation that all its kinds of lessons share."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from hal.robot_settings import RobotSettings
+from hal.simulation import SimulationFactory
+from kurt2rt.cli.json_output import AsJson
+from kurt2rt.cli.options import (
+    ALL_PROCESSORS,
+    Changes,
+    Jobs,
+    Plain,
+    RobotName,
+    Seed,
+    WireName,
+    parse_seeds,
+    task_option,
+)
+from kurt2rt.core.task_settings import TaskSettings
+
+DEFAULT_TASK = "wall_following"
+LESSONS, ROUTES, ERRANDS = Path("results/lesson"), Path("results/route"), Path("results/errands")
+"""Default folders of --out."""
+_TASK_WORD = typer.Argument(hidden=True, metavar=" ", help="The task, as --task names it.")
+
+
+@dataclass(frozen=True, slots=True)
+class LessonOptions:
+    """Options of `kurt2rt lesson`."""
+
+    task_word: Annotated[str | None, _TASK_WORD] = None
+    task: Annotated[str | None, task_option(f"Default: the task of the file in --knowledge, else {DEFAULT_TASK}.")] = (
+        None
+    )
+    plain: Plain = False
+    changes: Changes = None
+    seed: Seed = 1
+    knowledge: Annotated[
+        Path | None,
+        typer.Option(help="Knowledge file to teach into; goes on from what it holds. Default: a new one in --out."),
+    ] = None
+    seeds: Annotated[
+        str | None,
+        typer.Option(
+            help="Teach and examine many robots, one per seed, e.g. 100-119; prints medians, quartiles and intervals."
+        ),
+    ] = None
+    jobs: Jobs = ALL_PROCESSORS
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help=f"Folder for what is made; created when absent. Default: {LESSONS}, of routes {ROUTES}, of errands "
+            f"{ERRANDS}.",
+            show_default=False,
+        ),
+    ] = None
+    robot_settings: RobotName = "kurt2"
+    wire: WireName = "none"
+    decisions: Annotated[
+        list[int] | None,
+        typer.Option(
+            help="Of a route: how many junctions its loop has; with --seeds repeat for several. Default: the task's."
+        ),
+    ] = None
+    basic: Annotated[
+        Path | None,
+        typer.Option(
+            help="Of a route, or errands: knowledge of the streets, or a folder with one file per seed, as kurt2rt "
+            "lesson --task streets leaves them. Without it the streets are taught first."
+        ),
+    ] = None
+    controls: Annotated[
+        bool,
+        typer.Option(
+            "--controls", help="Of routes, with --seeds, and of errands: also go about it in other ways, to compare."
+        ),
+    ] = False
+    as_json: AsJson = False
+
+    @property
+    def all_seeds(self) -> Sequence[int]:
+        """Return the seeds of --seeds, or that of --seed. Raises typer.BadParameter."""
+        return [self.seed] if self.seeds is None else parse_seeds(self.seeds)
+
+
+@dataclass(frozen=True, slots=True)
+class LessonSetup:
+    """Simulation, robot and task of a lesson."""
+
+    factory: SimulationFactory
+    robot: RobotSettings
+    task: TaskSettings
