@@ -70,8 +70,8 @@ def test_what_does_not_exist_is_named(kurt2rt: CommandLine, words: tuple[str, ..
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        (("--bus", "virtual:x"), "nobody outside this program hears a virtual bus"),
-        (("--seconds", "inf"), "a number of seconds has an end"),
+        (("--bus", "virtual:x"), "reaches no other program a virtual bus"),
+        (("--seconds", "inf"), "must be a finite number of seconds"),
         (("--start", "0"), "--start"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
