@@ -70,7 +70,7 @@ def test_what_does_not_exist_is_named(kurt2rt: CommandLine, words: tuple[str, ..
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        (("--bus", "virtual:x"), "reaches no other program a virtual bus"),
+        (("--bus", "virtual:x"), "a virtual bus reaches no other program"),
         (("--seconds", "inf"), "must be a finite number of seconds"),
         (("--start", "0"), "--start"),
     ],
