@@ -6,7 +6,7 @@ import sys
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import anyio
 import anyio.abc
@@ -43,31 +43,41 @@ from kurt2rt.service.shutdown import SHUTDOWN_SIGNALS
 _NAMES = ", ".join(step.name for step in STEPS)
 
 
+_Bus = Annotated[
+    str,
+    typer.Argument(help="The robot's bus: a SocketCAN interface such as can0, or shared:NAME.", show_default=False),
+]
+_Name = Annotated[str, typer.Option(help="What this robot is called: up to 40 of a-z, 0-9 and -.")]
+_Out = Annotated[
+    Path | None, typer.Option(help="The robot's settings file. Default: var/robots/NAME.yaml.", show_default=False)
+]
+_Only = Annotated[
+    str | None, typer.Option(help=f"Take these steps alone, passed or not: some of {_NAMES}.", show_default=False)
+]
+_Skip = Annotated[
+    str | None,
+    typer.Option(
+        help="Note these steps as skipped, failed or not, so that the file can be written without them.",
+        show_default=False,
+    ),
+]
+_StartOver = Annotated[bool, typer.Option("--anew", help="Forget what earlier sessions found about NAME.")]
+_Force = Annotated[bool, typer.Option("--force", help="Overwrite the settings file if there is one.")]
+_Who = Annotated[
+    str | None, typer.Option(help="Who does it, for the report. Default: the user's name.", show_default=False)
+]
+
+
 def commission(
-    bus: Annotated[
-        str,
-        typer.Argument(help="The robot's bus: a SocketCAN interface such as can0, or shared:NAME.", show_default=False),
-    ],
-    name: Annotated[str, typer.Option(help="What this robot is called: up to 40 of a-z, 0-9 and -.")] = "my-kurt2",
-    out: Annotated[
-        Path | None, typer.Option(help="The robot's settings file. Default: var/robots/NAME.yaml.", show_default=False)
-    ] = None,
+    bus: _Bus,
+    name: _Name = "my-kurt2",
+    out: _Out = None,
     robot_settings: RobotName = "kurt2",
-    only: Annotated[
-        str | None, typer.Option(help=f"Take these steps alone, passed or not: some of {_NAMES}.", show_default=False)
-    ] = None,
-    skip: Annotated[
-        str | None,
-        typer.Option(
-            help="Note these steps as skipped, failed or not, so that the file can be written without them.",
-            show_default=False,
-        ),
-    ] = None,
-    anew: Annotated[bool, typer.Option("--anew", help="Forget what earlier sessions found about NAME.")] = False,
-    force: Annotated[bool, typer.Option("--force", help="Overwrite the settings file if there is one.")] = False,
-    who: Annotated[
-        str | None, typer.Option(help="Who does it, for the report. Default: the user's name.", show_default=False)
-    ] = None,
+    only: _Only = None,
+    skip: _Skip = None,
+    start_over: _StartOver = False,
+    force: _Force = False,
+    who: _Who = None,
 ) -> None:
     """Commission a real robot: a checklist that walks you through its first day.
 
@@ -102,28 +112,18 @@ def commission(
 
     Ends with code 1 when a step that was this session's to take has failed.
     """
-    if not re.fullmatch(r"[a-z0-9][a-z0-9-]{0,39}", name):
-        raise typer.BadParameter("up to 40 of a-z, 0-9 and -", param_hint="--name")
-    target = out or Path("var", "robots", f"{name}.yaml")
-    if target.suffix != ".yaml":
-        raise typer.BadParameter("a settings file ends in .yaml", param_hint="--out")
-    if target.exists() and not force:
-        raise typer.BadParameter(f"{target} is there already; --force overwrites it", param_hint="--out")
-    wanted, skipped = _named(only, "--only"), _named(skip, "--skip")
+    target = _target(name, out, force=force)
+    requested, skipped = _named(only, "--only"), _named(skip, "--skip")
     operator = _require_one_line(who or _user())
     base = load_robot(robot_settings)
     path = Path("var", "commission", f"{name}.json")
-    progress = _progress(path, Progress(name=name, base=robot_settings, bus=bus), anew)
-    chosen = [step for step in (wanted or steps_to_run(progress)) if step not in skipped]
+    progress = _progress(path, Progress(name=name, base=robot_settings, bus=bus), start_over)
+    chosen = [step for step in (requested or steps_to_run(progress)) if step not in skipped]
     console = Console()
     _tell(console, f"{name} on {bus}; progress is kept in {path}; Ctrl-C brakes")
-    for step in STEPS:
-        record = progress.steps.get(step.name)
-        if step not in chosen and record is not None and step.name != "lifted":
-            _tell(
-                console, f"  {step.name}: {record.outcome} on {record.at}, {record.who}; again with --only {step.name}"
-            )
-    taken = anyio.run(_run_checklist, bus, base, progress, path, chosen, skipped, operator, console)
+    _tell_earlier(console, progress, chosen)
+    session = _Session(base, progress, path, chosen, skipped, operator)
+    taken = anyio.run(_run_checklist, session, console)
     print_report(taken, STEPS, console)
     report = path.with_suffix(".txt")
     write_durably(report, as_text(taken, STEPS))
@@ -133,29 +133,58 @@ def commission(
         raise typer.Exit(1)
 
 
-async def _run_checklist(
-    bus: str,
-    base: RobotSettings,
-    progress: Progress,
-    path: Path,
-    chosen: Sequence[CommissionStep],
-    skipped: Sequence[CommissionStep],
-    who: str,
-    console: Console,
-) -> Progress:
-    operator = ConsoleOperator(sys.stdin, console)
+def _target(name: str, out: Path | None, *, force: bool) -> Path:
+    """Return the settings file to write. Raises typer.BadParameter."""
+    if not re.fullmatch(r"[a-z0-9][a-z0-9-]{0,39}", name):
+        raise typer.BadParameter("up to 40 of a-z, 0-9 and -", param_hint="--name")
+    target = out or Path("var", "robots", f"{name}.yaml")
+    if target.suffix != ".yaml":
+        raise typer.BadParameter("a settings file ends in .yaml", param_hint="--out")
+    if target.exists() and not force:
+        raise typer.BadParameter(f"{target} is there already; --force overwrites it", param_hint="--out")
+    return target
+
+
+def _tell_earlier(console: Console, progress: Progress, chosen: Sequence[CommissionStep]) -> None:
+    for step in STEPS:
+        record = progress.steps.get(step.name)
+        if step not in chosen and record is not None and step.name != "lifted":
+            text = f"  {step.name}: {record.outcome} on {record.at}, {record.who}; again with --only {step.name}"
+            _tell(console, text)
+
+
+class _Session(NamedTuple):
+    """Steps of one session, and the progress that they continue."""
+
+    base: RobotSettings
+    progress: Progress
+    path: Path
+    """Progress file."""
+    chosen: Sequence[CommissionStep]
+    skipped: Sequence[CommissionStep]
+    operator: str
+    """Name for the report."""
+
+
+async def _run_checklist(session: _Session, console: Console) -> Progress:
+    base, bus = session.base, session.progress.bus
     listener = Listener(open_bus(bus), load_codec(base.can.database))
     with TimerfdClock() as clock:
         stand = TestStand(
-            base, lambda settings: Kurt2(settings, open_bus(bus)), listener, clock, operator, second_guard=True
+            base,
+            lambda settings: Kurt2(settings, open_bus(bus)),
+            listener,
+            clock,
+            ConsoleOperator(sys.stdin, console),
+            second_guard=True,
         )
-        checklist = Checklist(stand, progress, path, who, _now)
+        checklist = Checklist(stand, session.progress, session.path, session.operator, _now)
         stopped = True
         async with anyio.create_task_group() as tasks:
             await tasks.start(_cancel_on_signal, tasks.cancel_scope)
-            with stand:  # inside of the scope: whatever ends it, the wheels are braked first
+            with stand:  # inside of the scope: after any end the wheels are braked first
                 try:
-                    await checklist.run(chosen, skipped)
+                    await checklist.run(session.chosen, session.skipped)
                 except AbortedError:
                     _tell(console, "left; the same command goes on from here")
                 stopped = False  # not by a signal
@@ -173,7 +202,7 @@ async def _cancel_on_signal(scope: anyio.CancelScope, *, task_status: anyio.abc.
 
 
 def _conclude(console: Console, progress: Progress, base: RobotSettings, target: Path) -> None:
-    """Write the file, or tell why not."""
+    """Write the settings file, or print why it cannot be written."""
     blocking = blocking_failures(progress)
     missing = open_steps(progress)
     if blocking:
@@ -194,8 +223,8 @@ def _conclude(console: Console, progress: Progress, base: RobotSettings, target:
     _tell(console, f"        kurt2rt run --robot {progress.bus} --settings THAT.yaml", to_copy=True)
 
 
-def _progress(path: Path, fresh: Progress, anew: bool) -> Progress:
-    if anew:
+def _progress(path: Path, fresh: Progress, start_over: bool) -> Progress:
+    if start_over:
         return fresh
     try:
         kept = load_progress(path)
@@ -232,11 +261,11 @@ def _user() -> str:
     try:
         return getpass.getuser()
     except (KeyError, OSError):  # a user without a name, as in a container
-        return "somebody"
+        return "unknown"
 
 
 def _require_one_line(who: str) -> str:
-    """A name as it can stand in a comment of the settings file."""
+    """Return the name if it fits in a comment of the settings file. Raises typer.BadParameter."""
     name = " ".join(who.split())
     if not name or not name.isprintable():
         raise typer.BadParameter("a name on one line", param_hint="--who")
@@ -244,5 +273,5 @@ def _require_one_line(who: str) -> str:
 
 
 def _tell(console: Console, text: str, *, to_copy: bool = False) -> None:
-    """On a terminal words stay whole; a line to copy stays one line."""
+    """Print a line; a line to copy is not wrapped."""
     console.print(text, markup=False, highlight=False, soft_wrap=to_copy or not console.is_terminal)

@@ -1,9 +1,11 @@
 """Benchmark of a lesson in lockstep on one core: world, codec, bus, runtime and teacher."""
 
+import os
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-from kurt2rt.checks.bench.one_core import on_one_core
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
 from kurt2rt.checks.bench.robot_under_test import SEED, BenchFixture, OnProgress, open_writer, with_duration
 from kurt2rt.checks.bench.tick_budget import share_result
@@ -59,3 +61,15 @@ async def measure_closed_loop(
         f"best {best:.1f}; {len(lesson.rlas)} RLAs",
     )
     return (loop, share_result("loop", "  of it the runtime", lesson.ledger.tick(), period_s, "no physics in it"))
+
+
+@contextmanager
+def on_one_core() -> Iterator[int]:
+    """Restrict this thread and its children to one of its allowed cores; yield the core."""
+    before = os.sched_getaffinity(0)
+    core = max(before)  # interrupts mostly come to the first one
+    os.sched_setaffinity(0, {core})
+    try:
+        yield core
+    finally:
+        os.sched_setaffinity(0, before)

@@ -8,14 +8,13 @@ from pathlib import Path
 from kurt2rt.checks.bench.channel import ChannelLengths, measure_channel
 from kurt2rt.checks.bench.channel_load import LoadShifts
 from kurt2rt.checks.bench.closed_loop import measure_closed_loop
-from kurt2rt.checks.bench.lateness import lateness_result
 from kurt2rt.checks.bench.lesson import measure_lessons
 from kurt2rt.checks.bench.match import SIZES, Size, measure_match
 from kurt2rt.checks.bench.real_time import RealTimeTurns, run_in_real_time
 from kurt2rt.checks.bench.recording import measure_recording
 from kurt2rt.checks.bench.result import BenchResult
 from kurt2rt.checks.bench.robot_under_test import BenchFixture, OnProgress, learn
-from kurt2rt.checks.bench.tick_budget import tick_results
+from kurt2rt.checks.bench.tick_budget import lateness_result, tick_results
 
 
 class BenchName(StrEnum):

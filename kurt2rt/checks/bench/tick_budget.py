@@ -1,4 +1,4 @@
-"""Results of the tick's stages against its period."""
+"""Results of a real-time run: lateness, and the tick's stages against its period."""
 
 from kurt2rt.checks.bench.real_time import RealTimeRun
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
@@ -6,6 +6,8 @@ from kurt2rt.platform.ledger import Percentiles
 
 MEDIAN_LIMIT_US = 100.0
 P99_LIMIT_US = 250.0
+TIMES_BETTER = 5.0
+"""Required ratio of a bare asyncio.sleep loop's p99 to ours."""
 
 
 def tick_results(run: RealTimeRun, period_s: float) -> tuple[BenchResult, ...]:
@@ -23,4 +25,21 @@ def share_result(bench: str, what: str, tick: Percentiles, period_s: float, note
         Reference("period", period_s * 1e6, tick.median_us),
         (BenchGoal("median us", tick.median_us, MEDIAN_LIMIT_US), BenchGoal("p99 us", tick.p99_us, P99_LIMIT_US)),
         note,
+    )
+
+
+def lateness_result(run: RealTimeRun) -> BenchResult:
+    """Return the lateness of a run's ticks with that of the bare loop."""
+    reference = Reference("asyncio.sleep, p99", run.asyncio_lateness.p99_us, run.lateness.p99_us)
+    return BenchResult(
+        "lateness",
+        "tick begins late",
+        run.lateness,
+        reference,
+        (
+            BenchGoal("ratio", reference.ratio, TIMES_BETTER, at_least=True),
+            BenchGoal("missed", run.missed_ticks, 0),
+        ),
+        f"{run.ticks} ticks, {run.missed_ticks} missed; {run.rlas} RLAs, "
+        f"driving in {run.driving_share:.0%} of the ticks",
     )

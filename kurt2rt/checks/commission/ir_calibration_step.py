@@ -43,12 +43,7 @@ class IrCalibrationStep:
             result.to_do.append("A chosen sensor's channel is not heard: take the step sensors first")
             return result
         floor = statistics.median([each for each in floors if each is not None])
-        readings: list[IrReading] = []
-        for sensor in chosen:
-            for distance_m in DISTANCES_M:
-                reading = await _read(stand, sensor, distance_m, findings)
-                if reading is not None:
-                    readings.append(reading)
+        readings = await _read_all(stand, chosen, findings)
         try:
             fit = await _fit_with_second_looks(stand, readings, {each.name: each for each in chosen}, findings)
         except IrCalibrationError as error:
@@ -71,20 +66,22 @@ class IrCalibrationStep:
             )
             return result
         result.note(f"distances from {near_m:.2f} to {far_m:.2f} m can be told apart")
-        result.findings = findings.model_copy(
-            update={
-                "law": LawFound(
-                    numerator_counts_m=round(law.numerator_counts_m, 3),
-                    offset_m=round(law.offset_m, 4),
-                    bias_counts=round(law.bias_counts, 2),
-                    near_m=near_m,
-                    far_m=far_m,
-                    floor_counts=round(floor),
-                    plateau_counts=round(law.counts_at(near_m)),
-                )
-            }
+        law_found = LawFound(
+            numerator_counts_m=round(law.numerator_counts_m, 3),
+            offset_m=round(law.offset_m, 4),
+            bias_counts=round(law.bias_counts, 2),
+            near_m=near_m,
+            far_m=far_m,
+            floor_counts=round(floor),
+            plateau_counts=round(law.counts_at(near_m)),
         )
+        result.findings = findings.model_copy(update={"law": law_found})
         return result
+
+
+async def _read_all(stand: TestStand, sensors: tuple[SensorSettings, ...], findings: Findings) -> list[IrReading]:
+    readings = [await _read(stand, sensor, distance_m, findings) for sensor in sensors for distance_m in DISTANCES_M]
+    return [each for each in readings if each is not None]
 
 
 async def _choose(stand: TestStand, findings: Findings) -> tuple[SensorSettings, ...]:

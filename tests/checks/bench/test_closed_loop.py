@@ -6,8 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.checks.bench.closed_loop import measure_closed_loop
-from kurt2rt.checks.bench.one_core import on_one_core
+from kurt2rt.checks.bench.closed_loop import measure_closed_loop, on_one_core
 from kurt2rt.checks.bench.robot_under_test import BenchFixture
 
 

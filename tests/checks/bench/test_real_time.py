@@ -4,10 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.checks.bench.lateness import TIMES_BETTER, lateness_result
 from kurt2rt.checks.bench.real_time import RealTimeRun, RealTimeTurns, run_in_real_time, sleep_bare
 from kurt2rt.checks.bench.robot_under_test import BenchFixture
-from kurt2rt.checks.bench.tick_budget import tick_results
+from kurt2rt.checks.bench.tick_budget import TIMES_BETTER, lateness_result, tick_results
 from kurt2rt.platform.ledger import Percentiles, Stage, TickTimer
 
 NOTHING = Percentiles(0.0, 0.0, 0.0)
