@@ -15,15 +15,15 @@ _REMOTE = ("SSH_CONNECTION", "SSH_TTY")
 
 
 def has_desktop(environment: Mapping[str, str] = os.environ) -> bool:
-    """Return whether a person sits before a display of this machine."""
+    """Return whether the session has a local display."""
     return any(map(environment.get, _DISPLAYS)) and not any(map(environment.get, _REMOTE))
 
 
 def open_link(link: str, folder: Path) -> bool:
-    """Open a link in the browser, without waiting for it; return whether there is a program that opens one.
+    """Start to open a link in the browser; return False if no program for that is installed.
 
-    The link is handed on in a file in `folder` that only this user can read: arguments of a program are open to all
-    users of the machine, and the link carries the token. Raises OSError when the file cannot be written.
+    The link carries the token, and all users can read a program's arguments: it is passed in a file in `folder` that
+    only this user can read. Raises OSError if the file cannot be written.
     """
     opener = next((path for path in map(shutil.which, _OPENERS) if path is not None), None)
     if opener is None:
@@ -34,7 +34,7 @@ def open_link(link: str, folder: Path) -> bool:
     with os.fdopen(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf-8") as opened:
         opened.write(content)
     words = (opener, "open", file.absolute().as_uri()) if opener.endswith("gio") else (opener, file.absolute().as_uri())
-    # A thread waits for it, which would else stay a zombie.
+    # The thread waits for the process, which would otherwise stay a zombie.
     threading.Thread(target=_run, args=(words,), name="browser", daemon=True).start()
     return True
 

@@ -1,4 +1,4 @@
-"""A terminal in which the addresses of the page and the status stay in place; all else is printed above them."""
+"""Terminal whose last lines hold the page's addresses and the status; other lines are printed above them."""
 
 from collections.abc import Iterator, Sequence
 
@@ -15,10 +15,10 @@ _WRONG = "yellow"
 
 
 class LiveScreen:
-    """Rewrites its last lines in place. Every call may wait for the terminal: it belongs to the printer's thread."""
+    """Last lines of a terminal, rewritten in place. Each call may block: call it from the printer's thread only."""
 
     def __init__(self, console: Console, *, for_phones: bool) -> None:
-        """`for_phones`: while no device is paired, say how to pair one."""
+        """Write to a console; `for_phones`: show how to pair a device while none is paired."""
         self._console = console
         self._for_phones = for_phones
         self._live: Live | None = None
@@ -27,21 +27,21 @@ class LiveScreen:
         self._troubles: tuple[str, ...] = ()
 
     def print(self, text: str, style: str | None = None) -> None:
-        """Print a line for good, above what stays in place."""
+        """Print a line above the lines in place."""
         self._console.print(text, style=style, markup=False, highlight=False)
 
     def pin(self, pages: ServedPages) -> None:
-        """Show where the pages are; for the newest paired device as a code as well, if the window is high enough."""
+        """Show the pages' addresses, and the newest paired device's as a code if the window is high enough."""
         self._pages = pages
         self._refresh()
 
     def show(self, doing: str, numbers: str, troubles: Sequence[str]) -> None:
-        """Show the status: what the robot does, its numbers, and what is wrong, each in lines of its own."""
+        """Show the status: activity, numbers and faults, each in its own lines."""
         self._doing, self._numbers, self._troubles = doing, numbers, tuple(troubles)
         self._refresh()
 
     def close(self) -> None:
-        """Take away what stays in place."""
+        """Remove the lines in place."""
         if self._live is not None:
             self._live.stop()
             self._live = None
@@ -50,7 +50,7 @@ class LiveScreen:
         if self._live is None:
             self._live = Live(console=self._console, auto_refresh=False, transient=True, redirect_stdout=False)
             self._live.start()
-            # It is hidden by Live, and a program that is ended at once would leave it so.
+            # Live hides the cursor, and a program that is killed would leave it hidden.
             self._console.show_cursor(True)
         self._live.update(self._lines(), refresh=True)
 
@@ -84,7 +84,7 @@ class LiveScreen:
             yield Text(f"! {each}", style=_WRONG)
 
     def _short_status(self) -> tuple[Text, Text]:
-        """Two rows, whatever there is to say: the code must not come and go with it."""
+        """Return the status in two rows always, so that the code keeps its place."""
         wrong = f"! {'; '.join(self._troubles)}" if self._troubles else ""
         rows = ((self._doing, "bold"), (wrong or self._numbers, _WRONG if wrong else "dim"))
         doing, more = (Text(text, style=style, no_wrap=True, overflow="ellipsis") for text, style in rows)

@@ -64,29 +64,29 @@ class TerminalScreen:
         self._console.print(f"{level}{text}", style=style, markup=False, highlight=False, soft_wrap=True)
 
     def lesson_saved(self, text: str) -> None:
-        """Tell that a lesson is durable, in words; on a live terminal only."""
+        """Print the text of a durable lesson, on a live terminal only."""
         if self._live is not None:
             self.print_line(text, "green")
 
     def show_status(self, status: ProgramStatus, health: Health, trouble: str) -> None:
-        """Show the status. `trouble`: of simulator and CAN log; empty where neither has any."""
+        """Show the status; `trouble` is a fault of simulator or CAN log, empty without one."""
         more = [trouble] if trouble else []
         if self._live is not None:
             wrong = [*format_alarms(status, health), *more]
             behind = " | ".join(each.strip() for each in (*format_numbers(status), *format_guard(status)))
             self._live.show(format_timed_activity(status), behind, wrong)
             held = [format_activity(status)] if status.record.guard_result.latched else []
-            self._tell_alarm(" | ".join([*held, *wrong]), "yellow")
+            self._print_alarm(" | ".join([*held, *wrong]), "yellow")
         elif self._as_service:
-            # A log is read by the day: what changes stands there, the rest is the unit's status.
+            # The log gets changes only; the present status is the unit's.
             stands = [format_activity(status)] if status.runtime.handler.active_stop else []
             told = " | ".join([*stands, *format_problems(status, health), *more])
-            self._tell_alarm(told, None if stands else "red")
+            self._print_alarm(told, None if stands else "red")
         else:
             self.print_line(status_line(status, health, trouble))
 
     def page_line(self, line: str) -> None:
-        """Take a line that the page's program printed: the pages it serves, or a message."""
+        """Handle a line of the page's program: the pages that it serves, or a message."""
         pages = from_line(line)
         if pages is None:
             self.print_line(line, "yellow")
@@ -94,7 +94,7 @@ class TerminalScreen:
             self._pin(pages)
 
     def close(self) -> None:
-        """Remove what stays in place."""
+        """Remove the lines in place."""
         if self._live is not None:
             self._live.close()
 
@@ -102,7 +102,7 @@ class TerminalScreen:
         before, self._pages = self._pages, pages
         if self._live is not None:
             self._live.pin(pages)
-            # No address yet, for instance while the folder of keys cannot be read: the next one opens it.
+            # The first report with an address opens the browser; the folder of keys may be unreadable before.
             if self._browser and pages.addresses and not before.addresses and has_desktop():
                 self._open_browser(pages.addresses[0])
             return
@@ -119,8 +119,8 @@ class TerminalScreen:
         except OSError as error:
             self.print_line(f"the browser was not opened ({error}); open {page.link}", "yellow")
 
-    def _tell_alarm(self, told: str, style: str | None) -> None:
-        """Tell what is wrong if it changed in more than its numbers. `style`: unless nothing is wrong."""
+    def _print_alarm(self, told: str, style: str | None) -> None:
+        """Print the faults, in `style`, if they changed in more than their numbers."""
         if _without_numbers(told) != _without_numbers(self._alarm):
             self.print_line(told or "nothing is wrong any more", style if told else None)
         self._alarm = told

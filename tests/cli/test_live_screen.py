@@ -63,7 +63,7 @@ def test_troubles_stand_below_and_never_beyond_80_columns() -> None:
     assert " ".join(lines).count("the disk fails") == 8
 
 
-def test_the_code_of_the_newest_device_stays_whole_in_24_lines_whatever_there_is_to_say() -> None:
+def test_show_long_status_keeps_the_code_in_24_lines() -> None:
     shown = Shown()
     shown.screen.pin(ServedPages((LOCAL,), network=False, trouble=""))
     assert shown.lines()[-1] == "for a phone: kurt2rt pair phone, in another terminal"
@@ -87,7 +87,7 @@ def test_a_low_window_says_how_high_it_has_to_be() -> None:
 
 
 def opener(folder: Path) -> dict[str, str]:
-    """A desktop whose browser notes what it opens in a file."""
+    """Return a desktop whose browser writes the opened links to a file."""
     script = folder / "bin" / "xdg-open"
     script.parent.mkdir()
     noted = folder / "opened"
@@ -96,7 +96,7 @@ def opener(folder: Path) -> dict[str, str]:
     return {"DISPLAY": ":9", "PATH": f"{script.parent}:{os.environ['PATH']}", "SSH_CONNECTION": "", "SSH_TTY": ""}
 
 
-def test_a_run_at_a_terminal_pins_page_and_code_and_opens_the_browser_once(tmp_path: Path) -> None:
+def test_run_at_a_terminal_pins_page_and_code(tmp_path: Path) -> None:
     pair(tmp_path / "var" / "teachers", tmp_path / "var" / "devices", "phone")
     words = ("run", "--phone", "--port", "0", "--page-port", "0", "--no-record")
     desktop = opener(tmp_path)
@@ -120,7 +120,7 @@ def test_a_run_at_a_terminal_pins_page_and_code_and_opens_the_browser_once(tmp_p
     assert stat.S_IMODE(page.stat().st_mode) == 0o600
 
 
-def test_in_a_pipe_a_run_prints_lines_opens_nothing_and_takes_a_phone_in_meanwhile(tmp_path: Path) -> None:
+def test_run_in_a_pipe_prints_lines_and_accepts_a_phone(tmp_path: Path) -> None:
     words = ("run", "--phone", "--port", "0", "--page-port", "0", "--no-record")
     with running(*words, folder=tmp_path, environment=opener(tmp_path)) as robot:
         local = urlsplit(robot.wait_for("/pair?token=").strip())

@@ -18,7 +18,7 @@ def device_of(name: str) -> Device:
     return read_device(DEVICES / name)
 
 
-def test_a_paired_device_is_told_where_its_page_is_as_text_and_as_a_code(kurt2rt: CommandLine) -> None:
+def test_pair_prints_link_and_code(kurt2rt: CommandLine) -> None:
     said = kurt2rt("pair", "anna-phone", "--host", "10.0.0.7")
     assert said.exit_code == 0, said.err
     address = f"http://10.0.0.7:8642/pair?token={device_of('anna-phone').token}"
@@ -29,7 +29,7 @@ def test_a_paired_device_is_told_where_its_page_is_as_text_and_as_a_code(kurt2rt
     assert "kurt2rt run --phone" in said.out
 
 
-def test_the_robot_accepts_it_from_now_on(kurt2rt: CommandLine) -> None:
+def test_pair_makes_the_robot_accept_the_device(kurt2rt: CommandLine) -> None:
     kurt2rt("pair", "anna-phone")
     teachers = Teachers(TEACHERS)
     assert teachers.names == ("anna-phone",)
@@ -37,17 +37,17 @@ def test_the_robot_accepts_it_from_now_on(kurt2rt: CommandLine) -> None:
     teachers.close()
 
 
-def test_without_a_host_the_address_is_this_machines(kurt2rt: CommandLine) -> None:
+def test_pair_without_host_links_to_this_machine(kurt2rt: CommandLine) -> None:
     said = kurt2rt("pair", "phone")
     assert f"http://{own_address()}:8642/pair?token=" in said.out
 
 
-def test_an_address_of_the_newer_kind_is_put_in_brackets(tmp_path: Path) -> None:
+def test_page_link_ipv6_address_is_in_brackets(tmp_path: Path) -> None:
     pairing = local_pairing(tmp_path / "teachers", tmp_path / "devices")
     assert page_link(pairing.device, "fe80::7", 80).startswith("http://[fe80::7]:80/pair?token=")
 
 
-def test_folders_and_ports_are_those_of_the_settings(kurt2rt: CommandLine, tmp_path: Path) -> None:
+def test_pair_uses_folders_and_ports_of_the_settings(kurt2rt: CommandLine, tmp_path: Path) -> None:
     content = yaml.safe_load((CONFIG_DIR / "runtime" / "default.yaml").read_text(encoding="utf-8"))
     content |= {"teachers": "keys/robot", "devices": "keys/out", "port": 6000, "page_port": 9000}
     (tmp_path / "mine.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
@@ -57,7 +57,7 @@ def test_folders_and_ports_are_those_of_the_settings(kurt2rt: CommandLine, tmp_p
     assert ":9000/pair?token=" in said.out
 
 
-def test_paired_twice_is_refused_and_told_how_to_renew(kurt2rt: CommandLine) -> None:
+def test_pair_twice_is_refused_with_renew_as_the_cure(kurt2rt: CommandLine) -> None:
     kurt2rt("pair", "phone")
     before = device_of("phone")
     assert "kurt2rt pair phone --renew" in kurt2rt.refused("pair", "phone")
@@ -89,7 +89,7 @@ def test_the_list_tells_who_is_paired_and_where_the_device_is(kurt2rt: CommandLi
 
 
 @pytest.mark.parametrize("name", ["Anna", "a b", "../robot", "local"])
-def test_what_is_no_name_is_refused(kurt2rt: CommandLine, name: str) -> None:
+def test_pair_invalid_name_is_refused(kurt2rt: CommandLine, name: str) -> None:
     assert kurt2rt.refused("pair", name)
     assert not DEVICES.exists()
 
@@ -97,5 +97,5 @@ def test_what_is_no_name_is_refused(kurt2rt: CommandLine, name: str) -> None:
 @pytest.mark.parametrize(
     ("words", "why"), [((), "whose device?"), (("phone", "--renew", "--revoke"), "one of these at a time")]
 )
-def test_what_makes_no_sense_is_told(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
+def test_pair_contradicting_options_are_refused(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
     assert why in kurt2rt.misused("pair", *words)

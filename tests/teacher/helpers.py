@@ -1,4 +1,4 @@
-"""Commands in one line each."""
+"""Builders of commands of teacher Ann."""
 
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import Correct, DeleteRla, Pursue, ReplaceAction, Resume, SetPhase, Stop, Teach

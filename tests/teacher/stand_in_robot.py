@@ -1,4 +1,4 @@
-"""A robot whose socket, keys and pictures are real and whose mind is the test's."""
+"""Robot with a real socket, keys and states, whose answers are the test's."""
 
 import asyncio
 from collections.abc import AsyncIterator, Awaitable, Callable
@@ -45,7 +45,7 @@ class StandInRobot:
         self._news = anyio.Event()
 
     async def answer(self, _sender: Sender, request: Request) -> Reply:
-        """What the site asks of a reception."""
+        """Answer a request, as RequestHandler does."""
         self.heard.append(request)
         self._wake()
         if isinstance(request, StreamRequest | CommandRequest) and request.boot != self.state.boot:
@@ -53,21 +53,21 @@ class StandInRobot:
         return await self.mind(request)
 
     def show(self, **changes: Any) -> State:
-        """The next picture, changed from the last one."""
+        """Publish the next state, changed from the last one."""
         self.state = replace(self.state, tick=self.state.tick + _TICKS, **changes)
         self.site.publish(encode_state(self.state))
         return self.state
 
     def all_of(self, kind: type[_Kind]) -> list[_Kind]:
-        """What was heard of one kind."""
+        """Return the received requests of one type."""
         return [each for each in self.heard if isinstance(each, kind)]
 
     def orders(self) -> list[Request]:
-        """What was heard but for the streams."""
+        """Return the received requests that are no streams."""
         return [each for each in self.heard if not isinstance(each, WatchRequest | DriveRequest)]
 
     async def hears(self, kind: type[_Kind], count: int = 1) -> list[_Kind]:
-        """Wait until so many of a kind were heard."""
+        """Wait for `count` requests of a type; return all of it."""
         with anyio.fail_after(10.0):
             while len(self.all_of(kind)) < count:
                 await self._news.wait()
@@ -88,7 +88,7 @@ class StandInRobot:
 async def stand_in_robot(
     folder: Path, *, port: int = 0, boot: bytes = b"boot", showing: bool = True
 ) -> AsyncIterator[StandInRobot]:
-    """On loopback, for the teachers of a folder; when it ends it is as if it had crashed."""
+    """Open a robot on loopback for the teachers of a folder; it ends without a farewell, as after a crash."""
     teachers = Teachers(folder)
     robot = StandInRobot(teachers, boot, showing=showing)
     endpoint = await open_endpoint(robot.site, "127.0.0.1", port)
@@ -108,7 +108,7 @@ async def stand_in_robot(
 
 @asynccontextmanager
 async def in_a_task_of_its_own(manager: AbstractAsyncContextManager[_Thing]) -> AsyncIterator[_Thing]:
-    """For fixtures: pytest begins and ends them in different tasks, and task groups do not allow that."""
+    """Enter and exit a context in one task, for fixtures: pytest starts and ends them in different tasks."""
     opened: asyncio.Future[_Thing] = asyncio.get_running_loop().create_future()
     over = asyncio.Event()
 

@@ -17,9 +17,8 @@ from kurt2rt.core.rla.rla import Phase
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.client.client import TeacherClient
 from kurt2rt.teacher.page.commands import COMMANDS, PageCommand, is_resumption, max_state_age_s
-from kurt2rt.teacher.page.control_lease import ControlLease
+from kurt2rt.teacher.page.control_lease import ControlLease, OperatorPresence
 from kurt2rt.teacher.page.messages import Hidden, PageHeartbeat, PageMessage, Press, Release, StopNow, Why
-from kurt2rt.teacher.page.operator_presence import OperatorPresence
 from kurt2rt.teacher.page.page_connection import PageConnection
 from kurt2rt.teacher.page.sent_states import SentState
 from kurt2rt.teacher.page.slow_state import SlowState
