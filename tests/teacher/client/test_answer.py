@@ -41,3 +41,8 @@ def test_text_on_a_surface_names_its_own_control() -> None:
     answer = answer_of("4.09 Conflict", {"t": 5, "why": "stopped", **plain_outcome(stopped)})
     assert answer.text == text_of(stopped, Surface.LOG)
     assert len({answer.text_on(surface) for surface in Surface}) == len(Surface)
+
+
+@pytest.mark.parametrize(("why", "code"), [("old", RefusalCode.OVERTAKEN), ("boot", RefusalCode.RESTARTED)])
+def test_answer_without_code_has_the_code_of_its_wire_word(why: str, code: RefusalCode) -> None:
+    assert answer_of("4.09 Conflict", {"t": 5, "why": why, "text": "no"}).code is code
