@@ -37,7 +37,7 @@ class LayerStack:
             self._before = decision._replace(match=commanded.match, asks_at=MID, mid=commanded)
         else:
             if navigator is not None and not self.mid.overridden:
-                blocking_cause = blocking_cause or _STANDS.get(navigator.stands_as)
+                blocking_cause = blocking_cause or _STANDS.get(navigator.standing_status)
             decision = self._decide_below(situation, senses, blocking_cause)
             self._before = decision._replace(mid=commanded)
         if navigator is not None and navigator.step is not None:

@@ -12,18 +12,18 @@ Field = str | int | tuple[str, ...] | None
 
 
 class ResultCode(StrEnum):
-    """What was done."""
+    """Code of an accepted command: the effect."""
 
     REPEATED = "repeated"
-    """A command of this id was carried out before; it counts once."""
-    # Who teaches, and whether the robot may drive.
+    """A command of this id was applied before; it counts once."""
+    # Control authority and driving.
     TAKEN = "taken"
     HANDED_OVER = "handed over"
     RELEASED = "released"
     """The robot has no teacher now."""
     STOPPED = "stopped"
     RELEASE_SUPERSEDED = "release superseded"
-    """A later press than the one that was let go drives."""
+    """A later press than the released one drives."""
     RESUMED = "resumed"
     PHASE_SET = "phase set"
     SESSION_BEGUN = "session begun"
@@ -38,21 +38,21 @@ class ResultCode(StrEnum):
     SITUATION_NAMED = "situation named"
     RLA_TAUGHT = "rla taught"
     RLA_ADDED = "rla added"
-    """On the condition of others, as another possibility."""
+    """Competitor on the condition of other RLAs."""
     RLA_CORRECTED = "rla corrected"
     RLA_ANSWERED = "rla answered"
-    """The RLA asked, for its action had been withdrawn."""
+    """Answer to an RLA whose action had been withdrawn."""
     RLA_AGREES = "rla agrees"
-    """It says so already; nothing was changed."""
+    """The RLA has this action already; nothing was changed."""
     RLA_CONFLICTS = "rla conflicts"
-    """Another RLA on the same condition says so already; nothing was changed."""
+    """Another RLA on its condition has this action already; nothing was changed."""
     RLA_DELETED = "rla deleted"
     RLA_REWARDED = "rla rewarded"
     RLA_PUNISHED = "rla punished"
     LESSON_UNDONE = "lesson undone"
     CRITIC_AGREED = "critic agreed"
     CRITIC_AGREES = "critic agrees"
-    """It thinks so by now, but did not when the situation was; nothing was changed."""
+    """The critic agrees now, but did not in the appraised tick; nothing was changed."""
     # Files, exams and the simulated world.
     COPIED = "copied"
     EXAM_BEGUN = "exam begun"
@@ -63,16 +63,16 @@ class ResultCode(StrEnum):
 
 
 class RefusalCode(StrEnum):
-    """Why a command is not carried out, or a file not handed out."""
+    """Code of a refused command or file: the reason."""
 
-    # Who teaches.
+    # Control authority.
     ANOTHER_TEACHES = "another teaches"
     DRIVES_BY_HAND = "drives by hand"
-    """The teacher drives by hand, so no other one takes the robot."""
+    """The teacher drives manually, so no other teacher can take the robot."""
     NO_TEACHER = "no teacher"
     CRITICS_NAME = "critic's name"
     TEACHER_ABSENT = "teacher absent"
-    # When it was said.
+    # Time of the command.
     RESTARTED = "restarted"
     OLD_PICTURE = "old picture"
     OVERTAKEN = "overtaken"
@@ -88,7 +88,7 @@ class RefusalCode(StrEnum):
     TICK_FORGOTTEN = "tick forgotten"
     NOT_SAVED_YET = "not saved yet"
     NOT_SAVED = "not saved"
-    # What it names.
+    # Names in the command.
     RESERVED_ID = "reserved id"
     NO_ACTION = "no action"
     NO_BEHAVIOUR = "no behaviour"
@@ -99,7 +99,7 @@ class RefusalCode(StrEnum):
     NO_CRITIC = "no critic"
     NO_PLACE = "no place"
     NO_PLACES = "no places"
-    """The mid level knows none."""
+    """The mid level knows no places."""
     NOT_NAMED = "not named"
     BAD_NAME = "bad name"
     NO_FEATURE = "no feature"
@@ -109,12 +109,12 @@ class RefusalCode(StrEnum):
     BLIND = "blind"
     """The infra-red sensors are silent."""
     WAS_BLIND = "was blind"
-    """They were, in the tick that is meant."""
+    """The infra-red sensors were silent in the named tick."""
     PLACE_UNKNOWN = "place unknown"
     NO_OTHER_WAY = "no other way"
-    """The basic level does one thing in a situation."""
+    """The basic level has one action per situation."""
     SAYS_SO = "says so"
-    """Another RLA on the same condition says so already."""
+    """Another RLA on its condition has this action already."""
     NO_RLA_DROVE = "no rla drove"
     OUTSIDE_RADIUS = "outside radius"
     NO_LESSON = "no lesson"
@@ -122,16 +122,16 @@ class RefusalCode(StrEnum):
     UNDONE_ALREADY = "undone already"
     STANDS_ALREADY = "stands already"
     TAUGHT_AFTER = "taught after"
-    """A later lesson stands on this one."""
+    """A later lesson is above this one in its stack."""
     TAUGHT_INSTEAD = "taught instead"
-    """Another lesson stands in its place."""
+    """Another lesson took its place in the stack."""
     STANDS_ON_UNDONE = "stands on undone"
     ACTION_NOT_IN_TASK = "action not in task"
     DOES_NOT_FIT = "does not fit"
     # Files, exams and the simulated world.
     NOT_SIMULATED = "not simulated"
     OWN_TIME = "own time"
-    """A simulated wire has a time of its own."""
+    """A simulated wire has its own time."""
     WORLD_REFUSES = "world refuses"
     EXAM_UNDER_WAY = "exam under way"
     EXAM_FAILED = "exam failed"
@@ -144,13 +144,13 @@ class RefusalCode(StrEnum):
     UPLOAD_TOO_LARGE = "upload too large"
     UPLOAD_DIFFERS = "upload differs"
     UPLOAD_INCOMPLETE = "upload incomplete"
-    # On the teacher's side.
+    # Refusals of the teacher's device.
     MALFORMED = "malformed"
     STOPPED_MEANWHILE = "stopped meanwhile"
     NO_PICTURE = "no picture"
-    """No press begins, for no state of the robot came lately."""
+    """No press begins, because no recent state of the robot arrived."""
     PICTURE_LOST = "picture lost"
-    """A press ended, for no state of the robot came any more."""
+    """A press ended, because no states of the robot arrive."""
     RESTARTED_MEANWHILE = "restarted meanwhile"
     NOT_UNDERSTOOD = "not understood"
 
@@ -161,24 +161,24 @@ _CODES: dict[str, Code] = {each.value: each for each in (*ResultCode, *RefusalCo
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Code with its fields; `says` is a field that holds the words of another program or of a file's name."""
+    """Code with its fields; the field `says` holds text of another program, or a file name."""
 
     code: Code
     fields: Mapping[str, Field] = field(default_factory=dict)
 
     @classmethod
     def of(cls, code: Code, **fields: Field) -> Self:
-        """Return the outcome of these fields."""
+        """Return the outcome of a code with these fields."""
         return cls(code, fields)
 
     @property
     def accepted(self) -> bool:
-        """Whether the command was carried out."""
+        """Return whether the command was applied."""
         return isinstance(self.code, ResultCode)
 
 
 def outcome_in(code: object, fields: object) -> Outcome | None:
-    """Return the outcome of a code and fields off the wire; None for a code that is not known here."""
+    """Return the outcome of a code and fields from the wire; None for an unknown code."""
     if not isinstance(code, str) or not isinstance(fields, Mapping) or code not in _CODES:
         return None
     if not all(each is None or isinstance(each, str | int | list) for each in fields.values()):
@@ -190,7 +190,7 @@ def outcome_in(code: object, fields: object) -> Outcome | None:
 
 
 class CommandRefusedError(ValueError):
-    """A command that is not carried out."""
+    """Refusal of a command; `outcome` holds the code and its fields."""
 
     def __init__(self, code: RefusalCode, **fields: Field) -> None:
         super().__init__(code, fields)
@@ -198,7 +198,7 @@ class CommandRefusedError(ValueError):
 
 
 def refuse(outcome: Outcome | None) -> None:
-    """Raise CommandRefusedError if there is a reason."""
+    """Raise CommandRefusedError unless `outcome` is None."""
     if outcome is not None:
         assert isinstance(outcome.code, RefusalCode)
         raise CommandRefusedError(outcome.code, **outcome.fields)

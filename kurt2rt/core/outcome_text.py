@@ -1,4 +1,4 @@
-"""Outcomes in words: what was done, or why not and what to do, on each surface."""
+"""Texts of outcomes on each surface."""
 
 from collections.abc import Mapping
 from enum import StrEnum
@@ -10,12 +10,12 @@ from kurt2rt.core.rla.rla_system import InvalidEventError
 
 
 class Surface(StrEnum):
-    """Where a teacher reads the text."""
+    """Surface on which a teacher reads the text."""
 
     PAGE = "page"
     TERMINAL = "terminal"
     LOG = "log"
-    """Also on the wire, for devices that know no codes."""
+    """Log, and wire for devices without codes."""
 
 
 _WORDS: dict[Surface, dict[str, str]] = {
@@ -41,7 +41,7 @@ _WORDS: dict[Surface, dict[str, str]] = {
         "look": "look at the robot",
     },
 }
-"""What a text calls the controls of each surface."""
+"""Names of the controls of each surface."""
 
 _TEXTS: dict[Code, str] = {
     ResultCode.REPEATED: "had been taken already; counted once",
@@ -155,17 +155,17 @@ _TEXTS: dict[Code, str] = {
 
 _ONLY_BEHAVIOUR = "the only behaviour"
 _MADE_OF = {"title": "rla", "wanted": "behaviour"}
-"""Names in texts that are made of a field."""
+"""Name in a text -> field that it is made of."""
 
 
 def fields_of(code: Code) -> frozenset[str]:
-    """Return the names of the fields that the text of a code shows."""
+    """Return the names of the fields in the text of a code."""
     shown = {name for _, name, _, _ in Formatter().parse(_TEXTS[code]) if name}
     return frozenset(_MADE_OF.get(name, name) for name in shown - _WORDS[Surface.LOG].keys())
 
 
 def text_of(outcome: Outcome, surface: Surface = Surface.LOG) -> str:
-    """Return a sentence for the teacher, empty fields and all. Raises KeyError for a field that is missing."""
+    """Return a sentence for the teacher. Raises KeyError for a missing field."""
     return _TEXTS[outcome.code].format(**{**_shown(outcome.fields), **_WORDS[surface]})
 
 

@@ -51,10 +51,10 @@ class GoalPursuit:
     @property
     def stands(self) -> bool:
         """Return whether the robot stands because of the goal."""
-        return self.stands_as is not None
+        return self.standing_status is not None
 
     @property
-    def stands_as(self) -> GoalStatus | None:
+    def standing_status(self) -> GoalStatus | None:
         """Reason of the standstill, ARRIVED or NO_WAY; None while it drives."""
         match self.status:
             case GoalStatus.ARRIVED:
@@ -90,7 +90,7 @@ class GoalPursuit:
 
     def seek(self, goal: Goal, target: Target) -> None:
         """Set the goal; the next `arrive` begins the plan."""
-        self._stood_before = self.stands_as
+        self._stood_before = self.standing_status
         self.goal, self._target = goal, target
         self._lost_meaning = ""
         self._rejected_goals.clear()
@@ -174,7 +174,7 @@ class GoalPursuit:
         if not group:
             self._settle(GoalStatus.LOST)
             return
-        self._stood_before = self._stood_before or self.stands_as
+        self._stood_before = self._stood_before or self.standing_status
         self.status, self.plan = GoalStatus.PLANNING, None
         self._map_builder = MapBuilder(self._begin_map(), self._target)
         self._begun = self._map_done = False

@@ -76,9 +76,9 @@ class Navigator:
         return self._pursuit.status
 
     @property
-    def stands_as(self) -> GoalStatus | None:
+    def standing_status(self) -> GoalStatus | None:
         """Reason to stand, ARRIVED or NO_WAY; None to drive."""
-        return self._pursuit.stands_as
+        return self._pursuit.standing_status
 
     @property
     def named_situations(self) -> Mapping[str, Condition]:

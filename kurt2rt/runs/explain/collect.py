@@ -81,7 +81,7 @@ def _blocking_causes(runtime: Runtime, record: TickRecord) -> tuple[str, ...]:
     if school.requires_teacher and not school.authority.is_present(record.tick):
         found.append(Cause.UNATTENDED)
     if navigator is not None and mid is not None and not mid.overridden:
-        match navigator.stands_as:
+        match navigator.standing_status:
             case GoalStatus.ARRIVED:
                 found.append(Cause.AT_GOAL)
             case GoalStatus.NO_WAY:

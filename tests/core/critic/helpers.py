@@ -13,7 +13,7 @@ _numbers = count(1)
 
 
 def origin(command_id: str | None = None, teacher: str = "ada", phase: Phase = Phase.CRITIC, tick: int = 0) -> Origin:
-    """Of a new command, unless named."""
+    """Return the origin of a new command, or of a named one."""
     return Origin(command_id or f"command-{next(_numbers)}", teacher, phase, tick)
 
 

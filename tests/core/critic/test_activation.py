@@ -1,4 +1,4 @@
-"""Whether a robot that is alone needs its critic."""
+"""Activation of the critic in phase 5."""
 
 import pytest
 
@@ -7,7 +7,7 @@ from kurt2rt.core.critic.settings import ActivationSettings
 
 
 def need(first_s: float = 0.0, mean_s: float = 1.0) -> ActivationMonitor:
-    """Of ticks of 10 ms."""
+    """Return a monitor with ticks of 10 ms."""
     return ActivationMonitor(ActivationSettings(bad_share=0.1, mean_s=mean_s, first_s=first_s), 0.01)
 
 

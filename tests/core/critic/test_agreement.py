@@ -1,4 +1,4 @@
-"""How far the critic is trusted, told from what the journal holds."""
+"""Agreement of critic and teacher, from journal events."""
 
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.settings import AgreementSettings
@@ -102,10 +102,10 @@ def test_agreement_undone_signal_is_removed() -> None:
     one.on_event(appraisal(1, "bad", said_by=mistaken))
     assert one.share_for(-1) == 2 / 3
     one.on_event(LessonUndone("mistaken", origin()))
-    one.on_event(LessonUndone("nobody heard of", origin()))
+    one.on_event(LessonUndone("unknown", origin()))
     assert (one.share, one.count_for(-1)) == (1.0, 2)
     one.on_event(LessonRedone("mistaken", origin()))
-    one.on_event(LessonRedone("nobody heard of", origin()))
+    one.on_event(LessonRedone("unknown", origin()))
     assert one.share_for(-1) == 2 / 3
 
 
@@ -122,7 +122,7 @@ def said_at(tick: int, *, right: bool) -> TeachingEvent:
 
 
 def test_agreement_signal_soon_after_another_is_ignored() -> None:
-    """Somebody who clicks "good" ten times in one place would be trusted else; and only agreements would be lost."""
+    """Ten clicks of "good" in one place would count ten times otherwise; and only agreements would be lost."""
     one = agreement(apart_s=5.0)
     one.on_event(appraisal(1, "good", said_by=origin(tick=100)))
     one.replay([said_at(100 + after, right=after % 2 == 0) for after in range(1, 500, 50)])

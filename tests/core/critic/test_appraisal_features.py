@@ -1,4 +1,4 @@
-"""What the critic looks at, told from what the robot senses."""
+"""Appraisal features from sensor readings."""
 
 import json
 import math
@@ -22,7 +22,7 @@ FAR_M = ROBOT.infrared.far_m
 def senses(
     left_m_s: float = 0.0, right_m_s: float = 0.0, *, bumpers: int = 0, age_s: float = 0.0, **distances_m: float
 ) -> SensorReadings:
-    """Of a tick in which the wheels turn at these speeds, with something at these distances from the named sensors."""
+    """Return the readings of a tick at these wheel speeds, with objects at these distances from the sensors."""
     left, right = (round(speed * 0.01 * TICKS_PER_M) for speed in (left_m_s, right_m_s))
     return SensorReadings(0.0, counts(0.7, **distances_m), age_s, left, right, 0.0, bumpers, 0.0)
 
@@ -139,7 +139,7 @@ def test_no_wall_time_pauses_while_waiting() -> None:
     assert after(0.01, lost, senses()).no_wall == 1.0
 
 
-# Beginning anew
+# Starting again
 
 
 def test_features_reset_after_missing_sensor_data() -> None:

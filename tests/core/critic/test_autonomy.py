@@ -1,4 +1,4 @@
-"""When the critic speaks."""
+"""Signals of the critic in phase 5."""
 
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.autonomy import Autonomy, Signal

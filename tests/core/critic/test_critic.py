@@ -1,4 +1,4 @@
-"""What the critic thinks, after what it was taught."""
+"""Opinions of a taught critic."""
 
 import numpy as np
 import pytest

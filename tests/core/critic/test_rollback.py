@@ -1,4 +1,4 @@
-"""The guard that keeps the best knowledge, told window by window."""
+"""Rollback of the critic's changes."""
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -23,7 +23,7 @@ from tests.examples import examples
 
 
 def best(margin: float = 0.2) -> RollbackMonitor:
-    """With windows of ten ticks."""
+    """Return a monitor with windows of ten ticks."""
     return RollbackMonitor(RollbackSettings(window_s=0.1, margin=margin), 0.01)
 
 

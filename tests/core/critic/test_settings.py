@@ -1,4 +1,4 @@
-"""The critic's settings: the shipped ones, and what is refused."""
+"""Settings of critics."""
 
 import json
 from pathlib import Path

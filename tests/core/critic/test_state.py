@@ -1,4 +1,4 @@
-"""What a critic does that is alone with the robot, as its school tells it."""
+"""State of the critic in phase 5, as the command handler reports it."""
 
 import pytest
 
@@ -13,7 +13,7 @@ NEEDS_A_TENTH = QUICK.model_copy(update={"need": ActivationSettings(bad_share=0.
 
 
 def alone(*taught_the_critic: bool) -> Track:
-    """A robot that knows one place, in phase 5."""
+    """Return a robot with one RLA in phase 5."""
     events = knows_good_from_bad() if all(taught_the_critic) else []
     return Track(created(1, (0.0,), "a"), *events, critic=NEEDS_A_TENTH, phase=Phase.AUTONOMOUS)
 

@@ -31,12 +31,12 @@ class Small:
         return surprise
 
     def happens(self, event: TeachingEvent) -> int | None:
-        """A lesson acts, and the expectations hear of it."""
+        """Apply a lesson to system and expectations."""
         self.system.apply(event)
         return self.expectations.on_event(event)
 
     def expected(self, rla_id: int) -> Expectation:
-        """What is expected of one that ended before."""
+        """Return the expectation of an RLA that has ended."""
         expectation = self.expectations.get(rla_id)
         assert expectation is not None
         return expectation

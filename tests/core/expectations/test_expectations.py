@@ -1,4 +1,4 @@
-"""What an RLA leads to is learned from what followed, and something else is surprising."""
+"""Expectations learned from ends of RLAs, and surprises."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""When an RLA has ended of itself, and when something else has ended it."""
+"""Ends of RLAs, by themselves or by commands."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""The mid level's situation: the last symbols, newest first."""
+"""Mid-level situation of symbols."""
 
 import math
 
@@ -34,14 +34,14 @@ class Led:
         return self
 
     def over(self, *turns_deg: float) -> "Led":
-        """Over so many junctions, with a street behind each."""
+        """Drive over a number of junctions, with a street after each."""
         for turn_deg in turns_deg:
             self.go(0.8, OPEN_M, turn_deg=turn_deg).go(1.0)
         return self
 
     @property
     def words(self) -> list[str]:
-        """What is remembered, newest first, as far as there is something."""
+        """Return the names of the symbols, newest first."""
         names = self.settings.situation.describe(self.situation.vector)
         return [each for each in names if each]
 

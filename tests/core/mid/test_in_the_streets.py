@@ -1,4 +1,4 @@
-"""Junctions noticed at the real path: the simulated robot behind its CAN bus, with the policy at the wheels."""
+"""Detection of junctions in simulated streets."""
 
 import math
 import random
@@ -40,7 +40,7 @@ class Drive:
         self._period_s = robot.can.cycle_s
 
     def ticks(self, duration_s: float) -> Iterator[SensorReadings]:
-        """What the robot senses, tick by tick."""
+        """Yield the sensor readings of each tick."""
         for tick in range(round(duration_s / self._period_s)):
             now_s = tick * self._period_s
             self.simulation.step()
@@ -98,7 +98,7 @@ class Truth:
 
 
 def random_drive(seed: int, duration_s: float, robot: RobotSettings) -> tuple[list[object], list[object]]:
-    """What was passed and what was told, by random commands."""
+    """Return the passed and the detected junctions of a random drive."""
     drive = Drive(seed, robot)
     streets = StreetMap(drive.simulation.plan)
     course = Junctions(streets, TASK.behaviours, random.Random(seed))

@@ -1,4 +1,4 @@
-"""Junctions that the robot passes, by what its sides see and how its wheels turn."""
+"""Detection of junctions from simulated walls."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""The mid level: which behaviour is wanted next, by the junctions that lie behind the robot."""
+"""Commands of the mid level."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Where the robot is, reckoned by its wheels from junction to junction and put right at places that it knows."""
+"""Pose by dead reckoning from junction to junction, corrected at known places."""
 
 import math
 from collections.abc import Iterator
@@ -47,7 +47,7 @@ class Drive:
         self._tick = 0
 
     def lead(self, *behaviours: str) -> None:
-        """Through one junction after the other."""
+        """Drive through several junctions."""
         for behaviour in behaviours:
             self._wanted.select(behaviour)
             while not self.step():
@@ -66,7 +66,7 @@ class Drive:
 
     @property
     def off_m(self) -> float:
-        """How far what it reckons is from where it is."""
+        """Return the error of the reckoned position in m."""
         pose, vector = self.simulation.pose, self.place.vector
         return math.hypot(vector[X] - pose.x_m, vector[Y] - pose.y_m)
 

@@ -1,4 +1,4 @@
-"""Settings of the mid level: the shipped ones, what they are bound to, and what is refused."""
+"""Settings of mid levels."""
 
 import json
 from typing import Any

@@ -45,7 +45,7 @@ class Walk:
         turn_deg: float = 0.0,
         askew_deg: float = 0.0,
     ) -> "Walk":
-        """So far with these walls beside it; `turn_deg` to the left on the way. Without way: on the spot."""
+        """Drive a distance between these walls, turning `turn_deg` to the left; distance 0 turns on the spot."""
         steps = max(round(abs(way_m) / _STEP_M), 40)
         for _ in range(steps):
             senses = sensed(left_m, right_m, way_m / steps, math.radians(turn_deg) / steps, math.radians(askew_deg))
@@ -60,5 +60,5 @@ class Walk:
 
     @property
     def told(self) -> list[str]:
-        """What was done at each junction."""
+        """Return the turn at each junction."""
         return [event.name for event in self.passed]

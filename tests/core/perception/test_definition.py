@@ -1,4 +1,4 @@
-"""The definition that knowledge is bound to."""
+"""Situation definition and its fingerprint."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Features, computed by hand."""
+"""Recent features from sensor counts."""
 
 from collections.abc import Mapping, Sequence
 

@@ -1,4 +1,4 @@
-"""The ring buffer against a plain list."""
+"""Ring buffer of feature vectors."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""From senses to the situation, tick by tick."""
+"""Situation from sensor readings, tick by tick."""
 
 from hal.robot import WheelSpeeds
 from kurt2rt.core.perception.perception import Perception

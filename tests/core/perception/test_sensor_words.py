@@ -1,4 +1,4 @@
-"""Words for features, and readings in centimetres."""
+"""Texts for features."""
 
 import pytest
 

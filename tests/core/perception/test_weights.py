@@ -1,4 +1,4 @@
-"""What each feature counts in a distance."""
+"""Weights of features in a distance."""
 
 import anyio
 import numpy as np
@@ -61,7 +61,7 @@ def test_feature_weights_unknown_or_double_is_refused(changed: list[tuple[tuple[
 
 
 def first_tick(*taught: TeachingEvent, weights: tuple[FeatureWeight, ...] = ()) -> TickRecord:
-    """Of the same robot at the same place, whatever it was taught."""
+    """Return the first tick of a robot at a fixed place with these lessons."""
     task = load_task("fleeing")
     task = task.model_copy(update={"learning": task.learning.model_copy(update={"weights": weights})})
     simulation = STAGE.open("a", 1, "exam")

@@ -1,4 +1,4 @@
-"""On the way to a goal: following the plan, being surprised, arriving, and seeing no way."""
+"""Pursuit of a goal: plan, surprise, arrival, missing path."""
 
 import numpy as np
 import pytest
@@ -42,7 +42,7 @@ def seeking(town: Town, goal: Goal = DOOR) -> GoalPursuit:
 
 
 def think(seeks: GoalPursuit) -> int:
-    """Until it is settled how it goes on; after how many ticks."""
+    """Plan until the status is settled; return the number of ticks."""
     ticks = 0
     while seeks.status is GoalStatus.PLANNING:
         seeks.plan_step()
@@ -114,7 +114,7 @@ def test_pursuit_unknown_place_is_lost() -> None:
     assert course(seeks) is GoalStatus.LOST
     assert seeks.choose(town.group_at(town.at("a"))) is None
     assert seeks.text.startswith("lost on the way to door")
-    arrive(seeks, town.at("b"))  # somebody led it back
+    arrive(seeks, town.at("b"))  # led back
     assert course(seeks) is GoalStatus.UNDER_WAY
 
 

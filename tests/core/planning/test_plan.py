@@ -1,4 +1,4 @@
-"""Charts and plans of small towns."""
+"""Plans on the topological map."""
 
 import numpy as np
 
@@ -63,7 +63,7 @@ def test_plan_cost_includes_failed_attempts() -> None:
 def test_plan_unreachable_goal_is_none() -> None:
     town = Town(home=(0.0, 0.0), door=(2.0, 0.0))
     town.way("door", "straight_on", "home")
-    town.teach("home", "straight_on")  # taught, but never gone: nobody knows where it leads
+    town.teach("home", "straight_on")  # taught, but never driven: no expectation
     assert plan(town, "home", "door") is None
 
 

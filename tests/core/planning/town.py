@@ -1,4 +1,4 @@
-"""A town for plans: places by name on a map, and ways between them, taught as RLAs of the mid level."""
+"""Town for plans: named places, and edges taught as mid-level RLAs."""
 
 from collections import Counter
 from typing import NamedTuple
@@ -17,7 +17,7 @@ FEATURES = ("x_m", "y_m", "wall_left")
 
 
 class Seen(NamedTuple):
-    """Where an RLA was seen to end, and after how many ticks (kurt2rt.core.planning.topological_map.Forecast)."""
+    """End of an RLA and its duration in ticks (kurt2rt.core.planning.topological_map.Forecast)."""
 
     mean: Vector
     ticks: float
@@ -34,7 +34,7 @@ class Town:
         self.seen: dict[int, Seen] = {}
 
     def at(self, place: str) -> Vector:
-        """The situation there."""
+        """Return the situation of a place."""
         return np.array([*self.places[place], float(place in self.walled)])
 
     def teach(self, place: str, action: str) -> int:
@@ -50,7 +50,7 @@ class Town:
         return rla_id
 
     def group_at(self, situation: Vector) -> tuple[Rla, ...]:
-        """The RLAs on the place that a situation is at."""
+        """Return the RLAs on the place of a situation."""
         match = self.system.match(situation, level=MID)
         return self.system.competitors(match.rla) if match is not None and match.known else ()
 
@@ -59,7 +59,7 @@ class Town:
         return build_map(self.system.rlas_at(MID), self.group_at, self.followed, self.seen.get)
 
     def chart(self) -> TopologicalMap:
-        """As it is known now."""
+        """Return the complete map."""
         survey = MapBuilder(self.build_map(), FeatureTarget({}, 0.0))
         while not survey.step(1):
             pass
@@ -67,9 +67,9 @@ class Town:
         return survey.topological_map
 
     def followed(self, rla_id: int) -> dict[int, int]:
-        """How often each RLA followed one."""
+        """Return follow-up id -> count."""
         return {after: times for (before, after), times in self.follow_ups.items() if before == rla_id}
 
     def distance(self, a: Vector, b: Vector) -> float:
-        """In the mid level's space."""
+        """Return the distance in the space of the mid level."""
         return float(np.linalg.norm((a - b)[:2]))

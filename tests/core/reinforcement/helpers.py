@@ -57,7 +57,7 @@ QUICK = SETTINGS.model_copy(
 
 
 def knows_good_from_bad(first_id: int = 100) -> list[TeachingEvent]:
-    """What a critic was taught that thinks well of CALM and ill of CRASHED, and is trusted."""
+    """Return lessons of a trusted critic: CALM is good, CRASHED is bad."""
     return [
         appraisal(first_id, "good", CALM),
         appraisal(first_id + 1, "bad", CRASHED),
@@ -123,7 +123,7 @@ class Track:
         return decision
 
     def say(self, command: Command, place: float = 0.0) -> CommandResult:
-        """A command arrives before the next tick, which takes it."""
+        """Run one tick with a command."""
         assert not isinstance(command, Watch | Drive)
         result, event = self.school.handle(command, situation(place), self.tick + 1)
         if event is not None:
@@ -131,7 +131,7 @@ class Track:
         return result
 
     def signal(self, value: int, about: int | None = None) -> RlaRewarded:
-        """The teacher praises or blames; the event that comes of it."""
+        """Give a reward of +1 or -1 and return its event."""
         self._commands += 1
         result = self.say(Reward(f"signal-{self._commands}", "Ann", value, about))
         assert result.accepted, result.outcome
@@ -139,12 +139,12 @@ class Track:
         assert isinstance(event, RlaRewarded)
         return event
 
-    def worth(self, rla_id: int) -> float:
+    def value(self, rla_id: int) -> float:
         return self.reinforcement.value(rla_id)
 
     @property
     def actions(self) -> dict[int, str]:
-        """Of the living RLAs at the wheels."""
+        """Return the actions of the active basic-level RLAs."""
         return {rla.rla_id: rla.action for rla in self.system.rlas}
 
     @property

@@ -1,4 +1,4 @@
-"""The decisions of the last seconds, by their ticks."""
+"""History of decisions."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ SITUATION = Situation(np.zeros(2), history_frozen=False)
 
 
 def remembered(*ticks: int, capacity: int = 10) -> DecisionHistory:
-    """In each tick the situation is its number, and RLA 100 + number drives."""
+    """Return a history: in each tick the situation is its number, and RLA 100 + number drives."""
     recent = DecisionHistory(2, capacity)
     for tick in ticks:
         remember(recent, tick)

@@ -1,4 +1,4 @@
-"""The authors' earlier rule: weights of the last three transitions."""
+"""Edge weights after rewards."""
 
 import pytest
 
@@ -13,7 +13,7 @@ LAST = EligibilityTrace({}, ((3, 4), (2, 3), (1, 2)))
 
 
 def rule(*way: int | None) -> EdgeWeights:
-    """The RLAs drove one after the other."""
+    """Let the RLAs drive one after the other."""
     learner = EdgeWeights(ReinforcementSettings(rule="edge_weights"))
     for tick, rla_id in enumerate(way):
         learner.update(rla_id, tick)

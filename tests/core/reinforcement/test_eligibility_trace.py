@@ -1,4 +1,4 @@
-"""Who is meant by a signal about a tick."""
+"""Shares of RLAs in a reward about a tick."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Rewards as stories: who is blamed, what sinks, what is asked again, and what an undo leaves."""
+"""Rewards, values and repairs in whole ticks."""
 
 import pytest
 
@@ -37,7 +37,7 @@ def sink(robot: Track, place: float, times: int = 3) -> None:
 
 
 def shares(event: RlaRewarded) -> dict[int, float]:
-    """What each RLA was credited with."""
+    """Return the credit of each RLA."""
     return {credit.rla_id: credit.change for credit in event.credits}
 
 
@@ -50,7 +50,7 @@ def test_reward_credits_those_that_drove() -> None:
     credits_ = shares(event)
     assert credits_.keys() == {1, 2}
     assert sum(credits_.values()) == pytest.approx(0.3, abs=0.002)
-    assert (robot.worth(1), robot.worth(2)) == pytest.approx((0.5 + credits_[1], 0.5 + credits_[2]))
+    assert (robot.value(1), robot.value(2)) == pytest.approx((0.5 + credits_[1], 0.5 + credits_[2]))
 
 
 def test_reward_late_means_its_tick() -> None:
@@ -62,7 +62,7 @@ def test_reward_late_means_its_tick() -> None:
     (credit,) = event.credits
     assert credit.rla_id == 1
     assert credit.change == pytest.approx(-0.3, abs=0.002)
-    assert robot.worth(2) == 0.5
+    assert robot.value(2) == 0.5
 
 
 def test_reward_asking_or_standing_credits_none() -> None:
@@ -74,7 +74,7 @@ def test_reward_asking_or_standing_credits_none() -> None:
     assert refused.outcome == Outcome(RefusalCode.NO_RLA_DROVE)
     robot.go(LEFT, because=Cause.STOPPED)
     assert not robot.say(Reward("r-2", "Ann", -1, robot.tick)).accepted
-    assert (robot.worth(1), robot.worth(2)) == (0.5, 0.5)
+    assert (robot.value(1), robot.value(2)) == (0.5, 0.5)
 
 
 def test_reward_held_action_outside_radius_has_no_share() -> None:
@@ -104,14 +104,14 @@ def test_undo_subtracts_exactly_the_credits() -> None:
     blame = robot.signal(-1)
     robot.go(RIGHT, 400)
     robot.signal(1)
-    before = (robot.worth(1), robot.worth(2))
+    before = (robot.value(1), robot.value(2))
     robot.go(LEFT, 400)
     praise = robot.signal(1)
     assert robot.say(Undo("u-1", "Ann", praise.origin.command_id)).accepted
-    assert (robot.worth(1), robot.worth(2)) == pytest.approx(before)
+    assert (robot.value(1), robot.value(2)) == pytest.approx(before)
     assert robot.say(Undo("u-2", "Ann")).accepted
     assert robot.say(Undo("u-3", "Ann", blame.origin.command_id)).accepted
-    assert (robot.worth(1), robot.worth(2)) == pytest.approx((0.5, 0.5))
+    assert (robot.value(1), robot.value(2)) == pytest.approx((0.5, 0.5))
 
 
 def test_undo_subtracts_credits_from_their_action() -> None:
@@ -121,11 +121,11 @@ def test_undo_subtracts_credits_from_their_action() -> None:
     blame = robot.signal(-1)
     assert shares(blame).keys() == {1, 2}
     robot.say(correct("c", "c-1"), LEFT)  # what the first one did was wrong: another action
-    assert robot.worth(1) == 0.5
+    assert robot.value(1) == 0.5
     assert robot.say(Undo("u-1", "Ann", blame.origin.command_id)).accepted
-    assert (robot.worth(1), robot.worth(2)) == pytest.approx((0.5, 0.5))
+    assert (robot.value(1), robot.value(2)) == pytest.approx((0.5, 0.5))
     assert robot.say(Undo("u-2", "Ann", "c-1")).accepted
-    assert robot.worth(1) == pytest.approx(0.5)
+    assert robot.value(1) == pytest.approx(0.5)
 
 
 def test_reward_after_correction_skips_the_old_action() -> None:
@@ -135,13 +135,13 @@ def test_reward_after_correction_skips_the_old_action() -> None:
     robot.say(correct("c", "c-1"), LEFT)
     robot.go(LEFT, 10)
     assert robot.signal(-1, wrong).credits == ()
-    assert robot.worth(1) == 0.5
+    assert robot.value(1) == 0.5
 
 
 def test_punished_rla_is_withdrawn_and_asks_next_tick() -> None:
     robot = track()
     sink(robot, LEFT)
-    assert robot.worth(1) < -0.2
+    assert robot.value(1) < -0.2
     at_blame = robot.go(LEFT)  # the tick that took the blame had decided already
     (event,) = robot.learnt
     assert isinstance(event, ActionWithdrawn)
@@ -171,7 +171,7 @@ def test_answer_to_withdrawn_rla_acts_next_tick() -> None:
         ResultCode.RLA_ANSWERED, rla=1, action="c"
     )
     assert robot.actions == {1: "c", 2: "b"}
-    assert robot.worth(1) == 0.5
+    assert robot.value(1) == 0.5
     decision = robot.go(LEFT)
     assert (decision.driving, decision.action) == (True, "c")
 
@@ -212,7 +212,7 @@ def test_punishment_counts_in_phases_1_to_4(phase: Phase) -> None:
 def test_td_steps_only_in_phases_with_signals(phase: int, learns: bool) -> None:
     robot = Track(*KNOWN, reinforcement=SIGNALS_ONLY.model_copy(update={"step_s": 0.1}), phase=Phase(phase))
     robot.go(LEFT, 400)
-    assert (robot.worth(1) < 0.5) == learns
+    assert (robot.value(1) < 0.5) == learns
 
 
 def test_phase_5_competitor_takes_neighbours_action() -> None:
@@ -323,11 +323,11 @@ def test_restore_without_values_uses_credits() -> None:
     robot.say(correct("c", "c-1"), LEFT)
     robot.signal(1, robot.tick)
     again = Track(*robot.events, reinforcement=SIGNALS_ONLY)
-    assert [again.worth(n) for n in (1, 2)] == pytest.approx([robot.worth(n) for n in (1, 2)])
+    assert [again.value(n) for n in (1, 2)] == pytest.approx([robot.value(n) for n in (1, 2)])
     rewards = [event for event in robot.events if isinstance(event, RlaRewarded)]
     for run in (robot, again):
         assert run.say(Undo("u-1", "Ann", rewards[0].origin.command_id)).accepted
-    assert [again.worth(n) for n in (1, 2)] == pytest.approx([robot.worth(n) for n in (1, 2)])
+    assert [again.value(n) for n in (1, 2)] == pytest.approx([robot.value(n) for n in (1, 2)])
     assert again.learnt == []
     again.go(LEFT)
     assert again.learnt == []  # blame of an earlier run was looked at then
@@ -338,9 +338,9 @@ def test_restore_saved_values_precede_credits() -> None:
     robot.go(LEFT, 400)
     blame = robot.signal(-1)
     again = track_with(robot, Statistics(values={1: 0.1}))
-    assert again.worth(1) == pytest.approx(0.1)
+    assert again.value(1) == pytest.approx(0.1)
     assert again.say(Undo("u-1", "Ann", blame.origin.command_id)).accepted
-    assert again.worth(1) == pytest.approx(0.1 - blame.credits[0].change)
+    assert again.value(1) == pytest.approx(0.1 - blame.credits[0].change)
 
 
 def test_restore_adds_credits_after_the_checkpoint() -> None:
@@ -354,12 +354,12 @@ def test_restore_adds_credits_after_the_checkpoint() -> None:
     robot.signal(-1)
     robot.say(correct("c", "c-1"), RIGHT)
     again = track_with(robot, saved)  # nothing was saved after that
-    assert [again.worth(n) for n in (1, 2)] == pytest.approx([robot.worth(n) for n in (1, 2)])
+    assert [again.value(n) for n in (1, 2)] == pytest.approx([robot.value(n) for n in (1, 2)])
     assert again.reinforcement.snapshot() == robot.reinforcement.snapshot()
     for run in (robot, again):
         for lesson in ("c-1", "signal-3", "signal-2", "signal-1"):
             assert run.say(Undo(f"u-{lesson}", "Ann", lesson)).accepted
-    assert [again.worth(n) for n in (1, 2)] == pytest.approx([0.5, 0.5])
+    assert [again.value(n) for n in (1, 2)] == pytest.approx([0.5, 0.5])
 
 
 def test_restore_answer_after_checkpoint_starts_fresh() -> None:
@@ -369,7 +369,7 @@ def test_restore_answer_after_checkpoint_starts_fresh() -> None:
     saved = robot.reinforcement.snapshot()
     assert robot.say(teach("b", "again"), LEFT).accepted
     again = track_with(robot, saved)
-    assert again.worth(1) == robot.worth(1) == 0.5
+    assert again.value(1) == robot.value(1) == 0.5
 
 
 def test_restore_other_rule_keeps_the_table() -> None:
@@ -387,7 +387,7 @@ def test_restore_other_rule_keeps_the_table() -> None:
     assert then.values == saved.values
     assert then.edge_weights == {(2, 1): 100.0}
     back = Track(*other.events, reinforcement=SIGNALS_ONLY, saved=then)
-    assert (back.worth(1), back.worth(2)) == pytest.approx((robot.worth(1), 0.5))  # the second one was corrected
+    assert (back.value(1), back.value(2)) == pytest.approx((robot.value(1), 0.5))  # the second one was corrected
     assert back.reinforcement.snapshot().edge_weights == then.edge_weights
 
 
@@ -404,9 +404,9 @@ def test_edge_weights_rule_withdraws_too() -> None:
     robot.go(RIGHT, 20)
     robot.go(LEFT, 20)
     assert shares(robot.signal(-1)).keys() == {1, 2}
-    assert robot.worth(1) == pytest.approx(1 - 1 / 0.97)  # blamed as the newest, and as the third one back
+    assert robot.value(1) == pytest.approx(1 - 1 / 0.97)  # blamed as the newest, and as the third one back
     robot.signal(-1)
-    assert robot.worth(1) < -0.1
+    assert robot.value(1) < -0.1
     robot.go(LEFT)
     assert 1 in {event.rla_id for event in robot.learnt if isinstance(event, ActionWithdrawn)}
     assert robot.go(LEFT).asking
@@ -418,15 +418,15 @@ NEUTRAL = CALM._replace(front_m=0.30, speed_m_s=5.0)
 
 def test_autonomous_values_end_with_phase_5() -> None:
     robot = Track(*KNOWN, *knows_good_from_bad(), reinforcement=STEPS, phase=Phase.AUTONOMOUS)
-    while robot.worth(1) > 0.3:  # unpraised, values sink
+    while robot.value(1) > 0.3:  # unpraised, values sink
         robot.go(LEFT, 100, NEUTRAL)
     assert robot.reinforcement.rule.values == {}
     robot.school.phase = Phase.REINFORCEMENT
     robot.go(LEFT)
-    assert robot.worth(1) == 0.5
+    assert robot.value(1) == 0.5
     robot.school.phase = Phase.AUTONOMOUS
     robot.go(LEFT)
-    assert robot.worth(1) == 0.5  # and each phase 5 begins anew
+    assert robot.value(1) == 0.5  # each phase 5 starts from the first value
 
 
 def test_phase_5_teachers_reward_changes_both_values() -> None:
@@ -434,19 +434,19 @@ def test_phase_5_teachers_reward_changes_both_values() -> None:
     robot.go(LEFT, 400)
     blame = robot.signal(-1)
     assert shares(blame)[1] == pytest.approx(-0.3, abs=0.002)
-    assert robot.worth(1) == robot.reinforcement.rule.value(1) == pytest.approx(0.2, abs=0.002)
+    assert robot.value(1) == robot.reinforcement.rule.value(1) == pytest.approx(0.2, abs=0.002)
     then = robot.reinforcement.autonomous_values()
     robot.go(LEFT, 400)
     robot.signal(1)
     robot.reinforcement.restore_autonomous(then, {1})
-    assert robot.worth(1) == pytest.approx(0.2, abs=0.002)
+    assert robot.value(1) == pytest.approx(0.2, abs=0.002)
     assert robot.reinforcement.rule.value(1) == pytest.approx(0.5, abs=0.002)  # the teacher's stays
     assert robot.say(Undo("u-1", "Ann", robot.events[-1].origin.command_id)).accepted
     assert robot.say(Undo("u-2", "Ann", blame.origin.command_id)).accepted
     assert robot.reinforcement.rule.value(1) == pytest.approx(0.5)
     robot.school.phase = Phase.REINFORCEMENT
     robot.go(LEFT)
-    assert robot.worth(1) == pytest.approx(0.5)
+    assert robot.value(1) == pytest.approx(0.5)
     assert robot.reinforcement.autonomous_values() == Statistics()
 
 
@@ -462,14 +462,14 @@ def test_undone_creation_is_dropped_deletion_is_kept(rule: str) -> None:
     for place in (LEFT, RIGHT, 20.0):
         robot.go(place, 20)
     robot.signal(-1)
-    worth = robot.worth(3)
+    worth = robot.value(3)
     assert 3 in kept()
     assert robot.say(DeleteRla("d-1", "Ann", 3)).accepted
     assert 3 not in kept()
-    robot.signal(-1, robot.tick - 21)  # the tick before; and one about a tick in which it drove finds nobody
+    robot.signal(-1, robot.tick - 21)  # the tick before; a tick in which it drove has no share
     assert 3 not in kept()
     assert robot.say(Undo("u-1", "Ann", "d-1")).accepted
-    assert robot.worth(3) == pytest.approx(worth)
+    assert robot.value(3) == pytest.approx(worth)
     assert robot.say(Undo("u-2", "Ann", "signal-1")).accepted
     assert robot.say(Undo("u-3", "Ann", "t-1")).accepted
     assert 3 not in kept()

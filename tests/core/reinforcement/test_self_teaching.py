@@ -1,4 +1,4 @@
-"""The critic in its teacher's place: what a trusted one may do, and what is taken back."""
+"""Self-teaching in phase 5."""
 
 import pytest
 
@@ -36,14 +36,14 @@ KNOWN = (created(1, (HERE,), "a"), created(2, (THERE,), "b"))
 
 
 def alone(phase: Phase = Phase.AUTONOMOUS) -> Track:
-    """A robot that knows a little, with a critic that is trusted."""
+    """Return a robot with few RLAs and a trusted critic."""
     robot = Track(*KNOWN, *knows_good_from_bad(), reinforcement=SIGNALS_ONLY, phase=phase)
     assert robot.agreement.trusted
     return robot
 
 
 def at_work() -> Track:
-    """The same one after its first window, in which it only looked."""
+    """Return the robot after its first window, which only measures."""
     robot = alone()
     robot.go(THERE, 50, CALM)
     robot.go(HERE, 50, CALM)
@@ -51,7 +51,7 @@ def at_work() -> Track:
 
 
 def lose_trust(robot: Track) -> None:
-    """A teacher comes and finds good what the critic thinks ill of."""
+    """Let a teacher contradict the critic."""
     for number in range(5):
         told = Origin(f"doubt-{number}", "Ann", Phase.AUTONOMOUS, robot.tick)
         event = RlaRewarded(2, 1, robot.tick, told, (), said=-1)
@@ -78,7 +78,7 @@ def test_critic_bad_opinion_repairs_without_teacher() -> None:
 def test_critic_good_opinion_raises_value() -> None:
     robot = at_work()
     robot.go(HERE, 100, CALM)
-    assert robot.worth(1) > 0.5
+    assert robot.value(1) > 0.5
     assert changes(robot) == []
 
 
@@ -87,7 +87,7 @@ def test_critic_with_teacher_only_listens(phase: Phase) -> None:
     robot = alone(phase)
     robot.go(HERE, 300, CRASHED)
     assert changes(robot) == []
-    assert robot.worth(1) == 0.5
+    assert robot.value(1) == 0.5
 
 
 def test_critic_untrusted_changes_nothing() -> None:
@@ -97,24 +97,24 @@ def test_critic_untrusted_changes_nothing() -> None:
     robot.go(HERE, 300, CRASHED)
     robot.go(THERE, 300, CALM)
     assert (robot.hash, robot.learnt, changes(robot)) == (known, [], [])
-    assert (robot.worth(1), robot.worth(2)) == (0.5, 0.5)
+    assert (robot.value(1), robot.value(2)) == (0.5, 0.5)
 
 
 def test_critic_lost_trust_returns_to_listening() -> None:
     robot = at_work()
     robot.go(HERE, 10, CRASHED)
-    assert robot.worth(1) < 0.5
+    assert robot.value(1) < 0.5
     lose_trust(robot)
-    known, worth = robot.hash, robot.worth(1)
+    known, worth = robot.hash, robot.value(1)
     robot.go(HERE, 300, CRASHED)
-    assert (robot.hash, robot.worth(1), changes(robot)) == (known, worth, [])
+    assert (robot.hash, robot.value(1), changes(robot)) == (known, worth, [])
 
 
 def test_critic_standing_or_asking_gives_no_signal() -> None:
     robot = at_work()
     robot.go(25.0, 300, CRASHED)
     assert changes(robot) == []
-    assert (robot.worth(1), robot.worth(2)) == (0.5, 0.5)
+    assert (robot.value(1), robot.value(2)) == (0.5, 0.5)
 
 
 def crowded() -> Track:
@@ -182,16 +182,16 @@ def test_critic_lower_score_rolls_back() -> None:
 
 def test_rollback_restores_values_of_best_window() -> None:
     story = Judged()
-    robot, worth = story.robot, story.robot.worth(2)
+    robot, worth = story.robot, story.robot.value(2)
     while not changes(robot):
         robot.go(HERE, 1, CRASHED)
     (event,) = changes(robot)
     assert isinstance(event, RlaCreated)
     assert event.rla.condition == (THERE,)  # RLA 2 had sunk
-    assert robot.worth(2) < worth
+    assert robot.value(2) < worth
     while not robot.self_teaching.is_measuring:  # a roll-back ends the window
         robot.go(HERE, 1, CRASHED)
-    assert robot.worth(2) == worth
+    assert robot.value(2) == worth
 
 
 def test_rollback_keeps_other_values_and_rewards() -> None:
@@ -202,14 +202,14 @@ def test_rollback_keeps_other_values_and_rewards() -> None:
     of_teacher = dict(robot.reinforcement.rule.values)
     assert of_teacher
     while not any(isinstance(event, LessonUndone) for event in changes(robot)):
-        worths = [robot.worth(rla_id) for rla_id in (1, 2)]
+        worths = [robot.value(rla_id) for rla_id in (1, 2)]
         robot.go(HERE, 1, CRASHED)
     assert {event.rla.condition for event in changes(robot) if isinstance(event, RlaCreated)} == {(HERE,)}
     assert robot.hash == story.known
     assert dict(robot.reinforcement.rule.values) == of_teacher
     assert deleted_ids(changes(robot)) == [1]  # it had sunk
     assert worths[1] != 0.5
-    assert [robot.worth(rla_id) for rla_id in (1, 2)] == [0.5, worths[1]]  # nothing was changed at RLA 2's condition
+    assert [robot.value(rla_id) for rla_id in (1, 2)] == [0.5, worths[1]]  # nothing was changed at RLA 2's condition
 
 
 def test_rollback_keeps_lessons_of_teachers() -> None:
@@ -233,9 +233,9 @@ def test_first_window_only_measures(seen: AppraisalFeatures) -> None:
     robot = alone()
     known = robot.hash
     robot.go(HERE, 100, seen)
-    assert (robot.hash, robot.worth(1), changes(robot)) == (known, 0.5, [])
+    assert (robot.hash, robot.value(1), changes(robot)) == (known, 0.5, [])
     robot.go(HERE, 1, seen)
-    assert robot.worth(1) != 0.5
+    assert robot.value(1) != 0.5
 
 
 def test_window_after_rollback_only_measures() -> None:
@@ -257,9 +257,9 @@ def test_manual_driving_does_not_count() -> None:
         by_hand = stands._replace(action="b")
         robot.school.learn(robot.tick, by_hand, robot.critic.appraise(robot.tick, CRASHED))
     robot.go(HERE, 100, CRASHED)  # its first window, in which it only looks
-    assert robot.worth(1) == 0.5
+    assert robot.value(1) == 0.5
     robot.go(HERE, 1, CRASHED)
-    assert robot.worth(1) < 0.5
+    assert robot.value(1) < 0.5
 
 
 def test_return_to_phase_5_measures_first() -> None:

@@ -1,4 +1,4 @@
-"""What values become, by steps and by signals."""
+"""Values after steps and rewards."""
 
 import math
 
@@ -116,7 +116,7 @@ def test_td_lambda_trace_size_is_bounded() -> None:
 
 
 CAPPED = ReinforcementSettings(alpha=ALPHA, step_s=0.1)
-"""As it is shipped: with a teacher values begin at 0 and praise only heals; alone they begin at 0.5."""
+"""Default settings: with a teacher values start at 0, which is also the highest; autonomous ones at 0.5."""
 
 
 def test_td_lambda_teacher_reward_stops_at_highest() -> None:

@@ -1,4 +1,4 @@
-"""RLAs on the very same condition, and those around them."""
+"""Competitors and neighbours of an RLA."""
 
 import numpy as np
 import pytest

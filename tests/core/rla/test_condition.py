@@ -1,4 +1,4 @@
-"""A packed condition is the tuple of its numbers to everybody who looks."""
+"""Conditions in packed form."""
 
 import pickle
 import sys

@@ -1,4 +1,4 @@
-"""Packed credits are the tuple of them to everybody who looks."""
+"""Credits in packed form."""
 
 import pickle
 

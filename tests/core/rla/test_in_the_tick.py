@@ -1,4 +1,4 @@
-"""Both levels learn what follows while the robot drives, with and without a teacher, through the whole tick."""
+"""Expectations and surprises in whole ticks."""
 
 import numpy as np
 import pytest

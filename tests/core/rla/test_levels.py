@@ -1,4 +1,4 @@
-"""Levels: the critic's RLAs beside those that drive, in one history of lessons; and actions that were withdrawn."""
+"""Levels: RLAs of the critic and of the basic level in one history of lessons; and actions that were withdrawn."""
 
 import numpy as np
 import pytest
@@ -94,12 +94,12 @@ def test_knowledge_hash_differs_by_level_and_withdrawal() -> None:
 def test_withdrawn_rla_is_matched_but_not_known() -> None:
     system = system_of(created(1, (0.0, 0.0)), created(2, (3.0, 0.0), "back"), withdrawn(1))
     here = system.match(np.array([0.0, 0.0]))
-    beside = system.match(np.array([2.0, 0.0]))
+    aside = system.match(np.array([2.0, 0.0]))
     assert here is not None
-    assert beside is not None
+    assert aside is not None
     assert (here.rla.rla_id, here.rla.action, here.rla.is_withdrawn, here.known) == (1, ASK, True, False)
     assert here.rla.condition == (0.0, 0.0)
-    assert (beside.rla.rla_id, beside.known) == (2, True)
+    assert (aside.rla.rla_id, aside.known) == (2, True)
     system.apply(replaced(1, "left", ASK))
     again = system.match(np.array([0.0, 0.0]))
     assert again is not None

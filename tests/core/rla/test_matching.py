@@ -1,4 +1,4 @@
-"""The match: whatever the conditions, the winner is the one that a float64 brute force names."""
+"""Search for the nearest condition, against a brute force."""
 
 import math
 
@@ -57,7 +57,7 @@ KINDS_OF_VALUES: tuple[st.SearchStrategy[float], ...] = (
 
 @st.composite
 def worlds(draw: st.DrawFn) -> tuple[list[tuple[Point, int] | int], list[Point]]:
-    """Inserts (a point, and where), removals (which of the living), and situations to ask about."""
+    """Return random inserts (point, position), removals (position) and situations."""
     values = draw(st.sampled_from(KINDS_OF_VALUES))
     points: st.SearchStrategy[Point] = st.tuples(*[values] * draw(st.integers(1, 6)))
     at_the_end = st.tuples(points, st.just(-1))  # as lessons come; elsewhere, as deletions are undone

@@ -1,4 +1,4 @@
-"""Names that teachers gave to situations: part of the knowledge, listed and undone as lessons are."""
+"""Named situations."""
 
 import math
 

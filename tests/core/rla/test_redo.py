@@ -1,4 +1,4 @@
-"""Redo: a lesson that was taken back stands again, where its RLA is as the lesson found it."""
+"""Redo of lessons."""
 
 import pytest
 from hypothesis import given

@@ -1,4 +1,4 @@
-"""The RLA system: a fold of teaching events that answers situations."""
+"""RLA system: matching, lessons, fingerprint."""
 
 import math
 from dataclasses import replace

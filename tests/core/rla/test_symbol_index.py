@@ -1,4 +1,4 @@
-"""Distances of symbols: whatever the histories, the winner is the one that a brute force names."""
+"""Search for the nearest row of symbols."""
 
 import math
 

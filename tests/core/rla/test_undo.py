@@ -1,4 +1,4 @@
-"""Undo: what a lesson made, changed, ended or rewarded is as it was before it."""
+"""Undo of lessons."""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""Counts behind the RLA network."""
+"""Counts of uses and transitions."""
 
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
@@ -54,8 +54,8 @@ def test_usage_counter_levels_have_separate_chains() -> None:
 
 def test_usage_counter_again_counts_another_use() -> None:
     statistics = StatisticsCounter()
-    for anew in (True, False, True):
-        statistics.count(8, MID, again=anew)
+    for again in (True, False, True):
+        statistics.count(8, MID, again=again)
     assert statistics.uses == {8: 2}
     assert statistics.transitions == {(8, 8): 1}
 

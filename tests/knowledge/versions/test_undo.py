@@ -156,10 +156,10 @@ def test_redo_reward_counts_again_for_a_robot(rule: str) -> None:
     robot.go(50.0, 20)
     robot.go(0.0, 20)
     praise = robot.signal(1).origin.command_id
-    before = robot.worth(1)
+    before = robot.value(1)
     for change in (LessonUndone(praise, origin("u")), LessonRedone(praise, origin("r"))):
         robot.school.updater.apply(change)
-    assert robot.worth(1) == pytest.approx(before)
+    assert robot.value(1) == pytest.approx(before)
 
 
 def test_undo_is_an_event_with_its_teacher(path: Path) -> None:
@@ -256,8 +256,8 @@ def test_undo_in_a_file_equals_the_undo_of_a_robot(path: Path, *, saved_late: bo
             statistics, events = journal.statistics(), journal.events()
         assert statistics.values == pytest.approx(robot.reinforcement.snapshot().values)
         again = Track(*events, reinforcement=SIGNALS_ONLY, saved=statistics)
-        assert again.worth(1) == pytest.approx(robot.worth(1))
-    assert robot.worth(1) == pytest.approx(0.2, abs=0.01)
+        assert again.value(1) == pytest.approx(robot.value(1))
+    assert robot.value(1) == pytest.approx(0.2, abs=0.01)
 
 
 def test_undo_edge_weights_follow_at_the_next_start(path: Path) -> None:
@@ -274,7 +274,7 @@ def test_undo_edge_weights_follow_at_the_next_start(path: Path) -> None:
     with Journal.read_only(path) as journal:
         assert journal.statistics() == saved
         again = Track(*journal.events(), reinforcement=settings, saved=journal.statistics())
-    assert (robot.worth(1), again.worth(1)) == pytest.approx((0.1, 0.0))
+    assert (robot.value(1), again.value(1)) == pytest.approx((0.1, 0.0))
 
 
 def test_undo_later_lesson_of_another_teacher_is_refused(path: Path) -> None:
