@@ -276,10 +276,9 @@ class Tick:
         credited = decision if self._driving else decision._replace(action=None, answers=False)
         handler.recent.add(
             tick,
-            view.situation,
+            None if view.blind else view.situation,
             credited,
             choice.behaviour,
-            blind=view.blind,
             touches=motion.asks_at_bumper,
             circumstances=view.appraisal_features,
             opinion=view.opinion,

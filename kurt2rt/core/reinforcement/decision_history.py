@@ -30,11 +30,10 @@ class DecisionHistory:
     def add(
         self,
         tick: int,
-        situation: Situation,
+        situation: Situation | None,
         decision: Decision,
         behaviour: str = "",
         *,
-        blind: bool,
         touches: bool = False,
         circumstances: AppraisalFeatures | None = None,
         opinion: Opinion | None = None,
@@ -43,20 +42,20 @@ class DecisionHistory:
 
         Args:
             tick: number of the tick.
-            situation: its situation.
+            situation: its situation; None without sensor data.
             decision: its decision.
             behaviour: active taught behaviour.
-            blind: whether the sensor data were missing, so that there is no situation.
             touches: whether the robot asked at a bumper instead of driving.
-            circumstances: appraisal features; None without a critic, or if `blind`.
+            circumstances: appraisal features; None without a critic or situation.
             opinion: critic's opinion; None without one.
         """
         row = tick % self._capacity
         self.newest = tick
         self._ticks[row] = tick
-        self._has_situation[row] = not blind
+        self._has_situation[row] = situation is not None
         self._touches[row] = touches
-        self._situations[row] = situation.vector
+        if situation is not None:
+            self._situations[row] = situation.vector
         self._rlas[row] = decision.rla_id
         self._behaviours[row] = behaviour
         self._answering[row] = (decision.rla_id or 0) if decision.answers else 0

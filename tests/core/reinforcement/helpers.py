@@ -117,7 +117,7 @@ class Track:
             self.tick += 1
             opinion = self.critic.appraise(self.tick, seen)
             decision = self.level.decide(situation(place), sensed(), because)
-            self.recent.add(self.tick, situation(place), decision, blind=False, circumstances=seen, opinion=opinion)
+            self.recent.add(self.tick, situation(place), decision, circumstances=seen, opinion=opinion)
             self.learnt += self.school.learn(self.tick, decision, opinion)
         self.events += self.learnt
         return decision

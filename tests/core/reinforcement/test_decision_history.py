@@ -23,7 +23,8 @@ def remembered(*ticks: int, capacity: int = 10) -> DecisionHistory:
 
 def remember(recent: DecisionHistory, tick: int, behaviour: str = "", *, blind: bool = False) -> None:
     situation = Situation(np.array([tick, -tick], dtype=np.float64), history_frozen=False)
-    recent.add(tick, situation, Decision(STANDSTILL, Cause.RLA, "a", 100 + tick, None, True), behaviour, blind=blind)
+    decision = Decision(STANDSTILL, Cause.RLA, "a", 100 + tick, None, True)
+    recent.add(tick, None if blind else situation, decision, behaviour)
 
 
 @pytest.mark.parametrize("tick", [-1, 0, 1, 9, 10, 11, 2**53])
@@ -89,8 +90,8 @@ def test_history_returns_answering_rla_by_tick() -> None:
     recent = remembered()
     for tick, answers in enumerate((True, False, True), 1):
         decision = Decision(STANDSTILL, Cause.HELD, "a", 100 + tick, None, answers)
-        recent.add(tick, SITUATION, decision, blind=False)
-    recent.add(4, SITUATION, Decision(STANDSTILL, Cause.UNKNOWN, None, None, None), blind=False)
+        recent.add(tick, SITUATION, decision)
+    recent.add(4, SITUATION, Decision(STANDSTILL, Cause.UNKNOWN, None, None, None))
     assert [recent.answering_rla(tick) for tick in (1, 2, 3, 4)] == [101, None, 103, None]
     ticks, rlas = recent.answering_up_to(3)
     assert (ticks.tolist(), rlas.tolist()) == ([1, 2, 3], [101, 0, 103])
@@ -107,7 +108,7 @@ def test_history_returns_features_and_opinion_by_tick() -> None:
     recent = remembered()
     opinion = Opinion(-1, "bad", 0.7, None, 0.1, 1.0, True)
     decision = Decision(STANDSTILL, Cause.RLA, "a", 1, None, True)
-    recent.add(1, SITUATION, decision, blind=False, circumstances=FREE, opinion=opinion)
+    recent.add(1, SITUATION, decision, circumstances=FREE, opinion=opinion)
     remember(recent, 2)
     assert (recent.circumstances(1), recent.opinion(1)) == (FREE, opinion)
     assert (recent.circumstances(2), recent.opinion(2)) == (None, None)

@@ -28,7 +28,7 @@ def drives(*rlas: int | None, answers: bool = True, first_tick: int = 1) -> Deci
 def remember(recent: DecisionHistory, tick: int, rla_id: int | None, *, answers: bool = True) -> None:
     action = None if rla_id is None else "a"
     decision = Decision(STANDSTILL, Cause.RLA, action, rla_id, None, answers and rla_id is not None)
-    recent.add(tick, situation(0.0), decision, blind=False)
+    recent.add(tick, situation(0.0), decision)
 
 
 def trace(recent: DecisionHistory, tick: int, since: dict[int, int] | None = None) -> EligibilityTrace:

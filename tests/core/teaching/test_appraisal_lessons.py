@@ -133,7 +133,7 @@ def test_a_tick_that_is_not_remembered_is_refused(meant: int) -> None:
 def test_where_the_robot_saw_nothing_there_is_nothing_to_appraise() -> None:
     robot = track()
     decision = robot.level.decide(situation(0.0), None, Cause.BLIND)  # type: ignore[arg-type] # it stands
-    robot.recent.add(robot.tick + 1, situation(0.0), decision, blind=True)
+    robot.recent.add(robot.tick + 1, None, decision)
     robot.tick += 1
     result = appraise(robot, "bad")
     assert result.outcome == Outcome(RefusalCode.WAS_BLIND)

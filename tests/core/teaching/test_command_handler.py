@@ -84,7 +84,7 @@ class Lesson:
             self.tick += 1
             decision = self.small.at(place, Cause.BLIND if blind else None)
             behaviour = self.small.wanted.behaviour
-            self.school.recent.add(self.tick, situation(place), decision, behaviour, blind=blind)
+            self.school.recent.add(self.tick, None if blind else situation(place), decision, behaviour)
         return self.tick
 
     def drive(self, teacher: str = "Ann", hold: int = 1) -> Outcome | None:
