@@ -96,7 +96,7 @@ def test_one_that_is_done_is_no_trouble(births: Births) -> None:
         assert "scripted teacher" not in beside.trouble
 
 
-def test_what_one_prints_is_told_or_heard_by_whom_it_is_for() -> None:
+def test_child_process_output_goes_to_its_reader() -> None:
     told, heard = Told(), Told()
     says = "import sys; print('out', flush=True); print('err', file=sys.stderr, flush=True); sys.exit(3)"
     with companions(told, says) as beside:

@@ -27,7 +27,7 @@ def test_the_job_stands_before_what_is_wrong(
     assert capsys.readouterr().err == "kurt2rt: circle, seed 3: the disk is full\n"
 
 
-def test_what_ended_several_tasks_is_said_once_each(
+def test_errors_of_several_tasks_are_printed_once_each(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     not_saved = KnowledgeError(KnowledgeCode.NOT_DURABLE, reason="not saved")

@@ -175,7 +175,7 @@ def test_a_reader_that_goes_away_does_not_stop_the_robot(tmp_path: Path) -> None
     assert actions_in(knowledge) == ["stand"]
 
 
-def test_what_passed_on_the_bus_is_kept_in_a_log_that_other_tools_read(kurt2rt: CommandLine, tmp_path: Path) -> None:
+def test_run_can_log_is_read_by_other_tools(kurt2rt: CommandLine, tmp_path: Path) -> None:
     words = ("run", "--seconds", "0.3", "--teacher", "none", "--knowledge", "mine.knowledge", "--can-log", "drive.log")
     said = kurt2rt(*words)
     with can.LogReader(tmp_path / "drive.log") as reader:

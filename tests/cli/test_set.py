@@ -12,7 +12,7 @@ BRIEF = ("--set", "exam.duration_s=2", "--set", "exam.worlds=[b]")
 KNOWLEDGE = Path("made/wall_following-1.knowledge")
 
 
-def test_what_is_set_is_what_is_taught_and_examined(kurt2rt: CommandLine) -> None:
+def test_set_applies_to_lesson_and_exam(kurt2rt: CommandLine) -> None:
     taught = kurt2rt("lesson", *SHORT, "--out", "made")
     assert taught.exit_code == 0, taught.err
     assert re.search(r"teaching, s of robot time +3 ", taught.out)

@@ -21,7 +21,7 @@ async def test_taught_over_a_bus_killed_while_it_drives_and_back_with_all_it_kne
 
 
 @pytest.mark.deep
-async def test_how_long_a_killed_program_is_away(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+async def test_sim_kill_prints_the_time_until_control(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     away_s = [await kill_and_return(a_bus("away"), tmp_path) for _ in range(5)]
     with capsys.disabled():
         print(f"\nfrom kill -9 to the next CONTROL: {', '.join(f'{each:.2f}' for each in away_s)} s; wanted: 2 s")

@@ -41,7 +41,7 @@ def test_another_process_sees_how_the_robot_is_beside_its_knowledge_and_over_the
         assert [each.of for each in over_the_channel.disks] == ["knowledge", "recordings"]
 
 
-def test_where_no_robot_runs_that_is_said_in_a_line(kurt2rt: CommandLine, tmp_path: Path) -> None:
+def test_status_without_a_robot_is_one_line(kurt2rt: CommandLine, tmp_path: Path) -> None:
     assert "no robot program runs with the knowledge" in kurt2rt.refused("status", tmp_path / "none.knowledge")
 
 

@@ -5,7 +5,7 @@ import anyio
 from kurt2rt.platform.clock import LockstepClock
 
 
-async def test_world_and_runtime_alternate_and_time_jumps_to_each_deadline() -> None:
+async def test_lockstep_clock_alternates_world_and_runtime() -> None:
     seen_s: list[float] = []
     clock = LockstepClock(lambda: seen_s.append(clock.now_s()))
     assert clock.now_s() == 0.0

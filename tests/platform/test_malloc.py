@@ -22,6 +22,6 @@ print(resident_mb() - before_mb)
 """
 
 
-def test_what_was_large_leaves_no_gap_behind_what_came_after_it() -> None:
+def test_pin_mmap_threshold_returns_large_blocks() -> None:
     told = subprocess.run([sys.executable, "-c", _STORY], capture_output=True, text=True, check=True, timeout=60)
     assert float(told.stdout) < 2.0

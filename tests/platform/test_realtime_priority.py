@@ -63,7 +63,7 @@ def priority_of(thread: threading.Thread) -> int:
 
 
 @needs_permission
-def test_what_the_loop_starts_is_as_any_other() -> None:
+def test_sched_fifo_is_not_inherited() -> None:
     def story() -> None:
         assert set_sched_fifo(5) == "real-time priority 5 (SCHED_FIFO)"
         assert priority_of(threading.current_thread()) == 5
@@ -76,7 +76,7 @@ def test_what_the_loop_starts_is_as_any_other() -> None:
 
 
 @needs_permission
-def test_the_guards_come_before_the_loop_however_its_priority_changes() -> None:
+def test_sched_fifo_guards_stay_above_the_loop() -> None:
     def story() -> None:
         with waiting() as guard, waiting() as other:
             for priority in (5, 20, 3):

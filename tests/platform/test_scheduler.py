@@ -102,7 +102,7 @@ class Run:
         return [record.tick for record in self.records[before:]]
 
 
-async def test_one_tick_at_each_multiple_of_the_period_from_where_it_began() -> None:
+async def test_scheduler_ticks_at_multiples_of_the_period() -> None:
     run = Run(HandClock(1000.0))
     assert await run.ticks(5) == [1, 2, 3, 4, 5]
     assert run.clock.deadlines_s == [1000.0 + number * PERIOD_S for number in range(1, 6)]
@@ -128,7 +128,7 @@ async def test_a_late_tick_is_run_late_and_the_next_one_on_time() -> None:
     assert run.ledger.lateness().worst_us == pytest.approx(5000, abs=1)
 
 
-async def test_missed_ticks_are_skipped_whole_and_counted_and_never_caught_up() -> None:
+async def test_scheduler_missed_ticks_are_skipped_and_counted() -> None:
     run = Run(HandClock())
     run.delays_s = {3: 0.0578}
     assert await run.ticks(15) == [1, 2, 3, 8, 9, 10, 11, 12, 13, 14, 15]
@@ -141,7 +141,7 @@ async def test_missed_ticks_are_skipped_whole_and_counted_and_never_caught_up() 
 
 
 @given(st.dictionaries(st.integers(1, 60), st.floats(0, 0.2), max_size=12))
-async def test_whatever_is_late_numbers_follow_the_clock_and_every_tick_is_run_or_counted(
+async def test_scheduler_runs_or_counts_every_tick(
     delays_s: dict[int, float],
 ) -> None:
     run = Run(HandClock(5.0))
@@ -154,7 +154,7 @@ async def test_whatever_is_late_numbers_follow_the_clock_and_every_tick_is_run_o
         assert -1e-9 <= late_s <= PERIOD_S + 1e-9
 
 
-async def test_it_counts_on_in_a_second_run_and_the_pause_between_is_not_missed() -> None:
+async def test_scheduler_second_run_goes_on_without_misses() -> None:
     run = Run(HandClock())
     assert await run.ticks(3) == [1, 2, 3]
     run.clock.time_s += 100.0

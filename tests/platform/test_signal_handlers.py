@@ -17,7 +17,7 @@ class Ear:
         self.heard.append(number)
 
 
-def test_who_heard_a_signal_before_hears_it_again_afterwards() -> None:
+def test_signal_handlers_restore_the_previous_ones() -> None:
     first, second = Ear(), Ear()
     with SignalHandlers({signal.SIGUSR1: first.hear}):
         with SignalHandlers({signal.SIGUSR1: second.hear, signal.SIGUSR2: second.hear}):
@@ -29,7 +29,7 @@ def test_who_heard_a_signal_before_hears_it_again_afterwards() -> None:
     assert signal.getsignal(signal.SIGUSR1) is signal.getsignal(signal.SIGUSR2) is signal.SIG_DFL
 
 
-def test_who_gives_it_back_when_he_hears_it_hears_it_once() -> None:
+def test_signal_handlers_restored_in_a_handler_run_once() -> None:
     always, once = Ear(), Ear()
 
     def hear(number: int, frame: FrameType | None) -> None:

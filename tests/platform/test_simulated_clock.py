@@ -61,7 +61,7 @@ class Rig:
 
 
 @pytest.mark.parametrize("times", [2, 10])
-async def test_each_tick_steps_the_world_once_and_real_time_passes_so_much_slower(times: int) -> None:
+async def test_simulated_clock_steps_once_per_tick(times: int) -> None:
     rig = Rig()
     await rig.tick(100)
     assert rig.real.s == pytest.approx(501.0)
@@ -73,7 +73,7 @@ async def test_each_tick_steps_the_world_once_and_real_time_passes_so_much_slowe
     assert rig.clock.reached == pytest.approx(times, rel=0.01)
 
 
-async def test_back_at_speed_1_the_world_goes_on_by_itself_and_time_never_jumps() -> None:
+async def test_simulated_clock_at_speed_1_never_jumps() -> None:
     rig = Rig()
     rig.clock.set(5)
     await rig.tick(500)
@@ -85,7 +85,7 @@ async def test_back_at_speed_1_the_world_goes_on_by_itself_and_time_never_jumps(
     assert rig.clock.reached == pytest.approx(1.0, rel=0.01)
 
 
-async def test_a_computer_that_cannot_keep_up_is_told_and_no_tick_is_late() -> None:
+async def test_simulated_clock_slow_computer_misses_no_tick() -> None:
     rig = Rig()
     rig.clock.set(10)
     rig.world.takes_s = 0.004  # of real time for 0.01 of robot time: 2.5 times as fast is the most

@@ -20,7 +20,7 @@ async def test_it_returns_at_the_deadline_and_not_before() -> None:
             assert clock.now_s() >= deadline_s
 
 
-async def test_a_deadline_that_has_passed_returns_but_gives_others_a_turn() -> None:
+async def test_timerfd_passed_deadline_yields_once() -> None:
     turns: list[int] = []
     with TimerfdClock() as clock:
         waiting = asyncio.ensure_future(asyncio.sleep(0))
@@ -52,7 +52,7 @@ async def test_a_wait_that_was_given_up_does_not_disturb_the_next_one() -> None:
         assert clock.now_s() >= deadline_s
 
 
-async def test_a_wait_that_was_given_up_at_its_deadline_does_not_end_the_next_one_early() -> None:
+async def test_timerfd_cancelled_wait_keeps_the_next_deadline() -> None:
     with TimerfdClock() as clock:
         near_s = clock.now_s() + 0.002
         near = asyncio.ensure_future(clock.wait_until(near_s))

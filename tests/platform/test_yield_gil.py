@@ -31,7 +31,7 @@ def test_the_items_are_the_same() -> None:
     assert found == list(range(10))
 
 
-def test_a_thread_beside_the_loop_pauses_and_the_loops_own_does_not(slept: list[float]) -> None:
+def test_yield_gil_sleeps_in_other_threads_only(slept: list[float]) -> None:
     list(yield_gil(range(10)))
     assert slept == []
     in_a_thread(lambda: list(yield_gil(range(10))))

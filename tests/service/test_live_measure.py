@@ -42,7 +42,7 @@ class Drive:
             self.measure.on_tick(record)
 
 
-def test_rounds_about_the_post_are_counted_and_being_set_down_is_none() -> None:
+def test_live_measure_ignores_a_repositioned_robot() -> None:
     drive = Drive("circle", POST)
     for step in range(41):
         angle = step * math.pi / 10
@@ -62,7 +62,7 @@ def test_laps_are_those_of_the_simulation() -> None:
 
 
 @pytest.mark.parametrize("task", ["eight", "streets", "fleeing"])
-def test_where_the_course_measures_no_such_drive_it_is_metres_of_way(task: str) -> None:
+def test_live_measure_without_live_metric_counts_metres(task: str) -> None:
     drive = Drive(task)
     drive.go(2.5, 2.0)
     drive.go(2.5, 2.3)

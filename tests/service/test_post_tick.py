@@ -83,7 +83,7 @@ def shift(tmp_path: Path) -> Iterator[Shift]:
     shift.writer.close()
 
 
-def test_the_teacher_in_the_program_sees_every_tick_and_his_command_acts_in_the_next(shift: Shift) -> None:
+def test_post_tick_command_acts_in_the_next_tick(shift: Shift) -> None:
     first = shift.run()
     shift.next_command = Teach("t-1", "Ann", "forward")
     assert shift.run().results == ()
@@ -91,7 +91,7 @@ def test_the_teacher_in_the_program_sees_every_tick_and_his_command_acts_in_the_
     assert [record.tick for record in shift.seen] == [first.tick, first.tick + 1, first.tick + 2]
 
 
-def test_a_lesson_is_told_as_settled_once_it_is_on_the_disk_and_its_time_is_kept(shift: Shift) -> None:
+def test_post_tick_durable_lesson_is_acknowledged(shift: Shift) -> None:
     shift.desk.runtime.inbox.put(Teach("t-1", "Ann", "forward"))
     shift.run()
     shift.write()
@@ -104,7 +104,7 @@ def test_a_lesson_is_told_as_settled_once_it_is_on_the_disk_and_its_time_is_kept
         assert [event.origin.command_id for event in journal.events()] == ["t-1"]
 
 
-def test_a_lesson_that_never_can_be_written_is_told_and_has_no_time(shift: Shift) -> None:
+def test_post_tick_lost_lesson_has_no_stamp(shift: Shift) -> None:
     shift.desk.runtime.inbox.put(Teach("t-1", "Ann", "forward"))
     shift.run()
     shift.writer.submit(RlaDeleted(1, origin("t-1")))  # the same command cannot have done something else as well
@@ -147,7 +147,7 @@ def test_counts_are_saved_once_per_checkpoint(shift: Shift) -> None:
     assert saved_uses(shift) == {7: 99}
 
 
-def test_what_the_rlas_are_worth_is_saved_with_the_counts_and_gone_on_from(shift: Shift) -> None:
+def test_post_tick_values_are_saved_and_restored(shift: Shift) -> None:
     taught = knows(shift, 7)
     shift.desk.runtime.reinforcement.rule.restore(Statistics(values={7: -0.25}))
     shift.run(CHECKPOINT)
@@ -179,7 +179,7 @@ def test_of_rlas_that_are_no_more_nothing_is_saved(shift: Shift) -> None:
     assert (saved.uses, saved.transitions) == ({7: 3}, {(7, 7): 1})
 
 
-def test_the_robot_asks_when_it_begins_to_ask_and_not_in_each_tick(shift: Shift) -> None:
+def test_post_tick_question_comes_once(shift: Shift) -> None:
     shift.run(3 * SECOND)
     assert [str(question) for question in shift.questions] == ["I know nothing yet, teach me"]
 
@@ -195,7 +195,7 @@ def test_at_the_border_of_r_it_asks_at_most_once_a_second(shift: Shift) -> None:
     assert asked == [1] * (SECOND // 2) + [2] * (SECOND // 2)
 
 
-def test_a_question_that_came_too_soon_is_asked_when_it_may_be_if_it_still_stands(shift: Shift) -> None:
+def test_post_tick_early_question_is_delayed(shift: Shift) -> None:
     shift.desk.runtime.inbox.put(Teach("t-1", "Ann", "forward"))
     shift.run(SECOND)
     shift.run(1, counts=900)
@@ -207,7 +207,7 @@ def test_a_question_that_came_too_soon_is_asked_when_it_may_be_if_it_still_stand
     assert shift.questions[1].nearest_rla == 1
 
 
-async def test_a_lesson_over_the_channel_is_answered_in_the_round_after_it_became_durable(tmp_path: Path) -> None:
+async def test_post_tick_channel_lesson_is_answered_once_durable(tmp_path: Path) -> None:
     shift = Shift(tmp_path / "lessons.knowledge", with_channel=True)
     desk = shift.desk
     task = await desk.send(desk.answer())

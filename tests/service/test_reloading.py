@@ -47,7 +47,7 @@ class Program:
             tasks.cancel_scope.cancel()
 
 
-async def test_what_may_change_is_taken_and_what_may_not_is_told(tmp_path: Path) -> None:
+async def test_config_reload_applies_or_postpones_each_key(tmp_path: Path) -> None:
     with ExitStack() as around:
         systemd = around.enter_context(manager(tmp_path))
         program = Program(tmp_path / "mine.yaml", around.enter_context(Notifier(systemd.environment())))
@@ -78,7 +78,7 @@ async def test_a_file_that_is_wrong_changes_nothing(tmp_path: Path) -> None:
         assert len(program.told) == 2
 
 
-async def test_who_asked_before_it_ran_is_not_forgotten(tmp_path: Path) -> None:
+async def test_config_reload_requested_before_serve_is_done(tmp_path: Path) -> None:
     with Notifier({}) as notifier:
         program = Program(tmp_path / "mine.yaml", notifier)
         asking = threading.Thread(target=program.reloading.request)
@@ -89,7 +89,7 @@ async def test_who_asked_before_it_ran_is_not_forgotten(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("key", ["robot", "task", "knowledge", "port", "teachers"])
-def test_what_the_robot_is_stays_as_it_is(key: str) -> None:
+def test_reloaded_settings_of_the_robot_are_postponed(key: str) -> None:
     now = load_service()
     read = now.model_copy(update={key: 9 if key == "port" else "other"})
     reloaded = reloaded_settings(now, read)
@@ -102,7 +102,7 @@ def test_the_periods_of_the_rounds_may_change() -> None:
     assert reloaded_settings(now, read) == (read, ("checkpoint_period_s", "real_time_priority", "recordings_mb"), ())
 
 
-def test_the_delivered_priority_is_that_of_a_unit_and_none_by_hand() -> None:
+def test_settings_auto_priority_is_for_units_only() -> None:
     shipped = load_service()
     assert (shipped.priority, with_unit_priority(shipped).priority) == (0, 20)
     for given in (0, 5):

@@ -37,9 +37,7 @@ def events_in(knowledge: Path) -> list[str]:
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGTSTP])
-async def test_answers_become_lessons_the_robot_drives_by_them_and_stands_at_the_end(
-    tmp_path: Path, number: signal.Signals
-) -> None:
+async def test_serve_teaches_drives_and_stops_at_the_end(tmp_path: Path, number: signal.Signals) -> None:
     knowledge = tmp_path / "var" / "new.knowledge"
     with rig() as here:
         taught = await teach_until(2, here, knowledge, number)
@@ -79,7 +77,7 @@ async def test_it_ends_by_itself_after_its_time(tmp_path: Path) -> None:
     assert (last.unsaved_lessons, last.trouble) == (0, None)
 
 
-async def test_knowledge_that_asks_for_other_actions_is_refused_before_the_wheels_turn(tmp_path: Path) -> None:
+async def test_serve_unknown_action_is_refused_before_driving(tmp_path: Path) -> None:
     knowledge = tmp_path / "knowledge"
     with rig() as here:
         await teach_until(1, here, knowledge)

@@ -26,7 +26,7 @@ def raise_here(number: signal.Signals) -> None:
 
 
 @pytest.mark.parametrize("number", SHUTDOWN_SIGNALS)
-def test_what_comes_first_is_done_once_and_in_order(number: signal.Signals) -> None:
+def test_shutdown_runs_callbacks_once_and_in_order(number: signal.Signals) -> None:
     done: list[str] = []
     ended = threading.Event()
     before = signal.getsignal(number)
@@ -45,7 +45,7 @@ def test_what_comes_first_is_done_once_and_in_order(number: signal.Signals) -> N
     assert signal.getsignal(number) is before
 
 
-def test_who_begins_after_the_signal_ends_at_once() -> None:
+def test_on_shutdown_after_the_signal_runs_at_once() -> None:
     done: list[str] = []
     heard = threading.Event()
     with ShutdownHandler() as ending:
@@ -90,7 +90,7 @@ def test_one_that_fails_does_not_keep_the_next_from_being_done() -> None:
     ],
     ids=["asleep", "busy", "stuck"],
 )
-def test_what_hangs_is_left_behind_and_named(body: str, act: str, exit_code: int, says: str) -> None:
+def test_shutdown_of_a_hanging_program_names_the_stage(body: str, act: str, exit_code: int, says: str) -> None:
     command = [sys.executable, "-c", HANGS.format(body=body, act=act)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as program:
         assert program.stdout is not None

@@ -178,7 +178,7 @@ def play(program: RobotProgram, story: Callable[[], None]) -> None:
         for order in permutations(ALL)
     ],
 )
-def test_whatever_comes_last_the_robot_stands_until_it_is_told_to_go(
+def test_start_in_any_order_stands_until_resume(
     order: tuple[str, ...], tmp_path: Path, taught: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with ExitStack() as around:

@@ -39,7 +39,7 @@ def largest_file(size_bytes: int) -> None:
     resource.setrlimit(resource.RLIMIT_FSIZE, (size_bytes, hard))
 
 
-async def test_a_disk_that_fails_stands_the_robot_until_lessons_are_safe_again(tmp_path: Path) -> None:
+async def test_serve_failing_disk_stops_until_lessons_are_saved(tmp_path: Path) -> None:
     knowledge = tmp_path / "knowledge"
     soft, _ = resource.getrlimit(resource.RLIMIT_FSIZE)
     teacher = scripted()
@@ -84,7 +84,7 @@ async def test_a_disk_that_fails_stands_the_robot_until_lessons_are_safe_again(t
         assert [event.origin.command_id for event in journal.events()] == acting
 
 
-async def test_a_bus_that_is_lost_stands_the_robot_until_it_is_told_to_resume(tmp_path: Path) -> None:
+async def test_serve_lost_bus_stops_until_resume(tmp_path: Path) -> None:
     teacher = scripted()
     lost: list[TickRecord] = []
     said: list[Command] = []

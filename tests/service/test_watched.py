@@ -49,7 +49,7 @@ def starting(
 
 
 @pytest.mark.deep
-async def test_a_loop_that_hangs_is_killed_and_what_comes_after_it_stands(tmp_path: Path) -> None:
+async def test_watchdog_kills_a_hanging_loop_and_the_next_stands(tmp_path: Path) -> None:
     bus = f"shared:watched-{uuid.uuid4().hex[:8]}"
     with ExitStack() as around:
         systemd = around.enter_context(manager(tmp_path))

@@ -98,7 +98,7 @@ def test_a_missed_tick_is_told_for_a_minute(ward: Ward) -> None:
     assert ward.look() == ()
 
 
-def test_what_was_wrong_before_the_first_look_counts(ward: Ward) -> None:
+def test_diagnostics_counts_errors_before_the_first_report(ward: Ward) -> None:
     ward.counters["missed"] = 1
     assert ward.one().numbers == (1, 1)
 
@@ -109,7 +109,7 @@ def test_ticks_are_late_from_a_fifth_of_a_period_on(ward: Ward) -> None:
     assert (trouble.code, trouble.urgent) == (TroubleCode.TICKS_LATE, False)
 
 
-def test_a_few_late_ticks_of_a_robot_that_stalls_with_the_program_are_no_trouble() -> None:
+def test_diagnostics_tolerates_few_stalls_of_a_simulation() -> None:
     ward = Ward(tolerates_stalls=True)
     late = replace(WELL.punctuality, p99_ms=9.0)
     assert ward.look(punctuality=late) == ()
@@ -140,7 +140,7 @@ def test_a_disk_that_fails_fills_up_hangs_or_takes_its_time(ward: Ward) -> None:
     assert (slow.code, slow.numbers) == (TroubleCode.SLOW_DISK, (0.84,))
 
 
-def test_a_slow_write_is_a_trouble_for_a_minute_whatever_was_or_was_not_written_since(ward: Ward) -> None:
+def test_diagnostics_slow_write_lasts_a_minute(ward: Ward) -> None:
     for _ in range(LATELY_S):
         assert ward.one(replace(CALM, last_write_s=0.84)).code is TroubleCode.SLOW_DISK
     ward.one(replace(CALM, last_write_s=0.84))
@@ -156,7 +156,7 @@ def test_a_battery_counts_while_it_is_used_up(ward: Ward) -> None:
     assert ward.one(machine=replace(WELL.machine, available_bytes=50_000_000)).code is TroubleCode.LITTLE_MEMORY
 
 
-def test_what_queues_throw_away_and_what_parts_say_of_themselves(ward: Ward) -> None:
+def test_diagnostics_reports_drops_and_errors_of_parts(ward: Ward) -> None:
     ward.counters["drops lines"] = 40
     assert ward.one() == Trouble(TroubleCode.DROPS, 0.0, False, "lines", (40,))
     ward = Ward()
@@ -164,7 +164,7 @@ def test_what_queues_throw_away_and_what_parts_say_of_themselves(ward: Ward) -> 
     assert said == Trouble(TroubleCode.PROGRAM, 0.0, False, "channel", line="phone: no key; pair it anew")
 
 
-def test_the_urgent_ones_come_first_then_those_that_have_lasted_longest(ward: Ward) -> None:
+def test_diagnostics_orders_by_urgency_then_duration(ward: Ward) -> None:
     ward.look(replace(CALM, errors={"channel": "a"}))
     ward.look(replace(CALM, errors={"channel": "a", "recording": "b"}))
     troubles = ward.look(replace(CALM, encoder_age_s=1.0, errors={"recording": "b", "channel": "a"}))

@@ -120,7 +120,7 @@ async def test_in_its_first_second_a_reader_waits_for_the_report(path: Path) -> 
     assert got == [WELL]
 
 
-async def test_what_a_killed_program_left_behind_is_taken_over(path: Path) -> None:
+async def test_status_socket_of_a_killed_program_is_replaced(path: Path) -> None:
     with bound(path):
         pass
     assert mode_of(path)
@@ -135,7 +135,7 @@ async def test_what_a_killed_program_left_behind_is_taken_over(path: Path) -> No
         tasks.cancel_scope.cancel()
 
 
-async def test_a_program_that_waits_says_for_what_until_there_is_a_status(path: Path) -> None:
+async def test_serve_waiting_lasts_until_the_status_socket(path: Path) -> None:
     async with anyio.create_task_group() as tasks:
         tasks.start_soon(serve_waiting, path, lambda: "bus: no such interface; set it up")
         await until(lambda: is_told(path))
@@ -150,7 +150,7 @@ async def test_a_program_that_waits_says_for_what_until_there_is_a_status(path: 
         assert await following(read_reports(path, PATIENCE_S)) == WELL
 
 
-def test_where_none_runs_the_reader_is_told_what_to_do(path: Path) -> None:
+def test_read_reports_without_a_program_raises(path: Path) -> None:
     with pytest.raises(
         StatusError, match=r"no robot program runs with the knowledge .*x\.knowledge, or it .*; start one"
     ):
@@ -179,7 +179,7 @@ def test_another_version_is_not_guessed_at(path: Path) -> None:
         answering.join()
 
 
-async def test_where_no_socket_can_be_made_the_rest_goes_on(tmp_path: Path) -> None:
+async def test_status_socket_that_cannot_be_made_sets_the_error(tmp_path: Path) -> None:
     path = tmp_path / "taken.status"
     path.mkdir()
     async with serving(Watch(), path) as status:

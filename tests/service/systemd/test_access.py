@@ -39,7 +39,7 @@ def test_settings_that_only_their_owner_may_read_are_to_be_copied(tmp_path: Path
 
 
 @pytest.mark.parametrize("place", ["/home/ann", "/tmp", "/var/tmp", "/run/user/1000"])
-def test_what_the_unit_hides_is_neither_read_nor_written(place: str) -> None:
+def test_private_paths_of_hidden_folders_are_named(place: str) -> None:
     settings, lessons = Path(place, "nowhere", "my.yaml"), Path(place, "nowhere", "lessons")
     of_settings, of_lessons = private_paths(RequiredAccess((settings,), (lessons,)))
     assert of_settings.startswith(f"{settings}: the service ")

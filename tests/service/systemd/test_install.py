@@ -60,7 +60,7 @@ def test_one_of_ours_is_installed_anew_over_the_old(machine: Machine) -> None:
 
 
 @pytest.mark.parametrize("folder", ["system", "sysusers.d"])
-def test_what_another_program_put_there_stays(folder: str, machine: Machine, tmp_path: Path) -> None:
+def test_install_over_a_foreign_unit_is_refused(folder: str, machine: Machine, tmp_path: Path) -> None:
     others = tmp_path / folder / ("robotd.service" if folder == "system" else "robotd.conf")
     others.write_text(SSH, encoding="utf-8")
     with pytest.raises(UnitError, match="is another program's; give another --name"):
@@ -91,7 +91,7 @@ def test_a_user_of_the_machine_does_not_become_the_robots(machine: Machine) -> N
 
 
 @pytest.mark.parametrize("name", ["../ssh", "", "SSH"])
-def test_what_is_no_name_is_not_taken_away(name: str, machine: Machine) -> None:
+def test_uninstall_of_an_invalid_name_is_refused(name: str, machine: Machine) -> None:
     with pytest.raises(UnitError, match="is no name"):
         machine.uninstall(name)
     assert machine.done == []

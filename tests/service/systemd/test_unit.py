@@ -35,7 +35,7 @@ def test_it_cannot_stay_dead_and_is_watched() -> None:
     assert (said["User"], said["StateDirectory"], said["WorkingDirectory"]) == ("kurt2rt", "kurt2rt", "%S/kurt2rt")
 
 
-def test_it_has_the_capability_for_real_time_priority_and_no_other() -> None:
+def test_unit_has_only_the_real_time_capability() -> None:
     said = settings_of(unit().service)
     of_capabilities = [value for key, value in said if "Capabilit" in key]
     assert of_capabilities == ["CAP_SYS_NICE", "CAP_SYS_NICE"]
@@ -46,7 +46,7 @@ def test_it_orders_itself_after_nothing() -> None:
     assert not {"After", "Requires", "Wants", "BindsTo"} & dict(settings_of(unit().service)).keys()
 
 
-def test_a_folder_elsewhere_may_be_written_also_when_it_comes_late() -> None:
+def test_unit_may_write_a_folder_that_is_mounted_later() -> None:
     made = build_unit("kurt2rt", "can0", start_command(), [Path("/mnt/my disk/kurt")])
     assert ("ReadWritePaths", '-"/mnt/my disk/kurt"') in settings_of(made.service)
 
