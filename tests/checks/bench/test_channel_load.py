@@ -15,7 +15,7 @@ def stay(work_us: float, messages: int, missed: int = 0) -> LoadPhase:
     return LoadPhase(seconds=2.0, processor_us=2 * work_us, messages=messages, missed_ticks=missed)
 
 
-def test_what_a_picture_and_a_message_take_is_told_from_who_was_there() -> None:
+def test_load_results_separate_state_and_message_costs() -> None:
     late, work, picture, message = load_results(
         {
             Load.ALONE: phases(200.0, stay(100_000.0, 0), stay(110_000.0, 0)),

@@ -57,7 +57,7 @@ def test_an_error_is_an_end_too() -> None:
     assert gc.isenabled()
 
 
-def test_who_collects_by_hand_goes_on_doing_so() -> None:
+def test_manual_collection_stays_manual() -> None:
     gc.disable()
     with gc_frozen():
         pass

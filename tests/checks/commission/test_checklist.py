@@ -165,7 +165,7 @@ async def test_a_step_that_failed_is_passed_over_on_purpose_with_what_is_to_be_d
     assert session.to_do("wheels") == ("The right motor turns the wrong way: exchange its two leads",)
 
 
-async def test_what_was_found_on_the_simulated_robot_is_not_taken_for_another(tmp_path: Path) -> None:
+async def test_findings_of_another_robot_are_refused(tmp_path: Path) -> None:
     with Workshop() as workshop:
         rehearsal = Session(workshop, tmp_path)
         await rehearsal.run("identity", "modes")

@@ -85,7 +85,7 @@ def test_a_failed_step_is_the_exit_code_and_no_file_is_written(type_at: Type, tm
     assert not (tmp_path / "var" / "robots").exists()
 
 
-def test_what_was_found_is_written_at_once_when_the_rest_is_skipped(type_at: Type, tmp_path: Path) -> None:
+def test_findings_are_written_if_the_rest_is_skipped(type_at: Type, tmp_path: Path) -> None:
     earlier(tmp_path, "sensors", "infrared")
     with Workshop() as workshop:
         said = type_at(
@@ -137,7 +137,7 @@ def test_on_another_bus_it_goes_on_only_where_it_is_known_which_robot_it_was(
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
 )
-def test_what_cannot_be_begun_is_said_in_one_line(
+def test_commission_that_cannot_start_prints_one_line(
     kurt2rt: CommandLine, tmp_path: Path, words: tuple[str, ...], why: str
 ) -> None:
     earlier(tmp_path)

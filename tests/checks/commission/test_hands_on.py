@@ -63,7 +63,7 @@ async def test_a_sensor_that_is_skipped_at_once_is_neither_found_nor_dead(tmp_pa
     assert told.startswith("Not tried: s1, s2, s3, ")
 
 
-async def test_what_was_found_before_needs_no_hand_again(tmp_path: Path) -> None:
+async def test_sensors_step_keeps_channels_found_before(tmp_path: Path) -> None:
     with Workshop() as workshop:
         session = Session(workshop, tmp_path)
         session.knows(channels={each.name: each.channel for each in BASE.infrared.sensors if each.name != "s9"})

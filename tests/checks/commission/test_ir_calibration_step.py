@@ -81,7 +81,7 @@ def test_one_reading_with_the_board_elsewhere_is_left_out(at: int) -> None:
     ],
     ids=["dead", "flat", "too few", "too far", "too weak", "scatter", "upside down"],
 )
-def test_what_is_no_law_is_refused(taken: list[IrReading], why: str) -> None:
+def test_fit_law_implausible_readings_are_refused(taken: list[IrReading], why: str) -> None:
     with pytest.raises(IrCalibrationError, match=why):
         fit_law(taken)
 

@@ -36,7 +36,7 @@ async def test_a_file_is_read_to_its_end(tmp_path: Path) -> None:
         assert [await keyboard.line() for _ in range(3)] == ["one", "", None]
 
 
-async def test_what_was_typed_at_a_terminal_before_the_question_turns_no_wheels() -> None:
+async def test_keyboard_discards_input_typed_before_the_question() -> None:
     person, terminal = pty.openpty()
     with os.fdopen(terminal) as lines:
         keyboard = Keyboard(lines)

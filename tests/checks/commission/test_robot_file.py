@@ -122,7 +122,7 @@ def test_words_that_mean_something_to_yaml_survive(tmp_path: Path) -> None:
     assert loaded == robot.model_copy(update={"name": "robbie"})
 
 
-def test_what_a_hundred_per_cent_are_matters_in_speed_mode_alone() -> None:
+def test_full_speed_is_kept_in_speed_mode_only() -> None:
     robot = commissioned_settings(BASE, "robbie", Findings(speed_mode=SpeedMode.SPEED_CM, full_speed_m_s=0.72))
     assert robot.motors.full_speed_m_s == BASE.motors.full_speed_m_s
 

@@ -55,7 +55,7 @@ async def test_no_mode_answers_on_a_robot_without_its_motors_supply(tmp_path: Pa
     assert [step.name for step in blocking_failures(session.progress)] == ["modes"]
 
 
-async def test_what_a_hundred_per_cent_are_is_measured(tmp_path: Path) -> None:
+async def test_speed_mode_full_speed_is_measured(tmp_path: Path) -> None:
     quicker = BASE.model_copy(update={"motors": BASE.motors.model_copy(update={"full_speed_m_s": 0.80})})
     session = await turned(tmp_path, "modes", wiring=Wiring(modes=[SpeedMode.SPEED]), true=quicker)
     assert session.progress.findings.full_speed_m_s == pytest.approx(0.80, abs=0.01)
@@ -88,7 +88,7 @@ async def test_wheels_with_other_encoders_seem_slow_and_the_settings_to_mend_are
     assert [step.name for step in blocking_failures(session.progress)] == ["modes"]
 
 
-async def test_what_is_wrong_with_a_mode_that_is_not_needed_is_no_matter(tmp_path: Path) -> None:
+async def test_fault_of_an_unneeded_speed_mode_is_ignored(tmp_path: Path) -> None:
     session = await turned(tmp_path, "modes", wiring=Wiring(wild_modes=[SpeedMode.SPEED]))
     assert session.outcome("modes") is StepOutcome.PASSED
     assert "SPEED: not tried out, the wheels ran away" in session.measured("modes")
@@ -177,7 +177,7 @@ ENCODERS_EXCHANGED = "The encoders are exchanged: exchange the left and the righ
         ),
     ],
 )
-async def test_what_is_wired_wrong_is_told_by_its_name(tmp_path: Path, wiring: Wiring, told: list[str]) -> None:
+async def test_wiring_advice_names_the_faulty_part(tmp_path: Path, wiring: Wiring, told: list[str]) -> None:
     session = await turned(tmp_path, "wheels", wiring=wiring)
     assert list(session.to_do("wheels")) == told
     assert [step.name for step in blocking_failures(session.progress)] == ["wheels"]
@@ -220,7 +220,7 @@ async def test_enter_alone_is_no_answer_to_what_was_seen(tmp_path: Path) -> None
     assert session.outcome("wheels") is StepOutcome.PASSED
 
 
-async def test_where_encoders_disagree_yes_is_no_answer(tmp_path: Path) -> None:
+async def test_wheels_step_refuses_yes_if_encoders_disagree(tmp_path: Path) -> None:
     hurried = iter(["y", "dunno", "left", "left forward"])
 
     def hurry(question: OperatorQuestion) -> str | None:
@@ -246,7 +246,7 @@ async def test_where_encoders_disagree_yes_is_no_answer(tmp_path: Path) -> None:
         ("up forward", None),
     ],
 )
-def test_what_a_person_saw_is_two_words(answer: str, seen: Motion | None) -> None:
+def test_parse_seen_reads_two_words(answer: str, seen: Motion | None) -> None:
     assert parse_seen(answer) == seen
 
 

@@ -17,7 +17,7 @@ def is_quick(case: FaultCase) -> bool:
 @pytest.mark.parametrize(
     "case", [pytest.param(case, marks=[] if is_quick(case) else pytest.mark.deep, id=str(case)) for case in CASES]
 )
-def test_what_the_table_says_comes_of_it(case: FaultCase) -> None:
+def test_fault_cases_lead_to_their_rows(case: FaultCase) -> None:
     trial = tried(case.target, case.kind)
     assert trial.verdict.passed, trial.verdict.complaints
 

@@ -57,7 +57,7 @@ def test_some_cases_print_their_matrix_and_write_json(app: typer.Typer, tmp_path
     assert report["trials"][0]["last"]["because"] == ["ticks ceased"]
 
 
-def test_what_is_not_as_the_table_says_ends_with_code_1(app: typer.Typer, tmp_path: Path) -> None:
+def test_faults_deviation_exits_with_code_1(app: typer.Typer, tmp_path: Path) -> None:
     table = changed_table(tmp_path, within_s=0.05)
     exit_code, said = run(app, "--target", "tick", "--kind", "stuck", "--table", table)
     assert exit_code == 1
@@ -74,7 +74,7 @@ def test_a_known_gap_is_said(app: typer.Typer, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("option", "name"), [("--target", "wings"), ("--kind", "tired")])
-def test_what_cannot_fail_is_refused_with_what_can(app: typer.Typer, option: str, name: str) -> None:
+def test_faults_unknown_target_lists_the_known_ones(app: typer.Typer, option: str, name: str) -> None:
     exit_code, said = run(app, option, name)
     assert exit_code == 2
     assert f"there is no {name}; give some of" in said

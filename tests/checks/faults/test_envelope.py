@@ -144,7 +144,7 @@ def test_a_stop_may_be_among_frames_that_were_lost_on_the_way() -> None:
     assert not turns.violations
 
 
-def test_what_follows_one_another_at_the_robot_must_rest_in_between() -> None:
+def test_envelope_arrival_reversal_needs_a_rest() -> None:
     codes = [each.code for each in Drive().on_sent(set_point(1)).on_sent(set_point(-1)).violations]
     assert ComplaintCode.TURNED_ROUND in codes
 

@@ -42,7 +42,7 @@ DROVE = replace(
 )
 
 
-def test_what_is_as_it_must_be_passes() -> None:
+def test_judge_expected_outcome_passes() -> None:
     assert judge(HUNG, STOOD).passed
     assert judge(case_of("tick", "wrong").must, DROVE).passed
 
@@ -93,7 +93,7 @@ def test_a_fault_that_does_nothing_passes_only_where_nothing_must_come_of_it() -
         assert judge(case.must, replace(DROVE, counted=counted)).passed is drives_on, str(case)
 
 
-def test_what_must_be_counted_must_be_there() -> None:
+def test_judge_missing_counter_fails() -> None:
     must = case_of("tick", "delayed").must
     assert judge(must, DROVE).passed
     assert judge(must, replace(DROVE, counted={"missed ticks": 0})).complaints == (

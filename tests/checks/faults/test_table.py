@@ -35,7 +35,7 @@ def test_each_row_says_why() -> None:
         assert len(case.must.why.split()) >= 3, str(case)
 
 
-def test_what_it_wants_counted_is_counted() -> None:
+def test_required_counter_is_counted() -> None:
     wanted = {case.must.counts for case in cases_of(TABLE)} - {None}
     assert wanted <= tried("sensor_board_1", "off").outcome.counted.keys()
 

@@ -63,7 +63,7 @@ def test_memory_is_held_against_the_end_of_the_first_hour(grown_mb_per_hour: flo
     assert memory_check(hours(8, grown_mb_per_hour), LIMITS).passed is passed
 
 
-def test_what_the_first_hour_takes_does_not_count() -> None:
+def test_memory_check_ignores_the_first_hour() -> None:
     first = [minute(number, 80.0 + min(number, 45)) for number in range(1, 61)]
     later = [minute(number, 126.0) for number in range(61, 180)]
     assert memory_check(first + later, LIMITS).values == {"limit_mb": LIMITS.memory_mb, "grown_mb": 1.0, "end_mb": 1.0}
@@ -75,7 +75,7 @@ def test_a_short_soak_is_not_asked_about_memory() -> None:
     assert not check.judged
 
 
-def test_what_knowledge_takes_is_told_apart_from_what_stays() -> None:
+def test_memory_growth_separates_knowledge_and_leftovers() -> None:
     starts = [SoakStart(600.0 * number, 590.0, "none", "", left_mb=90.0 + 0.1 * number) for number in range(18)]
     told = format_memory_growth(hours(3, 1.0), starts)
     assert told.startswith("Of +2.0 MB since the first hour +1.2 MB stay when the program ends, after 12 more starts;")

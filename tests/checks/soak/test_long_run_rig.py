@@ -85,7 +85,7 @@ def test_a_bus_that_lost_frames_and_is_well_again_takes_set_points_after_the_fir
     assert drive(place, 2.5).wheel_speeds == AHEAD
 
 
-def test_what_the_wheels_turned_is_what_the_robot_counts(place: LongRunRig) -> None:
+def test_long_run_rig_wheel_distance_matches_encoders(place: LongRunRig) -> None:
     robot = place.start_driver("none")
     ticks = 0
     while place.time.now_s() < 2.0:

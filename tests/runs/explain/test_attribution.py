@@ -41,7 +41,7 @@ def test_a_robot_that_does_not_know_where_it_is_differs_in_nothing_that_could_be
     assert distance_attribution(lost, story(1, (0.0, 1.0), "turn_left", math.inf)) == ()
 
 
-def test_what_speaks_for_the_other_is_negative() -> None:
+def test_contrast_for_the_second_rla_is_negative() -> None:
     found = contrast_attribution(level(HERE, MINE, OTHER), MINE, OTHER)
     assert [each.name for each in found] == ["f1", "f0"]
     assert [each.pull for each in found] == pytest.approx([(100 - 16) / 93, -9 / 93])

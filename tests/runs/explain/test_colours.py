@@ -15,7 +15,7 @@ def test_no_two_actions_look_the_same() -> None:
         assert len(set(colours_of(actions).values())) == len(actions)
 
 
-def test_where_there_are_more_actions_than_colours_each_has_one_all_the_same() -> None:
+def test_colours_of_many_actions_repeat() -> None:
     assert len(colours_of(f"thing_{number}" for number in range(40))) == 40
 
 

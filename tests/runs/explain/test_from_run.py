@@ -53,7 +53,7 @@ def test_a_lesson_of_the_run_has_the_date_of_its_row_in_the_journal(
     assert act.stamp == stamp
 
 
-def test_what_is_said_of_a_torn_run_is_still_said(tmp_path: Path) -> None:
+def test_truncated_run_keeps_its_trouble(tmp_path: Path) -> None:
     (segment,) = segments_in(taught_run(tmp_path, acknowledged=True))
     truncated = tmp_path / "torn.mcap"
     truncated.write_bytes(segment.read_bytes()[:-40])

@@ -34,7 +34,7 @@ def standing(cause: Cause, **more: object) -> DecisionFacts:
     return replace(stood, **more)  # type: ignore[arg-type]
 
 
-def test_what_drives_is_told_by_the_rla_that_it_is_like() -> None:
+def test_reasons_for_driving_name_the_nearest_rla() -> None:
     driven = facts(KNOWN)
     assert headline(driven) == "forward"
     assert format_reasons(driven) == ["This is like RLA 17, which says forward: distance 4 of R 10 (40 %)."]
@@ -77,7 +77,7 @@ def test_a_robot_outside_r_asks_and_says_by_how_much() -> None:
     ]
 
 
-def test_where_an_action_was_withdrawn_the_robot_asks() -> None:
+def test_counterfactual_of_a_withdrawn_action_asks() -> None:
     withdrawn = level((1.0, 6.0), replace(NEAR, action="ask", asks=True))
     (line,) = format_reasons(facts(withdrawn, Cause.UNKNOWN.value, None))
     assert line == "This is like RLA 17, at 4 of R 10, whose action was withdrawn: there the robot asks."
@@ -117,9 +117,7 @@ def test_a_robot_that_stands_says_why_and_what_it_would_do(cause: Cause, more: d
         (Cause.NO_WAY, {"plan_says": "no way to door"}, "no way to door."),
     ],
 )
-def test_where_it_stands_of_itself_or_sees_nothing_there_is_nothing_that_it_would_do(
-    cause: Cause, more: dict[str, object], said: str
-) -> None:
+def test_reasons_of_own_standstill_tell_no_other_action(cause: Cause, more: dict[str, object], said: str) -> None:
     (line,) = format_reasons(standing(cause, hindrances=(cause.value,), **more))
     assert line.startswith(said)
 
@@ -160,7 +158,7 @@ def test_of_several_on_one_condition_the_one_that_leads_is_what_it_would_do() ->
     assert format_reasons(stood)[1] == "By itself it would do as RLA 30 (back) says, at 4 of R 10."
 
 
-def test_where_it_is_led_and_would_not_know_the_situation_it_would_ask() -> None:
+def test_reasons_of_a_led_robot_tell_that_it_would_ask() -> None:
     for known, said in ((level((1.0, 6.0)), "nothing was taught yet"), (level((1.0, 6.0), FAR), "nearest is RLA 17")):
         led = replace(facts(known, Cause.TEACHER.value, "by hand"), hindrances=(Cause.UNATTENDED.value,))
         assert format_reasons(led)[1].startswith(f"By itself it would ask: {said}")
@@ -189,7 +187,7 @@ def test_an_alarm_goes_before_whatever_was_decided() -> None:
     assert format_guard(alarm) == ""
 
 
-def test_who_taught_it_is_told_by_the_newest_lesson_that_stands() -> None:
+def test_teaching_text_is_the_newest_standing_lesson() -> None:
     corrected = LessonFact("RLA 17 corrected: back instead of forward", "Bob", 2, 2000, "2026-11-22T04:00:00+00:00")
     undone = replace(corrected, text="RLA 17 corrected: spin", changes=False, undone=True)
     told = replace(NEAR, acts=(*NEAR.acts, corrected, undone))

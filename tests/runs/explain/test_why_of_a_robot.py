@@ -73,7 +73,7 @@ def test_the_facts_are_those_of_the_decision(taught_lesson: Lesson) -> None:
     assert headline(facts) == record.decision.action
 
 
-def test_who_taught_it_when_and_how_often_it_was_used(taught_lesson: Lesson) -> None:
+def test_why_tells_teacher_time_and_usage(taught_lesson: Lesson) -> None:
     story = taught_lesson.facts.basic.driver
     assert story is not None
     assert story.action == "bear_right"
@@ -127,7 +127,7 @@ def test_of_those_on_one_condition_only_the_chosen_one_may_answer(taught_lesson:
     assert found == taught_lesson.counterfactuals
 
 
-def test_where_a_stop_decided_no_reading_would_have_changed_it(lesson: Lesson) -> None:
+def test_counterfactuals_are_empty_for_a_stop(lesson: Lesson) -> None:
     give(lesson).go_on(2, stop())
     assert lesson.facts.stopped
     assert lesson.counterfactuals == ()
@@ -159,7 +159,7 @@ def test_the_picture_shows_the_decision_and_is_the_same_each_time(
             assert words.encode() in drawn
 
 
-def test_what_is_said_of_who_taught_it_does_not_run_into_what_is_near(
+def test_picture_lesson_text_does_not_overlap_the_distances(
     taught_lesson: Lesson, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """However much there is to say."""

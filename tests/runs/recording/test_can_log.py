@@ -53,7 +53,7 @@ def lefts(shelf: Shelf) -> list[int]:
     return [CODEC.message("ENCODER").unpack(frame.data)[0] for frame in shelf.frames]
 
 
-def test_what_came_and_went_is_written_in_order_with_direction_and_bus() -> None:
+def test_can_log_keeps_order_direction_and_channel() -> None:
     robot_end, far_end = bus_pair()
     shelf = Shelf()
     with CanLog(shelf, "x.log", robot_end.name) as log:

@@ -39,7 +39,7 @@ def test_a_disk_without_locks_does_without(tmp_path: Path, monkeypatch: pytest.M
     assert not is_locked(tmp_path)
 
 
-def test_what_fails_leaves_nothing_open_and_nothing_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_failed_recovery_leaves_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     disk, before = RealDisk(), open_files()
     monkeypatch.setattr(fcntl, "flock", fails_with(errno.EIO))
     for look in (LockedFolder, is_locked):

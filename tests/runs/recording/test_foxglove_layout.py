@@ -63,7 +63,7 @@ def test_each_panel_is_set_up_and_shown_once() -> None:
     assert sorted(shown(LAYOUT["layout"])) == sorted(PANELS)
 
 
-def test_what_the_scene_shows_is_recorded_in_a_form_that_it_can_draw(recorded: list[LoggedMessage]) -> None:
+def test_foxglove_layout_scene_topics_are_recorded(recorded: list[LoggedMessage]) -> None:
     schemas = {each.topic: each.schema for each in recorded}
     drawn = {"foxglove.LaserScan", "foxglove.PoseInFrame", "foxglove.SceneUpdate"}
     assert {schemas[topic] for topic in PANELS["3D!kurt2"]["topics"]} == drawn

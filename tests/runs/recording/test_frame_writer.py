@@ -30,7 +30,7 @@ READABLE_WITHOUT_ITS_END = [each for each in ENDINGS if each not in (".blf", ".m
 
 
 @pytest.mark.parametrize("ending", [each for each in ENDINGS if each != ".mf4"])
-def test_what_is_written_is_read_by_python_can(tmp_path: Path, ending: str) -> None:
+def test_can_log_is_readable_by_python_can(tmp_path: Path, ending: str) -> None:
     file = LogFile(tmp_path / f"drive{ending}")
     file.write(FRAMES[:2])
     file.write(FRAMES[2:3])
@@ -59,7 +59,7 @@ def test_a_candump_log_reads_as_candumps_own(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("ending", READABLE_WITHOUT_ITS_END)
-def test_what_was_written_outlives_a_program_that_is_killed(tmp_path: Path, ending: str) -> None:
+def test_can_log_survives_a_killed_program(tmp_path: Path, ending: str) -> None:
     file = LogFile(tmp_path / f"drive{ending}")
     file.write(FRAMES[:2])
     with can.LogReader(file.path) as reader:

@@ -44,7 +44,7 @@ async def advertised(client: ClientConnection, *topics: str) -> dict[str, int]:
     return ids
 
 
-async def test_who_connects_sees_the_ticks_that_come_from_then_on() -> None:
+async def test_live_view_client_sees_ticks_from_then_on() -> None:
     desk, view = opened_desk()
     async with connect(view.address, subprotocols=[SUBPROTOCOL], close_timeout=0.1) as client:  # type: ignore[list-item]
         hello = await told(client, "serverInfo")
@@ -94,7 +94,7 @@ def test_a_port_that_is_taken_is_told_and_tried_again(tmp_path: Path) -> None:
     assert desk.recorder.written == 200
 
 
-def test_who_looks_on_costs_a_late_disk_no_tick(tmp_path: Path) -> None:
+def test_live_view_with_a_late_disk_loses_no_tick(tmp_path: Path) -> None:
     disk = AbsentDisk()
     desk = RecordedDesk(tmp_path, disk=disk, live=(LOOPBACK, 0))
     desk.recorder.poll()

@@ -197,7 +197,7 @@ def test_a_disk_that_comes_later_gets_what_waited_for_it(tmp_path: Path) -> None
     assert len(entries_of(tmp_path / NAME)) == 300
 
 
-def test_what_finds_no_room_is_counted_and_the_run_shows_the_gap(tmp_path: Path) -> None:
+def test_recorder_overrun_is_counted_and_shows_as_a_gap(tmp_path: Path) -> None:
     disk = AbsentDisk()
     desk = RecordedDesk(tmp_path, disk=disk, capacity=150)
     desk.recorder.poll()
@@ -335,7 +335,7 @@ def test_a_run_that_rests_is_left_alone_too(tmp_path: Path) -> None:
     assert len(entries_of(tmp_path / "20251231T235959Z-wall_following")) == 300
 
 
-def test_where_there_is_no_room_no_folder_is_left(tmp_path: Path) -> None:
+def test_recorder_without_room_leaves_no_folder(tmp_path: Path) -> None:
     empty = tmp_path / "runs" / "20251231T235959Z-wall_following"
     empty.mkdir(parents=True)
     desk = RecordedDesk(tmp_path / "runs", disk=FullDisk(100))
@@ -403,7 +403,7 @@ def test_a_note_that_cannot_be_written_is_counted_and_all_others_are_kept(tmp_pa
     assert "a note cannot be written: ZeroDivisionError('unsayable')" in desk.recorder.trouble
 
 
-def test_what_is_noted_before_the_first_tick_has_the_time_of_the_start(tmp_path: Path) -> None:
+def test_note_before_the_first_tick_has_the_start_time(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path, began_at_ns=None)
     started_ns = time.time_ns()
     desk.recorder.on_question("I know nothing yet, teach me")

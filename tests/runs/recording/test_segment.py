@@ -55,7 +55,7 @@ def said(path: Path) -> list[int]:
 
 
 @pytest.mark.parametrize("every_bytes", [4000, pytest.param(1000, marks=pytest.mark.deep)])
-def test_what_was_saved_survives_a_cut_at_any_place(tmp_path: Path, every_bytes: int) -> None:
+def test_saved_chunks_survive_a_cut_at_any_byte(tmp_path: Path, every_bytes: int) -> None:
     context = Context()
     channel = Channel("/number", message_encoding="json", context=context)
     segment = Segment(tmp_path / "0001.mcap", context, RealDisk())

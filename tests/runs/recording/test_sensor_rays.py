@@ -36,7 +36,7 @@ def test_a_wall_to_the_left_is_a_quarter_turn_on() -> None:
     assert scan[place] == pytest.approx(math.hypot(0.047, 0.365), abs=0.005)
 
 
-def test_where_nothing_is_seen_the_scan_is_empty_and_rays_end_far_away() -> None:
+def test_scan_without_obstacles_is_empty() -> None:
     rays = SensorRays(INFRARED)
     assert all(math.isinf(each) for each in rays.scan_m(NOTHING))
     assert not any(ray.seen for ray in rays.rays(NOTHING))

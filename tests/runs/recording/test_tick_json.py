@@ -145,7 +145,7 @@ def test_a_phase_comes_back_as_one() -> None:
     assert again.phase is Phase.CRITIC
 
 
-def test_what_is_no_tick_is_refused_in_a_sentence() -> None:
+def test_decode_tick_of_other_content_raises_recording_error() -> None:
     for data in (b"", b"[]", b"{}", b'{"tick": 1}', b"\xff"):
         with pytest.raises(RecordingError, match="not a tick"):
             decode_tick(data)

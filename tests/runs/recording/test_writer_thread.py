@@ -5,7 +5,7 @@ import threading
 from kurt2rt.runs.recording.writer_thread import WriterThread
 
 
-def test_what_finds_no_room_is_lost_and_counted() -> None:
+def test_writer_thread_overrun_is_counted() -> None:
     thread = WriterThread[int]("writer", 3, lambda: None)
     thread.submit(1, held=2)
     thread.submit(2, held=2)  # with those that were taken and wait still, that is one too many

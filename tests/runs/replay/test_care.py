@@ -113,9 +113,7 @@ def compacted(path: Path, recordings: Path, *, dry_run: bool = False) -> Compact
     return compact(path, recordings, stamp=STAMP, dry_run=dry_run, report=quietly)
 
 
-def test_what_no_decision_needs_is_deleted_and_every_decision_comes_out_the_same(
-    knowledge: Path, recordings: Path
-) -> None:
+def test_compact_deletes_unneeded_rlas_and_keeps_decisions(knowledge: Path, recordings: Path) -> None:
     before = folded(knowledge)
     done = compacted(knowledge, recordings, dry_run=True)
     assert folded(knowledge).rlas == before.rlas
@@ -419,7 +417,7 @@ def test_an_undo_is_tried_on_the_runs_that_are_named(kurt2rt: CommandLine, knowl
     assert folded(knowledge).last_standing_lesson == "far-2"
 
 
-def test_where_nothing_was_recorded_an_undo_says_so_and_goes_on(kurt2rt: CommandLine, knowledge: Path) -> None:
+def test_undo_without_recordings_says_so_and_succeeds(kurt2rt: CommandLine, knowledge: Path) -> None:
     not_tried, undone = kurt2rt("knowledge", "undo", knowledge).out.splitlines()
     assert not_tried == "not tried: var/runs holds no recorded run of such knowledge"
     assert undone.endswith("(lesson far-2 by Ann)")

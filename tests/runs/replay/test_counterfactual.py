@@ -46,7 +46,7 @@ def lessons() -> dict[str, list[TeachingEvent]]:
 
 
 @of_every_story("errand", 8.0)
-def test_what_was_known_in_the_end_would_never_have_otherwise_decided_than_itself(
+def test_counterfactual_of_equal_knowledge_has_no_difference(
     name: str, seconds: float, lessons: dict[str, list[TeachingEvent]]
 ) -> None:
     run = stored(name, seconds)
@@ -56,7 +56,7 @@ def test_what_was_known_in_the_end_would_never_have_otherwise_decided_than_itsel
 
 
 @of_every_story("walls", 16.0)
-def test_who_knows_nothing_would_have_asked_wherever_it_drove(
+def test_counterfactual_of_no_knowledge_asks_at_each_drive(
     name: str, seconds: float, lessons: dict[str, list[TeachingEvent]]
 ) -> None:
     run = stored(name, seconds)
@@ -72,12 +72,12 @@ def test_who_knows_nothing_would_have_asked_wherever_it_drove(
     assert all(each.from_s <= each.to_s <= seconds for each in found.stretches)
 
 
-def test_what_was_learnt_later_would_have_spared_questions(lessons: dict[str, list[TeachingEvent]]) -> None:
+def test_counterfactual_of_later_knowledge_asks_less(lessons: dict[str, list[TeachingEvent]]) -> None:
     run = stored("errand", 24)
     assert counterfactual(run, CounterfactualPolicy(run, lessons["errand"])).would_drive > 100
 
 
-def test_where_its_teacher_drove_or_stopped_it_no_knowledge_had_a_say(lessons: dict[str, list[TeachingEvent]]) -> None:
+def test_counterfactual_skips_teacher_driving_and_stops(lessons: dict[str, list[TeachingEvent]]) -> None:
     run = stored("walls", 16)
     stood = sum(entry.decision.cause.value in ("teacher", "stopped", "unsaved") for entry in run.entries())
     assert counterfactual(run, CounterfactualPolicy(run, lessons["walls"])).decided == 1600 - stood
@@ -121,9 +121,7 @@ def test_the_mid_level_is_looked_at_by_itself(lessons: dict[str, list[TeachingEv
 
 
 @of_every_story("walls", 36.0)
-def test_what_was_is_what_drove_also_where_the_robot_was_taught_otherwise_in_that_very_tick(
-    name: str, seconds: float
-) -> None:
+def test_recorded_answer_is_the_decision_despite_a_later_lesson(name: str, seconds: float) -> None:
     run = stored(name, seconds)
     replay = Replay(run)
     heard: Counter[str] = Counter()
@@ -143,7 +141,7 @@ def test_what_was_is_what_drove_also_where_the_robot_was_taught_otherwise_in_tha
     assert taught_now > 2
 
 
-def test_what_was_withdrawn_in_that_tick_had_driven() -> None:
+def test_recorded_answer_keeps_an_action_withdrawn_in_its_tick() -> None:
     """As a critic does it: the action drives, is found bad, and is gone behind the same tick."""
     run = stored("walls")
     replay = Replay(run)
@@ -156,7 +154,7 @@ def test_what_was_withdrawn_in_that_tick_had_driven() -> None:
     assert recorded_answers(record, replay.runtime).basic.action == record.decision.action
 
 
-def test_where_nobody_could_be_asked_withdrawn_rlas_are_passed_over(
+def test_policy_skips_withdrawn_rlas_without_a_teacher(
     lessons: dict[str, list[TeachingEvent]],
 ) -> None:
     run = stored("walls")

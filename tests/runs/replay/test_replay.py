@@ -91,7 +91,7 @@ def test_the_stored_run_holds_what_a_run_may_hold() -> None:
     assert any(event.rla.level == MID for entry in errand for event in entry.events if hasattr(event, "rla"))
 
 
-def test_what_was_not_taught_then_is_told_as_the_first_difference() -> None:
+def test_verify_missing_lesson_is_the_first_difference() -> None:
     run = stored("walls")
     replay = Replay(run)
     for entry in run.entries():
@@ -157,7 +157,7 @@ def part_of(run: Run, lost: range) -> Run:
     return Run("a run with a gap", run.head, run._attachments, RunSource(lambda: without(run._source.ticks(), lost)))
 
 
-def test_what_came_after_a_gap_is_not_replayed_and_that_is_said() -> None:
+def test_replay_ends_at_a_gap_and_reports_it() -> None:
     run = part_of(stored("walls"), range(201, 204))
     assert differences(run) == (200, [])
     assert not run.whole
@@ -192,7 +192,7 @@ def test_a_run_that_would_write_elsewhere_is_refused(name: str) -> None:
         Run("evil", run.head, {**run._attachments, name: b"!"}, run._source)
 
 
-def test_what_is_no_run_is_refused_in_a_sentence(tmp_path: Path) -> None:
+def test_read_run_of_another_file_raises_recording_error(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match="no recorded run"):
         read_run(tmp_path)
     with pytest.raises(RecordingError, match="cannot be read"):

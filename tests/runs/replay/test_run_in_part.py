@@ -35,7 +35,7 @@ def test_one_without_its_beginning_cannot_be_replayed_and_says_since_when_it_is_
         Replay(read_run(late, partial=True))
 
 
-def test_what_is_left_of_it_is_read_with_the_settings_that_were_in_force(late: Path) -> None:
+def test_partial_run_is_read_with_its_own_settings(late: Path) -> None:
     run = read_run(late, partial=True)
     assert (run.robot, run.task, run.lessons) == (ROBOT, TASK, ())
     numbers = [entry.number for entry in run.partial_entries()]
