@@ -104,12 +104,7 @@ def build_map(
     """Build the map of the mid-level RLAs, which must not change meanwhile; yield after each piece.
 
     An RLA leads to the place of its expectation and to the places of its follow-ups, in the share of their counts.
-
-    Args:
-        rlas: all active RLAs of the mid level.
-        group_at: RLAs on the place of a situation.
-        follow_ups: RLA id -> {follow-up id: count}.
-        forecast: expectation of an RLA; None before its first end.
+    `follow_ups`: RLA id -> {follow-up id: count}. `forecast`: expectation of an RLA; None before its first end.
     """
     result = TopologicalMap()
     members: dict[Condition, list[Rla]] = {}
