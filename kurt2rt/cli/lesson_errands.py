@@ -12,6 +12,7 @@ from kurt2rt.experiments.navigation.guided_tour import navigation_settings
 from kurt2rt.experiments.navigation.plan import make_plan, read_outcomes
 from kurt2rt.experiments.navigation.tables import all_tables
 from kurt2rt.experiments.route.plan import basic_task_of
+from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.table import as_rich
@@ -39,9 +40,7 @@ def errands(setup: LessonSetup, options: LessonOptions) -> None:
         task,
         basic_task_of(task),
         options.all_seeds,
-        factory,
-        setup.robot,
-        results,
+        JobParts(factory=factory, robot=setup.robot, results=results),
         basic_folder=options.basic,
         controls=options.controls,
     )

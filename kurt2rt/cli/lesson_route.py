@@ -17,6 +17,7 @@ from kurt2rt.experiments.route.summary import read_study
 from kurt2rt.experiments.route.tables import all_tables, robot_table
 from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT
 from kurt2rt.experiments.study.eligibility import reasons_against_judging
+from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.table import as_rich
@@ -92,9 +93,7 @@ def many_routes(setup: LessonSetup, options: LessonOptions, command: str) -> Non
         options.all_seeds,
         decisions_of(task, options.decisions or ()),
         (TAUGHT, *(CONTROLS if options.controls else ())),
-        factory=factory,
-        robot=setup.robot,
-        results=results,
+        JobParts(factory=factory, robot=setup.robot, results=results),
         basic_folder=options.basic,
     )
     with results.held(), one_bar(missing_time_s(plan, results)) as bar:

@@ -76,6 +76,7 @@ def _run_study(options: _Options) -> None:
     from kurt2rt.experiments.paper.settings import load_paper
     from kurt2rt.experiments.paper.summary import read_study
     from kurt2rt.experiments.paper.tables import all_tables
+    from kurt2rt.experiments.study.jobs import JobParts
     from kurt2rt.experiments.study.plan import missing_time_s, run_missing
     from kurt2rt.experiments.study.results import Results
     from simbridge.simulation import Kurt2SimulationFactory
@@ -91,9 +92,7 @@ def _run_study(options: _Options) -> None:
         extent,
         parse_seeds(typed_seeds),
         readings,
-        stage,
-        robot,
-        results,
+        JobParts(factory=stage, robot=robot, results=results),
         tasks=options.task or (),
     )
     command = _command(quick=options.quick, seeds=typed_seeds, tasks=options.task or [], plain=options.plain)

@@ -71,6 +71,7 @@ def phases(options: _Options) -> None:
     from kurt2rt.experiments.phases.report import reasons_not_to_judge, write_report
     from kurt2rt.experiments.phases.summary import read_study
     from kurt2rt.experiments.phases.tables import all_tables
+    from kurt2rt.experiments.study.jobs import JobParts
     from kurt2rt.experiments.study.plan import missing_time_s, run_missing
     from kurt2rt.experiments.study.results import Results
     from simbridge.simulation import Kurt2SimulationFactory
@@ -79,7 +80,10 @@ def phases(options: _Options) -> None:
     robot, settings = load_robot(), load_task(options.task, changes=changes_of(options.changes))
     results = Results(options.out or _FOLDER / (settings.name + ("-quick" if options.quick else "")))
     plan = make_plan(
-        settings, parse_seeds(typed_seeds), Kurt2SimulationFactory(robot), robot, results, quick=options.quick
+        settings,
+        parse_seeds(typed_seeds),
+        JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results),
+        quick=options.quick,
     )
     with results.held(), one_bar(missing_time_s(plan, results)) as bar:
         run_missing(plan, results, options.jobs, bar.look)

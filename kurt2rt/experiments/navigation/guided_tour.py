@@ -35,7 +35,7 @@ class TourResult:
     named: dict[str, Street]
     """Named places, each with the street that it is in."""
     streets: tuple[Street | None, ...]
-    """Streets in the order of the tour; None where the robot was repositioned."""
+    """TaughtStreets in the order of the tour; None where the robot was repositioned."""
     ways: int
     """Transitions from a street to the next that were taught."""
     mid_rlas: int

@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
@@ -14,6 +13,7 @@ from kurt2rt.experiments.navigation.outcome import ErrandsOutcome
 from kurt2rt.experiments.navigation.robot_day import CONTROLS, PLANNING
 from kurt2rt.experiments.route.jobs import BasicJob
 from kurt2rt.experiments.route.plan import streets_of
+from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
 from kurt2rt.experiments.study.results import Results
 
@@ -41,9 +41,7 @@ def make_plan(
     task: TaskSettings,
     basic: TaskSettings,
     seeds: Sequence[int],
-    factory: SimulationFactory,
-    robot: RobotSettings,
-    results: Results,
+    parts: JobParts,
     *,
     basic_folder: Path | None = None,
     controls: bool = False,
@@ -54,6 +52,7 @@ def make_plan(
     `basic`: the task that teaches the streets; `basic_folder`: files of robots that were taught it. `controls`: also
     without a plan. Raises hal.settings.SettingsError, StudyError, KnowledgeError.
     """
+    factory, robot, results = parts["factory"], parts["robot"], parts["results"]
     worlds = (task.teaching.world, *task.exam.worlds[:1])
     navigation_settings(task)
     factory.require_worlds(*worlds, basic.teaching.world)

@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from hal.robot_settings import RobotSettings
 from hal.settings import find_config
 from hal.simulation import SimulationFactory
 from kurt2rt.core.phase_settings import PHASES
@@ -17,7 +16,7 @@ from kurt2rt.experiments.paper.settings import AskedSettings, ExperimentSettings
 from kurt2rt.experiments.study.eligibility import ROBOTS
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.provenance import Fingerprints, source_hash
-from kurt2rt.experiments.study.results import Results, StudyError
+from kurt2rt.experiments.study.results import StudyError
 
 DECIDING = (TaughtJob, GrowthJob, Extent)
 """Classes whose code, and all that it imports, decides the results."""
@@ -78,9 +77,7 @@ def make_plan(
     extent: Extent,
     seeds: Sequence[int],
     readings: Sequence[Reading],
-    factory: SimulationFactory,
-    robot: RobotSettings,
-    results: Results,
+    parts: JobParts,
     *,
     source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
     tasks: Sequence[str] = (),
@@ -95,6 +92,7 @@ def make_plan(
         hal.settings.SettingsError: a task and a world do not fit.
         StudyError: two tasks have one name, or a target has no exam.
     """
+    factory, robot = parts["factory"], parts["robot"]
     paper = extent.paper(paper)
     chosen = _chosen(paper, extent, tasks)
     _require_tasks(chosen, factory)
@@ -104,7 +102,6 @@ def make_plan(
         for each in chosen
     ]
     source = source_of(factory)
-    common = JobParts(factory=factory, robot=robot, results=results)
     fingerprints = Fingerprints(factory, robot, source, ("paper", "plain", *PHASES))
 
     def experiment(each: ExperimentSettings, reading: Reading, task: TaskSettings) -> PaperExperiment:
@@ -112,7 +109,7 @@ def make_plan(
         for seed in seeds:
             own = unseen_of(seed, each)
             made = fingerprints.of(task, (task.teaching.world, *task.exam.worlds, *own))
-            jobs.append(TaughtJob(task=task, reading=reading, seed=seed, unseen=own, made_of=made, **common))
+            jobs.append(TaughtJob(task=task, reading=reading, seed=seed, unseen=own, made_of=made, **parts))
         return PaperExperiment(each, reading, task, tuple(jobs))
 
     def growth(reading: Reading, task: TaskSettings) -> Growth:
@@ -121,7 +118,7 @@ def make_plan(
             of_radius = with_radius_only(task, radius, paper.growth.duration_s)
             made = fingerprints.of(of_radius, (task.teaching.world,))
             for seed in seeds[: paper.growth.robots]:
-                jobs.append(GrowthJob(task=of_radius, reading=reading, seed=seed, made_of=made, **common))
+                jobs.append(GrowthJob(task=of_radius, reading=reading, seed=seed, made_of=made, **parts))
         return Growth(reading, task, tuple(jobs))
 
     return PaperPlan(

@@ -52,7 +52,7 @@ class PhasesJob(StudyJob):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TaughtJob(PhasesJob):
+class FirstPhasesJob(PhasesJob):
     """Training run of phases 1 and 2, with exams before it, of the knowledge of phase 1, and of all knowledge."""
 
     @property
@@ -96,11 +96,11 @@ class StepJob(PhasesJob):
     """Job of one step after phases 1 and 2."""
 
     of: PhaseStep
-    before: "TaughtJob | StepJob"
+    before: "FirstPhasesJob | StepJob"
     """Job whose knowledge this one continues."""
-    first: TaughtJob
+    first: FirstPhasesJob
     """Job with the teacher's own drives."""
-    alike: "TaughtJob | StepJob | None"
+    alike: "FirstPhasesJob | StepJob | None"
     """Job with the number of penalties for random ones."""
 
     @property
@@ -207,4 +207,4 @@ class StepJob(PhasesJob):
         yield from shuffled(appraisals, load_critic(self.task.critic), self.seed, self.robot.can.cycle_s)
 
 
-Job = TaughtJob | StepJob
+Job = FirstPhasesJob | StepJob

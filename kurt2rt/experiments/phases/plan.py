@@ -3,19 +3,17 @@
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from hal.robot_settings import RobotSettings
 from hal.simulation import SimulationFactory
 from kurt2rt.core.critic.settings import CriticSettings, load_critic
 from kurt2rt.core.reinforcement.settings import AutonomousValues
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.experiments.lockstep.compatibility import require_course
-from kurt2rt.experiments.phases.jobs import Job, StepJob, TaughtJob
+from kurt2rt.experiments.phases.jobs import FirstPhasesJob, Job, StepJob
 from kurt2rt.experiments.phases.steps import PHASE_2, PhaseStep, phases_of, steps_of
 from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.provenance import Fingerprints, Provenance, source_hash
-from kurt2rt.experiments.study.results import Results
 
-DECIDING = (TaughtJob, StepJob)
+DECIDING = (FirstPhasesJob, StepJob)
 """Classes whose code, and all that it imports, decides the results."""
 _QUICK_TEACHING_S, _QUICK_EXAM_S, _QUICK_STEP_S, _QUICK_ALONE_S = 40.0, 6.0, 10.0, 40.0
 _QUICK_SHARE = 0.2
@@ -49,9 +47,7 @@ class PhasesPlan:
 def make_plan(
     task: TaskSettings,
     seeds: Sequence[int],
-    factory: SimulationFactory,
-    robot: RobotSettings,
-    results: Results,
+    parts: JobParts,
     *,
     quick: bool = False,
     source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
@@ -61,6 +57,7 @@ def make_plan(
     `quick`: all steps, each so short that it says nothing but that everything works. `source_of`: tells the hash of
     the program's source. Raises hal.settings.SettingsError.
     """
+    factory, robot, results = parts["factory"], parts["robot"], parts["results"]
     if quick:
         task = _shortened(task)
     steps = tuple(steps_of(task))
@@ -82,7 +79,7 @@ def make_plan(
     waves: list[list[Job]] = [[] for _ in range(1 + max(_depth(step, by_name) for step in steps))]
     for seed in seeds:
         common = _RobotParts(factory=factory, robot=robot, task=task, seed=seed, results=results)
-        first = TaughtJob(**common, made_of=made_first)
+        first = FirstPhasesJob(**common, made_of=made_first)
         waves[0].append(first)
         jobs: dict[str, Job] = {PHASE_2: first}
         for step in steps:

@@ -15,7 +15,7 @@ TEN_MIN_S = 600.0
 
 
 @dataclass(frozen=True, slots=True)
-class WorldSummary:
+class StageExams:
     """All exams of one stage in one world."""
 
     world: str
@@ -44,7 +44,7 @@ class WorldSummary:
         return self.succeeded / self.robots
 
 
-def worlds_of(stages: Sequence[StageOutcome]) -> tuple[WorldSummary, ...]:
+def worlds_of(stages: Sequence[StageOutcome]) -> tuple[StageExams, ...]:
     """Return the summaries of one stage of all robots, world by world."""
     return tuple(
         summarize([exam for stage in stages for exam in stage.exams if exam.world == world])
@@ -52,11 +52,11 @@ def worlds_of(stages: Sequence[StageOutcome]) -> tuple[WorldSummary, ...]:
     )
 
 
-def summarize(exams: Sequence[ExamOutcome]) -> WorldSummary:
+def summarize(exams: Sequence[ExamOutcome]) -> StageExams:
     """Return the summary of exams in one world, one for each robot."""
     succeeded = sum(each.succeeded for each in exams)
     errors = [each.findings[DISTANCE_ERROR] for each in exams if DISTANCE_ERROR in each.findings]
-    return WorldSummary(
+    return StageExams(
         world=exams[0].world,
         label=label_of(exams[0].world),
         robots=len(exams),

@@ -62,9 +62,7 @@ def make_plan(
     seeds: Sequence[int],
     decisions: Sequence[int],
     variants: Sequence[Variant],
-    factory: SimulationFactory,
-    robot: RobotSettings,
-    results: Results,
+    parts: JobParts,
     *,
     basic_folder: Path | None = None,
     source_of: Callable[[SimulationFactory], str] = lambda factory: source_hash(*DECIDING, type(factory)),
@@ -81,13 +79,13 @@ def make_plan(
         StudyError: a knowledge file is missing.
         KnowledgeError: a knowledge file cannot be read.
     """
+    factory, robot, results = parts["factory"], parts["robot"], parts["results"]
     worlds = (task.teaching.world, *task.exam.worlds[:1])
     factory.require_worlds(*worlds, basic.teaching.world)
     routes = {(seed, count): with_route(task, seed, count) for seed in seeds for count in decisions}
     for each in routes.values():
         require_course(factory, each, worlds)
     source = source_of(factory)
-    common = JobParts(factory=factory, robot=robot, results=results)
     fingerprints = Fingerprints(factory, robot, source, ("paper", "plain", "phases"))
     streets = streets_of(basic, seeds, factory, robot, results, fingerprints, basic_folder)
 
@@ -97,7 +95,7 @@ def make_plan(
             own = routes[seed, count]
             made = fingerprints.of(variant.task(own), worlds, streets.made_of[seed], repr(variant))
             basic_file = streets.files[seed]
-            jobs.append(RouteJob(task=own, variant=variant, seed=seed, basic=basic_file, made_of=made, **common))
+            jobs.append(RouteJob(task=own, variant=variant, seed=seed, basic=basic_file, made_of=made, **parts))
         return RouteExperiment(count, variant, tuple(jobs))
 
     return RoutePlan(
@@ -110,7 +108,7 @@ def make_plan(
     )
 
 
-class Streets(NamedTuple):
+class TaughtStreets(NamedTuple):
     """Knowledge of the streets, which robots have before a route."""
 
     jobs: tuple[BasicJob, ...]
@@ -129,19 +127,19 @@ def streets_of(
     results: Results,
     fingerprints: Fingerprints,
     folder: Path | None,
-) -> Streets:
+) -> TaughtStreets:
     """Taught here, or with `folder` taken from files as `kurt2rt lesson` leaves them.
 
     Raises StudyError, KnowledgeError, SettingsError.
     """
     if folder is not None:
         files = {seed: basic_file(folder, basic, seed) for seed in seeds}
-        return Streets((), files, {seed: repr(read_lessons(file, robot, basic)) for seed, file in files.items()})
+        return TaughtStreets((), files, {seed: repr(read_lessons(file, robot, basic)) for seed, file in files.items()})
     made = fingerprints.of(basic, (basic.teaching.world,))
     jobs = tuple(
         BasicJob(factory=factory, robot=robot, task=basic, seed=seed, made_of=made, results=results) for seed in seeds
     )
-    return Streets(jobs, {job.seed: job.knowledge for job in jobs}, dict.fromkeys(seeds, made.model_dump_json()))
+    return TaughtStreets(jobs, {job.seed: job.knowledge for job in jobs}, dict.fromkeys(seeds, made.model_dump_json()))
 
 
 def basic_task_of(task: TaskSettings) -> TaskSettings:

@@ -1,4 +1,4 @@
-"""What a teacher says, minute by minute."""
+"""Workload of a teacher, minute by minute."""
 
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.teaching.commands import Appraise, Correct, DeleteRla, Pursue, Reward, SetPhase, Teach

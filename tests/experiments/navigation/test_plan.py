@@ -1,4 +1,4 @@
-"""From the streets to errands, their tables and pictures, on the simulated robot."""
+"""Navigation study on the simulated robot: streets, goals, tables and figures."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +14,7 @@ from kurt2rt.experiments.navigation.guided_tour import navigation_settings
 from kurt2rt.experiments.navigation.outcome import ErrandsOutcome
 from kurt2rt.experiments.navigation.plan import NavigationPlan, make_plan, read_outcomes
 from kurt2rt.experiments.navigation.tables import all_tables
+from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.knowledge.journal.journal import Journal
@@ -27,7 +28,14 @@ def short(name: str, teaching_s: float, exam_s: float) -> TaskSettings:
 
 def a_programme(results: Results, streets_s: float, errands_s: float, exam_s: float) -> NavigationPlan:
     errands, streets = short("errands", errands_s, exam_s), short("streets", streets_s, 6.0)
-    return make_plan(errands, streets, (1,), STAGE, ROBOT, results, controls=True, source_of=lambda _: "tested")
+    return make_plan(
+        errands,
+        streets,
+        (1,),
+        JobParts(factory=STAGE, robot=ROBOT, results=results),
+        controls=True,
+        source_of=lambda _: "tested",
+    )
 
 
 @dataclass(frozen=True)

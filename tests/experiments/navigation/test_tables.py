@@ -1,4 +1,4 @@
-"""What is told of errands."""
+"""Tables of the navigation study."""
 
 from kurt2rt.experiments.navigation.outcome import ErrandDone, ErrandsOutcome, ErrandsRun, Strategy
 from kurt2rt.experiments.navigation.tables import robots_table, runs_table, targets_table

@@ -1,4 +1,4 @@
-"""What is planned before anything runs."""
+"""Plan of the paper study."""
 
 from collections import Counter
 from pathlib import Path
@@ -14,6 +14,7 @@ from kurt2rt.experiments.paper.extent import QUICK, WHOLE, Extent
 from kurt2rt.experiments.paper.outcome import Reading
 from kurt2rt.experiments.paper.plan import PaperPlan, make_plan, unseen_of
 from kurt2rt.experiments.paper.settings import PaperSettings, load_paper
+from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.results import Results, StudyError
 from tests.experiments.helpers import ROBOT, STAGE
 
@@ -38,9 +39,7 @@ def planned(
         extent,
         seeds,
         readings,
-        STAGE,
-        ROBOT,
-        Results(Path("never-made")),
+        JobParts(factory=STAGE, robot=ROBOT, results=Results(Path("never-made"))),
         source_of=lambda _: "s",
         tasks=tasks,
     )

@@ -1,4 +1,4 @@
-"""What is wrong in config/paper is said with file and key."""
+"""Settings of the paper study, and their errors."""
 
 from pathlib import Path
 from typing import Any

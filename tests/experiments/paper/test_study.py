@@ -1,4 +1,4 @@
-"""From a plan to results, pictures and a report, on the simulated robot."""
+"""Paper study on the simulated robot: plan, results, figures and report."""
 
 import base64
 import html

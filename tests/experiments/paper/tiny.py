@@ -10,6 +10,7 @@ from kurt2rt.experiments.paper.report import write_report
 from kurt2rt.experiments.paper.settings import load_paper
 from kurt2rt.experiments.paper.summary import PaperStudy, read_study
 from kurt2rt.experiments.study.figure import SavedFigure
+from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.plan import run_missing
 from kurt2rt.experiments.study.results import Results
 from tests.experiments.helpers import ROBOT, STAGE
@@ -30,7 +31,13 @@ class Tiny:
 def tiny_plan(results: Results, *tasks: str) -> PaperPlan:
     paper = load_paper()
     return make_plan(
-        paper, EXTENT, (100,), ("shipped", "plain"), STAGE, ROBOT, results, source_of=lambda _: "tested", tasks=tasks
+        paper,
+        EXTENT,
+        (100,),
+        ("shipped", "plain"),
+        JobParts(factory=STAGE, robot=ROBOT, results=results),
+        source_of=lambda _: "tested",
+        tasks=tasks,
     )
 
 

@@ -1,4 +1,4 @@
-"""What is done to a set before a branch: wrong actions, and a critic from elsewhere."""
+"""Wrong actions, and critics from another set."""
 
 from collections import Counter
 

@@ -1,4 +1,4 @@
-"""What is planned before anything runs."""
+"""Plan of the phases study."""
 
 from pathlib import Path
 
@@ -9,6 +9,7 @@ from kurt2rt.experiments.phases.outcome import JobOutcome
 from kurt2rt.experiments.phases.plan import DECIDING, PhasesPlan, make_plan
 from kurt2rt.experiments.phases.steps import BLAME_BY_CHANCE, CRITIC_ALONE, LONG_RUN, PHASE_2, PHASE_4, PHASE_5, REWARDS
 from kurt2rt.experiments.study.import_graph import modules_needed
+from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.results import Results
 from tests.experiments.helpers import ROBOT, STAGE
 from tests.experiments.phases.outcomes import stage, teaching
@@ -18,7 +19,9 @@ TASK = load_task("wall_following")
 
 def planned(task: TaskSettings = TASK, seeds: tuple[int, ...] = (100, 101), *, quick: bool = False) -> PhasesPlan:
     results = Results(Path("never-made"))
-    return make_plan(task, seeds, STAGE, ROBOT, results, quick=quick, source_of=lambda _: "s")
+    return make_plan(
+        task, seeds, JobParts(factory=STAGE, robot=ROBOT, results=results), quick=quick, source_of=lambda _: "s"
+    )
 
 
 def with_phases(**changed: float) -> TaskSettings:
@@ -41,7 +44,12 @@ def test_every_job_keeps_its_result_in_a_file_of_its_own() -> None:
 
 def test_random_penalties_equal_those_of_the_rewards(tmp_path: Path) -> None:
     results = Results(tmp_path)
-    jobs = {(job.step, job.file): job for job in make_plan(TASK, (100, 101), STAGE, ROBOT, results, source_of=str).jobs}
+    jobs = {
+        (job.step, job.file): job
+        for job in make_plan(
+            TASK, (100, 101), JobParts(factory=STAGE, robot=ROBOT, results=results), source_of=str
+        ).jobs
+    }
     by_step = {step: [job for (name, _), job in jobs.items() if name == step] for step in (REWARDS, BLAME_BY_CHANCE)}
     for job, seed, blame in zip(by_step[REWARDS], (100, 101), (37, 5), strict=True):
         (tmp_path / job.file).parent.mkdir(parents=True, exist_ok=True)

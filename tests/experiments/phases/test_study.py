@@ -1,4 +1,4 @@
-"""From a plan to results, figures and a report, on the simulated robot."""
+"""Phases study on the simulated robot: plan, results, figures and report."""
 
 import base64
 from pathlib import Path

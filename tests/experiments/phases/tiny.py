@@ -9,6 +9,7 @@ from kurt2rt.experiments.phases.plan import PhasesPlan, make_plan
 from kurt2rt.experiments.phases.report import reasons_not_to_judge, write_report
 from kurt2rt.experiments.phases.summary import PhasesStudy, read_study
 from kurt2rt.experiments.study.figure import SavedFigure
+from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.plan import run_missing
 from kurt2rt.experiments.study.results import Results
 from tests.experiments.helpers import ROBOT, STAGE
@@ -36,7 +37,9 @@ def tiny_task() -> TaskSettings:
 
 
 def tiny_plan(results: Results) -> PhasesPlan:
-    return make_plan(tiny_task(), (100,), STAGE, ROBOT, results, source_of=lambda _: "tested")
+    return make_plan(
+        tiny_task(), (100,), JobParts(factory=STAGE, robot=ROBOT, results=results), source_of=lambda _: "tested"
+    )
 
 
 def do_tiny(folder: Path) -> Tiny:

@@ -1,4 +1,4 @@
-"""What jobs leave, written by hand."""
+"""Stored outcomes, written by hand."""
 
 from kurt2rt.experiments.route.outcome import Layer, RouteDrive, RouteOutcome, Wrong
 from kurt2rt.experiments.study.provenance import Provenance

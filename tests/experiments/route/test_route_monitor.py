@@ -1,4 +1,4 @@
-"""Who failed at a junction: what was noticed of the ones before, the mid level, or the basic level."""
+"""Layer that failed at a junction: symbols, mid level or basic level."""
 
 from dataclasses import dataclass, field
 

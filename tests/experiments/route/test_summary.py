@@ -1,4 +1,4 @@
-"""From the streets to a route, its drive, tables, pictures and a report, on the simulated robot, in seconds."""
+"""Route study on the simulated robot: streets, route, tables, figures and report."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +15,7 @@ from kurt2rt.experiments.route.summary import RouteStudy, read_study
 from kurt2rt.experiments.route.tables import all_tables
 from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT
 from kurt2rt.experiments.study.figure import SavedFigure
+from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.plan import missing_time_s, run_missing
 from kurt2rt.experiments.study.pool import PoolProgress
 from kurt2rt.experiments.study.results import Results, StudyError
@@ -41,9 +42,7 @@ def a_programme(results: Results, basic_folder: Path | None = None, teaching_s: 
         (1,),
         (4,),
         VARIANTS,
-        STAGE,
-        ROBOT,
-        results,
+        JobParts(factory=STAGE, robot=ROBOT, results=results),
         basic_folder=basic_folder,
         source_of=lambda _: "tested",
     )

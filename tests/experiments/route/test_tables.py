@@ -7,6 +7,7 @@ from kurt2rt.experiments.route.plan import RouteExperiment, RoutePlan, make_plan
 from kurt2rt.experiments.route.summary import RouteStudy, RouteSummary
 from kurt2rt.experiments.route.tables import all_tables, errors_of
 from kurt2rt.experiments.route.variants import CONTROLS, TAUGHT, Variant
+from kurt2rt.experiments.study.jobs import JobParts
 from kurt2rt.experiments.study.results import Results
 from kurt2rt.experiments.study.table import Table
 from tests.experiments.helpers import ROBOT, STAGE
@@ -16,7 +17,15 @@ from tests.experiments.route.outcomes import drive, outcome
 def plan(seeds: Sequence[int], variants: Sequence[Variant] = (TAUGHT,)) -> RoutePlan:
     route, streets = load_task("route"), load_task("streets")
     results = Results(Path("unused"))
-    return make_plan(route, streets, seeds, (8,), variants, STAGE, ROBOT, results, source_of=lambda _: "tested")
+    return make_plan(
+        route,
+        streets,
+        seeds,
+        (8,),
+        variants,
+        JobParts(factory=STAGE, robot=ROBOT, results=results),
+        source_of=lambda _: "tested",
+    )
 
 
 def study(outcomes: Sequence[RouteOutcome], variants: Sequence[Variant] = (TAUGHT,)) -> RouteStudy:

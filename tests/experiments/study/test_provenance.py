@@ -1,4 +1,4 @@
-"""What decides a result shows in its fingerprint, and what does not decide it doesn't."""
+"""Provenance: changes that decide a result, and changes that do not."""
 
 from pathlib import Path
 

@@ -47,7 +47,7 @@ def test_changes_are_more_surprising_than_known_ground(
     assert set_down.surprising_first_ends > 0.5 * set_down.first_ends > 0
 
 
-@pytest.mark.deep  # the same lesson twice, in tests/experiments/lockstep/test_phases_of_a_lesson.py, is not
+@pytest.mark.deep  # the same lesson twice, in tests/experiments/lockstep/test_training_phases.py, is not
 def test_the_same_seed_gives_the_same_surprises(taught_shortly: SurpriseJob) -> None:
     assert taught_shortly.run(lambda _: None) == taught_shortly.run(lambda _: None)
 

@@ -1,4 +1,4 @@
-"""Only enough robots that nobody has seen are judged."""
+"""Conditions for judging the paper study."""
 
 from dataclasses import replace
 from pathlib import Path
