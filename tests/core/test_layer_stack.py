@@ -17,12 +17,12 @@ def test_the_basic_level_does_what_the_mid_level_commands() -> None:
     assert (decision.mid.behaviour, decision.mid.rla_id) == ("turn_left", 4)
 
 
-def test_another_command_takes_over_in_the_very_tick_however_short_the_action_was_held() -> None:
+def test_stack_new_command_replaces_held_action_at_once() -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"), taught(5, (1.0, 0.0, 0.0), "turn_right"), radius=0.0)
     assert [small.tick().action, small.tick(1.0).action, small.tick().action] == ["b", "c", "c"]
 
 
-def test_where_the_mid_level_asks_the_robot_stands_and_the_question_is_about_that_level() -> None:
+def test_stack_mid_level_unknown_stands_and_asks_at_mid() -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"), radius=0.0)
     small.tick()
     decision = small.tick(1.0)
@@ -35,7 +35,7 @@ def test_where_the_mid_level_asks_the_robot_stands_and_the_question_is_about_tha
     assert (small.tick().action, small.actions["a"].starts) == ("a", 1)
 
 
-def test_where_only_the_basic_level_asks_the_question_is_about_that_one() -> None:
+def test_stack_basic_level_unknown_asks_at_basic() -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
     decision = small.tick(place=99.0)
     assert (decision.cause, decision.asks_at) == (Cause.UNKNOWN, BASIC)
@@ -44,7 +44,7 @@ def test_where_only_the_basic_level_asks_the_question_is_about_that_one() -> Non
 
 
 @pytest.mark.parametrize("cause", [Cause.STOPPED, Cause.BLIND, Cause.TEACHER])
-def test_a_reason_to_stand_goes_before_all_and_junctions_are_noticed_all_the_same(cause: Cause) -> None:
+def test_stack_blocking_cause_stands_and_still_detects_junctions(cause: Cause) -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
     decision = small.tick(1.0, cause)
     assert (decision.wheel_speeds, decision.cause, decision.action) == (STANDSTILL, cause, None)
@@ -61,7 +61,7 @@ def test_the_mid_level_sees_what_was_decided_before() -> None:
     assert small.symbols.befores[1] is first
 
 
-def test_where_the_mid_level_asks_a_basic_level_that_fails_does_not_drive(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_stack_faulty_basic_level_stands_while_mid_asks(monkeypatch: pytest.MonkeyPatch) -> None:
     decide = BasicLevel.decide
 
     def runs_away(level: BasicLevel, *words: object) -> Decision:

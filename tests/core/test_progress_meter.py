@@ -45,7 +45,7 @@ def test_progress_of_a_latched_guard_counts_as_not_driven() -> None:
     assert Run().lasts(3, HELD) == Progress(3, 0, 0)
 
 
-def test_progress_of_a_robot_that_touches_something_is_a_question() -> None:
+def test_progress_touching_robot_counts_as_question() -> None:
     run = Run()
     run.lasts(2, DRIVES)
     assert run.lasts(2, TOUCHES) == Progress(4, 50, 1)

@@ -169,7 +169,7 @@ def test_a_lesson_acts_in_the_very_tick_that_takes_it(corridor: Corridor) -> Non
     assert corridor.run().results == ()
 
 
-def test_history_goes_on_while_it_drives_and_stands_still_while_it_asks(driving: Corridor) -> None:
+def test_tick_history_grows_driving_and_freezes_asking(driving: Corridor) -> None:
     moving = [driving.run(110) for _ in range(4)]
     assert not any(record.situation.history_frozen for record in moving)
     assert averages(moving[-1])[0] == pytest.approx(110)
@@ -200,14 +200,14 @@ def test_a_correction_acts_in_the_tick_that_takes_it(driving: Corridor) -> None:
     assert driving.notebook.events[-1].origin.phase is Phase.CORRECTIONS
 
 
-def test_commands_of_one_tick_are_carried_out_in_the_order_they_came(corridor: Corridor) -> None:
+def test_tick_commands_are_handled_in_order_of_arrival(corridor: Corridor) -> None:
     record = corridor.run(100, delete(1, "too early"), teach("forward", "t"), delete(1, "d"), teach("back", "t-2"))
     assert [result.accepted for result in record.results] == [False, True, True, True]
     assert (record.decision.rla_id, record.decision.action) == (2, "back")
     assert [event.origin.command_id for event in corridor.notebook.events] == ["t", "d", "t-2"]
 
 
-def test_what_it_pursues_changes_what_it_does_in_the_very_tick_that_takes_it() -> None:
+def test_tick_pursue_acts_in_its_own_tick() -> None:
     corridor = Corridor(behaviours=("straight_on", "turn_left"))
     corridor.run(100, teach("forward", "1"))
     record = corridor.run(100, pursue("turn_left", "2"))
@@ -235,7 +235,7 @@ def test_stop_holds_until_resume_and_history_waits(driving: Corridor) -> None:
     assert driving.run(100, resume()).guard_result.wheel_speeds == FORWARD
 
 
-def test_a_lesson_for_a_stopped_robot_is_taken_and_waits_for_resume(corridor: Corridor) -> None:
+def test_tick_lesson_while_stopped_waits_for_resume(corridor: Corridor) -> None:
     corridor.run(100, stop())
     record = corridor.run(100, teach("back"))
     assert record.results[0].accepted
@@ -259,7 +259,7 @@ def test_a_teachers_stop_goes_before_trouble_with_saving(driving: Corridor) -> N
     assert driving.run(100, stop()).decision.cause is Cause.STOPPED
 
 
-def test_an_emergency_stop_holds_until_resume_with_history_frozen(driving: Corridor) -> None:
+def test_tick_emergency_stop_freezes_history_until_resume(driving: Corridor) -> None:
     driving.robot.emergency_stop(GuardReason.OTHER)
     first = driving.run()
     assert first.guard_result == GuardResult(STANDSTILL, (GuardReason.OTHER,), latched=True)
@@ -271,7 +271,7 @@ def test_an_emergency_stop_holds_until_resume_with_history_frozen(driving: Corri
     assert not driving.run().situation.history_frozen
 
 
-def test_a_late_copy_of_an_old_resume_does_not_end_a_new_emergency_stop(driving: Corridor) -> None:
+def test_tick_late_copy_of_resume_keeps_new_emergency_stop(driving: Corridor) -> None:
     driving.run(100, stop("s"))
     driving.run(100, resume("again"))
     driving.robot.emergency_stop(GuardReason.OTHER)
@@ -281,7 +281,7 @@ def test_a_late_copy_of_an_old_resume_does_not_end_a_new_emergency_stop(driving:
     assert not driving.run(100, resume("after a look")).guard_result.latched
 
 
-def test_a_resume_that_was_said_before_an_emergency_stop_does_not_end_it(driving: Corridor) -> None:
+def test_tick_resume_from_before_emergency_stop_is_refused(driving: Corridor) -> None:
     said_on = driving.run(100).tick
     driving.robot.emergency_stop(GuardReason.OTHER)
     stopped_on = driving.run(100).tick
@@ -291,13 +291,13 @@ def test_a_resume_that_was_said_before_an_emergency_stop_does_not_end_it(driving
     assert not driving.run(100, Resume("after a look", "Ann", stopped_on)).guard_result.latched
 
 
-def test_a_resume_does_not_end_the_emergency_stop_of_its_own_tick(driving: Corridor) -> None:
+def test_tick_resume_keeps_emergency_stop_of_its_own_tick(driving: Corridor) -> None:
     driving.robot.emergency_stop(GuardReason.OTHER)  # as the senses of the next tick do
     assert driving.run(100, resume("said before")).guard_result.latched
     assert not driving.run(100, resume("after a look")).guard_result.latched
 
 
-def test_a_robot_that_stops_itself_in_the_tick_of_a_resume_wants_a_new_one(driving: Corridor) -> None:
+def test_tick_stop_in_the_tick_of_a_resume_needs_another(driving: Corridor) -> None:
     driving.robot.emergency_stop(GuardReason.BUS_LOST)
     seen = driving.run(100).tick
     driving.robot.relatches = True
@@ -308,7 +308,7 @@ def test_a_robot_that_stops_itself_in_the_tick_of_a_resume_wants_a_new_one(drivi
     assert not driving.run(100, Resume("3", "Ann", again.tick)).guard_result.latched
 
 
-def test_uses_and_transitions_are_counted_and_standing_ends_a_chain(driving: Corridor) -> None:
+def test_tick_counts_uses_and_standstill_ends_transitions(driving: Corridor) -> None:
     driving.run(115, teach("back", "second"))
     for counts in [115] * 10 + [100] * 10:
         driving.run(counts)
@@ -349,7 +349,7 @@ def printed(records: Sequence[TickRecord]) -> list[str]:
     return [repr((record, record.situation.vector.tolist())) for record in records]
 
 
-def test_the_same_inputs_give_the_same_records_and_the_same_knowledge() -> None:
+def test_tick_equal_inputs_give_equal_records_and_knowledge() -> None:
     first, second, other = journey(1), journey(1), journey(2)
     assert printed(first[0]) == printed(second[0])
     assert first[1:] == second[1:]
@@ -358,21 +358,21 @@ def test_the_same_inputs_give_the_same_records_and_the_same_knowledge() -> None:
     assert causes == {Cause.RLA, Cause.HELD, Cause.UNKNOWN, Cause.STOPPED}  # the journey has seen it all
 
 
-def test_what_the_keeper_holds_folds_to_what_the_robot_knows() -> None:
+def test_tick_stored_events_fold_to_the_robots_knowledge() -> None:
     _, knowledge_hash, events = journey(3)
     system = RlaSystem(8, RADIUS)
     system.apply_all(events)
     assert system.knowledge_hash() == knowledge_hash
 
 
-def test_a_tick_that_was_held_up_tells_the_guard_how_old_its_decision_is(driving: Corridor) -> None:
+def test_tick_delayed_tick_gives_guard_the_decisions_age(driving: Corridor) -> None:
     driving.run(100)
     driving.held_up_s = 0.09
     driving.run(100)
     assert driving.robot.command_ages_s[-2:] == pytest.approx([0.0, 0.09])
 
 
-def test_a_robot_that_sees_nothing_stands_asks_nothing_and_learns_nothing(driving: Corridor) -> None:
+def test_tick_blind_robot_stands_without_asking_or_learning(driving: Corridor) -> None:
     known = len(driving.system)
     driving.robot.infrared_age_s = math.inf
     record = driving.run(100, teach("back", "in the dark"))
@@ -388,7 +388,7 @@ def test_a_robot_that_sees_nothing_stands_asks_nothing_and_learns_nothing(drivin
     assert driving.run(100, teach("back", "in the dark")).results[0].accepted
 
 
-def test_what_a_latched_robot_would_have_done_is_not_counted(driving: Corridor) -> None:
+def test_tick_latched_decision_is_not_counted(driving: Corridor) -> None:
     driving.run(100)
     uses = dict(driving.statistics.uses)
     driving.robot.latched = True
@@ -398,7 +398,7 @@ def test_what_a_latched_robot_would_have_done_is_not_counted(driving: Corridor) 
 
 
 @pytest.mark.parametrize("says_why", [False, True])
-def test_a_layer_that_fails_does_not_drive_a_robot_that_was_stopped(
+def test_tick_faulty_level_does_not_drive_a_stopped_robot(
     driving: Corridor, monkeypatch: pytest.MonkeyPatch, says_why: bool
 ) -> None:
     decide = BasicLevel.decide

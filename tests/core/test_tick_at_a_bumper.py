@@ -39,7 +39,7 @@ def corridor() -> Corridor:
     return Corridor()
 
 
-def test_a_robot_that_is_held_at_a_bumper_asks_after_half_a_second(corridor: Corridor) -> None:
+def test_bumper_blocked_robot_asks_after_half_a_second(corridor: Corridor) -> None:
     before = held(corridor, ASKS_AFTER_TICKS - 1)
     assert (before.decision.cause, before.standing) == (Cause.RLA, Standing(StandReason.FRONT_BUMPER))
     record = corridor.run()
@@ -85,7 +85,7 @@ def test_an_answer_moves_the_robot_at_once_and_is_not_shadowed(
     assert len(corridor.system) == 1
 
 
-def test_an_answer_far_from_the_condition_inserts_an_rla_that_wins(corridor: Corridor) -> None:
+def test_bumper_answer_far_from_condition_inserts_winning_rla(corridor: Corridor) -> None:
     held(corridor)
     corridor.run(130)  # within R 50, farther than half of it
     assert corridor.run().decision.cause is Cause.TOUCHES
@@ -101,7 +101,7 @@ def test_an_answer_that_changes_nothing_leaves_the_question(corridor: Corridor) 
     assert record.decision.cause is Cause.TOUCHES
 
 
-def test_an_answer_about_a_question_of_before_is_a_correction_too(corridor: Corridor) -> None:
+def test_bumper_answer_about_past_question_corrects(corridor: Corridor) -> None:
     asked = held(corridor).tick
     corridor.robot.touches_in_front = False
     corridor.run()
@@ -119,7 +119,7 @@ def test_history_stands_still_while_it_waits_for_its_teacher(corridor: Corridor)
     assert averages(corridor.run(115)) != moved  # no teacher is waited for
 
 
-def test_what_pushes_may_be_blamed_for_it(corridor: Corridor) -> None:
+def test_bumper_pushing_rla_can_be_punished(corridor: Corridor) -> None:
     for phase in (Phase.SUPERVISED, Phase.AUTONOMOUS):
         corridor = Corridor()
         corridor.run(100, set_phase(phase))

@@ -75,7 +75,7 @@ def attended() -> Corridor:
     return corridor
 
 
-def test_a_press_drives_for_its_lease_and_then_the_robot_stands_though_it_knows_the_way(driving: Corridor) -> None:
+def test_press_drives_for_its_lease_then_robot_stands(driving: Corridor) -> None:
     first = driving.run(100, press(driving))
     assert (first.decision.cause, first.decision.action, first.decision.rla_id) == (Cause.TEACHER, "by hand", None)
     assert first.guard_result.wheel_speeds == BY_HAND
@@ -85,12 +85,12 @@ def test_a_press_drives_for_its_lease_and_then_the_robot_stands_though_it_knows_
     assert driving.run(100, resume()).guard_result.wheel_speeds == FORWARD
 
 
-def test_a_press_held_back_on_its_way_drives_until_35_ticks_after_its_picture(driving: Corridor) -> None:
+def test_late_press_drives_until_35_ticks_after_its_state(driving: Corridor) -> None:
     driving.run(100, press(driving, age=20))
     assert causes(driving, 20) == [Cause.TEACHER] * (REACH - 20 - 1) + [Cause.STOPPED] * 6
 
 
-def test_a_press_on_a_picture_35_ticks_old_does_not_move_the_robot(driving: Corridor) -> None:
+def test_press_on_state_35_ticks_old_does_not_drive(driving: Corridor) -> None:
     assert stands(driving.run(100, press(driving, age=REACH)))
     assert stands(driving.run(100, press(driving, 1)))  # and is over
     assert driving.run(100, press(driving, 2)).guard_result.wheel_speeds == BY_HAND
@@ -104,7 +104,7 @@ def test_the_same_press_never_comes_back_and_a_new_one_does(driving: Corridor) -
     assert driving.run(100, press(driving, hold=6)).decision.cause is Cause.TEACHER
 
 
-def test_an_older_press_that_comes_late_neither_drives_nor_lets_the_newer_one_come_back(driving: Corridor) -> None:
+def test_late_older_press_neither_drives_nor_revives_the_newer(driving: Corridor) -> None:
     driving.run(100, press(driving, hold=1))
     driving.run(100, press(driving, hold=4))
     assert not stands(driving.run(100, press(driving, hold=1)))  # the newer one still drives
@@ -127,7 +127,7 @@ def test_a_stop_of_anyone_ends_the_press_in_the_same_tick(driving: Corridor, by:
     assert driving.run(100, press(driving, hold=3)).decision.cause is Cause.TEACHER
 
 
-def test_what_is_driven_by_hand_goes_into_the_history_and_belongs_to_no_rla(driving: Corridor) -> None:
+def test_manual_drive_enters_history_and_credits_no_rla(driving: Corridor) -> None:
     driving.run(100, press(driving))
     uses = dict(driving.statistics.uses)
     record = driving.run(110)
@@ -135,9 +135,7 @@ def test_what_is_driven_by_hand_goes_into_the_history_and_belongs_to_no_rla(driv
     assert driving.statistics.uses == uses
 
 
-def test_what_the_hand_drives_belongs_to_no_rla_also_when_the_layer_fails(
-    driving: Corridor, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_manual_drive_with_faulty_level_credits_no_rla(driving: Corridor, monkeypatch: pytest.MonkeyPatch) -> None:
     decide = BasicLevel.decide
 
     def runs_away(level: BasicLevel, *words: object) -> Decision:
@@ -167,7 +165,7 @@ def test_a_behaviour_drives_and_then_the_robot_stands(driving: Corridor) -> None
     assert driving.run(100, resume()).decision.action == "forward"
 
 
-def test_without_its_teacher_an_attended_robot_stands_where_it_knows_the_way_and_asks_where_not(
+def test_attended_robot_without_teacher_stands_or_asks(
     attended: Corridor,
 ) -> None:
     assert causes(attended, 5, 100) == [Cause.UNATTENDED] * 5
@@ -176,7 +174,7 @@ def test_without_its_teacher_an_attended_robot_stands_where_it_knows_the_way_and
     assert set(attended.robot.driven) == {STANDSTILL}
 
 
-def test_it_drives_while_its_teacher_is_there_and_stands_until_resume_when_it_lost_him(attended: Corridor) -> None:
+def test_attended_robot_that_lost_its_teacher_needs_resume(attended: Corridor) -> None:
     attended.run(100, watch(attended))
     assert causes(attended, LEASE - 1) == [Cause.RLA] * (LEASE - 1)
     assert attended.run(100).decision.cause is Cause.STOPPED
@@ -193,7 +191,7 @@ def test_presence_is_counted_from_the_picture_as_the_press_is(attended: Corridor
     assert set(cause[there:]) == {Cause.STOPPED if there else Cause.UNATTENDED}
 
 
-def test_who_watches_all_the_time_is_never_lost(attended: Corridor) -> None:
+def test_presence_renewed_every_tick_never_expires(attended: Corridor) -> None:
     for _ in range(20):
         assert attended.run(100, watch(attended, age=11)).decision.cause is Cause.RLA
         assert causes(attended, REACH - 11 - 1) == [Cause.RLA] * (REACH - 11 - 1)
@@ -218,7 +216,7 @@ def test_a_robot_taken_while_it_drives_waits_for_its_new_teacher(attended: Corri
     assert attended.run(100, watch(attended, "Ben"), Resume("r", "Ben")).decision.cause is Cause.RLA
 
 
-def test_in_the_fifth_phase_it_needs_nobody_and_leaving_it_stops_a_robot_that_is_alone(attended: Corridor) -> None:
+def test_phase_5_needs_no_teacher_and_its_end_stops_the_robot(attended: Corridor) -> None:
     attended.run(100, set_phase(Phase.AUTONOMOUS))
     assert causes(attended, 200) == [Cause.RLA] * 200
     assert attended.run(100, set_phase(Phase.CORRECTIONS, "back to 2")).decision.cause is Cause.STOPPED
@@ -230,11 +228,11 @@ def test_in_every_other_phase_it_needs_one(attended: Corridor, phase: Phase) -> 
     assert attended.run(100).decision.cause is Cause.UNATTENDED
 
 
-def test_a_robot_that_is_taught_inside_its_own_program_needs_nobody(driving: Corridor) -> None:
+def test_unattended_robot_drives_without_a_teacher(driving: Corridor) -> None:
     assert causes(driving, 200) == [Cause.RLA] * 200
 
 
-def test_a_press_makes_its_teacher_be_there_but_when_it_ends_the_robot_stands(attended: Corridor) -> None:
+def test_press_renews_presence_and_its_end_stops_the_robot(attended: Corridor) -> None:
     attended.run(100, press(attended))
     assert causes(attended, LEASE) == [Cause.TEACHER] * (LEASE - 1) + [Cause.STOPPED]
 
@@ -245,7 +243,7 @@ def test_a_behaviour_ends_with_the_presence_of_its_teacher(attended: Corridor) -
     assert attended.run(100, watch(attended)).decision.cause is Cause.STOPPED
 
 
-def test_a_blind_robot_takes_no_lesson_of_now_but_one_of_the_time_when_it_saw(driving: Corridor) -> None:
+def test_blind_robot_takes_lessons_of_seeing_ticks_only(driving: Corridor) -> None:
     seen = driving.run(400).tick
     driving.robot.infrared_age_s = math.inf
     dark = driving.run(400).tick
@@ -263,13 +261,13 @@ def test_a_blind_robot_takes_no_lesson_of_now_but_one_of_the_time_when_it_saw(dr
     assert driving.run(400).decision.action == "back"
 
 
-def test_in_the_dark_a_copy_of_a_lesson_that_counted_is_not_called_refused(driving: Corridor) -> None:
+def test_blind_robot_reports_copy_of_a_lesson_as_repeated(driving: Corridor) -> None:
     driving.robot.infrared_age_s = math.inf
     (result,) = driving.run(100, teach("forward", "first")).results
     assert result.outcome == Outcome(ResultCode.REPEATED)
 
 
-def test_a_correction_of_a_past_decision_acts_in_the_tick_that_takes_it(driving: Corridor) -> None:
+def test_correction_of_past_decision_acts_in_its_own_tick(driving: Corridor) -> None:
     wrong = driving.run(100).tick
     driving.run(115, Teach("second", "Ann", "back"))
     record = driving.run(115, Correct("c", "Ann", "back", wrong))
@@ -280,7 +278,7 @@ def test_a_correction_of_a_past_decision_acts_in_the_tick_that_takes_it(driving:
     assert driving.run(100).decision.action == "back"
 
 
-def test_a_reward_for_a_past_decision_goes_to_its_rla_and_is_kept(driving: Corridor) -> None:
+def test_reward_of_past_decision_goes_to_its_rla(driving: Corridor) -> None:
     good = driving.run(100).tick
     driving.run(115, Teach("second", "Ann", "back"))
     for _ in range(20):
@@ -291,7 +289,7 @@ def test_a_reward_for_a_past_decision_goes_to_its_rla_and_is_kept(driving: Corri
     assert (event.rla_id, event.decided_at_tick, event.origin.tick) == (1, good, driving.ticks)
 
 
-def test_what_the_hand_did_is_not_an_rlas_to_be_blamed_for(driving: Corridor) -> None:
+def test_reward_of_manual_drive_is_refused(driving: Corridor) -> None:
     by_hand = driving.run(100, press(driving)).tick
     (result,) = driving.run(100, Reward("r", "Ann", -1, by_hand)).results
     assert not result.accepted
@@ -305,7 +303,7 @@ def test_a_refused_resume_does_not_release_an_emergency_stop(driving: Corridor) 
     assert record.guard_result.latched
 
 
-def test_while_it_is_latched_the_lease_runs_out_and_the_press_is_over(driving: Corridor) -> None:
+def test_lease_expires_while_latched_and_ends_the_press(driving: Corridor) -> None:
     driving.run(100, press(driving))
     driving.robot.emergency_stop(GuardReason.OTHER)
     causes(driving, LEASE)
@@ -430,7 +428,7 @@ class Witness:
 
 @given(courses=COURSES, attended=st.booleans())
 @examples(300)
-def test_whatever_three_teachers_say_the_hand_and_the_stop_keep_their_rules(
+def test_three_random_teachers_keep_rules_of_manual_drive(
     courses: list[tuple[int, list[tuple[Kind, str, int, int, bool]], int]], attended: bool
 ) -> None:
     corridor = Corridor(attended=attended)
@@ -456,9 +454,7 @@ def test_whatever_three_teachers_say_the_hand_and_the_stop_keep_their_rules(
 
 
 @pytest.mark.parametrize(("trouble", "cause"), [("disk full", Cause.UNSAVED), (None, Cause.BLIND)])
-def test_a_hand_does_not_move_a_robot_that_is_blind_or_cannot_save(
-    driving: Corridor, trouble: str | None, cause: Cause
-) -> None:
+def test_manual_drive_is_blocked_if_blind_or_unsaved(driving: Corridor, trouble: str | None, cause: Cause) -> None:
     assert not stands(driving.run(100, press(driving)))
     driving.notebook.error = trouble
     driving.robot.infrared_age_s = 0.0 if trouble else 1.0

@@ -168,12 +168,12 @@ def check(task: TaskSettings, seed: int, ticks: int) -> None:
 
 
 @pytest.mark.parametrize("task", [ROUTE, PLACES], ids=["histories", "places"])
-def test_whatever_is_said_the_rules_hold_and_nothing_is_lost(task: TaskSettings) -> None:
+def test_random_commands_keep_rules_and_lessons(task: TaskSettings) -> None:
     check(task, seed=1, ticks=800)
 
 
 @pytest.mark.deep
 @pytest.mark.parametrize("seed", range(10, 30))
 @pytest.mark.parametrize("task", [ROUTE, PLACES], ids=["histories", "places"])
-def test_whatever_many_say_the_rules_hold_and_nothing_is_lost(task: TaskSettings, seed: int) -> None:
+def test_many_random_commands_keep_rules_and_lessons(task: TaskSettings, seed: int) -> None:
     check(task, seed, ticks=4000)

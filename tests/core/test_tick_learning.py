@@ -90,7 +90,7 @@ def driving() -> Drive:
     return drive
 
 
-def test_blame_withdraws_what_sank_and_the_next_tick_stands_and_asks(driving: Drive) -> None:
+def test_reward_below_threshold_withdraws_and_next_tick_asks(driving: Drive) -> None:
     driving.blame_until_it_sinks()
     assert driving.robot.driven[-1].left_m_s > 0  # the tick of the blame had told the wheels already
     record = driving.run()
@@ -128,7 +128,7 @@ def test_a_blind_robot_has_neither_circumstances_nor_an_opinion(driving: Drive) 
     assert not driving.run(Appraise("x-2", "Ann", "bad")).results[0].accepted
 
 
-def test_the_critic_is_taught_while_the_robot_drives_and_says_it_from_then_on(driving: Drive) -> None:
+def test_critic_taught_while_driving_has_that_opinion(driving: Drive) -> None:
     bad = driving.run(Appraise("x-1", "Ann", "bad"), ticks=10)
     assert bad.opinion is not None
     assert (bad.opinion.appraisal, bad.opinion.value) == ("bad", -1)
@@ -157,7 +157,7 @@ def trusting(driving: Drive) -> Drive:
     return anew
 
 
-def test_in_phase_five_a_trusted_critic_changes_the_knowledge_and_the_change_can_be_undone(driving: Drive) -> None:
+def test_phase_5_trusted_critic_makes_undoable_changes(driving: Drive) -> None:
     drive = trusting(driving)
     known = drive.runtime.level.system.knowledge_hash()
     drive.run(counts=NEAR, ticks=500)
@@ -173,7 +173,7 @@ def test_in_phase_five_a_trusted_critic_changes_the_knowledge_and_the_change_can
     assert drive.runtime.level.system.knowledge_hash() == known
 
 
-def test_in_phase_five_a_critic_that_is_not_trusted_changes_nothing(driving: Drive) -> None:
+def test_phase_5_untrusted_critic_changes_nothing(driving: Drive) -> None:
     driving.run(Appraise("x-1", "Ann", "bad"), ticks=10)
     driving.run(SetPhase("phase", "Ann", Phase.AUTONOMOUS))
     taught = len(driving.notebook.events)
@@ -204,21 +204,21 @@ def beside() -> list[TeachingEvent]:
     ]
 
 
-def test_where_nobody_is_asked_neighbours_answer_for_what_was_withdrawn() -> None:
+def test_without_teacher_neighbours_answer_for_withdrawn_rla() -> None:
     events = beside()
     assert Drive(events).run(counts=NEAR).decision.asking
     assert Drive(events, asked=False).run(counts=NEAR).decision.action == "back"
     assert Drive(events[:2], asked=False).run(counts=NEAR).decision.asking
 
 
-def test_in_phase_five_nobody_is_asked_and_after_it_somebody_is_again() -> None:
+def test_phase_5_asks_no_teacher_and_its_end_asks_again() -> None:
     drive = Drive(beside())
     assert drive.run(counts=NEAR).decision.asking
     assert drive.run(SetPhase("alone", "Ann", Phase.AUTONOMOUS)).decision.action == "back"
     assert drive.run(SetPhase("again", "Ann", Phase.CORRECTIONS)).decision.asking
 
 
-def test_values_go_on_from_what_was_saved_or_else_from_the_credits_in_the_journal() -> None:
+def test_values_continue_from_checkpoint_or_journal_credits() -> None:
     origin = Origin("r-1", "Ann", Phase.REINFORCEMENT, 5)
     events = (created(1, (float(NEAR),) * 72), RlaRewarded(1, -1, 4, origin, (Credit(1, -0.05),)))
     assert Drive(events).runtime.reinforcement.value(1) == -0.05
@@ -243,7 +243,7 @@ def story(drive: Drive) -> tuple[list[TeachingEvent], Statistics]:
     return drive.notebook.events, drive.runtime.snapshot()
 
 
-def test_the_same_senses_and_commands_give_the_same_events_and_values() -> None:
+def test_equal_readings_and_commands_give_equal_values() -> None:
     one, again = story(Drive()), story(Drive())
     assert {type(event) for event in one[0]} >= {RlaRewarded, ActionWithdrawn, RlaCreated, Appraised}
     assert one == again

@@ -91,7 +91,7 @@ def block() -> Block:
     return town
 
 
-def test_the_way_round_the_block_comes_back_to_a_place_that_it_knows(block: Block) -> None:
+def test_way_round_the_block_returns_to_a_known_place(block: Block) -> None:
     assert block.ways == {4: "turn_left", 5: "turn_left", 6: "turn_left", 7: "turn_left"}
     assert not block.run().decision.asking
     expected = block.runtime.expectations.get(7)
@@ -120,7 +120,7 @@ def test_it_drives_to_the_door_and_stands_there(block: Block) -> None:
     assert record.decision.driving
 
 
-def test_of_two_ways_from_a_place_it_takes_the_one_that_leads_to_the_goal(block: Block) -> None:
+def test_seek_takes_the_way_that_leads_to_the_goal(block: Block) -> None:
     block.teach("straight_on", beside=True)
     assert block.run().behaviour == "turn_left"  # of the ways on one place the mid level goes the oldest
     block.say(Pursue, "straight_on")
@@ -156,7 +156,7 @@ def test_surprised_it_plans_from_where_it_is(block: Block) -> None:
     assert block.plan().course is GoalStatus.UNDER_WAY
 
 
-def test_where_no_way_leads_it_stands_and_says_so() -> None:
+def test_seek_without_a_way_stands_with_status() -> None:
     town = Block()
     town.say(NameSituation, "home")
     town.teach("straight_on")
@@ -168,7 +168,7 @@ def test_where_no_way_leads_it_stands_and_says_so() -> None:
     assert (record.decision.cause, record.decision.wheel_speeds) == (Cause.NO_WAY, STANDSTILL)
 
 
-def test_where_it_stood_it_stands_until_the_plan_stands(block: Block) -> None:
+def test_seek_while_standing_stands_until_the_plan_is_ready(block: Block) -> None:
     block.say(NameSituation, "here")
     block.seek(NamedGoal("here"))
     record = block.seek(DOOR)
@@ -188,7 +188,7 @@ def test_one_that_is_under_way_drives_on_while_it_plans(block: Block) -> None:
     assert (plan.course, plan.rla_id, record.decision.driving) == (GoalStatus.PLANNING, None, True)
 
 
-def test_a_plan_that_comes_too_late_for_the_next_junction_begins_behind_it(block: Block) -> None:
+def test_late_plan_applies_after_the_next_junction(block: Block) -> None:
     block.say(NameSituation, "here")
     block.teach("straight_on", beside=True)
     block.say(Pursue, "straight_on")
@@ -207,7 +207,7 @@ def test_a_plan_that_comes_too_late_for_the_next_junction_begins_behind_it(block
     assert block.plan().behaviours == ("turn_left", "turn_left", "turn_left", "straight_on")
 
 
-def test_what_is_taught_of_the_basic_level_meanwhile_holds_no_plan_up(block: Block) -> None:
+def test_basic_lesson_does_not_delay_a_plan(block: Block) -> None:
     block.seek(DOOR)
     ticks = 0
     while (step := block.say(Reward, 1).decision.plan) is not None and step.course is GoalStatus.PLANNING:
@@ -216,7 +216,7 @@ def test_what_is_taught_of_the_basic_level_meanwhile_holds_no_plan_up(block: Blo
     assert block.plan().course is GoalStatus.UNDER_WAY
 
 
-def test_what_is_taught_of_places_meanwhile_begins_the_plan_anew_once_in_a_while(block: Block) -> None:
+def test_lesson_about_places_restarts_the_plan_at_intervals(block: Block) -> None:
     block.say(NameSituation, "here")
     block.seek(NamedGoal("here"))
     block.seek(DOOR)
@@ -260,7 +260,7 @@ def test_a_lost_robot_arrives_nowhere(block: Block) -> None:
     assert step.course is GoalStatus.LOST
 
 
-def test_switched_on_anew_it_is_lost_until_it_is_told_where_it_is(block: Block) -> None:
+def test_restarted_robot_is_lost_until_its_location_is_set(block: Block) -> None:
     known = [*block.taught_before, *block.notebook.events]
     again = Block(known)
     assert again.run().decision.asks_at == MID
@@ -270,7 +270,7 @@ def test_switched_on_anew_it_is_lost_until_it_is_told_where_it_is(block: Block) 
     assert not again.run().decision.asking
 
 
-def test_where_no_place_has_a_name_the_rla_that_knows_it_names_it() -> None:
+def test_place_without_name_is_named_by_its_rla() -> None:
     town = Block()
     town.teach("turn_left")
     again = Block([*town.taught_before, *town.notebook.events])
@@ -279,7 +279,7 @@ def test_where_no_place_has_a_name_the_rla_that_knows_it_names_it() -> None:
     assert not again.run().decision.asking
 
 
-def test_the_teachers_word_goes_before_the_plan_until_the_next_junction(block: Block) -> None:
+def test_pursue_overrides_the_plan_until_the_next_junction(block: Block) -> None:
     block.teach("straight_on", beside=True)
     block.seek()
     assert block.run().behaviour == "turn_left"
@@ -304,7 +304,7 @@ def test_a_stop_goes_before_all(block: Block) -> None:
     assert late.decision.cause is Cause.STOPPED
 
 
-def test_a_goal_given_far_behind_a_junction_changes_nothing_in_the_next_one(block: Block) -> None:
+def test_goal_given_far_behind_a_junction_skips_the_next(block: Block) -> None:
     block.teach("straight_on", beside=True)
     block.say(Pursue, "straight_on")
     block.street(0.5)
@@ -329,7 +329,7 @@ def test_names_are_lessons(block: Block) -> None:
 
 
 @pytest.mark.parametrize("name", ["", " door", "a\nb", "x" * 65])
-def test_what_is_no_name_is_refused(block: Block, name: str) -> None:
+def test_name_situation_invalid_name_is_refused(block: Block, name: str) -> None:
     assert told(block.say(NameSituation, name)) == Outcome.of(RefusalCode.BAD_NAME, name=name, longest=64)
 
 
@@ -343,7 +343,7 @@ def test_without_places_nobody_can_say_where_it_is() -> None:
     assert told(town.run(BeAt("1", "Ann", "door"))) == Outcome(RefusalCode.NO_PLACES)
 
 
-def test_set_down_elsewhere_it_is_lost_until_it_is_told_where_it_is(block: Block) -> None:
+def test_repositioned_robot_is_lost_until_location_is_set(block: Block) -> None:
     block.runtime.reposition()
     assert block.run().decision.asks_at == MID
     for nowhere in (block.say(Teach, "turn_left", None, MID), block.say(NameSituation, "nowhere")):
@@ -353,7 +353,7 @@ def test_set_down_elsewhere_it_is_lost_until_it_is_told_where_it_is(block: Block
     assert block.run().behaviour == "turn_left"
 
 
-def test_a_goal_that_was_held_up_on_its_way_does_not_go_before_a_newer_one(block: Block) -> None:
+def test_late_goal_does_not_replace_a_newer_one(block: Block) -> None:
     block.seek()
     seen = block.tick
     block.run()
@@ -364,7 +364,7 @@ def test_a_goal_that_was_held_up_on_its_way_does_not_go_before_a_newer_one(block
     assert told(block.run(Seek("again", "Ann", DOOR, block.tick))).accepted
 
 
-def test_who_said_where_it_was_before_a_junction_does_not_say_where_it_is_behind_it(block: Block) -> None:
+def test_location_from_before_a_junction_is_refused(block: Block) -> None:
     seen = block.tick
     block.go()
     assert block.runtime.mid is not None
@@ -382,7 +382,7 @@ def test_one_goal_is_planned_for_in_a_tick_however_many_are_sent(block: Block) -
     assert told(block.seek()).accepted
 
 
-def test_at_a_place_that_is_known_a_lesson_makes_another_way_and_no_second_place(block: Block) -> None:
+def test_lesson_at_known_place_adds_a_way_and_no_place(block: Block) -> None:
     assert block.runtime.mid is not None
     known = block.runtime.level.system.get(4)
     assert known is not None
@@ -397,7 +397,7 @@ def test_at_a_place_that_is_known_a_lesson_makes_another_way_and_no_second_place
     assert (record.mid.rla_id, record.mid.overridden) == (8, False)
 
 
-def test_a_correction_to_what_is_taught_there_already_teaches_it_no_second_time_and_has_it_go_there(
+def test_correction_to_a_known_way_selects_it_without_a_lesson(
     block: Block,
 ) -> None:
     block.teach("straight_on", beside=True)
@@ -411,7 +411,7 @@ def test_a_correction_to_what_is_taught_there_already_teaches_it_no_second_time_
     assert told(refused) == Outcome.of(RefusalCode.SAYS_SO, rla=8, level=MID, action="straight_on", delete=4)
 
 
-def test_a_correction_to_another_way_changes_the_one_that_was_gone(block: Block) -> None:
+def test_correction_to_another_way_replaces_the_driven_one(block: Block) -> None:
     block.teach("straight_on", beside=True)
     record = block.say(Correct, "turn_right", None, MID)
     assert told(record) == Outcome.of(ResultCode.RLA_CORRECTED, rla=4, level=MID, action="turn_right", was="turn_left")

@@ -157,7 +157,7 @@ def town() -> Town:
     return town
 
 
-def test_where_the_mid_level_asks_the_wheels_stand_in_that_very_tick_and_its_answer_drives() -> None:
+def test_mid_level_asks_at_once_and_the_answer_drives() -> None:
     town = Town()
     record = town.run()
     decision = record.decision
@@ -174,7 +174,7 @@ def test_where_the_mid_level_asks_the_wheels_stand_in_that_very_tick_and_its_ans
     assert (event.rla.level, event.rla.behaviour, event.rla.condition) == (MID, "", (0.0,) * LENGTH)
 
 
-def test_the_first_of_three_differing_questions_is_the_mid_level_s() -> None:
+def test_first_of_three_questions_is_the_mid_levels() -> None:
     town = Town([])
     assert town.run().decision.asks_at == MID
     record = town.run(the_way("turn_left"))
@@ -189,7 +189,7 @@ def test_a_robot_whose_teacher_is_away_asks_the_way_all_the_same() -> None:
     assert (decision.cause, decision.asks_at, decision.driving) == (Cause.UNKNOWN, MID, False)
 
 
-def test_what_was_taught_counts_while_the_histories_are_alike(town: Town) -> None:
+def test_mid_lesson_counts_for_similar_histories(town: Town) -> None:
     record = town.junction(1)
     assert (town.history, record.decision.asking) == (("left",), False)
     assert record.mid is not None
@@ -197,7 +197,7 @@ def test_what_was_taught_counts_while_the_histories_are_alike(town: Town) -> Non
     assert (record.mid.rla_id, record.mid.match.distance, record.mid.match.radius) == (4, 1.0, 6.0)
 
 
-def test_a_correction_is_inserted_where_the_history_is_another_one_and_replaces_where_it_is_the_same(
+def test_mid_correction_replaces_on_equal_history_else_inserts(
     town: Town,
 ) -> None:
     assert told(town.run(another_way("turn_left", "c-1"))) == Outcome.of(
@@ -225,7 +225,7 @@ def test_a_lesson_on_the_very_history_of_an_rla_changes_that_one(town: Town) -> 
     assert town.ways == {4: "turn_right"}
 
 
-def test_the_teacher_may_mean_a_junction_that_was_passed_long_ago(town: Town) -> None:
+def test_mid_lesson_about_an_old_junction_is_taken(town: Town) -> None:
     meant = town.tick
     for quarters in (1, 0, -1):
         town.junction(quarters)
@@ -239,7 +239,7 @@ def test_the_teacher_may_mean_a_junction_that_was_passed_long_ago(town: Town) ->
     )
 
 
-def test_the_teacher_goes_before_the_mid_level_until_the_next_junction_has_been_passed(town: Town) -> None:
+def test_pursue_overrides_mid_level_until_the_next_junction(town: Town) -> None:
     record = town.run(Pursue("p", "Ann", "turn_left"))
     assert told(record) == Outcome.of(ResultCode.BEHAVIOUR_WANTED_TO_JUNCTION, behaviour="turn_left")
     assert record.mid is not None
@@ -251,7 +251,7 @@ def test_the_teacher_goes_before_the_mid_level_until_the_next_junction_has_been_
     assert (record.behaviour, record.mid.overridden, record.mid.rla_id) == ("straight_on", False, 4)
 
 
-def test_who_is_asked_the_way_may_also_just_say_it_without_teaching() -> None:
+def test_pursue_answers_the_mid_level_without_a_lesson() -> None:
     town = Town()
     record = town.run(Pursue("p", "Ann", "turn_left"))
     assert record.decision.driving
@@ -261,7 +261,7 @@ def test_who_is_asked_the_way_may_also_just_say_it_without_teaching() -> None:
     assert (decision.asking, decision.asks_at) == (True, MID)
 
 
-def test_what_was_said_before_a_junction_does_not_decide_about_the_next_one(town: Town) -> None:
+def test_pursue_from_before_a_junction_is_refused(town: Town) -> None:
     seen = town.tick
     town.junction()
     record = town.run(Pursue("late", "Ann", "turn_left", seen))
@@ -269,21 +269,21 @@ def test_what_was_said_before_a_junction_does_not_decide_about_the_next_one(town
     assert record.behaviour == "straight_on"
 
 
-def test_a_lesson_about_the_present_goes_before_what_was_commanded_for_it(town: Town) -> None:
+def test_mid_lesson_about_the_present_ends_the_override(town: Town) -> None:
     town.run(Pursue("p", "Ann", "turn_left"))
     record = town.run(another_way("turn_right"))
     assert record.mid is not None
     assert (record.behaviour, record.mid.overridden, town.ways) == ("turn_right", False, {4: "turn_right"})
 
 
-def test_a_lesson_about_the_past_leaves_the_teacher_s_command_alone(town: Town) -> None:
+def test_mid_lesson_about_the_past_keeps_the_override(town: Town) -> None:
     past = town.tick
     town.junction()
     town.run(Pursue("p", "Ann", "turn_left"))
     assert town.run(another_way("turn_right", of=past)).behaviour == "turn_left"
 
 
-def test_beside_what_is_known_another_way_is_possible_at_the_same_place(town: Town) -> None:
+def test_alternative_adds_a_way_at_a_known_place(town: Town) -> None:
     town.junction()
     town.run(Pursue("p", "Ann", "turn_left"))
     record = town.run(the_way("turn_left", beside=True))
@@ -304,7 +304,7 @@ def test_beside_nothing_the_first_way_is_taught() -> None:
     assert town.run().behaviour == "turn_left"
 
 
-def test_a_way_is_replaced_deleted_and_each_of_it_undone_as_every_rla_is(town: Town) -> None:
+def test_mid_rla_is_replaced_deleted_and_undone(town: Town) -> None:
     assert told(town.run(ReplaceAction("r", "Ann", 4, "turn_right"))).accepted
     assert town.run().behaviour == "turn_right"
     record = town.run(DeleteRla("d", "Ann", 4))
@@ -332,16 +332,14 @@ def test_a_way_is_replaced_deleted_and_each_of_it_undone_as_every_rla_is(town: T
         (Pursue("x", "Ann", "turn_back"), RefusalCode.NO_BEHAVIOUR),
     ],
 )
-def test_what_a_level_does_not_have_is_refused_and_changes_nothing(
-    town: Town, command: Command, code: RefusalCode
-) -> None:
+def test_lesson_with_foreign_action_is_refused_unchanged(town: Town, command: Command, code: RefusalCode) -> None:
     before = town.runtime.level.system.knowledge_hash()
     assert told(town.run(command)).code is code
     assert town.runtime.level.system.knowledge_hash() == before
     assert town.run().behaviour == "straight_on"
 
 
-def test_where_the_robot_has_no_mid_level_there_is_none_to_teach() -> None:
+def test_mid_lesson_without_mid_level_is_refused() -> None:
     runtime = build_runtime(
         StreetRobot(), ROBOT, STREETS, basic_knowledge(), InMemoryEventStore(), LockstepClock(lambda: None)
     )
@@ -359,7 +357,7 @@ def test_a_blind_robot_still_knows_how_it_came_there(town: Town) -> None:
     assert record.decision.cause is Cause.BLIND
 
 
-def test_stop_is_stop_whatever_the_mid_level_knows_and_a_new_teacher_finds_the_same_way(town: Town) -> None:
+def test_stop_with_mid_level_holds_and_next_teacher_continues(town: Town) -> None:
     record = town.run(Stop("s", "Ann"))
     assert (record.decision.wheel_speeds, record.decision.cause) == (STANDSTILL, Cause.STOPPED)
     assert told(town.run(another_way("turn_left"))).accepted
@@ -371,7 +369,7 @@ def test_stop_is_stop_whatever_the_mid_level_knows_and_a_new_teacher_finds_the_s
     assert (record.behaviour, record.decision.driving) == ("turn_left", True)
 
 
-def test_a_robot_that_is_driven_by_hand_knows_what_it_passed_and_nobody_is_counted_for_it(town: Town) -> None:
+def test_manual_drive_passes_junctions_without_counting_uses(town: Town) -> None:
     uses = dict(town.runtime.statistics.uses)
     town.robot.counts = OPEN
     for counts, steps in ((OPEN, 30), (WALL, 20)):
@@ -394,7 +392,7 @@ def test_praise_and_blame_are_for_those_who_moved_the_wheels(town: Town) -> None
     assert {credit.rla_id for credit in reward.credits} == {1}
 
 
-def test_each_junction_that_an_rla_led_through_is_a_use_and_follow_ups_are_counted(town: Town) -> None:
+def test_each_led_junction_counts_a_use_and_a_follow_up(town: Town) -> None:
     town.junction()
     town.junction()
     town.run(another_way("turn_left", "c-1"))  # RLA 5, in place of RLA 4 that had not come to anything there
@@ -407,7 +405,7 @@ def test_each_junction_that_an_rla_led_through_is_a_use_and_follow_ups_are_count
     assert all((before < 4) == (after < 4) for before, after in saved.transitions)  # each level by itself
 
 
-def test_what_the_mid_level_was_told_when_it_asked_follows_what_led_there(town: Town) -> None:
+def test_mid_answer_counts_as_follow_up_of_the_leading_rla(town: Town) -> None:
     for quarters in (1, 1, -1, 1, 1, -1, 1):
         town.junction(quarters)
     assert town.run().decision.asks_at == MID
@@ -416,7 +414,7 @@ def test_what_the_mid_level_was_told_when_it_asked_follows_what_led_there(town: 
     assert town.runtime.snapshot().transitions[4, 5] == 1
 
 
-def test_with_another_action_an_rla_leads_elsewhere_and_what_followed_is_counted_anew(town: Town) -> None:
+def test_replaced_mid_action_resets_its_follow_ups(town: Town) -> None:
     for _ in range(3):
         town.junction()
     assert town.runtime.snapshot().transitions[4, 4] == 2
@@ -483,7 +481,7 @@ def test_another_run_goes_on_with_the_ways_that_were_taught(town: Town) -> None:
         ),
     ],
 )
-def test_an_undo_brings_nothing_back_that_this_task_cannot_follow(
+def test_undo_of_an_action_outside_the_task_is_refused(
     of_an_older_task: tuple[TeachingEvent, ...], lesson: str, fields: dict[str, Field]
 ) -> None:
     town = Town([*basic_knowledge(), *of_an_older_task])
@@ -504,7 +502,7 @@ def test_without_a_mid_level_its_rlas_are_kept_and_unused(town: Town) -> None:
     assert [rla.action for rla in runtime.level.system.rlas_at(MID)] == ["straight_on"]
 
 
-def test_a_tick_tells_what_the_mid_level_commanded_also_where_it_stands(town: Town) -> None:
+def test_record_of_a_standing_robot_has_the_mid_command(town: Town) -> None:
     town.run(Stop("s", "Ann"))
     decision: Decision = town.run().decision
     assert decision.mid is not None

@@ -87,11 +87,8 @@ class CommandHandler:
         """Connect the level, the authority and the optional parts.
 
         Args:
-            level: taught by the commands.
-            authority: decides which teacher may command.
             insert_beyond_share: a correction farther than this share of R from the nearest condition inserts an RLA.
             handled_command_ids: ids of earlier runs, whose commands are not carried out again.
-            parts: optional parts of the task; none by default.
             teacher_available: False if there is no teacher to ask, as in an exam.
         """
         parts = parts or HandlerParts()

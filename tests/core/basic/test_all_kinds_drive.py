@@ -90,7 +90,7 @@ async def let_drive(runtime: Runtime, action: str, seconds: float, see: Callable
     await runtime.scheduler.run(round(seconds * 100), see)
 
 
-def test_a_task_a_taught_behaviour_motor_values_a_control_loop_and_a_turn_drive(complete: TaskSettings) -> None:
+def test_actions_of_all_kinds_drive(complete: TaskSettings) -> None:
     told = Drive()
     parts = {"patrol": 1.5, "straight_on": 1.5, "forward": 0.5, "along_left_wall": 1.0, "turn_round": 6.0}
 
@@ -109,7 +109,7 @@ def test_a_task_a_taught_behaviour_motor_values_a_control_loop_and_a_turn_drive(
     assert told.last.wheel_speeds == STANDSTILL  # the turn is finished
 
 
-def test_where_the_task_is_lost_the_robot_stands_and_asks_until_somebody_answers(complete: TaskSettings) -> None:
+def test_lost_task_stands_and_asks_until_an_answer(complete: TaskSettings) -> None:
     asked: list[TickRecord] = []
 
     def until_it_asks(record: TickRecord) -> None:

@@ -27,7 +27,7 @@ def test_untaught_it_stands_and_asks() -> None:
     assert decision == Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
 
 
-def test_the_winner_drives_and_is_named_with_distance_and_runner_up() -> None:
+def test_winner_drives_with_distance_and_runner_up() -> None:
     decision = SmallLevel(A_AT_0, B_AT_8).at(3.0)
     assert (decision.cause, decision.action, decision.rla_id) == (Cause.RLA, "a", 1)
     assert decision.wheel_speeds == WheelSpeeds(0.001, 0.001)
@@ -62,7 +62,7 @@ def test_a_robot_between_two_neighbours_does_not_dither() -> None:
     assert 0 < changes <= 60 / MINIMUM_TICKS
 
 
-def test_an_unknown_situation_stops_in_the_same_tick_also_while_an_action_is_held() -> None:
+def test_unknown_situation_stops_a_held_action_at_once() -> None:
     small = SmallLevel(A_AT_0, B_AT_8)
     small.at(0.0)
     assert small.at(8.0).cause is Cause.HELD
@@ -86,7 +86,7 @@ def test_after_standing_the_next_action_begins_at_once_and_anew() -> None:
 
 
 @pytest.mark.parametrize("cause", [Cause.STOPPED, Cause.UNSAVED])
-def test_with_a_reason_to_stand_it_stands_and_still_tells_what_it_knows(cause: Cause) -> None:
+def test_blocking_cause_stands_and_keeps_the_match(cause: Cause) -> None:
     small = SmallLevel(A_AT_0)
     small.at(0.0)
     decision = small.at(0.0, cause)
@@ -98,7 +98,7 @@ def test_with_a_reason_to_stand_it_stands_and_still_tells_what_it_knows(cause: C
     assert small.actions["a"].starts == 2
 
 
-def test_a_correction_acts_in_the_next_decision_also_while_the_action_is_in_its_minimum_time() -> None:
+def test_correction_ends_the_minimum_time() -> None:
     small = SmallLevel(A_AT_0, B_AT_8)
     small.at(0.0)
     small.level.apply(replaced(1, "c", "a"))
@@ -115,7 +115,7 @@ def test_a_correction_elsewhere_does_not_interrupt_the_action() -> None:
     assert small.actions["a"].starts == 1
 
 
-def test_deleting_the_rla_that_drives_stops_the_robot_in_the_next_decision() -> None:
+def test_deleted_driving_rla_stops_in_the_next_decision() -> None:
     small = SmallLevel(A_AT_0)
     small.at(0.0)
     small.level.apply(deleted(1))
@@ -131,14 +131,14 @@ def test_deleting_the_held_rla_hands_over_to_the_winner_at_once() -> None:
     assert small.at(7.0).action == "b"
 
 
-def test_a_neighbour_with_the_same_action_takes_over_without_a_break() -> None:
+def test_neighbour_with_equal_action_continues_it() -> None:
     small = SmallLevel(A_AT_0, created(2, (8.0,), "a"))
     small.at(0.0)
     decision = small.at(8.0)
     assert (decision.cause, decision.rla_id, decision.wheel_speeds.left_m_s) == (Cause.RLA, 2, 0.002)
 
 
-def test_knowledge_of_an_action_that_the_repertoire_lacks_is_refused() -> None:
+def test_rla_with_action_outside_the_repertoire_is_refused() -> None:
     system = RlaSystem(1, 10.0)
     system.apply_all([A_AT_0, created(2, (8.0,), "fly")])
     with pytest.raises(UnknownActionError, match=r"RLA 2 has the action fly, which the repertoire lacks; .*: a, b$"):
@@ -150,7 +150,7 @@ STRAIGHT_AT_0 = created(1, (0.0,), "a", behaviour="straight_on")
 LEFT_AT_1 = created(2, (1.0,), "b", behaviour="turn_left")
 
 
-def test_rlas_of_another_taught_behaviour_never_answer_however_near_they_are() -> None:
+def test_rlas_of_inactive_behaviours_never_answer() -> None:
     small = SmallLevel(STRAIGHT_AT_0, LEFT_AT_1, behaviours=TURNS)
     decision = small.at(1.0)
     assert (decision.action, decision.rla_id) == ("a", 1)
@@ -169,7 +169,7 @@ def test_of_a_behaviour_that_was_never_taught_it_knows_nothing() -> None:
     assert (decision.asking, decision.match) == (True, None)
 
 
-def test_a_held_action_yields_at_once_when_another_behaviour_is_wanted() -> None:
+def test_held_action_ends_at_once_on_another_active_behaviour() -> None:
     small = SmallLevel(STRAIGHT_AT_0, LEFT_AT_1, behaviours=TURNS)
     small.at(0.0)
     small.wanted.select("turn_left")
@@ -210,13 +210,13 @@ def test_knowledge_of_a_behaviour_that_the_task_lacks_is_refused(
         SmallLevel(*events, behaviours=behaviours)
 
 
-def test_a_withdrawn_rla_asks_where_it_is_nearest_and_its_neighbours_answer_elsewhere() -> None:
+def test_withdrawn_rla_asks_only_as_the_nearest() -> None:
     small = SmallLevel(created(1, (0.0,), "a"), created(2, (6.0,), "b"), withdrawn(1, "a"))
     assert small.at(1.0) == Decision(STANDSTILL, Cause.UNKNOWN, None, None, small.level.system.match(np.array([1.0])))
     assert small.at(5.0).action == "b"
 
 
-def test_where_nobody_is_asked_the_neighbours_of_a_withdrawn_rla_answer_inside_their_radius() -> None:
+def test_skipped_withdrawn_rla_lets_neighbours_answer() -> None:
     small = SmallLevel(created(1, (0.0,), "a"), created(2, (6.0,), "b"), withdrawn(1, "a"))
     small.level.skip_withdrawn = True
     assert small.at(1.0).action == "b"
@@ -244,7 +244,7 @@ def test_standing_answers_nothing() -> None:
     assert not small.at(50.0).answers
 
 
-def test_what_the_critic_is_taught_does_not_end_an_action_that_is_held() -> None:
+def test_critic_lesson_keeps_the_held_action() -> None:
     small = SmallLevel(created(1, (0.0,), "a"), created(2, (4.0,), "b"))
     small.at(1.0)
     small.level.apply(created(3, (0.0,), "bad", level=CRITIC))
@@ -254,7 +254,7 @@ def test_what_the_critic_is_taught_does_not_end_an_action_that_is_held() -> None
     assert small.at(3.0).action == "c"
 
 
-def test_of_competitors_the_chosen_one_drives_and_the_oldest_where_nothing_chooses() -> None:
+def test_chosen_competitor_drives_else_the_oldest() -> None:
     events = (created(1, (0.0,), "a"), created(2, (0.0,), "b"))
     assert SmallLevel(*events).at(0.0).rla_id == 1
     system = RlaSystem(1, RADIUS)
@@ -267,7 +267,7 @@ def test_of_competitors_the_chosen_one_drives_and_the_oldest_where_nothing_choos
     assert decision.match.rla.rla_id == 1
 
 
-def test_a_competitor_that_is_held_while_another_one_is_chosen_is_inside_its_radius() -> None:
+def test_held_competitor_answers_inside_its_radius() -> None:
     worths = {1: 0.5, 2: 0.0}
     system = RlaSystem(1, RADIUS)
     system.apply_all((created(1, (0.0,), "a"), created(2, (0.0,), "b")))

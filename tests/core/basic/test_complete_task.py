@@ -51,7 +51,7 @@ def test_it_is_lost_where_the_mid_level_knows_no_answer(tmp_path: Path) -> None:
     assert action.lost
 
 
-def test_it_is_lost_where_the_behaviour_that_is_wanted_knows_no_answer(tmp_path: Path) -> None:
+def test_task_is_lost_if_its_active_behaviour_asks(tmp_path: Path) -> None:
     action = repertoire(tmp_path, patrol(tmp_path, created(3, AT_FIRST, "turn_left", level=MID)))["patrol"]
     action.start()
     assert action.step(sensed(FREE)) == STANDSTILL
@@ -66,13 +66,13 @@ def test_a_task_that_teaches_one_thing_needs_no_mid_level(tmp_path: Path) -> Non
     assert action.step(sensed(WALLS)) == LEFT
 
 
-def test_a_task_of_several_behaviours_is_not_complete_without_one(tmp_path: Path) -> None:
+def test_task_of_several_behaviours_needs_a_mid_level(tmp_path: Path) -> None:
     told = r"\(patrol\): the task patrol has no mid level that says which of straight_on, turn_left, turn_right is wan"
     with pytest.raises(SettingsError, match=told):
         repertoire(tmp_path, patrol(tmp_path, mid=None))
 
 
-def test_a_task_that_goes_by_places_is_no_action_for_none_of_it_says_where_it_begins(tmp_path: Path) -> None:
+def test_task_with_places_is_refused_as_an_action(tmp_path: Path) -> None:
     with pytest.raises(SettingsError, match="goes by places, and an action does not know at which one it begins"):
         repertoire(tmp_path, patrol(tmp_path, mid="places"))
 

@@ -28,13 +28,13 @@ def choice(worths: Worths, epsilon: float = 0.0, seed: int = 0, *, explores: boo
     return made
 
 
-def test_the_one_of_most_worth_answers_and_of_equals_the_newest_which_was_tried_because_the_others_had_sunk() -> None:
+def test_best_value_answers_and_of_equals_the_newest() -> None:
     group = competitors("a", "b", "c")
     assert choice(Worths({2: 0.4, 3: 0.1})).choose(group, 1).rla_id == 2
     assert choice(Worths()).choose(group, 1).rla_id == 3
 
 
-def test_a_choice_stands_until_the_group_has_not_been_nearest_for_a_while() -> None:
+def test_choice_holds_until_its_group_was_not_nearest() -> None:
     worths = Worths({1: 0.5})
     group = competitors("a", "b")
     chosen = choice(worths)

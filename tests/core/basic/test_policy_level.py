@@ -38,7 +38,7 @@ def test_with_a_reason_to_stand_it_stands_and_begins_anew() -> None:
     assert (actions["a"].starts, actions["b"].starts) == (1, 2)
 
 
-def test_it_follows_the_behaviour_that_is_wanted_and_the_held_action_yields_at_once() -> None:
+def test_policy_level_follows_the_active_behaviour_at_once() -> None:
     wanted = ActiveBehaviour(("one", "other"))
     level = PolicyLevel(NearIsB(), {"a": Counted(), "b": Counted()}, MINIMUM_TICKS, wanted)
     assert driven(level, FAR).action == "a"

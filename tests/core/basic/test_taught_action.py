@@ -47,7 +47,7 @@ def test_an_action_inside_it_keeps_its_minimum_time(folder: Path) -> None:
     assert [follow.step(sensed(CORNER)) for _ in range(10)] == [FORWARD] * 9 + [SPIN_RIGHT]
 
 
-def test_where_it_knows_no_answer_it_stands_and_is_lost_until_it_knows_one_again(folder: Path) -> None:
+def test_taught_action_is_lost_while_its_situation_is_unknown(folder: Path) -> None:
     follow = repertoire(folder, FOLLOW)["follow_wall"]
     follow.start()
     follow.step(sensed(WALL))
@@ -86,7 +86,7 @@ def test_only_the_behaviour_that_is_named_acts(tmp_path: Path) -> None:
     assert actions["s"].lost
 
 
-def test_the_layer_above_stands_and_asks_for_it_and_the_answer_drives(folder: Path) -> None:
+def test_level_above_asks_for_a_lost_action_and_answer_drives(folder: Path) -> None:
     perception = Perception(load_situation("basic", SENSORS), SENSORS)
     system = RlaSystem(perception.definition.dimensions, 900.0)
     system.apply(created(1, condition_at(WALL), "follow_wall", radius=100_000.0))
@@ -138,9 +138,7 @@ def test_a_repertoire_that_is_a_part_of_itself_is_refused(folder: Path) -> None:
         (("task: wall_following", "task: streets"), "no taught behaviour ''; this task has: straight_on, turn_left, "),
     ],
 )
-def test_what_cannot_act_is_refused_with_its_place_and_the_reason(
-    change: tuple[str, str], told: str, folder: Path
-) -> None:
+def test_taught_action_that_cannot_act_is_refused(change: tuple[str, str], told: str, folder: Path) -> None:
     situation = load_situation("basic", SENSORS).model_copy(update={"history_steps": 7})
     (folder / "situation.yaml").write_text(situation.model_dump_json(exclude_unset=True))
     keep(folder / "other.knowledge", WALL_FOLLOWING.model_copy(update={"situation": str(folder / "situation.yaml")}))
@@ -155,7 +153,7 @@ def test_knowledge_of_an_action_that_its_task_lacks_is_refused(tmp_path: Path) -
         repertoire(tmp_path, FOLLOW)
 
 
-def test_who_knows_no_rla_systems_refuses_them(folder: Path) -> None:
+def test_repertoire_without_rla_systems_refuses_taught_actions(folder: Path) -> None:
     path = with_repertoire(WALL_FOLLOWING, folder, FOLLOW).repertoire
     with pytest.raises(
         SettingsError, match=r"actions\.0 \(follow_wall\): is of kind taught, and nothing taught can act"

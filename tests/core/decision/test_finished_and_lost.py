@@ -17,7 +17,7 @@ def test_an_action_that_has_finished_yields_at_once() -> None:
     assert (decision.cause, decision.action, decision.rla_id) == (Cause.RLA, "b", 2)
 
 
-def test_an_action_that_has_finished_stays_at_the_wheels_and_does_not_begin_anew_while_its_rla_wins() -> None:
+def test_finished_action_is_not_restarted_while_its_rla_wins() -> None:
     small = SmallLevel(A_AT_0, B_AT_8)
     small.at(0.0)
     small.actions["a"].finished = True
@@ -25,7 +25,7 @@ def test_an_action_that_has_finished_stays_at_the_wheels_and_does_not_begin_anew
     assert small.actions["a"].starts == 1
 
 
-def test_an_action_that_is_lost_has_the_robot_stand_and_ask_though_the_rla_knows_the_situation() -> None:
+def test_lost_action_stands_and_asks_in_a_known_situation() -> None:
     small = SmallLevel(A_AT_0, B_AT_8)
     small.at(0.0)
     small.actions["a"].lost = True

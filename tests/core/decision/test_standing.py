@@ -82,7 +82,7 @@ def page_of(picture: State) -> str:
     return text
 
 
-def test_a_latched_stall_is_told_with_its_length_and_go_on_every_surface() -> None:
+def test_latched_stall_has_length_and_resume_on_every_surface() -> None:
     desk = LatchingDesk()
     desk.latch(GuardReason.TICKS_CEASED)
     desk.stall(11)

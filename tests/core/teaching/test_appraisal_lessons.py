@@ -27,7 +27,7 @@ def appraise(robot: Track, appraisal: str, command_id: str = "x-1", about: int |
     return robot.say(Appraise(command_id, "Ann", appraisal, about))
 
 
-def test_the_first_appraisal_is_an_rla_of_the_critics_on_the_circumstances_of_that_tick() -> None:
+def test_first_appraisal_creates_a_critic_rla_on_its_tick() -> None:
     robot = track()
     robot.go(0.0, 1, CRASHED)
     meant = robot.tick
@@ -57,7 +57,7 @@ def test_the_robot_need_not_drive_to_be_appraised() -> None:
     assert appraise(robot, "bad").accepted
 
 
-def test_another_opinion_near_an_appraisal_replaces_and_farther_off_inserts() -> None:
+def test_other_appraisal_replaces_near_and_inserts_far() -> None:
     robot = track(appraisal(2, "good", CALM))
     robot.go(0.0, 1, NEAR_CALM)
     assert appraise(robot, "bad").outcome == Outcome.of(
@@ -77,7 +77,7 @@ def beyond(robot: Track) -> AppraisalFeatures:
     return CALM._replace(front_m=CALM.front_m - 1.01 * robot.critic.insert_beyond / weight)
 
 
-def test_the_same_opinion_teaches_nothing_and_counts_for_agreement() -> None:
+def test_equal_appraisal_counts_as_agreement_only() -> None:
     robot = track(appraisal(2, "good", CALM))
     robot.go(0.0, 1, CALM)
     known, heard = robot.hash, robot.agreement.count_for(1)
@@ -90,7 +90,7 @@ def test_the_same_opinion_teaches_nothing_and_counts_for_agreement() -> None:
     assert robot.agreement.count_for(1) == heard + 1
 
 
-def test_what_it_has_learnt_since_that_tick_is_no_agreement() -> None:
+def test_opinion_learnt_after_the_tick_is_no_agreement() -> None:
     """Two clicks on the same mishap: the second one must not count as if the critic had known."""
     robot = track(appraisal(2, "good", CALM))
     robot.go(0.0, 10, CRASHED)
@@ -113,7 +113,7 @@ def test_a_reward_tells_what_the_critic_had_said_of_that_tick() -> None:
     assert robot.agreement.share_for(1) == 0.0
 
 
-def test_an_appraisal_that_the_critic_does_not_have_is_refused_with_those_that_it_has() -> None:
+def test_unknown_appraisal_is_refused_with_the_known_ones() -> None:
     robot = track()
     robot.go(0.0)
     result = appraise(robot, "lovely")
@@ -130,7 +130,7 @@ def test_a_tick_that_is_not_remembered_is_refused(meant: int) -> None:
     assert appraise(robot, "good", about=meant + 1 if meant else 0).accepted == (meant == 2)
 
 
-def test_where_the_robot_saw_nothing_there_is_nothing_to_appraise() -> None:
+def test_appraisal_of_a_blind_tick_is_refused() -> None:
     robot = track()
     decision = robot.level.decide(situation(0.0), None, Cause.BLIND)  # type: ignore[arg-type] # it stands
     robot.recent.add(robot.tick + 1, None, decision)

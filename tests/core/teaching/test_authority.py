@@ -60,7 +60,7 @@ def test_the_hand_does_what_the_newest_message_says(hands: Hands) -> None:
     [(0, LEASE), (11, LEASE), (12, LEASE - 1), (34, 1), (35, 0), (40, 0)],
     ids=lambda value: str(value),
 )
-def test_a_message_held_back_drives_no_longer_than_35_ticks_after_its_picture(age: int, driven: int) -> None:
+def test_late_message_drives_until_35_ticks_after_its_state(age: int, driven: int) -> None:
     hands = Hands()
     hands.drive(NOW, seen=NOW - age)
     assert hands.driven_ticks() == list(range(NOW, NOW + driven))
@@ -73,7 +73,7 @@ def test_messages_that_keep_coming_keep_the_hand_on_the_wheels(hands: Hands) -> 
         assert hands.driven_ticks(tick, tick + LEASE - 1) == list(range(tick, tick + LEASE - 1))
 
 
-def test_a_picture_that_does_not_change_any_more_ends_the_drive_however_many_messages_come(hands: Hands) -> None:
+def test_unchanging_state_ends_the_drive(hands: Hands) -> None:
     for tick in range(NOW, NOW + REACH):
         hands.drive(tick, seen=NOW)
         assert hands.authority.is_manual(tick)
@@ -81,7 +81,7 @@ def test_a_picture_that_does_not_change_any_more_ends_the_drive_however_many_mes
     assert not hands.authority.is_manual(NOW + REACH)
 
 
-def test_a_press_that_ended_never_comes_back_and_the_next_one_does(hands: Hands) -> None:
+def test_ended_press_stays_over_and_the_next_drives(hands: Hands) -> None:
     hands.drive(NOW, hold=7)
     hands.authority.expire(NOW + LEASE)
     assert [hands.authority.is_press_over(press(hold)) for hold in (6, 7, 8)] == [True, True, False]
@@ -114,14 +114,14 @@ def test_a_press_is_over_only_when_the_loop_has_seen_it_end(hands: Hands) -> Non
     assert hands.driven_ticks(NOW + LEASE) == list(range(NOW + LEASE, NOW + 2 * LEASE))
 
 
-def test_a_press_of_one_teacher_says_nothing_about_those_of_another(hands: Hands) -> None:
+def test_press_ids_of_teachers_are_independent(hands: Hands) -> None:
     hands.drive(NOW, hold=7)
     hands.authority.end_manual()
     assert hands.authority.is_press_over(press(7))
     assert not hands.authority.is_press_over(press(1, teacher="Ben"))
 
 
-def test_who_watches_is_there_for_thirty_ticks_and_not_beyond_35_after_his_picture(hands: Hands) -> None:
+def test_presence_lasts_its_lease_within_35_ticks_of_the_state(hands: Hands) -> None:
     present = hands.authority.is_present
     assert not present(NOW)
     hands.authority.renew_presence("Ann", NOW, NOW)
@@ -136,7 +136,7 @@ def test_a_late_message_takes_nothing_from_a_newer_one(hands: Hands) -> None:
     assert hands.authority.is_present(NOW + LEASE - 1)
 
 
-def test_who_drives_is_there(hands: Hands) -> None:
+def test_drive_renews_presence(hands: Hands) -> None:
     hands.drive(NOW)
     assert [hands.authority.is_present(NOW + LEASE - 1), hands.authority.is_present(NOW + LEASE)] == [True, False]
 
@@ -150,7 +150,7 @@ def test_nobody_has_to_be_there_where_the_robot_needs_nobody() -> None:
     assert Hands(attended=False).authority.is_present(NOW)
 
 
-def test_who_speaks_first_teaches_and_the_next_one_has_to_ask() -> None:
+def test_first_teacher_gets_authority_and_the_next_is_refused() -> None:
     authority = ControlAuthority({}, attended=True)
     assert authority.refusal_for("Ann") is None
     authority.claim("Ann")
@@ -167,7 +167,7 @@ def test_another_one_takes_the_robot_and_has_to_be_there_himself(hands: Hands) -
     assert not hands.authority.is_present(NOW)
 
 
-def test_who_takes_what_he_has_loses_nothing(hands: Hands) -> None:
+def test_take_over_by_the_present_teacher_changes_nothing(hands: Hands) -> None:
     hands.drive(NOW)
     assert hands.authority.take_over("Ann", NOW) is None
     assert hands.authority.is_manual(NOW)
@@ -197,7 +197,7 @@ def test_handing_over_ends_hand_and_presence(hands: Hands, to: str | None) -> No
     assert hands.authority.is_press_over(press(3))
 
 
-def test_a_behaviour_drives_for_its_ticks_and_begins_anew_each_time() -> None:
+def test_run_drives_for_its_ticks_and_restarts_each_time() -> None:
     hands = Hands(attended=False)
     hands.authority.run("a", NOW, 3)
     assert hands.driven_ticks() == [NOW, NOW + 1, NOW + 2]
@@ -215,7 +215,7 @@ def test_a_behaviour_ends_for_good_when_its_teacher_is_gone(hands: Hands) -> Non
     assert not hands.authority.is_manual(NOW + 60)
 
 
-def test_a_hand_on_the_wheels_ends_a_behaviour_and_a_behaviour_the_hand() -> None:
+def test_drive_and_run_replace_each_other() -> None:
     hands = Hands(attended=False)
     hands.authority.run("a", NOW, 1000)
     hands.drive(NOW + 1)

@@ -126,7 +126,7 @@ def test_a_lesson_on_the_very_condition_of_an_rla_acts_as_well() -> None:
     assert lesson.small.at(2.5).action == "b"
 
 
-def test_a_correction_up_to_the_border_replaces_the_action_of_the_nearest() -> None:
+def test_correction_up_to_the_border_replaces_the_action() -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     result = lesson.say(correct("b", "c-1"), place=BORDER)
     assert result.outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="b", was="a")
@@ -159,7 +159,7 @@ def test_a_correction_to_what_it_says_already_changes_nothing() -> None:
     assert len(lesson.events) == 1
 
 
-def test_one_rla_is_corrected_or_deleted_by_its_id_wherever_the_robot_is() -> None:
+def test_rla_is_replaced_or_deleted_by_its_id() -> None:
     lesson = Lesson(created(1, (0.0,), "a"), created(2, (50.0,), "b"))
     assert lesson.say(replace_action(2, "c", "r-1"), place=999.0).outcome == Outcome.of(
         ResultCode.RLA_CORRECTED, rla=2, action="c", was="b"
@@ -180,7 +180,7 @@ def test_stop_and_resume() -> None:
     assert not lesson.school.active_stop
 
 
-def test_a_phase_goes_into_the_origin_of_what_is_taught_from_then_on() -> None:
+def test_phase_is_in_the_origin_of_later_lessons() -> None:
     lesson = Lesson()
     lesson.say(teach("a", "t-1"), place=0.0)
     assert lesson.say(set_phase(Phase.CORRECTIONS)).outcome == Outcome.of(
@@ -191,7 +191,7 @@ def test_a_phase_goes_into_the_origin_of_what_is_taught_from_then_on() -> None:
 
 
 @pytest.mark.parametrize("command", [teach("fly"), correct("fly"), replace_action(1, "fly")])
-def test_an_action_that_is_not_in_the_repertoire_is_refused_with_those_that_are(command: Command) -> None:
+def test_unknown_action_is_refused_with_the_known_ones(command: Command) -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     result = lesson.say(command, place=100.0)
     assert result.outcome == Outcome.of(RefusalCode.NO_ACTION, action="fly", known=("a", "b", "c"))
@@ -224,7 +224,7 @@ def test_a_command_that_comes_twice_counts_once(command: Command) -> None:
     assert (lesson.actions, lesson.events, lesson.school.corrections) == (known, events, corrections)
 
 
-def test_a_stop_always_stops_and_a_late_copy_of_resume_does_not_act_again() -> None:
+def test_stop_always_stops_and_late_copy_of_resume_does_not_act() -> None:
     lesson = Lesson()
     for command, stopped in ((stop("1"), True), (resume("2"), False), (stop("1"), True)):
         lesson.say(command)
@@ -277,7 +277,7 @@ def test_a_correction_means_the_situation_of_the_tick_it_names() -> None:
     assert lesson.events[-1].origin.tick == lesson.tick  # of the tick that took it
 
 
-def test_an_answer_stands_where_the_robot_asked_though_it_was_put_elsewhere_since() -> None:
+def test_answer_applies_to_the_situation_of_the_question() -> None:
     lesson = Lesson()
     asked = lesson.go_on(2.5)
     lesson.go_on(80.0)
@@ -287,7 +287,7 @@ def test_an_answer_stands_where_the_robot_asked_though_it_was_put_elsewhere_sinc
     assert [rla.condition for rla in lesson.small.level.system.rlas] == [(2.5,)]
 
 
-def test_an_answer_that_is_kept_does_not_change_with_what_comes_after_it() -> None:
+def test_stored_answer_does_not_change_later() -> None:
     lesson = Lesson()
     asked = lesson.go_on(2.5)
     lesson.say(Teach("t-1", "Ann", "a", asked), place=80.0)
@@ -316,7 +316,7 @@ def test_a_decision_that_is_not_remembered_is_refused(kind: str, which: str) -> 
     assert not lesson.school.was_handled("x")
 
 
-def test_the_oldest_decision_that_is_remembered_may_still_be_meant() -> None:
+def test_lesson_about_the_oldest_remembered_tick_is_taken() -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     first = lesson.go_on(0.0)
     lesson.go_on(50.0, 999)
@@ -325,7 +325,7 @@ def test_the_oldest_decision_that_is_remembered_may_still_be_meant() -> None:
     )
 
 
-def test_what_a_blind_robot_decided_is_no_situation_to_teach() -> None:
+def test_lesson_about_a_blind_tick_is_refused() -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     dark = lesson.go_on(33.0, blind=True)
     lesson.go_on(0.0)
@@ -338,9 +338,7 @@ def test_what_a_blind_robot_decided_is_no_situation_to_teach() -> None:
     ("value", "code", "appraisal"),
     [(1, ResultCode.RLA_REWARDED, (1, 0)), (-1, ResultCode.RLA_PUNISHED, (0, 1))],
 )
-def test_a_reward_goes_to_the_rla_that_drove_in_the_tick_it_names(
-    value: int, code: ResultCode, appraisal: tuple[int, int]
-) -> None:
+def test_reward_goes_to_the_rla_of_the_named_tick(value: int, code: ResultCode, appraisal: tuple[int, int]) -> None:
     lesson = Lesson(created(1, (0.0,), "a"), created(2, (50.0,), "b"))
     good = lesson.go_on(0.0)
     lesson.go_on(50.0, 20)
@@ -351,7 +349,7 @@ def test_a_reward_goes_to_the_rla_that_drove_in_the_tick_it_names(
     assert lesson.small.level.system.appraisal(2) == Appraisal()
 
 
-def test_a_reward_without_a_tick_means_the_newest_decision_also_after_a_missed_tick() -> None:
+def test_reward_without_tick_is_about_the_newest_decision() -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     newest = lesson.go_on(0.0)
     lesson.tick += 5  # missed
@@ -361,7 +359,7 @@ def test_a_reward_without_a_tick_means_the_newest_decision_also_after_a_missed_t
     assert event.decided_at_tick == newest
 
 
-def test_there_is_nothing_to_reward_where_no_rla_drove_or_it_is_gone() -> None:
+def test_reward_without_a_driving_rla_is_refused() -> None:
     lesson = Lesson(created(1, (0.0,), "a"))
     assert not lesson.say(Reward("r-0", "Ann", 1)).accepted  # before the first decision
     asked = lesson.go_on(50.0)
@@ -371,7 +369,7 @@ def test_there_is_nothing_to_reward_where_no_rla_drove_or_it_is_gone() -> None:
     assert lesson.say(Reward("r-2", "Ann", -1, drove)).outcome == Outcome.of(RefusalCode.NO_RLA, rla=1)
 
 
-def test_undo_takes_back_the_newest_lesson_that_stands_and_then_the_one_before() -> None:
+def test_undo_without_name_undoes_newest_first() -> None:
     lesson = Lesson()
     lesson.say(teach("a", "1"), place=0.0)
     lesson.say(correct("b", "2"), place=0.0)
@@ -385,7 +383,7 @@ def test_undo_takes_back_the_newest_lesson_that_stands_and_then_the_one_before()
     assert result.outcome == Outcome(RefusalCode.NO_LESSON)
 
 
-def test_undo_of_a_named_lesson_leaves_the_later_ones_of_other_rlas() -> None:
+def test_undo_by_name_keeps_later_lessons_of_other_rlas() -> None:
     lesson = Lesson()
     lesson.say(teach("a", "1"), place=0.0)
     lesson.say(teach("b", "2"), place=50.0)
@@ -399,7 +397,7 @@ def test_an_undo_says_what_it_took_back() -> None:
     assert lesson.say(Undo("u-1", "Ann")).outcome == Outcome.of(ResultCode.LESSON_UNDONE, says="RLA 1 taught: a")
 
 
-def test_an_undo_that_cannot_be_is_refused_with_the_reason_and_changes_nothing() -> None:
+def test_impossible_undo_is_refused_unchanged() -> None:
     lesson = Lesson()
     lesson.say(teach("a", "1"), place=0.0)
     lesson.say(correct("b", "2"), place=0.0)
@@ -411,7 +409,7 @@ def test_an_undo_that_cannot_be_is_refused_with_the_reason_and_changes_nothing()
     assert not lesson.school.was_handled("u-1")
 
 
-def test_a_session_begins_and_ends_once_and_its_clock_runs_between() -> None:
+def test_session_begins_and_ends_once_and_its_clock_runs() -> None:
     lesson = Lesson()
     school = lesson.school
     assert lesson.say(EndSession("e-0", "Ann")).outcome == Outcome(RefusalCode.NO_SESSION)
@@ -438,7 +436,7 @@ def test_a_session_begins_and_ends_once_and_its_clock_runs_between() -> None:
     assert school.teaching_ticks(lesson.tick) == 0
 
 
-def test_the_first_who_speaks_teaches_and_another_one_is_refused_by_name() -> None:
+def test_second_teacher_is_refused_with_the_firsts_name() -> None:
     lesson = Lesson()
     lesson.say(teach("a", "1"))
     refused = lesson.say(Teach("2", "Ben", "b"), place=50.0)
@@ -509,7 +507,7 @@ def test_an_own_stop_does_not_lift_that_of_another(own: Command) -> None:
     assert lesson.drive() is None
 
 
-def test_a_behaviour_runs_for_its_ticks_and_the_robot_stands_afterwards() -> None:
+def test_run_behaviour_ends_after_its_ticks_and_stands() -> None:
     lesson = Lesson()
     assert lesson.say(RunBehaviour("1", "Ann", "b", 10)).outcome == Outcome.of(
         ResultCode.ACTION_RUNS, action="b", ticks=10
@@ -534,14 +532,14 @@ def test_resume_ends_what_the_hand_was_doing() -> None:
     assert lesson.drive(hold=4) == Outcome(RefusalCode.PRESS_OVER)
 
 
-def test_who_is_refused_has_not_become_the_teacher_by_it() -> None:
+def test_refused_command_gives_no_authority() -> None:
     lesson = Lesson()
     assert not lesson.say(teach("dance")).accepted
     assert lesson.school.authority.teacher is None
     assert lesson.say(Teach("2", "Ben", "a")).accepted
 
 
-def test_who_takes_over_from_one_who_stopped_it_may_drive_by_hand_at_once_but_not_from_a_bystander() -> None:
+def test_take_over_clears_the_last_teachers_stop_only() -> None:
     lesson = Lesson()
     lesson.drive(hold=1)
     lesson.say(stop("1"))
@@ -577,7 +575,7 @@ def test_a_release_that_comes_late_ends_its_own_press_only() -> None:
         lambda tick: Pursue("2", "Ann", "", tick),
     ],
 )
-def test_what_was_said_before_a_stop_and_comes_after_it_does_not_move_the_robot(
+def test_command_from_before_a_stop_does_not_move_the_robot(
     late: Callable[[int], Command],
 ) -> None:
     lesson = Lesson()
@@ -588,7 +586,7 @@ def test_what_was_said_before_a_stop_and_comes_after_it_does_not_move_the_robot(
     assert lesson.say(late(lesson.tick)).accepted
 
 
-def test_the_end_of_a_session_does_not_hide_that_somebody_said_stop() -> None:
+def test_end_of_session_keeps_the_earlier_stop() -> None:
     lesson = Lesson()
     lesson.say(BeginSession("1", "Ann", "monday"))
     lesson.say(Stop("2", "Ben"))
@@ -624,7 +622,7 @@ def test_a_lesson_is_about_the_behaviour_that_is_wanted() -> None:
     assert lesson.small.at(0.0).action == "a"
 
 
-def test_to_pursue_another_behaviour_is_no_lesson_and_counts_once() -> None:
+def test_pursue_is_no_lesson_and_counts_once() -> None:
     lesson = Lesson(behaviours=TURNS)
     lesson.say(pursue("turn_left", "p-1"))
     lesson.say(pursue("turn_right", "p-2"))
@@ -633,9 +631,7 @@ def test_to_pursue_another_behaviour_is_no_lesson_and_counts_once() -> None:
 
 
 @pytest.mark.parametrize(("behaviours", "known"), [(TURNS, TURNS), (("",), ("",))])
-def test_a_behaviour_that_is_not_taught_is_refused_with_those_that_are(
-    behaviours: tuple[str, ...], known: tuple[str, ...]
-) -> None:
+def test_unknown_behaviour_is_refused_with_the_known_ones(behaviours: tuple[str, ...], known: tuple[str, ...]) -> None:
     lesson = Lesson(behaviours=behaviours)
     result = lesson.say(pursue("fly"))
     assert result.outcome == Outcome.of(RefusalCode.NO_BEHAVIOUR, behaviour="fly", known=known)
@@ -643,7 +639,7 @@ def test_a_behaviour_that_is_not_taught_is_refused_with_those_that_are(
     assert lesson.school.authority.teacher is None
 
 
-def test_only_the_teacher_says_what_the_robot_follows_and_a_stop_stays() -> None:
+def test_pursue_needs_authority_and_keeps_a_stop() -> None:
     lesson = Lesson(behaviours=TURNS)
     lesson.say(Take("take", "Bob"))
     lesson.say(Stop("stop", "Bob"))
@@ -654,7 +650,7 @@ def test_only_the_teacher_says_what_the_robot_follows_and_a_stop_stays() -> None
     assert lesson.school.active_stop == ActiveStop(StopReason.SAID_STOP, "Bob")
 
 
-def test_of_two_behaviours_the_one_that_was_asked_for_on_the_newer_picture_is_wanted() -> None:
+def test_pursue_on_the_newer_state_wins() -> None:
     lesson = Lesson(behaviours=TURNS)
     lesson.say(Pursue("1", "Ann", "turn_left", 80))
     assert lesson.say(Pursue("2", "Ann", "turn_right", 90)).accepted
@@ -681,7 +677,7 @@ def test_a_lesson_on_an_old_picture_goes_to_what_was_wanted_then(kind: type[Teac
     assert lesson.small.at(2.5).action == "a"
 
 
-def test_a_correction_of_an_old_picture_corrects_an_rla_of_what_was_wanted_then() -> None:
+def test_correction_of_past_tick_is_about_its_behaviour() -> None:
     lesson = Lesson(
         created(1, (0.0,), "a", behaviour="straight_on"),
         created(2, (0.0,), "b", behaviour="turn_left"),
@@ -727,13 +723,13 @@ def test_nobody_teaches_in_the_critics_name(command: Command) -> None:
     assert lesson.school.authority.teacher != "critic"
 
 
-def test_the_critic_drives_nothing_by_hand_but_whoever_says_stop_is_heard() -> None:
+def test_critics_name_may_stop_and_nothing_else() -> None:
     lesson = Lesson()
     assert lesson.drive("critic") == Outcome.of(RefusalCode.CRITICS_NAME, name="critic")
     assert lesson.say(Stop("s", "critic")).accepted
 
 
-def test_a_change_of_the_robots_own_that_does_not_fit_is_skipped_and_told_and_the_robot_drives_on() -> None:
+def test_own_change_that_does_not_fit_is_skipped_and_reported() -> None:
     taken = Origin("signal-3/withdraw-1", "Ann", Phase.SUPERVISED, 1)  # an earlier kurt2rt took such ids
     first = RlaCreated(Rla(1, (0.0,), "a", None, taken))
     robot = Track(first, created(2, (50.0,), "b"), phase=Phase.REINFORCEMENT)
@@ -758,7 +754,7 @@ def test_a_command_id_as_the_robot_makes_them_is_refused() -> None:
     assert lesson.say(Stop("s/1", "Ann")).accepted
 
 
-def test_a_late_copy_of_a_stop_brakes_but_is_no_newer_than_the_stop_it_is_a_copy_of() -> None:
+def test_late_copy_of_stop_brakes_without_being_newer() -> None:
     lesson = Lesson()
     lesson.say(stop("1"))
     seen = lesson.tick
@@ -767,7 +763,7 @@ def test_a_late_copy_of_a_stop_brakes_but_is_no_newer_than_the_stop_it_is_a_copy
     assert not lesson.school.active_stop
 
 
-def test_a_copy_of_a_stop_that_ends_a_drive_has_to_be_seen_as_a_stop_has() -> None:
+def test_copy_of_a_stop_that_ends_a_drive_counts_as_stop() -> None:
     lesson = Lesson()
     lesson.say(stop("1"))
     lesson.say(resume("2"))

@@ -36,7 +36,7 @@ def test_a_stop_finds_room_in_a_full_inbox() -> None:
     assert inbox.pop_all() == (teach("a"), stop())
 
 
-def test_what_has_happened_goes_before_what_waits_and_always_finds_room() -> None:
+def test_inbox_system_event_comes_first_and_always_fits() -> None:
     inbox = TeacherInbox(capacity=1)
     inbox.put(teach("a"))
     inbox.put(RobotRepositioned())

@@ -19,14 +19,14 @@ def told(moment: MidSnapshot | None) -> tuple[float, int | None] | None:
     return None if moment is None else (moment.vector.item(), moment.rla_id)
 
 
-def test_nothing_is_remembered_before_the_first_tick_or_after_the_newest() -> None:
+def test_mid_history_outside_its_ticks_returns_none() -> None:
     assert MidHistory().get(0) is None
     assert MidHistory().newest is None
     recent = remembered((5, 9, 1))
     assert [told(recent.get(tick)) for tick in (4, 5, 9, 10)] == [None, (5.0, 1), (5.0, 1), None]
 
 
-def test_a_situation_lasts_from_junction_to_junction_however_many_ticks() -> None:
+def test_mid_history_stores_one_snapshot_per_junction() -> None:
     recent = remembered((1, 90_000, 4), (90_001, 90_001, 5), (90_002, 200_000, None), capacity=3)
     assert [told(recent.get(tick)) for tick in (1, 90_000, 90_001, 90_002, 150_000)] == [
         (1.0, 4),

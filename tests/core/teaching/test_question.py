@@ -24,7 +24,7 @@ def asked(condition: tuple[float, ...], here: tuple[float, ...], radius: float |
     return ask(system.match(situation), situation, system.weights, NAMES)
 
 
-def test_it_names_the_nearest_rla_its_action_distance_radius_and_what_differs_most() -> None:
+def test_question_has_nearest_rla_and_differing_features() -> None:
     question = asked((100, 100, 100, 100, 100, 100, 100), (400, 90, 105, 100, 500, 101, 98))
     assert (question.nearest_rla, question.action, question.radius) == (1, "curve_left", 300.0)
     assert question.distance == math.sqrt(300**2 + 10**2 + 5**2 + 400**2 + 1 + 4)
@@ -68,7 +68,7 @@ def test_before_the_first_lesson_it_asks_without_comparison() -> None:
     assert str(question) == "I know nothing yet, teach me"
 
 
-def test_where_behaviours_have_names_it_asks_about_the_one_that_is_wanted() -> None:
+def test_question_is_about_the_active_behaviour() -> None:
     assert str(ask(None, np.zeros(7), np.ones(7), NAMES, "turn_left")) == "I know nothing of turn_left yet, teach me"
     system = RlaSystem(7, 300.0)
     system.apply(created(1, (0,) * 7, "curve_left", behaviour="turn_left"))
@@ -94,7 +94,7 @@ def test_a_withdrawn_action_is_told_in_words() -> None:
     )
 
 
-def test_where_the_action_itself_is_lost_it_says_so() -> None:
+def test_question_of_a_lost_action_names_it() -> None:
     question = asked((100,) * 7, (110, *(100,) * 6))
     assert str(question) == "RLA 1 says curve_left, which does not know how to go on here; teach me another action"
 
@@ -106,7 +106,7 @@ def of_the_way(*conditions: tuple[float, ...]) -> MidQuestion:
     return ask_the_way(system.match(np.array([1.0, 2.0, 0.0]), level=MID), ("straight", "left", ""))
 
 
-def test_the_mid_level_asks_which_behaviour_to_follow_and_says_how_it_came_there() -> None:
+def test_mid_question_lists_the_passed_junctions() -> None:
     question = of_the_way((2.0, 1.0, 0.0))
     assert (question.nearest_rla, question.behaviour, question.distance, question.radius) == (1, "turn_left", 2.0, 1.0)
     assert question.here == ("straight", "left")
