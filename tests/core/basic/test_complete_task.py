@@ -67,7 +67,7 @@ def test_a_task_that_teaches_one_thing_needs_no_mid_level(tmp_path: Path) -> Non
 
 
 def test_task_of_several_behaviours_needs_a_mid_level(tmp_path: Path) -> None:
-    told = r"\(patrol\): the task patrol has no mid level that says which of straight_on, turn_left, turn_right is wan"
+    told = r"\(patrol\): the task patrol has no mid level"
     with pytest.raises(SettingsError, match=told):
         repertoire(tmp_path, patrol(tmp_path, mid=None))
 
