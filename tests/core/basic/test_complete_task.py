@@ -73,7 +73,7 @@ def test_task_of_several_behaviours_needs_a_mid_level(tmp_path: Path) -> None:
 
 
 def test_task_with_places_is_refused_as_an_action(tmp_path: Path) -> None:
-    with pytest.raises(SettingsError, match="goes by places, and an action does not know at which one it begins"):
+    with pytest.raises(SettingsError, match="mid level of the task patrol goes by places"):
         repertoire(tmp_path, patrol(tmp_path, mid="places"))
 
 
