@@ -136,7 +136,11 @@ class Simulation(Protocol):
         ...
 
     def live(self) -> AbstractContextManager[object]:
-        """Advance the world in real time while the context lasts, the second guard awake; may be entered again."""
+        """Advance the world in real time in a thread, with the robot's watchdog running, until the context ends.
+
+        Do not call `step` meanwhile. After the end, `live` may be called again. Leaving raises the error that ended the
+        thread, if any.
+        """
         ...
 
     def rescue(self) -> None:

@@ -102,7 +102,14 @@ class MetricSettings(KindSettings):
         """
 
     def least_progress(self, simulation: Simulation, duration_s: float) -> float:  # noqa: ARG002 - for other courses
-        """Return the progress up to which a drive of this length, in s, gets nowhere: 0 unless a course knows more."""
+        """Return the progress, in the metric's unit, up to which a drive counts as getting nowhere.
+
+        It is 0 unless a metric overrides this, such as by the distance at 0.1 m/s.
+
+        Args:
+            simulation: world of the drive, for metrics that measure by it, such as in laps.
+            duration_s: length of the drive in s.
+        """
         return 0.0
 
     @abstractmethod

@@ -74,7 +74,7 @@ class TickTimer:
         return self._share(np.sum([np.array(column) for column in self._stages], axis=0))
 
     def lateness(self) -> Percentiles:
-        """Return the lateness of the ticks against their deadlines."""
+        """Return the lateness of the last `capacity` ticks, in µs; zeros before the first tick."""
         return self._share(np.array(self._lateness))
 
     def lateness_of_last(self, ticks: int) -> Percentiles:

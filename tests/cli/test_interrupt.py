@@ -48,6 +48,6 @@ def test_interrupt_in_a_command_leaves_no_traceback(kurt2rt: CommandLine, monkey
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("kurt2rt.cli.doctor.examine", interrupted)
+    monkeypatch.setattr("kurt2rt.cli.doctor.run_checks", interrupted)
     said = kurt2rt("doctor")
     assert (said.exit_code, said.out, said.err) == (130, "", "")

@@ -17,7 +17,11 @@ class LoopPacer:
         self._ended = False
 
     async def run(self, after_tick: Callable[[TickRecord], None]) -> None:
-        """Run ticks until the end."""
+        """Run ticks until `end` is called; a `shift` meanwhile delays the later ones.
+
+        Call this once: after `end` it returns at once. `after_tick` gets the record of each tick; its time
+        counts against the period.
+        """
         while not self._ended:
             await self._clock.wait_until(self._clock.now_s() + self._shift_s)
             await self._scheduler.run(None, after_tick)

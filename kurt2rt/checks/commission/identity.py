@@ -23,7 +23,11 @@ class IdentityStep:
     blocks_driving = True
 
     async def run(self, stand: TestStand, findings: Findings) -> StepResult:
-        """Listen, and compare with the settings."""
+        """Listen to the CAN bus for 2 s; judge the controller's identity, the frames' periods, and junk.
+
+        Periods are compared with `can.cycle_s` of the settings. Returns the findings with hardware id and firmware from
+        INFO_1, and an instruction for each fault. Silence is a fault and raises nothing.
+        """
         heard = await stand.listen(_LISTEN_S)
         result = StepResult(findings)
         if not heard.arrivals_s:

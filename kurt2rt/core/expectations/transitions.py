@@ -21,7 +21,17 @@ class BasicTransitionTracker:
         self._since_tick = 0
 
     def update(self, tick: int, rla_id: int | None, situation: NDArray[np.float64], behaviour: str) -> Surprise | None:
-        """Learn from one tick; `rla_id`: driving RLA, None at standstill; `situation`: shape (d,)."""
+        """Learn the expectation of the RLA that drove before, if another RLA takes over in this tick.
+
+        Call this on every tick. After a standstill or a change of behaviour nothing is learned. Returns the surprise of
+        the situation, also a small one; None if nothing was learned or too few ends were known.
+
+        Args:
+            tick: number of this tick.
+            rla_id: driving RLA; None at standstill.
+            situation: situation of this tick, shape (d,).
+            behaviour: selected taught behaviour.
+        """
         if rla_id == self._driver:
             return None
         before, since_tick, same = self._driver, self._since_tick, behaviour == self._behaviour
@@ -59,7 +69,16 @@ class MidTransitionTracker:
         self._before_ticks = 0
 
     def update(self, mid: MidDecision, situation: NDArray[np.float64], *, driving: bool) -> Surprise | None:
-        """Learn from one tick; `situation`: shape (d,), a new array after each change; `driving`: the wheels turned."""
+        """Learn the expectation of the RLA that commanded before, once the situation has changed.
+
+        Call this on every tick. An RLA under whose command the wheels never turned learns nothing. Returns the
+        surprise, also a small one; None if nothing was learned or too few ends were known.
+
+        Args:
+            mid: decision of the mid level in this tick.
+            situation: shape (d,). Pass the same array object until it changes: identity is compared, not the values.
+            driving: whether the wheels turned.
+        """
         rla_id = mid.rla_id
         if situation is self._situation:
             if rla_id == self._commander:

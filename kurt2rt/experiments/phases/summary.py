@@ -104,12 +104,15 @@ def score_of(judgements: Sequence[Judgement]) -> CriticScore:
 
 
 def alike(one: Sequence[StageOutcome], other: Sequence[StageOutcome]) -> int:
-    """Return the number of robots with equal exams at both stages."""
+    """Return the number of robots whose exams have equal outcomes at two stages.
+
+    Both sequences hold one stage per robot, in the same order. Raises ValueError if their lengths differ.
+    """
     return sum(a.exams == b.exams for a, b in zip(one, other, strict=True))
 
 
 def collisions_of(exams: Sequence[ExamOutcome]) -> Rate:
-    """Return the collisions in 10 min."""
+    """Return the collisions per 10 min of driving over all these exams together, with the 95 % interval."""
     return rate_of([each.collisions for each in exams], [each.duration_s / TEN_MIN_S for each in exams])
 
 
@@ -172,7 +175,11 @@ class Paired:
 
 
 def paired(before: Sequence[StageOutcome], after: Sequence[StageOutcome]) -> tuple[Paired, ...]:
-    """Return each measure in each world; robots in the same order."""
+    """Return the change of each measure from one stage to another of the same robots, world by world.
+
+    Both sequences hold one stage per robot, in the same order, and each stage an exam in each world. A measure that
+    no robot has at both stages is left out. Raises ValueError if the lengths differ.
+    """
     found = []
     for world in dict.fromkeys(exam.world for stage in after for exam in stage.exams):
         pairs = [(_exam_in(world, one), _exam_in(world, other)) for one, other in zip(before, after, strict=True)]

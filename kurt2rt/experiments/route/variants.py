@@ -42,9 +42,11 @@ class Variant:
         return task.model_copy(update={"mid": mid})
 
     def plans(self, task: TaskSettings, starts: int) -> tuple[LessonPlan, ...]:
-        """Return a plan for each start; the parts have one length, and the phases continue through them.
+        """Return one plan for each start, in order: the task's whole lesson, cut into parts of equal length.
 
-        `starts`: the task's number of starts.
+        Each part continues the phases where the part before ended.
+
+        `starts`: number of parts, unless the variant sets its own.
         """
         whole = plan_of(task)
         starts = self.starts or starts

@@ -61,7 +61,7 @@ def utc_now() -> str:
 class JournalWriter:
     """Owner of a journal, which writes lessons in the order of `submit`, drops none, and closes the journal.
 
-    On a failing disk the lessons wait, `trouble` tells the cause (the robot must stand meanwhile), and the writer tries
+    On a failing disk the lessons wait, `error` tells the cause (the robot must stand meanwhile), and the writer tries
     again until it succeeds.
     """
 

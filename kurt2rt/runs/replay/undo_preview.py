@@ -47,9 +47,15 @@ class UndoPreview:
 
 
 def preview(planned: UndoPlan, runs: Path, report: Report) -> UndoPreview:
-    """Replay all runs of a folder, or the run `runs` itself, with and without the change; change nothing.
+    """Replay recorded runs with and without a planned undo or redo and return the differences; change nothing.
 
-    Raises KnowledgeError if none can be replayed.
+    Runs that do not fit the knowledge or fail in replay are left out, with a note. Raises KnowledgeError if there is
+    no run or none fits.
+
+    Args:
+        planned: the undo or redo.
+        runs: folder of runs, which are all replayed, or one run itself.
+        report: progress callback; gets a run's name, the seconds replayed and the run's seconds.
     """
     return _try_on(planned, compatible_runs(runs, planned.binding), report, last_s=float("inf"))
 

@@ -87,9 +87,14 @@ class StatusSocket:
 
 
 async def serve_waiting(path: Path, waits_for: Callable[[], str]) -> None:
-    """Send every reader what the program still waits for, until cancelled; its status socket then replaces this one.
+    """Tell readers of the status socket why the program still waits, until cancelled.
 
-    `waits_for`: returns what is missing and what to do, in a line.
+    Each reader gets one line and is disconnected. Returns silently if the socket cannot be made. When the program has
+    started, `StatusSocket.serve` replaces the socket at the same path.
+
+    Args:
+        path: path of the socket, as `status_socket_path` returns it.
+        waits_for: called for each reader; returns what is missing and what to do, in a line.
     """
 
     async def tell(reader: SocketStream) -> None:

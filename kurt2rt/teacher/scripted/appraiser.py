@@ -81,7 +81,10 @@ class RandomPenalty:
         self._next_tick = 0
 
     def on_tick(self, record: TickRecord) -> tuple[int, int] | None:
-        """Return -1 for this tick if a reward is due."""
+        """Return -1 and this tick if a random penalty is due, else None; call this on every tick.
+
+        A due penalty waits until an RLA drives and the gap since the last one is over.
+        """
         due = bool(self._due) and self._due[0] <= record.tick >= self._next_tick
         if not due or not record.decision.driving or record.decision.rla_id is None:
             return None
