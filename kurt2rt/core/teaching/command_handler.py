@@ -10,6 +10,7 @@ from kurt2rt.core.critic.critic import Critic, Opinion
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import Decision
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
+from kurt2rt.core.outcome_text import event_error_text
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
@@ -235,7 +236,7 @@ class CommandHandler:
             why = (
                 error.outcome
                 if isinstance(error, CommandRefusedError)
-                else Outcome.of(RefusalCode.DOES_NOT_FIT, says=str(error))
+                else Outcome.of(RefusalCode.DOES_NOT_FIT, says=event_error_text(error))
             )
             return CommandResult(command.command_id, why), None
         self.updater.handled_ids.add(command.command_id)

@@ -7,6 +7,7 @@ from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.critic import Opinion
 from kurt2rt.core.critic.state import CriticState
 from kurt2rt.core.decision.decision import Decision
+from kurt2rt.core.outcome_text import event_error_text
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
 from kurt2rt.core.rla.rla import Phase, TeachingEvent
@@ -91,6 +92,7 @@ class KnowledgeUpdater:
             self.apply(event)
         except InvalidEventError as error:
             self._skipped += 1
-            self.error = f"changes that did not fit the knowledge were skipped: {self._skipped}, the last: {error}"
+            last = event_error_text(error)
+            self.error = f"changes that did not fit the knowledge were skipped: {self._skipped}, the last: {last}"
         else:
             events.append(event)

@@ -14,6 +14,7 @@ from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.decision.decision import Cause
 from kurt2rt.core.mid.settings import load_mid_level
+from kurt2rt.core.outcome_text import event_error_text
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
@@ -78,7 +79,8 @@ class CounterfactualPolicy:
             self._worths = Reinforcement(self._system, recent, task.reinforcement, run.robot.can.cycle_s)
             self._worths.restore(tuple(events), statistics)
         except (SettingsError, InvalidEventError) as error:
-            raise RecordingError(f"this knowledge cannot decide there: {error}", where=run.name) from error
+            cause = event_error_text(error) if isinstance(error, InvalidEventError) else str(error)
+            raise RecordingError(f"this knowledge cannot decide there: {cause}", where=run.name) from error
 
     def answer(self, situation: NDArray[np.float64], behaviour: str, level: str = BASIC) -> PolicyAnswer:
         """Return the answer to a situation vector, shape (d,), of a level for the active behaviour."""

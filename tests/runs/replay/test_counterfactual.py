@@ -7,17 +7,20 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.rla import (
     BASIC,
     MID,
     ActionReplaced,
     ActionWithdrawn,
+    LessonUndone,
     Origin,
     Phase,
     Rla,
     RlaCreated,
     TeachingEvent,
 )
+from kurt2rt.core.rla.rla_system import InvalidEventError
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.runs.recording.recording_error import RecordingError
@@ -199,3 +202,12 @@ def test_knowledge_of_other_features_is_refused() -> None:
     run = stored("walls")
     with pytest.raises(RecordingError, match="this knowledge cannot decide there"):
         CounterfactualPolicy(run, [RlaCreated(Rla(1, (1.0, 2.0), "forward", None, ORIGIN))])
+
+
+def test_undo_of_an_unknown_lesson_is_refused_in_words() -> None:
+    with pytest.raises(RecordingError) as caught:
+        CounterfactualPolicy(stored("walls"), [LessonUndone("none", ORIGIN)])
+    event_error = caught.value.__cause__
+    assert isinstance(event_error, InvalidEventError)
+    assert event_error.refusal is not None
+    assert text_of(event_error.refusal) in caught.value.what
