@@ -1,4 +1,4 @@
-"""Programs beside the robot's: one that dies is told and started anew, and all of them end with it."""
+"""Child processes next to the robot program: one that dies is named and started again; all end with the program."""
 
 import os
 import queue
@@ -63,8 +63,8 @@ def is_there(process: int) -> bool:
 
 def test_one_that_is_killed_is_told_and_started_anew_each_time_later(births: Births) -> None:
     told = Told()
-    with companions(told, SAYS_ITS_ID) as beside:
-        beside.start("the page", "teach", restarts=True)
+    with companions(told, SAYS_ITS_ID) as children:
+        children.start("the page", "teach", restarts=True)
         for pause_s in ("0.01", "0.02", "0.04"):
             os.kill(births.next(), signal.SIGKILL)
             assert told.next() == f"the page ended (signal 9); it is started again in {pause_s} s"
@@ -76,34 +76,34 @@ def test_one_that_is_killed_is_told_and_started_anew_each_time_later(births: Bir
 
 def test_it_is_a_trouble_while_it_is_not_there() -> None:
     told = Told()
-    with companions(told, "raise SystemExit(3)") as beside:
-        assert beside.trouble == ""
-        beside.start("the scripted teacher", "teach", "--auto", restarts=False)
+    with companions(told, "raise SystemExit(3)") as children:
+        assert children.trouble == ""
+        children.start("the scripted teacher", "teach", "--auto", restarts=False)
         line = told.next()
         assert line == "the scripted teacher ended (exit code 3); start it again by hand"
-        assert beside.trouble == line
+        assert children.trouble == line
     assert told.empty()
 
 
 def test_one_that_is_done_is_no_trouble(births: Births) -> None:
     told = Told()
-    with companions(told, SAYS_ITS_ID.replace("sys.stdin.read()", "")) as beside:
-        beside.start("the scripted teacher", "teach", "--auto", restarts=False)
+    with companions(told, SAYS_ITS_ID.replace("sys.stdin.read()", "")) as children:
+        children.start("the scripted teacher", "teach", "--auto", restarts=False)
         births.next()
-        beside.start("the page", "teach", restarts=True)
+        children.start("the page", "teach", restarts=True)
         births.next()
         assert told.next().startswith("the page ended (exit code 0); ")
-        assert "scripted teacher" not in beside.trouble
+        assert "scripted teacher" not in children.trouble
 
 
 def test_child_process_output_goes_to_its_reader() -> None:
     told, heard = Told(), Told()
     says = "import sys; print('out', flush=True); print('err', file=sys.stderr, flush=True); sys.exit(3)"
-    with companions(told, says) as beside:
-        beside.start("the scripted teacher", "teach", "--auto", restarts=False)
+    with companions(told, says) as children:
+        children.start("the scripted teacher", "teach", "--auto", restarts=False)
         assert {told.next(), told.next()} == {"out", "err"}
         assert told.next() == "the scripted teacher ended (exit code 3); start it again by hand"
-        beside.start("the page", "teach", restarts=False, on_line=heard.put)
+        children.start("the page", "teach", restarts=False, on_line=heard.put)
         assert {heard.next(), heard.next()} == {"out", "err"}
         assert told.next() == "the page ended (exit code 3); start it again by hand"
     assert told.empty()
@@ -114,7 +114,7 @@ def test_modules_are_not_looked_for_in_the_present_folder(tmp_path: Path, monkey
     (tmp_path / "kurt2rt" / "__init__.py").write_text("raise SystemExit(7)", encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     told = Told()
-    with ChildProcesses("default", log=told.put, poll_s=LOOK_S) as beside:
-        beside.start("pairing", "pair", restarts=True)  # which does not know all these words, and starts soonest
+    with ChildProcesses("default", log=told.put, poll_s=LOOK_S) as children:
+        children.start("pairing", "pair", restarts=True)  # which does not know all these words, and starts soonest
         assert told.next() == "kurt2rt: No such option: --while-stdin; see kurt2rt pair --help"
         assert told.next().startswith("pairing ended (exit code 2)")

@@ -143,7 +143,7 @@ def test_critic_taught_while_driving_has_that_opinion(driving: Drive) -> None:
 
 
 def trusting(driving: Drive) -> Drive:
-    """The same robot started anew, with a critic that thinks ill of what it does near things, and is trusted."""
+    """Start the robot again, with a critic that thinks ill of what it does near things, and is trusted."""
     driving.run(Appraise("x-1", "Ann", "bad"), ticks=10)
     taught = list(driving.notebook.events)
     tick = 0
@@ -151,10 +151,10 @@ def trusting(driving: Drive) -> Drive:
         for name, value in (("bad", -1), ("good", 1)):
             tick += 1000  # one signal in some seconds counts
             taught.append(Appraised(name, value, tick, Origin(f"{name}-{number}", "Ann", Phase.CRITIC, tick)))
-    anew = Drive(taught)
-    assert anew.runtime.handler.agreement is not None
-    assert anew.runtime.handler.agreement.trusted
-    return anew
+    restarted = Drive(taught)
+    assert restarted.runtime.handler.agreement is not None
+    assert restarted.runtime.handler.agreement.trusted
+    return restarted
 
 
 def test_phase_5_trusted_critic_makes_undoable_changes(driving: Drive) -> None:

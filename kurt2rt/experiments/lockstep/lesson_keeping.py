@@ -26,7 +26,7 @@ class LessonKeeping:
         self.opened = opened
         """What the file held when it was opened, to go on from."""
         self.writer = writer
-        """Where lessons go to be kept (kurt2rt.core.tick.EventStore)."""
+        """Event store of the training run (kurt2rt.core.tick.EventStore)."""
         self._file = file
         self._on_saved = on_saved
 

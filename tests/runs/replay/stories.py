@@ -1,6 +1,6 @@
 """Runs to be recorded and replayed: some minutes of a robot that is taught, in lockstep.
 
-`python -m tests.runs.replay.stories` makes the stored ones anew.
+`python -m tests.runs.replay.stories` makes the stored runs again.
 """
 
 import asyncio
@@ -261,7 +261,7 @@ def slim(segment: Path, to: Path, seconds: float = math.inf) -> None:
 
 
 def main() -> None:
-    """Make the stored runs anew."""
+    """Make the stored runs again."""
     STORED.mkdir(exist_ok=True)
     for name in sys.argv[1:] or STORIES:
         with TemporaryDirectory() as folder:
