@@ -1,7 +1,7 @@
 """Layer stack: information goes up to the mid level, its command comes down to the basic level."""
 
 from hal.robot import STANDSTILL, SensorReadings
-from kurt2rt.core.decision.decision import Cause, Decision, stopped
+from kurt2rt.core.decision.decision import Decision, DecisionCause, stopped
 from kurt2rt.core.decision.level import Level
 from kurt2rt.core.decision.plan_step import GoalStatus
 from kurt2rt.core.mid.mid_level import MidLevel
@@ -9,7 +9,10 @@ from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.planning.navigator import Navigator
 from kurt2rt.core.rla.rla import MID
 
-_STANDS: dict[GoalStatus | None, Cause] = {GoalStatus.ARRIVED: Cause.AT_GOAL, GoalStatus.NO_WAY: Cause.NO_WAY}
+_STANDS: dict[GoalStatus | None, DecisionCause] = {
+    GoalStatus.ARRIVED: DecisionCause.AT_GOAL,
+    GoalStatus.NO_WAY: DecisionCause.NO_WAY,
+}
 """Causes by which a goal stops the robot, even if the mid level has a command."""
 
 
@@ -24,16 +27,16 @@ class LayerStack:
         self.basic = basic
         self.mid = mid
         self.navigator = navigator
-        self._before = Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
+        self._before = Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, None)
 
-    def decide(self, situation: Situation, senses: SensorReadings, blocking_cause: Cause | None) -> Decision:
+    def decide(self, situation: Situation, senses: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:
         """Return the basic level's decision for the mid level's command; the robot stands while the mid level asks."""
         commanded = self.mid.decide(senses, self._before)
         navigator = self.navigator
         if navigator is not None:
             navigator.step()
         if commanded.asks:
-            decision = self._decide_below(situation, senses, blocking_cause or Cause.UNKNOWN)
+            decision = self._decide_below(situation, senses, blocking_cause or DecisionCause.UNKNOWN)
             self._before = decision._replace(match=commanded.match, asks_at=MID, mid=commanded)
         else:
             if navigator is not None and not self.mid.overridden:
@@ -48,5 +51,7 @@ class LayerStack:
         """Reset the mid level after the robot was repositioned."""
         self.mid.restart()
 
-    def _decide_below(self, situation: Situation, senses: SensorReadings, blocking_cause: Cause | None) -> Decision:
+    def _decide_below(
+        self, situation: Situation, senses: SensorReadings, blocking_cause: DecisionCause | None
+    ) -> Decision:
         return stopped(self.basic.decide(situation, senses, blocking_cause), blocking_cause)

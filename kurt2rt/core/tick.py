@@ -8,7 +8,7 @@ from behaviors.judges.judge import AppraisalFeatures
 from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.critic import Opinion
-from kurt2rt.core.decision.decision import Cause, Decision, MidDecision, stopped
+from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision, stopped
 from kurt2rt.core.decision.level import Level
 from kurt2rt.core.decision.standing import DRIVES, BumperWatch, Standing, StandingWatch
 from kurt2rt.core.expectations.surprise import Surprise
@@ -310,7 +310,7 @@ class Tick:
         if choice.events or tick >= self._publish_knowledge_at:
             knowledge = self._handler.active_rlas
             self._publish_knowledge_at = tick + _KNOWLEDGE_PERIOD_TICKS
-        decision = stopped(choice.decision, Cause.TOUCHES) if motion.asks_at_bumper else choice.decision
+        decision = stopped(choice.decision, DecisionCause.TOUCHES) if motion.asks_at_bumper else choice.decision
         # The later of both times: the clock of a replay stands still within a tick.
         standing_at_s = max(now_s, motion.drove_at_s)
         standing = self._standing.update(
@@ -377,32 +377,34 @@ class Tick:
         cause = self._stand_cause(tick, blind=blind)
         authority.expire(tick)
         if authority.is_manual(tick):
-            because = self._blocking_cause(blind=blind) or Cause.TEACHER
+            because = self._blocking_cause(blind=blind) or DecisionCause.TEACHER
             idle_decision = stopped(self._level.decide(situation, readings, because), because)
-            if because is not Cause.TEACHER:
+            if because is not DecisionCause.TEACHER:
                 return idle_decision
             name, wheel_speeds = authority.step(readings)
             return idle_decision._replace(wheel_speeds=wheel_speeds, action=name)
         decision = stopped(self._level.decide(situation, readings, cause), cause)
-        if cause is Cause.UNATTENDED and not (decision.match is not None and decision.match.known):
-            return decision._replace(cause=Cause.UNKNOWN)  # an unknown situation is asked about even without a teacher
+        if cause is DecisionCause.UNATTENDED and not (decision.match is not None and decision.match.known):
+            return decision._replace(
+                cause=DecisionCause.UNKNOWN
+            )  # an unknown situation is asked about even without a teacher
         return decision
 
-    def _stand_cause(self, tick: int, *, blind: bool) -> Cause | None:
+    def _stand_cause(self, tick: int, *, blind: bool) -> DecisionCause | None:
         """Return the cause that RLAs may not drive; None if they may."""
         handler = self._handler
         if handler.active_stop is not None:
-            return Cause.STOPPED
+            return DecisionCause.STOPPED
         cause = self._blocking_cause(blind=blind)
         if cause is None and handler.requires_teacher and not handler.authority.is_present(tick):
-            return Cause.UNATTENDED
+            return DecisionCause.UNATTENDED
         return cause
 
-    def _blocking_cause(self, *, blind: bool) -> Cause | None:
+    def _blocking_cause(self, *, blind: bool) -> DecisionCause | None:
         """Return the cause that neither an RLA nor manual drive may move the robot; None if they may."""
         if blind:
-            return Cause.BLIND
-        return None if self._error is None else Cause.UNSAVED
+            return DecisionCause.BLIND
+        return None if self._error is None else DecisionCause.UNSAVED
 
 
 def _needs_present_situation(command: Command) -> bool:

@@ -5,7 +5,7 @@ import numpy as np
 from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.rla.rla_system import RlaSystem
@@ -42,7 +42,7 @@ class SmallLevel:
         self.wanted = ActiveBehaviour(behaviours)
         self.level = BasicLevel(system, self.actions, MINIMUM_TICKS, self.wanted)
 
-    def at(self, place: float, stand_because: Cause | None = None) -> Decision:
+    def at(self, place: float, stand_because: DecisionCause | None = None) -> Decision:
         return self.level.decide(situation(place), sensed(), stand_because)
 
 

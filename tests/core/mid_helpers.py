@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from hal.robot import SensorReadings
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Cause, Decision, MidDecision
+from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision
 from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.layer_stack import LayerStack
 from kurt2rt.core.mid.mid_level import MidLevel
@@ -63,7 +63,9 @@ class SmallStack:
         basic = BasicLevel(self.system, self.actions, MINIMUM_TICKS, self.wanted)
         self.stack = LayerStack(basic, self.mid)
 
-    def tick(self, symbol: float | None = None, stand_because: Cause | None = None, place: float = 0.0) -> Decision:
+    def tick(
+        self, symbol: float | None = None, stand_because: DecisionCause | None = None, place: float = 0.0
+    ) -> Decision:
         """One tick; with a symbol a junction was passed in it."""
         self.symbols.next = symbol
         return self.stack.decide(situation(place), sensed(), stand_because)

@@ -4,7 +4,7 @@ import pytest
 
 from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.rla.rla import BASIC, MID
 from tests.core.mid_helpers import SmallStack, taught
 
@@ -12,7 +12,7 @@ from tests.core.mid_helpers import SmallStack, taught
 def test_the_basic_level_does_what_the_mid_level_commands() -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"), taught(5, (1.0, 1.0, 0.0), "turn_right"), radius=0.0)
     decision = small.tick()
-    assert (decision.action, decision.rla_id, decision.cause, decision.asks_at) == ("b", 2, Cause.RLA, BASIC)
+    assert (decision.action, decision.rla_id, decision.cause, decision.asks_at) == ("b", 2, DecisionCause.RLA, BASIC)
     assert decision.mid is not None
     assert (decision.mid.behaviour, decision.mid.rla_id) == ("turn_left", 4)
 
@@ -26,7 +26,7 @@ def test_stack_mid_level_unknown_stands_and_asks_at_mid() -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"), radius=0.0)
     small.tick()
     decision = small.tick(1.0)
-    assert (decision.wheel_speeds, decision.cause, decision.action) == (STANDSTILL, Cause.UNKNOWN, None)
+    assert (decision.wheel_speeds, decision.cause, decision.action) == (STANDSTILL, DecisionCause.UNKNOWN, None)
     assert decision.asking
     assert decision.asks_at == MID
     assert decision.match is not None
@@ -38,13 +38,13 @@ def test_stack_mid_level_unknown_stands_and_asks_at_mid() -> None:
 def test_stack_basic_level_unknown_asks_at_basic() -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
     decision = small.tick(place=99.0)
-    assert (decision.cause, decision.asks_at) == (Cause.UNKNOWN, BASIC)
+    assert (decision.cause, decision.asks_at) == (DecisionCause.UNKNOWN, BASIC)
     assert decision.match is not None
     assert decision.match.rla.behaviour == decision.mid.behaviour == "turn_left"  # type: ignore[union-attr]
 
 
-@pytest.mark.parametrize("cause", [Cause.STOPPED, Cause.BLIND, Cause.TEACHER])
-def test_stack_blocking_cause_stands_and_still_detects_junctions(cause: Cause) -> None:
+@pytest.mark.parametrize("cause", [DecisionCause.STOPPED, DecisionCause.BLIND, DecisionCause.TEACHER])
+def test_stack_blocking_cause_stands_and_still_detects_junctions(cause: DecisionCause) -> None:
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"))
     decision = small.tick(1.0, cause)
     assert (decision.wheel_speeds, decision.cause, decision.action) == (STANDSTILL, cause, None)
@@ -66,15 +66,15 @@ def test_stack_faulty_basic_level_stands_while_mid_asks(monkeypatch: pytest.Monk
 
     def runs_away(level: BasicLevel, *words: object) -> Decision:
         decision = decide(level, *words)  # type: ignore[arg-type]
-        return decision._replace(wheel_speeds=WheelSpeeds(5.0, 5.0), cause=Cause.RLA, action="a", rla_id=1)
+        return decision._replace(wheel_speeds=WheelSpeeds(5.0, 5.0), cause=DecisionCause.RLA, action="a", rla_id=1)
 
     small = SmallStack(taught(4, (0.0, 0.0, 0.0), "turn_left"), radius=0.0)
     small.tick()
     monkeypatch.setattr(BasicLevel, "decide", runs_away)
     decision = small.tick(1.0)
-    assert (decision.wheel_speeds, decision.cause, decision.action) == (STANDSTILL, Cause.UNKNOWN, None)
+    assert (decision.wheel_speeds, decision.cause, decision.action) == (STANDSTILL, DecisionCause.UNKNOWN, None)
     assert decision.asks_at == MID
-    small.tick(0.0, Cause.STOPPED)
+    small.tick(0.0, DecisionCause.STOPPED)
     assert small.symbols.befores[-1] is decision
-    small.tick(0.0, Cause.STOPPED)
+    small.tick(0.0, DecisionCause.STOPPED)
     assert small.symbols.befores[-1].action is None  # what stood has passed no junction

@@ -12,7 +12,7 @@ from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.perception.perception import Perception
 from kurt2rt.core.rla.rla import Phase, TeachingEvent
@@ -149,7 +149,7 @@ def test_untaught_it_asks_and_stands_with_its_history_frozen(corridor: Corridor)
     records = [corridor.run(counts) for counts in (100, 150, 200)]
     for record in records:
         assert record.decision.asking
-        assert record.decision.cause is Cause.UNKNOWN
+        assert record.decision.cause is DecisionCause.UNKNOWN
         assert record.guard_result.wheel_speeds == STANDSTILL
         assert record.situation.history_frozen
         assert averages(record) == averages(records[0])
@@ -161,7 +161,7 @@ def test_a_lesson_acts_in_the_very_tick_that_takes_it(corridor: Corridor) -> Non
     corridor.run()
     record = corridor.run(100, teach("forward", "t-1"))
     assert [(result.command_id, result.accepted) for result in record.results] == [("t-1", True)]
-    assert (record.decision.cause, record.decision.action, record.decision.rla_id) == (Cause.RLA, "forward", 1)
+    assert (record.decision.cause, record.decision.action, record.decision.rla_id) == (DecisionCause.RLA, "forward", 1)
     assert corridor.robot.driven == [STANDSTILL, FORWARD]
     assert corridor.system.rlas[0].condition == tuple(record.situation.vector.tolist())
     assert [event.origin.command_id for event in corridor.notebook.events] == ["t-1"]
@@ -213,12 +213,16 @@ def test_tick_pursue_acts_in_its_own_tick() -> None:
     record = corridor.run(100, pursue("turn_left", "2"))
     assert (record.behaviour, record.decision.cause, record.guard_result.wheel_speeds) == (
         "turn_left",
-        Cause.UNKNOWN,
+        DecisionCause.UNKNOWN,
         STANDSTILL,
     )
     corridor.run(100, teach("back", "3"))
     record = corridor.run(100, pursue("straight_on", "4"))
-    assert (record.behaviour, record.decision.action, record.decision.cause) == ("straight_on", "forward", Cause.RLA)
+    assert (record.behaviour, record.decision.action, record.decision.cause) == (
+        "straight_on",
+        "forward",
+        DecisionCause.RLA,
+    )
     # What came before it in the same tick is about what was wanted before it.
     corridor.run(900, teach("back", "5"), pursue("turn_left", "6"))
     assert [rla.behaviour for rla in corridor.system.rlas] == ["straight_on", "turn_left", "straight_on"]
@@ -226,10 +230,10 @@ def test_tick_pursue_acts_in_its_own_tick() -> None:
 
 def test_stop_holds_until_resume_and_history_waits(driving: Corridor) -> None:
     stopped = driving.run(100, stop())
-    assert (stopped.decision.cause, stopped.guard_result.wheel_speeds) == (Cause.STOPPED, STANDSTILL)
+    assert (stopped.decision.cause, stopped.guard_result.wheel_speeds) == (DecisionCause.STOPPED, STANDSTILL)
     for _ in range(5):
         record = driving.run()
-        assert record.decision.cause is Cause.STOPPED
+        assert record.decision.cause is DecisionCause.STOPPED
         assert record.situation.history_frozen
         assert not record.decision.asking
     assert driving.run(100, resume()).guard_result.wheel_speeds == FORWARD
@@ -239,14 +243,14 @@ def test_tick_lesson_while_stopped_waits_for_resume(corridor: Corridor) -> None:
     corridor.run(100, stop())
     record = corridor.run(100, teach("back"))
     assert record.results[0].accepted
-    assert record.decision.cause is Cause.STOPPED
+    assert record.decision.cause is DecisionCause.STOPPED
     assert corridor.run(100, resume()).decision.action == "back"
 
 
 def test_while_lessons_cannot_be_saved_it_stands_and_says_why(driving: Corridor) -> None:
     driving.notebook.error = "disk full"
     record = driving.run()
-    assert (record.decision.cause, record.guard_result.wheel_speeds) == (Cause.UNSAVED, STANDSTILL)
+    assert (record.decision.cause, record.guard_result.wheel_speeds) == (DecisionCause.UNSAVED, STANDSTILL)
     assert driving.run().situation.history_frozen
     driving.run(100, correct("back", "while unsaved"))
     assert driving.notebook.events[-1].origin.command_id == "while unsaved"  # not lost: it waits there
@@ -256,7 +260,7 @@ def test_while_lessons_cannot_be_saved_it_stands_and_says_why(driving: Corridor)
 
 def test_a_teachers_stop_goes_before_trouble_with_saving(driving: Corridor) -> None:
     driving.notebook.error = "disk full"
-    assert driving.run(100, stop()).decision.cause is Cause.STOPPED
+    assert driving.run(100, stop()).decision.cause is DecisionCause.STOPPED
 
 
 def test_tick_emergency_stop_freezes_history_until_resume(driving: Corridor) -> None:
@@ -355,7 +359,12 @@ def test_tick_equal_inputs_give_equal_records_and_knowledge() -> None:
     assert first[1:] == second[1:]
     assert first[1] != other[1]
     causes = {record.decision.cause for record in first[0]}
-    assert causes == {Cause.RLA, Cause.HELD, Cause.UNKNOWN, Cause.STOPPED}  # the journey has seen it all
+    assert causes == {
+        DecisionCause.RLA,
+        DecisionCause.HELD,
+        DecisionCause.UNKNOWN,
+        DecisionCause.STOPPED,
+    }  # the journey has seen it all
 
 
 def test_tick_stored_events_fold_to_the_robots_knowledge() -> None:
@@ -376,7 +385,7 @@ def test_tick_blind_robot_stands_without_asking_or_learning(driving: Corridor) -
     known = len(driving.system)
     driving.robot.infrared_age_s = math.inf
     record = driving.run(100, teach("back", "in the dark"))
-    assert record.decision.cause is Cause.BLIND
+    assert record.decision.cause is DecisionCause.BLIND
     assert record.guard_result.wheel_speeds == STANDSTILL
     (result,) = record.results
     assert not result.accepted
@@ -384,7 +393,7 @@ def test_tick_blind_robot_stands_without_asking_or_learning(driving: Corridor) -
     assert len(driving.system) == known
 
     driving.robot.infrared_age_s = 0.0
-    assert driving.run(100).decision.cause is Cause.RLA
+    assert driving.run(100).decision.cause is DecisionCause.RLA
     assert driving.run(100, teach("back", "in the dark")).results[0].accepted
 
 
@@ -405,13 +414,13 @@ def test_tick_faulty_level_does_not_drive_a_stopped_robot(
 
     def runs_away(level: BasicLevel, *words: object) -> Decision:
         decision = decide(level, *words)._replace(wheel_speeds=FORWARD)  # type: ignore[arg-type]
-        return decision._replace(cause=Cause.RLA, action="ahead", rla_id=1) if says_why else decision
+        return decision._replace(cause=DecisionCause.RLA, action="ahead", rla_id=1) if says_why else decision
 
     driving.run(None, stop("enough"))
     monkeypatch.setattr(BasicLevel, "decide", runs_away)
     for _ in range(5):
         record = driving.run()
-        assert record.decision.cause is Cause.STOPPED
+        assert record.decision.cause is DecisionCause.STOPPED
         assert not record.decision.driving
         assert record.decision.wheel_speeds == record.guard_result.wheel_speeds == STANDSTILL
     driving.run(None, resume("go on"))

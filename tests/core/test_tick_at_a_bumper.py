@@ -8,7 +8,7 @@ import pytest
 
 from hal.robot import STANDSTILL, WheelSpeeds
 from hal.simulation import Pose
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import ASKS_AFTER_TICKS, DRIVES, Standing, StandReason
 from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.rla.rla import Phase
@@ -41,15 +41,15 @@ def corridor() -> Corridor:
 
 def test_bumper_blocked_robot_asks_after_half_a_second(corridor: Corridor) -> None:
     before = held(corridor, ASKS_AFTER_TICKS - 1)
-    assert (before.decision.cause, before.standing) == (Cause.RLA, Standing(StandReason.FRONT_BUMPER))
+    assert (before.decision.cause, before.standing) == (DecisionCause.RLA, Standing(StandReason.FRONT_BUMPER))
     record = corridor.run()
     decision = record.decision
-    assert (decision.cause, decision.asking, decision.driving) == (Cause.TOUCHES, True, False)
+    assert (decision.cause, decision.asking, decision.driving) == (DecisionCause.TOUCHES, True, False)
     assert (decision.wheel_speeds, record.guard_result.wheel_speeds) == (STANDSTILL, STANDSTILL)
     assert record.standing == Standing(StandReason.FRONT_BUMPER, asks=True)
     assert decision.match is not None
     assert decision.match.rla.rla_id == 1  # who goes on toward it
-    assert all(corridor.run().decision.cause is Cause.TOUCHES for _ in range(100))
+    assert all(corridor.run().decision.cause is DecisionCause.TOUCHES for _ in range(100))
 
 
 def test_a_brush_is_no_question(corridor: Corridor) -> None:
@@ -57,19 +57,19 @@ def test_a_brush_is_no_question(corridor: Corridor) -> None:
     corridor.robot.touches_in_front = False
     assert corridor.run().standing == DRIVES
     corridor.robot.touches_in_front = True
-    assert corridor.run().decision.cause is Cause.TOUCHES  # it was only a bumper that sprang back
+    assert corridor.run().decision.cause is DecisionCause.TOUCHES  # it was only a bumper that sprang back
     corridor.robot.touches_in_front = False
     for _ in range(ASKS_AFTER_TICKS):
         corridor.run()
     corridor.robot.touches_in_front = True
-    assert corridor.run().decision.cause is Cause.RLA
+    assert corridor.run().decision.cause is DecisionCause.RLA
 
 
 def test_it_drives_on_when_what_it_touched_is_gone(corridor: Corridor) -> None:
     held(corridor)
     corridor.robot.touches_in_front = False
     record = corridor.run()
-    assert (record.decision.cause, record.guard_result.wheel_speeds) == (Cause.RLA, FORWARD)
+    assert (record.decision.cause, record.guard_result.wheel_speeds) == (DecisionCause.RLA, FORWARD)
 
 
 @pytest.mark.parametrize("say", [teach, correct])
@@ -79,7 +79,7 @@ def test_an_answer_moves_the_robot_at_once_and_is_not_shadowed(
     held(corridor)
     record = corridor.run(None, say("back", "answer"))
     assert record.results[0].outcome == Outcome.of(ResultCode.RLA_CORRECTED, rla=1, action="back", was="forward")
-    assert (record.decision.cause, record.decision.action) == (Cause.RLA, "back")
+    assert (record.decision.cause, record.decision.action) == (DecisionCause.RLA, "back")
     assert record.guard_result.wheel_speeds == BACK
     assert record.standing == DRIVES
     assert len(corridor.system) == 1
@@ -88,7 +88,7 @@ def test_an_answer_moves_the_robot_at_once_and_is_not_shadowed(
 def test_bumper_answer_far_from_condition_inserts_winning_rla(corridor: Corridor) -> None:
     held(corridor)
     corridor.run(130)  # within R 50, farther than half of it
-    assert corridor.run().decision.cause is Cause.TOUCHES
+    assert corridor.run().decision.cause is DecisionCause.TOUCHES
     record = corridor.run(None, teach("back", "answer"))
     assert (record.decision.rla_id, record.guard_result.wheel_speeds) == (2, BACK)
     assert len(corridor.system) == 2
@@ -98,7 +98,7 @@ def test_an_answer_that_changes_nothing_leaves_the_question(corridor: Corridor) 
     held(corridor)
     record = corridor.run(None, teach("forward", "answer"))
     assert record.results[0].outcome == Outcome.of(ResultCode.RLA_AGREES, rla=1, action="forward")
-    assert record.decision.cause is Cause.TOUCHES
+    assert record.decision.cause is DecisionCause.TOUCHES
 
 
 def test_bumper_answer_about_past_question_corrects(corridor: Corridor) -> None:
@@ -124,14 +124,14 @@ def test_bumper_pushing_rla_can_be_punished(corridor: Corridor) -> None:
         corridor = Corridor()
         corridor.run(100, set_phase(phase))
         record = held(corridor)
-        assert record.decision.cause is Cause.TOUCHES  # in phase 5, too: it does not stand without saying why
+        assert record.decision.cause is DecisionCause.TOUCHES  # in phase 5, too: it does not stand without saying why
         assert corridor.school.recent.answering_rla(record.tick) == 1
 
 
 def test_it_asks_nobody_in_an_exam_nor_in_a_run_of_before() -> None:
     for other in (Corridor(asked=False), Corridor(asks_when_held=False)):
         record = held(other)
-        assert (record.decision.cause, record.decision.rla_id) == (Cause.RLA, 1)
+        assert (record.decision.cause, record.decision.rla_id) == (DecisionCause.RLA, 1)
         assert record.standing == Standing(StandReason.FRONT_BUMPER)
 
 
@@ -141,26 +141,26 @@ def test_a_robot_that_is_held_and_loses_its_teacher_waits_for_go() -> None:
     corridor.robot.touches_in_front = True
     for _ in range(ASKS_AFTER_TICKS):
         record = corridor.run(None, watch(corridor))
-    assert record.decision.cause is Cause.TOUCHES
+    assert record.decision.cause is DecisionCause.TOUCHES
     for _ in range(24):
         record = corridor.run()
     corridor.robot.touches_in_front = False
     record = corridor.run(None, watch(corridor))
-    assert (record.decision.cause, record.standing.needs_resume) == (Cause.STOPPED, True)
+    assert (record.decision.cause, record.standing.needs_resume) == (DecisionCause.STOPPED, True)
 
 
 def test_a_hand_that_pushes_is_told_and_asked_nothing(corridor: Corridor) -> None:
     corridor.robot.touches_in_front = True
     for _ in range(2 * ASKS_AFTER_TICKS):
         record = corridor.run(100, press(corridor))
-    assert (record.decision.cause, record.standing) == (Cause.TEACHER, Standing(StandReason.FRONT_BUMPER))
+    assert (record.decision.cause, record.standing) == (DecisionCause.TEACHER, Standing(StandReason.FRONT_BUMPER))
 
 
 def test_a_latch_goes_before_the_question(corridor: Corridor) -> None:
     held(corridor)
     corridor.robot.latched = True
     record = corridor.run()
-    assert (record.decision.cause, record.standing.needs_resume) == (Cause.RLA, True)
+    assert (record.decision.cause, record.standing.needs_resume) == (DecisionCause.RLA, True)
 
 
 def drives_into_a_wall(scene: Scene, record: TickRecord) -> None:
@@ -170,10 +170,10 @@ def drives_into_a_wall(scene: Scene, record: TickRecord) -> None:
         scene.simulation.put(Pose(2.5, 2.0, 0.0))
         inbox.put(Resume("go", NAME))
     inbox.put(Watch(NAME, tick))
-    if record.decision.cause is Cause.UNKNOWN and tick % 20 == 0:
+    if record.decision.cause is DecisionCause.UNKNOWN and tick % 20 == 0:
         inbox.put(Teach(f"t{tick}", NAME, "forward"))
-    scene.presses += record.decision.cause is Cause.TOUCHES
-    if scene.presses == 200 and record.decision.cause is Cause.TOUCHES:
+    scene.presses += record.decision.cause is DecisionCause.TOUCHES
+    if scene.presses == 200 and record.decision.cause is DecisionCause.TOUCHES:
         inbox.put(Teach("back", NAME, "back"))
 
 
@@ -182,7 +182,7 @@ def test_a_run_into_a_wall_is_decided_again_as_it_was(tmp_path: Path) -> None:
     asked, after = 0, WheelSpeeds(0.0, 0.0)
     for entry, record in Replay(run):
         assert list(compare(entry, record)) == []
-        if entry.decision.cause is Cause.TOUCHES:
+        if entry.decision.cause is DecisionCause.TOUCHES:
             asked += 1
         elif asked:
             after = min(after, entry.grant.wheel_speeds)
@@ -190,4 +190,4 @@ def test_a_run_into_a_wall_is_decided_again_as_it_was(tmp_path: Path) -> None:
     assert after == BACK
     run.head = replace(run.head, asks_when_held=False)  # as before it asked: nothing else had been recorded
     entry, record = next(tick for tick in Replay(run) if list(compare(*tick)))
-    assert (entry.decision.cause, record.decision.cause) == (Cause.TOUCHES, Cause.RLA)
+    assert (entry.decision.cause, record.decision.cause) == (DecisionCause.TOUCHES, DecisionCause.RLA)

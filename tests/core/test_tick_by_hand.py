@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import Phase, RlaRewarded
 from kurt2rt.core.teaching.commands import (
@@ -50,7 +50,7 @@ def watch(corridor: Corridor, teacher: str = "Ann", *, age: int = 0) -> Watch:
     return Watch(teacher, corridor.ticks + 1 - age)
 
 
-def causes(corridor: Corridor, ticks: int, counts: int | None = None) -> list[Cause]:
+def causes(corridor: Corridor, ticks: int, counts: int | None = None) -> list[DecisionCause]:
     return [corridor.run(counts).decision.cause for _ in range(ticks)]
 
 
@@ -77,17 +77,21 @@ def attended() -> Corridor:
 
 def test_press_drives_for_its_lease_then_robot_stands(driving: Corridor) -> None:
     first = driving.run(100, press(driving))
-    assert (first.decision.cause, first.decision.action, first.decision.rla_id) == (Cause.TEACHER, "by hand", None)
+    assert (first.decision.cause, first.decision.action, first.decision.rla_id) == (
+        DecisionCause.TEACHER,
+        "by hand",
+        None,
+    )
     assert first.guard_result.wheel_speeds == BY_HAND
     assert first.decision.match is not None  # what the robot would have done stays to be seen
-    assert causes(driving, LEASE - 1) == [Cause.TEACHER] * (LEASE - 1)
-    assert causes(driving, 200) == [Cause.STOPPED] * 200
+    assert causes(driving, LEASE - 1) == [DecisionCause.TEACHER] * (LEASE - 1)
+    assert causes(driving, 200) == [DecisionCause.STOPPED] * 200
     assert driving.run(100, resume()).guard_result.wheel_speeds == FORWARD
 
 
 def test_late_press_drives_until_35_ticks_after_its_state(driving: Corridor) -> None:
     driving.run(100, press(driving, age=20))
-    assert causes(driving, 20) == [Cause.TEACHER] * (REACH - 20 - 1) + [Cause.STOPPED] * 6
+    assert causes(driving, 20) == [DecisionCause.TEACHER] * (REACH - 20 - 1) + [DecisionCause.STOPPED] * 6
 
 
 def test_press_on_state_35_ticks_old_does_not_drive(driving: Corridor) -> None:
@@ -99,9 +103,9 @@ def test_press_on_state_35_ticks_old_does_not_drive(driving: Corridor) -> None:
 def test_the_same_press_never_comes_back_and_a_new_one_does(driving: Corridor) -> None:
     driving.run(100, press(driving, hold=5))
     causes(driving, LEASE)
-    assert driving.run(100, press(driving, hold=5)).decision.cause is Cause.STOPPED
-    assert driving.run(100, press(driving, hold=4)).decision.cause is Cause.STOPPED
-    assert driving.run(100, press(driving, hold=6)).decision.cause is Cause.TEACHER
+    assert driving.run(100, press(driving, hold=5)).decision.cause is DecisionCause.STOPPED
+    assert driving.run(100, press(driving, hold=4)).decision.cause is DecisionCause.STOPPED
+    assert driving.run(100, press(driving, hold=6)).decision.cause is DecisionCause.TEACHER
 
 
 def test_late_older_press_neither_drives_nor_revives_the_newer(driving: Corridor) -> None:
@@ -120,11 +124,11 @@ def test_late_older_press_neither_drives_nor_revives_the_newer(driving: Corridor
 def test_a_stop_of_anyone_ends_the_press_in_the_same_tick(driving: Corridor, by: str) -> None:
     driving.run(100, press(driving))
     record = driving.run(100, press(driving), Stop("s", by), press(driving))
-    assert (record.decision.cause, record.guard_result.wheel_speeds) == (Cause.STOPPED, STANDSTILL)
+    assert (record.decision.cause, record.guard_result.wheel_speeds) == (DecisionCause.STOPPED, STANDSTILL)
     assert stands(driving.run(100, press(driving)))
-    assert (driving.run(100, press(driving, hold=2)).decision.cause is Cause.TEACHER) == (by == "Ann")
+    assert (driving.run(100, press(driving, hold=2)).decision.cause is DecisionCause.TEACHER) == (by == "Ann")
     driving.run(100, resume())
-    assert driving.run(100, press(driving, hold=3)).decision.cause is Cause.TEACHER
+    assert driving.run(100, press(driving, hold=3)).decision.cause is DecisionCause.TEACHER
 
 
 def test_manual_drive_enters_history_and_credits_no_rla(driving: Corridor) -> None:
@@ -140,13 +144,13 @@ def test_manual_drive_with_faulty_level_credits_no_rla(driving: Corridor, monkey
 
     def runs_away(level: BasicLevel, *words: object) -> Decision:
         decision = decide(level, *words)  # type: ignore[arg-type]
-        return decision._replace(wheel_speeds=FORWARD, cause=Cause.RLA, action="back", rla_id=1, answers=True)
+        return decision._replace(wheel_speeds=FORWARD, cause=DecisionCause.RLA, action="back", rla_id=1, answers=True)
 
     uses = dict(driving.statistics.uses)
     monkeypatch.setattr(BasicLevel, "decide", runs_away)
     for _ in range(5):
         record = driving.run(100, press(driving))
-        assert (record.decision.cause, record.decision.rla_id) == (Cause.TEACHER, None)
+        assert (record.decision.cause, record.decision.rla_id) == (DecisionCause.TEACHER, None)
         assert not record.decision.answers
         assert record.guard_result.wheel_speeds == BY_HAND
     assert driving.statistics.uses == uses
@@ -160,52 +164,52 @@ def test_a_hand_moves_a_robot_that_knows_nothing() -> None:
 
 def test_a_behaviour_drives_and_then_the_robot_stands(driving: Corridor) -> None:
     record = driving.run(100, RunBehaviour("b", "Ann", "back", 5))
-    assert (record.decision.cause, record.decision.action) == (Cause.TEACHER, "back")
-    assert causes(driving, 6) == [Cause.TEACHER] * 4 + [Cause.STOPPED] * 2
+    assert (record.decision.cause, record.decision.action) == (DecisionCause.TEACHER, "back")
+    assert causes(driving, 6) == [DecisionCause.TEACHER] * 4 + [DecisionCause.STOPPED] * 2
     assert driving.run(100, resume()).decision.action == "forward"
 
 
 def test_attended_robot_without_teacher_stands_or_asks(
     attended: Corridor,
 ) -> None:
-    assert causes(attended, 5, 100) == [Cause.UNATTENDED] * 5
-    assert causes(attended, 5, 400) == [Cause.UNKNOWN] * 5
-    assert causes(attended, 5, 100) == [Cause.UNATTENDED] * 5
+    assert causes(attended, 5, 100) == [DecisionCause.UNATTENDED] * 5
+    assert causes(attended, 5, 400) == [DecisionCause.UNKNOWN] * 5
+    assert causes(attended, 5, 100) == [DecisionCause.UNATTENDED] * 5
     assert set(attended.robot.driven) == {STANDSTILL}
 
 
 def test_attended_robot_that_lost_its_teacher_needs_resume(attended: Corridor) -> None:
     attended.run(100, watch(attended))
-    assert causes(attended, LEASE - 1) == [Cause.RLA] * (LEASE - 1)
-    assert attended.run(100).decision.cause is Cause.STOPPED
-    assert causes(attended, 50) == [Cause.STOPPED] * 50
-    assert attended.run(100, watch(attended)).decision.cause is Cause.STOPPED
-    assert attended.run(100, watch(attended), resume()).decision.cause is Cause.RLA
+    assert causes(attended, LEASE - 1) == [DecisionCause.RLA] * (LEASE - 1)
+    assert attended.run(100).decision.cause is DecisionCause.STOPPED
+    assert causes(attended, 50) == [DecisionCause.STOPPED] * 50
+    assert attended.run(100, watch(attended)).decision.cause is DecisionCause.STOPPED
+    assert attended.run(100, watch(attended), resume()).decision.cause is DecisionCause.RLA
 
 
 @pytest.mark.parametrize(("age", "there"), [(0, LEASE), (11, LEASE), (12, LEASE - 1), (34, 1), (35, 0)])
 def test_presence_is_counted_from_the_picture_as_the_press_is(attended: Corridor, age: int, there: int) -> None:
     attended.ticks += 100
     cause = [attended.run(100, watch(attended, age=age)).decision.cause, *causes(attended, LEASE)]
-    assert cause[:there] == [Cause.RLA] * there
-    assert set(cause[there:]) == {Cause.STOPPED if there else Cause.UNATTENDED}
+    assert cause[:there] == [DecisionCause.RLA] * there
+    assert set(cause[there:]) == {DecisionCause.STOPPED if there else DecisionCause.UNATTENDED}
 
 
 def test_presence_renewed_every_tick_never_expires(attended: Corridor) -> None:
     for _ in range(20):
-        assert attended.run(100, watch(attended, age=11)).decision.cause is Cause.RLA
-        assert causes(attended, REACH - 11 - 1) == [Cause.RLA] * (REACH - 11 - 1)
+        assert attended.run(100, watch(attended, age=11)).decision.cause is DecisionCause.RLA
+        assert causes(attended, REACH - 11 - 1) == [DecisionCause.RLA] * (REACH - 11 - 1)
 
 
 def test_a_teacher_lost_while_it_stood_need_not_say_resume(attended: Corridor) -> None:
     attended.run(400, watch(attended))
-    assert causes(attended, 60, 400) == [Cause.UNKNOWN] * 60
-    assert causes(attended, 2, 100) == [Cause.UNATTENDED] * 2
-    assert attended.run(100, watch(attended)).decision.cause is Cause.RLA
+    assert causes(attended, 60, 400) == [DecisionCause.UNKNOWN] * 60
+    assert causes(attended, 2, 100) == [DecisionCause.UNATTENDED] * 2
+    assert attended.run(100, watch(attended)).decision.cause is DecisionCause.RLA
 
 
 def test_another_ones_watching_does_not_count(attended: Corridor) -> None:
-    assert attended.run(100, watch(attended, "Ben")).decision.cause is Cause.UNATTENDED
+    assert attended.run(100, watch(attended, "Ben")).decision.cause is DecisionCause.UNATTENDED
 
 
 def test_a_robot_taken_while_it_drives_waits_for_its_new_teacher(attended: Corridor) -> None:
@@ -213,34 +217,34 @@ def test_a_robot_taken_while_it_drives_waits_for_its_new_teacher(attended: Corri
     record = attended.run(100, watch(attended), Take("take", "Ben"))
     assert record.results[0].accepted
     assert stands(record)
-    assert attended.run(100, watch(attended, "Ben"), Resume("r", "Ben")).decision.cause is Cause.RLA
+    assert attended.run(100, watch(attended, "Ben"), Resume("r", "Ben")).decision.cause is DecisionCause.RLA
 
 
 def test_phase_5_needs_no_teacher_and_its_end_stops_the_robot(attended: Corridor) -> None:
     attended.run(100, set_phase(Phase.AUTONOMOUS))
-    assert causes(attended, 200) == [Cause.RLA] * 200
-    assert attended.run(100, set_phase(Phase.CORRECTIONS, "back to 2")).decision.cause is Cause.STOPPED
+    assert causes(attended, 200) == [DecisionCause.RLA] * 200
+    assert attended.run(100, set_phase(Phase.CORRECTIONS, "back to 2")).decision.cause is DecisionCause.STOPPED
 
 
 @pytest.mark.parametrize("phase", [phase for phase in Phase if phase is not Phase.AUTONOMOUS])
 def test_in_every_other_phase_it_needs_one(attended: Corridor, phase: Phase) -> None:
     attended.run(100, set_phase(phase))
-    assert attended.run(100).decision.cause is Cause.UNATTENDED
+    assert attended.run(100).decision.cause is DecisionCause.UNATTENDED
 
 
 def test_unattended_robot_drives_without_a_teacher(driving: Corridor) -> None:
-    assert causes(driving, 200) == [Cause.RLA] * 200
+    assert causes(driving, 200) == [DecisionCause.RLA] * 200
 
 
 def test_press_renews_presence_and_its_end_stops_the_robot(attended: Corridor) -> None:
     attended.run(100, press(attended))
-    assert causes(attended, LEASE) == [Cause.TEACHER] * (LEASE - 1) + [Cause.STOPPED]
+    assert causes(attended, LEASE) == [DecisionCause.TEACHER] * (LEASE - 1) + [DecisionCause.STOPPED]
 
 
 def test_a_behaviour_ends_with_the_presence_of_its_teacher(attended: Corridor) -> None:
     attended.run(100, watch(attended), RunBehaviour("b", "Ann", "back", 500))
-    assert causes(attended, LEASE) == [Cause.TEACHER] * (LEASE - 1) + [Cause.STOPPED]
-    assert attended.run(100, watch(attended)).decision.cause is Cause.STOPPED
+    assert causes(attended, LEASE) == [DecisionCause.TEACHER] * (LEASE - 1) + [DecisionCause.STOPPED]
+    assert attended.run(100, watch(attended)).decision.cause is DecisionCause.STOPPED
 
 
 def test_blind_robot_takes_lessons_of_seeing_ticks_only(driving: Corridor) -> None:
@@ -312,8 +316,8 @@ def test_lease_expires_while_latched_and_ends_the_press(driving: Corridor) -> No
 
 
 def test_stop_and_resume_of_one_tick_count_in_their_order(driving: Corridor) -> None:
-    assert driving.run(100, resume("1"), stop("2")).decision.cause is Cause.STOPPED
-    assert driving.run(100, stop("3"), resume("4")).decision.cause is Cause.RLA
+    assert driving.run(100, resume("1"), stop("2")).decision.cause is DecisionCause.STOPPED
+    assert driving.run(100, stop("3"), resume("4")).decision.cause is DecisionCause.RLA
 
 
 NAMES = st.sampled_from(["Ann", "Ann", "Ben", "Cleo"])
@@ -418,7 +422,7 @@ class Witness:
         if moves:
             assert not alone
             assert self.stops <= {teacher}
-        self.drove_by_itself = moves and decision.cause is not Cause.TEACHER
+        self.drove_by_itself = moves and decision.cause is not DecisionCause.TEACHER
         if self.drove_by_itself:
             assert not self.stops
             assert not self.lost
@@ -453,8 +457,10 @@ def test_three_random_teachers_keep_rules_of_manual_drive(
         witness.check(record, corridor)
 
 
-@pytest.mark.parametrize(("trouble", "cause"), [("disk full", Cause.UNSAVED), (None, Cause.BLIND)])
-def test_manual_drive_is_blocked_if_blind_or_unsaved(driving: Corridor, trouble: str | None, cause: Cause) -> None:
+@pytest.mark.parametrize(("trouble", "cause"), [("disk full", DecisionCause.UNSAVED), (None, DecisionCause.BLIND)])
+def test_manual_drive_is_blocked_if_blind_or_unsaved(
+    driving: Corridor, trouble: str | None, cause: DecisionCause
+) -> None:
     assert not stands(driving.run(100, press(driving)))
     driving.notebook.error = trouble
     driving.robot.infrared_age_s = 0.0 if trouble else 1.0
@@ -468,4 +474,4 @@ def test_a_reward_does_not_cut_an_action_short(driving: Corridor) -> None:
     began = driving.ticks - 1
     assert replace.action == "back"
     held = driving.run(100, Reward("praise", "Ann", 1, began))
-    assert (held.decision.cause, held.decision.action) == (Cause.HELD, "back")
+    assert (held.decision.cause, held.decision.action) == (DecisionCause.HELD, "back")

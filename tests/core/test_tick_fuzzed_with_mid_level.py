@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import pytest
 
 from hal.robot import STANDSTILL
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.decision.plan_step import GoalStatus
 from kurt2rt.core.rla.rla import BASIC, CRITIC, MID, Phase, TeachingEvent
@@ -139,7 +139,7 @@ class Bedlam(Town):
         """Whether every rule lets wheels turn for a decision."""
         school, mid = self.runtime.handler, self.runtime.mid
         assert mid is not None
-        if decision.cause is Cause.TEACHER:
+        if decision.cause is DecisionCause.TEACHER:
             return school.authority.is_manual(self.tick)
         there = school.authority.is_present(self.tick) or school.phase is Phase.AUTONOMOUS
         stands_at_goal = decision.plan is not None and decision.plan.course in (GoalStatus.ARRIVED, GoalStatus.NO_WAY)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import pytest
 
 from kurt2rt.core.decision.active_stop import STARTED
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.rla.credit import Credit
 from kurt2rt.core.rla.rla import (
@@ -124,7 +124,7 @@ def test_a_blind_robot_has_neither_circumstances_nor_an_opinion(driving: Drive) 
     assert driving.run(ticks=10).opinion is not None
     driving.robot.infrared_age_s = 1.0
     record = driving.run()
-    assert (record.decision.cause, record.appraisal_features, record.opinion) == (Cause.BLIND, None, None)
+    assert (record.decision.cause, record.appraisal_features, record.opinion) == (DecisionCause.BLIND, None, None)
     assert not driving.run(Appraise("x-2", "Ann", "bad")).results[0].accepted
 
 
@@ -189,7 +189,7 @@ def test_no_reward_and_no_opinion_moves_a_robot_that_stands(driving: Drive) -> N
     drive.run(SetPhase("phase", "Ann", Phase.AUTONOMOUS))
     for number in range(300):
         record = drive.run(Reward(f"r-{number}", "Ann", (-1, 1)[number % 2]), counts=(NEAR, FAR)[number // 150])
-        assert record.decision.cause is Cause.STOPPED
+        assert record.decision.cause is DecisionCause.STOPPED
         assert record.guard_result.wheel_speeds == (0.0, 0.0)
     assert drive.notebook.events == []
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import pytest
 
 from hal.robot import STANDSTILL
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
@@ -114,7 +114,7 @@ def test_it_drives_to_the_door_and_stands_there(block: Block) -> None:
     plan = record.decision.plan
     assert plan is not None
     assert (plan.course, plan.says, plan.surprises) == (GoalStatus.ARRIVED, "arrived: door", 0)
-    assert (record.decision.cause, record.decision.wheel_speeds) == (Cause.AT_GOAL, STANDSTILL)
+    assert (record.decision.cause, record.decision.wheel_speeds) == (DecisionCause.AT_GOAL, STANDSTILL)
     record = block.say(StopSeeking)
     assert record.decision.plan is None
     assert record.decision.driving
@@ -165,7 +165,7 @@ def test_seek_without_a_way_stands_with_status() -> None:
     assert told(town.seek(NamedGoal("home"))) == Outcome.of(ResultCode.GOAL_SOUGHT, says="planning the way to home")
     assert town.plan().says == "no way from here to home: nothing taught leads there"
     record = town.run()
-    assert (record.decision.cause, record.decision.wheel_speeds) == (Cause.NO_WAY, STANDSTILL)
+    assert (record.decision.cause, record.decision.wheel_speeds) == (DecisionCause.NO_WAY, STANDSTILL)
 
 
 def test_seek_while_standing_stands_until_the_plan_is_ready(block: Block) -> None:
@@ -290,18 +290,18 @@ def test_pursue_overrides_the_plan_until_the_next_junction(block: Block) -> None
 
 def test_his_word_drives_also_where_the_robot_has_arrived(block: Block) -> None:
     block.say(NameSituation, "here")
-    assert block.seek(NamedGoal("here")).decision.cause is Cause.AT_GOAL
+    assert block.seek(NamedGoal("here")).decision.cause is DecisionCause.AT_GOAL
     record = block.say(Pursue, "turn_left")
     assert record.decision.driving
-    assert block.go().decision.cause is Cause.AT_GOAL  # once he has had his way it stands again
+    assert block.go().decision.cause is DecisionCause.AT_GOAL  # once he has had his way it stands again
 
 
 def test_a_stop_goes_before_all(block: Block) -> None:
     block.seek()
-    assert block.say(Stop).decision.cause is Cause.STOPPED
+    assert block.say(Stop).decision.cause is DecisionCause.STOPPED
     late = block.run(Seek("late", "Ann", DOOR, block.tick - 1))
     assert not told(late).accepted
-    assert late.decision.cause is Cause.STOPPED
+    assert late.decision.cause is DecisionCause.STOPPED
 
 
 def test_goal_given_far_behind_a_junction_skips_the_next(block: Block) -> None:

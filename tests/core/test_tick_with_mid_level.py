@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import pytest
 
 from hal.robot import STANDSTILL, SensorReadings
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.outcome import Field, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import (
     BASIC,
@@ -161,7 +161,7 @@ def test_mid_level_asks_at_once_and_the_answer_drives() -> None:
     town = Town()
     record = town.run()
     decision = record.decision
-    assert (decision.wheel_speeds, decision.cause, decision.asks_at) == (STANDSTILL, Cause.UNKNOWN, MID)
+    assert (decision.wheel_speeds, decision.cause, decision.asks_at) == (STANDSTILL, DecisionCause.UNKNOWN, MID)
     assert town.robot.driven[-1] == STANDSTILL
 
     record = town.run(the_way("turn_left"))
@@ -178,7 +178,7 @@ def test_first_of_three_questions_is_the_mid_levels() -> None:
     town = Town([])
     assert town.run().decision.asks_at == MID
     record = town.run(the_way("turn_left"))
-    assert (record.decision.cause, record.decision.asks_at) == (Cause.UNKNOWN, BASIC)
+    assert (record.decision.cause, record.decision.asks_at) == (DecisionCause.UNKNOWN, BASIC)
     record = town.run(Teach("t", "Ann", "forward"))
     assert told(record) == Outcome.of(ResultCode.RLA_TAUGHT, rla=2, behaviour="turn_left", action="forward")
     assert record.decision.driving
@@ -186,7 +186,7 @@ def test_first_of_three_questions_is_the_mid_levels() -> None:
 
 def test_a_robot_whose_teacher_is_away_asks_the_way_all_the_same() -> None:
     decision = Town(attended=True).run().decision
-    assert (decision.cause, decision.asks_at, decision.driving) == (Cause.UNKNOWN, MID, False)
+    assert (decision.cause, decision.asks_at, decision.driving) == (DecisionCause.UNKNOWN, MID, False)
 
 
 def test_mid_lesson_counts_for_similar_histories(town: Town) -> None:
@@ -354,17 +354,17 @@ def test_a_blind_robot_still_knows_how_it_came_there(town: Town) -> None:
     town.robot.infrared_age_s = 60.0
     record = town.run(another_way("turn_left"), Correct("c", "Ann", "forward"))
     assert [result.accepted for result in record.results] == [True, False]
-    assert record.decision.cause is Cause.BLIND
+    assert record.decision.cause is DecisionCause.BLIND
 
 
 def test_stop_with_mid_level_holds_and_next_teacher_continues(town: Town) -> None:
     record = town.run(Stop("s", "Ann"))
-    assert (record.decision.wheel_speeds, record.decision.cause) == (STANDSTILL, Cause.STOPPED)
+    assert (record.decision.wheel_speeds, record.decision.cause) == (STANDSTILL, DecisionCause.STOPPED)
     assert told(town.run(another_way("turn_left"))).accepted
-    assert town.run().decision.cause is Cause.STOPPED
+    assert town.run().decision.cause is DecisionCause.STOPPED
     town.run(HandOver("h", "Ann"))
     town.run(Take("take", "Bob"))
-    assert town.run().decision.cause is Cause.STOPPED
+    assert town.run().decision.cause is DecisionCause.STOPPED
     record = town.run(Resume("go", "Bob"))
     assert (record.behaviour, record.decision.driving) == ("turn_left", True)
 
@@ -377,7 +377,7 @@ def test_manual_drive_passes_junctions_without_counting_uses(town: Town) -> None
         town.robot.left_m = town.robot.right_m = STEP_M
         for _ in range(steps):
             record = town.run(Drive("Ann", town.tick, 1, 0.1, 0.1))
-            assert record.decision.cause is Cause.TEACHER
+            assert record.decision.cause is DecisionCause.TEACHER
     assert town.history == ("straight",)
     assert town.runtime.statistics.uses == uses
 

@@ -5,7 +5,7 @@ import pytest
 
 from hal.control import encode_brake
 from hal.robot import STANDSTILL
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.teaching.commands import Command
 from kurt2rt.core.tick import TickRecord
@@ -69,7 +69,7 @@ async def test_it_ends_by_itself_after_its_time(tmp_path: Path) -> None:
     with rig() as here:
         last = await here.serve(tmp_path / "knowledge", lambda _: None, duration_s=0.3)
     assert here.now.tick >= 30  # beyond, when the last ones were missed
-    assert {record.decision.cause for record in here.records} == {Cause.UNKNOWN}
+    assert {record.decision.cause for record in here.records} == {DecisionCause.UNKNOWN}
     assert all(record.guard_result.wheel_speeds == STANDSTILL for record in here.records)
     assert len(here.questions) == 1
     assert last is not None

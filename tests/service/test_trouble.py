@@ -5,7 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from hal.robot import STANDSTILL
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.teaching.commands import Command, Resume, Stop
 from kurt2rt.core.tick import TickRecord
@@ -53,7 +53,7 @@ async def test_serve_failing_disk_stops_until_lessons_are_saved(tmp_path: Path) 
         return True
 
     def it_stands_for_a_while(record: TickRecord) -> bool:
-        if record.decision.cause is Cause.UNSAVED:
+        if record.decision.cause is DecisionCause.UNSAVED:
             unsaved.append(record)
         if len(unsaved) < 20:
             return False
@@ -61,9 +61,9 @@ async def test_serve_failing_disk_stops_until_lessons_are_saved(tmp_path: Path) 
         return True
 
     def it_goes_on(record: TickRecord) -> bool:
-        if record.decision.cause is Cause.UNSAVED:
+        if record.decision.cause is DecisionCause.UNSAVED:
             unsaved.append(record)
-        return record.decision.cause is not Cause.UNSAVED and record.decision.driving
+        return record.decision.cause is not DecisionCause.UNSAVED and record.decision.driving
 
     story = Story(a_lesson_is_saved, it_stands_for_a_while, it_goes_on)
 
@@ -165,7 +165,7 @@ async def test_a_person_stops_it_and_lets_it_go_on(tmp_path: Path) -> None:
         return True
 
     def it_stands(record: TickRecord) -> bool:
-        if record.decision.cause is Cause.STOPPED:
+        if record.decision.cause is DecisionCause.STOPPED:
             stopped.append(record)
         if len(stopped) < 20:
             return False

@@ -11,7 +11,7 @@ from hal.guard_reason import GuardReason
 from hal.kurt2 import Kurt2
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from hal.robot_settings import load_robot
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.teaching.commands import Watch
 from kurt2rt.service.bus_names import SIMULATED
 from kurt2rt.service.open_robot import open_robot
@@ -121,6 +121,6 @@ def test_ticks_that_were_missed_count_against_no_lease_in_simulation(tolerates: 
     seen = corridor.ticks
     corridor.ticks += 200  # the computer stalled for two seconds
     record = corridor.run(None, Watch("Ann", seen))
-    assert record.decision.cause is (Cause.RLA if tolerates else Cause.STOPPED)
+    assert record.decision.cause is (DecisionCause.RLA if tolerates else DecisionCause.STOPPED)
     causes = [corridor.run().decision.cause for _ in range(24)]
-    assert causes[-1] is Cause.STOPPED  # a teacher who stays away is away
+    assert causes[-1] is DecisionCause.STOPPED  # a teacher who stays away is away

@@ -7,7 +7,7 @@ from hal.robot import WheelSpeeds
 from kurt2rt.channel.protocol.cbor_schema import COUNT, LINE, NAME, Form, MapOf, MayLack, OrNotFinite
 from kurt2rt.channel.protocol.schema import Flag, Float, Int, ManyOf, OneWord, OrNone, Row
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing_text import stop_of_text
 from kurt2rt.runs.explain.facts import MOST_OTHERS, DecisionFacts, LessonFact, LevelFacts, RlaFacts
 
@@ -84,7 +84,7 @@ _FACTS = MapOf(
     robot=NAME,
     task=NAME,
     phase=Int(1, 5),
-    cause=OneWord(tuple(cause.value for cause in Cause)),
+    cause=OneWord(tuple(cause.value for cause in DecisionCause)),
     action=OrNone(NAME),
     asks_at=NAME,
     decided=_SPEEDS,

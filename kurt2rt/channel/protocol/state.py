@@ -72,7 +72,7 @@ class State:
     """Set points that went out, after the guard."""
     right_m_s: float
     cause: str
-    """Mover of the wheels, or reason of the standstill: a value of kurt2rt.core.decision.decision.Cause."""
+    """Mover of the wheels, or reason of the standstill: a value of kurt2rt.core.decision.decision.DecisionCause."""
     action: str | None
     """Action that drives; None while the robot stands."""
     rla: int | None

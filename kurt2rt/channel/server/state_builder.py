@@ -5,7 +5,7 @@ from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.channel.server.dependencies import ChannelDependencies
 from kurt2rt.channel.server.mid_state import mid_state, surprise_state
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.rla import ASK, BASIC, Rla
 from kurt2rt.core.teaching.question import FeatureDifference, ask
 from kurt2rt.core.tick import TickRecord
@@ -39,7 +39,7 @@ class StateBuilder:
             self._late_p99_ms = self._late()
         self._count += 1
         question: tuple[FeatureDifference, ...] = ()
-        if decision.cause is Cause.UNKNOWN and match is not None and decision.asks_at == BASIC:
+        if decision.cause is DecisionCause.UNKNOWN and match is not None and decision.asks_at == BASIC:
             question = ask(match, record.situation.vector, system.weights, runtime.definition.names).differing
         nearest = None if match is None else match.rla
         plan = decision.plan

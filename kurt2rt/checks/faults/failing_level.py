@@ -4,7 +4,7 @@ import math
 
 from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.decision.level import Level
 from kurt2rt.core.perception.perception import Situation
 
@@ -31,7 +31,7 @@ class FaultyLevel:
         self.inner: Level | None = None
         """Deciding layer; set before the first tick."""
 
-    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
+    def decide(self, situation: Situation, senses: SensorReadings, stand_because: DecisionCause | None) -> Decision:
         """Return the decision under the fault. Raises BrokenTickError."""
         assert self.inner is not None
         decision = self.inner.decide(situation, senses, stand_because)
@@ -64,7 +64,7 @@ def _driving(decision: Decision) -> Decision:
     if decision.driving or decision.match is None:
         return decision
     rla = decision.match.rla
-    return decision._replace(cause=Cause.RLA, action=rla.action, rla_id=rla.rla_id)
+    return decision._replace(cause=DecisionCause.RLA, action=rla.action, rla_id=rla.rla_id)
 
 
 class SoakLevel:
@@ -85,7 +85,7 @@ class SoakLevel:
         """End the fault."""
         self._disturbed = None
 
-    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
+    def decide(self, situation: Situation, senses: SensorReadings, stand_because: DecisionCause | None) -> Decision:
         """Return the decision under the fault. Raises BrokenTickError."""
         level = self._disturbed or self.inner
         assert level is not None

@@ -5,7 +5,7 @@ from kurt2rt.checks.soak.disk_list import Spool
 from kurt2rt.checks.soak.program_run import ProgramRun
 from kurt2rt.checks.soak.resource_usage import open_files, resident_mb, threads
 from kurt2rt.checks.soak.result import SoakMinute
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.tick import TickRecord
 
 
@@ -22,7 +22,10 @@ class MinuteLog:
         self._ticks += 1
         self._drives += record.guard_result.wheel_speeds != STANDSTILL
         self._asks += record.decision.asking
-        self._stopped += record.guard_result.latched or record.decision.cause in (Cause.STOPPED, Cause.UNATTENDED)
+        self._stopped += record.guard_result.latched or record.decision.cause in (
+            DecisionCause.STOPPED,
+            DecisionCause.UNATTENDED,
+        )
         self._missed += missed
         self._worst_late_s = max(self._worst_late_s, late_s)
 

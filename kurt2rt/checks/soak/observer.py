@@ -8,7 +8,7 @@ from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
 from kurt2rt.checks.faults.envelope import Envelope
 from kurt2rt.checks.faults.table import EnvelopeSettings
 from kurt2rt.checks.soak.long_run_rig import SoakRig
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.teaching.commands import Resume
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.platform.ledger import TickTimer
@@ -80,7 +80,7 @@ class SoakObserver:
             self._must_stand = ""
             self.resumes += 1
         # A teacher's hand tells it to drive, until it lets go.
-        if moves and self._must_stand and record.decision.cause is not Cause.TEACHER:
+        if moves and self._must_stand and record.decision.cause is not DecisionCause.TEACHER:
             self.complaints.add(complaint(ComplaintCode.DROVE_UNTOLD, now_s, must_stand=self._must_stand))
         if record.guard_result.latched:
             self._must_stand = ", ".join(record.guard_result.reasons) or "stopped for good"

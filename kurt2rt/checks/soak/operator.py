@@ -3,12 +3,12 @@
 import math
 
 from kurt2rt.checks.soak.long_run_rig import SoakRig
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.teaching.commands import Resume
 from kurt2rt.core.tick import TickRecord
 
 _WAY_M = 0.3
-_DRIVES = (Cause.RLA, Cause.HELD, Cause.TEACHER)
+_DRIVES = (DecisionCause.RLA, DecisionCause.HELD, DecisionCause.TEACHER)
 
 
 class SoakOperator:

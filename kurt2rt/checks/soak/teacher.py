@@ -5,7 +5,7 @@ import random
 from hal.robot_settings import RobotSettings
 from kurt2rt.checks.soak.settings import MoodSettings, SoakSettings
 from kurt2rt.core.critic.settings import load_critic
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings, TeacherSettings
 from kurt2rt.core.teaching.commands import (
@@ -96,7 +96,7 @@ class SoakTeacher:
         if self._begins:
             begins, self._begins = self._begins, []
             return begins
-        if record.guard_result.latched or record.decision.cause is Cause.STOPPED:
+        if record.guard_result.latched or record.decision.cause is DecisionCause.STOPPED:
             return self._resume(record)
         self._stopped_ticks = 0
         if self._happens(settings.stops_every_s):

@@ -8,7 +8,7 @@ from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.basic.held_action import HeldAction
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.match import Match
@@ -106,7 +106,7 @@ class BasicLevel:
                 return rla_meant is not None and rla_meant.level == BASIC
         return isinstance(event, LessonUndone | LessonRedone)
 
-    def decide(self, situation: Situation, senses: SensorReadings, blocking_cause: Cause | None) -> Decision:
+    def decide(self, situation: Situation, senses: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:
         """Return the winner's action or the held one; standstill with a blocking cause or without a known RLA."""
         if self._behaviour != self.active_behaviour.behaviour:
             self._behaviour = self.active_behaviour.behaviour
@@ -117,7 +117,7 @@ class BasicLevel:
         if blocking_cause is not None:
             return self._stand(blocking_cause, match)
         if match is None or not match.known:
-            return self._stand(Cause.UNKNOWN, match)
+            return self._stand(DecisionCause.UNKNOWN, match)
         rla = match.rla
         if self._choice is not None:
             group = self.system.competitors(rla)
@@ -126,22 +126,24 @@ class BasicLevel:
         if self._held.select(rla.action):
             if rla is not self._driver:
                 self._driver, self._drivers_condition = rla, None
-            return self._drive(senses, Cause.RLA, rla, match, answers=True)
+            return self._drive(senses, DecisionCause.RLA, rla, match, answers=True)
         driver = self._driver
         assert driver is not None
         answers = driver.condition == rla.condition or self._inside(driver, situation)
-        return self._drive(senses, Cause.HELD, driver, match, answers=answers)
+        return self._drive(senses, DecisionCause.HELD, driver, match, answers=answers)
 
     def would_answer(self, group: tuple[Rla, ...]) -> Rla:
         """Return which RLA of one condition, oldest first, would answer there without random exploration."""
         return group[0] if self._choice is None else self._choice.preview(group, self._decisions)
 
-    def _drive(self, senses: SensorReadings, cause: Cause, rla: Rla, match: Match, *, answers: bool) -> Decision:
+    def _drive(
+        self, senses: SensorReadings, cause: DecisionCause, rla: Rla, match: Match, *, answers: bool
+    ) -> Decision:
         """Step the held action; ask if it is lost."""
         wheel_speeds = self._held.step(senses)
         if self._held.lost:
             # The action is not restarted: it goes on by itself once its situation is known again.
-            return Decision(STANDSTILL, Cause.UNKNOWN, None, None, match)
+            return Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, match)
         return Decision(wheel_speeds, cause, self._held.name, rla.rla_id, match, answers)
 
     def _inside(self, rla: Rla, situation: Situation) -> bool:
@@ -152,7 +154,7 @@ class BasicLevel:
         radius = self.system.radius if rla.radius is None else rla.radius
         return exact_square(off) <= radius * radius
 
-    def _stand(self, cause: Cause, match: Match | None) -> Decision:
+    def _stand(self, cause: DecisionCause, match: Match | None) -> Decision:
         """Stop the held action; the next one starts from its beginning."""
         self._held.stop()
         return Decision(STANDSTILL, cause, None, None, match)

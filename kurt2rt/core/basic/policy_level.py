@@ -5,7 +5,7 @@ from behaviors.repertoire import Repertoire
 from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.basic.held_action import HeldAction
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.decision.errors import UnknownActionError
 from kurt2rt.core.perception.perception import Situation
 
@@ -26,7 +26,7 @@ class PolicyLevel:
         self._behaviour = active_behaviour.behaviour
         self._held = HeldAction(repertoire, minimum_action_ticks)
 
-    def decide(self, situation: Situation, senses: SensorReadings, blocking_cause: Cause | None) -> Decision:  # noqa: ARG002 - the policy sees the senses
+    def decide(self, situation: Situation, senses: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:  # noqa: ARG002 - the policy sees the senses
         """Return the policy's action for the active behaviour. Raises UnknownActionError."""
         if self._behaviour != self._active_behaviour.behaviour:
             self._behaviour = self._active_behaviour.behaviour
@@ -41,4 +41,4 @@ class PolicyLevel:
                 f"add it there, or let the policy say one of: {', '.join(self._repertoire)}"
             )
         self._held.select(action)
-        return Decision(self._held.step(senses), Cause.TEACHER, self._held.name, None, None)
+        return Decision(self._held.step(senses), DecisionCause.TEACHER, self._held.name, None, None)

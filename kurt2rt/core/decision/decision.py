@@ -10,7 +10,7 @@ from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import BASIC
 
 
-class Cause(StrEnum):
+class DecisionCause(StrEnum):
     """Code for why a decision sets these wheel speeds."""
 
     RLA = "rla"
@@ -58,7 +58,7 @@ class Decision(NamedTuple):
     """Decision of one tick."""
 
     wheel_speeds: WheelSpeeds
-    cause: Cause
+    cause: DecisionCause
     action: str | None
     """Name of the action that drives; None while the robot stands."""
     rla_id: int | None
@@ -82,18 +82,18 @@ class Decision(NamedTuple):
     @property
     def asking(self) -> bool:
         """Return whether the robot waits for an answer, because the situation is unknown or it touches something."""
-        return self.cause in (Cause.UNKNOWN, Cause.TOUCHES)
+        return self.cause in (DecisionCause.UNKNOWN, DecisionCause.TOUCHES)
 
 
 def withdrawn_rla_in(decision: Decision) -> int | None:
     """Return the id of the basic level's RLA that waits for a new action; None if the robot asks for no such RLA."""
     match = decision.match
-    if decision.cause is not Cause.UNKNOWN or decision.asks_at != BASIC or match is None:
+    if decision.cause is not DecisionCause.UNKNOWN or decision.asks_at != BASIC or match is None:
         return None
     return match.rla.rla_id if match.rla.is_withdrawn and match.distance <= match.radius else None
 
 
-def stopped(decision: Decision, cause: Cause | None) -> Decision:
+def stopped(decision: Decision, cause: DecisionCause | None) -> Decision:
     """Return the decision at standstill if a cause forbids driving, even if a faulty level would drive.
 
     Args:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.core.decision.active_stop import ActiveStop
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.rla.rla import MID
 
 
@@ -93,12 +93,12 @@ _HELD: dict[str, StandReason] = {
 """Reasons by the guard's code for set points that it blocks tick by tick."""
 
 _CAUSES = {
-    Cause.STOPPED: StandReason.STOPPED,
-    Cause.UNATTENDED: StandReason.UNATTENDED,
-    Cause.BLIND: StandReason.BLIND,
-    Cause.UNSAVED: StandReason.UNSAVED,
-    Cause.AT_GOAL: StandReason.AT_GOAL,
-    Cause.NO_WAY: StandReason.NO_WAY,
+    DecisionCause.STOPPED: StandReason.STOPPED,
+    DecisionCause.UNATTENDED: StandReason.UNATTENDED,
+    DecisionCause.BLIND: StandReason.BLIND,
+    DecisionCause.UNSAVED: StandReason.UNSAVED,
+    DecisionCause.AT_GOAL: StandReason.AT_GOAL,
+    DecisionCause.NO_WAY: StandReason.NO_WAY,
 }
 
 
@@ -106,23 +106,23 @@ def standing_for(cause: str, asks_at: str, stop: ActiveStop | None, says: str = 
     """Return the standing of a robot that the guard does not hold, from the cause of its decision.
 
     Args:
-        cause: a value of Cause; an unknown value becomes HALTED with it as detail.
+        cause: a value of DecisionCause; an unknown value becomes HALTED with it as detail.
         asks_at: level that asks, if `cause` is UNKNOWN.
         stop: active stop; None without one.
         says: outcome of the goal, or why lessons cannot be saved, in words.
     """
-    asks = cause in (Cause.UNKNOWN, Cause.TOUCHES)
+    asks = cause in (DecisionCause.UNKNOWN, DecisionCause.TOUCHES)
     if stop is not None:
         return Standing(StandReason.STOPPED, True, asks, stop=stop)
-    if cause == Cause.UNKNOWN:
+    if cause == DecisionCause.UNKNOWN:
         return Standing(StandReason.ASKS_THE_WAY if asks_at == MID else StandReason.ASKS, asks=True)
-    if cause == Cause.TOUCHES:
+    if cause == DecisionCause.TOUCHES:
         return Standing(StandReason.FRONT_BUMPER, asks=True)
-    if cause in (Cause.RLA, Cause.HELD, Cause.TEACHER):
+    if cause in (DecisionCause.RLA, DecisionCause.HELD, DecisionCause.TEACHER):
         return DRIVES
-    if cause not in Cause.__members__.values():
+    if cause not in DecisionCause.__members__.values():
         return Standing(StandReason.HALTED, says=cause)
-    return Standing(_CAUSES[Cause(cause)], says=says)
+    return Standing(_CAUSES[DecisionCause(cause)], says=says)
 
 
 ASKS_AFTER_TICKS = 50
@@ -168,7 +168,7 @@ class BumperWatch:
 
     def update(self, decision: Decision, guard_result: GuardResult) -> bool:
         """Count one tick; return whether a bumper blocks the robot now and has for ASKS_AFTER_TICKS."""
-        pushes = decision.cause in (Cause.RLA, Cause.HELD) and not guard_result.latched
+        pushes = decision.cause in (DecisionCause.RLA, DecisionCause.HELD) and not guard_result.latched
         held = pushes and touched_bumper(guard_result.wheel_speeds, guard_result.reasons) is not None
         if held:
             self._held_ticks = min(self._held_ticks + 1, ASKS_AFTER_TICKS)
@@ -224,7 +224,7 @@ class StandingWatch:
 
     def _held_back(self, decision: Decision, guard_result: GuardResult) -> StandReason | None:
         """Return why the guard blocks the decision, after HELD_TICKS ticks or at a bumper; None if it does not."""
-        if decision.cause is Cause.TOUCHES and not guard_result.latched:
+        if decision.cause is DecisionCause.TOUCHES and not guard_result.latched:
             return touched_bumper(guard_result.wheel_speeds, guard_result.reasons)
         if guard_result.latched or not decision.driving:
             self._held, self._held_ticks = None, 0

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from itertools import chain
 
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.expectations.expectations import Expectations
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.expectations.transitions import BasicTransitionTracker, MidTransitionTracker
@@ -51,7 +51,7 @@ class ExpectationTracker:
         following, mid, commanded = self._mid_transitions, self._mid, decision.mid
         if following is None or mid is None or commanded is None:
             return surprise
-        if commanded.overridden or decision.cause is Cause.TEACHER:
+        if commanded.overridden or decision.cause is DecisionCause.TEACHER:
             following.restart()
         return following.update(commanded, mid.vector, driving=driving) or surprise
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from hal.robot import SensorReadings
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Cause, Decision, MidDecision
+from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision
 from kurt2rt.core.decision.errors import UnknownBehaviourError
 from kurt2rt.core.mid.settings import MidSettings
 from kurt2rt.core.mid.situation import MidSituation
@@ -145,7 +145,7 @@ class MidUsageCounter:
         if mid.event is not None:
             self._counter.count(self._leads, MID, again=True)
         if driving:
-            by_teacher = mid.overridden or decision.cause is Cause.TEACHER
+            by_teacher = mid.overridden or decision.cause is DecisionCause.TEACHER
             self._leads = None if by_teacher else mid.rla_id
 
     def restart(self) -> None:

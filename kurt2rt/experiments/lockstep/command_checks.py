@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick import TickRecord
@@ -16,7 +16,7 @@ def require_carried_out(
 
     Those that `may_be_late`, by their ids, may be refused; returns how many were.
     """
-    if record.decision.cause is Cause.BLIND:
+    if record.decision.cause is DecisionCause.BLIND:
         return 0  # the bus is in trouble, and nothing can be taught meanwhile; the teacher says it again
     late = 0
     for result in record.results:

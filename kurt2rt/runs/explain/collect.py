@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kurt2rt.core.decision.decision import Cause, Decision, MidDecision
+from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision
 from kurt2rt.core.decision.plan_step import GoalStatus
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.match import Match
@@ -75,17 +75,17 @@ def _blocking_causes(runtime: Runtime, record: TickRecord) -> tuple[str, ...]:
     school, navigator, mid = runtime.handler, runtime.navigator, record.decision.mid
     found = []
     if not record.senses.infrared_age_s <= runtime.robot.guard.stale_infrared_s:
-        found.append(Cause.BLIND)
+        found.append(DecisionCause.BLIND)
     if record.error is not None:
-        found.append(Cause.UNSAVED)
+        found.append(DecisionCause.UNSAVED)
     if school.requires_teacher and not school.authority.is_present(record.tick):
-        found.append(Cause.UNATTENDED)
+        found.append(DecisionCause.UNATTENDED)
     if navigator is not None and mid is not None and not mid.overridden:
         match navigator.standing_status:
             case GoalStatus.ARRIVED:
-                found.append(Cause.AT_GOAL)
+                found.append(DecisionCause.AT_GOAL)
             case GoalStatus.NO_WAY:
-                found.append(Cause.NO_WAY)
+                found.append(DecisionCause.NO_WAY)
     return tuple(cause.value for cause in found)
 
 

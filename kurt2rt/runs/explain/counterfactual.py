@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from hal.robot import STANDSTILL
 from hal.robot_settings import InfraredSettings
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.perception.definition import SituationDefinition, WheelSpeed
 from kurt2rt.core.perception.features import FeatureExtractor
 from kurt2rt.core.perception.sensor_words import words_for
@@ -51,7 +51,7 @@ def sensor_counterfactuals(
     rlas = () if level.nearest is None else (level.nearest, *level.others)
     if not rlas or not level.euclidean or not _situation_decides(facts):
         return ()
-    competitors = _Competitors(level, rlas, level.driver if facts.cause == Cause.RLA else None)
+    competitors = _Competitors(level, rlas, level.driver if facts.cause == DecisionCause.RLA else None)
     found = []
     changed = _ChangedSituations(facts, definition, law)
     words = words_for(law)
@@ -88,10 +88,10 @@ def _situation_decides(facts: DecisionFacts) -> bool:
         facts.taught_now
         or facts.latched
         or facts.asks_at != BASIC
-        or facts.cause not in (Cause.RLA, Cause.HELD, Cause.UNKNOWN)
+        or facts.cause not in (DecisionCause.RLA, DecisionCause.HELD, DecisionCause.UNKNOWN)
     ):
         return False
-    if facts.cause != Cause.UNKNOWN:
+    if facts.cause != DecisionCause.UNKNOWN:
         return True
     nearest = facts.basic.nearest
     lost = nearest is not None and nearest.distance <= nearest.radius and not nearest.asks

@@ -128,7 +128,7 @@ class DecisionFacts:
     task: str
     phase: int
     cause: str
-    """A value of kurt2rt.core.decision.decision.Cause."""
+    """A value of kurt2rt.core.decision.decision.DecisionCause."""
     action: str | None
     """Action that drove; None if the robot stood."""
     asks_at: str
@@ -161,7 +161,7 @@ class DecisionFacts:
     taught_now: bool = False
     """True if a lesson was applied in this tick."""
     hindrances: tuple[str, ...] = ()
-    """Causes that would have stopped the robot without a stop or manual driving: values of Cause."""
+    """Causes that would have stopped the robot without a stop or manual driving: values of DecisionCause."""
 
     @property
     def stopped_because(self) -> str:

@@ -2,7 +2,7 @@
 
 import math
 
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing import DRIVES, Standing, StandReason, standing_latched, touched_bumper
 from kurt2rt.core.decision.standing_text import reason_text, short_text, stop_text
 from kurt2rt.core.rla.rla import MID
@@ -10,16 +10,16 @@ from kurt2rt.runs.explain.facts import DecisionFacts, LevelFacts, RlaFacts
 from kurt2rt.runs.explain.sentences import format_distance, format_nearness, format_rla
 
 _STANDS = {
-    Cause.BLIND: "it sees nothing",
-    Cause.STOPPED: "it was stopped",
-    Cause.UNATTENDED: "no teacher is there",
-    Cause.UNSAVED: "lessons cannot be saved",
-    Cause.AT_GOAL: "it is at its goal",
-    Cause.NO_WAY: "no way leads to its goal",
-    Cause.TOUCHES: "it touches something",
+    DecisionCause.BLIND: "it sees nothing",
+    DecisionCause.STOPPED: "it was stopped",
+    DecisionCause.UNATTENDED: "no teacher is there",
+    DecisionCause.UNSAVED: "lessons cannot be saved",
+    DecisionCause.AT_GOAL: "it is at its goal",
+    DecisionCause.NO_WAY: "no way leads to its goal",
+    DecisionCause.TOUCHES: "it touches something",
 }
 
-_NOTHING_BESIDE = (Cause.BLIND, Cause.AT_GOAL, Cause.NO_WAY)
+_NOTHING_BESIDE = (DecisionCause.BLIND, DecisionCause.AT_GOAL, DecisionCause.NO_WAY)
 """Causes without a hypothetical action: no situation, or a stand that the robot itself decided."""
 
 
@@ -29,22 +29,22 @@ def headline(facts: DecisionFacts) -> str:
     if standing.reason is not StandReason.DRIVES:
         return short_text(standing)
     if facts.action is not None:
-        if facts.cause == Cause.TEACHER:
+        if facts.cause == DecisionCause.TEACHER:
             return f"{facts.action}: {facts.teacher or 'a teacher'} drives"
         return facts.action
-    if facts.cause == Cause.UNKNOWN:
+    if facts.cause == DecisionCause.UNKNOWN:
         return "stands and asks the way" if facts.asks_at == MID else "stands and asks"
-    return f"stands: {_STANDS.get(Cause(facts.cause), facts.cause)}"
+    return f"stands: {_STANDS.get(DecisionCause(facts.cause), facts.cause)}"
 
 
 def standing_of(facts: DecisionFacts) -> Standing:
     """Return the guard's reason to stand, or the bumper contact; DRIVES in all other cases."""
     if facts.latched:
         return standing_latched(facts.reasons)
-    if facts.cause == Cause.TOUCHES or facts.action is not None:
+    if facts.cause == DecisionCause.TOUCHES or facts.action is not None:
         bumpers = touched_bumper(facts.granted, facts.reasons)
         if bumpers is not None:
-            return Standing(bumpers, asks=facts.cause == Cause.TOUCHES)
+            return Standing(bumpers, asks=facts.cause == DecisionCause.TOUCHES)
     return DRIVES
 
 
@@ -55,16 +55,16 @@ def format_reasons(facts: DecisionFacts) -> list[str]:
         lines.append(
             f"The guard stopped the robot for {', '.join(facts.reasons)}, and keeps it stopped until a teacher says Go."
         )
-    if facts.cause == Cause.RLA:
+    if facts.cause == DecisionCause.RLA:
         lines += _rla_drives(facts.basic)
-    elif facts.cause == Cause.HELD:
+    elif facts.cause == DecisionCause.HELD:
         lines += _held(facts.basic)
-    elif facts.cause == Cause.TEACHER:
+    elif facts.cause == DecisionCause.TEACHER:
         lines.append(f"{facts.teacher or 'A teacher'} drives: {facts.action}. No RLA was asked.")
         lines += _autonomous_action(facts)
-    elif facts.cause == Cause.TOUCHES:
+    elif facts.cause == DecisionCause.TOUCHES:
         lines += _touches(facts)
-    elif facts.cause == Cause.UNKNOWN:
+    elif facts.cause == DecisionCause.UNKNOWN:
         lines += _asks_the_way(facts.mid) if facts.asks_at == MID and facts.mid is not None else _asks(facts.basic)
     else:
         lines.append(_stands(facts))
@@ -74,18 +74,18 @@ def format_reasons(facts: DecisionFacts) -> list[str]:
 
 def _stands(facts: DecisionFacts) -> str:
     match facts.cause:
-        case Cause.BLIND:
+        case DecisionCause.BLIND:
             age = "never came" if math.isinf(facts.infrared_age_s) else f"are {facts.infrared_age_s * 1000:.0f} ms old"
             return f"The infra-red readings {age}: there is no situation to decide on, nor to ask about."
-        case Cause.STOPPED:
+        case DecisionCause.STOPPED:
             return f"The robot was stopped: {stop_text(facts.stopped) or 'a teacher said so'}. It waits for Go."
-        case Cause.UNATTENDED:
+        case DecisionCause.UNATTENDED:
             return "The robot knows what to do, but drives only while a teacher is there, and none is."
-        case Cause.UNSAVED:
+        case DecisionCause.UNSAVED:
             why = f" ({facts.trouble})" if facts.trouble else ""
             return f"Lessons cannot be saved at the moment{why}: the robot stands until they can."
-        case Cause.AT_GOAL | Cause.NO_WAY:
-            return f"{facts.plan_says or _STANDS[Cause(facts.cause)]}."
+        case DecisionCause.AT_GOAL | DecisionCause.NO_WAY:
+            return f"{facts.plan_says or _STANDS[DecisionCause(facts.cause)]}."
     return f"Cause: {facts.cause}."
 
 
@@ -155,18 +155,18 @@ def _autonomous_action(facts: DecisionFacts) -> list[str]:
     if facts.cause in _NOTHING_BESIDE:
         return []
     others = [each for each in facts.hindrances if each != facts.cause]
-    unable = next((each for each in others if each in (Cause.BLIND, Cause.UNSAVED)), None)
+    unable = next((each for each in others if each in (DecisionCause.BLIND, DecisionCause.UNSAVED)), None)
     if unable is not None:
-        return [f"By itself it would stand: {_STANDS[Cause(unable)]}."]
+        return [f"By itself it would stand: {_STANDS[DecisionCause(unable)]}."]
     if facts.asks_at == MID and facts.mid is not None:
         return [f"By itself it would ask the way: {_why_the_way(facts.mid)}."]
     nearest, leader = facts.basic.nearest, facts.basic.leader
     known = nearest is not None and nearest.distance <= nearest.radius and not nearest.asks
     stands = next(iter(others), None)
-    if Cause.UNATTENDED in others:  # without a teacher it still asks about an unknown situation
-        stands = Cause.UNATTENDED if known else None
+    if DecisionCause.UNATTENDED in others:  # without a teacher it still asks about an unknown situation
+        stands = DecisionCause.UNATTENDED if known else None
     if stands is not None:
-        return [f"By itself it would stand: {_STANDS[Cause(stands)]}."]
+        return [f"By itself it would stand: {_STANDS[DecisionCause(stands)]}."]
     if nearest is None or leader is None:
         return ["By itself it would ask: nothing was taught yet."]
     if known:

@@ -2,7 +2,7 @@
 
 import math
 
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.rla import ASK
 from kurt2rt.runs.explain.attribution import border_distance
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual
@@ -38,7 +38,7 @@ def format_counterfactuals(found: tuple[SensorCounterfactual, ...], most: int = 
 
 def format_held(facts: DecisionFacts) -> str:
     """Return the sentence about an action held for its minimum time; empty without one."""
-    if not facts.kept or facts.cause != Cause.RLA or facts.latched:
+    if not facts.kept or facts.cause != DecisionCause.RLA or facts.latched:
         return ""
     return (
         f"{facts.kept} had not driven for its minimum time yet: until then no other action takes its place, "
@@ -48,7 +48,7 @@ def format_held(facts: DecisionFacts) -> str:
 
 def format_guard(facts: DecisionFacts) -> str:
     """Return the guard's change of the decision; empty if it was applied unchanged."""
-    if not facts.reasons or facts.latched or facts.cause == Cause.TOUCHES:  # said already
+    if not facts.reasons or facts.latched or facts.cause == DecisionCause.TOUCHES:  # said already
         return ""
     return (
         f"The guard let {_speeds(facts.granted)} through instead of {_speeds(facts.decided)}: "

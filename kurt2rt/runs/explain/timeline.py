@@ -8,7 +8,7 @@ from itertools import groupby
 
 from hal.odometry import PlanePose, WheelOdometry
 from hal.robot_settings import RobotSettings
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.rla import BASIC, Lesson, TeachingEvent
 from kurt2rt.runs.explain.lesson_words import LessonDescriber
 from kurt2rt.runs.explain.sentences import format_count
@@ -272,10 +272,10 @@ def _classified(entry: TickEntry) -> tuple[Kind, str]:
     if entry.grant.latched:
         return Kind.STANDS, f"guard: {', '.join(entry.grant.reasons)}"
     if decision.action is not None:
-        return (Kind.LED if decision.cause is Cause.TEACHER else Kind.DRIVES), decision.action
-    if decision.cause is Cause.TOUCHES:
+        return (Kind.LED if decision.cause is DecisionCause.TEACHER else Kind.DRIVES), decision.action
+    if decision.cause is DecisionCause.TOUCHES:
         return Kind.ASKS, "asks: touches something"
-    if decision.cause is Cause.UNKNOWN:
+    if decision.cause is DecisionCause.UNKNOWN:
         return Kind.ASKS, "asks the way" if decision.asks_at != BASIC else "asks"
     return Kind.STANDS, decision.cause.value
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
 from kurt2rt.core.critic.critic import Opinion
-from kurt2rt.core.decision.decision import Cause, Decision, MidDecision
+from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision
 from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.decision.plan_step import PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
@@ -43,7 +43,7 @@ class DecisionEntry(NamedTuple):
     """Decision, with the fields of Decision."""
 
     wheel_speeds: WheelSpeeds
-    cause: Cause
+    cause: DecisionCause
     action: str | None
     rla_id: int | None
     match: MatchEntry | None

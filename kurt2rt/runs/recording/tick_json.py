@@ -8,7 +8,7 @@ from typing import Any, TypeVar, get_args, get_type_hints
 
 from hal.guard_reason import guard_reason
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
@@ -148,7 +148,7 @@ def _decision_of(decision: dict[str, Any]) -> DecisionEntry:
         DecisionEntry,
         decision,
         wheel_speeds=_decoded(WheelSpeeds, decision["wheels"]),
-        cause=Cause(decision["cause"]),
+        cause=DecisionCause(decision["cause"]),
         match=_match_of(decision.get("match")),
         asks_at=decision.get("asks_at", BASIC),
         mid=None if mid is None else _mid_of(mid),

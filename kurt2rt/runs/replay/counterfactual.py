@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.runs.replay.counterfactual_policy import (
@@ -17,7 +17,7 @@ from kurt2rt.runs.replay.replay import Replay, ReplayedTick, empty_run_error
 from kurt2rt.runs.replay.run import Run
 from kurt2rt.runtime import Runtime
 
-_DECIDES = frozenset({Cause.RLA, Cause.HELD, Cause.UNKNOWN})
+_DECIDES = frozenset({DecisionCause.RLA, DecisionCause.HELD, DecisionCause.UNKNOWN})
 """Causes in which knowledge decides; otherwise the robot stands for another reason, or a teacher drives."""
 
 AnswerSource = Callable[[TickRecord, Runtime], PolicyAnswers]

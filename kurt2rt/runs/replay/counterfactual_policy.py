@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from hal.settings import SettingsError
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.critic.settings import load_critic
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.outcome_text import event_error_text
 from kurt2rt.core.perception.definition import load_situation
@@ -122,7 +122,7 @@ def recorded_answers(record: TickRecord, runtime: Runtime) -> PolicyAnswers:
     mid = None if decision.mid is None else _mid_answer(decision.mid.match)
     match = decision.match if decision.asks_at == BASIC else None
     answer = _answer(match, runtime.level.system, runtime.reinforcement.choice)
-    if match is not None and decision.cause is Cause.RLA and decision.action is not None:
+    if match is not None and decision.cause is DecisionCause.RLA and decision.action is not None:
         drove = match.rla
         if drove.rla_id != decision.rla_id:  # of those on the very same condition another one was chosen
             drove = (None if decision.rla_id is None else runtime.level.system.get(decision.rla_id)) or drove

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.runs.explain.attribution import distance_attribution
@@ -43,7 +43,7 @@ def _leading(facts: DecisionFacts) -> tuple[LevelFacts, RlaFacts | None]:
     """Return the level that decided, and its RLA that drives or is nearest."""
     if facts.asks_at == MID and facts.mid is not None:
         return facts.mid, facts.mid.nearest
-    driver = facts.basic.driver if facts.cause == Cause.RLA else None
+    driver = facts.basic.driver if facts.cause == DecisionCause.RLA else None
     return facts.basic, driver or facts.basic.nearest
 
 

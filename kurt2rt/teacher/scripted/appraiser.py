@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 from behaviors.judges.judge import Judge
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.rla import BASIC, Phase
 from kurt2rt.core.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour
 from kurt2rt.core.tick import TickRecord
@@ -66,7 +66,7 @@ class UnknownPenalty:
     def on_tick(self, record: TickRecord) -> tuple[int, int] | None:
         """Return -1 for the tick before the robot began to ask."""
         drove, self._drove = self._drove, record.decision.driving
-        asking = record.decision.cause is Cause.UNKNOWN and record.decision.asks_at == BASIC
+        asking = record.decision.cause is DecisionCause.UNKNOWN and record.decision.asks_at == BASIC
         return (-1, record.tick - 1) if asking and drove else None
 
 

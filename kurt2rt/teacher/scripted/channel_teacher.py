@@ -10,7 +10,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.channel.protocol.hello import Hello
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.standing_text import stop_text
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings
@@ -194,7 +194,7 @@ async def _state_at(robot: TeacherClient, tick: int) -> State:
 def view_of_state(state: State) -> TeacherView:
     """Return the teacher's view of a state from the channel."""
     return TeacherView(
-        state.cause in (Cause.UNKNOWN, Cause.TOUCHES),
+        state.cause in (DecisionCause.UNKNOWN, DecisionCause.TOUCHES),
         state.action is not None,
         state.action,
         state.infrared_counts,

@@ -6,7 +6,7 @@ from contextlib import suppress
 
 from hal.simulation import SimulatedPlace
 from kurt2rt.channel.protocol.state import State
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.teacher.client.answer import NoAnswerError
@@ -72,5 +72,5 @@ def _should_move(state: State) -> bool:
     A robot that asks or is blind is not, unless it is autonomous. A robot at a bumper or stopped by the guard is,
     because it may not come free by itself.
     """
-    alone = state.cause == Cause.UNKNOWN and state.phase == Phase.AUTONOMOUS
-    return state.action is not None or state.cause == Cause.TOUCHES or state.stopped is not None or alone
+    alone = state.cause == DecisionCause.UNKNOWN and state.phase == Phase.AUTONOMOUS
+    return state.action is not None or state.cause == DecisionCause.TOUCHES or state.stopped is not None or alone

@@ -19,7 +19,7 @@ import pytest
 from anyio.abc import Process
 
 from kurt2rt.channel.protocol.requests import AnswerRequest, CommandRequest, ReplaceRequest, Request, RewardRequest
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import ResultCode
 from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.teacher import TeacherClient
@@ -222,7 +222,7 @@ class Story:
         while self._now() < until_s:
             self._teacher.press(0.2, 0.2)
             await anyio.sleep(_BEAT_S)
-        self._told.stops["hand"] += self._stops_since(first, (Cause.TEACHER,))
+        self._told.stops["hand"] += self._stops_since(first, (DecisionCause.TEACHER,))
         with anyio.move_on_after(_LONGEST_S):
             await self._insist(self._teacher.stop)
 
@@ -230,12 +230,12 @@ class Story:
         await self._until_rlas_drive()
         first, until_s = self._at_work.tick, self._now() + lasts_s
         while self._now() < until_s:
-            if self._at_work.records[-1].decision.cause is Cause.STOPPED:
+            if self._at_work.records[-1].decision.cause is DecisionCause.STOPPED:
                 await self._until_rlas_drive()
             await anyio.sleep(_BEAT_S)
-        self._told.stops["rlas"] += self._stops_since(first, (Cause.RLA, Cause.HELD))
+        self._told.stops["rlas"] += self._stops_since(first, (DecisionCause.RLA, DecisionCause.HELD))
 
-    def _stops_since(self, first: int, driving: tuple[Cause, ...]) -> int:
+    def _stops_since(self, first: int, driving: tuple[DecisionCause, ...]) -> int:
         causes = [record.decision.cause in driving for record in self._at_work.records if record.tick >= first]
         return sum(before and not after for before, after in itertools.pairwise(causes))
 
@@ -296,13 +296,13 @@ class Story:
     async def _press_until_it_drives(self) -> None:
         def drives() -> bool:
             self._teacher.press(0.2, 0.2)
-            return self._at_work.records[-1].decision.cause is Cause.TEACHER
+            return self._at_work.records[-1].decision.cause is DecisionCause.TEACHER
 
         await self._at_work.until(drives)
 
     async def _until_rlas_drive(self) -> None:
         with anyio.fail_after(_LONGEST_S):
-            while self._at_work.records[-1].decision.cause not in (Cause.RLA, Cause.HELD):
+            while self._at_work.records[-1].decision.cause not in (DecisionCause.RLA, DecisionCause.HELD):
                 await self._insist(self._teacher.resume)
                 with anyio.move_on_after(0.5):
                     await self._at_work.until(lambda: self._at_work.records[-1].decision.driving)

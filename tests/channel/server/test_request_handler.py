@@ -59,7 +59,7 @@ from kurt2rt.channel.server.dependencies import TeacherNow
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
 from kurt2rt.channel.server.request_handler import COMMAND_TICKS, MOVING_TICKS, STREAM_TICKS
 from kurt2rt.core.critic.settings import load_critic
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import CRITIC, Phase
 from kurt2rt.core.teaching.commands import Stop, Watch
@@ -131,14 +131,14 @@ def test_every_path_has_a_rule_here() -> None:
 async def test_press_drives_in_next_tick_and_is_answered_at_once(desk: ChannelFixture) -> None:
     reply = await desk.stream(desk.press())
     assert reply == Reply(ReplyStatus.DONE, {"t": desk.tick})
-    assert desk.run().decision.cause is Cause.TEACHER
+    assert desk.run().decision.cause is DecisionCause.TEACHER
 
 
 async def test_watching_makes_the_teacher_be_there(desk: ChannelFixture) -> None:
     await desk.ask(desk.answer())
-    assert desk.record.decision.cause is Cause.UNATTENDED
+    assert desk.record.decision.cause is DecisionCause.UNATTENDED
     await desk.stream(desk.watch())
-    assert desk.run().decision.cause is Cause.RLA
+    assert desk.run().decision.cause is DecisionCause.RLA
 
 
 @pytest.mark.parametrize("kind", ["watch", "press"])
@@ -152,13 +152,13 @@ async def test_a_stream_is_good_for_forty_ticks_and_not_for_the_future(
 async def test_press_on_old_state_is_accepted_but_does_not_drive(desk: ChannelFixture) -> None:
     """Accepted up to 40 ticks, good for 35: what comes between counts as an answered message and no more."""
     assert why(await desk.stream(desk.press(age=STREAM_TICKS))) == ""
-    assert desk.run().decision.cause is not Cause.TEACHER
+    assert desk.run().decision.cause is not DecisionCause.TEACHER
 
 
 async def test_a_message_for_another_start_of_the_program_is_refused(desk: ChannelFixture) -> None:
     for request in (desk.watch(boot=LAST_START), desk.press(boot=LAST_START)):
         assert why(await desk.stream(request)) == "boot"
-    assert desk.run().decision.cause is Cause.UNKNOWN
+    assert desk.run().decision.cause is DecisionCause.UNKNOWN
 
 
 async def test_only_the_newest_message_of_a_device_counts(desk: ChannelFixture) -> None:
@@ -197,7 +197,7 @@ async def test_stream_sent_before_stop_does_not_drive_after_it(desk: ChannelFixt
     """The first message of a press may be overtaken by the stop that ended it."""
     stop = await desk.send(desk.stop(), number=12)
     assert why(await desk.stream(desk.press(hold=1), number=11)) == "old"
-    assert desk.run().decision.cause is Cause.STOPPED
+    assert desk.run().decision.cause is DecisionCause.STOPPED
     await reply_of(stop)
     assert why(await desk.stream(desk.press(hold=2), number=13)) == ""
 
@@ -436,16 +436,16 @@ async def test_stop_needs_no_start_no_state_and_no_charge(desk: ChannelFixture) 
     await desk.ask(desk.command(TakeRequest), "ann")
     reply = await desk.ask(desk.stop(), "ben")
     assert outcome_of(reply) == Outcome(ResultCode.STOPPED)
-    assert desk.run().decision.cause is Cause.STOPPED
+    assert desk.run().decision.cause is DecisionCause.STOPPED
 
 
 async def test_each_copy_of_a_stop_stops_again(desk: ChannelFixture) -> None:
     stop = desk.stop()
     first = await desk.ask(stop, "ben")
     await desk.ask(desk.command(ResumeRequest), "ann")
-    assert desk.record.decision.cause is Cause.UNKNOWN
+    assert desk.record.decision.cause is DecisionCause.UNKNOWN
     assert await desk.ask(stop, "ben") == first
-    assert desk.run().decision.cause is Cause.STOPPED
+    assert desk.run().decision.cause is DecisionCause.STOPPED
 
 
 async def test_a_stop_among_much_else_is_handed_to_the_next_tick(desk: ChannelFixture) -> None:
@@ -838,7 +838,7 @@ async def test_stop_copy_sent_before_resume_does_not_stop() -> None:
     desk.run(5)
     assert await desk.ask(stop, "ann") == answered
     assert outcome_of(await desk.ask(go)) == Outcome(ResultCode.RESUMED)
-    assert desk.run().decision.cause is not Cause.STOPPED
+    assert desk.run().decision.cause is not DecisionCause.STOPPED
 
 
 async def test_place_sent_before_stop_is_refused() -> None:

@@ -37,7 +37,7 @@ from kurt2rt.channel.security.pairing import local_pairing, pair, revoke
 from kurt2rt.channel.server.channel import Channel, open_channel
 from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStatus
 from kurt2rt.channel.server.resources import RobotSite
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import Phase
 from tests.channel.channel_fixture import BOOT, ROBOT, ChannelFixture, turns
@@ -138,7 +138,7 @@ async def test_without_keys_everything_but_discovery_is_refused(school: School, 
             assert event.message.code == aiocoap.CONTENT
         else:
             assert (event.message.code, event.message.payload) == (aiocoap.UNAUTHORIZED, b""), path
-    assert school.desk.run().decision.cause is Cause.UNKNOWN
+    assert school.desk.run().decision.cause is DecisionCause.UNKNOWN
     assert school.site.observers == 0
 
 
@@ -202,7 +202,7 @@ async def test_every_bit_that_is_changed_on_the_way_meets_silence(school: School
         changed[place] ^= 1 << place % 8
         broken.payload = bytes(changed)
         assert await answers(school.site, broken) == []
-    assert school.desk.run().decision.cause is Cause.UNKNOWN
+    assert school.desk.run().decision.cause is DecisionCause.UNKNOWN
 
 
 async def test_site_key_id_of_another_device_gets_silence(school: School) -> None:
@@ -581,7 +581,7 @@ async def test_a_paired_device_teaches_the_robot_over_a_socket(tmp_path: Path) -
         assert lesson[:3] == ["ann-" + b"12345678".hex(), "RLA 1 taught: forward", "ann"]
         stop = await robot.call(StopRequest(b"87654321"))
         assert stop["code"] == ResultCode.STOPPED
-        assert robot.desk.record.decision.cause is Cause.STOPPED
+        assert robot.desk.record.decision.cause is DecisionCause.STOPPED
         assert robot.channel.failures == 0
 
 

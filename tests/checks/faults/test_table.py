@@ -10,11 +10,11 @@ from config import CONFIG_DIR
 from hal.guard_reason import GuardReason
 from hal.settings import SettingsError, content_of
 from kurt2rt.checks.faults.table import cases_of, load_faults
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from tests.checks.faults.helpers import ROBOT, TABLE, tried
 
 SHIPPED = CONFIG_DIR / "faults" / "kurt2.yaml"
-WORDS = {*GuardReason, *Cause}
+WORDS = {*GuardReason, *DecisionCause}
 
 
 def changed(tmp_path: Path, change: Any) -> Path:

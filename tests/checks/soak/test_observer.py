@@ -12,7 +12,7 @@ from kurt2rt.checks.soak.observer import SoakObserver
 from kurt2rt.checks.soak.program_run import ProgramRun, ProgramStart
 from kurt2rt.checks.soak.teacher import SoakTeacher
 from kurt2rt.core import tick
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.decision.level import Level
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.service.assembly import RunSettings
@@ -28,7 +28,7 @@ class Careless:
     def __init__(self, behind: Level) -> None:
         self._behind = behind
 
-    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
+    def decide(self, situation: Situation, senses: SensorReadings, stand_because: DecisionCause | None) -> Decision:
         decision = self._behind.decide(situation, senses, stand_because)
         return decision._replace(wheel_speeds=WheelSpeeds(0.1, 0.1), action="forward")
 

@@ -10,7 +10,7 @@ import pytest
 from hal.guard_reason import GuardReason
 from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.checks.soak.operator import SoakOperator
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.teaching.commands import CommandResult, Resume
 from kurt2rt.core.tick import TickRecord
@@ -44,7 +44,7 @@ def drive(place: LongRunRig, person: SoakOperator, until_s: float, wanted: Wheel
 def seen(grant: GuardResult, *commands: Resume) -> TickRecord:
     """A tick in which an RLA would drive, and in which these were carried out."""
     results = tuple(CommandResult(each.command_id, Outcome(ResultCode.RESUMED)) for each in commands)
-    decision = SimpleNamespace(cause=Cause.RLA)
+    decision = SimpleNamespace(cause=DecisionCause.RLA)
     return cast(TickRecord, SimpleNamespace(guard_result=grant, decision=decision, commands=commands, results=results))
 
 

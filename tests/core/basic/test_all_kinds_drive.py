@@ -13,7 +13,7 @@ import yaml
 from config import CONFIG_DIR
 from hal.robot import STANDSTILL
 from hal.simulation import Pose, Simulation
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import ReplaceAction, Teach
@@ -41,9 +41,9 @@ class Drive:
     def __init__(self) -> None:
         self.way_m: defaultdict[str, float] = defaultdict(float)
         self.turned_deg: defaultdict[str, float] = defaultdict(float)
-        self.causes: defaultdict[str, set[Cause]] = defaultdict(set)
+        self.causes: defaultdict[str, set[DecisionCause]] = defaultdict(set)
         self._pose: Pose | None = None
-        self.last = Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
+        self.last = Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, None)
 
     def note(self, simulation: Simulation, wanted: str, record: TickRecord) -> None:
         pose = simulation.pose
@@ -100,7 +100,9 @@ def test_actions_of_all_kinds_drive(complete: TaskSettings) -> None:
 
     with runtime_of(complete) as (runtime, simulation):
         anyio.run(all_parts)
-    assert {(action, *causes) for action, causes in told.causes.items()} == {(each, Cause.RLA) for each in parts}
+    assert {(action, *causes) for action, causes in told.causes.items()} == {
+        (each, DecisionCause.RLA) for each in parts
+    }
     assert told.way_m["patrol"] > 0.3
     assert told.way_m["straight_on"] > 0.4
     assert told.way_m["forward"] == pytest.approx(0.15, abs=0.02)

@@ -9,7 +9,7 @@ from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
 from kurt2rt.core.rla.rla import CRITIC, RlaCreated
 from kurt2rt.core.rla.rla_system import RlaSystem
@@ -24,12 +24,12 @@ def test_untaught_it_stands_and_asks() -> None:
     decision = SmallLevel().at(0.0)
     assert decision.asking
     assert not decision.driving
-    assert decision == Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
+    assert decision == Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, None)
 
 
 def test_winner_drives_with_distance_and_runner_up() -> None:
     decision = SmallLevel(A_AT_0, B_AT_8).at(3.0)
-    assert (decision.cause, decision.action, decision.rla_id) == (Cause.RLA, "a", 1)
+    assert (decision.cause, decision.action, decision.rla_id) == (DecisionCause.RLA, "a", 1)
     assert decision.wheel_speeds == WheelSpeeds(0.001, 0.001)
     assert decision.driving
     assert decision.match is not None
@@ -50,9 +50,11 @@ def test_an_action_holds_for_its_minimum_time_and_then_gives_way() -> None:
     small.at(0.0)
     held = [small.at(8.0) for _ in range(MINIMUM_TICKS - 1)]
     after = small.at(8.0)
-    assert [(each.cause, each.action, each.rla_id) for each in held] == [(Cause.HELD, "a", 1)] * (MINIMUM_TICKS - 1)
+    assert [(each.cause, each.action, each.rla_id) for each in held] == [(DecisionCause.HELD, "a", 1)] * (
+        MINIMUM_TICKS - 1
+    )
     assert {each.match.rla.rla_id for each in held if each.match is not None} == {2}  # who has won is told meanwhile
-    assert (after.cause, after.action, after.rla_id) == (Cause.RLA, "b", 2)
+    assert (after.cause, after.action, after.rla_id) == (DecisionCause.RLA, "b", 2)
 
 
 def test_a_robot_between_two_neighbours_does_not_dither() -> None:
@@ -65,10 +67,10 @@ def test_a_robot_between_two_neighbours_does_not_dither() -> None:
 def test_unknown_situation_stops_a_held_action_at_once() -> None:
     small = SmallLevel(A_AT_0, B_AT_8)
     small.at(0.0)
-    assert small.at(8.0).cause is Cause.HELD
+    assert small.at(8.0).cause is DecisionCause.HELD
     assert small.at(18.0).driving  # the border itself is known
     decision = small.at(18.000001)
-    assert (decision.wheel_speeds, decision.cause, decision.action) == (STANDSTILL, Cause.UNKNOWN, None)
+    assert (decision.wheel_speeds, decision.cause, decision.action) == (STANDSTILL, DecisionCause.UNKNOWN, None)
     assert decision.match is not None
     assert decision.match.rla.rla_id == 2
 
@@ -85,8 +87,8 @@ def test_after_standing_the_next_action_begins_at_once_and_anew() -> None:
     assert small.at(8.0).action == "b"  # nothing is held over a stop
 
 
-@pytest.mark.parametrize("cause", [Cause.STOPPED, Cause.UNSAVED])
-def test_blocking_cause_stands_and_keeps_the_match(cause: Cause) -> None:
+@pytest.mark.parametrize("cause", [DecisionCause.STOPPED, DecisionCause.UNSAVED])
+def test_blocking_cause_stands_and_keeps_the_match(cause: DecisionCause) -> None:
     small = SmallLevel(A_AT_0)
     small.at(0.0)
     decision = small.at(0.0, cause)
@@ -103,8 +105,8 @@ def test_correction_ends_the_minimum_time() -> None:
     small.at(0.0)
     small.level.apply(replaced(1, "c", "a"))
     decision = small.at(0.0)
-    assert (decision.cause, decision.action, decision.rla_id) == (Cause.RLA, "c", 1)
-    assert small.at(8.0).cause is Cause.HELD  # the corrected action has a minimum time of its own
+    assert (decision.cause, decision.action, decision.rla_id) == (DecisionCause.RLA, "c", 1)
+    assert small.at(8.0).cause is DecisionCause.HELD  # the corrected action has a minimum time of its own
 
 
 def test_a_correction_elsewhere_does_not_interrupt_the_action() -> None:
@@ -120,13 +122,13 @@ def test_deleted_driving_rla_stops_in_the_next_decision() -> None:
     small.at(0.0)
     small.level.apply(deleted(1))
     decision = small.at(0.0)
-    assert (decision.wheel_speeds, decision.cause) == (STANDSTILL, Cause.UNKNOWN)
+    assert (decision.wheel_speeds, decision.cause) == (STANDSTILL, DecisionCause.UNKNOWN)
 
 
 def test_deleting_the_held_rla_hands_over_to_the_winner_at_once() -> None:
     small = SmallLevel(A_AT_0, B_AT_8)
     small.at(0.0)
-    assert small.at(7.0).cause is Cause.HELD
+    assert small.at(7.0).cause is DecisionCause.HELD
     small.level.apply(deleted(1))
     assert small.at(7.0).action == "b"
 
@@ -135,7 +137,7 @@ def test_neighbour_with_equal_action_continues_it() -> None:
     small = SmallLevel(A_AT_0, created(2, (8.0,), "a"))
     small.at(0.0)
     decision = small.at(8.0)
-    assert (decision.cause, decision.rla_id, decision.wheel_speeds.left_m_s) == (Cause.RLA, 2, 0.002)
+    assert (decision.cause, decision.rla_id, decision.wheel_speeds.left_m_s) == (DecisionCause.RLA, 2, 0.002)
 
 
 def test_rla_with_action_outside_the_repertoire_is_refused() -> None:
@@ -174,7 +176,7 @@ def test_held_action_ends_at_once_on_another_active_behaviour() -> None:
     small.at(0.0)
     small.wanted.select("turn_left")
     decision = small.at(0.0)
-    assert (decision.cause, decision.action, decision.rla_id) == (Cause.RLA, "b", 2)
+    assert (decision.cause, decision.action, decision.rla_id) == (DecisionCause.RLA, "b", 2)
     small.wanted.select("straight_on")  # and back again, in the very next tick
     assert small.at(0.0).action == "a"
 
@@ -183,7 +185,7 @@ def test_to_want_the_same_again_does_not_cut_an_action_short() -> None:
     small = SmallLevel(STRAIGHT_AT_0, created(2, (8.0,), "b", behaviour="straight_on"), behaviours=TURNS)
     small.at(0.0)
     small.wanted.select("straight_on")
-    assert small.at(8.0).cause is Cause.HELD
+    assert small.at(8.0).cause is DecisionCause.HELD
 
 
 @pytest.mark.parametrize(
@@ -212,7 +214,9 @@ def test_knowledge_of_a_behaviour_that_the_task_lacks_is_refused(
 
 def test_withdrawn_rla_asks_only_as_the_nearest() -> None:
     small = SmallLevel(created(1, (0.0,), "a"), created(2, (6.0,), "b"), withdrawn(1, "a"))
-    assert small.at(1.0) == Decision(STANDSTILL, Cause.UNKNOWN, None, None, small.level.system.match(np.array([1.0])))
+    assert small.at(1.0) == Decision(
+        STANDSTILL, DecisionCause.UNKNOWN, None, None, small.level.system.match(np.array([1.0]))
+    )
     assert small.at(5.0).action == "b"
 
 
@@ -235,12 +239,12 @@ def test_a_held_action_answers_only_inside_the_radius_of_its_rla(radius: float |
     small = SmallLevel(created(1, (0.0,), "a", radius), created(2, (4.0,), "b"))
     assert small.at(1.0).answers
     held = small.at(3.0)
-    assert (held.cause, held.rla_id, held.answers) == (Cause.HELD, 1, answers)
+    assert (held.cause, held.rla_id, held.answers) == (DecisionCause.HELD, 1, answers)
 
 
 def test_standing_answers_nothing() -> None:
     small = SmallLevel(created(1, (0.0,), "a"))
-    assert not small.at(0.0, Cause.STOPPED).answers
+    assert not small.at(0.0, DecisionCause.STOPPED).answers
     assert not small.at(50.0).answers
 
 
@@ -249,7 +253,7 @@ def test_critic_lesson_keeps_the_held_action() -> None:
     small.at(1.0)
     small.level.apply(created(3, (0.0,), "bad", level=CRITIC))
     small.level.apply(replaced(3, "good", "bad"))
-    assert small.at(3.0).cause is Cause.HELD
+    assert small.at(3.0).cause is DecisionCause.HELD
     small.level.apply(replaced(2, "c", "b"))
     assert small.at(3.0).action == "c"
 
@@ -277,4 +281,4 @@ def test_held_competitor_answers_inside_its_radius() -> None:
     worths[1] = -1.0
     choice.reset()
     held = level.decide(situation(0.0), sensed(), None)
-    assert (held.cause, held.rla_id, held.answers) == (Cause.HELD, 1, True)
+    assert (held.cause, held.rla_id, held.answers) == (DecisionCause.HELD, 1, True)

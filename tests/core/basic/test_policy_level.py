@@ -3,7 +3,7 @@
 from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from tests.core.helpers import MINIMUM_TICKS, Counted, sensed, situation
 
 
@@ -17,13 +17,13 @@ class NearIsB:
 FAR, NEAR = sensed(100), sensed(500)
 
 
-def driven(level: PolicyLevel, senses: SensorReadings, stand_because: Cause | None = None) -> Decision:
+def driven(level: PolicyLevel, senses: SensorReadings, stand_because: DecisionCause | None = None) -> Decision:
     return level.decide(situation(0.0), senses, stand_because)
 
 
 def test_it_drives_as_the_policy_says_after_the_minimum_time() -> None:
     level = PolicyLevel(NearIsB(), {"a": Counted(), "b": Counted()}, MINIMUM_TICKS, ActiveBehaviour())
-    assert driven(level, FAR)[1:5] == (Cause.TEACHER, "a", None, None)
+    assert driven(level, FAR)[1:5] == (DecisionCause.TEACHER, "a", None, None)
     assert [driven(level, NEAR).action for _ in range(MINIMUM_TICKS)] == ["a"] * (MINIMUM_TICKS - 1) + ["b"]
 
 
@@ -31,9 +31,9 @@ def test_with_a_reason_to_stand_it_stands_and_begins_anew() -> None:
     actions = {"a": Counted(), "b": Counted()}
     level = PolicyLevel(NearIsB(), actions, MINIMUM_TICKS, ActiveBehaviour())
     driven(level, FAR)
-    assert driven(level, FAR, Cause.STOPPED) == Decision(STANDSTILL, Cause.STOPPED, None, None, None)
+    assert driven(level, FAR, DecisionCause.STOPPED) == Decision(STANDSTILL, DecisionCause.STOPPED, None, None, None)
     assert driven(level, NEAR).action == "b"
-    driven(level, FAR, Cause.STOPPED)
+    driven(level, FAR, DecisionCause.STOPPED)
     driven(level, NEAR)
     assert (actions["a"].starts, actions["b"].starts) == (1, 2)
 

@@ -1,7 +1,7 @@
 """What a layer does with an action that has finished, or does not know how to go on."""
 
 from hal.robot import STANDSTILL, WheelSpeeds
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from tests.core.helpers import MINIMUM_TICKS, SmallLevel
 from tests.core.rla.helpers import created
 
@@ -14,7 +14,7 @@ def test_an_action_that_has_finished_yields_at_once() -> None:
     small.at(0.0)
     small.actions["a"].finished = True
     decision = small.at(8.0)
-    assert (decision.cause, decision.action, decision.rla_id) == (Cause.RLA, "b", 2)
+    assert (decision.cause, decision.action, decision.rla_id) == (DecisionCause.RLA, "b", 2)
 
 
 def test_finished_action_is_not_restarted_while_its_rla_wins() -> None:
@@ -30,7 +30,7 @@ def test_lost_action_stands_and_asks_in_a_known_situation() -> None:
     small.at(0.0)
     small.actions["a"].lost = True
     decision = small.at(1.0)
-    assert (decision.wheel_speeds, decision.cause, decision.action) == (STANDSTILL, Cause.UNKNOWN, None)
+    assert (decision.wheel_speeds, decision.cause, decision.action) == (STANDSTILL, DecisionCause.UNKNOWN, None)
     assert decision.asking
     assert decision.match is not None
     assert decision.match.known

@@ -10,7 +10,7 @@ from hal.robot import STANDSTILL, GuardResult, WheelSpeeds
 from kurt2rt.channel.protocol.codec import decode_state, encode_state
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.decision.standing import (
     ASKS_AFTER_TICKS,
     DRIVES,
@@ -42,8 +42,8 @@ from tests.channel.channel_fixture import ChannelFixture
 from tests.channel.states import state
 
 FORWARD = WheelSpeeds(0.3, 0.3)
-BY_RLA = Decision(FORWARD, Cause.RLA, "forward", 1, None, True)
-ASKS = Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
+BY_RLA = Decision(FORWARD, DecisionCause.RLA, "forward", 1, None, True)
+ASKS = Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, None)
 
 
 UNNAMED = (StopReason.STARTED, StopReason.NEXT_RUN)

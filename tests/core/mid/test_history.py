@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 
 from hal.robot import STANDSTILL
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.mid.settings import MidSettings, load_mid_level
 from kurt2rt.core.mid.situation import MidSituation
 from tests.core.mid.walk import OPEN_M, ROBOT, STREET_M, sensed
 
-STANDS = Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
+STANDS = Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, None)
 
 
 def driven(action: str | None) -> Decision:
-    return STANDS._replace(cause=Cause.RLA, action=action)
+    return STANDS._replace(cause=DecisionCause.RLA, action=action)
 
 
 class Led:

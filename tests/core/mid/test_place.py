@@ -12,7 +12,7 @@ from hal.robot_settings import load_robot
 from hal.simulation import Pose
 from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.mid.place import EAST, NORTH, WALL_LEFT, WALL_RIGHT, PlaceSituation, X, Y
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.perception import Situation
@@ -23,7 +23,7 @@ from simbridge.simulation import Kurt2Simulation
 ROBOT = load_robot()
 STREETS = load_task("streets")
 PLACES = load_mid_level("places")
-NOTHING = Decision(STANDSTILL, Cause.UNKNOWN, None, None, None)
+NOTHING = Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, None)
 NOWHERE = Situation(np.zeros(1), history_frozen=False)
 
 

@@ -12,7 +12,7 @@ from kurt2rt.core.critic.settings import (
     SignalEverySettings,
 )
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
@@ -109,7 +109,7 @@ class Track:
         self._commands = 0
 
     def go(
-        self, place: float, ticks: int = 1, seen: AppraisalFeatures = CALM, because: Cause | None = None
+        self, place: float, ticks: int = 1, seen: AppraisalFeatures = CALM, because: DecisionCause | None = None
     ) -> Decision:
         """So many ticks in one place; returns the last decision."""
         self.learnt = []

@@ -5,7 +5,7 @@ import pytest
 
 from hal.robot import STANDSTILL
 from kurt2rt.core.critic.critic import Opinion
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from tests.core.critic.helpers import FREE
@@ -23,7 +23,7 @@ def remembered(*ticks: int, capacity: int = 10) -> DecisionHistory:
 
 def remember(recent: DecisionHistory, tick: int, behaviour: str = "", *, blind: bool = False) -> None:
     situation = Situation(np.array([tick, -tick], dtype=np.float64), history_frozen=False)
-    decision = Decision(STANDSTILL, Cause.RLA, "a", 100 + tick, None, True)
+    decision = Decision(STANDSTILL, DecisionCause.RLA, "a", 100 + tick, None, True)
     recent.add(tick, None if blind else situation, decision, behaviour)
 
 
@@ -89,9 +89,9 @@ def test_history_returns_behaviour_by_tick() -> None:
 def test_history_returns_answering_rla_by_tick() -> None:
     recent = remembered()
     for tick, answers in enumerate((True, False, True), 1):
-        decision = Decision(STANDSTILL, Cause.HELD, "a", 100 + tick, None, answers)
+        decision = Decision(STANDSTILL, DecisionCause.HELD, "a", 100 + tick, None, answers)
         recent.add(tick, SITUATION, decision)
-    recent.add(4, SITUATION, Decision(STANDSTILL, Cause.UNKNOWN, None, None, None))
+    recent.add(4, SITUATION, Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, None))
     assert [recent.answering_rla(tick) for tick in (1, 2, 3, 4)] == [101, None, 103, None]
     ticks, rlas = recent.answering_up_to(3)
     assert (ticks.tolist(), rlas.tolist()) == ([1, 2, 3], [101, 0, 103])
@@ -107,7 +107,7 @@ def test_history_answering_up_to_skips_missing_ticks() -> None:
 def test_history_returns_features_and_opinion_by_tick() -> None:
     recent = remembered()
     opinion = Opinion(-1, "bad", 0.7, None, 0.1, 1.0, True)
-    decision = Decision(STANDSTILL, Cause.RLA, "a", 1, None, True)
+    decision = Decision(STANDSTILL, DecisionCause.RLA, "a", 1, None, True)
     recent.add(1, SITUATION, decision, circumstances=FREE, opinion=opinion)
     remember(recent, 2)
     assert (recent.circumstances(1), recent.opinion(1)) == (FREE, opinion)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hal.robot import STANDSTILL
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.eligibility_trace import EligibilityTrace, make_trace
 from tests.core.helpers import situation
@@ -27,7 +27,7 @@ def drives(*rlas: int | None, answers: bool = True, first_tick: int = 1) -> Deci
 
 def remember(recent: DecisionHistory, tick: int, rla_id: int | None, *, answers: bool = True) -> None:
     action = None if rla_id is None else "a"
-    decision = Decision(STANDSTILL, Cause.RLA, action, rla_id, None, answers and rla_id is not None)
+    decision = Decision(STANDSTILL, DecisionCause.RLA, action, rla_id, None, answers and rla_id is not None)
     recent.add(tick, situation(0.0), decision)
 
 

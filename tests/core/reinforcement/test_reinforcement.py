@@ -2,7 +2,7 @@
 
 import pytest
 
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings
 from kurt2rt.core.rla.rla import (
@@ -72,7 +72,7 @@ def test_reward_asking_or_standing_credits_none() -> None:
     assert asked.asking
     refused = robot.say(Reward("r-1", "Ann", -1, robot.tick))
     assert refused.outcome == Outcome(RefusalCode.NO_RLA_DROVE)
-    robot.go(LEFT, because=Cause.STOPPED)
+    robot.go(LEFT, because=DecisionCause.STOPPED)
     assert not robot.say(Reward("r-2", "Ann", -1, robot.tick)).accepted
     assert (robot.value(1), robot.value(2)) == (0.5, 0.5)
 
@@ -82,7 +82,7 @@ def test_reward_held_action_outside_radius_has_no_share() -> None:
     robot = track()
     robot.go(LEFT)
     held = robot.go(RIGHT)
-    assert (held.cause, held.rla_id, held.answers) == (Cause.HELD, 1, False)
+    assert (held.cause, held.rla_id, held.answers) == (DecisionCause.HELD, 1, False)
     refused = robot.say(Reward("r-1", "Ann", -1, robot.tick))
     assert refused.outcome == Outcome.of(RefusalCode.OUTSIDE_RADIUS, rla=1)
     robot.go(RIGHT, MINIMUM_TICKS)
@@ -93,7 +93,7 @@ def test_reward_held_action_inside_radius_has_a_share() -> None:
     robot = Track(created(1, (0.0,), "a"), created(2, (4.0,), "b"), reinforcement=SIGNALS_ONLY)
     robot.go(1.0)
     held = robot.go(3.0)
-    assert (held.cause, held.rla_id, held.answers) == (Cause.HELD, 1, True)
+    assert (held.cause, held.rla_id, held.answers) == (DecisionCause.HELD, 1, True)
     assert shares(robot.signal(-1)).keys() == {1}
 
 

@@ -4,7 +4,7 @@ import pytest
 
 from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.core.critic.settings import RollbackSettings
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.rla.rla import (
     CRITIC,
@@ -253,7 +253,7 @@ def test_manual_driving_does_not_count() -> None:
     robot = alone()
     for _ in range(300):
         robot.tick += 1
-        stands = robot.level.decide(situation(HERE), sensed(), Cause.TEACHER)
+        stands = robot.level.decide(situation(HERE), sensed(), DecisionCause.TEACHER)
         by_hand = stands._replace(action="b")
         robot.school.learn(robot.tick, by_hand, robot.critic.appraise(robot.tick, CRASHED))
     robot.go(HERE, 100, CRASHED)  # its first window, in which it only looks
@@ -346,6 +346,6 @@ def test_mid_level_question_does_not_lower_the_score() -> None:
     known = robot.hash
     for _ in range(300):
         robot.tick += 1
-        stands = robot.level.decide(situation(HERE), sensed(), Cause.UNKNOWN)._replace(asks_at=MID)
+        stands = robot.level.decide(situation(HERE), sensed(), DecisionCause.UNKNOWN)._replace(asks_at=MID)
         assert robot.school.learn(robot.tick, stands, robot.critic.appraise(robot.tick, CALM)) == []
     assert robot.hash == known

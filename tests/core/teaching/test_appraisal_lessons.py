@@ -4,7 +4,7 @@ import pytest
 
 from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.core.critic.settings import NAMES
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.rla import CRITIC, ActionReplaced, Appraised, Phase, RlaCreated
 from kurt2rt.core.teaching.authority import ControlAuthority
@@ -53,7 +53,7 @@ def test_without_a_tick_the_newest_one_is_meant() -> None:
 
 def test_the_robot_need_not_drive_to_be_appraised() -> None:
     robot = track()
-    robot.go(0.0, 1, CRASHED, Cause.STOPPED)
+    robot.go(0.0, 1, CRASHED, DecisionCause.STOPPED)
     assert appraise(robot, "bad").accepted
 
 
@@ -132,7 +132,7 @@ def test_a_tick_that_is_not_remembered_is_refused(meant: int) -> None:
 
 def test_appraisal_of_a_blind_tick_is_refused() -> None:
     robot = track()
-    decision = robot.level.decide(situation(0.0), None, Cause.BLIND)  # type: ignore[arg-type] # it stands
+    decision = robot.level.decide(situation(0.0), None, DecisionCause.BLIND)  # type: ignore[arg-type] # it stands
     robot.recent.add(robot.tick + 1, None, decision)
     robot.tick += 1
     result = appraise(robot, "bad")
@@ -158,7 +158,7 @@ def test_an_appraisal_does_not_end_the_action_that_is_held() -> None:
     robot = Track(created(1, (0.0,), "a"), created(2, (4.0,), "b"), phase=Phase.CRITIC)
     robot.go(1.0, 2)
     assert appraise(robot, "good").lesson
-    assert robot.go(3.0).cause is Cause.HELD
+    assert robot.go(3.0).cause is DecisionCause.HELD
 
 
 def test_a_robot_without_a_critic_says_so() -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pytest
 
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.rla.reward_counts import Appraisal
 from kurt2rt.core.rla.rla import (
@@ -82,7 +82,7 @@ class Lesson:
         """So many ticks in one place, decided as the robot would; returns the last of them."""
         for _ in range(ticks):
             self.tick += 1
-            decision = self.small.at(place, Cause.BLIND if blind else None)
+            decision = self.small.at(place, DecisionCause.BLIND if blind else None)
             behaviour = self.small.wanted.behaviour
             self.school.recent.add(self.tick, None if blind else situation(place), decision, behaviour)
         return self.tick

@@ -8,7 +8,7 @@ import pytest
 from behaviors.metrics.route import FixedRoute, Passage
 from behaviors.metrics.task_metric import WayAhead
 from hal.robot import STANDSTILL, GuardResult
-from kurt2rt.core.decision.decision import Cause, Decision, MidDecision
+from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision
 from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.rla import BASIC, MID
@@ -46,7 +46,7 @@ class Watched:
         noticed = None if event is None else JunctionEvent(event, True, False, 0.0, 1.0)
         behaviour = NAMES[wanted]
         decided = MidDecision(behaviour, 1, None, asks, False, noticed) if mid else None
-        cause = Cause.UNKNOWN if asks else Cause.RLA
+        cause = DecisionCause.UNKNOWN if asks else DecisionCause.RLA
         decision = Decision(STANDSTILL, cause, None, None, None, asks_at=MID if asks else BASIC, mid=decided)
         situation = Situation(np.zeros(1), history_frozen=False)
         grant = GuardResult(STANDSTILL, (), latched=False)

@@ -17,7 +17,7 @@ from hal.robot import SensorReadings
 from hal.robot_settings import load_robot
 from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.tick import TickRecord
@@ -34,7 +34,7 @@ class Hanging(PolicyLevel):
     hangs_at = 0
     decisions = 0
 
-    def decide(self, situation: Situation, senses: SensorReadings, stand_because: Cause | None) -> Decision:
+    def decide(self, situation: Situation, senses: SensorReadings, stand_because: DecisionCause | None) -> Decision:
         self.decisions += 1
         if self.decisions == self.hangs_at:
             print(json.dumps({"hangs_from_s": time.time()}), flush=True)

@@ -7,7 +7,7 @@ import pytest
 
 from hal.robot import WheelSpeeds
 from kurt2rt.core.decision.active_stop import STARTED
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.rla.rla import MID
 from kurt2rt.runs.explain.facts import DecisionFacts, LessonFact
 from kurt2rt.runs.explain.reasons import format_reasons, headline
@@ -29,7 +29,7 @@ FAR = replace(NEAR, distance=15.0)
 KNOWN = level((1.0, 6.0), NEAR, NEXT, ELSE)
 
 
-def standing(cause: Cause, **more: object) -> DecisionFacts:
+def standing(cause: DecisionCause, **more: object) -> DecisionFacts:
     stood = replace(facts(replace(KNOWN, driver=None), cause.value, None), decided=WheelSpeeds(0, 0))
     return replace(stood, **more)  # type: ignore[arg-type]
 
@@ -52,7 +52,7 @@ def test_the_only_rla_has_nobody_beside_it() -> None:
 
 
 def test_an_action_that_is_held_is_told_with_the_rla_that_is_nearest_by_now() -> None:
-    held = facts(replace(KNOWN, driver=ELSE), Cause.HELD.value, "back")
+    held = facts(replace(KNOWN, driver=ELSE), DecisionCause.HELD.value, "back")
     first, second = format_reasons(held)
     assert first == "RLA 9 (back) was chosen a moment ago, and its action keeps its minimum time."
     assert second == "Nearest by now is RLA 17 (forward), at 4 of R 10 (40 %)."
@@ -65,26 +65,26 @@ def test_of_several_on_one_condition_the_chosen_one_is_told_with_its_worth() -> 
 
 
 def test_a_robot_that_knows_nothing_asks() -> None:
-    asks = facts(level((1.0, 6.0)), Cause.UNKNOWN.value, None)
+    asks = facts(level((1.0, 6.0)), DecisionCause.UNKNOWN.value, None)
     assert headline(asks) == "stands and asks"
     assert format_reasons(asks) == ["Nothing was taught yet, so the robot asks."]
 
 
 def test_a_robot_outside_r_asks_and_says_by_how_much() -> None:
     far = level((1.0, 6.0), replace(NEAR, distance=15.0))
-    assert format_reasons(facts(far, Cause.UNKNOWN.value, None)) == [
+    assert format_reasons(facts(far, DecisionCause.UNKNOWN.value, None)) == [
         "No RLA is near enough: the nearest is RLA 17 (forward), at 15, 1.50 times R (10)."
     ]
 
 
 def test_counterfactual_of_a_withdrawn_action_asks() -> None:
     withdrawn = level((1.0, 6.0), replace(NEAR, action="ask", asks=True))
-    (line,) = format_reasons(facts(withdrawn, Cause.UNKNOWN.value, None))
+    (line,) = format_reasons(facts(withdrawn, DecisionCause.UNKNOWN.value, None))
     assert line == "This is like RLA 17, at 4 of R 10, whose action was withdrawn: there the robot asks."
 
 
 def test_an_action_that_is_lost_asks_inside_r() -> None:
-    (line,) = format_reasons(facts(KNOWN, Cause.UNKNOWN.value, None))
+    (line,) = format_reasons(facts(KNOWN, DecisionCause.UNKNOWN.value, None))
     assert line == "RLA 17 says forward, which does not know how to go on here: the robot asks."
 
 
@@ -92,15 +92,21 @@ def test_an_action_that_is_lost_asks_inside_r() -> None:
     ("cause", "more", "said"),
     [
         (
-            Cause.STOPPED,
+            DecisionCause.STOPPED,
             {"stopped": STARTED},
             "The robot was stopped: the robot program was started. It waits",
         ),
-        (Cause.UNATTENDED, {}, "The robot knows what to do, but drives only while a teacher is there"),
-        (Cause.UNSAVED, {"trouble": "the disk is full"}, "Lessons cannot be saved at the moment (the disk is full)"),
+        (DecisionCause.UNATTENDED, {}, "The robot knows what to do, but drives only while a teacher is there"),
+        (
+            DecisionCause.UNSAVED,
+            {"trouble": "the disk is full"},
+            "Lessons cannot be saved at the moment (the disk is full)",
+        ),
     ],
 )
-def test_a_robot_that_stands_says_why_and_what_it_would_do(cause: Cause, more: dict[str, object], said: str) -> None:
+def test_a_robot_that_stands_says_why_and_what_it_would_do(
+    cause: DecisionCause, more: dict[str, object], said: str
+) -> None:
     stood = standing(cause, **more)
     assert headline(stood).startswith("stands: ")
     first, second = format_reasons(stood)
@@ -111,13 +117,15 @@ def test_a_robot_that_stands_says_why_and_what_it_would_do(cause: Cause, more: d
 @pytest.mark.parametrize(
     ("cause", "more", "said"),
     [
-        (Cause.BLIND, {"infrared_age_s": math.inf}, "The infra-red readings never came"),
-        (Cause.BLIND, {"infrared_age_s": 0.07}, "The infra-red readings are 70 ms old"),
-        (Cause.AT_GOAL, {"plan_says": "arrived at door"}, "arrived at door."),
-        (Cause.NO_WAY, {"plan_says": "no way to door"}, "no way to door."),
+        (DecisionCause.BLIND, {"infrared_age_s": math.inf}, "The infra-red readings never came"),
+        (DecisionCause.BLIND, {"infrared_age_s": 0.07}, "The infra-red readings are 70 ms old"),
+        (DecisionCause.AT_GOAL, {"plan_says": "arrived at door"}, "arrived at door."),
+        (DecisionCause.NO_WAY, {"plan_says": "no way to door"}, "no way to door."),
     ],
 )
-def test_reasons_of_own_standstill_tell_no_other_action(cause: Cause, more: dict[str, object], said: str) -> None:
+def test_reasons_of_own_standstill_tell_no_other_action(
+    cause: DecisionCause, more: dict[str, object], said: str
+) -> None:
     (line,) = format_reasons(standing(cause, hindrances=(cause.value,), **more))
     assert line.startswith(said)
 
@@ -125,16 +133,16 @@ def test_reasons_of_own_standstill_tell_no_other_action(cause: Cause, more: dict
 @pytest.mark.parametrize(
     ("hindrances", "would"),
     [
-        ((Cause.BLIND, Cause.UNATTENDED), "stand: it sees nothing."),
-        ((Cause.UNSAVED,), "stand: lessons cannot be saved."),
-        ((Cause.UNATTENDED, Cause.AT_GOAL), "stand: no teacher is there."),
-        ((Cause.AT_GOAL,), "stand: it is at its goal."),
-        ((Cause.NO_WAY,), "stand: no way leads to its goal."),
+        ((DecisionCause.BLIND, DecisionCause.UNATTENDED), "stand: it sees nothing."),
+        ((DecisionCause.UNSAVED,), "stand: lessons cannot be saved."),
+        ((DecisionCause.UNATTENDED, DecisionCause.AT_GOAL), "stand: no teacher is there."),
+        ((DecisionCause.AT_GOAL,), "stand: it is at its goal."),
+        ((DecisionCause.NO_WAY,), "stand: no way leads to its goal."),
         ((), "do as RLA 17 (forward) says, at 4 of R 10."),
     ],
 )
-def test_a_stopped_robot_may_have_stood_all_the_same(hindrances: tuple[Cause, ...], would: str) -> None:
-    stood = standing(Cause.STOPPED, hindrances=tuple(each.value for each in hindrances))
+def test_a_stopped_robot_may_have_stood_all_the_same(hindrances: tuple[DecisionCause, ...], would: str) -> None:
+    stood = standing(DecisionCause.STOPPED, hindrances=tuple(each.value for each in hindrances))
     assert format_reasons(stood)[1] == f"By itself it would {would}"
 
 
@@ -148,19 +156,23 @@ def test_a_robot_that_is_led_where_it_knows_no_way_would_ask_the_way_and_not_dri
             "it is lost, because no teacher has set its location",
         ),
     ):
-        led = replace(with_mid(facts(KNOWN, Cause.TEACHER.value, "by hand"), replace(mid, driver=None)), asks_at=MID)
+        led = replace(
+            with_mid(facts(KNOWN, DecisionCause.TEACHER.value, "by hand"), replace(mid, driver=None)), asks_at=MID
+        )
         assert format_reasons(led)[1] == f"By itself it would ask the way: {why}."
 
 
 def test_of_several_on_one_condition_the_one_that_leads_is_what_it_would_do() -> None:
     crowd = level((1.0, 6.0), replace(NEAR, leads=False), replace(NEAR, rla_id=30, title="RLA 30", action="back"))
-    stood = replace(standing(Cause.STOPPED), basic=replace(crowd, driver=None))
+    stood = replace(standing(DecisionCause.STOPPED), basic=replace(crowd, driver=None))
     assert format_reasons(stood)[1] == "By itself it would do as RLA 30 (back) says, at 4 of R 10."
 
 
 def test_reasons_of_a_led_robot_tell_that_it_would_ask() -> None:
     for known, said in ((level((1.0, 6.0)), "nothing was taught yet"), (level((1.0, 6.0), FAR), "nearest is RLA 17")):
-        led = replace(facts(known, Cause.TEACHER.value, "by hand"), hindrances=(Cause.UNATTENDED.value,))
+        led = replace(
+            facts(known, DecisionCause.TEACHER.value, "by hand"), hindrances=(DecisionCause.UNATTENDED.value,)
+        )
         assert format_reasons(led)[1].startswith(f"By itself it would ask: {said}")
 
 
@@ -170,7 +182,7 @@ def test_while_an_action_keeps_its_minimum_time_that_is_said() -> None:
 
 
 def test_a_teacher_who_drives_is_named() -> None:
-    led = replace(facts(KNOWN, Cause.TEACHER.value, "by hand"), teacher="Ann")
+    led = replace(facts(KNOWN, DecisionCause.TEACHER.value, "by hand"), teacher="Ann")
     assert headline(led) == "by hand: Ann drives"
     assert format_reasons(led)[0] == "Ann drives: by hand. No RLA was asked."
 
@@ -217,7 +229,7 @@ def test_the_level_above_tells_what_it_commands_and_who_taught_it() -> None:
 def test_a_mid_level_that_asks_has_the_robot_stand() -> None:
     place = replace(story(12, (0.0,), "turn_left", 20.0), title="mid-level RLA 12")
     above = replace(level((5.0,), place), driver=None, level=MID)
-    asks = replace(with_mid(facts(KNOWN, Cause.UNKNOWN.value, None), above), asks_at=MID)
+    asks = replace(with_mid(facts(KNOWN, DecisionCause.UNKNOWN.value, None), above), asks_at=MID)
     assert headline(asks) == "stands and asks the way"
     assert format_reasons(asks) == [
         "The mid level does not know the way from here: nearest is mid-level RLA 12 (turn_left), at 20 of R 10."

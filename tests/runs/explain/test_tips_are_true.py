@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import pytest
 
 from behaviors.judges.judge import AppraisalFeatures
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, sensor_counterfactuals
 from kurt2rt.runs.explain.facts import DecisionFacts
@@ -18,7 +18,7 @@ from tests.runs.replay.stored_runs import NAMES, stored
 EVERY_TICKS, EVERY_KEPT = 397, 60
 KEPT_TICKS_AT_MOST = 20
 """Nothing keeps an action for its minimum time that was chosen longer ago."""
-DECIDED = (Cause.RLA, Cause.HELD, Cause.UNKNOWN)
+DECIDED = (DecisionCause.RLA, DecisionCause.HELD, DecisionCause.UNKNOWN)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.perception.features import FeatureExtractor
 from kurt2rt.core.rla.rla import Phase
 from kurt2rt.runs.explain.collect import collect_facts
@@ -51,7 +51,7 @@ def taught_lesson() -> Iterator[Lesson]:
 def test_before_the_first_lesson_there_is_nothing_to_compare_with(lesson: Lesson, tmp_path: Path) -> None:
     lesson.go_on(20)
     facts = lesson.facts
-    assert (facts.cause, facts.basic.nearest, facts.basic.count) == (Cause.UNKNOWN, None, 0)
+    assert (facts.cause, facts.basic.nearest, facts.basic.count) == (DecisionCause.UNKNOWN, None, 0)
     assert lesson.counterfactuals == ()
     draw_why(facts, (), ROBOT, "nothing yet", tmp_path / "why.png")
     assert (tmp_path / "why.png").read_bytes().startswith(PNG)
@@ -136,7 +136,7 @@ def test_counterfactuals_are_empty_for_a_stop(lesson: Lesson) -> None:
 def test_lessons_that_cannot_be_saved_are_among_the_facts(lesson: Lesson) -> None:
     give(lesson).notebook.error = "the disk is full"
     lesson.go_on(1)
-    assert (lesson.facts.cause, lesson.facts.trouble) == (Cause.UNSAVED, "the disk is full")
+    assert (lesson.facts.cause, lesson.facts.trouble) == (DecisionCause.UNSAVED, "the disk is full")
 
 
 def test_only_the_nearest_are_told_where_few_are_asked_for(taught_lesson: Lesson) -> None:

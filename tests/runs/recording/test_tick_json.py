@@ -8,7 +8,7 @@ from hypothesis import strategies as some
 
 from hal.guard_reason import GuardReason
 from hal.robot import GuardResult, SensorReadings, WheelSpeeds
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.goal import NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
@@ -53,7 +53,7 @@ plans = some.builds(
 decisions = some.builds(
     DecisionEntry,
     wheels,
-    some.sampled_from(Cause),
+    some.sampled_from(DecisionCause),
     some.none() | text,
     maybe_id,
     some.none() | matches,

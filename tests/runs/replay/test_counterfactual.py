@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.core.decision.decision import Cause
+from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.rla import (
     BASIC,
@@ -132,11 +132,11 @@ def test_recorded_answer_is_the_decision_despite_a_later_lesson(name: str, secon
     for entry, record in replay:
         answer = recorded_answers(record, replay.runtime).basic
         decision = record.decision
-        if decision.cause is Cause.RLA:
+        if decision.cause is DecisionCause.RLA:
             assert answer.rla is not None
             assert (answer.rla.rla_id, answer.action) == (decision.rla_id, decision.action), entry.tick
             taught_now += bool(entry.events)
-        elif decision.cause is Cause.UNKNOWN:
+        elif decision.cause is DecisionCause.UNKNOWN:
             assert answer.action is None, entry.tick
         heard[decision.cause.value] += 1
     assert heard["rla"] > 1000
@@ -149,7 +149,7 @@ def test_recorded_answer_keeps_an_action_withdrawn_in_its_tick() -> None:
     run = stored("walls")
     replay = Replay(run)
     for _entry, record in replay:
-        if record.decision.cause is Cause.RLA and record.tick > 1200:
+        if record.decision.cause is DecisionCause.RLA and record.tick > 1200:
             break
     rla_id = record.decision.rla_id
     assert rla_id is not None
@@ -165,7 +165,7 @@ def test_policy_skips_withdrawn_rlas_without_a_teacher(
     known = CounterfactualPolicy(run, events)
     replay = Replay(run)
     for _entry, record in replay:
-        if record.decision.cause is Cause.RLA and record.tick > 1200:
+        if record.decision.cause is DecisionCause.RLA and record.tick > 1200:
             break
     asked = known.answers(record, replay.runtime).basic
     assert asked.rla is not None

@@ -9,7 +9,7 @@ import pytest
 
 from behaviors.judges.judge import AppraisalFeatures
 from hal.robot import STANDSTILL, GuardResult
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.rla import MID, Phase
 from kurt2rt.core.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour, SetPhase, Teach
@@ -36,10 +36,10 @@ class LeftIsTheVerdict:
         return int(circumstances.left_m)
 
 
-def record(tick: int, verdict: int, cause: Cause = Cause.RLA) -> TickRecord:
+def record(tick: int, verdict: int, cause: DecisionCause = DecisionCause.RLA) -> TickRecord:
     """Return a tick with the judge's value, in which RLA 1 or the teacher drives or the robot stands."""
-    driving = cause in (Cause.RLA, Cause.TEACHER)
-    rla_id = 1 if cause is Cause.RLA else None
+    driving = cause in (DecisionCause.RLA, DecisionCause.TEACHER)
+    rla_id = 1 if cause is DecisionCause.RLA else None
     circumstances = AppraisalFeatures(*[0.0] * len(AppraisalFeatures._fields))._replace(left_m=float(verdict))
     decision = Decision(STANDSTILL, cause, "a" if driving else None, rla_id, None)
     situation = Situation(np.zeros(1), history_frozen=not driving)
@@ -99,15 +99,15 @@ def test_punishments_at_the_limit_end_and_rewards_go_on() -> None:
     assert [value for _, value, _ in signals(given(person, [*bad, *good]))] == [-1, -1, 1]
 
 
-@pytest.mark.parametrize("cause", [Cause.UNKNOWN, Cause.STOPPED, Cause.TEACHER])
-def test_reward_without_a_driving_rla_is_not_given(cause: Cause) -> None:
+@pytest.mark.parametrize("cause", [DecisionCause.UNKNOWN, DecisionCause.STOPPED, DecisionCause.TEACHER])
+def test_reward_without_a_driving_rla_is_not_given(cause: DecisionCause) -> None:
     commands = given(appraiser(Phase.REINFORCEMENT), [record(tick, BAD, cause) for tick in range(1, 60)])
     assert signals(commands) == []
 
 
 def test_phase_3_answers_and_does_not_correct() -> None:
     person = appraiser(Phase.REINFORCEMENT)
-    commands = given(person, [record(tick, NEUTRAL, Cause.UNKNOWN) for tick in range(1, 101)])
+    commands = given(person, [record(tick, NEUTRAL, DecisionCause.UNKNOWN) for tick in range(1, 101)])
     assert [(tick, type(command)) for tick, command in commands] == [(100, Teach)]
     assert given(person, [record(tick, NEUTRAL) for tick in range(101, 400)]) == []
 
@@ -116,8 +116,8 @@ def test_phase_4_appraises_all_values_of_each_driver() -> None:
     person = appraiser(Phase.CRITIC)
     seen = [
         *(record(tick, NEUTRAL) for tick in range(1, 31)),
-        *(record(tick, GOOD, Cause.TEACHER) for tick in range(31, 61)),
-        *(record(tick, BAD, Cause.UNKNOWN) for tick in range(61, 91)),  # it stands, and nothing is done
+        *(record(tick, GOOD, DecisionCause.TEACHER) for tick in range(31, 61)),
+        *(record(tick, BAD, DecisionCause.UNKNOWN) for tick in range(61, 91)),  # it stands, and nothing is done
     ]
     appraised = [(each.appraisal, each.decision_tick) for _, each in given(person, seen) if isinstance(each, Appraise)]
     assert appraised == [("neutral", 1), ("good", 31)]
@@ -136,7 +136,7 @@ def test_demonstrate_runs_an_action_then_resumes() -> None:
     (shown,) = person.demonstrate(7, 20)
     assert isinstance(shown, RunBehaviour)
     assert (shown.action in ("a", "b"), shown.ticks) == (True, 20)
-    commands = given(person, [record(tick, NEUTRAL, Cause.TEACHER) for tick in range(8, 40)])
+    commands = given(person, [record(tick, NEUTRAL, DecisionCause.TEACHER) for tick in range(8, 40)])
     ((tick, resume),) = [(tick, command) for tick, command in commands if isinstance(command, Resume)]
     assert tick == 28
     # Only signals may be refused as too late; a refusal of these must be seen.
@@ -147,18 +147,18 @@ def test_demonstrate_runs_an_action_then_resumes() -> None:
 def test_phase_5_gives_no_command() -> None:
     person = appraiser(Phase.AUTONOMOUS)
     assert not person.available
-    assert given(person, [record(tick, BAD, Cause.UNKNOWN) for tick in range(1, 300)]) == []
+    assert given(person, [record(tick, BAD, DecisionCause.UNKNOWN) for tick in range(1, 300)]) == []
 
 
 def test_unknown_penalty_is_given_once_for_the_tick_before() -> None:
     person = appraiser(Phase.REINFORCEMENT, UnknownPenalty())
-    seen = [record(1, BAD), record(2, BAD), *(record(tick, BAD, Cause.UNKNOWN) for tick in range(3, 60))]
+    seen = [record(1, BAD), record(2, BAD), *(record(tick, BAD, DecisionCause.UNKNOWN) for tick in range(3, 60))]
     assert signals(given(person, seen)) == [(13, -1, 2)]
 
 
 def test_unknown_penalty_question_of_the_mid_level_gives_none() -> None:
     person = appraiser(Phase.REINFORCEMENT, UnknownPenalty())
-    asks = record(3, BAD, Cause.UNKNOWN)
+    asks = record(3, BAD, DecisionCause.UNKNOWN)
     which_way = asks._replace(decision=asks.decision._replace(asks_at=MID))
     assert (
         signals(given(person, [record(1, BAD), record(2, BAD), *(which_way._replace(tick=t) for t in range(3, 60))]))
@@ -182,7 +182,7 @@ def test_random_penalty_follows_its_seed_and_count() -> None:
 
 def test_random_penalty_waits_until_an_rla_drives() -> None:
     person = appraiser(Phase.REINFORCEMENT, RandomPenalty(3, 100, 20, 1))
-    stands = [record(tick, GOOD, Cause.STOPPED) for tick in range(1, 101)]
+    stands = [record(tick, GOOD, DecisionCause.STOPPED) for tick in range(1, 101)]
     assert signals(given(person, [*stands, *(record(tick, GOOD) for tick in range(101, 200))])) == [
         (111, -1, 101),
         (131, -1, 121),
@@ -194,5 +194,5 @@ def test_phases_1_and_2_answer_as_scripted_teacher() -> None:
     person = appraiser(Phase.CORRECTIONS)
     assert person.phase is Phase.CORRECTIONS
     assert isinstance(person.begin_phase(Phase.SUPERVISED), SetPhase)
-    commands = given(person, [record(tick, BAD, Cause.UNKNOWN) for tick in range(1, 101)])
+    commands = given(person, [record(tick, BAD, DecisionCause.UNKNOWN) for tick in range(1, 101)])
     assert [(tick, type(command)) for tick, command in commands] == [(100, Teach)]

@@ -4,7 +4,7 @@ import numpy as np
 
 from behaviors.metrics.task_metric import WayAhead
 from hal.robot import STANDSTILL, GuardResult
-from kurt2rt.core.decision.decision import Cause, Decision, MidDecision
+from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision
 from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.rla import BASIC, MID, Phase
@@ -32,7 +32,7 @@ def dispatcher(phase: Phase = Phase.CORRECTIONS, *, error_rate: float = 0.0) -> 
 
 
 def record(mid: MidDecision, *, drives: bool = True) -> TickRecord:
-    cause = Cause.RLA if drives else Cause.UNKNOWN
+    cause = DecisionCause.RLA if drives else DecisionCause.UNKNOWN
     asks_at = MID if mid.asks else BASIC
     decision = Decision(STANDSTILL, cause, "forward" if drives else None, None, None, asks_at=asks_at, mid=mid)
     situation = Situation(np.zeros(1), history_frozen=False)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from hal.robot import STANDSTILL, GuardResult
-from kurt2rt.core.decision.decision import Cause, Decision
+from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import Origin, Phase, Rla
@@ -43,7 +43,7 @@ def teacher(phase: Phase = Phase.CORRECTIONS, *, seed: int = 1, **changes: Any) 
 
 
 def record(
-    count: int, cause: Cause, action: str | None = None, nearest: int = 1, radius_fraction: float = 0.0
+    count: int, cause: DecisionCause, action: str | None = None, nearest: int = 1, radius_fraction: float = 0.0
 ) -> TickRecord:
     """Return a tick in which RLA 1 drives `action`; `nearest` is at a fraction of R."""
     rla_id = None if action is None else 1
@@ -55,10 +55,10 @@ def record(
 
 
 def asking(count: int = FAR) -> TickRecord:
-    return record(count, Cause.UNKNOWN)
+    return record(count, DecisionCause.UNKNOWN)
 
 
-def doing(action: str, count: int = FAR, cause: Cause = Cause.RLA) -> TickRecord:
+def doing(action: str, count: int = FAR, cause: DecisionCause = DecisionCause.RLA) -> TickRecord:
     return record(count, cause, action)
 
 
@@ -101,7 +101,7 @@ def test_update_phase_2_corrects_after_the_patience() -> None:
 
 
 def test_update_held_wrong_action_is_corrected() -> None:
-    assert list(given(teacher(), [doing("b", FAR, Cause.HELD)] * PATIENCE_TICKS)) == [PATIENCE_TICKS]
+    assert list(given(teacher(), [doing("b", FAR, DecisionCause.HELD)] * PATIENCE_TICKS)) == [PATIENCE_TICKS]
 
 
 def test_update_phase_2_answers_questions() -> None:
@@ -131,7 +131,7 @@ def test_update_after_a_correction_patience_starts_again() -> None:
 
 
 def test_update_stopped_robot_is_not_corrected() -> None:
-    for cause in (Cause.STOPPED, Cause.UNSAVED):
+    for cause in (DecisionCause.STOPPED, DecisionCause.UNSAVED):
         assert given(teacher(), [record(NEAR, cause)] * 500) == {}
 
 
@@ -199,9 +199,9 @@ def deletions(last: Sequence[TickRecord]) -> int:
 
 
 def test_update_deletes_only_if_a_correction_would_replace() -> None:
-    far = [record(FAR, Cause.RLA, "d", radius_fraction=0.2)] * PATIENCE_TICKS
-    held = [record(FAR, Cause.HELD, "d", nearest=2)] * PATIENCE_TICKS
-    assert deletions([record(FAR, Cause.RLA, "d", radius_fraction=0.1)] * PATIENCE_TICKS) == 1
+    far = [record(FAR, DecisionCause.RLA, "d", radius_fraction=0.2)] * PATIENCE_TICKS
+    held = [record(FAR, DecisionCause.HELD, "d", nearest=2)] * PATIENCE_TICKS
+    assert deletions([record(FAR, DecisionCause.RLA, "d", radius_fraction=0.1)] * PATIENCE_TICKS) == 1
     assert deletions(far) == 0
     assert deletions(held) == 0
 
