@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from kurt2rt.runs.recording.disk import RealDisk, WritableFile
+from kurt2rt.runs.recording.recording_disk import RealDisk, WritableFile
 from tests.crash.operations import FolderSynced, Made, Operation, Synced, SyncFailed, Written
 
 
 class TracedDisk:
-    """A real one (kurt2rt.runs.recording.disk.Disk); some of its syncs fail."""
+    """A real one (kurt2rt.runs.recording.recording_disk.Disk); some of its syncs fail."""
 
     def __init__(self, failing_syncs: tuple[int, ...] = ()) -> None:
         """`failing_syncs`: which ones, from 1."""

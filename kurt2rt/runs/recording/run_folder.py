@@ -5,7 +5,7 @@ import re
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from kurt2rt.runs.recording.disk import is_locked
+from kurt2rt.runs.recording.recording_disk import is_locked
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.segment_reader import TICK_TOPIC, SegmentReader
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from foxglove import Context, open_mcap
 from foxglove.mcap import MCAPCompression, MCAPWriteOptions
 
-from kurt2rt.runs.recording.disk import Disk, WritableFile
+from kurt2rt.runs.recording.recording_disk import Disk, WritableFile
 
 PROFILE = "kurt2rt"
 KEPT_BYTES = 4_000_000

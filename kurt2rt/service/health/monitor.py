@@ -16,7 +16,7 @@ from kurt2rt.channel.protocol.health import BusHealth, Drops, HealthReport, Jour
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.runtime import Runtime
 from kurt2rt.service.health.diagnostics import Counted, Diagnostics
-from kurt2rt.service.health.disk_monitor import DiskMonitor
+from kurt2rt.service.health.free_space import DiskMonitor
 from kurt2rt.service.health.machine import MachineMonitor
 from kurt2rt.service.health.probes import JournalStats, Probes
 from kurt2rt.service.health.snapshot import Snapshot, take_snapshot

@@ -12,7 +12,7 @@ from mcap.data_stream import RecordBuilder
 from mcap.records import Chunk, Header
 from mcap.writer import MCAP0_MAGIC
 
-from kurt2rt.runs.recording.disk import RealDisk, WritableFile
+from kurt2rt.runs.recording.recording_disk import RealDisk, WritableFile
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.segment import KEPT_BYTES, Segment
 from kurt2rt.runs.recording.segment_reader import SegmentReader

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.channel.protocol.health import DiskSpace, HealthReport
-from kurt2rt.service.health.disk_monitor import DiskMonitor
+from kurt2rt.service.health.free_space import DiskMonitor
 from kurt2rt.service.health.machine import MachineMonitor, battery_of
 from kurt2rt.service.health.monitor import HealthMonitor
 from kurt2rt.service.health.probes import Probes

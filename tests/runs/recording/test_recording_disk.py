@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.runs.recording.disk import LockedFolder, RealDisk, is_locked
+from kurt2rt.runs.recording.recording_disk import LockedFolder, RealDisk, is_locked
 
 
 def open_files() -> int:
