@@ -16,7 +16,9 @@ from kurt2rt.core.expectations.tracker import ExpectationTracker
 from kurt2rt.core.mid.mid_level import MidUsageCounter
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.perception.perception import Perception, Situation
-from kurt2rt.core.rla.rla import BASIC, Phase, Rla, TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import BASIC, Rla
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import BeAt, Command, CommandResult, Correct, Drive, Resume, Teach, Watch

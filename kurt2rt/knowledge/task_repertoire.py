@@ -12,7 +12,7 @@ from kurt2rt.core.mid.place import PlaceSettings
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.outcome import CommandRefusedError
 from kurt2rt.core.outcome_text import text_of
-from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.knowledge.journal.loading import read_lessons
 from kurt2rt.knowledge.knowledge_error import KnowledgeError

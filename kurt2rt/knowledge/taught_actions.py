@@ -14,7 +14,8 @@ from kurt2rt.core.mid.settings import MidSettings
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.perception.perception import Perception
 from kurt2rt.core.perception.weights import feature_weights
-from kurt2rt.core.rla.rla import MID, TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.task_settings import TaskSettings
 

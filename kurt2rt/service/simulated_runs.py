@@ -20,7 +20,8 @@ from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourErr
 from kurt2rt.core.mid.mid_level import MidLevel
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.rla.rla import Phase, TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import BeginSession, Command, SetPhase, Take
 from kurt2rt.knowledge.exchange.package import import_knowledge

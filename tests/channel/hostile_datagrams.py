@@ -13,7 +13,7 @@ from aiocoap.optiontypes import OpaqueOption
 from kurt2rt.channel.protocol.codec import PATHS, WireError, decode_request, encode_request
 from kurt2rt.channel.protocol.requests import REQUESTS, Request
 from kurt2rt.channel.security.oscore_context import OscoreContext
-from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.rla.phase import Phase
 
 _MOST_BYTES = 1600
 _STRANGE_PATHS = (

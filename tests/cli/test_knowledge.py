@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.core.rla.credit import Credit
-from kurt2rt.core.rla.rla import CRITIC, ActionReplaced, ActionWithdrawn, Origin, Phase, RlaRewarded, SessionBegun
+from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, RlaRewarded, SessionBegun
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import CRITIC, Origin
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.fold import fold_journal

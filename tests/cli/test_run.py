@@ -12,7 +12,7 @@ import pytest
 
 from hal.bus import CONTROL_ID
 from hal.codec import load_codec
-from kurt2rt.core.rla.rla import RlaCreated
+from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.knowledge.journal.fold import check_knowledge
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.journal_file import log_of

@@ -15,7 +15,8 @@ from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.perception.perception import Perception
-from kurt2rt.core.rla.rla import Phase, TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.teaching.authority import ControlAuthority

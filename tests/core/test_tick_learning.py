@@ -8,16 +8,9 @@ from kurt2rt.core.decision.active_stop import STARTED
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.rla.credit import Credit
-from kurt2rt.core.rla.rla import (
-    CRITIC,
-    ActionWithdrawn,
-    Appraised,
-    Origin,
-    Phase,
-    RlaCreated,
-    RlaRewarded,
-    TeachingEvent,
-)
+from kurt2rt.core.rla.events import ActionWithdrawn, Appraised, RlaCreated, RlaRewarded, TeachingEvent
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import CRITIC, Origin
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import Appraise, Command, Correct, Reward, SetPhase, Teach, Undo

@@ -10,7 +10,8 @@ from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.decision.goal import Goal, NamedGoal, PartialGoal, RlaGoal
 from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
-from kurt2rt.core.rla.rla import MID, SituationNamed, TeachingEvent
+from kurt2rt.core.rla.events import SituationNamed, TeachingEvent
+from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import (
     BeAt,
     Correct,

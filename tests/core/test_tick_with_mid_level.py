@@ -8,18 +8,9 @@ import pytest
 from hal.robot import STANDSTILL, SensorReadings
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.outcome import Field, Outcome, RefusalCode, ResultCode
-from kurt2rt.core.rla.rla import (
-    BASIC,
-    CRITIC,
-    MID,
-    ActionReplaced,
-    LessonUndone,
-    Phase,
-    RlaCreated,
-    RlaDeleted,
-    RlaRewarded,
-    TeachingEvent,
-)
+from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated, RlaDeleted, RlaRewarded, TeachingEvent
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import BASIC, CRITIC, MID
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.core.teaching.commands import (
     Command,

@@ -30,7 +30,7 @@ from kurt2rt.channel.protocol.requests import (
 )
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.decision.active_stop import STARTED
-from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.rla.phase import Phase
 from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.journal.fold import check_knowledge
 from kurt2rt.knowledge.journal.journal import Journal

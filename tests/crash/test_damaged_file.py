@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.core.rla.rla import Rla, RlaCreated
+from kurt2rt.core.rla.events import RlaCreated
+from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_for_teaching, open_knowledge

@@ -6,7 +6,7 @@ from pathlib import Path
 import anyio
 
 from hal.robot_settings import load_robot
-from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.curriculum import run_lesson
 from kurt2rt.experiments.lockstep.exam import ExamResult, ExamSetup, examine

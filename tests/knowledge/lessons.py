@@ -6,15 +6,10 @@ from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
-from kurt2rt.core.rla.feature_set import LevelFeatures
-from kurt2rt.core.rla.rla import (
-    CRITIC,
+from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
     LessonUndone,
-    Origin,
-    Phase,
-    Rla,
     RlaCreated,
     RlaDeleted,
     RlaRewarded,
@@ -22,6 +17,9 @@ from kurt2rt.core.rla.rla import (
     SessionEnded,
     TeachingEvent,
 )
+from kurt2rt.core.rla.feature_set import LevelFeatures
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import CRITIC, Origin, Rla
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.event_codec import encode_event

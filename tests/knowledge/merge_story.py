@@ -11,17 +11,12 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from kurt2rt.core.rla.credit import Credit
-from kurt2rt.core.rla.lesson_history import lesson_stack
-from kurt2rt.core.rla.rla import (
-    BASIC,
+from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
     KnowledgeMerged,
     LessonRedone,
     LessonUndone,
-    Origin,
-    Phase,
-    Rla,
     RlaCreated,
     RlaDeleted,
     RlaRewarded,
@@ -29,6 +24,9 @@ from kurt2rt.core.rla.rla import (
     SituationNamed,
     TeachingEvent,
 )
+from kurt2rt.core.rla.lesson_history import lesson_stack
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import BASIC, Origin, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from kurt2rt.core.rla.statistics import Statistics

@@ -8,7 +8,7 @@ import pytest
 from kurt2rt.channel.protocol.requests import CorrectRequest
 from kurt2rt.channel.server.reply import ReplyStatus
 from kurt2rt.core.outcome import ResultCode
-from kurt2rt.core.rla.rla import RlaCreated, RlaDeleted
+from kurt2rt.core.rla.events import RlaCreated, RlaDeleted
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.teaching.commands import Command, Teach
 from kurt2rt.core.teaching.question import MidQuestion, Question

@@ -18,7 +18,8 @@ from kurt2rt.channel.protocol.schema import (
     Row,
     Text,
 )
-from kurt2rt.core.rla.rla import BASIC, MID, Phase
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import BASIC, MID
 
 VERSION = 4
 """Version of the wire contract, that is of /hello and /state. A device refuses any other and tells the remedy."""

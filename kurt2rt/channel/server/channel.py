@@ -18,7 +18,7 @@ from kurt2rt.channel.server.resources import Keys, RobotSite
 from kurt2rt.channel.server.state_builder import StateBuilder
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.perception.sensor_words import infrared_law
-from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.teaching.commands import HandOver, Stop
 from kurt2rt.core.teaching.inbox import InboxFullError
 from kurt2rt.core.teaching.system_events import PairingRenewed

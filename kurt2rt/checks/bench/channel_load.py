@@ -12,7 +12,7 @@ from kurt2rt.checks.bench.helper_process import helper_process
 from kurt2rt.checks.bench.open_robot import OpenRobot, open_robot
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
 from kurt2rt.checks.bench.robot_under_test import BenchFixture, OnProgress
-from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.rla.phase import Phase
 from kurt2rt.platform.ledger import Percentiles, TickTimer, percentiles_of
 
 _SETTLING_S = 0.3

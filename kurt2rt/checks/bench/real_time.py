@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kurt2rt.checks.bench.robot_under_test import SEED, BenchFixture, OnProgress, open_writer
-from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.platform.asyncio_clock import AsyncioClock

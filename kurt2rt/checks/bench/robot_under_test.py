@@ -7,7 +7,7 @@ from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from hal.simulation import Simulation
-from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick import InMemoryEventStore
 from kurt2rt.experiments.lockstep.lesson import teach

@@ -8,7 +8,7 @@ from pathlib import Path
 from hal.robot_settings import RobotSettings
 from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
 from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
-from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
 from kurt2rt.knowledge.journal.journal import Journal

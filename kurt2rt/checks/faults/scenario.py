@@ -20,7 +20,7 @@ from kurt2rt.checks.faults.outcome import LOST_FRAMES, FaultOutcome, Standstill
 from kurt2rt.checks.faults.script import Script
 from kurt2rt.checks.faults.table import FaultCase, FaultTable
 from kurt2rt.checks.faults.teacher_link import TeacherLink
-from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.tick import EventStore, InMemoryEventStore, TickRecord
 from kurt2rt.platform.clock import Clock

@@ -6,7 +6,7 @@ from hal.robot_settings import RobotSettings
 from kurt2rt.checks.soak.settings import MoodSettings, SoakSettings
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import TaskSettings, TeacherSettings
 from kurt2rt.core.teaching.commands import (
     Appraise,

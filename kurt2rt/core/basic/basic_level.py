@@ -11,19 +11,18 @@ from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
 from kurt2rt.core.perception.perception import Situation
-from kurt2rt.core.rla.match import Match
-from kurt2rt.core.rla.matching import exact_square
-from kurt2rt.core.rla.rla import (
-    BASIC,
+from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
     LessonRedone,
     LessonUndone,
-    Rla,
     RlaCreated,
     RlaDeleted,
     TeachingEvent,
 )
+from kurt2rt.core.rla.match import Match
+from kurt2rt.core.rla.matching import exact_square
+from kurt2rt.core.rla.rla import BASIC, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 
 

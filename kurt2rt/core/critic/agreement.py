@@ -4,8 +4,7 @@ from collections import deque
 from collections.abc import Iterable, Mapping
 
 from kurt2rt.core.critic.settings import AgreementSettings
-from kurt2rt.core.rla.rla import (
-    CRITIC,
+from kurt2rt.core.rla.events import (
     ActionReplaced,
     Appraised,
     LessonRedone,
@@ -14,6 +13,7 @@ from kurt2rt.core.rla.rla import (
     RlaRewarded,
     TeachingEvent,
 )
+from kurt2rt.core.rla.rla import CRITIC
 
 
 class Agreement:

@@ -4,20 +4,19 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from kurt2rt.core.critic.settings import RollbackSettings
-from kurt2rt.core.rla.lesson_history import rla_id_of
-from kurt2rt.core.rla.rla import (
-    CRITIC,
+from kurt2rt.core.rla.events import (
     Appraised,
     KnowledgeMerged,
     LessonRedone,
     LessonUndone,
-    Origin,
-    Phase,
     SessionBegun,
     SessionEnded,
     SituationNamed,
     TeachingEvent,
 )
+from kurt2rt.core.rla.lesson_history import rla_id_of
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import CRITIC, Origin
 
 
 class _Change(NamedTuple):

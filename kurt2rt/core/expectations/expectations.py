@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kurt2rt.core.expectations.surprise import Surprise, SurpriseSettings
-from kurt2rt.core.rla.expectation import Expectation, pack
-from kurt2rt.core.rla.rla import (
+from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
     LessonRedone,
@@ -18,6 +17,7 @@ from kurt2rt.core.rla.rla import (
     RlaDeleted,
     TeachingEvent,
 )
+from kurt2rt.core.rla.expectation import Expectation, pack
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 

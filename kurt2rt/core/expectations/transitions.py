@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from kurt2rt.core.decision.decision import MidDecision
 from kurt2rt.core.expectations.expectations import End, Expectations
 from kurt2rt.core.expectations.surprise import Surprise
-from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
 
 _NOTHING = np.zeros(0)
 

@@ -18,19 +18,18 @@ from kurt2rt.core.reinforcement.rule import CreditUpdate, ReinforcementRule
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings, ValueSettings
 from kurt2rt.core.reinforcement.td_lambda import TdLambda
 from kurt2rt.core.rla.credit import Credit
-from kurt2rt.core.rla.rla import (
-    CRITIC,
+from kurt2rt.core.rla.events import (
     ActionReplaced,
     Lesson,
     LessonRedone,
     LessonUndone,
-    Origin,
-    Phase,
     RlaCreated,
     RlaDeleted,
     RlaRewarded,
     TeachingEvent,
 )
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import CRITIC, Origin
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import EDGE_WEIGHTS_INCLUDE, FIRST_VALUE, VALUES_INCLUDE, Statistics
 

@@ -8,8 +8,9 @@ import numpy as np
 
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings, ValueSettings
 from kurt2rt.core.rla.condition import Condition
+from kurt2rt.core.rla.events import ActionWithdrawn, Lesson, RlaCreated, RlaDeleted
 from kurt2rt.core.rla.matching import exact_square
-from kurt2rt.core.rla.rla import ActionWithdrawn, Lesson, Origin, Rla, RlaCreated, RlaDeleted
+from kurt2rt.core.rla.rla import Origin, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 
 OriginOf = Callable[[str], Origin]

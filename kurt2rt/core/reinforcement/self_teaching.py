@@ -11,8 +11,10 @@ from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.critic.state import CriticState
 from kurt2rt.core.decision.decision import Decision
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
+from kurt2rt.core.rla.events import LessonUndone, SituationNamed, TeachingEvent
 from kurt2rt.core.rla.lesson_history import rla_id_of
-from kurt2rt.core.rla.rla import BASIC, CRITIC, LessonUndone, Phase, Rla, SituationNamed, TeachingEvent
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import BASIC, CRITIC, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import BEST_INCLUDES, BEST_SCORE, Statistics
 

@@ -4,9 +4,7 @@ from bisect import bisect_left
 from dataclasses import dataclass, replace
 
 from kurt2rt.core.outcome import Outcome, RefusalCode
-from kurt2rt.core.rla.rla import (
-    ASK,
-    BASIC,
+from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
     Lesson,
@@ -15,8 +13,8 @@ from kurt2rt.core.rla.rla import (
     RlaLesson,
     RlaRewarded,
     SituationNamed,
-    rla_title,
 )
+from kurt2rt.core.rla.rla import ASK, BASIC, rla_title
 
 LessonStack = int | tuple[str, str]
 """Key of a stack of lessons: an RLA id, or a level and the name of a situation."""

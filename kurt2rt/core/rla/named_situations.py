@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from kurt2rt.core.rla.condition import Condition
-from kurt2rt.core.rla.rla import SituationNamed
+from kurt2rt.core.rla.events import SituationNamed
 
 
 class NamedSituations:

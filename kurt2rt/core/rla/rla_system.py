@@ -14,14 +14,7 @@ from numpy.typing import NDArray
 from kurt2rt.core.outcome import Outcome
 from kurt2rt.core.rla.active_rlas import ActiveRlas
 from kurt2rt.core.rla.condition import Condition
-from kurt2rt.core.rla.fingerprint import knowledge_hash_of
-from kurt2rt.core.rla.lesson_history import LessonHistory, LessonRecord
-from kurt2rt.core.rla.match import Match
-from kurt2rt.core.rla.named_situations import NamedSituations
-from kurt2rt.core.rla.reward_counts import Appraisal, RewardCounts
-from kurt2rt.core.rla.rla import (
-    ASK,
-    BASIC,
+from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
     Appraised,
@@ -29,8 +22,6 @@ from kurt2rt.core.rla.rla import (
     Lesson,
     LessonRedone,
     LessonUndone,
-    Origin,
-    Rla,
     RlaCreated,
     RlaDeleted,
     RlaRewarded,
@@ -39,6 +30,12 @@ from kurt2rt.core.rla.rla import (
     SituationNamed,
     TeachingEvent,
 )
+from kurt2rt.core.rla.fingerprint import knowledge_hash_of
+from kurt2rt.core.rla.lesson_history import LessonHistory, LessonRecord
+from kurt2rt.core.rla.match import Match
+from kurt2rt.core.rla.named_situations import NamedSituations
+from kurt2rt.core.rla.reward_counts import Appraisal, RewardCounts
+from kurt2rt.core.rla.rla import ASK, BASIC, Origin, Rla
 from kurt2rt.core.rla.space import Space
 
 

@@ -3,7 +3,8 @@
 from kurt2rt.core.critic.critic import Critic
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
-from kurt2rt.core.rla.rla import CRITIC, ActionReplaced, Appraised, Origin, Rla, RlaCreated
+from kurt2rt.core.rla.events import ActionReplaced, Appraised, RlaCreated
+from kurt2rt.core.rla.rla import CRITIC, Origin, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.teaching.commands import Appraise
 from kurt2rt.core.teaching.lesson_result import LessonResult, rla_outcome

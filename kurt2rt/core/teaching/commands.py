@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 from kurt2rt.core.decision.goal import Goal
 from kurt2rt.core.outcome import Code, Outcome
-from kurt2rt.core.rla.rla import BASIC, Phase
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import BASIC
 
 # Motor commands and presence: streams.
 

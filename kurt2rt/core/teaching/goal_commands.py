@@ -2,7 +2,8 @@
 
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
 from kurt2rt.core.planning.navigator import Navigator
-from kurt2rt.core.rla.rla import MID, Origin, SituationNamed, TeachingEvent
+from kurt2rt.core.rla.events import SituationNamed, TeachingEvent
+from kurt2rt.core.rla.rla import MID, Origin
 from kurt2rt.core.teaching.commands import BeAt, NameSituation, Seek, StopSeeking
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 

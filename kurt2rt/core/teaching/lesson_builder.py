@@ -8,18 +8,9 @@ from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, Resu
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
+from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated, RlaDeleted, RlaRewarded
 from kurt2rt.core.rla.match import Match
-from kurt2rt.core.rla.rla import (
-    BASIC,
-    MID,
-    ActionReplaced,
-    LessonUndone,
-    Origin,
-    Rla,
-    RlaCreated,
-    RlaDeleted,
-    RlaRewarded,
-)
+from kurt2rt.core.rla.rla import BASIC, MID, Origin, Rla
 from kurt2rt.core.teaching.appraisal_lessons import AppraisalLessons
 from kurt2rt.core.teaching.commands import Appraise, Correct, DeleteRla, ReplaceAction, Reward, Teach, Undo
 from kurt2rt.core.teaching.lesson_context import LessonContext

@@ -3,7 +3,8 @@
 from typing import NamedTuple
 
 from kurt2rt.core.outcome import Field, Outcome, RefusalCode, ResultCode
-from kurt2rt.core.rla.rla import BASIC, Rla, TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.rla import BASIC, Rla
 
 
 class LessonResult(NamedTuple):

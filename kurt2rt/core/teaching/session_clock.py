@@ -1,7 +1,8 @@
 """Sessions and their length, which the paper counts as teaching time."""
 
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
-from kurt2rt.core.rla.rla import Origin, SessionBegun, SessionEnded, TeachingEvent
+from kurt2rt.core.rla.events import SessionBegun, SessionEnded, TeachingEvent
+from kurt2rt.core.rla.rla import Origin
 from kurt2rt.core.teaching.commands import BeginSession, EndSession
 
 

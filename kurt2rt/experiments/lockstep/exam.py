@@ -10,7 +10,8 @@ from hal.simulation import Position, Simulation
 from kurt2rt.core.basic.policy_level import PolicyLevel
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.level import Level
-from kurt2rt.core.rla.rla import Rla, TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import SuccessSettings, TaskSettings
 from kurt2rt.core.teaching.commands import Pursue

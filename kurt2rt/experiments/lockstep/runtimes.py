@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
 from hal.simulation import Simulation
-from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings

@@ -8,7 +8,9 @@ from itertools import takewhile
 from pathlib import Path
 
 from kurt2rt.core.critic.settings import load_critic
-from kurt2rt.core.rla.rla import CRITIC, Phase, TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.experiments.lockstep.curriculum import Report, run_lesson
 from kurt2rt.experiments.lockstep.lesson_keeping import LessonLostError
 from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan

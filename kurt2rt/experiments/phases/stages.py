@@ -5,7 +5,8 @@ from collections.abc import Iterable
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.perception.definition import load_situation
-from kurt2rt.core.rla.rla import CRITIC, ActionWithdrawn, LessonUndone, TeachingEvent
+from kurt2rt.core.rla.events import ActionWithdrawn, LessonUndone, TeachingEvent
+from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from kurt2rt.core.task_settings import TaskSettings

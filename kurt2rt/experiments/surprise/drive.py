@@ -8,7 +8,7 @@ from typing import Literal
 
 from hal.robot_settings import RobotSettings
 from hal.simulation import Simulation, SimulationFactory
-from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Pursue, Resume

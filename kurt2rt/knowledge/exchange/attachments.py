@@ -11,8 +11,8 @@ from typing import Any
 from behaviors.repertoire_settings import RepertoireSettings, TaskAction, TaughtAction
 from hal.robot_settings import RobotSettings
 from hal.settings import FILES, Settings, find_beside, find_config, kept_name, load_settings
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.expectation import Expectation
-from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.knowledge.exchange.json_checks import require_int, require_number, require_text

@@ -3,7 +3,7 @@
 import zlib
 from dataclasses import dataclass
 
-from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.knowledge.journal.event_codec import decode_event
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError

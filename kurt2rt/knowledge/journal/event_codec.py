@@ -6,17 +6,13 @@ import sys
 from typing import Any
 
 from kurt2rt.core.rla.credit import Credit
-from kurt2rt.core.rla.rla import (
-    BASIC,
+from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
     Appraised,
     KnowledgeMerged,
     LessonRedone,
     LessonUndone,
-    Origin,
-    Phase,
-    Rla,
     RlaCreated,
     RlaDeleted,
     RlaRewarded,
@@ -25,6 +21,8 @@ from kurt2rt.core.rla.rla import (
     SituationNamed,
     TeachingEvent,
 )
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import BASIC, Origin, Rla
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 

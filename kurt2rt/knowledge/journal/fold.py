@@ -3,7 +3,8 @@
 from collections.abc import Container, Iterable
 
 from kurt2rt.core.outcome_text import event_error_text
-from kurt2rt.core.rla.rla import BASIC, RlaCreated, SituationNamed
+from kurt2rt.core.rla.events import RlaCreated, SituationNamed
+from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.rla.rla_system import EventFault, InvalidEventError, RlaSystem
 from kurt2rt.core.rla.space import Space
 from kurt2rt.knowledge.journal.entry import StoredEntry

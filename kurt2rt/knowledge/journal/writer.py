@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from types import TracebackType
 from typing import Self
 
-from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
 from kurt2rt.knowledge.journal.event_codec import encode_event

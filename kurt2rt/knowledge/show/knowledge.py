@@ -8,21 +8,18 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from kurt2rt.core.perception.definition import AVERAGED
-from kurt2rt.core.rla.lesson_history import LessonRecord
-from kurt2rt.core.rla.rla import (
-    BASIC,
-    CRITIC,
-    MID,
+from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
     Appraised,
     LessonRedone,
     LessonUndone,
-    Rla,
     RlaDeleted,
     RlaRewarded,
     SessionBegun,
 )
+from kurt2rt.core.rla.lesson_history import LessonRecord
+from kurt2rt.core.rla.rla import BASIC, CRITIC, MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics, follow_ups
 from kurt2rt.knowledge.journal.entry import StoredEntry

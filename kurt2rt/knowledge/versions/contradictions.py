@@ -10,7 +10,8 @@ from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.mid.settings import load_mid_level
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.perception.weights import feature_weights
-from kurt2rt.core.rla.rla import BASIC, CRITIC, MID, Rla, RlaCreated
+from kurt2rt.core.rla.events import RlaCreated
+from kurt2rt.core.rla.rla import BASIC, CRITIC, MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from kurt2rt.core.task_settings import TaskSettings

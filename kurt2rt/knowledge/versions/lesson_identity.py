@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
+from kurt2rt.core.rla.events import RlaCreated, RlaRewarded, TeachingEvent
 from kurt2rt.core.rla.lesson_history import LessonRecord, LessonStack, lesson_stack
-from kurt2rt.core.rla.rla import RlaCreated, RlaRewarded, TeachingEvent
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.journal.event_codec import encode_event

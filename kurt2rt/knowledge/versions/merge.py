@@ -11,8 +11,9 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
+from kurt2rt.core.rla.events import KnowledgeMerged
 from kurt2rt.core.rla.expectation import Expectation
-from kurt2rt.core.rla.rla import KnowledgeMerged, Rla
+from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.binding import require_compatible
 from kurt2rt.knowledge.journal.entry import JournalEntry

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Literal
 
-from kurt2rt.core.rla.rla import KnowledgeMerged, LessonRedone, LessonUndone
+from kurt2rt.core.rla.events import KnowledgeMerged, LessonRedone, LessonUndone
 from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.versions.lesson_identity import (
     KnowledgeContent,

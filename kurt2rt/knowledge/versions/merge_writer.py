@@ -6,13 +6,11 @@ from enum import StrEnum
 
 from kurt2rt.core.outcome_text import event_error_text
 from kurt2rt.core.rla.credit import Credit
-from kurt2rt.core.rla.lesson_history import LessonRecord
-from kurt2rt.core.rla.rla import (
+from kurt2rt.core.rla.events import (
     Appraised,
     Lesson,
     LessonRedone,
     LessonUndone,
-    Rla,
     RlaCreated,
     RlaDeleted,
     RlaRewarded,
@@ -21,6 +19,8 @@ from kurt2rt.core.rla.rla import (
     SituationNamed,
     TeachingEvent,
 )
+from kurt2rt.core.rla.lesson_history import LessonRecord
+from kurt2rt.core.rla.rla import Rla
 from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from kurt2rt.core.outcome import Outcome
 from kurt2rt.core.outcome_text import text_of
+from kurt2rt.core.rla.events import LessonRedone, LessonUndone, TeachingEvent
 from kurt2rt.core.rla.lesson_history import LessonRecord
-from kurt2rt.core.rla.rla import LessonRedone, LessonUndone, TeachingEvent
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding

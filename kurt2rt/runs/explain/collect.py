@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision
 from kurt2rt.core.decision.plan_step import GoalStatus
+from kurt2rt.core.rla.events import RlaRewarded
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.match import Match
-from kurt2rt.core.rla.rla import BASIC, MID, Rla, RlaRewarded
+from kurt2rt.core.rla.rla import BASIC, MID, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.runs.explain.facts import DecisionFacts, LessonFact, LevelFacts, RlaFacts

@@ -4,8 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 
-from kurt2rt.core.rla.lesson_history import rla_id_of
-from kurt2rt.core.rla.rla import (
+from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
     LessonRedone,
@@ -14,6 +13,7 @@ from kurt2rt.core.rla.rla import (
     RlaDeleted,
     TeachingEvent,
 )
+from kurt2rt.core.rla.lesson_history import rla_id_of
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.explain.counterfactual import SensorCounterfactual, sensor_counterfactuals

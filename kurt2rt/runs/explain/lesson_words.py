@@ -1,8 +1,6 @@
 """Teaching events in words, with undone lessons named by their content."""
 
-from kurt2rt.core.rla.lesson_history import LessonRecord, rla_id_of
-from kurt2rt.core.rla.rla import (
-    BASIC,
+from kurt2rt.core.rla.events import (
     Appraised,
     KnowledgeMerged,
     LessonRedone,
@@ -13,6 +11,8 @@ from kurt2rt.core.rla.rla import (
     SituationNamed,
     TeachingEvent,
 )
+from kurt2rt.core.rla.lesson_history import LessonRecord, rla_id_of
+from kurt2rt.core.rla.rla import BASIC
 
 
 class LessonDescriber:

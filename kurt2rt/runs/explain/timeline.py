@@ -9,7 +9,8 @@ from itertools import groupby
 from hal.odometry import PlanePose, WheelOdometry
 from hal.robot_settings import RobotSettings
 from kurt2rt.core.decision.decision import DecisionCause
-from kurt2rt.core.rla.rla import BASIC, Lesson, TeachingEvent
+from kurt2rt.core.rla.events import Lesson, TeachingEvent
+from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.runs.explain.lesson_words import LessonDescriber
 from kurt2rt.runs.explain.sentences import format_count
 from kurt2rt.runs.recording.entries import DecisionEntry, TickEntry

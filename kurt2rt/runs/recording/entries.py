@@ -10,8 +10,8 @@ from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.decision.plan_step import PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.outcome_text import text_of
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.match import Match
-from kurt2rt.core.rla.rla import TeachingEvent
 from kurt2rt.core.teaching.commands import CommandResult
 from kurt2rt.core.teaching.system_events import Input
 from kurt2rt.core.tick import TickRecord

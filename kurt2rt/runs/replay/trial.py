@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from hal.settings import SettingsError
-from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding, require_compatible

@@ -29,7 +29,8 @@ from kurt2rt.channel.protocol.requests import UPLOAD_ID_BYTES, UPLOAD_PART_BYTES
 from kurt2rt.channel.protocol.simulation import SIMULATION, SimulationView
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.protocol.world import WorldView, world_of
-from kurt2rt.core.rla.rla import BASIC, Phase
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.platform.file_part import FilePart
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.answer import Answer, RefusedError

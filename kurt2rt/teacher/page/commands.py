@@ -6,7 +6,8 @@ from typing import Any
 
 from kurt2rt.channel.protocol.requests import FASTEST, PACKAGE, SHA256_BYTES, UPLOAD_ID_BYTES
 from kurt2rt.channel.protocol.schema import Bytes, Check, Flag, Float, Int, OneOf, OneWord, OrNone, Text, WireError
-from kurt2rt.core.rla.rla import BASIC, MID, Phase
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.teacher.client.answer import Answer
 from kurt2rt.teacher.client.client import TeacherClient
 

@@ -4,8 +4,9 @@ import random
 from collections.abc import Sequence
 
 from behaviors.metrics.task_metric import WayAhead
+from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
-from kurt2rt.core.rla.rla import MID, Phase
+from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.task_settings import TeacherSettings
 from kurt2rt.core.teaching.commands import Command, Correct, Pursue, Teach
 from kurt2rt.core.tick import TickRecord

@@ -8,8 +8,9 @@ from typing import NamedTuple
 
 from behaviors.policies.policy import ReferencePolicy
 from hal.robot_settings import RobotSettings
+from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
-from kurt2rt.core.rla.rla import BASIC, Phase
+from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.task_settings import TaskSettings, TeacherSettings
 from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, Pursue, Resume, SetPhase, Teach
 from kurt2rt.core.tick import TickRecord

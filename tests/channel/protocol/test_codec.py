@@ -50,7 +50,8 @@ from kurt2rt.channel.protocol.schema import (
 )
 from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
-from kurt2rt.core.rla.rla import BASIC, MID, Phase
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.teaching.progress import Progress
 from kurt2rt.core.teaching.question import FeatureDifference
 from tests.channel.hostile_datagrams import HostileDatagrams

@@ -21,7 +21,7 @@ from anyio.abc import Process
 from kurt2rt.channel.protocol.requests import AnswerRequest, CommandRequest, ReplaceRequest, Request, RewardRequest
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import ResultCode
-from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from kurt2rt.teacher.client.transport import Exchange, OnResponse

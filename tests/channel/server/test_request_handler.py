@@ -61,7 +61,8 @@ from kurt2rt.channel.server.request_handler import COMMAND_TICKS, MOVING_TICKS, 
 from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
-from kurt2rt.core.rla.rla import CRITIC, Phase
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.core.teaching.commands import Stop, Watch
 from tests.channel.channel_fixture import BOOT, ROBOT, STAMP, ChannelFixture, outcome_of, reply_of, turns, why
 from tests.channel.grounds import Yard

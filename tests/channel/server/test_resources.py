@@ -39,7 +39,7 @@ from kurt2rt.channel.server.dependencies import ChannelDependencies, JournalStat
 from kurt2rt.channel.server.resources import RobotSite
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import RefusalCode, ResultCode
-from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.rla.phase import Phase
 from tests.channel.channel_fixture import BOOT, ROBOT, ChannelFixture, turns
 from tests.channel.sides import answer_challenge, carried, header_of
 from tests.channel.states import state

@@ -25,7 +25,8 @@ from kurt2rt.core.critic.settings import load_critic
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
-from kurt2rt.core.rla.rla import ASK, CRITIC, Phase
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import ASK, CRITIC
 from tests.channel.channel_fixture import BOOT, ROBOT, STAMP, ChannelFixture, outcome_of, reply_of
 from tests.channel.grounds import Yard
 from tests.service.health.reports import ILL, WELL

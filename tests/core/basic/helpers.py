@@ -6,7 +6,7 @@ from behaviors.behaviour import Behaviour
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.perception.perception import Perception
 from kurt2rt.core.rla.condition import Condition
-from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_knowledge

@@ -11,7 +11,8 @@ from kurt2rt.core.basic.epsilon_greedy import EpsilonGreedy
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
-from kurt2rt.core.rla.rla import CRITIC, RlaCreated
+from kurt2rt.core.rla.events import RlaCreated
+from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.core.rla.rla_system import RlaSystem
 from tests.core.helpers import MINIMUM_TICKS, RADIUS, Counted, SmallLevel, sensed, situation
 from tests.core.rla.helpers import created, deleted, replaced, withdrawn

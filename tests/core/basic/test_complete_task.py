@@ -8,7 +8,8 @@ import yaml
 from config import CONFIG_DIR
 from hal.robot import STANDSTILL, WheelSpeeds
 from hal.settings import SettingsError
-from kurt2rt.core.rla.rla import MID, TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.task_settings import load_task
 from tests.behaviors.helpers import counts, sensed
 from tests.core.basic.helpers import condition_at, keep, repertoire

@@ -2,21 +2,19 @@
 
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.settings import AgreementSettings
-from kurt2rt.core.rla.rla import (
-    CRITIC,
+from kurt2rt.core.rla.events import (
     ActionReplaced,
     Appraised,
     LessonRedone,
     LessonUndone,
-    Origin,
-    Phase,
-    Rla,
     RlaCreated,
     RlaRewarded,
     SessionBegun,
     SessionEnded,
     TeachingEvent,
 )
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import CRITIC, Origin, Rla
 from tests.core.critic.helpers import SETTINGS, appraisal, origin
 
 PERIOD_S = 0.01

@@ -4,7 +4,7 @@ from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.autonomy import Autonomy, Signal
 from kurt2rt.core.critic.critic import Opinion
 from kurt2rt.core.critic.settings import ActivationSettings, AgreementSettings, SignalEverySettings
-from kurt2rt.core.rla.rla import Appraised, RlaRewarded
+from kurt2rt.core.rla.events import Appraised, RlaRewarded
 from tests.core.critic.helpers import SETTINGS, appraisal, origin
 
 BAD = Opinion(-1, "bad", 0.7, None, 0.1, 1.0, True)

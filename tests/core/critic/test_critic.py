@@ -5,7 +5,8 @@ import pytest
 
 from kurt2rt.core.critic.critic import Critic
 from kurt2rt.core.critic.settings import NAMES
-from kurt2rt.core.rla.rla import BASIC, CRITIC, ActionReplaced, ActionWithdrawn, Rla, RlaCreated
+from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, RlaCreated
+from kurt2rt.core.rla.rla import BASIC, CRITIC, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from tests.core.critic.helpers import FREE, SETTINGS, appraisal, origin

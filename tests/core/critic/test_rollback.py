@@ -5,18 +5,17 @@ from hypothesis import strategies as st
 
 from kurt2rt.core.critic.rollback import RollbackMonitor
 from kurt2rt.core.critic.settings import RollbackSettings
-from kurt2rt.core.rla.rla import (
-    CRITIC,
+from kurt2rt.core.rla.events import (
     ActionReplaced,
     LessonRedone,
     LessonUndone,
-    Phase,
-    Rla,
     RlaCreated,
     RlaDeleted,
     SessionBegun,
     TeachingEvent,
 )
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import CRITIC, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from tests.core.critic.helpers import origin
 from tests.examples import examples

@@ -7,7 +7,7 @@ import pytest
 from hal.settings import SettingsError
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.perception.weights import feature_weights
-from kurt2rt.core.rla.rla import TeachingEvent
+from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.task_settings import FeatureWeight, load_task
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.lockstep.runtimes import NoTeachingAllowed

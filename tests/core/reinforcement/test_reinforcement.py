@@ -5,15 +5,8 @@ import pytest
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings
-from kurt2rt.core.rla.rla import (
-    ActionReplaced,
-    ActionWithdrawn,
-    LessonUndone,
-    Phase,
-    RlaCreated,
-    RlaDeleted,
-    RlaRewarded,
-)
+from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, LessonUndone, RlaCreated, RlaDeleted, RlaRewarded
+from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.teaching.commands import DeleteRla, Reward, Teach, Undo
 from tests.core.helpers import MINIMUM_TICKS, RADIUS

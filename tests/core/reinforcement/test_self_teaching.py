@@ -6,17 +6,9 @@ from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.core.critic.settings import RollbackSettings
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, ResultCode
-from kurt2rt.core.rla.rla import (
-    CRITIC,
-    MID,
-    LessonUndone,
-    Origin,
-    Phase,
-    RlaCreated,
-    RlaDeleted,
-    RlaRewarded,
-    TeachingEvent,
-)
+from kurt2rt.core.rla.events import LessonUndone, RlaCreated, RlaDeleted, RlaRewarded, TeachingEvent
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import CRITIC, MID, Origin
 from kurt2rt.core.teaching.commands import Correct, Undo
 from tests.core.helpers import sensed, situation
 from tests.core.reinforcement.helpers import (

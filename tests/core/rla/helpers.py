@@ -3,14 +3,10 @@
 import pytest
 
 from kurt2rt.core.rla.condition import Condition
-from kurt2rt.core.rla.rla import (
-    BASIC,
+from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
     LessonUndone,
-    Origin,
-    Phase,
-    Rla,
     RlaCreated,
     RlaDeleted,
     RlaRewarded,
@@ -19,6 +15,8 @@ from kurt2rt.core.rla.rla import (
     SituationNamed,
     TeachingEvent,
 )
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import BASIC, Origin, Rla
 from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
 
 

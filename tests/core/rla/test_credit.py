@@ -7,7 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.core.rla.credit import Credit, PackedCredits, pack_credits
-from kurt2rt.core.rla.rla import Origin, Phase, RlaRewarded
+from kurt2rt.core.rla.events import RlaRewarded
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Origin
 
 _IDS = st.integers(1, 2**32 - 1)
 _CREDITS = st.lists(st.builds(Credit, _IDS, st.floats(allow_nan=False), st.none() | _IDS), min_size=1, max_size=20).map(

@@ -6,7 +6,9 @@ from behaviors.judges.judge import AppraisalFeatures
 from kurt2rt.core.critic.settings import NAMES
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
-from kurt2rt.core.rla.rla import CRITIC, ActionReplaced, Appraised, Phase, RlaCreated
+from kurt2rt.core.rla.events import ActionReplaced, Appraised, RlaCreated
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler
 from kurt2rt.core.teaching.commands import Appraise, CommandResult, ReplaceAction, Reward, Undo

@@ -8,13 +8,9 @@ import pytest
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
-from kurt2rt.core.rla.reward_counts import Appraisal
-from kurt2rt.core.rla.rla import (
+from kurt2rt.core.rla.events import (
     ActionReplaced,
     LessonUndone,
-    Origin,
-    Phase,
-    Rla,
     RlaCreated,
     RlaDeleted,
     RlaRewarded,
@@ -22,6 +18,9 @@ from kurt2rt.core.rla.rla import (
     SessionEnded,
     TeachingEvent,
 )
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.reward_counts import Appraisal
+from kurt2rt.core.rla.rla import Origin, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler

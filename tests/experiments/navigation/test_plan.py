@@ -7,7 +7,8 @@ import pytest
 from matplotlib.image import imread
 
 from hal.settings import SettingsError
-from kurt2rt.core.rla.rla import MID, RlaCreated, SituationNamed
+from kurt2rt.core.rla.events import RlaCreated, SituationNamed
+from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.navigation.figures import draw_errands
 from kurt2rt.experiments.navigation.guided_tour import navigation_settings

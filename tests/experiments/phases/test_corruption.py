@@ -6,7 +6,9 @@ import pytest
 
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.settings import NAMES, load_critic
-from kurt2rt.core.rla.rla import CRITIC, ActionReplaced, Appraised, Origin, Phase, Rla, RlaCreated, TeachingEvent
+from kurt2rt.core.rla.events import ActionReplaced, Appraised, RlaCreated, TeachingEvent
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import CRITIC, Origin, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from kurt2rt.core.task_settings import load_task

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 from matplotlib.image import imread
 
-from kurt2rt.core.rla.rla import CRITIC, ActionReplaced, Appraised, RlaCreated, TeachingEvent
+from kurt2rt.core.rla.events import ActionReplaced, Appraised, RlaCreated, TeachingEvent
+from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.experiments.phases.steps import (
     CORRUPTED,
     CRITIC_ALONE,

@@ -8,8 +8,10 @@ import pytest
 from config import CONFIG_DIR
 from hal.robot_settings import RobotSettings, load_robot
 from hal.settings import SettingsError, find_config, kept_name, settings_override
+from kurt2rt.core.rla.events import RlaCreated
 from kurt2rt.core.rla.expectation import Expectation
-from kurt2rt.core.rla.rla import Origin, Phase, Rla, RlaCreated
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Origin, Rla
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.knowledge.exchange.attachments import (

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from config import CONFIG_DIR
 from hal.robot_settings import load_robot
 from kurt2rt.core.rla.credit import Credit
-from kurt2rt.core.rla.rla import RlaCreated, RlaRewarded
+from kurt2rt.core.rla.events import RlaCreated, RlaRewarded
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.knowledge.exchange.archive import MANIFEST, SIGNATURE, pack, unpack

@@ -9,18 +9,13 @@ from hypothesis import strategies as st
 
 from kurt2rt.core.rla.condition import Condition
 from kurt2rt.core.rla.credit import Credit
-from kurt2rt.core.rla.rla import (
-    CRITIC,
-    MID,
+from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
     Appraised,
     KnowledgeMerged,
     LessonRedone,
     LessonUndone,
-    Origin,
-    Phase,
-    Rla,
     RlaCreated,
     RlaDeleted,
     RlaRewarded,
@@ -29,6 +24,8 @@ from kurt2rt.core.rla.rla import (
     SituationNamed,
     TeachingEvent,
 )
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import CRITIC, MID, Origin, Rla
 from kurt2rt.knowledge.journal.event_codec import decode_event, encode_event
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from tests.knowledge.lessons import (

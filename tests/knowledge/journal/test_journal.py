@@ -6,7 +6,7 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from kurt2rt.core.rla.rla import RlaCreated, TeachingEvent
+from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
 from kurt2rt.core.rla.statistics import BEST_SCORE, Statistics
 from kurt2rt.knowledge.journal import journal_file
 from kurt2rt.knowledge.journal.entry import JournalEntry, checksum

@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 from kurt2rt.core.critic.settings import load_critic
+from kurt2rt.core.rla.events import RlaCreated, SituationNamed
 from kurt2rt.core.rla.feature_set import LevelFeatures
-from kurt2rt.core.rla.rla import CRITIC, MID, Rla, RlaCreated, SituationNamed
+from kurt2rt.core.rla.rla import CRITIC, MID, Rla
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding
 from kurt2rt.knowledge.journal.entry import JournalEntry, StoredEntry

@@ -5,7 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from kurt2rt.core.mid.settings import load_mid_level
-from kurt2rt.core.rla.rla import CRITIC, MID, Rla, RlaCreated, SituationNamed, TeachingEvent
+from kurt2rt.core.rla.events import RlaCreated, SituationNamed, TeachingEvent
+from kurt2rt.core.rla.rla import CRITIC, MID, Rla
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import load_task
 from kurt2rt.knowledge.journal.entry import JournalEntry

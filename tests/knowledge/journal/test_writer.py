@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from kurt2rt.core.rla.rla import RlaCreated, TeachingEvent
+from kurt2rt.core.rla.events import RlaCreated, TeachingEvent
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal import journal_file
 from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt

@@ -5,7 +5,9 @@ from pathlib import Path
 import pytest
 from rich.console import Console, RenderableType
 
-from kurt2rt.core.rla.rla import CRITIC, Appraised, Phase, RlaCreated, TeachingEvent
+from kurt2rt.core.rla.events import Appraised, RlaCreated, TeachingEvent
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.core.rla.statistics import Statistics, follow_ups
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.journal import Journal

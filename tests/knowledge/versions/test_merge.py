@@ -11,9 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from kurt2rt.core.rla.credit import Credit
-from kurt2rt.core.rla.expectation import Expectation, pack
-from kurt2rt.core.rla.rla import (
-    BASIC,
+from kurt2rt.core.rla.events import (
     KnowledgeMerged,
     LessonRedone,
     RlaCreated,
@@ -21,6 +19,8 @@ from kurt2rt.core.rla.rla import (
     SituationNamed,
     TeachingEvent,
 )
+from kurt2rt.core.rla.expectation import Expectation, pack
+from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
 from kurt2rt.core.rla.space import Space
 from kurt2rt.core.rla.statistics import Statistics

@@ -8,8 +8,10 @@ import pytest
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings
 from kurt2rt.core.rla.credit import Credit
+from kurt2rt.core.rla.events import Lesson, LessonRedone, LessonUndone, RlaCreated, RlaRewarded
 from kurt2rt.core.rla.lesson_history import LessonRecord
-from kurt2rt.core.rla.rla import CRITIC, Lesson, LessonRedone, LessonUndone, Phase, Rla, RlaCreated, RlaRewarded
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import CRITIC, Rla
 from kurt2rt.core.rla.statistics import FIRST_VALUE, Statistics
 from kurt2rt.core.teaching.commands import Undo
 from kurt2rt.knowledge.journal.binding import KnowledgeBinding

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.perception.features import FeatureExtractor
-from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.rla.phase import Phase
 from kurt2rt.runs.explain.collect import collect_facts
 from kurt2rt.runs.explain.counterfactual import sensor_counterfactuals
 from kurt2rt.runs.explain.picture import draw_why

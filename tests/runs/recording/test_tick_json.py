@@ -14,7 +14,9 @@ from kurt2rt.core.decision.junction_event import JunctionEvent
 from kurt2rt.core.decision.plan_step import GoalStatus, PlanStep
 from kurt2rt.core.expectations.surprise import Surprise
 from kurt2rt.core.rla.credit import Credit
-from kurt2rt.core.rla.rla import LessonUndone, Origin, Phase, Rla, RlaCreated, RlaRewarded
+from kurt2rt.core.rla.events import LessonUndone, RlaCreated, RlaRewarded
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Origin, Rla
 from kurt2rt.core.teaching.commands import Command, Seek, SetPhase
 from kurt2rt.core.teaching.system_events import SystemEvent
 from kurt2rt.runs.recording.command_json import decode_command, encode_command

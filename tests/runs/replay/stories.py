@@ -19,7 +19,7 @@ from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.active_stop import STARTED, ActiveStop
 from kurt2rt.core.decision.goal import NamedGoal
 from kurt2rt.core.decision.standing_text import stop_text
-from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.core.teaching.commands import (
     Appraise,

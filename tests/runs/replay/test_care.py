@@ -16,7 +16,9 @@ from mcap.records import McapRecord, Message, Metadata
 
 from hal.robot_settings import load_robot
 from kurt2rt.cli.main import main
-from kurt2rt.core.rla.rla import Origin, Phase, Rla, RlaCreated, RlaDeleted, TeachingEvent
+from kurt2rt.core.rla.events import RlaCreated, RlaDeleted, TeachingEvent
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Origin, Rla
 from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.task_settings import load_task

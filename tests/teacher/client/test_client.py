@@ -58,7 +58,8 @@ from kurt2rt.channel.security.pairing import Pairing, pair, renew
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal, unsaved
 from kurt2rt.core.outcome import Outcome, RefusalCode
 from kurt2rt.core.outcome_text import text_of
-from kurt2rt.core.rla.rla import MID, Phase
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import MID
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import Answer, NoAnswer, NoAnswerError, local_refusal
 from tests.channel.lossy_link import LossyLink, Weather

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.channel.protocol.schema import WireError
-from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.rla.phase import Phase
 from kurt2rt.teacher.page.commands import COMMANDS, PageCommand
 from kurt2rt.teacher.page.messages import (
     LONGEST_MESSAGE,

@@ -11,7 +11,8 @@ from behaviors.judges.judge import AppraisalFeatures
 from hal.robot import STANDSTILL, GuardResult
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
-from kurt2rt.core.rla.rla import MID, Phase
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import MID
 from kurt2rt.core.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour, SetPhase, Teach
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.teacher.scripted.appraiser import (

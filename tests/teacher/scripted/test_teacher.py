@@ -11,7 +11,8 @@ from hal.robot import STANDSTILL, GuardResult
 from kurt2rt.core.decision.decision import Decision, DecisionCause
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.rla.match import Match
-from kurt2rt.core.rla.rla import Origin, Phase, Rla
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import Origin, Rla
 from kurt2rt.core.task_settings import TeacherSettings
 from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, Pursue, SetPhase, Teach
 from kurt2rt.core.tick import TickRecord

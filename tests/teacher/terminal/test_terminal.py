@@ -40,7 +40,7 @@ from kurt2rt.channel.server.reply import Reply, ReplyStatus, done
 from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.perception.sensor_words import infrared_law
-from kurt2rt.core.rla.rla import Phase
+from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.teaching.question import FeatureDifference
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.terminal.terminal import TerminalTeacher

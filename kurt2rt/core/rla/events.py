@@ -1,0 +1,151 @@
+"""Teaching events: they create, change, reward and delete RLAs, and the knowledge journal holds them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from kurt2rt.core.rla.condition import Condition
+from kurt2rt.core.rla.credit import Credit, pack_credits
+from kurt2rt.core.rla.rla import Origin, Rla
+
+
+@dataclass(frozen=True, slots=True)
+class RlaCreated:
+    """Answer of a teacher to a situation: a new RLA (phase 1, or inserted in phase 2)."""
+
+    rla: Rla
+
+    @property
+    def origin(self) -> Origin:
+        """Origin of the new RLA."""
+        return self.rla.origin
+
+
+@dataclass(frozen=True, slots=True)
+class ActionReplaced:
+    """Correction: an RLA gets another action (phase 2)."""
+
+    rla_id: int
+    action: str
+    instead_of: str
+    """Previous action; ASK if it had been withdrawn."""
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class ActionWithdrawn:
+    """Withdrawal of the action of an RLA whose value is too low: the robot asks there (phase 3)."""
+
+    rla_id: int
+    instead_of: str
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class RlaDeleted:
+    """Deletion of an RLA (phase 2)."""
+
+    rla_id: int
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class RlaRewarded:
+    """Reward or punishment of an RLA's decision, by a teacher or the critic (phase 3)."""
+
+    rla_id: int
+    """RLA that drove in the rewarded tick."""
+    value: int
+    """+1 reward, -1 punishment."""
+    decided_at_tick: int
+    """Tick of the rewarded decision."""
+    origin: Origin
+    credits: Sequence[Credit] = ()
+    """Changes of the values of this RLA and its predecessors; an undo subtracts them."""
+    said: int | None = None
+    """Critic's opinion of that tick before the reward: -1, 0 or +1; None without an opinion."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "credits", pack_credits(self.credits))
+
+
+@dataclass(frozen=True, slots=True)
+class Appraised:
+    """Appraisal of a situation that agrees with the critic's opinion: changes no RLA (phase 4)."""
+
+    appraisal: str
+    """Name in the critic's repertoire."""
+    value: int
+    """-1, 0 or +1."""
+    decided_at_tick: int
+    """Tick of the appraised situation."""
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class SituationNamed:
+    """Name for a situation, so that it can be a goal: changes no RLA."""
+
+    name: str
+    """A name that exists already is moved to this situation."""
+    situation: Condition
+    """Point in the feature space of its level."""
+    level: str
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class LessonUndone:
+    """Undo of one lesson: its RLA, name or reward is as before the lesson."""
+
+    lesson: str
+    """Command id of the lesson."""
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class LessonRedone:
+    """Redo of one lesson that was undone."""
+
+    lesson: str
+    """Command id of the lesson."""
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class KnowledgeMerged:
+    """Merge: the rows before this one came from another knowledge file. Changes no RLA by itself."""
+
+    source: str
+    """Name of the other file."""
+    rows: int
+    """Number of its rows that this merge includes or left out on purpose."""
+    last: str
+    """Command id of the last of those rows: identifies the file and its continuations."""
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class SessionBegun:
+    """Beginning of a teaching session; changes no RLA."""
+
+    name: str
+    origin: Origin
+
+
+@dataclass(frozen=True, slots=True)
+class SessionEnded:
+    """End of a teaching session; changes no RLA."""
+
+    lasted_ticks: int
+    """Duration in ticks, waits included."""
+    origin: Origin
+
+
+RlaLesson = RlaCreated | ActionReplaced | ActionWithdrawn | RlaDeleted | RlaRewarded
+"""Lesson about one RLA."""
+
+Lesson = RlaLesson | SituationNamed
+"""Teaching event that can be undone."""
+
+TeachingEvent = Lesson | LessonUndone | LessonRedone | Appraised | SessionBegun | SessionEnded | KnowledgeMerged
+"""Entry of the knowledge journal; the RLA system is the fold of these events."""
