@@ -34,7 +34,7 @@ def cangen(*options: str) -> Iterator["subprocess.Popen[bytes]"]:
         flood.terminate()
 
 
-def test_no_set_point_is_put_behind_two_that_the_bus_has_yet_to_carry(drive: Drive, link: Link, vcan0: str) -> None:
+def test_blocked_bus_gets_two_set_points_then_brakes(drive: Drive, link: Link, vcan0: str) -> None:
     with listener(vcan0) as bus:
         link.hold_frames_for(1000)
         grants = [drive.tick() for _ in range(5)]
@@ -53,7 +53,7 @@ def test_no_set_point_is_put_behind_two_that_the_bus_has_yet_to_carry(drive: Dri
         assert carried[2:] == [decode_control(encode_brake().data)] * 3
 
 
-def test_when_the_bus_is_free_again_the_robot_waits_to_be_resumed(drive: Drive, link: Link) -> None:
+def test_freed_bus_robot_waits_for_resume(drive: Drive, link: Link) -> None:
     link.hold_frames_for(1000)
     drive.ticks(5)
     link.carry_at_once()
@@ -63,7 +63,7 @@ def test_when_the_bus_is_free_again_the_robot_waits_to_be_resumed(drive: Drive, 
     drive.until_it_drives()
 
 
-def test_frames_that_were_lost_without_a_word_do_not_stand_in_the_way_of_a_resume(drive: Drive, link: Link) -> None:
+def test_silently_lost_frames_do_not_prevent_a_resume(drive: Drive, link: Link) -> None:
     link.hold_frames_for(60_000)
     drive.ticks(5)
     link.lose_what_waits()
@@ -101,9 +101,7 @@ def test_a_flood_that_the_filter_keeps_away_is_not_even_read(drive: Drive) -> No
 
 
 @pytest.mark.parametrize("extended", [False, True], ids=["junk", "extended"])
-def test_a_flood_of_junk_on_an_identifier_in_use_is_counted_and_changes_nothing(
-    drive: Drive, vcan0: str, extended: bool
-) -> None:
+def test_flood_of_junk_on_a_used_identifier_is_only_counted(drive: Drive, vcan0: str, extended: bool) -> None:
     """65535 counts, which no converter has; an extended identifier is another message, which the filter keeps away."""
     other = open_bus(vcan0)
     junk = can.Message(arbitration_id=CODEC.message("BDC00_03").frame_id, is_extended_id=extended, data=b"\xff" * 8)

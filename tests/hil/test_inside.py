@@ -57,7 +57,7 @@ def test_output_goes_to_files_where_the_order_says_so(tmp_path: Path) -> None:
 
 
 # Both end only because no process is left that holds the output open.
-def test_a_command_that_takes_too_long_is_ended_with_all_it_started() -> None:
+def test_run_command_over_its_limit_ends_with_its_children() -> None:
     done = run("sh", "-c", "sleep 1000 & wait", limit_s=0.3)
     assert (done.returncode, done.stderr) == (124, "machine: time limit of 0.3 s\n")
 
@@ -67,5 +67,5 @@ def test_a_commands_own_124_is_no_time_limit() -> None:
     assert (done.returncode, done.stderr) == (124, "")
 
 
-def test_what_a_command_leaves_running_ends_with_it() -> None:
+def test_run_children_left_by_a_command_end_with_it() -> None:
     assert run("sh", "-c", "sleep 1000 &").returncode == 0

@@ -19,9 +19,7 @@ def back(link: Link) -> None:
 
 
 @AWAY
-def test_a_robot_that_loses_its_interface_stays_stopped_and_says_what_to_do(
-    drive: Drive, link: Link, away: Away
-) -> None:
+def test_lost_interface_latches_and_reports_one_line(drive: Drive, link: Link, away: Away) -> None:
     away(link)
     drive.tick()
     assert drive.grant == ((0.0, 0.0), (GuardReason.BUS_LOST,), True)
@@ -32,9 +30,7 @@ def test_a_robot_that_loses_its_interface_stays_stopped_and_says_what_to_do(
 
 
 @AWAY
-def test_it_goes_on_asking_for_its_interface_without_an_exception_and_without_haste(
-    drive: Drive, link: Link, away: Away
-) -> None:
+def test_lost_interface_stays_latched_and_names_the_command(drive: Drive, link: Link, away: Away) -> None:
     away(link)
     drive.ticks(350)
     assert drive.grant == ((0.0, 0.0), (GuardReason.BUS_LOST,), True)
@@ -43,9 +39,7 @@ def test_it_goes_on_asking_for_its_interface_without_an_exception_and_without_ha
 
 
 @AWAY
-def test_when_the_interface_is_back_frames_flow_but_the_robot_waits_to_be_resumed(
-    drive: Drive, link: Link, away: Away
-) -> None:
+def test_restored_interface_robot_waits_for_resume(drive: Drive, link: Link, away: Away) -> None:
     away(link)
     drive.ticks(50)
     back(link)

@@ -49,7 +49,7 @@ def test_a_wrong_argument_is_told_in_a_line(
     assert capsys.readouterr().err.startswith(f"machine: {complaint}")
 
 
-def test_missing_packages_are_named_with_the_line_that_installs_them() -> None:
+def test_need_missing_packages_prints_the_install_command() -> None:
     with pytest.raises(MachineError) as caught:
         need({"sh": "dash", "no-such-tool": "toolbox", "/usr/src/no-such-*.xz": "sources"}, install=False)
     assert str(caught.value).splitlines() == [
@@ -78,7 +78,7 @@ def test_the_bus_is_up_and_gives_frames_back_by_its_driver() -> None:
 
 
 @boots
-def test_what_is_written_lasts_in_shared_directories_alone(tmp_path: Path) -> None:
+def test_machine_keeps_files_of_shared_directories_only(tmp_path: Path) -> None:
     shared, other = tmp_path / "shared", tmp_path / "other"
     shared.mkdir()
     other.mkdir()
@@ -97,7 +97,7 @@ def test_a_command_that_takes_too_long_is_ended() -> None:
 
 
 @boots
-def test_a_machine_that_does_not_come_up_is_told_with_its_last_words() -> None:
+def test_machine_failed_boot_prints_its_last_lines() -> None:
     done = in_uml("--kernel-argument", "init=/nowhere", "true")
     assert done.returncode == 125
     assert done.stderr.startswith("machine: the uml machine ended early, exit status ")
@@ -105,7 +105,7 @@ def test_a_machine_that_does_not_come_up_is_told_with_its_last_words() -> None:
 
 
 @boots
-def test_systemd_is_its_first_process_where_that_is_wanted_and_nothing_of_it_fails() -> None:
+def test_machine_with_systemd_boots_without_failed_units() -> None:
     done = in_uml("--systemd", "--", "sh", "-c", "cat /proc/1/comm; systemctl is-system-running --wait; exit 7")
     assert (done.returncode, done.stdout, done.stderr) == (7, "systemd\nrunning\n", "")
 
@@ -125,7 +125,7 @@ def test_a_signal_ends_the_machine_and_leaves_nothing(tmp_path: Path, number: si
 
 
 @boots
-def test_ten_minutes_pass_at_once_in_simulated_time_and_every_run_sees_the_same_clock() -> None:
+def test_machine_simulated_time_skips_sleep_and_repeats_clock() -> None:
     # In real time this test's own limit would end it.
     words = ("--simulated-time", "--", "sh", "-c", "date +%s; sleep 600; date +%s.%N")
     first, second = in_uml(*words), in_uml(*words)

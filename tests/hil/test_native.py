@@ -34,7 +34,7 @@ def native(*words: str, interpreter: str = sys.executable, user: tuple[str, ...]
 
 
 @pytest.mark.usefixtures("vcan0")
-def test_a_command_has_a_bus_of_its_own_and_the_one_outside_stays_up() -> None:
+def test_native_command_has_its_own_bus_and_leaves_vcan0_up() -> None:
     said = native("--interface", "vcan7", "--", "sh", "-c", "ls /sys/class/net; ip link del vcan7; exit 3")
     assert said == "lo\nvcan7\nexit status 3"
     assert int(Path("/sys/class/net/vcan0/flags").read_text(), 16) & 1

@@ -15,7 +15,7 @@ STOPPED = ((0.0, 0.0), (GuardReason.FOREIGN_CONTROL,), True)
 
 
 @pytest.mark.parametrize("frame", [FORWARD_30_CM_S, STOP, "001#"], ids=["drive", "stop", "empty"])
-def test_any_control_of_somebody_else_stops_the_robot_in_the_same_tick(drive: Drive, frame: str) -> None:
+def test_foreign_control_stops_the_robot_in_the_same_tick(drive: Drive, frame: str) -> None:
     cansend(frame)
     assert drive.tick() == STOPPED
     assert drive.health.foreign_control == 1
@@ -45,7 +45,7 @@ def test_the_other_may_be_in_the_same_program(drive: Drive, vcan0: str) -> None:
     other.shutdown()
 
 
-def test_what_is_not_control_is_not_taken_for_it(drive: Drive) -> None:
+def test_frames_with_other_identifiers_are_not_control(drive: Drive) -> None:
     cansend("00000001#0002001E001E0001")
     cansend("011#0002001E001E0001")
     drive.tick()

@@ -135,7 +135,7 @@ def test_a_waiting_frame_is_as_old_as_its_wait(ends: Ends) -> None:
     assert frame.timestamp < sent_at_s + 0.005  # when the kernel got it, not when it was fetched
 
 
-def test_a_link_that_goes_down_is_told_until_it_is_up_and_reopened(ends: Ends, link_goes_down_and_up: str) -> None:
+def test_bus_link_down_raises_until_up_and_reopened(ends: Ends, link_goes_down_and_up: str) -> None:
     robot_end, far_end = ends
     name = link_goes_down_and_up
     robot_end.set_id_filter({0x09})
@@ -167,7 +167,7 @@ def test_a_link_that_was_down_for_a_moment_is_told(ends: Ends, link_goes_down_an
         robot_end.drain()
 
 
-def test_a_link_down_that_sending_has_noticed_is_told_by_receiving(ends: Ends, link_goes_down_and_up: str) -> None:
+def test_bus_link_down_noticed_by_send_is_raised_by_drain(ends: Ends, link_goes_down_and_up: str) -> None:
     robot_end, _ = ends
     control = robot_end.control_port()
     link("set", link_goes_down_and_up, "down")
@@ -181,7 +181,7 @@ def test_a_link_down_that_sending_has_noticed_is_told_by_receiving(ends: Ends, l
         robot_end.drain()
 
 
-def test_an_adapter_that_is_unplugged_is_told_until_it_is_plugged_in_again(passing_interface: str) -> None:
+def test_bus_unplugged_adapter_raises_until_plugged_in(passing_interface: str) -> None:
     robot_end = open_bus(passing_interface)
     link("del", passing_interface)
     for _ in range(3):
@@ -210,7 +210,7 @@ def test_filters_are_the_kernels(ends: Ends) -> None:
     assert robot_end.overruns == 0
 
 
-def test_a_full_transmit_queue_is_told_at_once_and_no_frame_of_it_is_taken_for_carried(passing_interface: str) -> None:
+def test_bus_full_queue_raises_and_confirms_no_frame(passing_interface: str) -> None:
     # One frame at once, the next ones hardly ever: a bus that does not acknowledge.
     queue("add", passing_interface, "tbf", "rate", "8bit", "burst", "16", "limit", "160")
     robot_end = open_bus(passing_interface)
@@ -224,7 +224,7 @@ def test_a_full_transmit_queue_is_told_at_once_and_no_frame_of_it_is_taken_for_c
     robot_end.shutdown()
 
 
-def test_own_control_is_confirmed_when_it_was_carried_and_not_before(passing_interface: str) -> None:
+def test_bus_own_control_is_confirmed_only_after_transmission(passing_interface: str) -> None:
     queue("add", passing_interface, "netem", "delay", "100ms")
     robot_end = open_bus(passing_interface)
     control = robot_end.control_port()

@@ -10,7 +10,7 @@ from tests.hil.drive import FORWARD, Drive
 pytestmark = pytest.mark.hil
 
 
-def test_frames_that_waited_in_the_socket_while_the_program_hung_are_old(drive: Drive) -> None:
+def test_frames_queued_while_the_program_hung_are_old(drive: Drive) -> None:
     drive.simulated.step()
     time.sleep(0.06)  # the program hangs, and the robot with it: nothing newer comes
     now_s = drive.now_s

@@ -28,7 +28,7 @@ class Yard:
         self.ground: SimulatedWorld = Kurt2World(rig.robot, WORLD, ROBOT.geometry, simulation)
 
     def step(self) -> None:
-        """Until the thread has done all that was asked."""
+        """Wait until the thread has run all submitted calls."""
         done = threading.Event()
         self.simulation.submit(done.set)
         assert done.wait(30.0)
@@ -48,7 +48,7 @@ def test_the_world_from_above(yard: Yard) -> None:
     assert view.posts == (SimulatedPost("post", 1.0, 1.0, 0.1),)
 
 
-def test_where_the_robot_is(yard: Yard) -> None:
+def test_place_returns_pose_and_counters(yard: Yard) -> None:
     place = yard.ground.place()
     assert (place.x_m, place.y_m, place.heading_rad) == (2.0, 2.0, 0.0)
     assert (place.laps, place.collisions, place.world_version) == (0.0, 0, 0)
@@ -78,7 +78,7 @@ def test_moves_add_up_also_between_two_steps(yard: Yard) -> None:
     assert yard.rig.robot.world.settings.round_obstacles[0].x_m == pytest.approx(1.4)
 
 
-def test_what_nobody_knows_is_refused_with_the_names_that_are_known(yard: Yard) -> None:
+def test_move_wall_unknown_name_is_refused(yard: Yard) -> None:
     with pytest.raises(ValueError, match="nothing is named 'tree'; there are: board, post, box"):
         yard.ground.move_wall("tree", 0.1, 0.0)
     assert yard.ground.world().version == 0
@@ -97,7 +97,7 @@ def test_nothing_is_put_where_the_robot_is(yard: Yard, name: str, dx_m: float, d
     assert yard.rig.robot.world.settings == WORLD
 
 
-def test_how_near_a_post_may_come(yard: Yard) -> None:
+def test_move_wall_post_may_come_up_to_the_outline(yard: Yard) -> None:
     to_touch_m = 2.0 - WIDTH_M / 2 - 0.1 - 1.0
     yard.ground.move_wall("post", 1.0, 0.0)
     with pytest.raises(ValueError, match="post would stand where the robot is"):
@@ -105,7 +105,7 @@ def test_how_near_a_post_may_come(yard: Yard) -> None:
     yard.ground.move_wall("post", 0.0, to_touch_m - 0.001)
 
 
-def test_a_robot_that_leans_on_one_wall_does_not_nail_down_the_others() -> None:
+def test_move_wall_robot_touching_another_wall_is_allowed() -> None:
     with Rig(WORLD) as rig:
         rig.robot.place(facing_wall(0.1))
         rig.drive(20, 20, 2.0)
@@ -136,7 +136,7 @@ def test_it_is_put_only_where_there_is_room(yard: Yard, x_m: float, y_m: float) 
     assert yard.ground.place().x_m == 2.0
 
 
-def test_a_move_that_is_asked_for_counts_at_once_for_what_is_asked_next(yard: Yard) -> None:
+def test_put_robot_considers_moves_not_yet_stepped(yard: Yard) -> None:
     yard.ground.move_wall("post", 0.0, -0.6)
     yard.ground.put_robot(1.0, 1.0, 0.0)
     with pytest.raises(ValueError, match="there is no room"):

@@ -114,7 +114,7 @@ def test_only_the_robot_in_this_program_tolerates_stalls() -> None:
 
 
 @pytest.mark.parametrize("tolerates", [True, False])
-def test_ticks_that_were_missed_count_against_no_lease_in_simulation(tolerates: bool) -> None:
+def test_missed_ticks_count_against_no_lease_in_simulation(tolerates: bool) -> None:
     corridor = Corridor(attended=True, tolerates_stalls=tolerates)
     corridor.run(100, teach("forward", "first"), watch(corridor))
     assert corridor.run(None, watch(corridor)).decision.driving

@@ -40,7 +40,7 @@ def corner(leg: Leg) -> Point:
 
 
 def drive(course: FixedRoute, legs: int) -> None:
-    """From the middle of the street that it is in, along the route."""
+    """Follow the route for `legs` legs, from the middle of the present street."""
     all_legs = course.route.legs
     for _ in range(legs):
         leg, following = (all_legs[(course.ahead.passed + k) % len(all_legs)] for k in (0, 1))
@@ -48,7 +48,7 @@ def drive(course: FixedRoute, legs: int) -> None:
 
 
 def wrong_way(leg: Leg) -> Point:
-    """The middle of a street that leads out of a leg's junction and is not on the route."""
+    """Return the middle of a street that leads out of a leg's junction and is not on the route."""
     junction = leg.junction
     side = next(each for each in sorted(junction.arms) if each not in (leg.leaves, leg.way.turned(2)))
     along = {0: (0.9, 0.0), 1: (0.0, 0.9), 2: (-0.9, 0.0), 3: (0.0, -0.9)}[side]

@@ -8,7 +8,7 @@ from kurt2rt.checks.bench.job_loop import run_jobs
 
 
 async def idle() -> dict[str, Any]:
-    """Nothing."""
+    """Return an empty answer."""
     return {}
 
 

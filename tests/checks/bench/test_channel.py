@@ -1,4 +1,4 @@
-"""The channel, measured for a moment: a real robot program, real processes beside it, real frames and lessons."""
+"""Short measurement of the channel: a real robot program, real helper processes, real frames and lessons."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -42,9 +42,7 @@ async def test_presses_reach_the_wheels_and_lessons_the_file(untaught: BenchFixt
     assert [origin.command_id for origin in taught[-2:]] == ["bench-inside-0", "bench-inside-1"]
 
 
-async def test_an_open_robot_stands_until_a_teacher_comes_and_closes_when_one_fails(
-    subject: BenchFixture, tmp_path: Path
-) -> None:
+async def test_open_robot_stands_untaught_and_closes_on_failure(subject: BenchFixture, tmp_path: Path) -> None:
     async def lose_a_partner() -> None:
         async with open_robot(subject, tmp_path / "robot") as robot:
             await robot.gate.run_ticks(5)

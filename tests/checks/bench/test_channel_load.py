@@ -1,4 +1,4 @@
-"""What company costs the loop, from stays with known numbers."""
+"""Cost of connected pages and teachers for the loop, from load phases with known numbers."""
 
 import pytest
 
@@ -11,7 +11,7 @@ def phases(lateness_p99_us: float, *each: LoadPhase) -> LoadPhases:
 
 
 def stay(work_us: float, messages: int, missed: int = 0) -> LoadPhase:
-    """Two seconds long."""
+    """Return a load phase of two seconds; `work_us` is processor time per second."""
     return LoadPhase(seconds=2.0, processor_us=2 * work_us, messages=messages, missed_ticks=missed)
 
 

@@ -24,7 +24,7 @@ async def test_blocks_are_timed_whole_and_one_by_one(subject: BenchFixture, tmp_
     assert 0.0 < share.took.median_us < result.took.worst_us
 
 
-def test_one_core_is_for_this_thread_and_those_it_starts_and_only_for_a_while() -> None:
+def test_on_one_core_pins_thread_and_its_children_until_the_end() -> None:
     before = os.sched_getaffinity(0)
     inherited: list[set[int]] = []
     with on_one_core() as core:

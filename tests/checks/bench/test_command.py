@@ -31,13 +31,13 @@ def test_one_benchmark_prints_its_table_and_writes_json(app: typer.Typer, tmp_pa
     assert list(tmp_path.iterdir()) == [file]
 
 
-def test_a_benchmark_that_is_not_there_is_refused_with_those_that_are(app: typer.Typer) -> None:
+def test_bench_unknown_name_is_refused_with_the_known_ones(app: typer.Typer) -> None:
     result = CliRunner(env={"COLUMNS": "200"}).invoke(app, ["--only", "match,speed"])
     assert result.exit_code == 2
     assert "there is no speed; give some of lateness, tick, match, loop, lesson, channel" in result.output
 
 
-def test_a_report_that_could_not_be_written_is_refused_before_the_work(app: typer.Typer, tmp_path: Path) -> None:
+def test_bench_unwritable_report_is_refused_before_the_work(app: typer.Typer, tmp_path: Path) -> None:
     result = CliRunner(env={"COLUMNS": "200"}).invoke(app, ["--json", str(tmp_path / "not there" / "results.json")])
     assert result.exit_code == 2
     assert "make it first" in result.output

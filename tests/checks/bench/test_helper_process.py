@@ -1,4 +1,4 @@
-"""Processes beside the robot's: whatever happens, they end."""
+"""Helper processes of the benchmark: they end with their block, also after an error."""
 
 import os
 from pathlib import Path
@@ -21,14 +21,14 @@ def assert_gone(pid: int) -> None:
         os.kill(pid, 0)
 
 
-async def test_a_partner_does_what_it_is_asked_to_and_ends_with_the_block() -> None:
+async def test_helper_process_answers_and_ends_with_the_block() -> None:
     async with helper_process(IDLER) as idler:
         assert await idler.ask("idle") == {}
         assert await idler.ask("idle") == {}
     assert_gone(idler.pid)
 
 
-async def test_a_partner_that_fails_is_missed_and_says_why_itself(capfd: pytest.CaptureFixture[str]) -> None:
+async def test_helper_process_failure_is_raised_and_printed(capfd: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(HelperLostError, match=r"tests\.checks\.bench\.idler ended while it was asked to work"):
         async with helper_process(IDLER) as idler:
             await idler.ask("work")
@@ -36,7 +36,7 @@ async def test_a_partner_that_fails_is_missed_and_says_why_itself(capfd: pytest.
     assert "KeyError: 'work'" in capfd.readouterr().err
 
 
-async def test_a_silent_partner_is_given_up_and_ended() -> None:
+async def test_helper_process_silence_is_an_error_and_ends_it() -> None:
     with pytest.raises(HelperLostError, match="did not idle within 0 s"):
         async with helper_process(IDLER) as idler:
             await idler.ask("idle", patience_s=0.0)

@@ -1,4 +1,4 @@
-"""The match, beside the brute force."""
+"""Benchmark of the match against brute force."""
 
 import pytest
 

@@ -73,7 +73,7 @@ def test_each_start_of_the_wheels_is_noted_once() -> None:
     assert robot.told == [GuardReason.SERVICE_ENDS, "release", "close"]
 
 
-def test_a_lost_press_misses_the_goal_however_quick_the_others_were() -> None:
+def test_press_result_lost_press_misses_the_goal() -> None:
     result = press_result("press", [6_000_000, 8_000_000], lost=1, period_s=0.01)
     assert [goal.met for goal in result.goals] == [True, True, False]
     assert result.took.median_us == pytest.approx(7000.0)

@@ -28,14 +28,14 @@ def collector_as_it_was() -> Iterator[None]:
 
 @pytest.fixture
 def nothing_set_aside() -> Iterator[None]:
-    """Nor what the suite set aside (tests/conftest.py), though every collection then walks it."""
+    """Unfreeze the suite's own objects (tests/conftest.py) during the test; every collection then walks them."""
     gc.unfreeze()
     yield
     gc.freeze()
 
 
 @pytest.mark.usefixtures("nothing_set_aside")
-def test_garbage_from_before_is_gone_and_nothing_is_collected_until_the_end_of_the_outermost() -> None:
+def test_gc_frozen_collects_only_before_and_after_outermost() -> None:
     gone = weakref.ref(Loop())
     gc.enable()
     with gc_frozen():

@@ -1,4 +1,4 @@
-"""What a recorder costs, measured for a moment."""
+"""Short measurement of a recorder's cost."""
 
 from pathlib import Path
 

@@ -23,7 +23,7 @@ RESULTS = (
 )
 
 
-def test_a_person_gets_numbers_goals_and_how_busy_the_machine_was() -> None:
+def test_print_report_shows_numbers_goals_and_machine_load() -> None:
     out = io.StringIO()
     print_report(RESULTS, MACHINE, Console(file=out, width=120))
     lines = out.getvalue().splitlines()
@@ -35,7 +35,7 @@ def test_a_person_gets_numbers_goals_and_how_busy_the_machine_was() -> None:
     assert "load average of 0.50, 0.25, 0.12" in " ".join(lines)
 
 
-def test_a_verdict_stands_beside_its_goal_on_a_narrow_terminal_too() -> None:
+def test_print_report_narrow_terminal_keeps_verdict_and_goal() -> None:
     out = io.StringIO()
     print_report(RESULTS, MACHINE, Console(file=out, width=80))
     lines = [line.split() for line in out.getvalue().splitlines()]

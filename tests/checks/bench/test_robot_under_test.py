@@ -1,4 +1,4 @@
-"""What is measured has been taught something, and keeps it in a file like any robot."""
+"""The benchmark's robot: it was taught something and keeps it in a file."""
 
 from pathlib import Path
 

@@ -35,9 +35,7 @@ class Jobs:
 
 
 @pytest.mark.deep
-async def test_everything_is_measured_in_order_with_one_lesson_and_one_drive(
-    untaught: BenchFixture, tmp_path: Path
-) -> None:
+async def test_run_suite_measures_all_in_order_with_one_drive(untaught: BenchFixture, tmp_path: Path) -> None:
     jobs = Jobs()
     benches = [
         bench for bench in BenchName if bench is not BenchName.CHANNEL

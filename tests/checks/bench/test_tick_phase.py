@@ -1,4 +1,4 @@
-"""Where in the period ticks fall, with a clock of our own."""
+"""Phase of the ticks in the period, with a simulated clock."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The checklist from end to end: a robot on a block, a person who does as he is asked, and what is kept of it."""
+"""The checklist from end to end: a robot on a block, an operator who does as asked, and the stored progress."""
 
 from pathlib import Path
 
@@ -32,12 +32,12 @@ async def test_a_good_robot_passes_from_the_first_step_to_the_last(tmp_path: Pat
     assert findings.law is not None
 
 
-async def test_nothing_moves_before_the_words_were_typed_and_a_key_was_hit(tmp_path: Path) -> None:
+async def test_wheels_turn_only_after_the_words_and_a_key(tmp_path: Path) -> None:
     moved: dict[QuestionKind, float] = {}
     asked_before = QuestionKind.BEGIN
 
     def note(question: OperatorQuestion) -> None:
-        """The fastest wheel since the question before, under what that one was about."""
+        """Store the fastest wheel speed since the question before, by that question's kind."""
         nonlocal asked_before
         fastest_m_s = max(map(abs, workshop.take_peaks()))
         moved[asked_before] = max(moved.get(asked_before, 0.0), fastest_m_s)
@@ -72,7 +72,7 @@ async def test_other_words_are_asked_for_again(tmp_path: Path) -> None:
     assert session.outcome("lifted") is StepOutcome.PASSED
 
 
-async def test_whoever_leaves_goes_on_another_day_and_is_asked_about_the_block_anew(tmp_path: Path) -> None:
+async def test_checklist_left_session_continues_and_asks_for_the_block(tmp_path: Path) -> None:
     with Workshop() as workshop:
         first = Session(workshop, tmp_path, leaves_at(QuestionKind.SEEN))
         await first.run("identity", "modes", "wheels", "stop")
@@ -88,7 +88,7 @@ async def test_whoever_leaves_goes_on_another_day_and_is_asked_about_the_block_a
     assert [second.outcome(step) for step in ("identity", "modes", "wheels", "stop")] == [StepOutcome.PASSED] * 4
 
 
-async def test_the_robot_is_braked_when_somebody_leaves_while_it_stands(tmp_path: Path) -> None:
+async def test_checklist_left_session_brakes_a_standing_robot(tmp_path: Path) -> None:
     with Workshop() as workshop:
         session = Session(workshop, tmp_path, leaves_at(QuestionKind.SEEN))
         session.knows(speed_mode=SpeedMode.SPEED)
@@ -97,7 +97,7 @@ async def test_the_robot_is_braked_when_somebody_leaves_while_it_stands(tmp_path
         assert workshop.robot.controller.commands == (0.0, 0.0, True, True)
 
 
-async def test_a_step_that_failed_can_be_repeated_at_once_when_it_is_mended(tmp_path: Path) -> None:
+async def test_failed_step_can_be_repeated_after_the_repair(tmp_path: Path) -> None:
     def mend(question: OperatorQuestion) -> str | None:
         if question.about is not QuestionKind.AFTER_FAILURE:
             return None
@@ -113,7 +113,7 @@ async def test_a_step_that_failed_can_be_repeated_at_once_when_it_is_mended(tmp_
     assert blocking_failures(session.progress) == []
 
 
-async def test_a_step_that_passed_stays_passed_when_it_is_skipped_later(tmp_path: Path) -> None:
+async def test_passed_step_skipped_later_stays_passed(tmp_path: Path) -> None:
     with Workshop() as workshop:
         session = Session(workshop, tmp_path)
         await session.run("bumpers")
@@ -125,7 +125,7 @@ async def test_a_step_that_passed_stays_passed_when_it_is_skipped_later(tmp_path
 
 
 def skips_what_failed(again: str) -> Instead:
-    """A person who skips a step that failed: when it is begun once more, or at once in another session."""
+    """Return answers that skip a failed step: when it begins again (`again`: "r"), or at once in another session."""
     failed = not again
 
     def skip(question: OperatorQuestion) -> str | None:
@@ -138,8 +138,8 @@ def skips_what_failed(again: str) -> Instead:
     return skip
 
 
-async def test_a_step_that_failed_stays_failed_when_it_is_skipped_later(tmp_path: Path) -> None:
-    """Or a robot of which it is known that a wheel turns the wrong way would get its settings file."""
+async def test_failed_step_skipped_later_stays_failed(tmp_path: Path) -> None:
+    """Otherwise a robot with a wheel known to turn the wrong way would get its settings file."""
     with Workshop(wiring=Wiring(reversed_motors=(1,))) as workshop:
         session = Session(workshop, tmp_path, skips_what_failed(again="r"))
         session.knows(speed_mode=SpeedMode.SPEED_CM)
@@ -154,7 +154,7 @@ async def test_a_step_that_failed_stays_failed_when_it_is_skipped_later(tmp_path
     ]
 
 
-async def test_a_step_that_failed_is_passed_over_on_purpose_with_what_is_to_be_done(tmp_path: Path) -> None:
+async def test_failed_step_skipped_on_purpose_keeps_its_to_do(tmp_path: Path) -> None:
     with Workshop(wiring=Wiring(reversed_motors=(1,))) as workshop:
         session = Session(workshop, tmp_path)
         session.knows(speed_mode=SpeedMode.SPEED_CM)
@@ -194,5 +194,6 @@ def test_a_damaged_progress_file_is_named(tmp_path: Path) -> None:
     path = tmp_path / "robot.json"
     Progress(name="tested", base="kurt2", bus="can0").save(path)
     path.write_text(path.read_text()[:20])
-    with pytest.raises(SettingsError, match=r"robot.json: cannot be used .*start over with --anew"):
+    with pytest.raises(SettingsError) as refused:
         load_progress(path)
+    assert refused.value.where == str(path)

@@ -109,17 +109,15 @@ def test_findings_are_written_if_the_rest_is_skipped(type_at: Type, tmp_path: Pa
 
 
 @pytest.mark.parametrize("in_the_way", ["robbie.json", "robbie.json.new"])
-def test_progress_that_cannot_be_read_or_kept_is_said_in_one_line(
+def test_commission_unusable_progress_file_prints_one_line(
     kurt2rt: CommandLine, tmp_path: Path, in_the_way: str
 ) -> None:
     (tmp_path / PROGRESS).with_name(in_the_way).mkdir(parents=True)
-    said = kurt2rt.refused("commission", "virtual:nobody", "--name", "robbie", "--skip", "modes")
+    said = kurt2rt.refused("commission", "virtual:empty", "--name", "robbie", "--skip", "modes")
     assert f"Is a directory: 'var/commission/{in_the_way}'; give a path that can be written, on a disk" in said
 
 
-def test_on_another_bus_it_goes_on_only_where_it_is_known_which_robot_it_was(
-    kurt2rt: CommandLine, tmp_path: Path
-) -> None:
+def test_commission_other_bus_needs_a_known_robot(kurt2rt: CommandLine, tmp_path: Path) -> None:
     earlier(tmp_path)
     kept = load_progress(tmp_path / PROGRESS)
     unknown = kept.findings.model_copy(update={"hardware_id": None})

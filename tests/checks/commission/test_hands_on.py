@@ -1,4 +1,4 @@
-"""The steps of hands: sensors and bumpers."""
+"""Steps that the operator's hands do: sensors and bumpers."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +13,7 @@ from tests.checks.commission.workshop import BASE, CODEC, Session, Workshop, wit
 # Sensors
 
 
-async def test_sensors_on_one_anothers_channels_are_found_where_they_are(tmp_path: Path) -> None:
+async def test_sensors_step_exchanged_channels_are_found(tmp_path: Path) -> None:
     with Workshop(with_channels(s1="ADC08", s2="ADC07", s11="BDC10")) as workshop:
         session = Session(workshop, tmp_path)
         await session.run("sensors")
@@ -49,7 +49,7 @@ async def test_no_hand_is_asked_for_while_no_channel_is_heard(tmp_path: Path) ->
     assert session.progress.findings.channels == {"s9": "BDC04"}
 
 
-async def test_a_sensor_that_is_skipped_at_once_is_neither_found_nor_dead(tmp_path: Path) -> None:
+async def test_sensors_step_skipped_sensor_is_neither_found_nor_dead(tmp_path: Path) -> None:
     def skip(question: OperatorQuestion) -> str | None:
         return SKIP if question.about is QuestionKind.HAND and question.subject != "s9" else None
 
@@ -95,7 +95,7 @@ class Clumsy:
         return ""
 
 
-async def test_a_hand_before_the_wrong_sensor_is_forgotten_when_the_right_ones_turn_comes(tmp_path: Path) -> None:
+async def test_sensors_step_hand_at_a_wrong_sensor_is_corrected_later(tmp_path: Path) -> None:
     with Workshop() as workshop:
         session = Session(workshop, tmp_path, Clumsy(workshop, "s1", "s2"))
         await session.run("sensors")
@@ -124,7 +124,7 @@ async def test_a_hand_that_covers_two_sensors_names_none_of_them(tmp_path: Path)
 
 
 def without(sensor: str) -> RobotSettings:
-    """A robot on which one sensor is not plugged in."""
+    """Return the settings of a robot on which one sensor is not plugged in."""
     sensors = tuple(each for each in BASE.infrared.sensors if each.name != sensor)
     return BASE.model_copy(update={"infrared": BASE.infrared.model_copy(update={"sensors": sensors})})
 

@@ -1,4 +1,4 @@
-"""Who is on the bus, and what is missing on it."""
+"""Step identity: nodes on the bus, and frames missing on it."""
 
 from pathlib import Path
 
@@ -28,7 +28,7 @@ async def listened(tmp_path: Path, wiring: Wiring) -> Session:
     return session
 
 
-async def test_the_controller_is_known_by_its_name_and_each_frame_by_its_pace(tmp_path: Path) -> None:
+async def test_identity_step_names_controller_and_frame_periods(tmp_path: Path) -> None:
     session = await listened(tmp_path, Wiring())
     info, *_ = session.measured("identity")
     assert info.startswith("INFO_1: hardware 21321 (the simulated robot), firmware 1, loop counter at ")
@@ -109,7 +109,7 @@ async def test_two_robots_on_one_bus_are_found(tmp_path: Path) -> None:
     )
 
 
-async def test_a_robot_without_its_second_controller_can_turn_its_wheels_all_the_same(tmp_path: Path) -> None:
+async def test_modes_step_passes_without_the_second_controller(tmp_path: Path) -> None:
     second = [frame_id(name) for name in ("INFO_2", "BDC00_03", "BDC04_07", "BDC08_11", "BDC12_15", "GYRO_MC2")]
     with Workshop(wiring=Wiring(silent_ids=second)) as workshop:
         session = Session(workshop, tmp_path)

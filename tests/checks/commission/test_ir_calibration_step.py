@@ -45,8 +45,8 @@ def test_exact_readings_give_the_law_back() -> None:
     ),
     st.integers(0, 9),
 )
-def test_any_plausible_law_is_found_from_noisy_readings(law: IrLaw, seed: int) -> None:
-    """By what counts: the readings it predicts, a ruler's error apart."""
+def test_fit_law_finds_any_plausible_law_in_noisy_readings(law: IrLaw, seed: int) -> None:
+    """Compare predicted readings, with a tolerance for the error of a ruler."""
     fit = fit_law(readings(law, 0.01, seed))
     for distance_m in (0.12, 0.25, 0.35, 0.45):
         assert fit.law.counts_at(distance_m) == pytest.approx(law.counts_at(distance_m), rel=0.03, abs=3.0)
@@ -90,7 +90,7 @@ def test_fit_law_implausible_readings_are_refused(taken: list[IrReading], why: s
 
 
 def other_law(**changes: float) -> RobotSettings:
-    """A robot whose sensors have another law; its plateau and floor follow from it."""
+    """Return a robot whose sensors have another law; plateau and floor follow from that law."""
     law = BASE.infrared.model_copy(update=changes)
     near, far = law.counts_at(law.near_m), law.counts_at(law.far_m)
     update = {"plateau_counts": round(near), "floor_counts": round(far)}
@@ -105,7 +105,9 @@ def other_law(**changes: float) -> RobotSettings:
 async def test_the_law_of_other_sensors_is_found(tmp_path: Path, changes: dict[str, float]) -> None:
     true = other_law(**changes)
     with Workshop(true, seed=4) as workshop:
-        session = Session(workshop, tmp_path, answer_which("s11 s1 s5"))
+        session = Session(
+            workshop, tmp_path, lambda question: "s11 s1 s5" if question.about is QuestionKind.WHICH else None
+        )
         await session.run("infrared")
     assert session.outcome("infrared") is StepOutcome.PASSED
     found = session.progress.findings.law
@@ -116,20 +118,6 @@ async def test_the_law_of_other_sensors_is_found(tmp_path: Path, changes: dict[s
         assert fitted.counts_at(distance_m) == pytest.approx(true.infrared.counts_at(distance_m), rel=0.04)
     assert found.far_m == pytest.approx(0.6, abs=0.03)
     assert found.floor_counts == pytest.approx(true.infrared.floor_counts, abs=3)
-
-
-def answer_which(names: str) -> "Which":
-    return Which(names)
-
-
-class Which:
-    """Names sensors when asked."""
-
-    def __init__(self, names: str) -> None:
-        self._names = names
-
-    def __call__(self, question: OperatorQuestion) -> str | None:
-        return self._names if question.about is QuestionKind.WHICH else None
 
 
 async def test_a_board_at_the_wrong_distance_is_asked_for_once_more(tmp_path: Path) -> None:

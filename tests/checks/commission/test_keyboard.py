@@ -56,7 +56,7 @@ async def test_keyboard_discards_input_typed_before_the_question() -> None:
     os.close(person)
 
 
-async def test_the_loop_goes_on_while_somebody_thinks() -> None:
+async def test_keyboard_wait_does_not_block_the_event_loop() -> None:
     reading, writing = os.pipe()
     with os.fdopen(reading) as lines:
         keyboard = Keyboard(lines)
@@ -68,7 +68,7 @@ async def test_the_loop_goes_on_while_somebody_thinks() -> None:
     os.close(writing)
 
 
-async def test_a_question_is_asked_until_it_is_answered_and_lines_can_be_told_apart_without_colours() -> None:
+async def test_console_operator_repeats_questions_and_labels_lines() -> None:
     screen = io.StringIO()
     person = ConsoleOperator(io.StringIO("maybe\n S \n"), Console(file=screen, no_color=True, width=200))
     person.tell("Which?", Tone.TITLE)

@@ -60,7 +60,7 @@ async def test_the_file_makes_the_robot_sense_in_order_and_drive(tmp_path: Path)
         kurt2.close()
 
 
-def test_the_file_is_whole_and_says_what_was_measured_and_what_was_not() -> None:
+def test_robot_file_marks_measured_and_untried_values() -> None:
     findings = Findings(
         speed_mode=SpeedMode.RAW,
         controller_watchdog_s=0.12,
@@ -90,7 +90,7 @@ def test_the_file_is_whole_and_says_what_was_measured_and_what_was_not() -> None
     assert RobotSettings.model_fields.keys() == yaml.safe_load(text).keys()
 
 
-def test_a_robot_like_the_one_it_began_with_gets_the_same_settings() -> None:
+def test_commissioned_settings_without_findings_equal_the_base() -> None:
     assert commissioned_settings(BASE, BASE.name, Findings()) == BASE
 
 
@@ -127,12 +127,12 @@ def test_full_speed_is_kept_in_speed_mode_only() -> None:
     assert robot.motors.full_speed_m_s == BASE.motors.full_speed_m_s
 
 
-def test_a_channel_that_another_sensor_took_must_be_found_anew() -> None:
+def test_commissioned_settings_channel_taken_twice_is_refused() -> None:
     with pytest.raises(SettingsError, match="s2 has no channel: ADC08, which the table gives it, is s1's; find s2's"):
         commissioned_settings(BASE, "robbie", Findings(channels={"s1": "ADC08"}))
 
 
-def test_a_bumper_on_anothers_bit_must_be_found_anew() -> None:
+def test_commissioned_settings_bumper_bit_taken_twice_is_refused() -> None:
     with pytest.raises(SettingsError, match="bumper bits must be 0 to 5, each once, but are: front left 3, "):
         commissioned_settings(BASE, "robbie", Findings(bumper_bits={"front left": 3}))
 

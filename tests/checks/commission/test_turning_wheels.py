@@ -24,7 +24,7 @@ async def turned(
     true: RobotSettings = BASE,
     instead: Instead = lambda _: None,
 ) -> Session:
-    """A session; steps after `modes` begin with a mode that answers."""
+    """Run a session and return it; steps after `modes` begin with a mode that answers."""
     with Workshop(true, wiring) as workshop:
         session = Session(workshop, tmp_path, instead)
         if "modes" not in steps:
@@ -70,7 +70,7 @@ async def test_wheels_that_run_away_are_braked_at_once(tmp_path: Path) -> None:
     assert told.startswith("SPEED_CM: the wheels ran away and were braked; an encoder that counts the wrong way does ")
 
 
-async def test_an_encoder_that_makes_speed_loops_run_away_is_found_in_open_loop(tmp_path: Path) -> None:
+async def test_runaway_speed_loops_encoder_is_found_in_open_loop(tmp_path: Path) -> None:
     closed = (SpeedMode.SPEED_CM, SpeedMode.SPEED)
     session = await turned(tmp_path, "modes", "wheels", wiring=Wiring(wild_modes=closed, reversed_encoders=[0]))
     assert session.progress.findings.speed_mode is SpeedMode.RAW
@@ -78,7 +78,7 @@ async def test_an_encoder_that_makes_speed_loops_run_away_is_found_in_open_loop(
     assert session.to_do("wheels") == ("The left encoder counts the wrong way: exchange its channels A and B",)
 
 
-async def test_wheels_with_other_encoders_seem_slow_and_the_settings_to_mend_are_named(tmp_path: Path) -> None:
+async def test_modes_step_other_encoders_name_the_settings_to_change(tmp_path: Path) -> None:
     """The high-speed variant has 5120 ticks in a turn, not 21950."""
     coarse = BASE.model_copy(update={"geometry": BASE.geometry.model_copy(update={"metres_per_tick": 0.000074})})
     session = await turned(tmp_path, "modes", true=coarse)
@@ -94,8 +94,8 @@ async def test_fault_of_an_unneeded_speed_mode_is_ignored(tmp_path: Path) -> Non
     assert "SPEED: not tried out, the wheels ran away" in session.measured("modes")
 
 
-async def test_a_mode_can_be_left_out(tmp_path: Path) -> None:
-    """Where it made the controller crash, for one."""
+async def test_modes_step_skipped_mode_is_left_out(tmp_path: Path) -> None:
+    """Skip a mode, for example one that made the controller crash."""
 
     def leave_out(question: OperatorQuestion) -> str | None:
         return SKIP if question.about is QuestionKind.MOVE and "SPEED_CM" in question.text else None
@@ -119,7 +119,7 @@ async def test_a_controller_that_crashes_is_not_driven_on(tmp_path: Path) -> Non
     assert [question.about for question in session.person.asked].count(QuestionKind.MOVE) == 1
 
 
-async def test_somebody_else_on_the_bus_ends_a_drive(tmp_path: Path) -> None:
+async def test_modes_step_foreign_control_ends_the_drive(tmp_path: Path) -> None:
     with Workshop() as workshop:
         session = Session(workshop, tmp_path)
         workshop.stranger = open_bus(workshop.spec)
@@ -183,7 +183,7 @@ async def test_wiring_advice_names_the_faulty_part(tmp_path: Path, wiring: Wirin
     assert [step.name for step in blocking_failures(session.progress)] == ["wheels"]
 
 
-async def test_a_side_that_nothing_is_counted_of_does_not_turn_for_long(tmp_path: Path) -> None:
+async def test_wheels_step_dead_encoder_side_turns_only_briefly(tmp_path: Path) -> None:
     """The speed loop of a real controller would turn it faster and faster."""
     asked_s: dict[QuestionKind, list[float]] = {}
     with Workshop(wiring=Wiring(dead_encoders=[0])) as workshop:
@@ -201,7 +201,7 @@ async def test_a_side_that_nothing_is_counted_of_does_not_turn_for_long(tmp_path
     assert session.to_do("stop") == (f"The wheels did not turn, so nothing could stop them: {UNANSWERED}",)
 
 
-async def test_two_mistakes_that_hide_each_other_from_the_encoders_are_seen_by_the_person(tmp_path: Path) -> None:
+async def test_wheels_step_both_exchanged_is_seen_by_the_operator(tmp_path: Path) -> None:
     """Motors and encoders exchanged: the counts look right, and the robot would turn the wrong way."""
     wiring = Wiring(motors_exchanged=True, encoders_exchanged=True)
     session = await turned(tmp_path, "wheels", wiring=wiring)
@@ -250,7 +250,7 @@ def test_parse_seen_reads_two_words(answer: str, seen: Motion | None) -> None:
     assert parse_seen(answer) == seen
 
 
-def test_an_order_that_turns_both_sides_is_a_matter_of_both_motors() -> None:
+def test_wiring_advice_order_turning_both_names_both_motors() -> None:
     both = [
         WheelTrial(ordered, Motion(sign, sign), Motion(sign, sign))
         for sign in (1, -1)
@@ -286,7 +286,7 @@ async def test_brake_and_watchdog_are_timed(tmp_path: Path) -> None:
     assert silent.startswith("without CONTROL: the drive dropped out after 4")
 
 
-async def test_a_controller_that_does_not_stop_by_itself_is_braked_and_bars_driving(tmp_path: Path) -> None:
+async def test_stop_step_endless_controller_is_braked_and_fails(tmp_path: Path) -> None:
     endless = BASE.model_copy(update={"motors": BASE.motors.model_copy(update={"controller_watchdog_s": 9.0})})
     with Workshop(endless) as workshop:
         session = Session(workshop, tmp_path)
@@ -298,14 +298,14 @@ async def test_a_controller_that_does_not_stop_by_itself_is_braked_and_bars_driv
     assert [step.name for step in blocking_failures(session.progress)] == ["stop"]
 
 
-async def test_a_brake_that_does_not_hold_says_to_switch_the_motors_off(tmp_path: Path) -> None:
+async def test_modes_step_failed_brake_asks_to_switch_the_motors_off(tmp_path: Path) -> None:
     never = BASE.model_copy(update={"motors": BASE.motors.model_copy(update={"controller_watchdog_s": 9.0})})
     session = await turned(tmp_path, "modes", wiring=Wiring(brake_works=False), true=never)
     assert session.person.lines(Tone.BAD)[0].startswith("The wheels still turn after the brake: SWITCH THE MOTORS OFF")
     assert session.outcome("modes") is StepOutcome.FAILED
 
 
-async def test_an_alarm_that_brakes_while_nothing_is_sent_is_not_taken_for_the_controllers_watchdog(
+async def test_stop_step_guard_brake_is_not_taken_for_the_watchdog(
     tmp_path: Path,
 ) -> None:
     never = BASE.model_copy(update={"motors": BASE.motors.model_copy(update={"controller_watchdog_s": 9.0})})

@@ -35,7 +35,7 @@ Type = Callable[..., Said]
 
 
 def typing(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], folder: Path) -> Type:
-    """Runs the command in a folder with answers typed."""
+    """Return a function that runs the command in a folder with typed answers."""
     monkeypatch.chdir(folder)
 
     def run(keyboard: Typed, *words: str) -> Said:
@@ -55,14 +55,14 @@ def typing(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], f
 
 @contextmanager
 def live(workshop: Workshop) -> Iterator[None]:
-    """The workshop's robot in real time, on its block."""
+    """Run the workshop's robot in real time, on its block."""
     workshop.robot.lifted = True
     with RealtimeSimulation(workshop.robot):
         yield
 
 
 def earlier(folder: Path, *but: str) -> None:
-    """A session before this one that passed all steps but some."""
+    """Save the progress of an earlier session that passed all steps but some."""
     steps = {
         step.name: StepRecord(outcome=StepOutcome.PASSED, at=TODAY, who="anna")
         for step in STEPS
@@ -73,7 +73,7 @@ def earlier(folder: Path, *but: str) -> None:
 
 
 def commission_the_rest(type_at: Type, spec: str, folder: Path, *steps: str) -> None:
-    """Steps that are missing, `stop` the last of them, and the file."""
+    """Commission the missing steps, `stop` the last of them, and check the settings file."""
     earlier(folder, *steps)
     begin = [""] if "identity" in steps else []
     said = type_at(Typed(*begin, "wheels up", "", "", ""), spec, "--name", "robbie", "--who", "bert")

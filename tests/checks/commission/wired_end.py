@@ -1,4 +1,4 @@
-"""The controller's end of a bus with the mistakes of whoever wired the robot, and what a hand does to its bumpers."""
+"""The controller's end of a bus, with wiring mistakes and pressed bumpers."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
@@ -19,7 +19,7 @@ _ENCODER, _BUMPERC = _CODEC.message("ENCODER"), _CODEC.message("BUMPERC")
 
 @dataclass
 class Wiring:
-    """What is wrong with a robot; as it is made nothing is."""
+    """Wiring mistakes of a robot; by default there are none."""
 
     modes: Collection[SpeedMode] = tuple(SpeedMode)
     """Speed modes of the firmware; others change nothing, as junk does."""

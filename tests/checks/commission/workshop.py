@@ -1,4 +1,4 @@
-"""A bench in simulated time: a simulated robot on a block, and a person who does as he is asked."""
+"""A bench in simulated time: a simulated robot on a block, and an operator who does as asked."""
 
 import itertools
 import math
@@ -55,7 +55,7 @@ class Workshop:
         )
         self.robot = SimulatedRobot(true, _room(hand_radius_m), self.robot_end, seed)
         self.stranger: CanBus | None = None
-        """Somebody else, who sends CONTROL as soon as a wheel turns, after `stranger_waits_s`."""
+        """Another node, which sends CONTROL as soon as a wheel turns, after `stranger_waits_s`."""
         self.stranger_waits_s = 0.0
         self._hand_m = _PARKED_M
         self._hand_radius_m = hand_radius_m
@@ -86,11 +86,11 @@ class Workshop:
         return left, right
 
     def hold_before(self, sensor: str, distance_m: float) -> None:
-        """A hand, or the end of a board, so far from a sensor's face."""
+        """Move the hand, or the end of a board, to a distance from a sensor's face."""
         self._hold(self._place(sensor), distance_m)
 
     def hold_between(self, sensor: str, neighbour: str, distance_m: float) -> None:
-        """Before both."""
+        """Move the hand to the middle before two sensors."""
         single_side, other = self._place(sensor), self._place(neighbour)
         middle = {"x_m": (single_side.x_m + other.x_m) / 2, "y_m": (single_side.y_m + other.y_m) / 2}
         self._hold(single_side.model_copy(update=middle), distance_m)
@@ -134,7 +134,7 @@ class SimulatedPerson:
     async def answer(self, question: OperatorQuestion) -> str:
         tried = [each for each in self.asked if (each.about, each.subject) == (question.about, question.subject)]
         self.asked.append(question)
-        assert len(self.asked) < 200, f"nobody gets past: {question.text}"
+        assert len(self.asked) < 200, f"no answer gets past: {question.text}"
         instead = self._instead(question)
         if instead is not None:
             return instead
@@ -181,12 +181,12 @@ class Session:
         self.progress = Progress(name="tested", base="kurt2", bus="virtual:bench")
 
     def knows(self, **findings: object) -> None:
-        """What an earlier session found out."""
+        """Add findings of an earlier session."""
         found = self.progress.findings.model_copy(update=findings)
         self.progress = self.progress.model_copy(update={"findings": found})
 
     async def run(self, *names: str, skipped: Sequence[str] = ()) -> Progress:
-        """Take the named steps, all when none is named; returns how far it came."""
+        """Run the named steps, or all if none is named; return the progress."""
         chosen: list[CommissionStep] = [step_named(name) for name in names] or list(STEPS)
         spec = self.workshop.spec
         with ExitStack() as ending:
@@ -220,7 +220,7 @@ class Session:
 
 
 def with_channels(**channels: str) -> RobotSettings:
-    """BASE with some sensors on other channels."""
+    """Return BASE with some sensors on other channels."""
     sensors = tuple(
         each.model_copy(update={"channel": channels.get(each.name, each.channel)}) for each in BASE.infrared.sensors
     )
@@ -228,7 +228,7 @@ def with_channels(**channels: str) -> RobotSettings:
 
 
 def leaves_at(about: QuestionKind) -> Instead:
-    """A person who goes home at a question."""
+    """Return answers of an operator who leaves at a question."""
     return lambda question: LEAVE if question.about is about else None
 
 

@@ -42,7 +42,7 @@ def net(tmp_path: Path) -> Net:
 
 @pytest.fixture
 def modules(tmp_path: Path) -> Path:
-    """A tree like /lib/modules/6.1.0: can-raw can be loaded, vcan is built in."""
+    """Return a tree like /lib/modules/6.1.0: can-raw can be loaded, vcan is built in."""
     folder = tmp_path / "modules"
     folder.mkdir()
     (folder / "modules.dep").write_text("kernel/net/can/can-raw.ko.xz: kernel/net/can/can.ko.xz\n")
@@ -58,7 +58,7 @@ def test_the_bit_rate_to_copy_is_that_of_the_robot() -> None:
     assert load_robot().can.bit_rate_bit_s == BIT_RATE_BIT_S
 
 
-def test_the_kernel_of_this_machine_speaks_can_or_we_are_told_how() -> None:
+def test_check_can_kernel_this_machine_has_can_or_misses_it() -> None:
     finding = check_can_kernel()
     assert finding.status in (CheckStatus.OK, CheckStatus.MISSING)
     assert (finding.code is FindingCode.CAN) == (finding.status is CheckStatus.OK)
@@ -76,7 +76,7 @@ def test_a_kernel_that_only_lacks_the_module_is_told_to_load_it(modules: Path) -
     assert finding.code is FindingCode.CAN_UNLOADED
 
 
-def test_a_kernel_without_can_is_missing_it_but_may_run_the_simulation(tmp_path: Path) -> None:
+def test_check_can_kernel_without_can_still_allows_a_run(tmp_path: Path) -> None:
     finding = check_can_kernel(no_can, tmp_path)
     assert finding.status is CheckStatus.MISSING
     assert finding.code is FindingCode.CAN_MISSING
@@ -118,7 +118,7 @@ def test_an_interface_that_went_off_the_bus_points_to_the_wiring(net: Net) -> No
     assert finding.code is FindingCode.CAN_INTERFACE_OFF_BUS
 
 
-def test_a_serial_line_adapter_is_hardware_whose_bit_rate_ip_cannot_set(net: Net) -> None:
+def test_check_can_interfaces_slcan_is_set_up_without_bit_rate(net: Net) -> None:
     net.add("slcan0", flags=DOWN, device=False)
     (finding,) = check_can_interfaces(net.folder)
     assert finding.values["up"] == "sudo ip link set slcan0 up"

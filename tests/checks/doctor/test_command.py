@@ -37,7 +37,7 @@ def app() -> typer.Typer:
     return app
 
 
-def test_a_person_gets_a_table_with_every_subject_and_a_last_line(app: typer.Typer, tmp_path: Path) -> None:
+def test_doctor_prints_every_subject_and_a_last_line(app: typer.Typer, tmp_path: Path) -> None:
     result = CliRunner(env={"COLUMNS": "200"}).invoke(app, ["--folder", str(tmp_path), "--ticks", "3"])
     assert result.exit_code == 0, result.output
     for subject in SUBJECTS:

@@ -19,7 +19,7 @@ def only(findings: tuple[CheckResult, ...]) -> CheckResult:
     return finding
 
 
-def test_a_folder_that_is_there_is_wholly_looked_at_and_left_as_it_was(tmp_path: Path) -> None:
+def test_check_disk_existing_folder_is_checked_and_unchanged(tmp_path: Path) -> None:
     (tmp_path / "knowledge.sqlite").write_bytes(b"not ours to touch")
     findings = check_disk(tmp_path)
     folder, space, sync, log = (finding.code for finding in findings)
@@ -32,7 +32,7 @@ def test_a_folder_that_is_there_is_wholly_looked_at_and_left_as_it_was(tmp_path:
     assert (tmp_path / "knowledge.sqlite").read_bytes() == b"not ours to touch"
 
 
-def test_a_folder_that_is_not_there_is_judged_by_its_parent_and_not_made(tmp_path: Path) -> None:
+def test_check_disk_missing_folder_is_judged_by_its_parent(tmp_path: Path) -> None:
     folder = tmp_path / "robots" / "anna's"
     findings = check_disk(folder)
     assert len(findings) == 4

@@ -29,7 +29,7 @@ def test_the_trial_changes_nothing_that_lasts() -> None:
     assert set(threading.enumerate()) <= set(threads)
 
 
-def test_the_trial_asks_for_the_units_highest_priority_in_a_thread_of_its_own() -> None:
+def test_check_real_time_priority_asks_for_21_in_its_own_thread() -> None:
     asked: list[tuple[int, int, int]] = []
 
     def grant(pid: int, policy: int, parameters: os.sched_param) -> None:

@@ -9,7 +9,7 @@ from kurt2rt.checks.doctor.processor import check_blas_threads, check_cores, che
 
 
 def cpu_folder(folder: Path, *governors: str) -> Path:
-    """A tree like /sys/devices/system/cpu, with the other folders that live there."""
+    """Return a tree like /sys/devices/system/cpu, with the other folders that stand there."""
     (folder / "cpufreq").mkdir()
     (folder / "cpuidle").mkdir()
     for number, governor in enumerate(governors):

@@ -24,7 +24,7 @@ def test_an_installed_package_is_shown_with_its_version() -> None:
     assert str(finding.values["version"])[0].isdigit()
 
 
-def test_a_package_that_is_not_there_is_named_and_does_not_forbid_to_run() -> None:
+def test_check_package_missing_is_named_and_allows_a_run() -> None:
     finding = check_package("kurt2rt_no_such_package", "nothing")
     assert finding.status is CheckStatus.MISSING
     assert finding.code is FindingCode.PACKAGE_MISSING
@@ -32,9 +32,7 @@ def test_a_package_that_is_not_there_is_named_and_does_not_forbid_to_run() -> No
     assert not finding.forbids_run
 
 
-def test_a_package_that_kills_the_interpreter_does_not_kill_the_doctor(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_check_package_crash_on_import_spares_the_doctor(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "crashes_on_import.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGKILL)\n")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     finding = check_package("crashes_on_import", "nothing")

@@ -24,7 +24,7 @@ NO_DISK = CheckResult(
 
 def printed(*findings: CheckResult, width: int = 120, colours: Literal["standard"] | None = None) -> str:
     text = io.StringIO()
-    # What the terminal of whoever runs the tests can do must not matter.
+    # The terminal that the tests run in must not matter.
     console = Console(file=text, width=width, color_system=colours, force_terminal=colours is not None, no_color=False)
     print_report(findings, console)
     return text.getvalue()

@@ -47,7 +47,7 @@ async def test_simulated_time_is_never_late() -> None:
     assert await measure_lateness(LockstepClock(lambda: None), ticks=20, period_s=0.01) == Lateness(0.0, 0.0)
 
 
-def test_the_timer_of_this_machine_is_there_and_both_ways_are_shown() -> None:
+def test_check_timer_this_machine_shows_timer_and_asyncio() -> None:
     finding = check_timer(ticks=5, period_s=0.002)
     assert finding.status in (CheckStatus.OK, CheckStatus.WARNING)
     assert (finding.values["ticks"], finding.values["period_ms"]) == (5, 2.0)
@@ -59,7 +59,7 @@ def test_a_timer_that_is_a_little_late_will_do() -> None:
 
 
 @pytest.mark.parametrize("late_s", [(0.002, 0.002, 0.002), (0.0001, 0.0001, 0.011)], ids=["always", "once a period"])
-def test_a_timer_that_is_often_late_or_late_by_a_period_is_a_warning(late_s: tuple[float, ...]) -> None:
+def test_check_timer_often_late_or_by_a_period_warns(late_s: tuple[float, ...]) -> None:
     finding = check_timer(3, 0.01, lambda: late_by(*late_s))
     assert finding.status is CheckStatus.WARNING
     assert finding.code is FindingCode.TIMER_LATE

@@ -1,4 +1,4 @@
-"""Cases of the shipped table, and what one comes to with robots that are not as they should be."""
+"""Cases of the shipped table, and their trials with robots that have other limits."""
 
 import anyio
 
@@ -18,12 +18,12 @@ def case_of(target: Target, kind: Kind) -> FaultCase:
 
 
 def tried(target: Target, kind: Kind, *, seed: int = 1, robot: RobotSettings = ROBOT, **must: object) -> FaultTrial:
-    """The case, on this robot; `must`: what the table says otherwise."""
+    """Try the case on this robot; `must` replaces fields of the table's row."""
     case = case_of(target, kind)
     case = case._replace(must=case.must.model_copy(update=must))
     return anyio.run(try_case, FaultRigFactory(robot), case, TABLE, robot, TASK, seed)
 
 
 def with_guard(**limits: float) -> RobotSettings:
-    """A robot whose guard has other limits than it should."""
+    """Return a robot whose guard has other limits than it should."""
     return ROBOT.model_copy(update={"guard": ROBOT.guard.model_copy(update=limits)})

@@ -10,7 +10,7 @@ CASES = list(cases_of(TABLE))
 
 
 def is_quick(case: FaultCase) -> bool:
-    """A sixth of them: of each target a kind, and of each kind several targets."""
+    """Return whether a case is in the quick sixth: of each target a kind, of each kind several targets."""
     return (TARGETS.index(case.target) + KINDS.index(case.kind)) % 6 == 0
 
 
@@ -24,7 +24,7 @@ def test_fault_cases_lead_to_their_rows(case: FaultCase) -> None:
 
 @pytest.mark.deep
 @pytest.mark.parametrize("case", CASES, ids=str)
-def test_whatever_the_moment_and_the_noise(case: FaultCase) -> None:
+def test_fault_cases_lead_to_their_rows_for_other_seeds(case: FaultCase) -> None:
     verdicts = {seed: tried(case.target, case.kind, seed=seed).verdict for seed in range(2, 12)}
     assert {seed: verdict.complaints for seed, verdict in verdicts.items() if not verdict.passed} == {}
 

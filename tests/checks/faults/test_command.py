@@ -66,10 +66,10 @@ def test_faults_deviation_exits_with_code_1(app: typer.Typer, tmp_path: Path) ->
 
 
 def test_a_known_gap_is_said(app: typer.Typer, tmp_path: Path) -> None:
-    table = changed_table(tmp_path, because="bus lost", known_gap="nobody knows why")
+    table = changed_table(tmp_path, because="bus lost", known_gap="cause unknown")
     exit_code, said = run(app, "--target", "tick", "--kind", "stuck", "--table", table)
     assert exit_code == 0
-    assert "tick stuck: known gap: nobody knows why" in said
+    assert "tick stuck: known gap: cause unknown" in said
     assert "1 known gaps" in said
 
 

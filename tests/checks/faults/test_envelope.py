@@ -43,7 +43,7 @@ class Drive:
         return self
 
     def to(self, cm_s: int) -> "Drive":
-        """As a good guard does it, one cm/s in a cycle."""
+        """Speed up to `cm_s` as a good guard does, one cm/s in a cycle."""
         for speed in range(cm_s + 1):
             self.on_sent(set_point(speed))
         return self
@@ -124,7 +124,7 @@ def test_it_judges_what_arrives_even_when_frames_are_lost() -> None:
 
 
 @pytest.mark.parametrize(("cm_s", "allowed"), [(6, True), (8, False)])
-def test_the_longest_step_after_a_brake_may_be_among_frames_that_were_lost(cm_s: int, allowed: bool) -> None:
+def test_envelope_allows_the_longest_step_among_lost_frames(cm_s: int, allowed: bool) -> None:
     drive = Drive().on_sent(BRAKE, latched=True).on_sent(set_point(3), late_s=None).on_sent(set_point(4), late_s=None)
     assert drive.violations == []
     drive.on_sent(set_point(cm_s))
@@ -132,7 +132,7 @@ def test_the_longest_step_after_a_brake_may_be_among_frames_that_were_lost(cm_s:
     assert (heard == []) is allowed
 
 
-def test_the_first_step_after_a_brake_may_be_the_longest_however_soon_it_comes() -> None:
+def test_envelope_allows_an_early_longest_step_after_a_brake() -> None:
     drive = Drive().on_sent(BRAKE, latched=True).on_sent(set_point(3), after_s=0.002)
     assert drive.violations == []
 
@@ -149,14 +149,14 @@ def test_envelope_arrival_reversal_needs_a_rest() -> None:
     assert ComplaintCode.TURNED_ROUND in codes
 
 
-def test_off_a_bumper_a_wheel_may_turn_round_at_once_but_not_jump() -> None:
+def test_envelope_pressed_bumper_allows_reversal_but_no_jump() -> None:
     drive = Drive().on_sent(set_point(1)).on_sent(set_point(2)).on_sent(set_point(3))
     drive.envelope.bumper_pressed = True
     assert not drive.on_sent(set_point(-1)).violations
     assert ("left", 0.0, 0.09) in drive.on_sent(set_point(9)).jumps_m_s
 
 
-def test_frames_of_a_driver_whose_clock_jumps_are_judged_one_by_one() -> None:
+def test_envelope_faulty_clock_frames_are_judged_one_by_one() -> None:
     drive = Drive()
     drive.envelope.clock_is_faulty = True
     drive.on_sent(set_point(1)).on_sent(set_point(4), after_s=0.003)
@@ -218,7 +218,7 @@ def test_a_watchdog_that_sleeps_is_seen() -> None:
     ]
 
 
-def test_wheels_that_nobody_watches_are_seen() -> None:
+def test_guard_without_wheel_watch_is_seen() -> None:
     trial = tried("left_motor", "off", robot=with_guard(wheel_error_s=10.0))
     codes = {each.code: each.values for each in trial.verdict.complaints}
     assert codes[ComplaintCode.STOOD_FOR_ANOTHER_CAUSE]["must"] == "wheels disobey"

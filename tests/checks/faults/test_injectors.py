@@ -1,4 +1,4 @@
-"""What is put in on purpose does what its kind says, and nothing else."""
+"""Fault injectors: each does exactly as its kind says."""
 
 import random
 from collections.abc import Iterator
@@ -24,14 +24,14 @@ CYCLES = 40
 
 
 def fault(kind: Kind, *, period_s: float = 0.05, delay_s: float = 0.025) -> TimedFault:
-    """From shortly before 0.1 s to shortly before 0.3 s."""
+    """Return a fault from shortly before 0.1 s to shortly before 0.3 s."""
     return TimedFault(kind, 0.095, 0.295, period_s, delay_s)
 
 
 # Time
 
 
-def test_time_lets_everybody_act_at_his_moment() -> None:
+def test_event_scheduler_runs_each_callback_at_its_time() -> None:
     time, acted = EventScheduler(), list[tuple[str, float]]()
     time.every(0.01, 0.005, lambda: acted.append(("cycle", round(time.now_s(), 6))))
     time.at(0.02, lambda: acted.append(("once", time.now_s())))
@@ -53,7 +53,7 @@ def test_time_passes_inside_of_what_hangs() -> None:
 
 
 def sent_through(way: FaultyLink | FaultyTxLink | IdealLink, time: EventScheduler) -> list[tuple[float, int, bytes]]:
-    """A numbered frame of each identifier in every cycle; what arrived, and when."""
+    """Send a numbered frame of each identifier in every cycle; return arrivals: (time in s, identifier, data)."""
     arrived: list[tuple[float, int, bytes]] = []
 
     def arrive(frame: can.Message) -> None:
@@ -80,7 +80,7 @@ def telemetry(kind: Kind) -> list[tuple[float, int, bytes]]:
 
 
 def of_board(arrived: list[tuple[float, int, bytes]]) -> list[tuple[int, int]]:
-    """Cycle of arrival and content of the board's frames."""
+    """Return cycle of arrival and content of the board's frames."""
     return [(round(at_s / 0.01), data[0]) for at_s, frame_id, data in arrived if frame_id == BOARD]
 
 
@@ -88,7 +88,7 @@ KINDS: tuple[Kind, ...] = ("off", "stuck", "garbage", "wrong", "slow", "delayed"
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_whoever_is_not_concerned_is_left_alone(kind: Kind) -> None:
+def test_faulty_link_leaves_other_identifiers_alone(kind: Kind) -> None:
     others = [(at_s, data[0]) for at_s, frame_id, data in telemetry(kind) if frame_id == OTHER]
     assert others == [(round(cycle * 0.01, 6), cycle) for cycle in range(CYCLES)]
 
@@ -114,7 +114,7 @@ def test_slow_lets_one_pass_in_each_period() -> None:
     assert [cycle for cycle, _ in of_board(telemetry("slow")) if 10 <= cycle < 30] == [15, 20, 25]
 
 
-def test_delayed_frames_keep_their_order_also_when_the_delay_ends() -> None:
+def test_faulty_link_delayed_frames_keep_their_order() -> None:
     frames = of_board(telemetry("delayed"))
     assert [data for _, data in frames] == list(range(CYCLES))
     late = [cycle - data for cycle, data in frames if 10 <= data < 27]
@@ -134,7 +134,7 @@ def out(kind: Kind) -> list[tuple[float, int, bytes]]:
     return sent_through(FaultyTxLink(fault(kind), time, random.Random(1)), time)
 
 
-def test_a_way_out_that_is_off_raises_and_one_that_is_stuck_gives_all_at_the_end() -> None:
+def test_tx_link_off_raises_and_stuck_sends_all_at_the_end() -> None:
     with pytest.raises(OSError, match="down"):
         out("off")
     at_the_end = [data[0] for at_s, frame_id, data in out("stuck") if frame_id == BOARD and at_s == 0.295]
@@ -155,7 +155,7 @@ def test_a_way_out_that_is_wrong_says_it_under_another_name() -> None:
 
 
 def wheels(kind: Kind, brake_at: int = 28) -> list[tuple[float, float]]:
-    """Both sides' speeds after each cycle, told 0.3 m/s, and to brake from a cycle on."""
+    """Return both sides' speeds after each cycle, commanded 0.3 m/s, and to brake from a cycle on."""
     time = EventScheduler()
     wrong = TimedFault(kind, 0.095, 1.0, 1.0, 0.15)
     driven = FaultyWheels(ROBOT)
@@ -209,7 +209,7 @@ async def test_a_clock_wakes_the_loop_by_its_own_time(kind: Kind, woken_at_s: fl
     assert time.now_s() == pytest.approx(woken_at_s, abs=0.001)
 
 
-async def test_a_clock_that_is_off_cannot_be_read_and_one_that_gives_garbage_gives_no_number() -> None:
+async def test_faulty_clock_off_raises_and_garbage_reads_nan() -> None:
     time = EventScheduler()
     time.run_until(0.15)
     with pytest.raises(BrokenClockError):

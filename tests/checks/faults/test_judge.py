@@ -69,7 +69,7 @@ def test_each_part_of_a_row_is_looked_at(outcome: FaultOutcome, code: ComplaintC
     assert code in [each.code for each in verdict.complaints]
 
 
-def test_one_that_must_drive_on_may_rest_for_a_moment_to_turn_round() -> None:
+def test_judge_drives_on_allows_a_short_rest_to_reverse() -> None:
     must = case_of("tick", "wrong").must
     turned = replace(DROVE, first=Standstill(0.3, ("slew limit",)), went_on=True, longest_stand_s=0.02)
     assert judge(must, turned).passed
@@ -86,7 +86,7 @@ def test_one_that_must_stutter_must_not_stand_for_good() -> None:
     assert complaint_of.code is ComplaintCode.DID_NOT_GO_ON
 
 
-def test_a_fault_that_does_nothing_passes_only_where_nothing_must_come_of_it() -> None:
+def test_judge_fault_without_effect_passes_only_drives_on() -> None:
     for case in cases_of(TABLE):
         counted = {case.must.counts: 1} if case.must.counts else {}
         drives_on = case.must.leads_to == "drives_on"
@@ -109,15 +109,15 @@ def test_a_log_loses_only_what_its_row_says() -> None:
     )
 
 
-def test_a_known_gap_excuses_what_it_names_and_nothing_beyond_the_envelope() -> None:
-    must = HUNG.model_copy(update={"known_gap": "nobody says resume"})
+def test_judge_known_gap_excuses_no_envelope_violation() -> None:
+    must = HUNG.model_copy(update={"known_gap": "no resume is sent"})
     stays = replace(STOOD, drove_when_told=False)
     assert judge(must, stays).passed
     assert not judge(must, replace(stays, problems=(TOO_FAST,))).passed
 
 
 def test_a_gap_that_is_closed_must_be_taken_out_of_the_table() -> None:
-    must = HUNG.model_copy(update={"known_gap": "nobody says resume"})
+    must = HUNG.model_copy(update={"known_gap": "no resume is sent"})
     verdict = judge(must, STOOD)
     assert not verdict.passed
     assert verdict.complaints == (complaint(ComplaintCode.GAP_CLOSED),)

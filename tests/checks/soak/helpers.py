@@ -1,4 +1,4 @@
-"""Short days of a robot, in which something fails all the time."""
+"""Short soak runs with a fault nearly all the time."""
 
 from pathlib import Path
 
@@ -28,7 +28,7 @@ PATIENT = MoodSettings(
 
 
 def busy_day(**changed: object) -> SoakSettings:
-    """Something fails every few seconds, and the program is started anew every half a minute; `changed`: else."""
+    """Return settings with a fault every few seconds and a restart every half a minute; `changed` replaces fields."""
     changes = {"lives_s": (25.0, 35.0), "fault_gap_s": 2.0, "first_corrections": 10, **changed}
     return DAY.model_copy(update=changes)
 
@@ -44,7 +44,7 @@ def recording_in(folder: Path) -> Recording:
 
 
 def soaked(folder: Path, minutes: float, soak: SoakSettings, seed: int = 1) -> SoakResult:
-    """What a day comes to."""
+    """Run a soak of some minutes in `folder` and return its result."""
     place = LongRunRig(ROBOT, soak.world, seed)
     try:
         day = SoakRun(place, soak, TABLE, RunSettings(ROBOT, TASK, service_in(folder)), recording_in(folder), seed=seed)

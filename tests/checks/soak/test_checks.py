@@ -1,4 +1,4 @@
-"""What is made of a day: checks, report and picture."""
+"""Checks, report and picture of a soak."""
 
 import json
 from pathlib import Path
@@ -25,7 +25,7 @@ def minute(number: int, resident_mb: float = 100.0, open_files: int = 14, thread
 
 
 def hours(count: float, grown_mb_per_hour: float) -> list[SoakMinute]:
-    """Memory that grows evenly."""
+    """Return minutes in which memory grows evenly."""
     return [minute(number, 100.0 + grown_mb_per_hour * number / 60.0) for number in range(1, round(60 * count) + 1)]
 
 
@@ -105,7 +105,7 @@ def test_one_fault_that_led_elsewhere_is_enough() -> None:
     )
 
 
-def test_an_end_that_nobody_expected_or_a_lost_lesson_is_enough() -> None:
+def test_starts_check_unexpected_end_or_lost_lesson_fails() -> None:
     well = SoakStart(0.0, 100.0, "none", "")
     assert starts_check([well, well._replace(ended_by="a fault")], []).passed
     assert not starts_check([well], [complaint(ComplaintCode.ENDED_UNEXPECTEDLY, 3.0, error="KeyError()")]).passed

@@ -12,7 +12,7 @@ from kurt2rt.checks.soak.soak_run import SoakRun
 from kurt2rt.cli.soak import soak
 
 
-def test_a_soak_of_some_seconds_leaves_report_picture_and_recordings(tmp_path: Path) -> None:
+def test_soak_leaves_report_picture_and_recordings(tmp_path: Path) -> None:
     app = typer.Typer()
     app.command()(soak)
     out = tmp_path / "soak"

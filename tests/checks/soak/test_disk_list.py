@@ -1,4 +1,4 @@
-"""What a soak notes goes to the disk and comes back as it was."""
+"""Notes of a soak on disk come back unchanged."""
 
 from kurt2rt.checks.faults.complaint import ComplaintCode, complaint
 from kurt2rt.checks.soak.disk_list import Spool

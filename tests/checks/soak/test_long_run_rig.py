@@ -52,7 +52,7 @@ def test_a_driver_drives_over_any_wire_and_so_does_the_next_one(place: LongRunRi
         assert place.standing
 
 
-def test_one_fault_after_another_and_each_is_over_when_it_is_over(place: LongRunRig) -> None:
+def test_long_run_rig_each_fault_ends_at_its_end(place: LongRunRig) -> None:
     place.start_driver("none")
     drive(place, 1.0)
     for target, begin_s in (("sensor_board_1", 1.1), ("encoders", 2.1), ("bus_in", 3.1)):
@@ -63,7 +63,7 @@ def test_one_fault_after_another_and_each_is_over_when_it_is_over(place: LongRun
         assert drive(place, begin_s + 0.8).wheel_speeds == AHEAD
 
 
-def test_a_go_on_a_bus_that_is_slow_puts_two_old_set_points_into_it_and_no_more(place: LongRunRig) -> None:
+def test_long_run_rig_resume_on_a_slow_bus_sends_two_old_frames(place: LongRunRig) -> None:
     robot = place.start_driver("none")
     envelope = Envelope(TABLE.envelope)
     drive(place, 1.0, envelope)
@@ -75,7 +75,7 @@ def test_a_go_on_a_bus_that_is_slow_puts_two_old_set_points_into_it_and_no_more(
         robot.release()
 
 
-def test_a_bus_that_lost_frames_and_is_well_again_takes_set_points_after_the_first_go(place: LongRunRig) -> None:
+def test_long_run_rig_drives_on_after_frame_loss_and_one_resume(place: LongRunRig) -> None:
     robot = place.start_driver("none")
     drive(place, 1.0)
     place.begin("bus_out", "intermittent", begin_s=1.0, end_s=1.1, period_s=0.2, delay_s=1.0)

@@ -23,7 +23,7 @@ AWAY = PATIENT.model_copy(update={"there": False})
 
 
 class Careless:
-    """A layer that drives whatever it is told (and the tick would not let it)."""
+    """A level that always drives; the tick must not let it."""
 
     def __init__(self, behind: Level) -> None:
         self._behind = behind
@@ -46,7 +46,7 @@ def observer(place: LongRunRig) -> SoakObserver:
 
 
 def started(folder: Path, place: LongRunRig, observer: SoakObserver, **moods: object) -> ProgramRun:
-    """A program with a teacher of one mood."""
+    """Return a program with a teacher of one mood."""
     soak = DAY.model_copy(update={"moods": moods})
     teacher = SoakTeacher(soak, TASK, ROBOT, ("forward", "stand"), seed=1)
     run_settings = RunSettings(ROBOT, TASK, service_in(folder))
@@ -57,14 +57,14 @@ def run(program: ProgramRun, place: LongRunRig, until_s: float) -> None:
     anyio.run(program.run, lambda _: None, lambda: place.time.now_s() >= until_s)
 
 
-def test_a_robot_that_nobody_told_to_drive_stands(tmp_path: Path, place: LongRunRig, observer: SoakObserver) -> None:
+def test_program_without_a_command_stands(tmp_path: Path, place: LongRunRig, observer: SoakObserver) -> None:
     program = started(tmp_path, place, observer, away=AWAY)
     run(program, place, 1.0)
     assert (observer.complaints.count, program.ended_by, program.close()) == (0, "", None)
     assert observer.stands
 
 
-def test_one_that_drives_though_it_was_only_started_is_seen(
+def test_observer_sees_a_program_that_drives_untold(
     tmp_path: Path, place: LongRunRig, observer: SoakObserver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tick, "stopped", lambda decision, _: decision)
@@ -77,7 +77,7 @@ def test_one_that_drives_though_it_was_only_started_is_seen(
     assert observer.complaints.stored[0].code is ComplaintCode.DROVE_UNTOLD
 
 
-def test_a_layer_that_drives_whatever_it_is_told_does_not_drive_a_program_that_was_only_started(
+def test_careless_layer_does_not_drive_an_untold_program(
     tmp_path: Path, place: LongRunRig, observer: SoakObserver
 ) -> None:
     program = started(tmp_path, place, observer, away=AWAY)

@@ -1,4 +1,4 @@
-"""Who looks after the robot of a soak picks it up where it is stuck, and knows when that is not all."""
+"""The operator of a soak: repositions a stuck robot, and switches it off and on if that does not help."""
 
 import random
 from collections.abc import Iterator
@@ -30,7 +30,7 @@ def place() -> Iterator[LongRunRig]:
 
 
 def drive(place: LongRunRig, person: SoakOperator, until_s: float, wanted: WheelSpeeds = AHEAD) -> None:
-    """Tick by tick, with somebody who says *Go* at once whenever the robot stops itself; the person looks on."""
+    """Drive tick by tick, resumed at once after each stop of the guard, while the operator looks on."""
     robot, time = place.robot, place.time
     assert robot is not None
     while time.now_s() < until_s:
@@ -42,7 +42,7 @@ def drive(place: LongRunRig, person: SoakOperator, until_s: float, wanted: Wheel
 
 
 def seen(grant: GuardResult, *commands: Resume) -> TickRecord:
-    """A tick in which an RLA would drive, and in which these were carried out."""
+    """Return a tick in which an RLA would drive and these commands were carried out."""
     results = tuple(CommandResult(each.command_id, Outcome(ResultCode.RESUMED)) for each in commands)
     decision = SimpleNamespace(cause=DecisionCause.RLA)
     return cast(TickRecord, SimpleNamespace(guard_result=grant, decision=decision, commands=commands, results=results))
@@ -60,9 +60,7 @@ def test_one_that_makes_no_way_is_set_down_elsewhere(place: LongRunRig) -> None:
     assert (person.set_down, person.switched_on) == (1, 0)
 
 
-def test_one_whose_motors_were_switched_off_by_noise_is_switched_off_and_on(
-    place: LongRunRig, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_operator_power_cycles_motors_switched_off_by_noise(place: LongRunRig, monkeypatch: pytest.MonkeyPatch) -> None:
     """ACTUATOR_OFF (docs/the-robot.md#control-modes) holds through any number of programs."""
     monkeypatch.setattr(random.Random, "randbytes", lambda _, count: b"\xff\x01".ljust(count, b"\0"))
     place.begin("bus_out", "garbage", begin_s=0.1, end_s=0.2, period_s=1.0, delay_s=1.0)
@@ -79,7 +77,7 @@ def test_one_whose_motors_were_switched_off_by_noise_is_switched_off_and_on(
     assert min(place.simulation.wheel_speeds) > 0.2
 
 
-def test_one_that_stopped_itself_waits_for_its_teacher_and_is_not_carried_about(place: LongRunRig) -> None:
+def test_operator_leaves_a_latched_robot_to_its_teacher(place: LongRunRig) -> None:
     person, robot, time = SoakOperator(place, PATIENCE_S, CYCLE_S), place.robot, place.time
     assert robot is not None
     robot.emergency_stop(GuardReason.WHEELS_DISOBEY)
@@ -91,7 +89,7 @@ def test_one_that_stopped_itself_waits_for_its_teacher_and_is_not_carried_about(
     assert person.set_down == 0
 
 
-def test_one_that_stops_itself_again_in_the_tick_of_every_go_is_set_down_elsewhere(place: LongRunRig) -> None:
+def test_operator_repositions_a_robot_latching_at_each_resume(place: LongRunRig) -> None:
     person = SoakOperator(place, PATIENCE_S, CYCLE_S)
     again = GuardResult(STANDSTILL, (GuardReason.WHEELS_DISOBEY,), latched=True)
     go = Resume("go", "Ann")
@@ -100,7 +98,7 @@ def test_one_that_stops_itself_again_in_the_tick_of_every_go_is_set_down_elsewhe
         return sum(person.on_tick(seen(again)) for _ in range(count))
 
     patience = round(PATIENCE_S / CYCLE_S)
-    assert ticks(2 * patience) == 0, "nobody has said go yet"
+    assert ticks(2 * patience) == 0, "no teacher has resumed it yet"
     assert not person.on_tick(seen(again, go))
     assert ticks(patience) == 1
     assert ticks(2 * patience) == 0, "it waits where it was set down"

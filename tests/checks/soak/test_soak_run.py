@@ -1,4 +1,4 @@
-"""A day in which everything fails: what must hold holds, and is seen when it does not."""
+"""A soak in which everything fails: its checks hold."""
 
 from pathlib import Path
 
@@ -16,11 +16,11 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def result(folder: Path) -> SoakResult:
-    """Of a minute."""
+    """Return the result of a minute."""
     return soaked(folder, 1.0, busy_day(lives_s=(18.0, 24.0), fault_gap_s=0.8))
 
 
-def test_whatever_fails_everything_holds(result: SoakResult) -> None:
+def test_soak_run_holds_under_all_faults(result: SoakResult) -> None:
     assert [check for check in result.checks if not check.passed] == []
     assert result.passed
     assert result.complaints == ()

@@ -79,7 +79,7 @@ def one_rule_for_all(folder: Path) -> Path:
     return path
 
 
-async def test_candump_shows_the_traffic_and_cantools_reads_every_frame(vcan0: str, tmp_path: Path) -> None:
+async def test_candump_shows_all_frames_and_cantools_decodes_them(vcan0: str, tmp_path: Path) -> None:
     async with at_work(vcan0, tmp_path):
         log = await anyio.to_thread.run_sync(candump, vcan0, 2000)
     lines = lines_of(log)
@@ -95,7 +95,7 @@ async def test_candump_shows_the_traffic_and_cantools_reads_every_frame(vcan0: s
         assert f":: {name}(" in line
 
 
-async def test_an_emergency_stop_by_cansend_is_obeyed_by_robot_and_runtime(vcan0: str, tmp_path: Path) -> None:
+async def test_cansend_emergency_stop_stops_robot_and_runtime(vcan0: str, tmp_path: Path) -> None:
     async with at_work(vcan0, tmp_path) as (_, robot, we):
         with onlooker(vcan0) as seen:
             stopped = await _stopped_by_cansend(vcan0, we)
@@ -119,7 +119,7 @@ async def _stopped_by_cansend(bus: str, we: TeacherClient) -> State:
             return state
 
 
-async def test_a_robot_without_a_runtime_is_stopped_and_driven_by_cangen(vcan0: str, tmp_path: Path) -> None:
+async def test_cangen_drives_and_stops_a_robot_without_runtime(vcan0: str, tmp_path: Path) -> None:
     with running("sim", "--bus", vcan0, folder=tmp_path) as sim, onlooker(vcan0) as seen:
         await anyio.to_thread.run_sync(sim.wait_for, f"is on bus {vcan0}")
         with doing("cangen", vcan0, "-I", "001", "-L", "8", "-D", SLOWLY, "-g", "10"):
@@ -130,7 +130,7 @@ async def test_a_robot_without_a_runtime_is_stopped_and_driven_by_cangen(vcan0: 
 
 
 @pytest.mark.parametrize("flood", [("-I", "300"), ("-e", "-I", "1"), ("-R", "-I", "301")], ids=" ".join)
-async def test_a_flood_of_frames_that_mean_nothing_here_disturbs_neither(
+async def test_flood_of_unused_frames_disturbs_neither_program(
     vcan0: str, tmp_path: Path, flood: tuple[str, ...]
 ) -> None:
     async with at_work(vcan0, tmp_path) as (_, _, we):
@@ -144,7 +144,7 @@ async def test_a_flood_of_frames_that_mean_nothing_here_disturbs_neither(
             assert cangen.poll() is None
 
 
-async def test_an_interface_that_goes_down_and_up_stops_both_and_ends_neither(link: Link, tmp_path: Path) -> None:
+async def test_interface_down_and_up_stops_both_and_ends_neither(link: Link, tmp_path: Path) -> None:
     async with at_work(NAME, tmp_path) as (sim, robot, we):
         await anyio.to_thread.run_sync(link.down)
         await anyio.to_thread.run_sync(sim.wait_for, "lost: bus vcan0: ")

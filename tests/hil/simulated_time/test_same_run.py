@@ -11,7 +11,7 @@ from tests.hil.simulated_time.stage import Story
 pytestmark = pytest.mark.boots
 
 
-def test_half_a_minute_of_driving_is_the_same_to_the_last_bit_when_it_is_done_again(
+def test_repeated_half_minute_drive_is_bit_identical(
     play: Callable[[Story], Played],
 ) -> None:
     story = Story(30.0, by_command=True)

@@ -25,9 +25,7 @@ def slows(turned: Turned) -> bool:
 
 
 @pytest.mark.parametrize("phase_s", [0.0, 0.0025, 0.005, 0.0075])
-def test_silent_sensors_stop_the_robot_within_50_ms_of_the_first_reading_that_failed_to_come(
-    play: Play, phase_s: float
-) -> None:
+def test_silent_sensors_stop_within_50_ms_of_missing_reading(play: Play, phase_s: float) -> None:
     played = play(Story(3.0, phase_s=phase_s, infrared_silent_s=2.0))
     (turn,) = played.runtime["turns"]
     assert turn["reasons"] == [GuardReason.INFRARED_STALE]
@@ -42,7 +40,7 @@ def test_silent_sensors_stop_the_robot_within_50_ms_of_the_first_reading_that_fa
 
 
 @pytest.mark.parametrize("phase_s", [0.0, 0.005])
-def test_a_tick_that_hangs_is_stopped_by_the_second_guard_within_100_ms(play: Play, phase_s: float) -> None:
+def test_hanging_tick_is_stopped_by_second_guard_within_100_ms(play: Play, phase_s: float) -> None:
     played = play(Story(4.0, phase_s=phase_s, tick_hangs=150))
     (turn,) = played.runtime["turns"]
     assert turn["reasons"] == [GuardReason.TICKS_CEASED]
@@ -58,7 +56,7 @@ def test_a_tick_that_hangs_is_stopped_by_the_second_guard_within_100_ms(play: Pl
 
 
 @pytest.mark.parametrize("phase_s", [0.0, 0.0075])
-def test_when_the_runtime_is_killed_the_robot_brakes_by_itself_after_200_ms(play: Play, phase_s: float) -> None:
+def test_killed_runtime_robot_brakes_by_itself_after_200_ms(play: Play, phase_s: float) -> None:
     log = play(Story(3.5, phase_s=phase_s, runtime_killed_s=2.0)).log
     last_us = log.told[-1].at_us
     assert not log.told[-1].stops
@@ -70,7 +68,7 @@ def test_when_the_runtime_is_killed_the_robot_brakes_by_itself_after_200_ms(play
     assert all(turned.ticks == 0 for turned in log.turned if turned.at_us >= last_us + standing_us)
 
 
-def test_a_runtime_that_was_stopped_for_a_second_brakes_first_and_takes_nothing_old_for_new(play: Play) -> None:
+def test_suspended_runtime_brakes_first_and_knows_old_frames(play: Play) -> None:
     """SIGSTOP stops the second guard as well; then it goes on, with a socket full of frames of half a second ago."""
     played = play(Story(4.0, runtime_stopped_s=2.0, robot_stopped_s=2.5))
     stopped_us, goes_on_us = played.moments_us["runtime stopped"], played.moments_us["runtime goes on"]

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.boots
 Play = Callable[[Story], Played]
 
 
-def test_a_clock_that_is_set_forward_makes_one_cycle_old_and_the_robot_drives_on(play: Play) -> None:
+def test_wall_clock_set_forward_ages_one_cycle_only(play: Play) -> None:
     played = play(Story(3.0, phase_s=0.0075, wall_clock_set_s=2.0, wall_clock_by_s=10.0))
     old, young = played.runtime["turns"]
     assert old["reasons"] == [GuardReason.INFRARED_STALE]

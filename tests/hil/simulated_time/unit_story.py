@@ -154,9 +154,7 @@ def status_of(kurt2rt: Path) -> dict[str, dict[str, float]]:
     return told
 
 
-async def test_however_it_falls_and_however_often_it_is_there_again_and_the_robot_stands(
-    unit: Unit, tmp_path: Path
-) -> None:
+async def test_unit_killed_repeatedly_restarts_and_the_robot_stands(unit: Unit, tmp_path: Path) -> None:
     with robot(tmp_path):
         unit.start()
         await until_up(unit)
@@ -172,7 +170,7 @@ async def test_however_it_falls_and_however_often_it_is_there_again_and_the_robo
             await stands_until_go(we)
 
 
-async def test_a_program_that_hangs_while_it_drives_is_ended_and_started_anew(unit: Unit, tmp_path: Path) -> None:
+async def test_unit_hanging_while_driving_is_restarted(unit: Unit, tmp_path: Path) -> None:
     with robot(tmp_path) as sim:
         unit.start()
         hung = await until_up(unit)
@@ -187,7 +185,7 @@ async def test_a_program_that_hangs_while_it_drives_is_ended_and_started_anew(un
             await stands_until_go(we)
 
 
-async def test_the_end_stops_the_wheels_first_and_takes_less_than_a_second(unit: Unit, tmp_path: Path) -> None:
+async def test_unit_stop_brakes_first_and_ends_within_a_second(unit: Unit, tmp_path: Path) -> None:
     with robot(tmp_path), onlooker(BUS) as seen:
         unit.start()
         await until_up(unit)
@@ -207,7 +205,7 @@ async def test_the_end_stops_the_wheels_first_and_takes_less_than_a_second(unit:
     assert unit.said_at_s("Stopped ") - unit.said_at_s("Stopping ") < 1.0
 
 
-async def test_settings_are_read_anew_at_a_reload(unit: Unit, settings: Path, tmp_path: Path) -> None:
+async def test_unit_reload_reads_settings_again(unit: Unit, settings: Path, tmp_path: Path) -> None:
     with robot(tmp_path):
         unit.start()
         pid = await until_up(unit)
@@ -221,9 +219,7 @@ async def test_settings_are_read_anew_at_a_reload(unit: Unit, settings: Path, tm
         assert (unit.pid, unit.shows("ActiveState"), unit.shows("NRestarts")) == (pid, "active", "0")
 
 
-async def test_it_starts_without_a_bus_and_a_robot_and_comes_to_them_later(
-    unit: Unit, link: Link, tmp_path: Path
-) -> None:
+async def test_unit_without_bus_and_robot_waits_for_them(unit: Unit, link: Link, tmp_path: Path) -> None:
     link.delete()
     unit.start()
     pid = unit.wait_until_said("waits for")
