@@ -8,12 +8,12 @@ from tests.experiments.helpers import short_task, teach
 
 @pytest.fixture
 def kurt2rt(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path: Path) -> CommandLine:
-    """The command line, in a temporary folder."""
+    """Run the command line in a temporary folder."""
     monkeypatch.chdir(tmp_path)
     return CommandLine(monkeypatch, capfd)
 
 
 @pytest.fixture(scope="session")
 def lessons(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A knowledge file with some lessons; copy it to change it."""
+    """Return a knowledge file with some lessons; copy it to change it."""
     return teach(tmp_path_factory.mktemp("lessons") / "taught.knowledge", short_task(5.0, 3.0)).knowledge

@@ -21,7 +21,7 @@ ROOT = Path(__file__).parents[2]
 
 @dataclass(frozen=True)
 class Said:
-    """What a command left on the screen."""
+    """Exit code and output of a command."""
 
     exit_code: int
     out: str

@@ -1,4 +1,4 @@
-"""What a user can get wrong is said in one line, with exit code 2, and nothing is lost by it."""
+"""Input errors of users: one line, exit code 2, and no file changed."""
 
 import shutil
 from collections.abc import Callable
@@ -18,7 +18,7 @@ EVERY_READER = [("exam",), *(("knowledge", name) for name in ("show", "lessons",
 
 
 def changed(kind: str, name: str, folder: Path, change: Callable[[dict[str, object]], None]) -> Path:
-    """A shipped settings file with something changed, in a folder of the user's."""
+    """Write a changed copy of a shipped settings file into a folder; return its path."""
     content = yaml.safe_load((CONFIG_DIR / kind / f"{name}.yaml").read_text(encoding="utf-8"))
     change(content)
     path = folder / f"my_{kind}.yaml"
@@ -38,7 +38,7 @@ def lessons_in(knowledge: Path) -> int:
 
 
 @pytest.mark.parametrize("command", EVERY_WRITER + EVERY_READER, ids=" ".join)
-def test_a_foreign_file_is_refused_and_stays_as_it_was(
+def test_command_with_a_foreign_file_is_refused_and_keeps_it(
     kurt2rt: CommandLine, tmp_path: Path, command: tuple[str, ...]
 ) -> None:
     letter = tmp_path / "letter.txt"
@@ -48,19 +48,23 @@ def test_a_foreign_file_is_refused_and_stays_as_it_was(
 
 
 @pytest.mark.parametrize("command", EVERY_WRITER + EVERY_READER, ids=" ".join)
-def test_a_folder_is_refused(kurt2rt: CommandLine, tmp_path: Path, command: tuple[str, ...]) -> None:
+def test_command_with_a_folder_for_a_file_is_refused(
+    kurt2rt: CommandLine, tmp_path: Path, command: tuple[str, ...]
+) -> None:
     (tmp_path / "folder").mkdir()
     assert "folder: is a folder or device, not a file" in kurt2rt.refused(*command, tmp_path / "folder")
 
 
 @pytest.mark.parametrize("command", EVERY_READER, ids=" ".join)
-def test_a_file_that_is_not_there_is_not_made(kurt2rt: CommandLine, tmp_path: Path, command: tuple[str, ...]) -> None:
+def test_reader_of_a_missing_file_is_refused_and_makes_none(
+    kurt2rt: CommandLine, tmp_path: Path, command: tuple[str, ...]
+) -> None:
     assert "No such file" in kurt2rt.refused(*command, tmp_path / "none.knowledge")
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("command", EVERY_WRITER, ids=" ".join)
-def test_a_place_where_no_file_can_be_is_refused(
+def test_writer_below_a_file_is_refused_and_keeps_it(
     kurt2rt: CommandLine, tmp_path: Path, command: tuple[str, ...]
 ) -> None:
     (tmp_path / "letter.txt").write_text(NOT_OURS, encoding="utf-8")
@@ -69,22 +73,20 @@ def test_a_place_where_no_file_can_be_is_refused(
 
 
 @pytest.mark.parametrize("command", ["demo", "lesson"])
-def test_a_file_where_the_output_folder_should_be_is_refused(
-    kurt2rt: CommandLine, tmp_path: Path, command: str
-) -> None:
+def test_out_that_is_a_file_is_refused_and_keeps_it(kurt2rt: CommandLine, tmp_path: Path, command: str) -> None:
     (tmp_path / "out").write_text(NOT_OURS, encoding="utf-8")
     assert "out" in kurt2rt.refused(command, "--out", tmp_path / "out")
     assert (tmp_path / "out").read_text(encoding="utf-8") == NOT_OURS
 
 
 def other_features(folder: Path) -> Path:
-    """The task with a shorter history in its situation."""
+    """Return the task with a shorter history in its situation."""
     situation = changed("situations", "basic", folder, lambda content: content.update(history_steps=500))
     return changed("tasks", "wall_following", folder, lambda content: content.update(situation=str(situation)))
 
 
 def few_actions(folder: Path) -> Path:
-    """The task with a repertoire that only stands."""
+    """Return the task with a repertoire that only stands."""
 
     def only_stand(content: dict[str, object]) -> None:
         content["actions"] = [{"kind": "motor", "name": "stand", "left_m_s": 0.0, "right_m_s": 0.0}]
@@ -100,7 +102,7 @@ def few_actions(folder: Path) -> Path:
         (few_actions, "which the repertoire lacks; add it there, or teach with the repertoire it came from: stand"),
     ],
 )
-def test_knowledge_that_does_not_fit_is_refused_by_all_that_would_use_it(
+def test_misfit_knowledge_is_refused_by_exam_lesson_and_run(
     kurt2rt: CommandLine, tmp_path: Path, lessons: Path, another_task: Callable[[Path], Path], why: str
 ) -> None:
     mine = copied(lessons, tmp_path / "mine.knowledge")
@@ -136,7 +138,7 @@ def test_knowledge_that_does_not_fit_is_refused_by_all_that_would_use_it(
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
 )
-def test_what_does_not_exist_is_named(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
+def test_option_with_an_unknown_name_is_refused(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
     assert why in kurt2rt.refused(*words)
 
 
@@ -149,7 +151,7 @@ def test_what_does_not_exist_is_named(kurt2rt: CommandLine, words: tuple[str, ..
         (("run", "--seconds", "nan"), "--seconds"),
         (("run", "--seconds", "inf"), "--seconds"),
         (("run", "--seconds", "0"), "--seconds"),
-        (("run", "--teacher", "nobody"), "--teacher"),
+        (("run", "--teacher", "stranger"), "--teacher"),
         (("lesson", "--seeds", "a-b"), "'a-b' is no list of seeds; give e.g. 100-119 or 1,5,7-9"),
         (("lesson", "--seeds", "'5-3' is no list of seeds"), "'5-3' is no list of seeds"),
         (("lesson", "--seeds", "'1,5-3' is no list of seeds"), "'1,5-3' is no list of seeds"),
@@ -165,7 +167,7 @@ def test_what_does_not_exist_is_named(kurt2rt: CommandLine, words: tuple[str, ..
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
 )
-def test_an_option_that_makes_no_sense_is_named(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
+def test_option_with_a_senseless_value_is_misuse(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
     assert why in kurt2rt.misused(*words)
 
 
@@ -205,7 +207,7 @@ def test_an_unknown_world_is_refused_before_anything_is_driven(kurt2rt: CommandL
     ("where", "command"),
     [("teaching", ("demo",)), ("exam", ("demo",)), ("teaching", ("lesson",)), ("exam", ("lesson", "--seeds", "1,2"))],
 )
-def test_a_task_with_an_unknown_world_is_refused_before_anything_is_taught(
+def test_task_with_unknown_world_is_refused_before_the_lesson(
     kurt2rt: CommandLine, tmp_path: Path, where: str, command: tuple[str, ...]
 ) -> None:
     def somewhere_else(content: dict[str, object]) -> None:
@@ -247,7 +249,7 @@ def test_settings_that_are_no_text_are_refused(kurt2rt: CommandLine, tmp_path: P
     assert "mine.yaml: cannot be read" in kurt2rt.refused("demo", "--task", mine)
 
 
-def test_knowledge_that_somebody_writes_is_refused_to_a_second_writer_and_shown_to_a_reader(
+def test_file_with_a_writer_is_closed_to_writers_not_to_readers(
     kurt2rt: CommandLine, tmp_path: Path, lessons: Path
 ) -> None:
     mine = copied(lessons, tmp_path / "mine.knowledge")
@@ -278,8 +280,6 @@ def test_a_damaged_lesson_is_named_and_the_rest_is_kept(kurt2rt: CommandLine, tm
     assert len(said.out.splitlines()) == image.count(b'"teacher":"scripted teacher"')
 
 
-def test_file_name_that_is_no_text_is_drawn_with_signs_in_its_place(
-    kurt2rt: CommandLine, tmp_path: Path, lessons: Path
-) -> None:
+def test_graph_of_a_file_name_that_is_no_utf8_is_drawn(kurt2rt: CommandLine, tmp_path: Path, lessons: Path) -> None:
     mine = copied(lessons, tmp_path / "taught-\udcff.knowledge")
     assert kurt2rt("knowledge", "graph", mine, "--out", "network.svg").exit_code == 0

@@ -23,7 +23,7 @@ sys.stdin.read()
 
 
 class Births:
-    """A pipe with a name, into which each companion that is born says its process id."""
+    """Named pipe into which each started child process writes its process id."""
 
     def __init__(self, path: Path) -> None:
         os.mkfifo(path)
@@ -31,7 +31,7 @@ class Births:
 
     def next(self) -> int:
         ready, _, _ = select.select([self._file], [], [], LONGEST_S)
-        assert ready, "nobody was born"
+        assert ready, "no process was started"
         return int(self._file.readline())
 
     def close(self) -> None:
@@ -39,7 +39,7 @@ class Births:
 
 
 class Told(queue.SimpleQueue[str]):
-    """What the companions' keeper tells."""
+    """Lines of the log of the child processes."""
 
     def next(self) -> str:
         return self.get(timeout=LONGEST_S)
@@ -61,7 +61,7 @@ def is_there(process: int) -> bool:
     return Path(f"/proc/{process}").exists()
 
 
-def test_one_that_is_killed_is_told_and_started_anew_each_time_later(births: Births) -> None:
+def test_killed_child_process_is_restarted_after_growing_pauses(births: Births) -> None:
     told = Told()
     with companions(told, SAYS_ITS_ID) as children:
         children.start("the page", "teach", restarts=True)
@@ -74,7 +74,7 @@ def test_one_that_is_killed_is_told_and_started_anew_each_time_later(births: Bir
     assert told.empty()
 
 
-def test_it_is_a_trouble_while_it_is_not_there() -> None:
+def test_child_process_that_failed_stays_a_trouble() -> None:
     told = Told()
     with companions(told, "raise SystemExit(3)") as children:
         assert children.trouble == ""
@@ -85,7 +85,7 @@ def test_it_is_a_trouble_while_it_is_not_there() -> None:
     assert told.empty()
 
 
-def test_one_that_is_done_is_no_trouble(births: Births) -> None:
+def test_child_process_that_finished_is_no_trouble(births: Births) -> None:
     told = Told()
     with companions(told, SAYS_ITS_ID.replace("sys.stdin.read()", "")) as children:
         children.start("the scripted teacher", "teach", "--auto", restarts=False)
@@ -109,7 +109,7 @@ def test_child_process_output_goes_to_its_reader() -> None:
     assert told.empty()
 
 
-def test_modules_are_not_looked_for_in_the_present_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_child_process_imports_nothing_from_the_present_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "kurt2rt").mkdir()
     (tmp_path / "kurt2rt" / "__init__.py").write_text("raise SystemExit(7)", encoding="utf-8")
     monkeypatch.chdir(tmp_path)

@@ -111,7 +111,7 @@ def test_a_robot_without_simulator_page_and_plots_is_helped() -> None:
     assert "lesson" in done.stdout
 
 
-def test_help_says_which_behaviour_the_scripted_teacher_begins_with(kurt2rt: CommandLine) -> None:
+def test_run_help_says_that_auto_cycles_the_behaviours(kurt2rt: CommandLine) -> None:
     told = " ".join(kurt2rt("run", "--help").out.replace("│", "").split())
     assert "wanted at the start" in told
     assert "with --auto the others follow in turn" in told
@@ -164,7 +164,7 @@ HEAVY = (
     "segno",
     "starlette",
 )
-"""What they import in turn takes most of the time."""
+"""Packages that take most of the import time."""
 OUR_PACKAGES = ("hal.settings", "hal.bus", "behaviors", "simbridge", "kurt2rt.runtime", "kurt2rt.service.settings")
 
 

@@ -1,4 +1,4 @@
-"""What goes wrong in one of many jobs is said in one line that names the job and its seed."""
+"""Failures of one job among many: one line with the job and its seed."""
 
 import errno
 from pathlib import Path

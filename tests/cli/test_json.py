@@ -69,7 +69,7 @@ def test_json_keeps_the_exit_code_of_a_failure(kurt2rt: CommandLine, tmp_path: P
     assert json.loads(said.out)["sound"] is False
 
 
-def test_json_leaves_standard_output_empty_where_the_input_is_refused(kurt2rt: CommandLine) -> None:
+def test_json_of_refused_input_leaves_standard_output_empty(kurt2rt: CommandLine) -> None:
     said = kurt2rt("knowledge", "show", "none", "--json")
     assert (said.exit_code, said.out) == (2, "")
 
@@ -85,7 +85,7 @@ def test_rlas_come_with_conditions_and_teachers(kurt2rt: CommandLine) -> None:
     assert kurt2rt("knowledge", "show", "mine.knowledge", "--limit", "1", "--json").out.count('"rla":') == 1
 
 
-def test_file_behind_json_still_gets_the_results_beside_the_table(kurt2rt: CommandLine, tmp_path: Path) -> None:
+def test_json_with_a_file_writes_it_and_prints_the_table(kurt2rt: CommandLine, tmp_path: Path) -> None:
     said = kurt2rt("faults", "--target", "tick", "--kind", "stuck", "--json", "results.json")
     assert said.exit_code == 0, said.err
     assert "1 cases, 1 trials" in said.out

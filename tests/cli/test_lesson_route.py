@@ -14,7 +14,7 @@ SHORT = ("--set", "teaching.corrections_s=3", "--set", "exam.duration_s=2", "--s
 
 @pytest.fixture(scope="module")
 def streets(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What two robots know of the streets after some seconds."""
+    """Teach two robots the streets for some seconds; return the folder of their knowledge."""
     folder = tmp_path_factory.mktemp("streets")
     for seed in (1, 2):
         teach(folder / f"streets-{seed}.knowledge", short(load_task("streets"), 2.0), seed)

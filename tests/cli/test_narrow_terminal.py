@@ -1,4 +1,4 @@
-"""At 80 columns no report breaks a word: all words of the wide report stand whole in the narrow one."""
+"""Reports at 80 columns: they break no word of the wide report."""
 
 import io
 from collections.abc import Callable

@@ -40,7 +40,7 @@ def runs_in(folder: Path, *, taught_by_script: bool = False) -> SimulatedRuns:
     return SimulatedRuns(ROBOT, first, Kurt2SimulationFactory(ROBOT).require_worlds, taught_by_script=taught_by_script)
 
 
-async def test_another_task_brings_its_world_and_a_file_of_its_own_and_the_first_keeps_its(tmp_path: Path) -> None:
+async def test_next_run_of_another_task_has_its_own_world_and_file(tmp_path: Path) -> None:
     runs = runs_in(tmp_path)
     text = await runs.prepare(None, "eight", False, TEACHER)
     assert text == "world two_objects, task eight: the robot stands until Go"
@@ -58,7 +58,7 @@ async def test_another_task_brings_its_world_and_a_file_of_its_own_and_the_first
     assert (take.teacher, phase.phase, session.name) == ("phone", Phase.CORRECTIONS, "noon")
 
 
-async def test_a_run_that_begins_in_phase_5_with_a_session_stands_until_go(tmp_path: Path) -> None:
+async def test_next_run_in_phase_5_with_a_session_stands_until_go(tmp_path: Path) -> None:
     runs = runs_in(tmp_path)
     await runs.prepare("b", None, False, TeacherNow("ann", 5, "noon"))
     runs.advance()
@@ -80,7 +80,7 @@ async def test_a_run_that_begins_in_phase_5_with_a_session_stands_until_go(tmp_p
         (None, "../eight", "task: '../eight' is not known; give one of circle"),
     ],
 )
-async def test_what_is_no_name_of_a_world_or_task_is_refused(
+async def test_next_run_with_unknown_world_or_task_is_refused(
     tmp_path: Path, world: str | None, task: str | None, why: str
 ) -> None:
     runs = runs_in(tmp_path)
@@ -89,7 +89,7 @@ async def test_what_is_no_name_of_a_world_or_task_is_refused(
     assert runs.next is None
 
 
-async def test_knowledge_that_the_next_run_cannot_open_is_refused_before_this_one_ends(tmp_path: Path) -> None:
+async def test_next_run_with_knowledge_of_another_task_is_refused(tmp_path: Path) -> None:
     open_knowledge(tmp_path / "eight.knowledge", ROBOT, load_task("fleeing")).close()
     runs = runs_in(tmp_path)
     with pytest.raises(ValueError, match="taught for the task 'fleeing'"):
@@ -98,7 +98,7 @@ async def test_knowledge_that_the_next_run_cannot_open_is_refused_before_this_on
 
 
 @pytest.mark.parametrize("fresh", [False, True])
-async def test_a_knowledge_file_that_another_program_writes_is_refused(tmp_path: Path, *, fresh: bool) -> None:
+async def test_next_run_with_a_file_that_has_a_writer_is_refused(tmp_path: Path, *, fresh: bool) -> None:
     runs = runs_in(tmp_path)
     with (
         open_knowledge(tmp_path / "eight.knowledge", ROBOT, load_task("eight")),
@@ -107,14 +107,14 @@ async def test_a_knowledge_file_that_another_program_writes_is_refused(tmp_path:
         await runs.prepare(None, "eight", fresh, TEACHER)
 
 
-async def test_the_run_of_a_scripted_teacher_stays(tmp_path: Path) -> None:
+async def test_next_run_under_a_scripted_teacher_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="start kurt2rt run without --auto"):
         await runs_in(tmp_path, taught_by_script=True).prepare("b", None, False, TEACHER)
 
 
 @pytest.fixture(scope="module")
 def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A knowledge file with one RLA."""
+    """Return a knowledge file with one RLA."""
     path = tmp_path_factory.mktemp("taught") / "taught.knowledge"
     with open_knowledge(path, ROBOT, TASK) as journal:
         condition = (100.0,) * len(journal.binding.feature_names)
@@ -124,7 +124,7 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("form", ["archive", "knowledge file"])
-async def test_loaded_knowledge_takes_the_place_of_what_is_kept_beside(tmp_path: Path, taught: Path, form: str) -> None:
+async def test_loaded_knowledge_replaces_the_file_and_keeps_a_copy(tmp_path: Path, taught: Path, form: str) -> None:
     runs = runs_in(tmp_path)
     open_knowledge(runs.present.knowledge, ROBOT, TASK).close()
     if form == "archive":
@@ -146,7 +146,7 @@ async def test_loaded_knowledge_takes_the_place_of_what_is_kept_beside(tmp_path:
         (b"SQLite format 3\x00" + bytes(4000), "the uploaded file: "),
     ],
 )
-async def test_what_is_no_knowledge_is_refused_in_one_line_and_leaves_nothing(
+async def test_upload_that_is_no_knowledge_is_refused_in_one_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, content: bytes, why: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -159,7 +159,7 @@ async def test_what_is_no_knowledge_is_refused_in_one_line_and_leaves_nothing(
     assert names_in(tmp_path) == []
 
 
-async def test_knowledge_of_another_task_is_not_loaded(tmp_path: Path) -> None:
+async def test_upload_of_another_tasks_knowledge_is_refused(tmp_path: Path) -> None:
     other = tmp_path / "eight.knowledge"
     open_knowledge(other, ROBOT, load_task("eight")).close()
     with pytest.raises(ValueError, match="the uploaded file: taught for the task 'eight'"):
@@ -174,7 +174,7 @@ def unable(path: Path) -> Path:
     return path
 
 
-async def test_knowledge_that_cannot_act_here_is_not_loaded(tmp_path: Path) -> None:
+async def test_upload_with_an_unknown_action_is_refused(tmp_path: Path) -> None:
     content = unable(tmp_path / "given.knowledge").read_bytes()
     runs = runs_in(tmp_path)
     with pytest.raises(ValueError, match="RLA 1 has the action fly, which the repertoire lacks"):
@@ -183,7 +183,7 @@ async def test_knowledge_that_cannot_act_here_is_not_loaded(tmp_path: Path) -> N
     assert not [name for name in names_in(tmp_path) if name.startswith(".")]
 
 
-async def test_a_task_whose_knowledge_cannot_act_here_is_refused(tmp_path: Path) -> None:
+async def test_next_run_with_an_unknown_action_is_refused(tmp_path: Path) -> None:
     runs = runs_in(tmp_path)
     await runs.prepare(None, "eight", False, TEACHER)
     runs.advance()
@@ -193,7 +193,7 @@ async def test_a_task_whose_knowledge_cannot_act_here_is_refused(tmp_path: Path)
     assert runs.next is None
 
 
-async def test_the_present_knowledge_under_another_tasks_name_is_not_opened_for_that_task(tmp_path: Path) -> None:
+async def test_present_file_under_another_tasks_name_is_set_aside(tmp_path: Path) -> None:
     first = SimulatedRun("a", TASK, "wall_following", tmp_path / "eight.knowledge")
     runs = SimulatedRuns(ROBOT, first, Kurt2SimulationFactory(ROBOT).require_worlds, taught_by_script=False)
     with open_knowledge(first.knowledge, ROBOT, TASK):
@@ -214,7 +214,7 @@ async def teacher_of(robot: Running, folder: Path) -> AsyncIterator[TeacherClien
 
 
 async def state_where(client: TeacherClient, boot: bytes, **wanted: object) -> State:
-    """The first picture so, of another start of the robot than `boot`."""
+    """Return the first state with these values, of another start of the robot than `boot`."""
     with anyio.fail_after(30.0):
         async for state in client.states():
             if state.boot != boot and all(getattr(state, name) == value for name, value in wanted.items()):
@@ -223,7 +223,7 @@ async def state_where(client: TeacherClient, boot: bytes, **wanted: object) -> S
 
 
 async def state_at(client: TeacherClient, tick: int) -> State:
-    """The first picture of a tick or later."""
+    """Return the first state of a tick or later."""
     with anyio.fail_after(30.0):
         async for state in client.states():
             if state.tick >= tick:
@@ -231,7 +231,7 @@ async def state_at(client: TeacherClient, tick: int) -> State:
     raise AssertionError("the client ended")
 
 
-async def test_the_next_run_goes_on_with_its_teacher_and_keeps_what_was_taught(tmp_path: Path) -> None:
+async def test_next_run_keeps_its_teacher_and_the_lessons(tmp_path: Path) -> None:
     knowledge = tmp_path / "var" / "wall_following.knowledge"
     with running("run", "--port", "0", folder=tmp_path) as robot:
         async with teacher_of(robot, tmp_path) as client:

@@ -11,7 +11,7 @@ from tests.cli.helpers import CommandLine
 
 
 def short_task(folder: Path, **teaching: Any) -> Path:
-    """The circle, taught and examined for seconds only."""
+    """Write the task circle with seconds of teaching and exam; return its path."""
     content = yaml.safe_load((CONFIG_DIR / "tasks" / "circle.yaml").read_text())
     content["name"] = "short_circle"
     content["teaching"] |= {"supervised_s": 4.0, "corrections_s": 2.0} | teaching
@@ -75,7 +75,7 @@ def test_seeds_that_are_none_are_refused(kurt2rt: CommandLine) -> None:
 
 
 @pytest.mark.deep
-def test_quick_does_a_part_of_everything_and_goes_on_where_it_was(kurt2rt: CommandLine) -> None:
+def test_paper_quick_runs_again_only_the_job_without_result(kurt2rt: CommandLine) -> None:
     words = ("paper", "--quick", "--jobs", "2")
     first = kurt2rt(*words)
     assert first.exit_code == 0, first.err

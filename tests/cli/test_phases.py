@@ -10,13 +10,13 @@ from tests.cli.helpers import CommandLine
 QUICK = ("phases", "--quick", "--seeds", "0", "--jobs", "1")
 
 
-def test_a_task_that_says_nothing_of_these_phases_is_refused_before_anything_runs(kurt2rt: CommandLine) -> None:
+def test_phases_of_a_task_without_phases_are_refused(kurt2rt: CommandLine) -> None:
     said = kurt2rt.refused("phases", "--task", "circle", "--out", "made")
     assert "task circle: says nothing about phases 3 to 5; add a section `phases:` to its file" in said
     assert not Path("made").exists()
 
 
-def test_a_world_that_is_unknown_is_refused_before_anything_runs(kurt2rt: CommandLine) -> None:
+def test_phases_with_an_unknown_world_are_refused(kurt2rt: CommandLine) -> None:
     said = kurt2rt.refused("phases", "--set", "phases.repair_worlds=[nowhere]", "--out", "made")
     assert "nowhere: no such file in worlds" in said
     assert not Path("made").exists()
@@ -30,7 +30,7 @@ def alone(result: Path) -> tuple[str, bool, int]:
 
 @pytest.mark.parametrize("task", ["wall_following", "fleeing", "eight"])
 @pytest.mark.deep
-def test_quick_goes_the_whole_path_leaves_a_report_and_goes_on_where_it_was(kurt2rt: CommandLine, task: str) -> None:
+def test_phases_quick_runs_again_only_the_job_without_result(kurt2rt: CommandLine, task: str) -> None:
     first = kurt2rt(*QUICK, "--task", task)
     assert first.exit_code == 0, first.err
     assert "Phase by phase" in first.out

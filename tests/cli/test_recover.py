@@ -8,7 +8,7 @@ from tests.cli.helpers import CommandLine
 from tests.runs.replay.stored_runs import STORED
 
 
-def test_a_torn_run_is_copied_and_the_copy_has_its_index(kurt2rt: CommandLine, tmp_path: Path) -> None:
+def test_recover_copies_a_torn_run_with_an_index(kurt2rt: CommandLine, tmp_path: Path) -> None:
     content = (STORED / "walls.mcap").read_bytes()
     truncated = tmp_path / "walls.mcap"
     truncated.write_bytes(content[:-100])
@@ -28,7 +28,7 @@ def test_a_torn_run_is_copied_and_the_copy_has_its_index(kurt2rt: CommandLine, t
     assert truncated.read_bytes() == content[:-100]
 
 
-def test_a_file_that_the_power_cut_left_empty_stands_in_no_others_way(kurt2rt: CommandLine, tmp_path: Path) -> None:
+def test_recover_skips_an_empty_segment_and_copies_the_others(kurt2rt: CommandLine, tmp_path: Path) -> None:
     run = tmp_path / "20260320T094640Z-wall_following"
     run.mkdir()
     for number in (1, 3):

@@ -19,7 +19,7 @@ WALLS = STORED / "walls.mcap"
 
 @pytest.fixture(scope="module")
 def short(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The first thirteen seconds of it."""
+    """Return the first 13 s of the stored run."""
     slim(WALLS, segment := tmp_path_factory.mktemp("short") / "walls.mcap", 13.0)
     return segment
 
@@ -57,7 +57,7 @@ def test_settings_of_today_change_nothing(
     assert said.exit_code == 0, said.err
 
 
-def test_what_comes_out_otherwise_is_named_and_ends_with_one(
+def test_replay_that_differs_names_the_field_and_ends_with_1(
     kurt2rt: CommandLine, monkeypatch: pytest.MonkeyPatch, short: Path
 ) -> None:
     monkeypatch.setattr("kurt2rt.core.teaching.lesson_builder.LessonBuilder.build", _teaches_nothing)

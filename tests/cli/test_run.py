@@ -36,7 +36,7 @@ class Lesson(NamedTuple):
 
 @contextmanager
 def lesson(folder: Path) -> Iterator[Lesson]:
-    """The robot has asked, and the terminal teaches."""
+    """Start a robot and a terminal that teaches it."""
     with running("run", "--seconds", "120", "--port", "0", "--knowledge", "mine.knowledge", folder=folder) as robot:
         port = robot.wait_for("teachers are listened to on UDP port").split()[-1]
         with running("teach", "--terminal", "--port", port, folder=folder) as person:
@@ -44,7 +44,7 @@ def lesson(folder: Path) -> Iterator[Lesson]:
             yield Lesson(robot, person, folder / "mine.knowledge")
 
 
-def test_a_person_teaches_and_sigterm_ends_it_with_the_lesson_kept(tmp_path: Path) -> None:
+def test_sigterm_after_a_lesson_keeps_the_lesson(tmp_path: Path) -> None:
     with lesson(tmp_path) as (robot, person, knowledge):
         person.wait_for("I know nothing yet, teach me")
         person.type("forward")
@@ -85,7 +85,7 @@ def test_a_terminal_does_what_a_page_does(tmp_path: Path) -> None:
 
 
 @pytest.mark.deep
-def test_the_scripted_teacher_and_the_page_come_and_go_with_the_robot(tmp_path: Path) -> None:
+def test_run_starts_and_ends_scripted_teacher_and_page(tmp_path: Path) -> None:
     words = ("run", "--auto", "--page", "--port", "0", "--page-port", "0", "--knowledge", "mine.knowledge")
     with running(*words, folder=tmp_path) as robot:
         said = [robot.wait_for("http://127.0.0.1:"), robot.wait_for("RLAs | ")]
@@ -123,7 +123,7 @@ def test_a_public_address_without_tls_is_refused(kurt2rt: CommandLine) -> None:
 
 
 def limit_files(program: Running, size_bytes: int) -> None:
-    """No file of that program may grow beyond: writes fail for real, as they do on a full disk."""
+    """Limit the size of that program's files, so that writes fail as on a full disk."""
     resource.prlimit(program.process.pid, resource.RLIMIT_FSIZE, (size_bytes, resource.RLIM_INFINITY))
 
 
@@ -141,7 +141,7 @@ def fill_the_disk(robot: Running, person: Running, knowledge: Path) -> None:
 
 
 @pytest.mark.deep
-def test_a_full_disk_is_said_and_the_robot_goes_on_when_there_is_room(tmp_path: Path) -> None:
+def test_full_disk_stops_the_robot_until_there_is_room(tmp_path: Path) -> None:
     with lesson(tmp_path) as (robot, person, knowledge):
         fill_the_disk(robot, person, knowledge)
         limit_files(robot, resource.RLIM_INFINITY)
@@ -153,7 +153,7 @@ def test_a_full_disk_is_said_and_the_robot_goes_on_when_there_is_room(tmp_path: 
 
 
 @pytest.mark.deep
-def test_a_disk_that_stays_full_is_the_last_word(tmp_path: Path) -> None:
+def test_disk_that_stays_full_is_the_last_line_and_code_2(tmp_path: Path) -> None:
     with lesson(tmp_path) as (robot, person, knowledge):
         fill_the_disk(robot, person, knowledge)
         said = robot.end(signal.SIGTERM)
@@ -202,7 +202,7 @@ def test_the_scripted_teacher_does_not_teach_ways_in_real_time(kurt2rt: CommandL
     assert "kurt2rt lesson --task route teaches it" in kurt2rt.misused("run", "--auto", "--task", "route")
 
 
-def test_without_a_teacher_one_of_several_behaviours_is_chosen_at_the_start(kurt2rt: CommandLine) -> None:
+def test_run_without_a_teacher_selects_the_named_behaviour(kurt2rt: CommandLine) -> None:
     words = ("run", "--seconds", "1.1", "--teacher", "none", "--task", "streets")
     assert "stands and asks about straight_on" in kurt2rt(*words).out
     assert "stands and asks about turn_left" in kurt2rt(*words, "--behaviour", "turn_left").out
@@ -210,12 +210,12 @@ def test_without_a_teacher_one_of_several_behaviours_is_chosen_at_the_start(kurt
     assert "there is no taught behaviour 'fly'; this task has: straight_on, turn_left, turn_right" in refused
 
 
-def test_a_log_of_no_known_kind_is_refused(kurt2rt: CommandLine) -> None:
+def test_can_log_of_no_known_kind_is_refused(kurt2rt: CommandLine) -> None:
     assert "drive.doc: no known kind of CAN log; give a name" in kurt2rt.refused("run", "--can-log", "drive.doc")
 
 
 @pytest.mark.deep
-def test_a_log_that_cannot_be_written_is_told_of_and_the_robot_drives_on(tmp_path: Path) -> None:
+def test_can_log_that_cannot_be_written_does_not_stop_the_robot(tmp_path: Path) -> None:
     words = ("run", "--teacher", "none", "--knowledge", "mine.knowledge", "--can-log", "drive.log")
     with running(*words, folder=tmp_path) as robot:
         log = tmp_path / "drive.log"

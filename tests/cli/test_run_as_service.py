@@ -1,4 +1,4 @@
-"""`kurt2rt run --service`, with a service manager that hears it."""
+"""`kurt2rt run --service` with a service manager."""
 
 import os
 import signal
@@ -22,7 +22,7 @@ def systemd(tmp_path: Path) -> Iterator[Manager]:
 
 @pytest.fixture
 def kurt2rt_process(tmp_path: Path) -> Iterator[Callable[..., Running]]:
-    """Starts `kurt2rt ...` in the test's folder; what is left of it is killed."""
+    """Return a function that starts `kurt2rt ...` in the test's folder; kill its processes at the end."""
     with ExitStack() as around:
 
         def start(*words: str) -> Running:
@@ -38,7 +38,7 @@ def settings_in(folder: Path, **changes: object) -> str:
     return str(path)
 
 
-def test_a_day_of_the_unit(tmp_path: Path, systemd: Manager) -> None:
+def test_unit_starts_reloads_and_ends_under_a_service_manager(tmp_path: Path, systemd: Manager) -> None:
     environment = systemd.environment(0.5)
     del environment["WATCHDOG_PID"]
     words = ("run", "--service", "--robot", "sim", "--settings", settings_in(tmp_path))
@@ -76,13 +76,13 @@ def test_a_page_that_died_is_told_and_comes_back(tmp_path: Path, kurt2rt_process
 
 
 def children_of(pid: int) -> list[int]:
-    """Processes that a process started and that are there still."""
+    """Return the ids of the living child processes of a process."""
     threads = Path(f"/proc/{pid}/task").iterdir()
     return [int(child) for each in threads for child in (each / "children").read_text(encoding="ascii").split()]
 
 
 def priorities_of(pid: int) -> list[int]:
-    """Of the threads of a process that have a real-time priority; the highest first."""
+    """Return the real-time priorities of the threads of a process, the highest first."""
     threads = [int(each.name) for each in Path(f"/proc/{pid}/task").iterdir()]
     return sorted((os.sched_getparam(each).sched_priority for each in threads if _is_real_time(each)), reverse=True)
 
@@ -91,7 +91,7 @@ def _is_real_time(thread: int) -> bool:
     return os.sched_getscheduler(thread) & ~os.SCHED_RESET_ON_FORK == os.SCHED_FIFO
 
 
-def test_a_reload_never_leaves_others_before_the_loop_nor_the_loop_before_its_guards(
+def test_reload_of_the_priority_keeps_the_guards_above_the_loop(
     tmp_path: Path, kurt2rt_process: Callable[..., Running]
 ) -> None:
     program = kurt2rt_process("run", "--service", "--robot", "sim", "--settings", settings_in(tmp_path))
@@ -99,7 +99,7 @@ def test_a_reload_never_leaves_others_before_the_loop_nor_the_loop_before_its_gu
         pytest.skip("SCHED_FIFO is not permitted here: no CAP_SYS_NICE")
     program.wait_for("stands until Go: the robot program was started")
     pid = program.process.pid
-    assert priorities_of(pid) == [21, 21, 20]  # the second guard, the one that hears signals, the loop
+    assert priorities_of(pid) == [21, 21, 20]  # the second guard, the signal thread, the loop
     for priority, expected in ((0, []), (5, [6, 6, 5]), (3, [4, 4, 3]), ("auto", [21, 21, 20])):
         settings_in(tmp_path, real_time_priority=priority)
         program.process.send_signal(signal.SIGHUP)
@@ -108,7 +108,7 @@ def test_a_reload_never_leaves_others_before_the_loop_nor_the_loop_before_its_gu
     assert program.end(signal.SIGTERM).exit_code == 0
 
 
-def test_a_terminal_that_hangs_up_ends_a_program_that_was_run_by_hand(tmp_path: Path) -> None:
+def test_hangup_of_the_terminal_ends_a_run(tmp_path: Path) -> None:
     words = ("run", "--port", "0", "--knowledge", "mine.knowledge")
     with running(*words, folder=tmp_path) as program:
         program.wait_for("teachers are listened to")

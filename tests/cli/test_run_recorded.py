@@ -1,4 +1,4 @@
-"""What `kurt2rt run` leaves behind of its run."""
+"""Recordings of `kurt2rt run`."""
 
 from datetime import datetime
 from pathlib import Path
@@ -44,13 +44,13 @@ def test_a_run_is_recorded_unless_told_otherwise(kurt2rt: CommandLine, folder: P
     assert min(times) >= datetime.strptime(run.name[:16], "%Y%m%dT%H%M%S%z").timestamp() * 1e9
 
 
-def test_to_another_folder_where_one_is_given(kurt2rt: CommandLine, folder: Path) -> None:
+def test_run_records_to_the_given_folder(kurt2rt: CommandLine, folder: Path) -> None:
     kurt2rt(*WORDS, "--record", "elsewhere")
     assert len(runs_in(folder / "elsewhere")) == 1
     assert not (folder / "var").exists()
 
 
-def test_nothing_is_recorded_where_nobody_wants_it(kurt2rt: CommandLine, folder: Path) -> None:
+def test_no_record_leaves_no_recording(kurt2rt: CommandLine, folder: Path) -> None:
     said = kurt2rt(*WORDS, "--no-record")
     assert "recorded" not in said.out
     assert not (folder / "var").exists()
@@ -70,7 +70,7 @@ def test_a_live_view_needs_no_recording(kurt2rt: CommandLine, folder: Path) -> N
         (("--live-view", "robot"), "neither PORT nor HOST:PORT"),
     ],
 )
-def test_what_makes_no_sense_is_refused(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
+def test_record_options_that_contradict_are_misuse(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
     assert why in kurt2rt.misused(*WORDS, *words)
 
 

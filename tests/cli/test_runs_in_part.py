@@ -9,9 +9,7 @@ from tests.cli.helpers import CommandLine
 from tests.runs.recording.desk_recording import NAME, empty_run, late_run
 
 
-def test_why_tells_what_a_robot_did_that_was_never_switched_off_and_says_since_when(
-    kurt2rt: CommandLine, tmp_path: Path
-) -> None:
+def test_why_of_a_run_without_beginning_shows_the_rest(kurt2rt: CommandLine, tmp_path: Path) -> None:
     late = late_run(tmp_path)
     said = kurt2rt("why", late)
     assert said.exit_code == 0, said.err
@@ -22,7 +20,7 @@ def test_why_tells_what_a_robot_did_that_was_never_switched_off_and_says_since_w
     assert "is there from its tick" in kurt2rt.refused("replay", late)
 
 
-def test_a_run_without_a_tick_is_not_the_same_and_never_the_newest(kurt2rt: CommandLine, tmp_path: Path) -> None:
+def test_run_without_a_tick_is_refused_and_never_the_newest(kurt2rt: CommandLine, tmp_path: Path) -> None:
     assert "holds no tick; the program ended before the first one" in kurt2rt.refused("replay", empty_run(tmp_path))
     knowledge = tmp_path / "some.knowledge"
     open_knowledge(knowledge, load_robot(), load_task("wall_following")).close()

@@ -54,7 +54,7 @@ def test_var_is_made_for_this_user_alone(kurt2rt: CommandLine, tmp_path: Path, w
     assert (tmp_path / "var").stat().st_mode & 0o777 == 0o700
 
 
-def test_run_auto_on_a_persons_file_is_refused_where_nobody_can_be_asked(kurt2rt: CommandLine, tmp_path: Path) -> None:
+def test_run_auto_on_a_persons_file_without_terminal_is_refused(kurt2rt: CommandLine, tmp_path: Path) -> None:
     mine = taught_by(tmp_path / "mine.knowledge", AUTO, "anna", "local", "anna")
     before = mine.read_bytes()
     line = kurt2rt.refused("run", "--auto", "--seconds", "0.1", "--port", "0", "--knowledge", "mine.knowledge")

@@ -29,7 +29,7 @@ def test_set_applies_to_lesson_and_exam(kurt2rt: CommandLine) -> None:
 @pytest.mark.parametrize(
     "command", [("lesson",), ("exam", KNOWLEDGE, "--task", "wall_following"), ("demo",)], ids=lambda words: words[0]
 )
-def test_a_key_that_there_is_not_and_a_word_without_a_value_are_told(
+def test_set_with_unknown_key_or_without_value_is_refused(
     kurt2rt: CommandLine, command: tuple[str | Path, ...]
 ) -> None:
     assert "wall_following.yaml: learning.radios: no such key; allowed here: radius" in kurt2rt.refused(

@@ -15,7 +15,7 @@ def a_bus(name: str) -> str:
     return f"shared:{name}-{os.getpid()}"
 
 
-async def test_taught_over_a_bus_killed_while_it_drives_and_back_with_all_it_knew(tmp_path: Path) -> None:
+async def test_killed_program_stops_within_the_watchdog_and_comes_back(tmp_path: Path) -> None:
     cycles = await teach_kill_and_return(a_bus("story"), tmp_path)
     assert cycles <= WATCHDOG_CYCLES + BRAKING_CYCLES
 
@@ -27,9 +27,7 @@ async def test_sim_kill_prints_the_time_until_control(tmp_path: Path, capsys: py
         print(f"\nfrom kill -9 to the next CONTROL: {', '.join(f'{each:.2f}' for each in away_s)} s; wanted: 2 s")
 
 
-def test_a_person_at_the_desk_sees_the_only_robot_of_that_bus_and_puts_it_elsewhere(
-    kurt2rt: CommandLine, tmp_path: Path
-) -> None:
+def test_sim_console_places_the_robot_and_shares_no_bus(kurt2rt: CommandLine, tmp_path: Path) -> None:
     bus = a_bus("desk")
     with running("sim", "--bus", bus, "--start", "1", folder=tmp_path) as sim:
         sim.wait_for("a simulated kurt2-indoor in world a is on bus shared:desk")
@@ -63,7 +61,7 @@ def test_it_ends_when_its_time_or_its_input_is_over(kurt2rt: CommandLine) -> Non
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
 )
-def test_what_does_not_exist_is_named(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
+def test_sim_with_an_unknown_name_is_refused(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
     assert why in kurt2rt.refused("sim", *words)
 
 
@@ -76,5 +74,5 @@ def test_what_does_not_exist_is_named(kurt2rt: CommandLine, words: tuple[str, ..
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
 )
-def test_an_option_that_makes_no_sense_is_named(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
+def test_sim_with_a_senseless_value_is_misuse(kurt2rt: CommandLine, words: tuple[str, ...], why: str) -> None:
     assert why in kurt2rt.misused("sim", *words)

@@ -1,4 +1,4 @@
-"""What is seen of the simulated robot at its desk, and what a hand may do to it."""
+"""Console of the simulated robot: its commands, news and status line."""
 
 import io
 import itertools
@@ -93,7 +93,7 @@ def test_a_lifted_robot_turns_its_wheels_in_the_air(table: Table) -> None:
 
 
 @pytest.mark.parametrize(("line", "said"), [("help", HELP), ("", ""), ("dance", f"not understood: dance\n{HELP}")])
-def test_what_can_be_said_is_told(table: Table, line: str, said: str) -> None:
+def test_sim_console_with_help_or_nonsense_lists_the_commands(table: Table, line: str, said: str) -> None:
     assert table.desk.obey(line) == said
 
 

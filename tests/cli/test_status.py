@@ -1,4 +1,4 @@
-"""`kurt2rt status` beside a robot program that runs."""
+"""`kurt2rt status` of a running robot program."""
 
 import json
 from pathlib import Path
@@ -10,7 +10,7 @@ from tests.cli.helpers import CommandLine, running
 
 
 @pytest.mark.deep
-def test_another_process_sees_how_a_robot_is_that_listens_to_nobody(kurt2rt: CommandLine, tmp_path: Path) -> None:
+def test_status_of_a_robot_without_channel_is_read_by_its_file(kurt2rt: CommandLine, tmp_path: Path) -> None:
     with running("run", "--teacher", "none", "--knowledge", "mine.knowledge", folder=tmp_path) as robot:
         robot.wait_for("stands and asks")
         said = kurt2rt("status", tmp_path / "mine.knowledge")
@@ -19,7 +19,7 @@ def test_another_process_sees_how_a_robot_is_that_listens_to_nobody(kurt2rt: Com
             assert words in said.out
 
 
-def test_another_process_sees_how_the_robot_is_beside_its_knowledge_and_over_the_channel(
+def test_status_by_file_and_over_the_channel_is_of_one_robot(
     kurt2rt: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -33,11 +33,11 @@ def test_another_process_sees_how_the_robot_is_beside_its_knowledge_and_over_the
         assert f"page      {link}" in kurt2rt("status", "mine.knowledge").out
         for elsewhere in (("mine.knowledge", "--json"), ("--as", "terminal", "--port", str(port))):
             assert "token" not in kurt2rt("status", *elsewhere).out  # the address of a page is for this user alone
-        beside = report_of(json.loads(kurt2rt("status", "mine.knowledge", "--json").out))
+        by_file = report_of(json.loads(kurt2rt("status", "mine.knowledge", "--json").out))
         over_the_channel = report_of(
             json.loads(kurt2rt("status", "--as", "terminal", "--port", str(port), "--json").out)
         )
-        assert beside.boot == over_the_channel.boot
+        assert by_file.boot == over_the_channel.boot
         assert [each.of for each in over_the_channel.disks] == ["knowledge", "recordings"]
 
 

@@ -36,19 +36,19 @@ def status() -> ProgramStatus:
     return ProgramStatus(desk.record, desk.runtime, 0, None, "")
 
 
-def test_a_robot_that_is_well_has_nothing_to_say(status: ProgramStatus) -> None:
+def test_status_line_of_a_healthy_robot_ends_with_the_timing(status: ProgramStatus) -> None:
     assert WELL.trouble == ""
     assert status_line(status, WELL).split(" | ")[-1].startswith("missed")
 
 
-def test_a_robot_that_was_stopped_says_what_it_waits_for() -> None:
+def test_status_line_of_a_stopped_robot_names_the_stop() -> None:
     desk = ChannelFixture()
     desk.runtime.handler.stop(STARTED)
     line = status_line(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), WELL)
     assert "stands until Go: the robot program was started" in line
 
 
-def test_the_rule_that_drives_is_named_with_the_behaviour_that_is_wanted() -> None:
+def test_status_line_names_the_rla_with_the_active_behaviour() -> None:
     desk = ChannelFixture(behaviours=("straight_on", "turn_left"))
     desk.runtime.active_behaviour.select("turn_left")
     assert "stands and asks about turn_left " in status_line(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), WELL)
@@ -59,27 +59,27 @@ def test_the_rule_that_drives_is_named_with_the_behaviour_that_is_wanted() -> No
     )
 
 
-def test_what_the_robot_could_not_learn_is_told() -> None:
+def test_status_line_shows_the_error_of_the_knowledge_updater() -> None:
     desk = ChannelFixture()
     desk.runtime.handler.updater.error = "1 change was skipped"
     assert status_line(ProgramStatus(desk.run(), desk.runtime, 0, None, ""), WELL).endswith(" | 1 change was skipped")
 
 
-def test_a_bus_that_limps_is_shown_while_the_robot_drives_on(status: ProgramStatus) -> None:
+def test_status_line_shows_a_passive_bus_while_driving(status: ProgramStatus) -> None:
     assert status_line(status, PASSIVE).endswith(" | bus can0: error-passive, 130 errors")
 
 
-def test_a_lost_bus_is_told_until_somebody_says_resume(status: ProgramStatus) -> None:
+def test_status_line_shows_a_lost_bus_until_resume(status: ProgramStatus) -> None:
     assert status_line(status, LOST).endswith(" | bus can0: receiving failed")
     assert "receiving failed" not in status_line(status, replace(LOST, latched=None))
 
 
-def test_what_stopped_the_robot_is_told_with_it(status: ProgramStatus) -> None:
+def test_status_line_shows_the_alarm_with_its_count(status: ProgramStatus) -> None:
     stopped = replace(WELL, alarm="another node sends CONTROL", foreign_control=2, latched=GuardReason.FOREIGN_CONTROL)
     line = status_line(status, stopped)
     assert line.endswith(" | another node sends CONTROL | 2 CONTROL frames of another sender so far")
 
 
-def test_the_controllers_own_trouble_comes_before_what_follows_from_it() -> None:
+def test_health_trouble_prefers_the_controller_to_the_bus() -> None:
     off = replace(LOST, controller=ControllerState.OFF, controller_trouble="bus can0: bus-off")
     assert off.trouble == "bus can0: bus-off"

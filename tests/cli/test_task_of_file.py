@@ -14,7 +14,7 @@ from tests.experiments.helpers import ROBOT
 
 @pytest.fixture
 def fleeing(tmp_path: Path) -> Path:
-    """A knowledge file of the task fleeing, in which nothing was taught yet."""
+    """Make a knowledge file of the task fleeing without lessons."""
     path = tmp_path / "mine.knowledge"
     Journal.open(path, binding_for(ROBOT, load_task("fleeing"))).close()
     return path
@@ -59,7 +59,7 @@ def test_task_that_contradicts_the_file_is_refused(kurt2rt: CommandLine, words: 
     )
 
 
-def test_file_of_a_task_that_is_not_shipped_asks_for_its_settings(kurt2rt: CommandLine, tmp_path: Path) -> None:
+def test_exam_of_an_unknown_tasks_file_asks_for_the_settings(kurt2rt: CommandLine, tmp_path: Path) -> None:
     task = changed("tasks", "fleeing", tmp_path, lambda content: content.update(name="sneaking"))
     Journal.open(tmp_path / "mine.knowledge", binding_for(ROBOT, load_task(str(task)))).close()
     refusal = kurt2rt.refused("exam", "mine.knowledge")

@@ -78,7 +78,7 @@ def test_a_moment_behind_the_end_is_refused(kurt2rt: CommandLine, tmp_path: Path
     assert "the run ends at" in kurt2rt.misused("why", short, "--at", "500")
 
 
-def test_what_cannot_be_is_refused_before_anything_is_read(kurt2rt: CommandLine, tmp_path: Path) -> None:
+def test_why_with_contradictory_options_is_refused_unread(kurt2rt: CommandLine, tmp_path: Path) -> None:
     for words, said in (
         (("--at", "3", "--from", "2"), "give a moment, or a part of the run"),
         (("--from", "3", "--to", "2"), "2 is not after --from 3"),
@@ -87,11 +87,11 @@ def test_what_cannot_be_is_refused_before_anything_is_read(kurt2rt: CommandLine,
         assert said in kurt2rt.misused("why", tmp_path / "none.mcap", *words)
 
 
-def test_where_nothing_was_recorded_the_answer_says_what_to_do(kurt2rt: CommandLine, tmp_path: Path) -> None:
+def test_why_without_a_recorded_run_is_refused(kurt2rt: CommandLine, tmp_path: Path) -> None:
     assert "no recorded run" in kurt2rt.refused("why", "--runs", tmp_path)
 
 
-def test_a_robot_that_runs_is_asked_over_the_channel_by_an_onlooker(
+def test_why_live_asks_a_running_robot_as_an_onlooker(
     kurt2rt: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -105,7 +105,7 @@ def test_a_robot_that_runs_is_asked_over_the_channel_by_an_onlooker(
     assert "stands and asks" in (tmp_path / "now.svg").read_text(encoding="utf-8")
 
 
-def test_where_no_robot_runs_that_is_said(tmp_path: Path) -> None:
+def test_ask_why_without_a_robot_raises_no_answer(tmp_path: Path) -> None:
     device = local_pairing(tmp_path / "teachers", tmp_path / "devices", ONLOOKER).device
     with pytest.raises(NoAnswerError, match=r"no robot answers at 127\.0\.0\.1:9 as onlooker; start one"):
         ask_why(device, "127.0.0.1", 9, load_robot(), patience_s=0.1)

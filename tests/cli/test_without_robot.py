@@ -25,8 +25,8 @@ def test_teach_auto_without_a_robot_names_what_starts_one(kurt2rt: CommandLine) 
     assert line.endswith(f": no robot answers at 127.0.0.1:{port} as auto; start one in another terminal: kurt2rt run")
 
 
-def test_run_on_a_shared_bus_without_a_simulator_names_what_starts_one(tmp_path: Path) -> None:
-    bus = f"shared:nobody-is-here-{os.getpid()}"
+def test_run_without_a_simulator_waits_and_names_its_command(tmp_path: Path) -> None:
+    bus = f"shared:no-simulator-{os.getpid()}"
     words = ("run", "--robot", bus, "--port", "0", "--no-record")
     with running(*words, folder=tmp_path) as robot:
         line = robot.wait_for(f"no simulator on {bus}; ")

@@ -25,21 +25,21 @@ CODEC = load_codec()
 ENCODER = CODEC.message("ENCODER")
 WATCHDOG_CYCLES = round(ROBOT.motors.controller_watchdog_s / ROBOT.can.cycle_s)
 BRAKING_CYCLES = 30
-"""From the fastest that the guard allows, 0.6 m/s at 3 m/s², it takes 20 cycles, and some for the speed loop."""
+"""Cycles that braking takes: 20 from the guard's limit of 0.6 m/s at 3 m/s², and some for the speed loop."""
 LONG_ENOUGH_S = 120.0
-"""For whatever a test waits for; it fails then."""
+"""Longest wait of a test, in s; the test fails then."""
 _LOOK_S = 0.005
 
 
 class Onlooker:
-    """Somebody who looks on at a bus, and keeps what passes."""
+    """Observer of a bus that keeps its frames."""
 
     def __init__(self, bus: CanBus) -> None:
         self._bus = bus
         self.frames: list[can.Message] = []
 
     async def until(self, enough: Callable[[can.Message], bool]) -> list[can.Message]:
-        """Look on until a frame passes that is enough; what passed since the last look, that one at the end."""
+        """Wait for a frame that the predicate accepts; return the frames since the last call, up to this one."""
         seen: list[can.Message] = []
         with anyio.fail_after(LONG_ENOUGH_S):
             while True:
@@ -47,7 +47,7 @@ class Onlooker:
                     seen.append(self.frames.pop(0))
                     if enough(seen[-1]):
                         return seen
-                await anyio.sleep(_LOOK_S)  # a bus tells nobody that a frame is there
+                await anyio.sleep(_LOOK_S)  # a bus does not notify of frames
                 self.look()
 
     def look(self) -> None:
@@ -55,14 +55,14 @@ class Onlooker:
         self.frames += self._bus.drain()
 
     def forget(self) -> None:
-        """What passed until now is not looked at."""
+        """Drop the frames that passed until now."""
         self._bus.drain()
         self.frames.clear()
 
 
 @contextmanager
 def onlooker(bus: str) -> Iterator[Onlooker]:
-    """At a bus that exists."""
+    """Observe a bus that exists."""
     end = open_bus(bus)
     try:
         yield Onlooker(end)
@@ -77,7 +77,7 @@ def is_control(frame: can.Message) -> bool:
 
 
 def drives(frame: can.Message) -> bool:
-    """Whether a frame tells the wheels to turn."""
+    """Return whether a frame tells the wheels to turn."""
     if not is_control(frame):
         return False
     control = decode_control(frame.data)
@@ -86,7 +86,7 @@ def drives(frame: can.Message) -> bool:
 
 
 def brakes(frame: can.Message) -> bool:
-    """Whether a frame tells both wheels to brake."""
+    """Return whether a frame tells both wheels to brake."""
     if not is_control(frame):
         return False
     control = decode_control(frame.data)
@@ -94,32 +94,32 @@ def brakes(frame: can.Message) -> bool:
 
 
 def turns(frame: can.Message) -> bool:
-    """Whether a frame says that the wheels turn."""
+    """Return whether a frame says that the wheels turn."""
     return frame.arbitration_id == ENCODER.frame_id and ENCODER.unpack(frame.data) != (0, 0)
 
 
 def stands(frame: can.Message) -> bool:
-    """Whether a frame says that the wheels stand."""
+    """Return whether a frame says that the wheels stand."""
     return frame.arbitration_id == ENCODER.frame_id and ENCODER.unpack(frame.data) == (0, 0)
 
 
 @contextmanager
 def runtime(bus: str, folder: Path, *words: str) -> Iterator[Running]:
-    """`kurt2rt run` on a bus, started in a folder; killed at the end."""
+    """Start `kurt2rt run` on a bus, in a folder; kill it at the end."""
     with running("run", "--robot", bus, "--port", "0", "--knowledge", "mine.knowledge", *words, folder=folder) as robot:
         yield robot
 
 
 @asynccontextmanager
 async def teacher_of(robot: Running, folder: Path) -> AsyncIterator[TeacherClient]:
-    """This program as the teacher of that one, as soon as it listens."""
+    """Connect a teacher to the robot program as soon as it listens."""
     line = await anyio.to_thread.run_sync(robot.wait_for, "teachers are listened to on UDP port")
     async with TeacherClient(folder / "var/devices/local", port=int(line.split()[-1])) as teacher:
         yield teacher
 
 
 async def state_where(robot: TeacherClient, true: Callable[[State], bool]) -> State:
-    """The first picture of which that is true."""
+    """Return the first state that the predicate accepts."""
     with anyio.fail_after(LONG_ENOUGH_S):
         async for state in robot.states():
             if true(state):
@@ -128,9 +128,9 @@ async def state_where(robot: TeacherClient, true: Callable[[State], bool]) -> St
 
 
 async def teach_kill_and_return(bus: str, folder: Path) -> int:
-    """The robot is taught over the bus and drives; its program is killed; it stands, and its program is back.
+    """Teach the robot until it drives, kill its program, wait for standstill, start the program again.
 
-    Returns how many cycles of the controller it took from the last CONTROL frame until the wheels stood.
+    Returns the number of controller cycles from the last CONTROL frame until the wheels stood.
     """
     with running("sim", "--bus", bus, "--start", "1", folder=folder) as sim, onlooker(bus) as seen:
         await anyio.to_thread.run_sync(sim.wait_for, f"is on bus {bus}")
@@ -157,7 +157,7 @@ async def teach_kill_and_return(bus: str, folder: Path) -> int:
 
 
 async def kill_and_return(bus: str, folder: Path) -> float:
-    """From the kill of the robot's program to the first CONTROL of the one that a supervisor starts at once, in s."""
+    """Return the time from the kill of the robot's program to the first CONTROL of the next one, in s."""
     with running("sim", "--bus", bus, folder=folder) as sim, onlooker(bus) as seen, ExitStack() as supervised:
         await anyio.to_thread.run_sync(sim.wait_for, f"is on bus {bus}")
         robot = supervised.enter_context(runtime(bus, folder))
@@ -172,7 +172,7 @@ async def kill_and_return(bus: str, folder: Path) -> float:
 
 
 async def until_it_drives(we: TeacherClient, action: str = "forward") -> int:
-    """Say go and answer what it asks with that action until it drives by its RLAs; how many lessons that took.
+    """Resume and answer questions with that action until the robot drives by its RLAs; return the number of lessons.
 
     Again and again: on a machine that has much to do at the same time the guard may stop it now and then.
     """
@@ -191,7 +191,7 @@ async def until_it_drives(we: TeacherClient, action: str = "forward") -> int:
 
 @asynccontextmanager
 async def kept_driving(we: TeacherClient, action: str) -> AsyncIterator[None]:
-    """Meanwhile the robot is told to go on whenever it stopped itself."""
+    """Resume the robot meanwhile each time it stopped itself."""
 
     async def keep() -> None:
         while True:
@@ -205,7 +205,7 @@ async def kept_driving(we: TeacherClient, action: str) -> AsyncIterator[None]:
 
 
 async def _cycles_to_rest(seen: Onlooker) -> int:
-    """Of the controller, from the last CONTROL frame of a program that was killed until the wheels stand."""
+    """Return the controller cycles from the last CONTROL frame of a killed program until the wheels stand."""
     turned: list[bool] = []
 
     def at_rest(frame: can.Message) -> bool:

@@ -1,4 +1,4 @@
-"""What has to survive a power cut is synced, and so is the name under which it is found."""
+"""Files that survive a power cut: content and folder entry are synced."""
 
 from pathlib import Path
 

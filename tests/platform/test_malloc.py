@@ -1,4 +1,4 @@
-"""What a start needs for a moment is not what its program takes for as long as it runs."""
+"""Memory of a start: freed large blocks return to the operating system."""
 
 import subprocess
 import sys

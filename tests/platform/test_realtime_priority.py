@@ -44,7 +44,7 @@ def in_a_thread(story: Callable[[], None]) -> None:
 
 @contextmanager
 def waiting() -> Iterator[threading.Thread]:
-    """A thread that waits."""
+    """Start a thread that waits."""
     over = threading.Event()
     thread = threading.Thread(target=over.wait)
     thread.start()

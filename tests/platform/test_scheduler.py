@@ -54,7 +54,7 @@ class StandingRobot:
         raise AssertionError(reason)
 
     def release(self) -> None:
-        raise AssertionError("nobody stopped it")
+        raise AssertionError("the scheduler was not stopped")
 
     def close(self) -> None:
         raise AssertionError("a scheduler does not close the robot")

@@ -1,4 +1,4 @@
-"""Signals are heard for a while, and then by whoever heard them before."""
+"""Temporary signal handlers: the earlier ones are restored."""
 
 import signal
 import threading

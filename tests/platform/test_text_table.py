@@ -17,7 +17,7 @@ COLUMNS = st.tuples(CELLS, st.sampled_from(["", "number", "whole"]))
 
 @st.composite
 def tables(draw: st.DrawFn) -> tuple[TextTable, list[str]]:
-    """A table, and all words that it holds."""
+    """Return a table and all its words."""
     columns = draw(st.lists(COLUMNS, min_size=1, max_size=9))
     rows = draw(st.lists(st.tuples(*[CELLS] * len(columns)), max_size=4))
     table = TextTable(title=draw(CELLS))

@@ -58,7 +58,7 @@ async def test_timerfd_cancelled_wait_keeps_the_next_deadline() -> None:
         near = asyncio.ensure_future(clock.wait_until(near_s))
         await asyncio.sleep(0)
         while clock.now_s() < near_s:
-            pass  # the timer fires while the loop is busy, so nobody has read it yet
+            pass  # the timer fires while the loop is busy, so no read has emptied it yet
         near.cancel()
         deadline_s = clock.now_s() + 0.01
         await clock.wait_until(deadline_s)

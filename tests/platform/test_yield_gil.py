@@ -9,7 +9,7 @@ from kurt2rt.platform.yield_gil import PAUSE_S, SLICE_S, yield_gil
 
 @pytest.fixture
 def slept(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """How long somebody slept; each look at the clock finds a bite over."""
+    """Record the sleeps; each reading of the clock finds a time slice over."""
     slept: list[float] = []
     looks = iter(range(1_000_000))
     monkeypatch.setattr(time, "sleep", slept.append)

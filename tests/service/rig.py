@@ -33,7 +33,7 @@ LONGEST_S = 60.0
 
 
 def eager_task(radius: float = 100.0) -> TaskSettings:
-    """A robot that soon asks again, and a teacher that answers at once."""
+    """Return settings for a robot that soon asks again and a teacher that answers at once."""
     task = load_task("wall_following")
     teacher = task.teaching.teacher.model_copy(update={"reaction_s": 0.03, "patience_s": 0.05})
     return task.model_copy(
@@ -113,7 +113,7 @@ def rig(seed: int = 1) -> Iterator[Rig]:
 
 
 def scripted(task: TaskSettings | None = None, seed: int = 1) -> Callable[[TickRecord], Command | None]:
-    """The scripted teacher in the robot's own program: answers, and corrects after the task's time of phase 1."""
+    """Return the scripted teacher for the robot's own program; it corrects after the task's time of phase 1."""
     task = task or eager_task()
     actions = tuple(load_repertoire(task.repertoire, SETTINGS))
     teacher = build_teacher(task, SETTINGS, actions, seed=seed, session=f"scripted-{uuid.uuid4().hex[:12]}")
@@ -128,5 +128,5 @@ def scripted(task: TaskSettings | None = None, seed: int = 1) -> Callable[[TickR
 
 
 def end_service(number: signal.Signals = signal.SIGTERM) -> None:
-    """What a service manager or Ctrl-C does."""
+    """Send the signal of a service manager or Ctrl-C."""
     os.kill(os.getpid(), number)

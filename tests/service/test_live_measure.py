@@ -17,7 +17,7 @@ POST = SimulatedPost("post", 2.0, 2.0, 0.1)
 
 
 class FromAbove:
-    """As much of a simulation as a measure looks at."""
+    """Part of a simulation that a live measure reads."""
 
     def __init__(self, *posts: SimulatedPost) -> None:
         self.pose = Pose(2.5, 2.0, 0.0)
@@ -34,7 +34,7 @@ class Drive:
         self._tick = 0
 
     def go(self, x_m: float, y_m: float, *happened: RobotRepositioned) -> None:
-        """The robot is there, for as long as a measure needs to see it."""
+        """Keep the robot there as long as a measure needs to see it."""
         self.simulation.pose = Pose(x_m, y_m, 0.0)
         for happening in (happened, *((),) * 4):
             self._tick += 1

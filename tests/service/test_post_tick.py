@@ -1,4 +1,4 @@
-"""What the service does after each tick, with a real journal and its thread, on ticks that the test makes."""
+"""Work of the service after each tick, with a real journal and its thread, on ticks that the test makes."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -67,7 +67,7 @@ class Shift:
         return record
 
     def write(self) -> None:
-        """Until the disk has everything."""
+        """Wait until everything is on disk."""
         assert self.writer.flush(30.0)
 
     def _watch(self, record: TickRecord) -> Command | None:

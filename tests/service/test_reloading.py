@@ -1,4 +1,4 @@
-"""Settings are read anew while the robot runs: what may change is taken, the rest goes on as it was and is told."""
+"""Reload of settings while the robot runs: changeable ones are applied, the others are named and stay."""
 
 import threading
 from collections.abc import Callable
@@ -42,7 +42,7 @@ class Program:
             before = len(self.told)
             await anyio.to_thread.run_sync(lines)
             with anyio.fail_after(60):
-                while len(self.told) == before:  # noqa: ASYNC110 - a list tells nobody
+                while len(self.told) == before:  # noqa: ASYNC110 - a list does not notify
                     await anyio.sleep(0.001)
             tasks.cancel_scope.cancel()
 

@@ -56,7 +56,7 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 
 
 class Log(io.StringIO):
-    """What the program prints, line by line."""
+    """Printed lines of the program."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -76,7 +76,7 @@ class Log(io.StringIO):
 
 
 class World:
-    """Where the program is started: nothing is there until it comes."""
+    """Machine on which the program is started; each dependency is missing until the test adds it."""
 
     def __init__(self, folder: Path, here: Rig, taught: bytes, around: ExitStack) -> None:
         self.log = Log()
@@ -114,7 +114,7 @@ class World:
         yield OpenedRobot(self._here.robot, None, lambda: self._here.simulation.error is None)
 
     def comes(self, what: str) -> None:
-        """It is there, and was noticed where that does not take another one."""
+        """Add the dependency, and wait until it is noticed unless another one is needed first."""
         match what:
             case "bus":
                 self._bus_is_there.set()
@@ -152,7 +152,7 @@ def turns_wheels(payload: bytes) -> bool:
 
 
 def play(program: RobotProgram, story: Callable[[], None]) -> None:
-    """Run the program here, where signals arrive, and the story beside it; the story's end ends the program."""
+    """Run the program here, where signals arrive, and the story in a thread; the story's end ends the program."""
     failures: list[BaseException] = []
 
     def tell() -> None:
@@ -163,10 +163,10 @@ def play(program: RobotProgram, story: Callable[[], None]) -> None:
         finally:
             end_service(signal.SIGTERM)
 
-    beside = threading.Thread(target=tell)
-    beside.start()
+    story_thread = threading.Thread(target=tell)
+    story_thread.start()
     program.run()
-    beside.join()
+    story_thread.join()
     if failures:
         raise failures[0]
 

@@ -1,4 +1,4 @@
-"""What goes wrong while the robot runs: it stands, says why, and goes on when it can."""
+"""Troubles while the robot runs: it stands, says why, and goes on as soon as it can."""
 
 import resource
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""A service manager kills what falls silent and starts it anew: the robot then stands until Go."""
+"""Watchdog of the service manager: it restarts a silent program, and the robot stands until Go."""
 
 import math
 import signal
@@ -37,7 +37,7 @@ LOOKED_ON_TICKS = 50
 def starting(
     systemd: Manager, folder: Path, bus: str, module: str, *hangs: str
 ) -> "Iterator[subprocess.Popen[str] | ForkedProgram]":
-    """As a unit does; what is left of it at the end is killed, for else a story that fails would wait for it."""
+    """Start the program as a unit does; kill it at the end, because a failed story would wait for it."""
     environment = systemd.environment(WATCHDOG_S)
     del environment["WATCHDOG_PID"]
     words = ("run", "--service", "--robot", bus, "--port", "0", "--knowledge", "mine.knowledge")
@@ -90,6 +90,6 @@ async def until_it_turns(we: TeacherClient, ear: Onlooker) -> None:
 
 
 def wait_for_silence(systemd: Manager) -> None:
-    """Until no ping comes any more."""
+    """Wait until the pings cease."""
     while systemd.hears("WATCHDOG=1", within_s=WATCHDOG_S):
         pass

@@ -1,4 +1,4 @@
-"""What is found to be wrong in a report, since when it has been so, and when it is over."""
+"""Troubles of a health report: code, beginning and end."""
 
 import math
 from dataclasses import replace
@@ -46,7 +46,7 @@ class Ward:
         self.counters = {"missed": 0, "junk": 0, "drops lines": 0}
 
     def look(self, snapshot: Snapshot = CALM, **changes: object) -> tuple[Trouble, ...]:
-        """`changes` of the other parts of a report."""
+        """Return a report with `changes` of its other parts."""
         self.now_s += 1.0
         self.counted.update(dict(self.counters))
         parts = {"punctuality": WELL.punctuality, "disks": WELL.disks, "machine": WELL.machine} | changes
@@ -160,8 +160,8 @@ def test_diagnostics_reports_drops_and_errors_of_parts(ward: Ward) -> None:
     ward.counters["drops lines"] = 40
     assert ward.one() == Trouble(TroubleCode.DROPS, 0.0, False, "lines", (40,))
     ward = Ward()
-    said = ward.one(replace(CALM, errors={"channel": "phone: no key; pair it anew"}))
-    assert said == Trouble(TroubleCode.PROGRAM, 0.0, False, "channel", line="phone: no key; pair it anew")
+    said = ward.one(replace(CALM, errors={"channel": "phone: no key; pair it again"}))
+    assert said == Trouble(TroubleCode.PROGRAM, 0.0, False, "channel", line="phone: no key; pair it again")
 
 
 def test_diagnostics_orders_by_urgency_then_duration(ward: Ward) -> None:

@@ -16,7 +16,7 @@ PATIENCE_S = 10.0
 
 
 class Keeping:
-    """Where lessons would be kept."""
+    """Journal of the lessons, as the monitor sees it."""
 
     unwritten = 2
     error: str | None = None
@@ -49,7 +49,7 @@ class Robot:
             self.now_s += 0.01
 
     def report(self) -> HealthReport:
-        """What is reported of the newest tick."""
+        """Return the report of the newest tick."""
         return self.watch.report(self.watch.snapshot(self.desk.record))
 
 
@@ -74,7 +74,7 @@ def test_a_report_is_made_once_a_second_and_told_after_a_tick(robot: Robot) -> N
         assert not made.is_set()
         robot.tick()
         assert made.wait(PATIENCE_S)
-    assert robot.watch.newest is None  # the thread tells nobody; the loop does, after its next tick
+    assert robot.watch.newest is None  # the loop publishes after its next tick, not the thread
     robot.tick()
     assert robot.heard == [robot.watch.newest]
     robot.tick()

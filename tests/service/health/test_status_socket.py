@@ -1,4 +1,4 @@
-"""How another program of the machine gets the report."""
+"""Status socket: another program of the machine reads the health report."""
 
 import errno
 import json
@@ -64,7 +64,7 @@ async def serving(watch: Watch, path: Path) -> AsyncIterator[StatusSocket]:
 
 @contextmanager
 def bound(path: Path) -> Iterator[socket.socket]:
-    """A program that listens there, and says nothing by itself."""
+    """Connect a program that listens and sends nothing by itself."""
     with socket.socket(socket.AF_UNIX) as listener, short_name(path) as short:
         listener.bind(short)
         listener.listen()
@@ -72,7 +72,7 @@ def bound(path: Path) -> Iterator[socket.socket]:
 
 
 def is_told(path: Path) -> bool:
-    """Whether somebody listens there."""
+    """Return whether a program listens there."""
     with socket.socket(socket.AF_UNIX) as reader, short_name(path) as short:
         return reader.connect_ex(short) == 0
 
@@ -84,7 +84,7 @@ def mode_of(path: Path) -> int:
 
 async def until(holds: Callable[[], bool]) -> None:
     with anyio.fail_after(PATIENCE_S):
-        while not holds():  # noqa: ASYNC110 - a file tells nobody
+        while not holds():  # noqa: ASYNC110 - a file does not notify
             await anyio.sleep(0.005)
 
 

@@ -16,12 +16,12 @@ class Manager:
         self._socket.bind(f"\0{address[1:]}" if address.startswith("@") else address)
 
     def environment(self, watchdog_s: float | None = None) -> dict[str, str]:
-        """What systemd puts into the service's environment; of this very process where there is a watchdog."""
+        """Return the environment of a service under systemd; with a watchdog, it names this process."""
         watchdog = {} if watchdog_s is None else {"WATCHDOG_USEC": str(round(watchdog_s * 1e6))}
         return {"NOTIFY_SOCKET": self.address, "WATCHDOG_PID": str(os.getpid()), **watchdog}
 
     def heard(self) -> list[str]:
-        """The lines of all messages since the last call."""
+        """Return the lines of all messages since the last call."""
         lines: list[str] = []
         while True:
             try:
@@ -38,7 +38,7 @@ class Manager:
         return lines
 
     def hears(self, line: str, within_s: float) -> bool:
-        """Whether the line comes within so long a silence."""
+        """Return whether the line comes before the messages cease for that time."""
         self._socket.settimeout(within_s)
         try:
             while line not in self._socket.recv(4096).decode().splitlines():

@@ -1,4 +1,4 @@
-"""What keeps the service's own user from starting is found before the unit is installed."""
+"""Access of the service's user: obstacles are found before the unit is installed."""
 
 import getpass
 from pathlib import Path
@@ -15,7 +15,7 @@ from tests.cli.helpers import CommandLine
 
 @pytest.fixture(autouse=True)
 def _well_installed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where everybody may read, as /opt would be; this copy may be in a home."""
+    """Set the required paths to /usr, which all users may read; this copy may be in a home."""
     monkeypatch.setattr(access, "required_paths", lambda: (Path("/usr"),))
 
 
@@ -30,7 +30,7 @@ def test_nothing_is_in_the_way_of_the_shipped_settings() -> None:
     assert private_paths(RequiredAccess((Path("/usr"),), (Path("/mnt/a disk that comes later"),))) == ()
 
 
-def test_settings_that_only_their_owner_may_read_are_to_be_copied(tmp_path: Path) -> None:
+def test_private_settings_of_the_user_are_to_be_copied(tmp_path: Path) -> None:
     mine = settings_in(tmp_path)
     mine.chmod(0o600)
     (line,) = private_paths(RequiredAccess((mine,)))
@@ -48,14 +48,14 @@ def test_private_paths_of_hidden_folders_are_named(place: str) -> None:
 
 
 def test_homes_are_seen_where_kurt2rt_itself_is_in_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(access, "required_paths", lambda: (Path("/home/nobody-of-this-machine/venv"),))
-    assert private_paths(RequiredAccess((), (Path("/home/nobody-of-this-machine/lessons"),))) == ()
+    monkeypatch.setattr(access, "required_paths", lambda: (Path("/home/no-user-of-this-machine/venv"),))
+    assert private_paths(RequiredAccess((), (Path("/home/no-user-of-this-machine/lessons"),))) == ()
     assert private_paths(RequiredAccess((), (Path("/tmp/lessons"),))) != ()
 
 
 def test_a_link_into_a_home_is_looked_through(tmp_path: Path) -> None:
     link = tmp_path / "my.yaml"
-    link.symlink_to("/home/nobody-of-this-machine/my.yaml")
+    link.symlink_to("/home/no-user-of-this-machine/my.yaml")
     assert private_paths(RequiredAccess((link,)))
 
 

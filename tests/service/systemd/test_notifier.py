@@ -1,4 +1,4 @@
-"""What the program tells the service manager arrives, and a manager that is gone or deaf holds nobody up."""
+"""Messages to the service manager: they arrive, and a manager that is gone or deaf delays no thread."""
 
 import os
 import secrets
@@ -53,7 +53,7 @@ def test_the_watchdog_of_another_process_is_not_ours(tmp_path: Path) -> None:
 
 def test_a_manager_that_is_gone_or_deaf_is_counted(tmp_path: Path) -> None:
     with manager(tmp_path) as systemd, Notifier(systemd.environment()) as notifier:
-        while not notifier.lost:  # nobody reads: the socket's queue is full at some time
+        while not notifier.lost:  # without a reader the socket's queue is full at some time
             notifier.ping()
     gone = Notifier({"NOTIFY_SOCKET": str(tmp_path / "nowhere")})
     gone.ready()
