@@ -62,6 +62,26 @@ class DecisionHistory:
         self._circumstances[row] = circumstances
         self._opinions[row] = opinion
 
+    def empty_copy(self) -> "DecisionHistory":
+        """Return an empty history of the same size."""
+        return DecisionHistory(self._situations.shape[1], self._capacity)
+
+    def copy_from(self, other: "DecisionHistory") -> None:
+        """Store the ticks of a history of the same size in place of all own ones; allocates no arrays."""
+        for own, its in (
+            (self._ticks, other._ticks),
+            (self._situations, other._situations),
+            (self._has_situation, other._has_situation),
+            (self._touches, other._touches),
+            (self._answering, other._answering),
+        ):
+            np.copyto(own, its)
+        self._rlas[:] = other._rlas
+        self._behaviours[:] = other._behaviours
+        self._circumstances[:] = other._circumstances
+        self._opinions[:] = other._opinions
+        self.newest = other.newest
+
     def contains(self, tick: int) -> bool:
         """Return whether a tick is stored."""
         return tick >= 0 and int(self._ticks[tick % self._capacity]) == tick

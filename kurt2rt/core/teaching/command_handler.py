@@ -48,6 +48,7 @@ from kurt2rt.core.teaching.knowledge_updater import KnowledgeUpdater
 from kurt2rt.core.teaching.lesson_builder import LessonBuilder, require_action
 from kurt2rt.core.teaching.lesson_result import LessonResult
 from kurt2rt.core.teaching.mid_lessons import MidLessons
+from kurt2rt.core.teaching.rewind_history import RewindHistory
 from kurt2rt.core.teaching.session_clock import SessionClock
 
 DERIVED = "/"
@@ -106,9 +107,11 @@ class CommandHandler:
         self.mid = parts.mid
         self._goals = parts.goals
         self.recent = DecisionHistory(level.system.dimensions) if reinforcement is None else reinforcement.recent
+        self._rewind = RewindHistory(self.recent)
         self._lessons = LessonBuilder(
             level,
             self.recent,
+            self._rewind,
             insert_beyond_share=insert_beyond_share,
             reinforcement=reinforcement,
             appraisal_lessons=None if critic is None else AppraisalLessons(critic, level.system, self.recent),
@@ -174,8 +177,10 @@ class CommandHandler:
     def before_decision(self, tick: int, *, was_driving: bool) -> None:
         """Stop a robot that drove and whose required teacher is absent; call it before each decision.
 
-        Without a teacher to ask, the level skips RLAs whose action was withdrawn.
+        Without a teacher to ask, the level skips RLAs whose action was withdrawn. The decisions before a standstill are
+        kept for a teacher who rewinds.
         """
+        self._rewind.update(driving=was_driving)
         self._level.skip_withdrawn = not self.teacher_available or self.phase is Phase.AUTONOMOUS
         authority = self.authority
         if was_driving and self.active_stop is None and self.requires_teacher and not authority.is_present(tick):

@@ -16,6 +16,7 @@ from kurt2rt.core.teaching.commands import Appraise, Correct, DeleteRla, Replace
 from kurt2rt.core.teaching.lesson_context import LessonContext
 from kurt2rt.core.teaching.lesson_result import LessonResult, rla_outcome
 from kurt2rt.core.teaching.mid_lessons import MidLessons
+from kurt2rt.core.teaching.rewind_history import RewindHistory
 
 LessonCommand = Teach | Correct | ReplaceAction | DeleteRla | Reward | Appraise | Undo
 """Command that changes the knowledge."""
@@ -28,6 +29,7 @@ class LessonBuilder:
         self,
         level: BasicLevel,
         recent: DecisionHistory,
+        rewind: RewindHistory,
         *,
         insert_beyond_share: float,
         reinforcement: Reinforcement | None,
@@ -38,7 +40,8 @@ class LessonBuilder:
 
         Args:
             level: whose RLAs are taught.
-            recent: decisions that lessons can be about.
+            recent: decisions that rewards and appraisals can be about.
+            rewind: decisions that answers and corrections can be about.
             insert_beyond_share: a correction farther than this share of R from the nearest condition inserts an RLA.
             reinforcement: shares rewards out; without it they are only counted.
             appraisal_lessons: lessons of the critic; None without a critic.
@@ -47,6 +50,7 @@ class LessonBuilder:
         self._level = level
         self._system = level.system
         self._recent = recent
+        self._rewind = rewind
         self._insert_beyond_share = insert_beyond_share
         self._reinforcement = reinforcement
         self._appraisal_lessons = appraisal_lessons
@@ -116,12 +120,19 @@ class LessonBuilder:
             newest = self._recent.newest
             drove, touched = self._recent.driving_rla(newest), self._recent.touched(newest)
             return LessonContext(situation.vector, self._level.active_behaviour.behaviour, BASIC, drove, share, touched)
-        self._require_known(decision_tick)
-        if not self._recent.has_situation(decision_tick):
+        history = self._rewind.find(decision_tick)
+        if history is None:
+            raise CommandRefusedError(RefusalCode.TICK_FORGOTTEN, tick=decision_tick)
+        if not history.has_situation(decision_tick):
             raise CommandRefusedError(RefusalCode.WAS_BLIND)
-        behaviour, drove = self._recent.behaviour(decision_tick), self._recent.driving_rla(decision_tick)
-        touched = self._recent.touched(decision_tick)
-        return LessonContext(self._recent.situation(decision_tick), behaviour, BASIC, drove, share, touched)
+        return LessonContext(
+            history.situation(decision_tick),
+            history.behaviour(decision_tick),
+            BASIC,
+            history.driving_rla(decision_tick),
+            share,
+            history.touched(decision_tick),
+        )
 
     def _add_alternative(
         self, action: str, meant: LessonContext, nearest: Match | None, origin: Origin

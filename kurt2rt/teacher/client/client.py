@@ -40,6 +40,8 @@ from kurt2rt.teacher.client.manual_drive import ManualDrive, ManualDriveHandle
 from kurt2rt.teacher.client.state_stream import StateStream
 
 ANSWER_WITHIN_S = 3.5
+REWIND_S = 10.0
+"""Driving that a robot keeps for late lessons, in s (1000 ticks)."""
 _PART_EACH_S = 0.008
 _SEEN_IN_CHARGE_WITHIN_S = 1.0
 
@@ -178,6 +180,22 @@ class TeacherClient:
         """Replace the decided action by another one (phase 2), at level MID the behaviour."""
         return await self._command(requests.CorrectRequest, action=action, decision_tick=of, level=level)
 
+    async def correct_earlier(self, action: str, seconds: float) -> Answer:
+        """Correct what the basic level did `seconds` before it last drove (rewind).
+
+        A standing robot keeps its last 10 s of driving until it has driven and stopped again.
+
+        Raises:
+            ValueError: `seconds` is not between 0 and 10, or no state of a driving robot came yet.
+            NoAnswerError: the robot does not answer.
+        """
+        if not 0.0 <= seconds <= REWIND_S:
+            raise ValueError(f"seconds: a robot keeps the last {REWIND_S:g} s of driving (got {seconds:g})")
+        drove = self._stream.drove_tick
+        if drove is None:
+            raise ValueError("this device has not seen the robot drive; correct what it does from now on")
+        return await self.correct(action, of=max(0, drove - await self._ticks(seconds)))
+
     async def reward(self, value: int, *, of: int | None = None) -> Answer:
         """Reward what the robot did (phase 3); `value` is -1 or +1."""
         return await self._command(requests.RewardRequest, value=value, decision_tick=of)
@@ -228,9 +246,7 @@ class TeacherClient:
         self._open.stops.supersede()
 
         async def begin() -> Answer:
-            if self._period_s is None:
-                self._period_s = (await self.hello()).period_s
-            ticks = round(seconds / self._period_s)
+            ticks = await self._ticks(seconds)
             return await self._command(requests.BehaviourRequest, moves=True, action=action, ticks=ticks)
 
         return await self._open.stops.move(action, begin)
@@ -454,6 +470,12 @@ class TeacherClient:
     @property
     def _drive(self) -> ManualDrive:
         return self._open.drive
+
+    async def _ticks(self, seconds: float) -> int:
+        """Return a time in ticks of this robot."""
+        if self._period_s is None:
+            self._period_s = (await self.hello()).period_s
+        return round(seconds / self._period_s)
 
     async def _command(self, kind: Callable[..., Request], *, moves: bool = False, **fields: Any) -> Answer:
         return await self._open.sender.command(kind, moves=moves, **fields)

@@ -21,6 +21,8 @@ class StateStream:
         """Number of states that came."""
         self.restarts = 0
         """Number of restarts of the robot program that were seen."""
+        self.drove_tick: int | None = None
+        """Newest tick of the robot's present start whose state showed turning wheels; None before the first."""
         self._now = now
         self._came_s: deque[float] = deque(maxlen=100)
         self._answered_tick = -1
@@ -72,9 +74,12 @@ class StateStream:
             if state.boot != self.newest.boot:
                 self.restarts += 1
                 self._answered_tick = self._stopped_tick = -1
+                self.drove_tick = None
             elif state.tick < self.newest.tick:
                 return
         self.newest = state
+        if state.left_m_s or state.right_m_s:
+            self.drove_tick = state.tick
         self.count += 1
         self._came_s.append(self._now())
         self._wake()

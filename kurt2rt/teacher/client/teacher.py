@@ -190,6 +190,7 @@ class Teacher:
     lessons = _blocking(TeacherClient.lessons)
     answer = _blocking(TeacherClient.answer)
     correct = _blocking(TeacherClient.correct)
+    correct_earlier = _blocking(TeacherClient.correct_earlier)
     reward = _blocking(TeacherClient.reward)
     appraise = _blocking(TeacherClient.appraise)
     undo = _blocking(TeacherClient.undo)

@@ -67,6 +67,11 @@ COMMANDS: Mapping[str, CommandKind] = {
         lambda robot, given, tick: robot.correct(given["action"], of=tick, level=given["level"]),
         {"action": _NAME, "level": _LEVEL},
     ),
+    # Tick of an earlier state, which the page kept and the teacher picked; the robot checks that it still knows it.
+    "correct_at": CommandKind(
+        lambda robot, given, _: robot.correct(given["action"], of=given["tick"]),
+        {"action": _NAME, "tick": Int(0, 2**53)},
+    ),
     "reward": CommandKind(lambda robot, given, tick: robot.reward(given["value"], of=tick), {"value": OneOf((1, -1))}),
     "appraise": CommandKind(
         lambda robot, given, tick: robot.appraise(given["appraisal"], of=tick), {"appraisal": _NAME}

@@ -19,7 +19,7 @@ from kurt2rt.core.perception.sensor_words import NO_WORDS, SensorWords
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import CRITIC
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
-from kurt2rt.teacher.client.client import TeacherClient
+from kurt2rt.teacher.client.client import REWIND_S, TeacherClient
 from kurt2rt.teacher.terminal.mid_commands import mid_command
 from kurt2rt.teacher.terminal.terminal_text import (
     build_question,
@@ -291,6 +291,8 @@ class TerminalTeacher:
             case [action] if action in hello.actions:
                 # The same word answers a question and corrects a robot that drives.
                 return robot.answer(action, of=tick) if expects_answer(state) else robot.correct(action, of=tick)
+            case ["rewind", seconds, action] if action in hello.actions and _is_rewind(seconds):
+                return robot.correct_earlier(action, float(seconds))
             case [appraisal] if any(appraisal == each.name for each in hello.appraisals):
                 return robot.appraise(appraisal, of=tick)
         return None
@@ -300,7 +302,11 @@ class TerminalTeacher:
             self._say(line)
 
     async def _send(self, answer: Awaitable[Answer]) -> None:
-        got = await answer
+        try:
+            got = await answer
+        except ValueError as error:
+            self._say(f"refused: {error}")
+            return
         text = got.text_on(Surface.TERMINAL)
         self._say(text if got.accepted else f"refused: {text}")
 
@@ -320,6 +326,10 @@ def _moves(text: str) -> bool:
         case ["go" | "resume" | "step" | "take" | "pursue" | "seek", *_] | ["phase", "5"]:
             return True
     return False
+
+
+def _is_rewind(text: str) -> bool:
+    return _is_number(text) and float(text) <= REWIND_S
 
 
 def _is_count(text: str) -> bool:

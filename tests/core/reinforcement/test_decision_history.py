@@ -112,3 +112,16 @@ def test_history_returns_features_and_opinion_by_tick() -> None:
     remember(recent, 2)
     assert (recent.circumstances(1), recent.opinion(1)) == (FREE, opinion)
     assert (recent.circumstances(2), recent.opinion(2)) == (None, None)
+
+
+def test_copy_stays_while_the_copied_history_continues() -> None:
+    recent = remembered(*range(3, 13))
+    copy = recent.empty_copy()
+    copy.copy_from(recent)
+    for tick in range(13, 40):
+        remember(recent, tick)
+    assert not recent.contains(5)
+    assert copy.contains(5)
+    assert copy.newest == 12
+    assert copy.situation(5).tolist() == [5, -5]
+    assert copy.driving_rla(5) == 105

@@ -246,6 +246,34 @@ async def test_hello_of_other_version_raises_with_remedy(
         await client.hello()
 
 
+async def test_correct_earlier_counts_back_from_the_last_drive(client: TeacherClient, robot: StandInRobot) -> None:
+    async def introduces_itself(request: Request) -> Reply:
+        return Reply(ReplyStatus.DONE, HELLO) if isinstance(request, HelloRequest) else await agrees(request)
+
+    robot.mind = introduces_itself
+    robot.showing = False
+    drove = robot.show(left_m_s=0.3, right_m_s=0.2)
+    stands = robot.show(left_m_s=0.0, right_m_s=0.0)
+    await seen(client, lambda: client.state == stands)
+    await client.correct_earlier("spin_left", 0.02)
+    (correction,) = await robot.hears(CorrectRequest)
+    assert (correction.action, correction.decision_tick) == ("spin_left", drove.tick - 2)
+
+
+@pytest.mark.parametrize("seconds", [-0.1, 10.1, float("nan")])
+async def test_correct_earlier_beyond_what_is_kept_raises(client: TeacherClient, seconds: float) -> None:
+    with pytest.raises(ValueError, match="the last 10 s"):
+        await client.correct_earlier("spin_left", seconds)
+
+
+async def test_correct_earlier_before_the_robot_drove_raises(client: TeacherClient, robot: StandInRobot) -> None:
+    robot.showing = False
+    stands = robot.show(boot=b"next", left_m_s=0.0, right_m_s=0.0)
+    await seen(client, lambda: client.state == stands)
+    with pytest.raises(ValueError, match="not seen the robot drive"):
+        await client.correct_earlier("spin_left", 1.0)
+
+
 async def test_lessons_and_world_come_as_values(client: TeacherClient, robot: StandInRobot) -> None:
     async def tells(request: Request) -> Reply:
         if isinstance(request, LessonsRequest):

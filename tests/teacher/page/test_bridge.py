@@ -465,6 +465,7 @@ COMMANDS: list[tuple[str, dict[str, object], tuple[Any, ...]]] = [
     ("answer", {"action": "forward", "level": "basic", "beside": False}, ("answer", "forward", 102)),
     ("answer", {"action": "turn_left", "level": "mid", "beside": True}, ("answer", "turn_left", 102, "mid", True)),
     ("correct", {"action": "turn_left", "level": "mid"}, ("correct", "turn_left", 102, "mid")),
+    ("correct_at", {"action": "spin_left", "tick": 40}, ("correct", "spin_left", 40)),
     ("undo", {"lesson": "phone-0a"}, ("undo", "phone-0a")),
     ("phase", {"phase": Phase.CORRECTIONS}, ("set_phase", Phase.CORRECTIONS)),
     ("pursue", {"behaviour": "turn_left"}, ("pursue", "turn_left")),

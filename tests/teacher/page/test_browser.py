@@ -382,7 +382,7 @@ def assert_handy(phone: Phone, size: tuple[int, int], tab: str) -> None:
         assert height >= LEAST_TARGET_PX, f"{tab}: {name} is {height} high"
         assert left >= 0, f"{tab}: {name} begins at {left}"
         assert right <= size[0], f"{tab}: {name} ends at {right}"
-    for name in ("#stop", "#go", "#sentence", "#link"):
+    for name in ("#stop", "#go", "#rewind-says" if phone.shows("#rewind-bar") else "#sentence", "#link"):
         box = phone.run("return document.querySelector(arguments[0]).getBoundingClientRect().toJSON();", name)
         assert 0 <= box["top"] < box["bottom"] <= size[1], f"{tab}: {name} lies at {box}"
         assert 0 <= box["left"] < box["right"] <= size[0], f"{tab}: {name} lies at {box}"

@@ -224,6 +224,17 @@ async def test_reward_has_the_tick_of_its_typing(pairing: Pairing, robot: StandI
         assert (correction.action, correction.decision_tick) == ("spin_left", ticks[4])
 
 
+async def test_rewind_corrects_a_moment_before_the_standstill(pairing: Pairing, robot: StandInRobot) -> None:
+    async with console_at(pairing, robot.port) as console:
+        await console.reads("/take is done")
+        robot.mind = RobotStub()
+        drove = await looked_at(console, robot, left_m_s=0.3, right_m_s=0.3)
+        await looked_at(console, robot, left_m_s=0.0, right_m_s=0.0)
+        console.type("rewind 0.05 spin_left")
+        (correction,) = await robot.hears(CorrectRequest)
+        assert (correction.action, correction.decision_tick) == ("spin_left", drove - 5)
+
+
 async def test_invalid_line_does_not_end_teaching(pairing: Pairing, robot: StandInRobot) -> None:
     async with console_at(pairing, robot.port, patience_s=0.3) as console:
         await console.reads("/take is done")

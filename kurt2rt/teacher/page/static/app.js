@@ -18,6 +18,7 @@ import { Drive, driveCircle } from "./manual_drive.js";
 import { MidLevelPad } from "./mid_level.js";
 import { BASIC, MID } from "./mid_text.js";
 import { showProgress } from "./progress.js";
+import { Rewind } from "./rewind.js";
 import { drawRobot } from "./robot_view.js";
 import { SessionPanel } from "./session.js";
 import { Simulation } from "./simulation.js";
@@ -46,14 +47,15 @@ const session = new SessionPanel(sendCommand);
 const files = new Files(sendCommand, showMessage);
 const exam = new Exam(sendCommand);
 const simulation = new Simulation(sendCommand);
-const world = new WorldView($("world-view"), (name, args) => sendCommand(name, args));
+const rewind = new Rewind({ stop, onChange: draw });
+const world = new WorldView($("world-view"), (name, args) => sendCommand(name, args), rewind);
 
 let hello = null;
 let page = { seat: "elsewhere", device: "", robot: "" };
 
 // ---- Commands
 
-const TEACHES = ["answer", "correct", "reward", "appraise", "undo", "name"];
+const TEACHES = ["answer", "correct", "correct_at", "reward", "appraise", "undo", "name"];
 let pendingLessons = 0; // commands of TEACHES without an answer
 let answered = 0; // number of the newest answered one
 
@@ -86,6 +88,10 @@ function showMessage(outcome, sentence) {
 
 function teach(action) {
   if (!link.state) return;
+  if (rewind.open) {
+    sendLesson(actionPad, action, "correct_at", { tick: rewind.state.tick }, false);
+    return;
+  }
   // Beyond R, and at a withdrawn action, there is nothing to correct: the touch is an answer.
   const { nearest, nearest_action: its, distance, radius, asks_at: at } = link.state;
   // While the mid level asks, the state has its nearest RLA; a correction of the basic level is always valid.
@@ -187,7 +193,10 @@ function appraise(appraisal) {
   sendCommand("appraise", { appraisal }, `to the critic: ${words(appraisal)}`);
 }
 
-const resume = () => sendCommand("resume", {}, "go");
+const resume = () => {
+  rewind.leave();
+  return sendCommand("resume", {}, "go");
+};
 
 async function stop() {
   drive.release();
@@ -210,6 +219,7 @@ link.addEventListener("hello", ({ detail }) => {
   goals.build(hello);
   critic.build(hello);
   world.setHello(hello);
+  rewind.setHello(hello);
   files.build(hello);
   exam.build(hello);
   setText($("what"), hello.what || `Task ${words(hello.task)}`);
@@ -253,6 +263,7 @@ link.addEventListener("freshness", showFreshness);
 
 link.addEventListener("state", ({ detail: state }) => {
   world.update(state);
+  rewind.add(state);
   requestAnimationFrame(show);
 });
 
@@ -267,6 +278,7 @@ function show() {
   setText($("clock"), clock(state.clock_s));
   setText($("session"), state.session ?? "no session");
   setText($("lesson-count"), String(state.lessons));
+  $("rewind").disabled = !rewind.ready || !inControl();
   $("go").disabled = !state.stands.needs_go || state.by_hand || !inControl();
   showLink(state);
   showProgress(state, simulation.measure);
@@ -296,7 +308,7 @@ function announce(state) {
 }
 
 function draw() {
-  drawRobot($("robot-view"), hello, link.state);
+  drawRobot($("robot-view"), hello, rewind.state ?? link.state);
   world.draw();
 }
 
@@ -447,6 +459,7 @@ keyboard({
   },
   reward: (value) => inControl() && reward(value),
   undo: () => inControl() && $("undo-last").checkVisibility() && $("undo-last").click(),
+  rewind: () => $("rewind").click(),
   why: () => explanation.toggle(),
   help,
   mayDrive: () => inControl() && link.fresh,

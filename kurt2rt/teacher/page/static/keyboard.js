@@ -7,7 +7,7 @@ const DIRECTIONS = {
 
 const hasFocus = () => document.activeElement !== null && document.activeElement !== document.body;
 
-export function keyboard({ drive, stop, resume, act, reward, undo, why, help, mayDrive }) {
+export function keyboard({ drive, stop, resume, act, reward, undo, rewind, why, help, mayDrive }) {
   const down = new Set();
 
   const steer = () => {
@@ -18,12 +18,14 @@ export function keyboard({ drive, stop, resume, act, reward, undo, why, help, ma
   };
 
   addEventListener("keydown", (event) => {
-    const typing = event.target.matches?.("input, textarea, select");
+    const slider = event.target.matches?.("input[type=range]");
+    const typing = !slider && event.target.matches?.("input, textarea, select");
     if (event.ctrlKey || event.metaKey || event.altKey) {
       releaseAll(); // the browser may swallow the keyup of keys held with these
       return;
     }
     if (typing) return;
+    if (slider && event.code.startsWith("Arrow")) return; // the arrows move the slider
     if (event.code in DIRECTIONS) {
       event.preventDefault();
       if (event.repeat) return;
@@ -48,6 +50,7 @@ export function keyboard({ drive, stop, resume, act, reward, undo, why, help, ma
       : event.key === "0" ? () => reward(0)
       : event.key === "?" ? help
       : event.key.toLowerCase() === "u" ? undo
+      : event.key.toLowerCase() === "r" ? rewind
       : event.key.toLowerCase() === "y" ? why
       : digit ? () => act(Number(digit[1] ?? digit[2]) - 1)
       : null;

@@ -22,6 +22,7 @@ const TEXTS = {
   takeOver: "Take over from {teacher}",
   takeRobot: "Take the robot",
   takeControl: "Take control",
+  rewound: "{seconds} s before it stood: {sentence}. Touch the action that was right there.",
   holdCircle: "hold the circle; let go to stop",
   gamepadUnknown: "gamepad: its buttons are not known; use another one",
   gamepadReady: "gamepad: hold a shoulder button, then the left stick drives",

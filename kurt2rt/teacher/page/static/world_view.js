@@ -16,10 +16,12 @@ export class WorldView {
   #state = null;
   #trail = new Trail();
   #grab = null;
+  #rewind;
 
-  constructor(canvas, sendCommand) {
+  constructor(canvas, sendCommand, rewind) {
     this.#canvas = canvas;
     this.#sendCommand = sendCommand;
+    this.#rewind = rewind;
     canvas.addEventListener("pointerdown", (event) => this.#grabAt(event));
     canvas.addEventListener("pointermove", (event) => this.#move(event));
     canvas.addEventListener("pointerup", (event) => this.#release(event));
@@ -55,10 +57,12 @@ export class WorldView {
     paint.scale(view.scale, -view.scale);
     this.#room(paint, view.scale);
     this.#traces(paint, view.scale);
-    const place = this.#state.place;
-    this.#rays(paint, view.scale, place);
+    const { place } = this.#state;
+    const past = this.#rewind.state?.place;
+    if (past) this.#robot(paint, view.scale, past.x_m, past.y_m, past.heading_rad, 1);
+    else this.#rays(paint, view.scale, place);
     const dragged = this.#grab?.what === "robot" || this.#grab?.what === "heading";
-    this.#robot(paint, view.scale, place.x_m, place.y_m, place.heading_rad, dragged ? 0.25 : 1);
+    this.#robot(paint, view.scale, place.x_m, place.y_m, place.heading_rad, dragged || past ? 0.25 : 1);
     if (dragged) this.#robot(paint, view.scale, this.#grab.x, this.#grab.y, this.#grab.heading, 1);
     paint.restore();
   }
@@ -171,6 +175,11 @@ export class WorldView {
   #grabAt(event) {
     if (!this.#world || !this.#state?.place || !event.isPrimary) return;
     const [x, y, scale] = this.#point(event);
+    if (this.#rewind.open) {
+      this.#rewind.pick(x, y);
+      event.preventDefault();
+      return;
+    }
     const place = this.#state.place;
     const reach = GRAB_PX / scale;
     const handle = [place.x_m + HANDLE_M * Math.cos(place.heading_rad), place.y_m + HANDLE_M * Math.sin(place.heading_rad)];

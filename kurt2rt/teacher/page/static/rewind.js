@@ -1,0 +1,102 @@
+// Rewind: the last ten seconds of driving; the teacher picks the moment that went wrong and touches the right action.
+
+import { sentence, setText } from "./decision.js";
+import { text } from "./texts.js";
+
+const KEPT_TICKS = 990; // the robot keeps 1000, and drives some more until it has stopped
+const BRAKING_TICKS = 100; // a robot that is stopped stands within a second
+const PICK_M = 0.6; // farthest touch from the path
+
+export class Rewind {
+  #bar = document.getElementById("rewind-bar");
+  #time = document.getElementById("rewind-time");
+  #says = document.getElementById("rewind-says");
+  #boot = null;
+  #states = []; // of driving, oldest first
+  #openedTick = 0; // newest tick of driving when rewind was entered
+  #tickS = 0.01;
+  #onChange;
+  open = false;
+
+  // `stop` stops the robot; `onChange` draws the page again.
+  constructor({ stop, onChange }) {
+    this.#onChange = onChange;
+    document.getElementById("rewind").addEventListener("click", () => {
+      stop();
+      this.enter();
+    });
+    document.getElementById("rewind-close").addEventListener("click", () => this.leave());
+    this.#time.addEventListener("input", () => this.#show());
+  }
+
+  // Forgets the states of another start of the robot program.
+  setHello({ boot, period_s: period }) {
+    this.#time.step = period * 10;
+    this.#tickS = period;
+    if (boot === this.#boot) return;
+    this.#boot = boot;
+    this.#states = [];
+    this.leave();
+  }
+
+  // True once the robot was seen to drive.
+  get ready() {
+    return this.#states.length > 0;
+  }
+
+  // Keeps a state of a driving robot; leaves the past when the robot drives on.
+  add(state) {
+    if (!state.left_m_s && !state.right_m_s) return;
+    if (this.open && state.tick - this.#openedTick < BRAKING_TICKS) return;
+    this.leave();
+    this.#states.push(state);
+    while (state.tick - this.#states[0].tick > KEPT_TICKS) this.#states.shift();
+  }
+
+  // Shows the newest moment of driving, until `leave`.
+  enter() {
+    if (!this.#states.length) return;
+    this.open = true;
+    this.#openedTick = this.#states.at(-1).tick;
+    this.#bar.hidden = false;
+    this.#time.min = -(this.#openedTick - this.#states[0].tick) * this.#tickS;
+    this.#time.max = 0;
+    this.#time.value = 0;
+    this.#time.focus();
+    this.#show();
+  }
+
+  leave() {
+    if (!this.open) return;
+    this.open = false;
+    this.#bar.hidden = true;
+    if (document.activeElement === this.#time) this.#time.blur();
+    this.#onChange();
+  }
+
+  // The state of the picked moment; null outside rewind.
+  get state() {
+    if (!this.open) return null;
+    const tick = this.#openedTick + Number(this.#time.value) / this.#tickS;
+    return this.#states.reduce((best, each) => (Math.abs(each.tick - tick) < Math.abs(best.tick - tick) ? each : best));
+  }
+
+  // Picks the moment whose place is nearest to a touched point of the world, in metres; false if none is near.
+  pick(x, y) {
+    const away = ({ place }) => (place ? Math.hypot(place.x_m - x, place.y_m - y) : Infinity);
+    const nearest = this.#states.reduce((best, each) => (away(each) < away(best) ? each : best));
+    if (away(nearest) > PICK_M) return false;
+    this.#time.value = (nearest.tick - this.#openedTick) * this.#tickS;
+    this.#show();
+    return true;
+  }
+
+  #show() {
+    const { state } = this;
+    const seconds = ((this.#openedTick - state.tick) * this.#tickS).toFixed(1);
+    const says = text("rewound", { seconds, sentence: sentence(state) });
+    setText(this.#says, says);
+    this.#time.setAttribute("aria-valuetext", says);
+    this.#onChange();
+  }
+}

@@ -1,0 +1,84 @@
+"""Rewind on the page: stop, pick the moment that went wrong, touch the action that was right there."""
+
+import pytest
+
+from kurt2rt.core.decision.standing import Standing
+from tests.teacher.page.lesson import Lesson
+from tests.teacher.page.phone import LANDSCAPE, LAPTOP, PORTRAIT, SMALL
+from tests.teacher.page.test_browser import assert_handy
+
+SIZES = (PORTRAIT, SMALL, LANDSCAPE, LAPTOP)
+DRIVE_FROM, DRIVE_TO, EACH = 1000, 1600, 100
+_PICK = """
+const slider = document.querySelector('#rewind-time');
+slider.value = arguments[0];
+slider.dispatchEvent(new Event('input'));
+"""
+
+
+@pytest.fixture
+def lesson(a_lesson: Lesson) -> Lesson:
+    """Return a lesson whose robot drives for 6 s, each second by another RLA."""
+    a_lesson.begin(standing=Standing(), tick=DRIVE_FROM, left_m_s=0.3, right_m_s=0.3)
+    for tick in range(DRIVE_FROM + EACH, DRIVE_TO + 1, EACH):
+        a_lesson.show(tick=tick, rla=tick // EACH)
+        a_lesson.reads("#sentence", f"RLA {tick // EACH} ")
+    return a_lesson
+
+
+def enter(lesson: Lesson) -> None:
+    lesson.phone.touch("#rewind")
+    lesson.phone.wait(lambda: lesson.phone.shows("#rewind-bar"), "the past is shown")
+    lesson.show(left_m_s=0.0, right_m_s=0.0)
+
+
+def test_rewind_stops_the_robot_and_shows_the_past(lesson: Lesson) -> None:
+    enter(lesson)
+    assert lesson.robot.told_of("stop")
+    assert not lesson.phone.shows("#why")
+    lesson.phone.run(_PICK, -3)
+    lesson.reads("#rewind-says", "3.0 s before it stood: RLA 13 ")
+
+
+def test_action_touched_in_the_past_corrects_the_picked_tick(lesson: Lesson) -> None:
+    enter(lesson)
+    lesson.phone.run(_PICK, -3)
+    lesson.phone.touch("[data-action=spin_left]")
+    lesson.phone.wait(lambda: lesson.robot.told_of("correct"), "the correction is sent")
+    (name, action, tick), *more = lesson.robot.told_of("correct")
+    assert (name, action, more) == ("correct", "spin_left", [])
+    assert abs(tick - 1300) < EACH / 2
+    assert lesson.phone.shows("#rewind-bar"), "another moment may be wrong, too"
+
+
+@pytest.mark.parametrize("button", ["#rewind-close", "#go"])
+def test_leaving_the_past_corrects_the_present_again(lesson: Lesson, button: str) -> None:
+    enter(lesson)
+    lesson.show(standing=Standing(needs_resume=True)) if button == "#go" else None
+    lesson.phone.wait(lambda: not lesson.phone.has(f"{button}:disabled"), "it can be touched")
+    lesson.phone.touch(button)
+    lesson.phone.wait(lambda: lesson.phone.shows("#why"), "the present is shown")
+
+
+def test_a_robot_that_drives_on_leaves_the_past(lesson: Lesson) -> None:
+    enter(lesson)
+    lesson.show(tick=DRIVE_TO + 2000, left_m_s=0.3, right_m_s=0.3)
+    lesson.phone.wait(lambda: lesson.phone.shows("#why"), "the present is shown")
+
+
+def test_space_stops_while_the_slider_has_the_focus(lesson: Lesson) -> None:
+    enter(lesson)
+    before = len(lesson.robot.told_of("stop"))
+    lesson.phone.key("keyDown", "Space")
+    lesson.phone.key("keyUp", "Space")
+    lesson.phone.wait(lambda: len(lesson.robot.told_of("stop")) > before, "STOP is sent")
+
+
+def test_rewind_fits_every_screen(lesson: Lesson) -> None:
+    enter(lesson)
+    lesson.phone.run(_PICK, -2)
+    for size in SIZES:
+        lesson.phone.turn(size, touch=size != LAPTOP)
+        lesson.phone.show(f"17-rewind-{size[0]}x{size[1]}")
+        assert_handy(lesson.phone, size, "teach")
+    lesson.phone.turn(PORTRAIT)
