@@ -70,7 +70,7 @@ def shortened_lesson(words: Sequence[str]) -> list[str]:
 
 
 SOONER = 5
-"""Of the recorded run so much less is replayed; all of it in the deep suite."""
+"""Divisor of the replayed seconds; the deep suite replays all of them."""
 TAUGHT_BY_THE_DEMO = "results/demo/wall_following-1.knowledge"
 
 
@@ -135,7 +135,7 @@ def a_short_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def sooner(words: Sequence[str]) -> list[str]:
-    """The same command for a run of which there is only the beginning, and for a program that runs so much shorter."""
+    """Return the command with its times divided by SOONER."""
     times = ("--at", "--from", "--to", "--seconds")
     pairs = zip(("", *words), words, strict=False)
     return [str(float(word) / SOONER) if option in times else word for option, word in pairs]
@@ -143,7 +143,7 @@ def sooner(words: Sequence[str]) -> list[str]:
 
 @pytest.fixture
 def folder(tmp_path: Path, taught: Path) -> Path:
-    """Where a reader works: a short task, what the demo leaves behind, and a recorded run."""
+    """Return a reader's folder: a short task, the files of the demo, and a recorded run."""
     (tmp_path / TAUGHT_BY_THE_DEMO).parent.mkdir(parents=True)
     shutil.copy(taught, tmp_path / TAUGHT_BY_THE_DEMO)
     task = yaml.safe_load((CONFIG_DIR / "tasks" / "wall_following.yaml").read_text(encoding="utf-8"))
@@ -193,7 +193,7 @@ def test_the_commands_of_the_documentation_run(
 
 @pytest.mark.deep
 @pytest.mark.parametrize("story", stories(), ids=told_where)
-def test_the_long_commands_of_the_documentation_run_with_less_of_the_same(story: Story, folder: Path) -> None:
+def test_long_documented_commands_run_with_smaller_numbers(story: Story, folder: Path) -> None:
     for words in story.commands:
         run(LONG[words[0]](words) if is_long(words) else words, folder)
 

@@ -1,4 +1,4 @@
-"""What is forked is a program like one with an interpreter of its own."""
+"""A forked program behaves like a program with an interpreter of its own."""
 
 import os
 import signal
@@ -17,7 +17,7 @@ sys.exit(3)
 """
 
 
-def test_it_has_words_folder_environment_and_keyboard_and_ends_as_an_interpreter_does(tmp_path: Path) -> None:
+def test_forked_program_has_arguments_folder_variables_and_stdin(tmp_path: Path) -> None:
     (tmp_path / "looks.py").write_text(LOOKS, encoding="utf-8")
     with started("looks", "one", "two", folder=tmp_path, environment={"GREETING": "hello"}) as program:
         assert isinstance(program, ForkedProgram)
@@ -40,7 +40,7 @@ def test_it_can_be_killed_and_others_live_on(tmp_path: Path) -> None:
         assert other.wait(60) == -signal.SIGTERM
 
 
-def test_what_it_does_not_catch_is_told_as_ever(tmp_path: Path) -> None:
+def test_uncaught_error_of_a_forked_program_prints_a_traceback(tmp_path: Path) -> None:
     (tmp_path / "fails.py").write_text("1 / 0", encoding="utf-8")
     with started("fails", folder=tmp_path) as forked, started("fails", folder=tmp_path, fresh=True) as fresh:
         for program in (forked, fresh):

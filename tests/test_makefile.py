@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[1]
 
 @pytest.fixture
 def dry_run(tmp_path: Path) -> str:
-    """What `make run` would do in a fresh clone."""
+    """Return the commands of `make run` in a fresh clone."""
     for name in ("Makefile", "pyproject.toml", "constraints.txt"):
         shutil.copy(ROOT / name, tmp_path / name)
     # The make that runs the tests hands down its own options, such as printing each directory.

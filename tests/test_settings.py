@@ -44,7 +44,7 @@ REPERTOIRE = (CONFIG_DIR / "repertoires" / "basic.yaml").read_text()
 
 
 def refusal(path: Path, schema: type[Settings]) -> str:
-    """What is said about a file that cannot be used: one line that begins with its name, given without the name."""
+    """Return the error line of a file that cannot be used, without the file name at its beginning."""
     with pytest.raises(SettingsError) as caught:
         load_settings(path, schema)
     line = str(caught.value)
@@ -73,7 +73,7 @@ def test_shipped_files_are_found_by_name_and_fit_together() -> None:
     assert {load_world(world, robot).name for world in task.exam.worlds} == {"A", "B", "C"}
 
 
-def test_a_path_goes_before_a_name_and_an_unknown_name_lists_the_known_ones(tmp_path: Path) -> None:
+def test_unknown_robot_is_refused_with_known_names_a_path_loads(tmp_path: Path) -> None:
     mine = tmp_path / "mine.yaml"
     mine.write_text(ROBOT.replace("kurt2-indoor", "mine", 1))
     assert load_robot(str(mine)).name == "mine"
@@ -96,7 +96,7 @@ class Place(NamedTuple):
 
 
 def shortened(content: Any) -> Any:
-    """A file's content with one item of each kind in a list of mappings: the others have the same keys."""
+    """Return a file's content with one item of each kind in a list of mappings."""
     if isinstance(content, dict):
         return {key: shortened(value) for key, value in content.items()}
     if isinstance(content, list) and all(isinstance(item, dict) for item in content):
@@ -125,7 +125,7 @@ SOME_AND_ALL = [pytest.param(PLACES[::3], id="some"), pytest.param(PLACES, id="a
 
 
 def changed(place: Place, folder: Path, *, key: str | None = None, **value: object) -> Path:
-    """A file with one key renamed, or with another value for it."""
+    """Write a file with one key renamed, or with another value for it; return its path."""
     content = copy.deepcopy(CONTENTS[place.kind])
     inside, last = content, place.path[-1]
     for part in place.path[:-1]:
@@ -153,7 +153,7 @@ def test_the_files_to_be_spoilt_are_right_before(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("some", SOME_AND_ALL)
-def test_a_misspelt_key_is_named_with_the_keys_that_are_allowed_there(some: list[Place], tmp_path: Path) -> None:
+def test_misspelt_key_is_refused_with_the_allowed_keys(some: list[Place], tmp_path: Path) -> None:
     for place in some:
         right = str(place.path[-1])
         line = refusal(changed(place, tmp_path, key=f"{right}x"), SCHEMAS[place.kind])
@@ -255,7 +255,7 @@ def test_a_wrong_action_is_explained_by_its_own_kind(old: str, new: str, told: s
     assert told in refusal(path, RepertoireSettings)
 
 
-def test_the_name_that_no_action_may_have_is_that_of_an_action_that_was_withdrawn() -> None:
+def test_reserved_action_name_is_the_name_of_a_withdrawn_action() -> None:
     assert RESERVED == ASK
 
 
@@ -269,7 +269,7 @@ def test_the_name_that_no_action_may_have_is_that_of_an_action_that_was_withdraw
         ("turn_left", "behaviours: "),
     ],
 )
-def test_what_a_task_teaches_has_names_that_differ(behaviours: str, told: str, tmp_path: Path) -> None:
+def test_task_with_bad_behaviour_names_is_refused(behaviours: str, told: str, tmp_path: Path) -> None:
     path = tmp_path / "task.yaml"
     path.write_text(TASK.replace("repertoire: basic", f"repertoire: basic\nbehaviours: {behaviours}", 1))
     assert told in refusal(path, TaskSettings)
@@ -297,13 +297,13 @@ def test_a_policy_is_asked_only_for_what_it_knows(behaviours: list[str] | None, 
 
 
 @pytest.mark.parametrize("name", ["wall_following", "streets"])
-def test_a_task_that_is_written_out_keeps_every_key_of_its_policy_and_course(name: str) -> None:
+def test_task_as_json_keeps_every_key_of_policy_and_course(name: str) -> None:
     written = json.loads(load_task(name).model_dump_json())
     file = yaml.safe_load((CONFIG_DIR / "tasks" / f"{name}.yaml").read_text())
     assert (written["policy"], written["course"]) == (file["policy"], file["course"])
 
 
-def test_a_task_teaches_one_thing_without_a_name_unless_it_says_otherwise(tmp_path: Path) -> None:
+def test_task_without_behaviours_has_one_without_a_name(tmp_path: Path) -> None:
     assert load_task("wall_following").behaviours == ("",)
     path = tmp_path / "task.yaml"
     path.write_text(TASK.replace("repertoire: basic", "repertoire: basic\nbehaviours: [turn_left, turn_right]", 1))
@@ -338,7 +338,7 @@ def test_a_mid_level_commands_behaviours_that_have_names(tmp_path: Path) -> None
     assert "mid: Value error, a mid level commands behaviours by their names" in refusal(path, TaskSettings)
 
 
-def test_tasks_that_share_a_system_teach_the_same_things_in_the_same_situations() -> None:
+def test_tasks_of_one_system_share_behaviours_and_situation() -> None:
     shared: dict[str, set[tuple[str, frozenset[str]]]] = {}
     for path in sorted((CONFIG_DIR / "tasks").glob("*.yaml")):
         task = load_task(path.stem)
@@ -375,7 +375,7 @@ def test_a_policy_or_a_course_is_explained_by_its_own_kind(old: str, new: str, t
     assert told in refusal(path, TaskSettings)
 
 
-def test_the_plain_reading_of_the_paper_is_another_way_to_learn_the_same_task() -> None:
+def test_plain_reading_replaces_the_learning_settings_only() -> None:
     task, plain = load_task("wall_following"), load_task("wall_following", plain=True)
     assert plain.learning == task.plain
     assert (plain.learning.past_weight, plain.learning.insert_beyond_share, plain.learning.minimum_action_s) == (
@@ -387,7 +387,7 @@ def test_the_plain_reading_of_the_paper_is_another_way_to_learn_the_same_task() 
 
 
 @pytest.mark.parametrize("key", ["learning.radius", "learning"])
-def test_what_is_set_without_effect_on_the_plain_reading_is_refused(key: str) -> None:
+def test_setting_without_effect_on_the_plain_reading_is_refused(key: str) -> None:
     with pytest.raises(SettingsError, match=rf"streets.yaml: {key} changes nothing .*; give plain"):
         load_task("streets", plain=True, changes={key: "300"})
     assert load_task("streets", plain=True, changes={"plain.radius": "300"}).learning.radius == 300.0
@@ -401,7 +401,7 @@ def test_a_problem_of_the_file_is_not_blamed_on_what_was_set(tmp_path: Path) -> 
     assert "--set" not in str(caught.value)
 
 
-def test_a_kind_that_cannot_be_imported_does_not_hide_that_another_is_misspelled(
+def test_misspelt_kind_is_refused_though_another_fails_to_import(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     package = tmp_path / "some_policies"
@@ -516,7 +516,7 @@ def test_a_yaml_alias_bomb_is_refused_before_it_is_expanded(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("long", ["x" * 10_000, "{" + "k" * 1000 + ": 1}"], ids=["text", "key"])
-def test_a_long_text_that_aliases_repeat_is_refused_before_it_is_expanded(tmp_path: Path, long: str) -> None:
+def test_text_that_aliases_repeat_is_refused_before_expansion(tmp_path: Path, long: str) -> None:
     bomb = tmp_path / "bomb.yaml"
     bomb.write_text(f"a0: &a0 {long}\na1: &a1 [{'*a0,' * 100}]\na2: [{'*a1,' * 100}]\n", encoding="utf-8")
     assert "its aliases repeat values more than 100000 times" in refusal(bomb, RobotSettings)

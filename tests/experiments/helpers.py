@@ -43,7 +43,7 @@ class Taught:
     result: TrainingResult
     events: list[TeachingEvent]
     saved: list[Acknowledgement]
-    """As `on_saved` heard of them."""
+    """Acknowledgements given to `on_saved`, in order."""
     reported_s: list[float]
 
 
@@ -69,7 +69,7 @@ def teach(knowledge: Path, task: TaskSettings | None = None, seed: int = 1) -> T
 
 
 def teachers_drive(task: TaskSettings) -> ExamResult:
-    """How the teacher himself drives the exam in its first world."""
+    """Return the exam result of the teacher's own policy in the exam's first world."""
     world = task.exam.worlds[0]
     simulation = STAGE.open(world, 1, "exam")
 

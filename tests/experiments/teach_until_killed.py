@@ -17,7 +17,7 @@ from tests.experiments.helpers import ROBOT, STAGE, short_task
 
 
 def eager_task() -> TaskSettings:
-    """A teacher that errs and has no patience, so that lessons never run out."""
+    """Return a task with an erring, impatient teacher, so that lessons never run out."""
     task = short_task(3.0, 5.0)
     eager = task.teaching.teacher.model_copy(update={"reaction_s": 0.1, "patience_s": 0.05, "error_rate": 0.4})
     return task.model_copy(update={"teaching": task.teaching.model_copy(update={"teacher": eager})})

@@ -28,7 +28,7 @@ def copy(tmp_path: Path) -> Path:
 
 
 def saying(*lines: str, after: str = "") -> "LiveExam":
-    """An exam whose process prints these lines, then runs `after`."""
+    """Return an exam whose process prints these lines, then runs `after`."""
     script = "import sys, time\n" + "".join(f"print({line!r}, flush=True)\n" for line in lines) + after
     return LiveExam(lambda _, picture: (sys.executable, "-c", script, str(picture)))
 

@@ -58,7 +58,7 @@ class Service:
         self.health: Health = simulation.robot.health
 
     async def run(self, seconds: float, *commands: Command) -> TickRecord:
-        """For so long, or until a junction has been passed."""
+        """Run for `seconds`, or until a junction has been passed."""
         for command in commands:
             self.runtime.inbox.put(command)
 

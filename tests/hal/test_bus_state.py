@@ -134,7 +134,7 @@ def test_a_short_error_frame_has_no_details(state: BusState) -> None:
 
 
 @given(st.lists(st.builds(error_frame, st.integers(0, 0x1FFF_FFFF), status=st.integers(0, 255)), max_size=50))
-def test_whatever_it_says_is_counted_and_told_in_a_line(frames: list[can.Message]) -> None:
+def test_bus_state_counts_each_kind_of_frame_in_one_line(frames: list[can.Message]) -> None:
     state = BusState("can0")
     for frame in frames:
         state.note(frame)

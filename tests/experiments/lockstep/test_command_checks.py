@@ -19,7 +19,7 @@ from tests.experiments.helpers import ROBOT, STAGE, short_task, teach
 
 
 def without(tmp_path: Path, *actions: str) -> TaskSettings:
-    """A short task whose repertoire lacks these actions."""
+    """Return a short task whose repertoire lacks these actions."""
     content = yaml.safe_load((CONFIG_DIR / "repertoires" / "basic.yaml").read_text(encoding="utf-8"))
     content["actions"] = [each for each in content["actions"] if each["name"] not in actions]
     file = tmp_path / "small.yaml"

@@ -33,7 +33,7 @@ def exam_of(events: Sequence[TeachingEvent], task: TaskSettings, seed: int = 1) 
 
 
 def knows_only(action: str) -> RlaCreated:
-    """An RLA that answers everything; its task needs a large radius."""
+    """Return the creation of an RLA that is near every situation; its task needs a large radius."""
     return RlaCreated(Rla(1, (0.0,) * 72, action, 1e5, Origin("c-1", "Ann", Phase.SUPERVISED, 1)))
 
 
@@ -78,7 +78,7 @@ def test_the_teachers_own_drive_makes_way_and_touches_nothing() -> None:
 
 
 def examined_from(start: str, seed: int = 1) -> WorldResult:
-    """An exam beside the post, of a robot that knows nothing and stays where it is set down."""
+    """Return the exam of a robot near the post. It knows nothing, so it stays at its start."""
     task = load_task("circle")
     exam = task.exam.model_copy(update={"duration_s": 0.2, "start": start})
     return exam_of([], task.model_copy(update={"exam": exam}), seed)

@@ -146,7 +146,7 @@ def test_exam_after_phase_5_uses_its_values(alone: Statistics | None, drives: bo
 def test_training_ending_in_phase_5_returns_its_values(taught: Taught, tmp_path: Path) -> None:
     assert taught.result.autonomous_values is None
     result, _ = go_on(taught, tmp_path, of_phase(Phase.AUTONOMOUS, 2.0))
-    assert result.autonomous_values == Statistics()  # nobody was trusted
+    assert result.autonomous_values == Statistics()  # the critic was not trusted yet
 
 
 @pytest.mark.parametrize("stuck_ends", [True, False])

@@ -85,7 +85,7 @@ def test_intact_measure_may_be_worse_by_the_margin() -> None:
     assert unsure["progress"].result is Result.MISSED
 
 
-def test_whoever_has_to_come_is_an_intervention() -> None:
+def test_intervention_counts_each_cause_that_needs_a_person() -> None:
     robots = [
         stage(LONG_RUN, taught=teaching(1800.0, collisions=1, rescues=2, unknown_rescues=1)),
         stage(LONG_RUN, taught=teaching(1800.0)),

@@ -56,7 +56,7 @@ class Watched:
     def junction(
         self, right: int, wanted: int, taken: int | None, noticed: int | None, within: int | None = None
     ) -> None:
-        """Through one junction, and noticed behind it; `within`: what is wanted before it is out."""
+        """Drive through one junction, which is detected after it; `within`: the direction wanted inside it."""
         self.look(wanted)
         self.course.inside = True
         self.look(wanted)

@@ -107,7 +107,7 @@ class Waiting:
     def run(self, tell: Progress) -> None:
         del tell
         self.file.write_text(str(os.getpid()))
-        os.write(1, b"begun\n")  # one piece, whoever else writes
+        os.write(1, b"begun\n")  # one write, so other writers cannot split it
         signal.pause()
 
 

@@ -26,7 +26,7 @@ def test_surprise_table_has_a_row_for_each_difference() -> None:
 
 @pytest.fixture(scope="module")
 def taught(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, TaskSettings]:
-    """The streets, in a lesson half as long as the task's."""
+    """Return knowledge and task of the streets, taught half as long as the task says."""
     task = load_task("streets")
     task = task.model_copy(update={"teaching": task.teaching.model_copy(update={"corrections_s": 540.0})})
     return teach(tmp_path_factory.mktemp("surprise") / "taught.knowledge", task, seed=3).knowledge, task

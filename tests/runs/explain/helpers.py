@@ -22,7 +22,7 @@ ROBOT = load_robot()
 
 
 class Lesson:
-    """A robot in a world, and whoever teaches it."""
+    """A robot in a world, and its teacher."""
 
     def __init__(self, task: str = "wall_following", seed: int = 1, *, attended: bool = False) -> None:
         settings = load_task(task)
@@ -70,7 +70,7 @@ def story(rla_id: int, condition: tuple[float, ...], action: str, distance: floa
 
 
 def level(vector: tuple[float, ...], *stories: RlaFacts, weights: tuple[float, ...] | None = None) -> LevelFacts:
-    """The first of the stories is the nearest, and drives."""
+    """Return a level of these RLAs; the first one is the nearest, and drives."""
     nearest = stories[0] if stories else None
     names = tuple(f"f{place}" for place in range(len(vector)))
     counted = weights or (1.0,) * len(vector)

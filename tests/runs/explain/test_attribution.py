@@ -15,7 +15,7 @@ MINE = story(1, (13.0, 16.0, 30.0), "forward", 5.0)
 OTHER = story(2, (10.0, 30.0, 30.0), "back", 10.0)
 
 
-def test_the_shares_of_a_squared_distance_make_all_of_it_the_largest_first() -> None:
+def test_attribution_shares_add_up_to_one_largest_first() -> None:
     found = distance_attribution(level(HERE, MINE, OTHER), MINE)
     assert [(each.name, each.here, each.there) for each in found] == [("f1", 20.0, 16.0), ("f0", 10.0, 13.0)]
     assert [each.share for each in found] == pytest.approx([16 / 25, 9 / 25])
@@ -26,7 +26,7 @@ def test_a_feature_of_no_weight_has_no_share() -> None:
     assert [(each.name, each.share) for each in found] == [("f0", 1.0)]
 
 
-def test_of_the_very_situation_that_was_taught_there_is_nothing_to_share_out() -> None:
+def test_attribution_at_the_taught_situation_is_empty() -> None:
     assert distance_attribution(level(HERE, story(1, HERE, "forward", 0.0)), story(1, HERE, "forward", 0.0)) == ()
 
 
@@ -36,7 +36,7 @@ def test_symbols_that_differ_have_equal_shares() -> None:
     assert [(each.name, each.share) for each in found] == [("f0", 0.5), ("f2", 0.5)]
 
 
-def test_a_robot_that_does_not_know_where_it_is_differs_in_nothing_that_could_be_told() -> None:
+def test_attribution_of_a_lost_robot_is_empty() -> None:
     lost = level((math.nan, 1.0), story(1, (0.0, 1.0), "turn_left", math.inf))
     assert distance_attribution(lost, story(1, (0.0, 1.0), "turn_left", math.inf)) == ()
 

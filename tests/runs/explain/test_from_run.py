@@ -21,7 +21,7 @@ WRITTEN = "2026-11-22T03:10:07.250+00:00"
 
 
 def taught_run(folder: Path, *, acknowledged: bool) -> Path:
-    """A lesson in the first second of a run; its row was written some seconds later, for the disk was slow."""
+    """Record a run with a lesson in its first second; the slow disk gives its row a later date."""
     lesson, command = Lesson(), teach("forward")
     names = lesson.runtime.definition.names
     head = replace(HEAD, attended=False)
@@ -43,9 +43,7 @@ def taught_run(folder: Path, *, acknowledged: bool) -> Path:
 @pytest.mark.parametrize(
     ("acknowledged", "stamp"), [(True, WRITTEN), (False, "2026-11-22T03:10:05+00:00")], ids=["kept", "never written"]
 )
-def test_a_lesson_of_the_run_has_the_date_of_its_row_in_the_journal(
-    tmp_path: Path, acknowledged: bool, stamp: str
-) -> None:
+def test_lesson_of_the_run_has_the_date_of_its_journal_row(tmp_path: Path, acknowledged: bool, stamp: str) -> None:
     run = read_run(taught_run(tmp_path, acknowledged=acknowledged))
     nearest = explain_run(run, 1.0).facts.basic.nearest
     assert nearest is not None
@@ -62,7 +60,7 @@ def test_truncated_run_keeps_its_trouble(tmp_path: Path) -> None:
     assert "torn.mcap" in run.trouble
 
 
-def test_a_run_in_which_nothing_was_acknowledged_says_when_the_tick_was() -> None:
+def test_lesson_without_acknowledgement_has_its_ticks_date() -> None:
     nearest = explain_run(read_run(STORED / "walls.mcap"), 8.0).facts.basic.nearest
     assert nearest is not None
     assert nearest.acts[0].stamp.startswith("2026-03-20T09:46:4")

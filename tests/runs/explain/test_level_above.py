@@ -18,7 +18,7 @@ PLACES = ("x_m", "y_m", "east", "north", "wall_left", "wall_right")
 
 @dataclass(frozen=True)
 class Now:
-    """What is known of a robot's newest decision."""
+    """Facts and counterfactuals of a robot's newest decision."""
 
     facts: DecisionFacts
     counterfactuals: tuple[SensorCounterfactual, ...]
@@ -63,9 +63,7 @@ def test_a_robot_that_is_lost_is_not_on_the_map(now: Now, tmp_path: Path) -> Non
     assert "The places it knows" in text
 
 
-def test_a_lost_robot_that_knows_no_place_is_told_of_in_words_and_the_room_is_for_what_is_near(
-    now: Now, tmp_path: Path
-) -> None:
+def test_picture_of_a_lost_robot_says_so_and_lists_no_places(now: Now, tmp_path: Path) -> None:
     mid = replace(level((math.nan, math.nan, 1.0, 0.0, 0.5, 0.5)), names=PLACES, level=MID)
     text = drawn(now, mid, tmp_path / "lost.svg", asks=True)
     assert "no teacher has set its location" in text
@@ -88,7 +86,7 @@ def test_histories_stand_below_each_other(now: Now, tmp_path: Path) -> None:
     assert "What makes the distance to mid-level RLA 12" in text
 
 
-def test_the_nearest_is_compared_with_what_says_something_else_all_others_with_the_nearest() -> None:
+def test_contrast_of_the_nearest_is_the_next_with_another_action() -> None:
     nearest, same, other = story(1, (1.0,), "back", 1), story(2, (2.0,), "back", 2), story(3, (3.0,), "stand", 3)
     assert level((0.0,), nearest, same, other).contrast_of(nearest) is other
     assert level((0.0,), nearest, same).contrast_of(nearest) is same

@@ -41,7 +41,7 @@ def test_reasons_for_driving_name_the_nearest_rla() -> None:
     assert format_guard(driven) == ""
 
 
-def test_the_runner_up_may_say_the_same_so_the_nearest_that_does_not_is_told_too() -> None:
+def test_runner_up_with_equal_action_adds_the_next_that_differs() -> None:
     first, second = format_runner_up(KNOWN)
     assert first.startswith("The runner-up of 3 is RLA 5 (forward) at 6; the border to it is ")
     assert second.startswith("It says the same; the nearest that says something else is RLA 9 (back) at 8;")
@@ -51,14 +51,14 @@ def test_the_only_rla_has_nobody_beside_it() -> None:
     assert format_runner_up(level((1.0, 6.0), NEAR)) == ["No other RLA competes: RLA 17 is the only one."]
 
 
-def test_an_action_that_is_held_is_told_with_the_rla_that_is_nearest_by_now() -> None:
+def test_reasons_for_a_held_action_name_the_nearest_rla_too() -> None:
     held = facts(replace(KNOWN, driver=ELSE), DecisionCause.HELD.value, "back")
     first, second = format_reasons(held)
     assert first == "RLA 9 (back) was chosen a moment ago, and its action keeps its minimum time."
     assert second == "Nearest by now is RLA 17 (forward), at 4 of R 10 (40 %)."
 
 
-def test_of_several_on_one_condition_the_chosen_one_is_told_with_its_worth() -> None:
+def test_reasons_on_a_shared_condition_give_the_chosen_value() -> None:
     chosen = replace(story(30, NEAR.condition, "back", 4.0), value=0.5)
     (line,) = format_reasons(facts(replace(KNOWN, driver=chosen)))
     assert line.endswith("Of those on the very same condition RLA 30 was chosen, which says back and is worth 0.50.")
@@ -146,7 +146,7 @@ def test_a_stopped_robot_may_have_stood_all_the_same(hindrances: tuple[DecisionC
     assert format_reasons(stood)[1] == f"By itself it would {would}"
 
 
-def test_a_robot_that_is_led_where_it_knows_no_way_would_ask_the_way_and_not_drive() -> None:
+def test_robot_stopped_at_an_unknown_junction_would_ask() -> None:
     place = replace(story(12, (5.0,), "turn_left", 3.0, 1.0), title="mid-level RLA 12")
     for mid, why in (
         (level((1.0,)), "the mid level was taught nothing yet"),
@@ -162,7 +162,7 @@ def test_a_robot_that_is_led_where_it_knows_no_way_would_ask_the_way_and_not_dri
         assert format_reasons(led)[1] == f"By itself it would ask the way: {why}."
 
 
-def test_of_several_on_one_condition_the_one_that_leads_is_what_it_would_do() -> None:
+def test_stopped_robot_on_shared_condition_names_the_leading_rla() -> None:
     crowd = level((1.0, 6.0), replace(NEAR, leads=False), replace(NEAR, rla_id=30, title="RLA 30", action="back"))
     stood = replace(standing(DecisionCause.STOPPED), basic=replace(crowd, driver=None))
     assert format_reasons(stood)[1] == "By itself it would do as RLA 30 (back) says, at 4 of R 10."
@@ -209,7 +209,7 @@ def test_teaching_text_is_the_newest_standing_lesson() -> None:
     assert format_stamp(replace(corrected, stamp="")) == "tick 2000 of its run"
 
 
-def test_uses_are_told_since_it_has_its_action_where_that_is_known() -> None:
+def test_usage_counts_since_the_action_was_set_if_known() -> None:
     assert format_usage(NEAR) == "Used 7 times since."
     assert format_usage(replace(NEAR, uses_since=1)) == "Used once since, 7 times with the actions it had before."
     assert format_usage(replace(NEAR, uses_since=None)) == "Used 7 times since it was first taught."
@@ -217,7 +217,7 @@ def test_uses_are_told_since_it_has_its_action_where_that_is_known() -> None:
     assert format_usage(praised) == "Used 7 times since; praised twice, blamed once, worth 0.25."
 
 
-def test_the_level_above_tells_what_it_commands_and_who_taught_it() -> None:
+def test_mid_level_lines_give_its_command_lesson_and_goal() -> None:
     place = replace(story(12, (0.0,), "turn_left", 1.0), title="mid-level RLA 12")
     above = replace(level((0.0,), place), level=MID, words=("left", "straight", ""))
     lines = format_mid_level(replace(with_mid(facts(KNOWN), above), plan_says="on the way to door"))
@@ -236,7 +236,7 @@ def test_a_mid_level_that_asks_has_the_robot_stand() -> None:
     ]
 
 
-def test_a_robot_that_touches_something_tells_which_rla_goes_on_toward_it() -> None:
+def test_touching_robot_names_the_rla_that_drives_on_toward_it() -> None:
     touches = replace(
         facts(KNOWN, "touches", None), granted=WheelSpeeds(0, 0), reasons=("front bumper",), decided=WheelSpeeds(0, 0)
     )

@@ -105,7 +105,7 @@ def test_in_words_the_shares_come_first_then_what_happened_when(lesson: Lesson) 
     assert text.index("share of the time") < text.index("from s") < text.index("RLA 1 corrected: bear_right")
 
 
-def test_of_a_long_run_only_what_is_out_of_the_ordinary_is_listed(lesson: Lesson) -> None:
+def test_timeline_of_a_long_run_lists_exceptional_stretches_only(lesson: Lesson) -> None:
     text = said(lesson, 3)
     assert "5 stretches; here are those in which it did not drive by itself" in text
     rows = text[text.index("from s") :]
@@ -119,7 +119,7 @@ def test_the_picture_is_drawn_also_of_nothing(lesson: Lesson, tmp_path: Path) ->
         assert b"a run" in (tmp_path / f"{name}.svg").read_bytes()
 
 
-def test_of_a_run_of_many_stretches_shares_are_drawn_and_fewer_samples_kept(lesson: Lesson, tmp_path: Path) -> None:
+def test_timeline_of_many_stretches_draws_shares_fewer_samples(lesson: Lesson, tmp_path: Path) -> None:
     entries = lesson.entries
     long = (
         entry._replace(tick=entry.tick + 250 * again, now_s=entry.now_s + 2.5 * again)

@@ -1,4 +1,4 @@
-"""What is said to change a decision is tried in the replayed robot: the reading is changed, and the tick run again."""
+"""Each counterfactual is tried in the replayed robot: the reading is changed, and the tick runs again."""
 
 from collections.abc import Iterator
 from copy import deepcopy
@@ -27,15 +27,15 @@ class Before:
 
     replay: Replay
     seen: list[AppraisalFeatures]
-    """What it remembers of the ticks until then; nobody changes it, and a copy of the robot may share it."""
+    """Features that the critic keeps of earlier ticks; they never change, so a copy of the robot shares them."""
 
     def again(self) -> Replay:
-        """The robot as it was."""
+        """Return a copy of the robot as it was before the tick."""
         return deepcopy(self.replay, {id(each): each for each in self.seen})
 
 
 def looked_at(name: str, every_ticks: int, every_kept: int) -> Iterator[tuple[Before, TickEntry, DecisionFacts]]:
-    """Some ticks of a stored run, and of those in which an action kept its minimum time: the robot as it was before."""
+    """Yield the robot before some ticks of a stored run, also before ticks in a minimum action time."""
     run = stored(name)
     replay = Replay(run)
     action, chosen_at = None, 0
@@ -57,7 +57,7 @@ def looked_at(name: str, every_ticks: int, every_kept: int) -> Iterator[tuple[Be
 
 
 def decided_with(before: Before, entry: TickEntry, tip: SensorCounterfactual, counts: int) -> str | None:
-    """What the robot does in that tick where this sensor reads something else."""
+    """Return the action of that tick if the sensor reads `counts`; None for a question."""
     names = before.replay.run.robot.infrared.names
     readings = tuple(
         counts if name == tip.sensor else reading

@@ -32,7 +32,7 @@ def lesson() -> Iterator[Lesson]:
 
 
 def give(lesson: Lesson) -> Lesson:
-    """It knows forward then and, farther on, where a wall comes near, a bow to the right."""
+    """Teach forward, and a bow to the right where a wall comes near; return the lesson."""
     lesson.go_on(20)
     lesson.go_on(FORWARD, teach("forward"))
     lesson.go_on(1, set_phase(Phase.CORRECTIONS))
@@ -48,7 +48,7 @@ def taught_lesson() -> Iterator[Lesson]:
     lesson.close()
 
 
-def test_before_the_first_lesson_there_is_nothing_to_compare_with(lesson: Lesson, tmp_path: Path) -> None:
+def test_why_before_the_first_lesson_has_no_counterfactuals(lesson: Lesson, tmp_path: Path) -> None:
     lesson.go_on(20)
     facts = lesson.facts
     assert (facts.cause, facts.basic.nearest, facts.basic.count) == (DecisionCause.UNKNOWN, None, 0)
@@ -92,7 +92,7 @@ def test_an_rla_whose_action_was_replaced_tells_instead_of_what(lesson: Lesson) 
     assert story.uses_since is None  # its uses are counted over both actions
 
 
-def test_the_reading_that_would_have_changed_it_does_change_it_and_a_smaller_change_does_not(
+def test_counterfactual_is_the_least_change_of_its_reading(
     taught_lesson: Lesson,
 ) -> None:
     facts, runtime = taught_lesson.facts, taught_lesson.runtime
@@ -117,7 +117,7 @@ def test_the_reading_that_would_have_changed_it_does_change_it_and_a_smaller_cha
     assert changes == sorted(changes)
 
 
-def test_of_those_on_one_condition_only_the_chosen_one_may_answer(taught_lesson: Lesson) -> None:
+def test_counterfactuals_ignore_an_unchosen_rla_of_one_condition(taught_lesson: Lesson) -> None:
     facts = taught_lesson.facts
     driver = facts.basic.driver
     assert driver is not None
@@ -146,9 +146,7 @@ def test_only_the_nearest_are_told_where_few_are_asked_for(taught_lesson: Lesson
 
 
 @pytest.mark.parametrize("ending", [pytest.param("png", marks=pytest.mark.deep), "svg"])
-def test_the_picture_shows_the_decision_and_is_the_same_each_time(
-    taught_lesson: Lesson, tmp_path: Path, ending: str
-) -> None:
+def test_picture_of_a_decision_is_identical_each_time(taught_lesson: Lesson, tmp_path: Path, ending: str) -> None:
     facts, sensor_counterfactuals = taught_lesson.facts, taught_lesson.counterfactuals
     for name in ("one", "two"):
         draw_why(facts, sensor_counterfactuals, ROBOT, "a title", tmp_path / f"{name}.{ending}")

@@ -1,4 +1,4 @@
-"""A robot's mind on ticks that the test makes, and a recorder beside it."""
+"""A robot's mind on ticks that the test makes, with a recorder."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -34,7 +34,7 @@ HEAD = RunHead(
 
 
 class RecordedDesk:
-    """Whoever uses it says when the recorder writes, unless it is started."""
+    """Robot's mind with a recorder. The test decides when the recorder writes, unless it is started."""
 
     def __init__(
         self,
@@ -70,14 +70,14 @@ class RecordedDesk:
             self.recorder.on_tick(record)
 
     def second(self, counts: int | None = None) -> None:
-        """A second of ticks, and what the recorder's thread would do in it."""
+        """Run a second of ticks, and write as the recorder's thread would."""
         self.run(100, counts)
         self.recorder.write_waiting()
         self.recorder.poll()
 
 
 def late_run(recordings: Path) -> Path:
-    """A run whose first files had to make room for later ones, as those of a robot that is never switched off."""
+    """Record a run whose first segments were deleted to make room; return its folder."""
     desk = RecordedDesk(recordings, budget=Budget(75_000, segment_bytes=20_000))
     desk.recorder.poll()
     for second in range(15):
@@ -87,7 +87,7 @@ def late_run(recordings: Path) -> Path:
 
 
 def empty_run(recordings: Path) -> Path:
-    """A run that ended before its first tick."""
+    """Record a run that ended before its first tick; return its folder."""
     desk = RecordedDesk(recordings)
     desk.recorder.poll()
     desk.recorder.close()

@@ -72,7 +72,7 @@ def test_can_log_keeps_order_direction_and_channel() -> None:
         end.shutdown()
 
 
-def test_stamps_are_when_the_bus_carried_the_frame_and_one_frame_sent_twice_has_two() -> None:
+def test_can_log_stamps_each_frame_with_the_time_on_the_bus() -> None:
     shelf = Shelf()
     log = CanLog(shelf, "x.log", "can1")
     brake = encode_brake()
@@ -140,7 +140,7 @@ def test_a_file_that_cannot_be_closed_is_told_of() -> None:
     assert log.trouble == "CAN log x.log: closing failed ([Errno 5] Input/output error)"
 
 
-def test_the_log_of_a_robot_without_an_interface_can_be_played_on_one() -> None:
+def test_can_log_without_an_interface_gets_a_playable_channel() -> None:
     for bus, channel in (("sim", "can0"), ("shared:desk", "can0"), ("virtual:x", "can0"), ("vcan7", "vcan7")):
         shelf = Shelf()
         log = CanLog(shelf, "x.log", bus)
@@ -149,7 +149,7 @@ def test_the_log_of_a_robot_without_an_interface_can_be_played_on_one() -> None:
         assert [frame.channel for frame in shelf.frames] == [channel]
 
 
-def test_a_bus_without_a_log_has_nobody_who_looks_on() -> None:
-    bus = open_bus("virtual:nobody looks on")
+def test_bus_without_a_log_has_no_tap() -> None:
+    bus = open_bus("virtual:no tap")
     assert bus.tap is None
     bus.shutdown()

@@ -21,7 +21,7 @@ PANELS: dict[str, dict[str, Any]] = LAYOUT["configById"]
 
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[LoggedMessage]:
-    """A simulated robot that learned two lessons."""
+    """Return the recorded messages of a simulated robot that learned two lessons."""
     folder: Path = tmp_path_factory.mktemp("runs")
     desk = RecordedDesk(folder, world=Elsewhere())
     desk.recorder.poll()
@@ -41,12 +41,12 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> list[LoggedMessage]:
 
 
 def shown(split: Any) -> list[str]:
-    """The panels of a layout, from the first to the last."""
+    """Return the panels of a layout, from the first to the last."""
     return [split] if isinstance(split, str) else [*shown(split["first"]), *shown(split["second"])]
 
 
 def paths() -> list[str]:
-    """The message paths of all panels."""
+    """Return the message paths of all panels."""
     plotted = [path["value"] for panel in PANELS.values() for path in panel.get("paths", [])]
     return plotted + [panel["topicPath"] for panel in PANELS.values() if "topicPath" in panel]
 

@@ -86,7 +86,7 @@ def test_another_kind_of_file_is_refused_and_not_made(tmp_path: Path, name: str)
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_format_whose_package_is_not_there_says_so_and_leaves_nothing(tmp_path: Path) -> None:
+def test_log_format_without_package_raises_and_leaves_no_file(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match="asammdf"):
         LogFile(tmp_path / "drive.mf4")
     assert list(tmp_path.iterdir()) == []

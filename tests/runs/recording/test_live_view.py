@@ -27,7 +27,7 @@ def opened_desk(recordings: Path | None = None) -> tuple[RecordedDesk, LiveView]
 
 
 async def told(client: ClientConnection, operation: str) -> dict[str, Any]:
-    """The next message of that kind in JSON."""
+    """Return the next JSON message of that operation."""
     async for text in client:
         if isinstance(text, str):
             message: dict[str, Any] = json.loads(text)

@@ -1,4 +1,4 @@
-"""A run is recorded beside the loop: all that happened is there again, and a bad disk costs no tick."""
+"""Recording in its own thread: every tick is readable afterwards, and a bad disk delays no tick."""
 
 import errno
 import json
@@ -73,7 +73,7 @@ def test_the_run_says_what_it_was_and_holds_what_a_replay_needs(tmp_path: Path) 
     assert KNOWLEDGE in head.attachments
 
 
-def test_foxglove_has_scans_poses_scenes_and_a_log_by_its_own_schemas(tmp_path: Path) -> None:
+def test_recording_has_foxglove_scans_poses_scenes_and_log(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path)
     desk.recorder.poll()
     desk.second(counts=200)
@@ -94,7 +94,7 @@ def test_foxglove_has_scans_poses_scenes_and_a_log_by_its_own_schemas(tmp_path: 
     assert said[0].time_ns == BEGAN_AT_NS + round(first.now_s * 1e9)
 
 
-def test_a_run_goes_on_in_the_next_file_when_one_is_full_and_each_opens_alone(tmp_path: Path) -> None:
+def test_run_goes_on_in_a_next_segment_that_opens_alone(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path, budget=Budget(10_000_000, segment_bytes=20_000))
     desk.recorder.poll()
     for second in range(8):
@@ -392,7 +392,7 @@ class Unsayable:
         raise ZeroDivisionError("unsayable")
 
 
-def test_a_note_that_cannot_be_written_is_counted_and_all_others_are_kept(tmp_path: Path) -> None:
+def test_recorder_counts_an_unwritable_note_and_keeps_the_others(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path)
     with desk.recorder:
         desk.run(50)
@@ -447,7 +447,7 @@ class Elsewhere:
         raise AssertionError
 
 
-def test_of_a_simulated_robot_its_true_place_and_its_world_are_kept(tmp_path: Path) -> None:
+def test_recording_of_a_simulated_robot_has_true_pose_and_world(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path, world=Elsewhere())
     desk.recorder.poll()
     for _ in range(6):
@@ -457,7 +457,7 @@ def test_of_a_simulated_robot_its_true_place_and_its_world_are_kept(tmp_path: Pa
     assert len(messages_of(tmp_path / NAME, GROUND)) == 2
 
 
-def test_the_log_warns_of_what_the_guard_changed_but_not_of_the_slew_limit_where_each_turn_begins(
+def test_log_warns_of_guard_reasons_except_the_slew_limit(
     tmp_path: Path,
 ) -> None:
     desk = RecordedDesk(tmp_path)
@@ -480,7 +480,7 @@ def test_the_log_warns_of_what_the_guard_changed_but_not_of_the_slew_limit_where
     assert [each.data for each in lines] == said
 
 
-def test_each_transform_message_holds_the_whole_tree_of_frames_as_a_viewer_seeks_to_one(tmp_path: Path) -> None:
+def test_each_transform_message_holds_all_frames(tmp_path: Path) -> None:
     desk = RecordedDesk(tmp_path, world=Elsewhere())
     desk.recorder.poll()
     desk.second()

@@ -1,4 +1,4 @@
-"""What a power cut left of a run is copied to a file that viewers open."""
+"""Recovery of a recording that a power cut truncated, to a file that viewers open."""
 
 from pathlib import Path
 
@@ -23,9 +23,7 @@ def whole(tmp_path: Path) -> Path:
     return segment
 
 
-def test_a_file_that_was_cut_anywhere_is_copied_up_to_there_and_the_copy_has_its_index(
-    whole: Path, tmp_path: Path
-) -> None:
+def test_recovery_copies_a_truncated_file_and_adds_its_index(whole: Path, tmp_path: Path) -> None:
     content = whole.read_bytes()
     truncated, copy = tmp_path / "torn.mcap", tmp_path / "copy.mcap"
     for share in (0.5, 0.7, 0.9, 1.0):

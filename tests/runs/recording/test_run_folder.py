@@ -19,7 +19,7 @@ from tests.runs.recording.desk_recording import RecordedDesk
 
 
 def recorded(recordings: Path, name: str) -> Path:
-    """A run of one tick."""
+    """Record a run of one tick; return its folder."""
     desk = RecordedDesk(recordings, name=name)
     desk.recorder.poll()
     desk.run(1)
@@ -28,7 +28,7 @@ def recorded(recordings: Path, name: str) -> Path:
 
 
 def filled(folder: Path, size: int = 1000) -> Path:
-    """A run folder with one file."""
+    """Make a run folder with one file of `size` bytes; return it."""
     folder.mkdir(parents=True)
     (folder / segment_name(1)).write_bytes(bytes(size))
     return folder
@@ -44,7 +44,7 @@ def test_a_run_is_named_by_its_start_and_task(tmp_path: Path) -> None:
     assert next_run_name(name, tmp_path) == name  # a number is put behind it
 
 
-def test_a_run_that_was_started_by_a_clock_set_back_is_the_newest_all_the_same(tmp_path: Path) -> None:
+def test_run_started_by_a_clock_set_back_is_still_the_newest(tmp_path: Path) -> None:
     recorded(tmp_path, "20261122T235959Z-wall_following-2")
     name = next_run_name("20261122T221005Z-streets", tmp_path)
     assert name == "20261123T000000Z-streets"

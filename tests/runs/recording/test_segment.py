@@ -80,8 +80,8 @@ def test_saved_chunks_survive_a_cut_at_any_byte(tmp_path: Path, every_bytes: int
         assert str(cut) in reader.truncated
 
 
-def test_a_file_with_holes_is_read_up_to_the_first(tmp_path: Path) -> None:
-    """After a power cut a file may have its length, and zeros where the last data should be."""
+def test_segment_with_holes_is_read_up_to_the_first(tmp_path: Path) -> None:
+    """A file may have its full length after a power cut, but zeros in place of its last data."""
     context = Context()
     channel = Channel("/number", message_encoding="json", context=context)
     segment = Segment(tmp_path / "0001.mcap", context, RealDisk())

@@ -1,4 +1,4 @@
-"""Where the distance sensors see something, from the robot's centre."""
+"""Rays of the distance sensors, in the robot's frame."""
 
 import math
 
@@ -12,7 +12,7 @@ NOTHING = [INFRARED.floor_counts] * len(INFRARED.sensors)
 
 
 def seen_by(name: str, distance_m: float) -> list[int]:
-    """Counts of a robot that sees something with one sensor alone."""
+    """Return the counts of a robot that sees an obstacle with one sensor only."""
     counts = list(NOTHING)
     counts[INFRARED.names.index(name)] = round(INFRARED.counts_at(distance_m))
     return counts

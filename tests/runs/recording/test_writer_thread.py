@@ -1,4 +1,4 @@
-"""What waits for a writing thread is bound and counted, and a writer that hangs is not waited for."""
+"""The queue of a writer thread is bounded and counts its losses; a hanging writer delays no caller."""
 
 import threading
 

@@ -14,7 +14,7 @@ NAMES = ("walls", "errand")
 
 
 def stored(name: str, seconds: float = math.inf) -> Run:
-    """A stored run, or what stood in so many seconds of it from its beginning; its file is decoded once."""
+    """Return a stored run, or its first `seconds`; the file is decoded once."""
     whole = read_run(STORED / f"{name}.mcap")
     if math.isinf(seconds):
         return Run(whole.name, whole.head, whole._attachments, RunSource(lambda: iter(_entries(name))))

@@ -60,7 +60,7 @@ _SAVED_EVERY = 100
 
 @dataclass
 class Scene:
-    """A robot that runs, and whoever is about it."""
+    """A robot that runs, its simulation and its teacher."""
 
     simulation: Kurt2Simulation
     runtime: Runtime
@@ -71,7 +71,7 @@ class Scene:
     home: list[object] = field(default_factory=list)
 
     def say(self, make: Callable[[str], Command]) -> None:
-        """A command with an id of its own."""
+        """Send a command with a new id."""
         self.said += 1
         self.runtime.inbox.put(make(f"story-{self.said}"))
 
@@ -80,12 +80,12 @@ Story = Callable[[Scene, TickRecord], None]
 
 
 def at(second: float) -> int:
-    """The tick of a second."""
+    """Return the tick at that time."""
     return round(second * 100)
 
 
 def walls(scene: Scene, record: TickRecord) -> None:
-    """Along a wall through all five phases, with what a nervous teacher does in between."""
+    """Drive along a wall through all five phases, with the commands of a nervous teacher."""
     tick, runtime, say = record.tick, scene.runtime, scene.say
     if tick % 5 == 0 and not at(20) < tick < at(21):  # for a second his line is dead
         runtime.inbox.put(Watch(NAME, tick))
@@ -157,7 +157,7 @@ class Errand:
 
 @dataclass(frozen=True)
 class Told:
-    """What a story is made of."""
+    """Task, seed and script of a story."""
 
     task: str
     seconds: float

@@ -51,12 +51,12 @@ STAMP = "2026-11-22T03:10:05.000+00:00"
 FAR = (-5000.0,) * 72
 
 
-def nobody(scene: Scene, record: TickRecord) -> None:
-    """Says nothing to the robot."""
+def untaught(scene: Scene, record: TickRecord) -> None:
+    """Send no command to the robot."""
 
 
 def taught_at_once(scene: Scene, record: TickRecord) -> None:
-    """Told to go on as soon as it runs, and answered whenever it asks."""
+    """Resume as soon as the robot runs, and answer each question."""
     if record.tick % 5 == 0:
         scene.runtime.inbox.put(Watch(NAME, record.tick))
     answer = scene.teacher.update(view_of_tick(record))
@@ -68,12 +68,12 @@ def taught_at_once(scene: Scene, record: TickRecord) -> None:
 
 
 def quietly(run: str, done_s: float, whole_s: float) -> None:
-    """Nobody watches the progress."""
+    """Ignore the progress."""
 
 
 @pytest.fixture(scope="module")
 def recordings(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with one run of five seconds, in which a robot was taught to follow a wall."""
+    """Return a folder with one run of five seconds, in which a robot was taught to follow a wall."""
     folder = tmp_path_factory.mktemp("runs")
     record_story("walls", folder, seconds=5, other=taught_at_once).rename(folder / "20260320T094640Z-wall_following")
     return folder
@@ -81,7 +81,7 @@ def recordings(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def lessons(recordings: Path) -> list[TeachingEvent]:
-    """What it knew at its end."""
+    """Return the lessons of the run."""
     (path,) = recordings.iterdir()
     replay = Replay(read_run(path))
     for entry in replay.run.entries():
@@ -90,14 +90,14 @@ def lessons(recordings: Path) -> list[TeachingEvent]:
 
 
 def unneeded(lessons: list[TeachingEvent], number: int = 1) -> RlaCreated:
-    """An RLA so far off that nothing ever came near it."""
+    """Return the creation of an RLA that is far from every situation of the run."""
     new_id = max(event.rla.rla_id for event in lessons if isinstance(event, RlaCreated)) + number
     return RlaCreated(Rla(new_id, FAR, "forward", None, Origin(f"far-{number}", "Ann", Phase.SUPERVISED, 1)))
 
 
 @pytest.fixture
 def knowledge(tmp_path: Path, lessons: list[TeachingEvent]) -> Path:
-    """What was taught in the run, and two RLAs that nobody needs."""
+    """Return a knowledge file with the run's lessons and two unneeded RLAs."""
     path = tmp_path / "walls.knowledge"
     with open_knowledge(path, load_robot(), load_task("wall_following")) as journal:
         far = unneeded(lessons), unneeded(lessons, 2)
@@ -146,7 +146,7 @@ def test_each_rla_that_is_left_is_needed(knowledge: Path, recordings: Path) -> N
 def test_a_robot_that_only_stood_proves_nothing(knowledge: Path, recordings: Path, tmp_path: Path) -> None:
     before = folded(knowledge)
     folder = tmp_path / "runs"
-    stood = record_story("walls", folder, seconds=1, other=nobody)
+    stood = record_story("walls", folder, seconds=1, other=untaught)
     stood.rename(folder / "20260320T084640Z-wall_following")
     with refused(KnowledgeCode.NOTHING_DROVE, runs=1):
         compacted(knowledge, folder)
@@ -159,7 +159,7 @@ def test_a_robot_that_only_stood_proves_nothing(knowledge: Path, recordings: Pat
     assert note.endswith("20260320T084640Z-wall_following: nothing drove in it, so it proves nothing")
 
 
-def test_a_robot_that_runs_and_a_folder_without_runs_change_nothing(
+def test_compaction_of_running_robot_or_without_runs_is_refused(
     knowledge: Path, recordings: Path, tmp_path: Path
 ) -> None:
     with Journal.read_only(knowledge) as look:
@@ -205,7 +205,7 @@ def test_an_undo_is_tried_before_it_is_made(knowledge: Path, recordings: Path, l
 
 @pytest.fixture
 def runs(recordings: Path, tmp_path: Path) -> Path:
-    """A folder of recordings of one's own, which holds the run."""
+    """Return a copy of the recordings, which the test may change."""
     return Path(shutil.copytree(recordings, tmp_path / "runs"))
 
 
@@ -214,7 +214,7 @@ def test_the_newest_run_is_tried_that_can_be(knowledge: Path, runs: Path) -> Non
         binding = journal.binding
     assert newest_compatible_run(runs / "nowhere", binding, knowledge).runs == ()
     assert newest_compatible_run(runs, replace(binding, feature_hash="another"), knowledge).runs == ()
-    stood = record_story("walls", runs, seconds=1, other=nobody).rename(runs / "20260321T094640Z-wall_following")
+    stood = record_story("walls", runs, seconds=1, other=untaught).rename(runs / "20260321T094640Z-wall_following")
     truncated = runs / "20260322T114640Z-torn"
     truncated.mkdir()
     (truncated / "0001.mcap").write_bytes(b"nonsense")
@@ -240,7 +240,7 @@ def test_a_run_of_another_kurt2rt_stands_in_no_undos_way(knowledge: Path, runs: 
         assert note.startswith(f"{newer}: its settings cannot be used by this kurt2rt: ")
 
 
-def test_of_a_long_run_the_end_is_tried_and_of_a_very_long_one_nothing(knowledge: Path, recordings: Path) -> None:
+def test_preview_of_a_long_run_tries_its_end_of_a_very_long_none(knowledge: Path, recordings: Path) -> None:
     planned = plan_undo(knowledge, taught_by="scripted teacher", teacher="Ann")
     (whole,) = preview(planned, recordings, quietly).runs
     (end,) = preview_on_newest(planned, recordings, quietly, last_s=1.0).runs
@@ -281,7 +281,7 @@ def read_anew(run: Path, reader: Callable[[Path], SegmentReader]) -> None:
     whole.unlink()
 
 
-def test_of_a_run_with_a_gap_the_end_before_it_is_tried_and_the_rest_is_told(knowledge: Path, runs: Path) -> None:
+def test_preview_of_a_run_with_a_gap_tries_the_part_before_it(knowledge: Path, runs: Path) -> None:
     planned = plan_undo(knowledge, taught_by="scripted teacher", teacher="Ann")
     (whole,) = preview(planned, runs, quietly).runs
     (run,) = runs.iterdir()
@@ -300,7 +300,7 @@ def test_of_a_run_with_a_gap_the_end_before_it_is_tried_and_the_rest_is_told(kno
     assert (short.from_s, short.found.ticks) == (0.0, 400)
 
 
-def test_while_the_newest_run_of_a_file_is_looked_for_no_other_is_kept_in_memory(
+def test_search_for_the_newest_run_keeps_one_run_in_memory(
     knowledge: Path, runs: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (own,) = runs.iterdir()
@@ -336,7 +336,7 @@ class Retold(SegmentReader):
             yield record
 
 
-def test_a_run_of_an_earlier_kurt2rt_belongs_to_the_file_below_whose_folder_it_lies(
+def test_run_of_an_earlier_kurt2rt_belongs_to_its_folders_file(
     knowledge: Path, runs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (own,) = runs.iterdir()
@@ -378,12 +378,12 @@ def test_a_run_that_cannot_be_read_is_left_out_and_told(knowledge: Path, recordi
 
 @pytest.fixture
 def kurt2rt(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path: Path) -> CommandLine:
-    """The command line, in a temporary folder."""
+    """Return the command line, in a temporary folder."""
     monkeypatch.chdir(tmp_path)
     return CommandLine(monkeypatch, capfd)
 
 
-def test_an_undo_shows_on_the_newest_run_of_the_file_what_it_changes(
+def test_undo_previews_its_changes_on_the_files_newest_run(
     kurt2rt: CommandLine, knowledge: Path, recordings: Path
 ) -> None:
     assert kurt2rt("run", "--seconds", "0.3", "--teacher", "none", "--knowledge", knowledge).exit_code == 0
@@ -436,7 +436,7 @@ def test_an_undo_whose_standard_input_was_closed_asks_nobody(knowledge: Path, mo
 
 
 class Typed(io.StringIO):
-    """What a user types at a terminal."""
+    """Standard input that a user types at a terminal."""
 
     def isatty(self) -> bool:
         return True
@@ -469,9 +469,7 @@ def test_a_compaction_on_the_command_line(kurt2rt: CommandLine, knowledge: Path,
     assert "holds no recorded run" in kurt2rt.refused("knowledge", "compact", knowledge, "--runs", "nowhere")
 
 
-def test_an_undo_that_is_not_agreed_to_leaves_nothing_beside_the_knowledge(
-    kurt2rt: CommandLine, knowledge: Path
-) -> None:
+def test_declined_undo_leaves_no_files_next_to_the_knowledge(kurt2rt: CommandLine, knowledge: Path) -> None:
     given = Path("given") / "mine.knowledge"  # from elsewhere: no robot has run on it here
     given.parent.mkdir()
     shutil.copy(knowledge, given)
@@ -501,7 +499,7 @@ def test_of_a_run_without_a_gap_each_tick_is_decoded_once(
     assert {number for number, times in looked_at.items() if times > 1} == {1, 500}  # where it begins and ends
 
 
-def test_an_undo_where_nothing_can_be_written_is_refused_before_it_is_tried(
+def test_undo_in_unwritable_folder_is_refused_before_the_preview(
     kurt2rt: CommandLine, knowledge: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     given = Path("given") / "mine.knowledge"

@@ -25,7 +25,7 @@ ORIGIN = Origin("later", "Ann", Phase.CORRECTIONS, 5)
 
 
 def of_every_story(first: str, seconds: float) -> pytest.MarkDecorator:
-    """The beginning of one; all of it, and of the others, in the deep suite."""
+    """Parametrize with the beginning of one story; the deep suite adds every whole story."""
     whole = [pytest.param(name, 44.0, marks=pytest.mark.deep) for name in NAMES]
     return pytest.mark.parametrize(("name", "seconds"), [(first, seconds), *whole])
 
@@ -77,7 +77,7 @@ def test_counterfactual_skips_teacher_driving_and_stops(lessons: dict[str, list[
     assert counterfactual(run, CounterfactualPolicy(run, lessons["walls"])).decided == 1600 - stood
 
 
-def test_a_corrected_rla_is_named_where_it_would_have_driven_otherwise(
+def test_counterfactual_stretches_name_the_corrected_rla(
     lessons: dict[str, list[TeachingEvent]],
 ) -> None:
     run = stored("walls", 12)
@@ -136,7 +136,7 @@ def test_recorded_answer_is_the_decision_despite_a_later_lesson(name: str, secon
 
 
 def test_recorded_answer_keeps_an_action_withdrawn_in_its_tick() -> None:
-    """As a critic does it: the action drives, is found bad, and is gone behind the same tick."""
+    """A critic withdraws the action at the end of the tick that it drove."""
     run = stored("walls")
     replay = Replay(run)
     for _entry, record in replay:

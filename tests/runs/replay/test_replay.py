@@ -33,7 +33,7 @@ HERE = Path(__file__).parents[3]
 
 
 def differences(run: Run) -> tuple[int, list[str]]:
-    """How many ticks were compared, and the first differences."""
+    """Return the number of compared ticks, and the first differences."""
     ticks, found = 0, []
     for entry, record in Replay(run):
         ticks += 1
@@ -106,7 +106,7 @@ def test_verify_missing_lesson_is_the_first_difference() -> None:
     assert f"tick {entry.tick}" in str(first[0])
 
 
-def test_a_zero_of_another_sign_is_a_difference_and_so_is_a_truth_for_a_number() -> None:
+def test_replay_tells_zeros_by_sign_and_booleans_from_numbers() -> None:
     """Both are equal for Python, and not what was recorded."""
     entry, record = next(iter(Replay(stored("walls"))))
     still = entry.decision._replace(wheel_speeds=WheelSpeeds(-0.0, 0.0))
@@ -129,11 +129,11 @@ def test_the_runtime_is_as_it_was_at_a_time() -> None:
 
 @pytest.fixture(scope="module")
 def fresh(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run that was recorded just now, as the robot program does it."""
+    """Return a run that was recorded just now, as the robot program records it."""
     return record_story("walls", tmp_path_factory.mktemp("runs"), seconds=6)
 
 
-def test_a_run_that_was_just_recorded_is_replayed_from_its_folder(fresh: Path) -> None:
+def test_run_just_recorded_is_replayed_from_its_folder(fresh: Path) -> None:
     run = read_run(fresh)
     assert differences(run) == (600, [])
     (segment,) = segments_in(fresh)
@@ -210,7 +210,7 @@ def test_a_stop_among_the_commands_stays_where_it_was() -> None:
 
 
 def follow_the_wall(scene: Scene, record: TickRecord) -> None:
-    """An action that was taught itself drives, and is lost now and then."""
+    """Drive by a taught action, which is lost now and then."""
     scene.runtime.inbox.put(Watch(NAME, record.tick))
     if record.tick == 20:
         scene.say(lambda name: Resume(name, NAME))
@@ -218,7 +218,7 @@ def follow_the_wall(scene: Scene, record: TickRecord) -> None:
         scene.say(lambda name: Teach(name, NAME, "follow" if record.tick < 300 else "curve_left"))
 
 
-def test_actions_that_were_taught_themselves_are_kept_with_the_run(tmp_path: Path) -> None:
+def test_taught_actions_are_stored_with_the_run(tmp_path: Path) -> None:
     task = load_task("wall_following")
     mine = tmp_path / "mine"
     mine.mkdir()

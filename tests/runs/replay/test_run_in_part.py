@@ -25,7 +25,7 @@ def late(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return run
 
 
-def test_one_without_its_beginning_cannot_be_replayed_and_says_since_when_it_is_there(late: Path) -> None:
+def test_run_without_its_beginning_is_refused_with_first_tick(late: Path) -> None:
     first = next(read_run(late, partial=True).partial_entries()).number
     with pytest.raises(
         RecordingError, match=rf"is there from its tick {first} on; .* raise recordings_mb for the next"
@@ -50,7 +50,7 @@ def with_gaps(run: Run, *lost: range) -> Run:
     return Run("a run with gaps", run.head, run._attachments, RunSource(read))
 
 
-def test_a_timeline_goes_on_behind_a_gap_and_does_not_call_it_missed_ticks() -> None:
+def test_timeline_goes_on_after_a_gap_and_counts_it_unrecorded() -> None:
     run = with_gaps(read_run(STORED / "walls.mcap"), range(201, 204), range(1000, 1101))
     timeline = build_timeline(run.partial_entries(), run.robot)
     assert (timeline.ticks, timeline.missed, timeline.unrecorded) == (4400 - 104, 0, 104)

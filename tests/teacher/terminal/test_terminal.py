@@ -303,7 +303,7 @@ async def test_restarted_robot_is_taken_unless_it_has_a_teacher(pairing: Pairing
         await first_start.aclose()
         console.clock.ahead_s += 2.0
         await console.reads("the robot is silent")
-        async with stand_in_robot(teachers, port=robot.port, boot=b"anew", showing=False) as robot:
+        async with stand_in_robot(teachers, port=robot.port, boot=b"new!", showing=False) as robot:
             robot.mind = RobotStub()
             robot.show(teacher=teacher)
             robot.showing = True
