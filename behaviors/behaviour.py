@@ -22,6 +22,6 @@ class Behaviour(Protocol):
         """Reset the state, in the tick in which this action takes over the wheels."""
         ...
 
-    def step(self, senses: SensorReadings) -> WheelSpeeds:
+    def step(self, readings: SensorReadings) -> WheelSpeeds:
         """Return the wheel speeds in m/s for this tick; called once per tick while active."""
         ...

@@ -41,10 +41,10 @@ class KeepDistance:
     def start(self) -> None:
         """Do nothing: the loop has no state."""
 
-    def step(self, senses: SensorReadings) -> WheelSpeeds:
+    def step(self, readings: SensorReadings) -> WheelSpeeds:
         """Return wheel speeds in m/s that steer towards the set distance and parallel to the wall."""
-        front_m = self._infrared.distance_m(senses.infrared_counts[self._front])
-        back_m = self._infrared.distance_m(senses.infrared_counts[self._back])
+        front_m = self._infrared.distance_m(readings.infrared_counts[self._front])
+        back_m = self._infrared.distance_m(readings.infrared_counts[self._back])
         too_far_m = 0.5 * (front_m + back_m) - self._distance_m
         turned_away = (front_m - back_m) / self._baseline_m
         steer = self._towards_left * (self._gain_per_m * too_far_m + turned_away)

@@ -15,6 +15,6 @@ class MotorPrimitive:
     def start(self) -> None:
         """Do nothing: a motor primitive has no state."""
 
-    def step(self, senses: SensorReadings) -> WheelSpeeds:  # noqa: ARG002 - a motor primitive looks at nothing
+    def step(self, readings: SensorReadings) -> WheelSpeeds:  # noqa: ARG002 - a motor primitive looks at nothing
         """Return the fixed wheel speeds in m/s."""
         return self._wheel_speeds

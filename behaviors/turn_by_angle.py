@@ -28,9 +28,9 @@ class TurnByAngle:
         """Restart the turn at 0 degrees."""
         self._turned_m = 0.0
 
-    def step(self, senses: SensorReadings) -> WheelSpeeds:
+    def step(self, readings: SensorReadings) -> WheelSpeeds:
         """Return the turning speeds in m/s until the wheels have rolled the arc, then standstill."""
         # Signed: a robot that still swings the other way has more to turn.
-        difference = self._sign * (senses.encoder_right_ticks - senses.encoder_left_ticks)
+        difference = self._sign * (readings.encoder_right_ticks - readings.encoder_left_ticks)
         self._turned_m += 0.5 * difference * self._metres_per_tick
         return STANDSTILL if self.finished else self._turning

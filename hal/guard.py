@@ -75,7 +75,7 @@ class Guard:
         """Text of the newest sending error; empty if there was none since the last release."""
         return self._bus_trouble
 
-    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
+    def drive(self, wanted: WheelSpeeds, readings: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         """Send one CONTROL frame with what is safe of `wanted`; speeds in m/s, times in s on the runtime's clock.
 
         The applied speeds are those in the frame: truncated to its resolution, which needs no reason. No set
@@ -90,9 +90,9 @@ class Guard:
             if self._latched is not None:
                 return self._stay_stopped(self._latched)
             left_m_s, right_m_s = wanted
-            stand = self._reason_to_stand(left_m_s, right_m_s, senses, decided_at_s, now_s)
+            stand = self._reason_to_stand(left_m_s, right_m_s, readings, decided_at_s, now_s)
             if stand is None:
-                reasons = self._limit(left_m_s, right_m_s, senses.bumpers, now_s)
+                reasons = self._limit(left_m_s, right_m_s, readings.bumpers, now_s)
             else:
                 reasons = (stand,)
                 self._left_m_s = self._right_m_s = 0.0
@@ -126,22 +126,22 @@ class Guard:
             self._bus_trouble = ""
 
     def _reason_to_stand(
-        self, left_m_s: float, right_m_s: float, senses: SensorReadings, decided_at_s: float, now_s: float
+        self, left_m_s: float, right_m_s: float, readings: SensorReadings, decided_at_s: float, now_s: float
     ) -> GuardReason | None:
         if not (math.isfinite(left_m_s) and math.isfinite(right_m_s)):
             return GuardReason.NOT_A_NUMBER
-        sensed_ago_s = now_s - senses.time_s
+        sensed_ago_s = now_s - readings.time_s
         decided_ago_s = now_s - decided_at_s
         if not (now_s >= self._driven_at_s and sensed_ago_s >= 0.0 and decided_ago_s >= 0.0):
             return GuardReason.CLOCK_RAN_BACKWARDS
         if not decided_ago_s <= self._command_age_s:
             return GuardReason.COMMAND_TOO_OLD
-        # Nor is a frame from after the senses a fresh one.
-        if not sensed_ago_s <= sensed_ago_s + senses.infrared_age_s <= self._stale_infrared_s:
+        # Nor is a frame from after the readings a fresh one.
+        if not sensed_ago_s <= sensed_ago_s + readings.infrared_age_s <= self._stale_infrared_s:
             return GuardReason.INFRARED_STALE
-        if not sensed_ago_s <= sensed_ago_s + senses.encoder_age_s <= self._stale_encoder_s:
+        if not sensed_ago_s <= sensed_ago_s + readings.encoder_age_s <= self._stale_encoder_s:
             return GuardReason.ENCODER_STALE
-        if not sensed_ago_s <= sensed_ago_s + senses.bumper_age_s <= self._stale_bumper_s:
+        if not sensed_ago_s <= sensed_ago_s + readings.bumper_age_s <= self._stale_bumper_s:
             return GuardReason.BUMPER_STALE
         return None
 

@@ -62,7 +62,7 @@ class Kurt2:
         self._counts = [0] * len(channels)
         self._bumpers = 0
         self._encoder_at_s = self._bumpers_at_s = -math.inf
-        self._senses = SensorReadings(-math.inf, tuple(self._counts), math.inf, 0, 0, math.inf, 0, math.inf)
+        self._readings = SensorReadings(-math.inf, tuple(self._counts), math.inf, 0, 0, math.inf, 0, math.inf)
         self._command = STANDSTILL
         self._bus_lost = self._closed = False
         self._reopen_at_s = math.inf
@@ -76,11 +76,11 @@ class Kurt2:
 
         A frame is as old as its time stamp says; where the bus has no clock it arrived at `now_s`. A frame with junk
         in it, or from the future, changes nothing, not even its age: a channel that stays broken becomes stale, and
-        the guard stands. A lost bus raises nothing; the senses age. What must stop the robot at once does so here.
+        the guard stands. A lost bus raises nothing; the readings age. What must stop the robot at once does so here.
         """
         messages, bus_now_s = self._drain(now_s)
-        paused = now_s - self._senses.time_s > self._pause_s
-        if now_s < self._senses.time_s:
+        paused = now_s - self._readings.time_s > self._pause_s
+        if now_s < self._readings.time_s:
             self._forget_ages()
         left_ticks = right_ticks = encoder_frames = error_frames = foreign_control = 0
         changed = bus_off = False
@@ -126,9 +126,9 @@ class Kurt2:
             self._bus_state.note_traffic()
         self._foreign_control += foreign_control
         infrared_at_s = min([analog.received_at_s for analog in self._analog.values()])
-        self._senses = SensorReadings(
+        self._readings = SensorReadings(
             now_s,
-            tuple(self._counts) if changed else self._senses.infrared_counts,
+            tuple(self._counts) if changed else self._readings.infrared_counts,
             now_s - infrared_at_s,
             left_ticks,
             right_ticks,
@@ -137,14 +137,14 @@ class Kurt2:
             now_s - self._bumpers_at_s,
         )
         self._sound_alarms(encoder_frames, foreign_control, bus_off=bus_off, paused=paused)
-        return self._senses
+        return self._readings
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
-        """Ask for wheel speeds in m/s; what is safe by the newest senses goes out in this tick's CONTROL frame."""
+        """Ask for wheel speeds in m/s; what is safe by the newest readings goes out in this tick's CONTROL frame."""
         if self.watchdog.ticks_ceased:
             # The loop came back before the watchdog's thread did; its beat must not hide the gap.
             self._guard.emergency_stop(GuardReason.TICKS_CEASED)
-        result = self._guard.drive(wanted, self._senses, decided_at_s, now_s)
+        result = self._guard.drive(wanted, self._readings, decided_at_s, now_s)
         self._command = result.wheel_speeds
         self._wheel_watch.set_command(result.wheel_speeds)
         self.watchdog.beat()
@@ -187,12 +187,12 @@ class Kurt2:
         )
 
     def _sound_alarms(self, encoder_frames: int, foreign_control: int, *, bus_off: bool, paused: bool) -> None:
-        """Stop for what the newest senses show.
+        """Stop for what the newest readings show.
 
         `bus_off`: the bus was off since the last ones, if only for a moment. `paused`: the loop neither sensed nor
         drove for long, so the frames of the pause came at once.
         """
-        senses = self._senses
+        readings = self._readings
         if bus_off or self._bus_state.off:
             self._stop(GuardReason.BUS_OFF)
         if foreign_control:
@@ -200,14 +200,14 @@ class Kurt2:
                 GuardReason.FOREIGN_CONTROL, f"bus {self._bus.name}: another node sends CONTROL; find and end it"
             )
         disobedience = self._wheel_watch.check(
-            senses.encoder_left_ticks, senses.encoder_right_ticks, encoder_frames, senses.time_s
+            readings.encoder_left_ticks, readings.encoder_right_ticks, encoder_frames, readings.time_s
         )
         if disobedience:
             self._stop(
                 GuardReason.WHEELS_DISOBEY,
                 f"{disobedience}; check motors, encoders, cables; switch the robot off and on",
             )
-        freeze = self._infrared_watch.check_frozen(senses.time_s, driving=self._command != STANDSTILL and not paused)
+        freeze = self._infrared_watch.check_frozen(readings.time_s, driving=self._command != STANDSTILL and not paused)
         if freeze:
             self._stop(GuardReason.INFRARED_FROZEN, freeze)
 

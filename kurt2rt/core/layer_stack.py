@@ -29,19 +29,19 @@ class LayerStack:
         self.navigator = navigator
         self._before = Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, None)
 
-    def decide(self, situation: Situation, senses: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:
+    def decide(self, situation: Situation, readings: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:
         """Return the basic level's decision for the mid level's command; the robot stands while the mid level asks."""
-        commanded = self.mid.decide(senses, self._before)
+        commanded = self.mid.decide(readings, self._before)
         navigator = self.navigator
         if navigator is not None:
             navigator.step()
         if commanded.asks:
-            decision = self._decide_below(situation, senses, blocking_cause or DecisionCause.UNKNOWN)
+            decision = self._decide_below(situation, readings, blocking_cause or DecisionCause.UNKNOWN)
             self._before = decision._replace(match=commanded.match, asks_at=MID, mid=commanded)
         else:
             if navigator is not None and not self.mid.overridden:
                 blocking_cause = blocking_cause or _STANDS.get(navigator.standing_status)
-            decision = self._decide_below(situation, senses, blocking_cause)
+            decision = self._decide_below(situation, readings, blocking_cause)
             self._before = decision._replace(mid=commanded)
         if navigator is not None and navigator.step is not None:
             self._before = self._before._replace(plan=navigator.status)
@@ -52,6 +52,6 @@ class LayerStack:
         self.mid.restart()
 
     def _decide_below(
-        self, situation: Situation, senses: SensorReadings, blocking_cause: DecisionCause | None
+        self, situation: Situation, readings: SensorReadings, blocking_cause: DecisionCause | None
     ) -> Decision:
-        return stopped(self.basic.decide(situation, senses, blocking_cause), blocking_cause)
+        return stopped(self.basic.decide(situation, readings, blocking_cause), blocking_cause)

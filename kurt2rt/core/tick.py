@@ -60,7 +60,7 @@ class TickRecord(NamedTuple):
 
     tick: int
     now_s: float
-    senses: SensorReadings
+    readings: SensorReadings
     situation: Situation
     decision: Decision
     guard_result: GuardResult
@@ -322,7 +322,7 @@ class Tick:
         return TickRecord(
             tick=tick,
             now_s=now_s,
-            senses=readings,
+            readings=readings,
             situation=view.situation,
             decision=decision,
             guard_result=motion.result,

@@ -24,7 +24,7 @@ def test_load_repertoire_builds_kinds_in_file_order() -> None:
     assert type(repertoire["quarter_turn_left"]) is TurnByAngle
 
 
-def test_motor_primitive_ignores_the_senses() -> None:
+def test_motor_primitive_ignores_the_readings() -> None:
     curve = load_repertoire("basic", ROBOT)["curve_left"]
     for infrared_counts in (counts(), counts(s9=0.1), (0,) * 18, (1023,) * 18):
         curve.start()

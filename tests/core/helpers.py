@@ -27,7 +27,7 @@ class Counted:
         self.starts += 1
         self.steps = 0
 
-    def step(self, senses: SensorReadings) -> WheelSpeeds:  # noqa: ARG002 - it looks at nothing
+    def step(self, readings: SensorReadings) -> WheelSpeeds:  # noqa: ARG002 - it looks at nothing
         self.steps += 1
         return WheelSpeeds(0.001 * self.steps, 0.001 * self.steps)
 

@@ -35,7 +35,7 @@ class Symbols:
         self.looked = 0
         self.befores: list[Decision] = []
 
-    def perceive(self, senses: SensorReadings, before: Decision) -> bool:  # noqa: ARG002 - it looks at nothing
+    def perceive(self, readings: SensorReadings, before: Decision) -> bool:  # noqa: ARG002 - it looks at nothing
         self.befores.append(before)
         symbol, self.next = self.next, None
         self.passed = None if symbol is None else STRAIGHT

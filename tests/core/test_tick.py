@@ -85,7 +85,7 @@ class Corridor:
         self.robot = CorridorRobot()
         self.notebook = InMemoryEventStore()
         self.held_up_s = 0.0
-        """How long a tick hangs between its senses and its frame."""
+        """How long a tick hangs between its readings and its frame."""
         repertoire: dict[str, Behaviour] = {"forward": MotorPrimitive(FORWARD), "back": MotorPrimitive(BACK)}
         small = definition((*READINGS, *WHEELS), scale=10)
         self.system = RlaSystem(small.dimensions, RADIUS, np.repeat((1.0, PAST_WEIGHT), small.dimensions // 2))
@@ -297,7 +297,7 @@ def test_tick_resume_from_before_emergency_stop_is_refused(driving: Corridor) ->
 
 
 def test_tick_resume_keeps_emergency_stop_of_its_own_tick(driving: Corridor) -> None:
-    driving.robot.emergency_stop(GuardReason.OTHER)  # as the senses of the next tick do
+    driving.robot.emergency_stop(GuardReason.OTHER)  # as the readings of the next tick do
     assert driving.run(100, resume("said before")).guard_result.latched
     assert not driving.run(100, resume("after a look")).guard_result.latched
 

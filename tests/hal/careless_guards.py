@@ -46,31 +46,33 @@ def at_the(end: BumperEnd) -> Callable[[BumperSettings], BumperSettings]:
 
 
 class TakesNoneForZero(Guard):
-    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
+    def drive(self, wanted: WheelSpeeds, readings: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         number = WheelSpeeds(*(speed if math.isfinite(speed) else 0.1 for speed in wanted))
-        return super().drive(number, senses, decided_at_s, now_s)
+        return super().drive(number, readings, decided_at_s, now_s)
 
 
 class TakesNoTimeForFresh(Guard):
-    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
-        ages = [0.0 if math.isnan(age) else age for age in (senses.infrared_age_s, senses.encoder_age_s)]
-        known = senses._replace(infrared_age_s=ages[0], encoder_age_s=ages[1])
+    def drive(self, wanted: WheelSpeeds, readings: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
+        ages = [0.0 if math.isnan(age) else age for age in (readings.infrared_age_s, readings.encoder_age_s)]
+        known = readings._replace(infrared_age_s=ages[0], encoder_age_s=ages[1])
         return super().drive(wanted, known, decided_at_s, now_s)
 
 
 class TakesAnyAgeBelowForFresh(Guard):
-    """Takes frames for fresh that came, by their times, after the senses."""
+    """Takes frames for fresh that came, by their times, after the readings."""
 
-    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
-        ages = senses.infrared_age_s, senses.encoder_age_s, senses.bumper_age_s
+    def drive(self, wanted: WheelSpeeds, readings: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
+        ages = readings.infrared_age_s, readings.encoder_age_s, readings.bumper_age_s
         infrared, encoder, bumper = (0.0 if age < 0.0 else age for age in ages)
-        aged = senses._replace(infrared_age_s=infrared, encoder_age_s=encoder, bumper_age_s=bumper)
+        aged = readings._replace(infrared_age_s=infrared, encoder_age_s=encoder, bumper_age_s=bumper)
         return super().drive(wanted, aged, decided_at_s, now_s)
 
 
 class TrustsTheFuture(Guard):
-    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
-        return super().drive(wanted, senses._replace(time_s=min(now_s, senses.time_s)), min(now_s, decided_at_s), now_s)
+    def drive(self, wanted: WheelSpeeds, readings: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
+        return super().drive(
+            wanted, readings._replace(time_s=min(now_s, readings.time_s)), min(now_s, decided_at_s), now_s
+        )
 
 
 class NeverLooksBack(Guard):
@@ -78,17 +80,17 @@ class NeverLooksBack(Guard):
 
     latest_s = -math.inf
 
-    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
+    def drive(self, wanted: WheelSpeeds, readings: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         ahead_s = max(0.0, self.latest_s - now_s) if math.isfinite(now_s) else 0.0
         self.latest_s = max(self.latest_s, now_s) if math.isfinite(now_s) else self.latest_s
-        shifted = senses._replace(time_s=senses.time_s + ahead_s)
+        shifted = readings._replace(time_s=readings.time_s + ahead_s)
         return super().drive(wanted, shifted, decided_at_s + ahead_s, now_s + ahead_s)
 
 
 class Forgetful(Guard):
-    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
+    def drive(self, wanted: WheelSpeeds, readings: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         self.release()
-        return super().drive(wanted, senses, decided_at_s, now_s)
+        return super().drive(wanted, readings, decided_at_s, now_s)
 
 
 class BelievesTheLast(Guard):
@@ -103,11 +105,11 @@ class StopsAtTheNextTick(Guard):
     def emergency_stop(self, reason: GuardReason) -> None:
         self.due = self.due or reason
 
-    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
+    def drive(self, wanted: WheelSpeeds, readings: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         if self.due is not None:
             super().emergency_stop(self.due)
             self.due = None
-        return super().drive(wanted, senses, decided_at_s, now_s)
+        return super().drive(wanted, readings, decided_at_s, now_s)
 
 
 class IgnoresTheWatchdog(Guard):
@@ -121,8 +123,8 @@ class ReleasesItself(Guard):
 
     why = GuardReason.BUS_LOST
 
-    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
-        grant = super().drive(wanted, senses, decided_at_s, now_s)
+    def drive(self, wanted: WheelSpeeds, readings: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
+        grant = super().drive(wanted, readings, decided_at_s, now_s)
         if self.latched == self.why:
             self.release()
         return grant
@@ -138,40 +140,40 @@ class NeverReleases(Guard):
 
 
 class SaysTwice(Guard):
-    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
-        super().drive(wanted, senses, decided_at_s, now_s)
-        return super().drive(wanted, senses, decided_at_s, now_s)
+    def drive(self, wanted: WheelSpeeds, readings: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
+        super().drive(wanted, readings, decided_at_s, now_s)
+        return super().drive(wanted, readings, decided_at_s, now_s)
 
 
 class SaysOtherThanItDoes(Guard):
-    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
-        grant = super().drive(wanted, senses, decided_at_s, now_s)
+    def drive(self, wanted: WheelSpeeds, readings: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
+        grant = super().drive(wanted, readings, decided_at_s, now_s)
         return grant if grant.latched else grant._replace(wheel_speeds=wanted)
 
 
 class GivesNoReasons(Guard):
-    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
-        return super().drive(wanted, senses, decided_at_s, now_s)._replace(reasons=())
+    def drive(self, wanted: WheelSpeeds, readings: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
+        return super().drive(wanted, readings, decided_at_s, now_s)._replace(reasons=())
 
 
 class NeverMoves(Guard):
-    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
-        return super().drive(WheelSpeeds(*(0.0 for _ in wanted)), senses, decided_at_s, now_s)
+    def drive(self, wanted: WheelSpeeds, readings: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
+        return super().drive(WheelSpeeds(*(0.0 for _ in wanted)), readings, decided_at_s, now_s)
 
 
 class DrivesTheOtherWay(Guard):
-    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
-        return super().drive(WheelSpeeds(-wanted[0], -wanted[1]), senses, decided_at_s, now_s)
+    def drive(self, wanted: WheelSpeeds, readings: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
+        return super().drive(WheelSpeeds(-wanted[0], -wanted[1]), readings, decided_at_s, now_s)
 
 
 class DrivesBackBeforeItRests(Guard):
     """A wheel turns the other way without having come to rest."""
 
-    def drive(self, wanted: WheelSpeeds, senses: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
+    def drive(self, wanted: WheelSpeeds, readings: SensorReadings, decided_at_s: float, now_s: float) -> GuardResult:
         reverses = any(speed * was < 0.0 for speed, was in zip(wanted, self.was, strict=True))
         if reverses and self.latched is None:
-            super().drive(WheelSpeeds(0.0, 0.0), senses, decided_at_s, now_s)
-        grant = super().drive(wanted, senses, decided_at_s, now_s)
+            super().drive(WheelSpeeds(0.0, 0.0), readings, decided_at_s, now_s)
+        grant = super().drive(wanted, readings, decided_at_s, now_s)
         self.was = grant.wheel_speeds
         return grant
 

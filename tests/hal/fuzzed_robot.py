@@ -88,7 +88,7 @@ class FuzzedRobot:
 
     def _judge(self, record: TickRecord) -> None:
         self.onlooker.judge(record.now_s, record.guard_result)
-        assert all(0 <= counts <= 1023 for counts in record.senses.infrared_counts)
+        assert all(0 <= counts <= 1023 for counts in record.readings.infrared_counts)
         orders = self.simulation.controller.commands
         assert math.isfinite(orders.left_m_s)
         assert math.isfinite(orders.right_m_s)

@@ -193,10 +193,10 @@ def _play_one(
         interrupted = True
         guard.emergency_stop(SIGNAL)
 
-    for tick, (wanted, senses, decided_at_s, now_s, watchdog_s, carries, hangs) in enumerate(
+    for tick, (wanted, readings, decided_at_s, now_s, watchdog_s, carries, hangs) in enumerate(
         zip(
             map(WheelSpeeds, streams.left_m_s[at].tolist(), streams.right_m_s[at].tolist()),
-            _senses(streams, at),
+            _readings(streams, at),
             streams.decided_at_s[at].tolist(),
             streams.now_s[at].tolist(),
             streams.watchdog_s[at].tolist(),
@@ -225,10 +225,10 @@ def _play_one(
         if eventful[tick]:
             end.interrupt = interrupt if streams.signal[at, tick] else None
             if streams.early_signal[at, tick]:
-                senses = InterruptedSenses(*senses)
-                senses.interrupt = interrupt_early
+                readings = InterruptedSenses(*readings)
+                readings.interrupt = interrupt_early
         waiting, first_of_drive = end.waiting, len(attempts)
-        grants.append(guard.drive(wanted, senses, decided_at_s, now_s))
+        grants.append(guard.drive(wanted, readings, decided_at_s, now_s))
         noted.append((first, first_of_drive, len(attempts), waiting, interrupted, guard.latched or ""))
         if eventful[tick]:
             end.refuses = interrupted = False
@@ -237,7 +237,7 @@ def _play_one(
     return guard.send_failures
 
 
-def _senses(streams: Streams, at: int) -> "map[SensorReadings]":
+def _readings(streams: Streams, at: int) -> "map[SensorReadings]":
     infrared_counts = (200,) * len(streams.robot.infrared.sensors)
     ticks = streams.shape[1]
     return map(

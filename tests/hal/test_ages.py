@@ -18,8 +18,8 @@ INFRARED, ENCODER, BUMPERS = slice(0, 5), slice(5, 6), slice(6, 7)
 def test_frames_of_this_moment_are_young(ride: Ride) -> None:
     assert ride.tick().reasons == ()
     ride.desk.arrive(*ride.frames())
-    senses = ride.kurt2.sense(ride.now_s)
-    assert (senses.infrared_age_s, senses.encoder_age_s, senses.bumper_age_s) == (0.0, 0.0, 0.0)
+    readings = ride.kurt2.sense(ride.now_s)
+    assert (readings.infrared_age_s, readings.encoder_age_s, readings.bumper_age_s) == (0.0, 0.0, 0.0)
 
 
 def test_frames_that_waited_are_as_old_as_their_stamps(ride: Ride) -> None:
@@ -28,8 +28,8 @@ def test_frames_that_waited_are_as_old_as_their_stamps(ride: Ride) -> None:
     ride.desk.arrive(*frames[INFRARED], ago_s=0.2)
     ride.desk.arrive(*frames[ENCODER], ago_s=0.3)
     ride.desk.arrive(*frames[BUMPERS], ago_s=0.4)
-    senses = ride.kurt2.sense(ride.now_s)
-    ages_s = (senses.infrared_age_s, senses.encoder_age_s, senses.bumper_age_s)
+    readings = ride.kurt2.sense(ride.now_s)
+    ages_s = (readings.infrared_age_s, readings.encoder_age_s, readings.bumper_age_s)
     assert ages_s == pytest.approx((0.2, 0.3, 0.4))
 
 
@@ -37,8 +37,8 @@ def test_of_several_the_newest_counts(ride: Ride) -> None:
     ride.sleep(1.0)
     for ago_s in (0.9, 0.5, 0.01):
         ride.desk.arrive(*ride.frames(), ago_s=ago_s)
-    senses = ride.kurt2.sense(ride.now_s)
-    ages_s = (senses.infrared_age_s, senses.encoder_age_s, senses.bumper_age_s)
+    readings = ride.kurt2.sense(ride.now_s)
+    ages_s = (readings.infrared_age_s, readings.encoder_age_s, readings.bumper_age_s)
     assert ages_s == pytest.approx((0.01, 0.01, 0.01))
 
 
@@ -90,8 +90,8 @@ def test_ages_after_clock_ran_backwards_are_infinite(ends: tuple[CanBus, CanBus]
     robot = Kurt2(ROBOT, ends[0])
     send(ends[1], cycle())
     robot.sense(1000.0)
-    senses = robot.sense(10.0)
-    assert senses.infrared_age_s == senses.encoder_age_s == senses.bumper_age_s == math.inf
+    readings = robot.sense(10.0)
+    assert readings.infrared_age_s == readings.encoder_age_s == readings.bumper_age_s == math.inf
     assert robot.drive(WheelSpeeds(0.3, 0.3), 10.0, 10.0).reasons == (GuardReason.INFRARED_STALE,)
     send(ends[1], cycle())
     assert robot.sense(10.0).infrared_age_s == 0.0

@@ -212,9 +212,9 @@ def test_an_error_frame_is_no_reading(ride: Ride) -> None:
     frame = error_frame(CODEC.message("ENCODER").frame_id, status=0x10, sending=99, receiving=99)
     ride.desk.arrive(frame)
     ride.sleep(TICK_S)
-    senses = ride.kurt2.sense(ride.now_s)
-    assert senses.encoder_left_ticks == senses.encoder_right_ticks == 0
-    assert senses.encoder_age_s == pytest.approx(before.encoder_age_s + TICK_S)
+    readings = ride.kurt2.sense(ride.now_s)
+    assert readings.encoder_left_ticks == readings.encoder_right_ticks == 0
+    assert readings.encoder_age_s == pytest.approx(before.encoder_age_s + TICK_S)
 
 
 def test_a_lost_bus_is_told_before_other_troubles(ride: Ride) -> None:

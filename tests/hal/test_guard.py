@@ -33,8 +33,8 @@ class Driver:
         self.now_s += TICK_S
         return self.tell(WheelSpeeds(left_m_s, right_m_s), fresh(self.now_s, bumpers))
 
-    def tell(self, wanted: WheelSpeeds, senses: SensorReadings, decided_ago_s: float = 0.0) -> GuardResult:
-        return self.guard.drive(wanted, senses, self.now_s - decided_ago_s, self.now_s)
+    def tell(self, wanted: WheelSpeeds, readings: SensorReadings, decided_ago_s: float = 0.0) -> GuardResult:
+        return self.guard.drive(wanted, readings, self.now_s - decided_ago_s, self.now_s)
 
     def drive_for(self, seconds: float, left_m_s: float, right_m_s: float) -> GuardResult:
         for _ in range(round(seconds / TICK_S)):
@@ -130,8 +130,8 @@ def test_a_robot_without_feeling_stands(
 
 
 def test_ages_within_the_limits_are_good_enough(driver: Driver) -> None:
-    senses = fresh(driver.now_s, 0, LIMITS.stale_infrared_s, LIMITS.stale_encoder_s, LIMITS.stale_bumper_s)
-    assert driver.tell(WheelSpeeds(0.01, 0.01), senses, decided_ago_s=0.0).wheel_speeds == (0.01, 0.01)
+    readings = fresh(driver.now_s, 0, LIMITS.stale_infrared_s, LIMITS.stale_encoder_s, LIMITS.stale_bumper_s)
+    assert driver.tell(WheelSpeeds(0.01, 0.01), readings, decided_ago_s=0.0).wheel_speeds == (0.01, 0.01)
 
 
 def test_a_robot_without_bumpers_does_not_wait_for_them(ends: Ends) -> None:
@@ -140,10 +140,10 @@ def test_a_robot_without_bumpers_does_not_wait_for_them(ends: Ends) -> None:
     assert grant == GuardResult(WheelSpeeds(0.01, 0.01), (), latched=False)
 
 
-def test_old_senses_are_as_stale_as_old_frames(driver: Driver) -> None:
-    senses = fresh(driver.now_s)
+def test_old_readings_are_as_stale_as_old_frames(driver: Driver) -> None:
+    readings = fresh(driver.now_s)
     driver.now_s += LIMITS.stale_infrared_s + 1e-6
-    assert driver.tell(WheelSpeeds(0.3, 0.3), senses).reasons == (GuardReason.INFRARED_STALE,)
+    assert driver.tell(WheelSpeeds(0.3, 0.3), readings).reasons == (GuardReason.INFRARED_STALE,)
 
 
 def test_the_limits_themselves_are_allowed(driver: Driver) -> None:
@@ -168,7 +168,7 @@ def test_a_clock_that_runs_backwards_stands_for_that_tick(driver: Driver) -> Non
     assert driver.drive(0.3, 0.3).wheel_speeds == (0.01, 0.01)
 
 
-def test_senses_or_commands_from_the_future_stand(driver: Driver) -> None:
+def test_readings_or_commands_from_the_future_stand(driver: Driver) -> None:
     wanted = WheelSpeeds(0.3, 0.3)
     assert driver.tell(wanted, fresh(driver.now_s + 1.0)).reasons == (GuardReason.CLOCK_RAN_BACKWARDS,)
     assert driver.tell(wanted, fresh(driver.now_s), decided_ago_s=-1.0).reasons == (GuardReason.CLOCK_RAN_BACKWARDS,)
@@ -245,7 +245,7 @@ def test_an_emergency_stop_brakes_at_once_and_lasts(driver: Driver) -> None:
 
 def test_a_signal_in_the_middle_of_a_decision_has_the_last_word(driver: Driver) -> None:
     class Interrupted(SensorReadings):
-        """A signal handler of the same thread runs while the guard reads the senses."""
+        """A signal handler of the same thread runs while the guard checks the readings."""
 
         @property
         def bumpers(self) -> int:

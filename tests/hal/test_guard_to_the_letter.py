@@ -25,11 +25,11 @@ def driver(ends: Ends) -> Driver:
 
 @pytest.mark.parametrize("age_s", [-0.5, -1e-6, -math.inf])
 @pytest.mark.parametrize("kind", range(3))
-def test_frames_from_after_the_senses_are_no_proof(driver: Driver, kind: int, age_s: float) -> None:
+def test_frames_from_after_the_readings_are_no_proof(driver: Driver, kind: int, age_s: float) -> None:
     ages_s = [age_s if at == kind else 0.0 for at in range(3)]
     reason = (GuardReason.INFRARED_STALE, GuardReason.ENCODER_STALE, GuardReason.BUMPER_STALE)[kind]
-    senses = fresh(driver.now_s, 0, *ages_s)
-    assert driver.tell(WheelSpeeds(0.3, 0.3), senses) == GuardResult(STANDSTILL, (reason,), latched=False)
+    readings = fresh(driver.now_s, 0, *ages_s)
+    assert driver.tell(WheelSpeeds(0.3, 0.3), readings) == GuardResult(STANDSTILL, (reason,), latched=False)
 
 
 def test_each_reason_is_told_beside_the_others(driver: Driver) -> None:

@@ -46,9 +46,9 @@ def test_it_is_a_robot(robot: Kurt2) -> None:
 
 def test_before_the_first_frame_it_is_blind_and_stands(robot: Kurt2, ends: Ends) -> None:
     assert robot.drive(WheelSpeeds(0.3, 0.3), 0.0, 0.0).wheel_speeds == STANDSTILL
-    senses = robot.sense(1.0)
-    assert senses.infrared_counts == (0,) * 18
-    assert senses.infrared_age_s == senses.encoder_age_s == senses.bumper_age_s == math.inf
+    readings = robot.sense(1.0)
+    assert readings.infrared_counts == (0,) * 18
+    assert readings.infrared_age_s == readings.encoder_age_s == readings.bumper_age_s == math.inf
     assert robot.drive(WheelSpeeds(0.3, 0.3), 1.0, 1.0).reasons == (GuardReason.INFRARED_STALE,)
     assert controls(ends[1])[-1] == SpeedControl(Mode.SPEED_CM, 0, 0)
 
@@ -65,10 +65,10 @@ def test_each_sensor_reads_its_own_channel(robot: Kurt2, ends: Ends) -> None:
 def test_the_newest_value_counts_and_ticks_add_up(robot: Kurt2, ends: Ends) -> None:
     send(ends[1], cycle(counts=100, left_ticks=500, right_ticks=-3, bumpers=0b1))
     send(ends[1], cycle(counts=101, left_ticks=21, right_ticks=-4, bumpers=0b100))
-    senses = robot.sense(1.0)
-    assert senses.infrared_counts == (101,) * 18
-    assert (senses.encoder_left_ticks, senses.encoder_right_ticks) == (521, -7)
-    assert senses.bumpers == 0b100
+    readings = robot.sense(1.0)
+    assert readings.infrared_counts == (101,) * 18
+    assert (readings.encoder_left_ticks, readings.encoder_right_ticks) == (521, -7)
+    assert readings.bumpers == 0b100
     later = robot.sense(1.01)
     assert (later.encoder_left_ticks, later.encoder_right_ticks) == (0, 0)
     assert later.bumpers == 0b100
@@ -84,13 +84,13 @@ def test_the_age_is_that_of_the_oldest_frame(robot: Kurt2, ends: Ends) -> None:
     assert robot.sense(1.0).infrared_age_s == 0.0
     for tick in range(1, 5):
         send(ends[1], cycle()[1:])
-        senses = robot.sense(1.0 + tick * TICK_S)
-        assert senses.infrared_age_s == pytest.approx(tick * TICK_S)
-        assert senses.encoder_age_s == 0.0
+        readings = robot.sense(1.0 + tick * TICK_S)
+        assert readings.infrared_age_s == pytest.approx(tick * TICK_S)
+        assert readings.encoder_age_s == 0.0
     send(ends[1], cycle()[:1])
-    senses = robot.sense(1.05)
-    assert senses.infrared_age_s == pytest.approx(TICK_S)
-    assert senses.encoder_age_s == pytest.approx(TICK_S)
+    readings = robot.sense(1.05)
+    assert readings.infrared_age_s == pytest.approx(TICK_S)
+    assert readings.encoder_age_s == pytest.approx(TICK_S)
 
 
 def test_bumpers_that_fall_silent_age_until_the_robot_stands(robot: Kurt2, ends: Ends) -> None:
@@ -100,9 +100,9 @@ def test_bumpers_that_fall_silent_age_until_the_robot_stands(robot: Kurt2, ends:
     for tick in range(1, 13):
         now_s = 1.0 + tick * TICK_S
         send(ends[1], cycle()[:-1])
-        senses = robot.sense(now_s)
-        assert senses.bumper_age_s == pytest.approx(tick * TICK_S)
-        assert senses.bumpers == 0b10  # what is not told is what was told last
+        readings = robot.sense(now_s)
+        assert readings.bumper_age_s == pytest.approx(tick * TICK_S)
+        assert readings.bumpers == 0b10  # what is not told is what was told last
         reasons.append(robot.drive(WheelSpeeds(-0.01, -0.01), now_s, now_s).reasons)
     assert reasons[:9] == [()] * 9
     assert reasons[-1] == (GuardReason.BUMPER_STALE,)
@@ -114,9 +114,9 @@ def test_counts_above_10_bits_keep_the_old_value_and_age(robot: Kurt2, ends: End
     send(ends[1], cycle(counts=200))
     robot.sense(1.0)
     send(ends[1], [CODEC.message("ADC04_07").pack(300, 300, 1024, 300), *cycle(counts=200)[2:]])
-    senses = robot.sense(1.04)
-    assert senses.infrared_counts == (200,) * 18
-    assert senses.infrared_age_s == pytest.approx(0.04)
+    readings = robot.sense(1.04)
+    assert readings.infrared_counts == (200,) * 18
+    assert readings.infrared_age_s == pytest.approx(0.04)
     assert robot.health.junk == 1
     send(ends[1], cycle(counts=1023))
     assert robot.sense(1.05).infrared_counts == (1023,) * 18
@@ -202,8 +202,8 @@ def test_nothing_on_the_bus_brings_the_robot_down(messages: list[can.Message]) -
     for message in messages:
         stranger.send(message)
     stranger.shutdown()
-    senses = robot.sense(1.0)
-    assert all(0 <= counts <= 1023 for counts in senses.infrared_counts)
+    readings = robot.sense(1.0)
+    assert all(0 <= counts <= 1023 for counts in readings.infrared_counts)
     assert robot.health.error_frames == sum(message.is_error_frame for message in messages)
     ends[1].drain()
     robot.drive(WheelSpeeds(0.3, 0.3), 1.0, 1.0)
@@ -240,8 +240,8 @@ def test_a_bus_that_goes_away_stops_the_robot_until_released(robot: Kurt2, ends:
     send(ends[1], cycle())
     robot.sense(1.0)
     pull_the_plug(ends[0])
-    senses = robot.sense(1.01)
-    assert senses.infrared_age_s == pytest.approx(0.01)
+    readings = robot.sense(1.01)
+    assert readings.infrared_age_s == pytest.approx(0.01)
     assert robot.drive(WheelSpeeds(0.3, 0.3), 1.01, 1.01) == (STANDSTILL, (GuardReason.BUS_LOST,), True)
     assert robot.sense(1.02).infrared_age_s == pytest.approx(0.02)
     health = robot.health

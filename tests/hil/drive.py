@@ -29,7 +29,7 @@ class Drive:
         self._far_end = open_bus(bus)
         self.kurt2 = Kurt2(settings, open_bus(bus))
         self.simulated = SimulatedRobot(settings, room(), ReconnectingBus(self._far_end, lambda: self.now_s), seed=3)
-        self.senses = SensorReadings(0.0, (), 0.0, 0, 0, 0.0, 0, 0.0)
+        self.readings = SensorReadings(0.0, (), 0.0, 0, 0, 0.0, 0, 0.0)
         self.grant = GuardResult(FORWARD, (), False)
 
     def __enter__(self) -> Self:
@@ -59,7 +59,7 @@ class Drive:
         time.sleep(_PAUSE_S)
         self.simulated.step()
         now_s = self.now_s
-        self.senses = self.kurt2.sense(now_s)
+        self.readings = self.kurt2.sense(now_s)
         self.grant = self.kurt2.drive(wanted, now_s, now_s)
         return self.grant
 
@@ -83,9 +83,9 @@ class Drive:
         """Tick until readings of the present cycle come again."""
         for _ in range(_MOST_TICKS):
             self.tick()
-            if self.senses.infrared_age_s < self._cycle_s:
+            if self.readings.infrared_age_s < self._cycle_s:
                 return
-        raise AssertionError(f"no readings come: {self.senses}, {self.health}")
+        raise AssertionError(f"no readings come: {self.readings}, {self.health}")
 
     def until_it_stands(self) -> None:
         """Tick until the wheels stand still."""

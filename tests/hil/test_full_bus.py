@@ -113,7 +113,7 @@ def test_flood_of_junk_on_a_used_identifier_is_only_counted(drive: Drive, vcan0:
     drive.tick()
     assert drive.health.junk == (0 if extended else 2000)
     assert drive.health.latched is None
-    assert max(drive.senses.infrared_counts) < 600
+    assert max(drive.readings.infrared_counts) < 600
     drive.until_it_drives()
 
 

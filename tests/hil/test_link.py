@@ -34,7 +34,7 @@ def test_lost_interface_stays_latched_and_names_the_command(drive: Drive, link: 
     away(link)
     drive.ticks(350)
     assert drive.grant == ((0.0, 0.0), (GuardReason.BUS_LOST,), True)
-    assert drive.senses.infrared_age_s > 3.0
+    assert drive.readings.infrared_age_s > 3.0
     assert "ip link set vcan0 up" in drive.health.trouble
 
 

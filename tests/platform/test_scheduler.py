@@ -107,7 +107,7 @@ async def test_scheduler_ticks_at_multiples_of_the_period() -> None:
     assert await run.ticks(5) == [1, 2, 3, 4, 5]
     assert run.clock.deadlines_s == [1000.0 + number * PERIOD_S for number in range(1, 6)]
     assert [record.now_s for record in run.records] == run.clock.deadlines_s
-    assert [record.senses.time_s for record in run.records] == run.clock.deadlines_s
+    assert [record.readings.time_s for record in run.records] == run.clock.deadlines_s
     assert (run.ledger.ticks, run.ledger.missed_ticks) == (5, 0)
 
 

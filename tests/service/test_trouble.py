@@ -97,7 +97,7 @@ async def test_serve_lost_bus_stops_until_resume(tmp_path: Path) -> None:
 
     def the_bus_is_back(record: TickRecord) -> bool:
         lost.append(record)
-        fresh = record.senses.infrared_age_s < 0.05 and record.senses.encoder_age_s < 0.05
+        fresh = record.readings.infrared_age_s < 0.05 and record.readings.encoder_age_s < 0.05
         if not fresh or len(lost) < 20:
             return False
         said.append(Resume("resume-1", "scripted teacher"))
@@ -132,7 +132,7 @@ async def test_a_robot_that_falls_silent_stands(tmp_path: Path) -> None:
         return True
 
     def it_stands(record: TickRecord) -> bool:
-        if record.senses.infrared_age_s > 0.05:
+        if record.readings.infrared_age_s > 0.05:
             silent.append(record)
         return len(silent) >= 20
 

@@ -26,7 +26,7 @@ class Drive:
     def __init__(self, simulation: Kurt2Simulation) -> None:
         self.simulation = simulation
         self.ticks = 0
-        self.senses = simulation.robot.sense(0.0)
+        self.readings = simulation.robot.sense(0.0)
         self.grant = GuardResult(STANDSTILL, (), latched=False)
 
     @property
@@ -43,7 +43,7 @@ class Drive:
         while self.now_s < time_s - TICK_S / 2:
             self.ticks += 1
             self.simulation.step()
-            self.senses = self.simulation.robot.sense(self.now_s)
+            self.readings = self.simulation.robot.sense(self.now_s)
             self.grant = self.simulation.robot.drive(TURN, self.now_s, self.now_s)
             grants.append(self.grant)
         return grants
@@ -79,13 +79,13 @@ async def test_lossy_wire_same_seed_gives_the_same_run() -> None:
     assert await policy_drives("none", 3) != first
 
 
-def test_senses_age_is_transmission_time_plus_phase() -> None:
+def test_age_of_readings_is_transmission_time_plus_phase() -> None:
     """The tick comes 5 ms after the cycle. Ahead of ENCODER go three frames of distances, each of about 0.12 ms."""
     with driving("one_megabit") as drive:
         for tick in range(1, 50):
             drive.until(tick * TICK_S)
-            assert 0.0041 < drive.senses.bumper_age_s < drive.senses.encoder_age_s < 0.0046
-            assert 0.0047 < drive.senses.infrared_age_s < 0.0049
+            assert 0.0041 < drive.readings.bumper_age_s < drive.readings.encoder_age_s < 0.0046
+            assert 0.0047 < drive.readings.infrared_age_s < 0.0049
 
 
 def test_tick_at_phase_zero_gets_the_previous_cycle(tmp_path: Path) -> None:
@@ -93,7 +93,7 @@ def test_tick_at_phase_zero_gets_the_previous_cycle(tmp_path: Path) -> None:
     path.write_text(path.read_text(encoding="utf-8").replace("notebook_phase_s: 0.005", "notebook_phase_s: 0.0"))
     with driving(str(path)) as drive:
         drive.until(0.5)
-        assert drive.senses.encoder_age_s == pytest.approx(0.0094, abs=0.0001)
+        assert drive.readings.encoder_age_s == pytest.approx(0.0094, abs=0.0001)
         assert not drive.grant.reasons
         assert drive.grant.wheel_speeds == TURN
 
@@ -154,9 +154,9 @@ def test_wire_in_real_time_follows_the_clock() -> None:
             stepped = threading.Event()
             realtime.submit(stepped.set)
             assert stepped.wait(5.0)
-        senses = simulation.robot.sense(0.0)
-        assert 0.0 <= senses.encoder_age_s < 5.0
-        assert len(set(senses.infrared_counts)) > 1
+        readings = simulation.robot.sense(0.0)
+        assert 0.0 <= readings.encoder_age_s < 5.0
+        assert len(set(readings.infrared_counts)) > 1
 
 
 @pytest.mark.deep

@@ -35,9 +35,9 @@ def drive(pair: Pair, wanted: WheelSpeeds, seconds: float) -> SensorReadings:
     for _ in range(round(seconds / 0.01)):
         simulated.step()
         now_s = simulated.time_s
-        senses = kurt2.sense(now_s)
+        readings = kurt2.sense(now_s)
         kurt2.drive(wanted, now_s, now_s)
-    return senses
+    return readings
 
 
 def test_driver_speed_jump_never_crashes_the_controller(pair: Pair) -> None:
@@ -51,22 +51,22 @@ def test_driver_speed_jump_never_crashes_the_controller(pair: Pair) -> None:
 def test_driver_speed_is_driven_and_sensed(pair: Pair) -> None:
     drive(pair, WheelSpeeds(0.3, 0.3), 1.5)
     before = pair[1].pose
-    senses = drive(pair, WheelSpeeds(0.3, 0.3), 1.0)
+    readings = drive(pair, WheelSpeeds(0.3, 0.3), 1.0)
     assert pair[1].pose.x_m - before.x_m == pytest.approx(0.3, rel=0.08)
-    assert senses.encoder_left_ticks == pytest.approx(174, rel=0.05)
-    assert senses.infrared_counts == pair[1].infrared_counts
+    assert readings.encoder_left_ticks == pytest.approx(174, rel=0.05)
+    assert readings.infrared_counts == pair[1].infrared_counts
 
 
 def test_driver_bumper_stops_the_robot(pair: Pair) -> None:
     pair[1].place(facing_wall(0.3))
-    senses = drive(pair, WheelSpeeds(0.3, 0.3), 3.0)
-    assert senses.bumpers == 0b000111
-    assert senses.encoder_left_ticks == 0
+    readings = drive(pair, WheelSpeeds(0.3, 0.3), 3.0)
+    assert readings.bumpers == 0b000111
+    assert readings.encoder_left_ticks == 0
     assert pair[1].collisions == 1
 
 
 def test_driver_emergency_stop_brakes_and_holds(pair: Pair) -> None:
     drive(pair, WheelSpeeds(0.3, 0.3), 1.0)
     pair[0].emergency_stop(GuardReason.OTHER)
-    senses = drive(pair, WheelSpeeds(0.3, 0.3), 1.0)
-    assert (senses.encoder_left_ticks, senses.encoder_right_ticks) == (0, 0)
+    readings = drive(pair, WheelSpeeds(0.3, 0.3), 1.0)
+    assert (readings.encoder_left_ticks, readings.encoder_right_ticks) == (0, 0)

@@ -31,10 +31,10 @@ class FaultyLevel:
         self.inner: Level | None = None
         """Deciding layer; set before the first tick."""
 
-    def decide(self, situation: Situation, senses: SensorReadings, stand_because: DecisionCause | None) -> Decision:
+    def decide(self, situation: Situation, readings: SensorReadings, stand_because: DecisionCause | None) -> Decision:
         """Return the decision under the fault. Raises BrokenTickError."""
         assert self.inner is not None
-        decision = self.inner.decide(situation, senses, stand_because)
+        decision = self.inner.decide(situation, readings, stand_because)
         disturbance, now_s = self._disturbance, self._time.now_s()
         if not disturbance.acts(now_s):
             return decision
@@ -85,8 +85,8 @@ class SoakLevel:
         """End the fault."""
         self._disturbed = None
 
-    def decide(self, situation: Situation, senses: SensorReadings, stand_because: DecisionCause | None) -> Decision:
+    def decide(self, situation: Situation, readings: SensorReadings, stand_because: DecisionCause | None) -> Decision:
         """Return the decision under the fault. Raises BrokenTickError."""
         level = self._disturbed or self.inner
         assert level is not None
-        return level.decide(situation, senses, stand_because)
+        return level.decide(situation, readings, stand_because)

@@ -119,9 +119,9 @@ class SoakObserver:
         """Read the sensors; the age of the next decision counts from now."""
         self._sensed_at_s = self._rig.time.now_s()
         assert self._robot is not None
-        senses = self._robot.sense(now_s)
-        self.envelope.bumper_pressed = senses.bumpers != 0
-        return senses
+        readings = self._robot.sense(now_s)
+        self.envelope.bumper_pressed = readings.bumpers != 0
+        return readings
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
         """Forward to the robot."""

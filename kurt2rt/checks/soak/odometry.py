@@ -16,10 +16,10 @@ class OdometryCheck:
         self._turned_m = [0.0, 0.0]
         self._valid = False
 
-    def on_tick(self, senses: SensorReadings) -> None:
+    def on_tick(self, readings: SensorReadings) -> None:
         """Add a tick's encoder counts."""
-        self._ticks[0] += senses.encoder_left_ticks
-        self._ticks[1] += senses.encoder_right_ticks
+        self._ticks[0] += readings.encoder_left_ticks
+        self._ticks[1] += readings.encoder_right_ticks
 
     def invalidate(self) -> None:
         """Skip the next comparison."""

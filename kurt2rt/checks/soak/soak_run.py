@@ -152,7 +152,7 @@ class SoakRun:
         missed = ledger.missed_ticks - self._missed_before
         self._missed_before = ledger.missed_ticks
         self._log.on_tick(record, self._observer.late_s, missed)
-        self._odometry.on_tick(record.senses)
+        self._odometry.on_tick(record.readings)
         if self._operator.on_tick(record):
             program.runtime.reposition()
             self._odometry.invalidate()

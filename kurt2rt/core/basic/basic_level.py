@@ -105,7 +105,7 @@ class BasicLevel:
                 return rla_meant is not None and rla_meant.level == BASIC
         return isinstance(event, LessonUndone | LessonRedone)
 
-    def decide(self, situation: Situation, senses: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:
+    def decide(self, situation: Situation, readings: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:
         """Return the winner's action or the held one; standstill with a blocking cause or without a known RLA."""
         if self._behaviour != self.active_behaviour.behaviour:
             self._behaviour = self.active_behaviour.behaviour
@@ -125,21 +125,21 @@ class BasicLevel:
         if self._held.select(rla.action):
             if rla is not self._driver:
                 self._driver, self._drivers_condition = rla, None
-            return self._drive(senses, DecisionCause.RLA, rla, match, answers=True)
+            return self._drive(readings, DecisionCause.RLA, rla, match, answers=True)
         driver = self._driver
         assert driver is not None
         answers = driver.condition == rla.condition or self._inside(driver, situation)
-        return self._drive(senses, DecisionCause.HELD, driver, match, answers=answers)
+        return self._drive(readings, DecisionCause.HELD, driver, match, answers=answers)
 
     def would_answer(self, group: tuple[Rla, ...]) -> Rla:
         """Return which RLA of one condition, oldest first, would answer there without random exploration."""
         return group[0] if self._choice is None else self._choice.preview(group, self._decisions)
 
     def _drive(
-        self, senses: SensorReadings, cause: DecisionCause, rla: Rla, match: Match, *, answers: bool
+        self, readings: SensorReadings, cause: DecisionCause, rla: Rla, match: Match, *, answers: bool
     ) -> Decision:
         """Step the held action; ask if it is lost."""
-        wheel_speeds = self._held.step(senses)
+        wheel_speeds = self._held.step(readings)
         if self._held.lost:
             # The action is not restarted: it goes on by itself once its situation is known again.
             return Decision(STANDSTILL, DecisionCause.UNKNOWN, None, None, match)

@@ -45,11 +45,11 @@ class HeldAction:
         """Return whether the driving action does not know its situation, after `step`."""
         return self._active is not None and self._active.lost
 
-    def step(self, senses: SensorReadings) -> WheelSpeeds:
+    def step(self, readings: SensorReadings) -> WheelSpeeds:
         """Return the wheel speeds of the action that drives, after `select`."""
         assert self._active is not None
         self._ticks += 1
-        return self._active.step(senses)
+        return self._active.step(readings)
 
     def allow_switch(self) -> None:
         """Let the next `select` replace the action at once."""

@@ -26,7 +26,7 @@ class PolicyLevel:
         self._behaviour = active_behaviour.behaviour
         self._held = HeldAction(repertoire, minimum_action_ticks)
 
-    def decide(self, situation: Situation, senses: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:  # noqa: ARG002 - the policy sees the senses
+    def decide(self, situation: Situation, readings: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:  # noqa: ARG002 - the policy sees the readings
         """Return the policy's action for the active behaviour. Raises UnknownActionError."""
         if self._behaviour != self._active_behaviour.behaviour:
             self._behaviour = self._active_behaviour.behaviour
@@ -34,11 +34,11 @@ class PolicyLevel:
         if blocking_cause is not None:
             self._held.stop()
             return Decision(STANDSTILL, blocking_cause, None, None, None)
-        action = self._policy.choose(senses.infrared_counts, self._behaviour)
+        action = self._policy.choose(readings.infrared_counts, self._behaviour)
         if action not in self._repertoire:
             raise UnknownActionError(
                 f"the policy says {action!r}, which the repertoire lacks; "
                 f"add it there, or let the policy say one of: {', '.join(self._repertoire)}"
             )
         self._held.select(action)
-        return Decision(self._held.step(senses), DecisionCause.TEACHER, self._held.name, None, None)
+        return Decision(self._held.step(readings), DecisionCause.TEACHER, self._held.name, None, None)

@@ -36,10 +36,10 @@ class TaughtSystem:
             part.restart()
         self._driving = self.lost = False
 
-    def step(self, senses: SensorReadings) -> WheelSpeeds:
+    def step(self, readings: SensorReadings) -> WheelSpeeds:
         """Return the wheel speeds of its level. While it is lost it stands and its averages stand still."""
-        situation = self._perception.perceive(senses, history_frozen=not self._driving)
-        decision = self._level.decide(situation, senses, None)
+        situation = self._perception.perceive(readings, history_frozen=not self._driving)
+        decision = self._level.decide(situation, readings, None)
         self._driving, self.lost = decision.driving, decision.asking
         if self._driving:
             self._perception.remember_driven(decision.wheel_speeds)

@@ -65,16 +65,16 @@ class AppraisalPerception:
         """Record that the previous tick was surprising."""
         self._since_surprise = -1
 
-    def perceive(self, senses: SensorReadings, *, driving: bool) -> AppraisalFeatures:
+    def perceive(self, readings: SensorReadings, *, driving: bool) -> AppraisalFeatures:
         """Return the features of this tick; `driving`: whether an action drove the wheels until now.
 
         A waiting robot does not add to the time without a wall, and a wait is not a lack of progress.
         """
-        if not senses.infrared_age_s <= self._stale_infrared_s:
+        if not readings.infrared_age_s <= self._stale_infrared_s:
             self.restart()
-        counts, distance_m = senses.infrared_counts, self._distance_m
-        self._move(self._odometry.motion(senses.encoder_left_ticks, senses.encoder_right_ticks))
-        self._since_bump = 0 if senses.bumpers else self._since_bump + 1
+        counts, distance_m = readings.infrared_counts, self._distance_m
+        self._move(self._odometry.motion(readings.encoder_left_ticks, readings.encoder_right_ticks))
+        self._since_bump = 0 if readings.bumpers else self._since_bump + 1
         self._since_surprise += 1
         if distance_m[max(self._wall(counts))] < self._wall_m:
             self._without_wall = 0

@@ -10,6 +10,6 @@ from kurt2rt.core.perception.perception import Situation
 class Level(Protocol):
     """Layer that answers each situation with a decision."""
 
-    def decide(self, situation: Situation, senses: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:
+    def decide(self, situation: Situation, readings: SensorReadings, blocking_cause: DecisionCause | None) -> Decision:
         """Return the decision of this tick; with a blocking cause, one at standstill."""
         ...

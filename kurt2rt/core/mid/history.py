@@ -62,9 +62,9 @@ class SymbolHistory:
         self._source = source
         self._detector = detector
 
-    def perceive(self, senses: SensorReadings, before: Decision) -> bool:
+    def perceive(self, readings: SensorReadings, before: Decision) -> bool:
         """Process one tick; return whether there is a new symbol."""
-        self.passed = self._detector.perceive(senses)
+        self.passed = self._detector.perceive(readings)
         symbol = self._source.perceive(before, self._detector, self.passed)
         if symbol == NONE:
             return False

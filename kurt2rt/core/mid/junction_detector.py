@@ -95,17 +95,17 @@ class JunctionDetector:
         """Start the distance of a possible junction."""
         self._way_m = self._net_m = 0.0
 
-    def perceive(self, senses: SensorReadings) -> JunctionEvent | None:
+    def perceive(self, readings: SensorReadings) -> JunctionEvent | None:
         """Process one tick; return the passed junction in the tick that detects the next street."""
         left_m, right_m, way_m, self.turn_rad = self._odometry.motion(
-            senses.encoder_left_ticks, senses.encoder_right_ticks
+            readings.encoder_left_ticks, readings.encoder_right_ticks
         )
         step_m = abs(way_m)
         self.rims_m = (abs(left_m) + abs(right_m)) / 2
         self._yaw_rad += self.turn_rad
         self._way_m += step_m
         self._net_m += way_m
-        wall_m, distance_m, counts = self._settings.wall_m, self._distance_m, senses.infrared_counts
+        wall_m, distance_m, counts = self._settings.wall_m, self._distance_m, readings.infrared_counts
         left = [distance_m[counts[place]] for place in self._left]
         right = [distance_m[counts[place]] for place in self._right]
         if max(left) < wall_m and max(right) < wall_m:

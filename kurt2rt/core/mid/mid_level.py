@@ -90,9 +90,9 @@ class MidLevel:
         self._match = None
         self._changes = -1
 
-    def decide(self, senses: SensorReadings, before: Decision) -> MidDecision:
+    def decide(self, readings: SensorReadings, before: Decision) -> MidDecision:
         """Return the command of this tick and activate its behaviour; `before`: decision of the last tick."""
-        changed = self.situation.perceive(senses, before)
+        changed = self.situation.perceive(readings, before)
         event = self.situation.passed
         if event is not None:
             self._overridden = False

@@ -91,11 +91,11 @@ class PlaceSituation:
         """Driven distance since the last change."""
         return self._way_m
 
-    def perceive(self, senses: SensorReadings, before: Decision) -> bool:  # noqa: ARG002 - decisions do not matter
+    def perceive(self, readings: SensorReadings, before: Decision) -> bool:  # noqa: ARG002 - decisions do not matter
         """Process one tick; return whether the situation changed."""
         moved, self._moved = self._moved, False
-        self.passed = passed = self._detector.perceive(senses)
-        self._reckon(senses)
+        self.passed = passed = self._detector.perceive(readings)
+        self._reckon(readings)
         if passed is not None and passed.quarters == 0 and self._way_m < self._blind_m:
             self.passed = passed = None
         if passed is None or self.lost:
@@ -127,8 +127,8 @@ class PlaceSituation:
         """Start the displacement since a junction, in the frame of the encoders' yaw."""
         self._x_driven_m = self._y_driven_m = self._way_m = 0.0
 
-    def _reckon(self, senses: SensorReadings) -> None:
-        step_m = (senses.encoder_left_ticks + senses.encoder_right_ticks) / 2 * self._metres_per_tick
+    def _reckon(self, readings: SensorReadings) -> None:
+        step_m = (readings.encoder_left_ticks + readings.encoder_right_ticks) / 2 * self._metres_per_tick
         middle_rad = self._detector.yaw_rad - self._detector.turn_rad / 2
         self._x_driven_m += step_m * round_portable(math.cos(middle_rad))
         self._y_driven_m += step_m * round_portable(math.sin(middle_rad))

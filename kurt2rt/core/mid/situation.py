@@ -41,7 +41,7 @@ class MidSituation(Protocol):
         """Junction passed in the last call of `perceive`; None without one."""
         ...
 
-    def perceive(self, senses: SensorReadings, before: Decision) -> bool:
+    def perceive(self, readings: SensorReadings, before: Decision) -> bool:
         """Process one tick; return whether the vector changed. `before`: decision of the last tick."""
         ...
 

@@ -37,10 +37,10 @@ class Perception:
         self._history.clear()
         self._driven = STANDSTILL
 
-    def perceive(self, senses: SensorReadings, *, history_frozen: bool) -> Situation:
+    def perceive(self, readings: SensorReadings, *, history_frozen: bool) -> Situation:
         """Return the situation of this tick; a frozen history keeps the steps before the robot stopped to ask."""
-        recent = self._extract(senses.infrared_counts, self._driven)
-        if self._history.filled == 0 and senses.infrared_age_s < math.inf:
+        recent = self._extract(readings.infrared_counts, self._driven)
+        if self._history.filled == 0 and readings.infrared_age_s < math.inf:
             # After power-on the present is the best estimate of the past.
             self._history.fill(recent)
         if not history_frozen:

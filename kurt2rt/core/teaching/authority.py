@@ -137,12 +137,12 @@ class ControlAuthority:
         if not self.is_manual(tick) and (self._speeds is not None or self._behaviour is not None):
             self.end_manual()
 
-    def step(self, senses: SensorReadings) -> tuple[str, WheelSpeeds]:
+    def step(self, readings: SensorReadings) -> tuple[str, WheelSpeeds]:
         """Return the name and the wheel speeds of the manual drive; only while `is_manual`."""
         if self._speeds is not None:
             return _BY_HAND, self._speeds
         assert self._behaviour is not None
-        return self._behaviour_name, self._behaviour.step(senses)
+        return self._behaviour_name, self._behaviour.step(readings)
 
     def _set_teacher(self, teacher: str | None) -> None:
         self.end_manual()

@@ -16,11 +16,11 @@ class StuckSensor(RobotProxy):
 
     def sense(self, now_s: float) -> SensorReadings:
         """Return the robot's readings, with the stuck sensor at its count of `from_s`."""
-        senses = self._robot.sense(now_s)
+        readings = self._robot.sense(now_s)
         if now_s < self._from_s:
-            return senses
-        readings = senses.infrared_counts
+            return readings
+        counts = readings.infrared_counts
         if self._counts is None:
-            self._counts = readings[self._sensor]
-        stuck = (*readings[: self._sensor], self._counts, *readings[self._sensor + 1 :])
-        return senses._replace(infrared_counts=stuck)
+            self._counts = counts[self._sensor]
+        stuck = (*counts[: self._sensor], self._counts, *counts[self._sensor + 1 :])
+        return readings._replace(infrared_counts=stuck)

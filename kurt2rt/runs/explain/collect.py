@@ -58,8 +58,8 @@ def collect_facts(
         stopped=school.active_stop,
         trouble=record.error or "",
         teacher=school.authority.teacher or "",
-        infrared_counts=record.senses.infrared_counts,
-        infrared_age_s=record.senses.infrared_age_s,
+        infrared_counts=record.readings.infrared_counts,
+        infrared_age_s=record.readings.infrared_age_s,
         basic=reader.basic(record, decision),
         mid=None if mid is None else reader.mid(mid),
         overridden=mid is not None and mid.overridden,
@@ -75,7 +75,7 @@ def _blocking_causes(runtime: Runtime, record: TickRecord) -> tuple[str, ...]:
     """Return the causes that would stop the robot, highest priority first."""
     school, navigator, mid = runtime.handler, runtime.navigator, record.decision.mid
     found = []
-    if not record.senses.infrared_age_s <= runtime.robot.guard.stale_infrared_s:
+    if not record.readings.infrared_age_s <= runtime.robot.guard.stale_infrared_s:
         found.append(DecisionCause.BLIND)
     if record.error is not None:
         found.append(DecisionCause.UNSAVED)

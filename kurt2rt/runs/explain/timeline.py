@@ -196,7 +196,7 @@ class _Reader:
         return True
 
     def _update_pose(self, entry: TickEntry) -> None:
-        motion = self._odometry.motion(entry.senses.encoder_left_ticks, entry.senses.encoder_right_ticks)
+        motion = self._odometry.motion(entry.readings.encoder_left_ticks, entry.readings.encoder_right_ticks)
         self._pose = self._pose.moved(motion.forward_m, motion.turn_rad)
 
     def _count(self, stretch: Stretch, entry: TickEntry) -> None:

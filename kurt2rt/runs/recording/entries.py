@@ -85,7 +85,7 @@ class TickEntry(NamedTuple):
     """Consecutive number of executed ticks from 1; a missing number was not recorded."""
     tick: int
     now_s: float
-    senses: SensorReadings
+    readings: SensorReadings
     grant: GuardResult
     commands: tuple[Input, ...]
     """Messages taken from the inbox in this tick, in order."""
@@ -107,13 +107,17 @@ class TickEntry(NamedTuple):
     """Hash of the knowledge after this tick (RlaSystem.knowledge_hash); None in ticks without it."""
 
 
+RECORDED_AS = {"readings": "senses"}
+"""Keys in recordings of fields that have another name in TickEntry."""
+
+
 def tick_entry(record: TickRecord, *, saved: bool, knowledge: str | None) -> TickEntry:
     """Return the entry of a tick. `knowledge`: hash of `record.knowledge`, if the record has it."""
     return TickEntry(
         number=record.number,
         tick=record.tick,
         now_s=record.now_s,
-        senses=record.senses,
+        readings=record.readings,
         grant=record.guard_result,
         commands=record.commands,
         trouble=record.error,

@@ -50,21 +50,21 @@ def _present(content: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _content(entry: TickEntry) -> dict[str, Any]:
-    senses, grant = entry.senses, entry.grant
+    readings, grant = entry.readings, entry.grant
     return _present(
         {
             "number": entry.number,
             "tick": entry.tick,
             "now_s": _number(entry.now_s),
             "senses": {
-                **({} if senses.time_s == entry.now_s else {"time_s": _number(senses.time_s)}),
-                "infrared_counts": senses.infrared_counts,
-                "infrared_age_s": _number(senses.infrared_age_s),
-                "encoder_left_ticks": senses.encoder_left_ticks,
-                "encoder_right_ticks": senses.encoder_right_ticks,
-                "encoder_age_s": _number(senses.encoder_age_s),
-                "bumpers": senses.bumpers,
-                "bumper_age_s": _number(senses.bumper_age_s),
+                **({} if readings.time_s == entry.now_s else {"time_s": _number(readings.time_s)}),
+                "infrared_counts": readings.infrared_counts,
+                "infrared_age_s": _number(readings.infrared_age_s),
+                "encoder_left_ticks": readings.encoder_left_ticks,
+                "encoder_right_ticks": readings.encoder_right_ticks,
+                "encoder_age_s": _number(readings.encoder_age_s),
+                "bumpers": readings.bumpers,
+                "bumper_age_s": _number(readings.bumper_age_s),
             },
             "grant": {"wheels": _wheels(grant.wheel_speeds), "reasons": grant.reasons, "latched": grant.latched},
             "commands": [encode_command(each) for each in entry.commands] or None,
@@ -118,16 +118,16 @@ def _decision(decision: DecisionEntry) -> dict[str, Any]:
 
 
 def _entry(content: dict[str, Any]) -> TickEntry:
-    senses, grant = content["senses"], content["grant"]
+    readings, grant = content["senses"], content["grant"]
     opinion, surprise = content.get("opinion"), content.get("surprise")
     return _decoded(
         TickEntry,
         content,
-        senses=_decoded(
+        readings=_decoded(
             SensorReadings,
-            senses,
-            time_s=float(senses.get("time_s", content["now_s"])),
-            infrared_counts=tuple(senses["infrared_counts"]),
+            readings,
+            time_s=float(readings.get("time_s", content["now_s"])),
+            infrared_counts=tuple(readings["infrared_counts"]),
         ),
         grant=GuardResult(
             _decoded(WheelSpeeds, grant["wheels"]), tuple(map(guard_reason, grant["reasons"])), grant["latched"]

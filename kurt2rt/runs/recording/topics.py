@@ -83,8 +83,8 @@ class Topics:
 
     def tick(self, record: TickRecord, *, saved: bool, truth: SimulatedPlace | None, time_ns: int) -> None:
         """Log one tick. Raises RecordingError for a tick that cannot be encoded."""
-        senses = record.senses
-        motion = self._odometry.motion(senses.encoder_left_ticks, senses.encoder_right_ticks)
+        readings = record.readings
+        motion = self._odometry.motion(readings.encoder_left_ticks, readings.encoder_right_ticks)
         pose = self._reckoned.moved(motion.forward_m, motion.turn_rad)
         self._reckoned = pose._replace(heading_rad=math.remainder(pose.heading_rad, math.tau))
         if self._tick.has_sinks():  # the most work of all, for which a live view seldom asks
@@ -165,7 +165,7 @@ class Topics:
 
     def _log_pose(self, record: TickRecord, time_ns: int) -> None:
         if self._scan.has_sinks():
-            self._scan.log(self._pictures.scan(record.senses.infrared_counts, time_ns), log_time=time_ns)
+            self._scan.log(self._pictures.scan(record.readings.infrared_counts, time_ns), log_time=time_ns)
         pose = self._reckoned
         self._pose.log(pose_in(START, pose, time_ns), log_time=time_ns)
         moves = [(START, ROBOT, pose)]
@@ -187,7 +187,7 @@ class Topics:
             values: list[float] = record.situation.vector.tolist()
             self._situation.log(_json(dict(zip(self._features, values, strict=True))), log_time=time_ns)
         if self._scene.has_sinks():
-            scene = self._pictures.scene(record.senses.infrared_counts, record.decision, record.behaviour, time_ns)
+            scene = self._pictures.scene(record.readings.infrared_counts, record.decision, record.behaviour, time_ns)
             self._scene.log(scene, log_time=time_ns)
 
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from kurt2rt.core.rla.fingerprint import knowledge_hash_of
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.runs.recording.entries import TickEntry, tick_entry
+from kurt2rt.runs.recording.entries import RECORDED_AS, TickEntry, tick_entry
 
 
 class TickDifference(NamedTuple):
@@ -13,7 +13,7 @@ class TickDifference(NamedTuple):
 
     tick: int
     field: str
-    """Path of the field, with dots between its levels."""
+    """Path of the field in the recording, with dots between its levels."""
     recorded: object
     replayed: object
 
@@ -48,7 +48,8 @@ def _without_words(entry: TickEntry, *, coded: bool) -> TickEntry:
 def _differences(place: str, recorded: object, replayed: object) -> Iterator[tuple[str, object, object]]:
     if isinstance(recorded, tuple) and hasattr(recorded, "_fields") and type(recorded) is type(replayed):
         for name in recorded._fields:
-            below = f"{place}.{name}" if place else name
+            recorded_name = RECORDED_AS.get(name, name)
+            below = f"{place}.{recorded_name}" if place else recorded_name
             yield from _differences(below, getattr(recorded, name), getattr(replayed, name))
     elif repr(recorded) != repr(replayed):
         yield place, recorded, replayed

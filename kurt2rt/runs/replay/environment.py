@@ -30,7 +30,7 @@ class ReplayEnvironment:
 
     def sense(self, now_s: float) -> SensorReadings:  # noqa: ARG002 - what was sensed then
         """Return the recorded readings (Robot)."""
-        return self._entry.senses
+        return self._entry.readings
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:  # noqa: ARG002 - as applied then
         """Return the recorded result of the guard for any wanted speeds (Robot)."""

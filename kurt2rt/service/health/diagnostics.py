@@ -97,7 +97,7 @@ class Diagnostics:
         """Return the troubles of one report: urgent ones first, then by the time that they have lasted."""
         self._writes.update(snapshot.now_s, snapshot.last_write_s)
         found = [
-            *self._of_senses(snapshot),
+            *self._of_readings(snapshot),
             *_of_bus(snapshot, counted),
             *_of_keeping(snapshot, self._writes.slowest_s, disks),
             *self._of_ticks(punctuality),
@@ -113,7 +113,7 @@ class Diagnostics:
         ]
         return tuple(sorted(troubles, key=lambda each: (not each.urgent, -each.since_s)))
 
-    def _of_senses(self, snapshot: Snapshot) -> Iterator[_Found]:
+    def _of_readings(self, snapshot: Snapshot) -> Iterator[_Found]:
         guard = self._settings.guard
         for name, age_s, stale_s in (
             ("infra-red sensors", snapshot.infrared_age_s, guard.stale_infrared_s),

@@ -42,15 +42,15 @@ def take_snapshot(
     runtime: Runtime, record: TickRecord, keeping: JournalStats, instruments: Probes, now_s: float
 ) -> Snapshot:
     """Return the snapshot; takes some 10 µs and never waits."""
-    senses, system, ledger = record.senses, runtime.level.system, runtime.timer
+    readings, system, ledger = record.readings, runtime.level.system, runtime.timer
     errors = {part: error() for part, error in instruments.errors.items()}
     errors["teaching"] = runtime.handler.updater.error
     return Snapshot(
         tick=record.tick,
         now_s=now_s,
-        infrared_age_s=senses.infrared_age_s,
-        encoder_age_s=senses.encoder_age_s,
-        bumper_age_s=senses.bumper_age_s,
+        infrared_age_s=readings.infrared_age_s,
+        encoder_age_s=readings.encoder_age_s,
+        bumper_age_s=readings.bumper_age_s,
         bus=None if instruments.bus is None else instruments.bus(),
         unwritten=keeping.unwritten,
         journal_error=keeping.error,

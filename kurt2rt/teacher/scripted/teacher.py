@@ -47,7 +47,7 @@ def view_of_tick(record: TickRecord) -> TeacherView:
         decision.asking and decision.asks_at == BASIC,
         decision.driving,
         decision.action,
-        record.senses.infrared_counts,
+        record.readings.infrared_counts,
         record.behaviour,
         decision.rla_id,
         nearest,

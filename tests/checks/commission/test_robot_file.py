@@ -53,9 +53,9 @@ async def test_the_file_makes_the_robot_sense_in_order_and_drive(tmp_path: Path)
         for _ in range(100):
             workshop.step()
             now_s = workshop.robot.time_s
-            senses = kurt2.sense(now_s)
+            readings = kurt2.sense(now_s)
             kurt2.drive(WheelSpeeds(0.3, 0.3), now_s, now_s)
-        assert senses.infrared_counts == workshop.robot.infrared_counts
+        assert readings.infrared_counts == workshop.robot.infrared_counts
         assert workshop.robot.wheel_speeds.left_m_s == pytest.approx(0.3, abs=0.01)
         kurt2.close()
 

@@ -28,8 +28,8 @@ class Careless:
     def __init__(self, behind: Level) -> None:
         self._behind = behind
 
-    def decide(self, situation: Situation, senses: SensorReadings, stand_because: DecisionCause | None) -> Decision:
-        decision = self._behind.decide(situation, senses, stand_because)
+    def decide(self, situation: Situation, readings: SensorReadings, stand_because: DecisionCause | None) -> Decision:
+        decision = self._behind.decide(situation, readings, stand_because)
         return decision._replace(wheel_speeds=WheelSpeeds(0.1, 0.1), action="forward")
 
 

@@ -17,8 +17,8 @@ class NearIsB:
 FAR, NEAR = sensed(100), sensed(500)
 
 
-def driven(level: PolicyLevel, senses: SensorReadings, stand_because: DecisionCause | None = None) -> Decision:
-    return level.decide(situation(0.0), senses, stand_because)
+def driven(level: PolicyLevel, readings: SensorReadings, stand_because: DecisionCause | None = None) -> Decision:
+    return level.decide(situation(0.0), readings, stand_because)
 
 
 def test_it_drives_as_the_policy_says_after_the_minimum_time() -> None:

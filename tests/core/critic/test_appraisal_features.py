@@ -19,7 +19,7 @@ TICKS_PER_M = 1 / ROBOT.geometry.metres_per_tick
 FAR_M = ROBOT.infrared.far_m
 
 
-def senses(
+def readings(
     left_m_s: float = 0.0, right_m_s: float = 0.0, *, bumpers: int = 0, age_s: float = 0.0, **distances_m: float
 ) -> SensorReadings:
     """Return the readings of a tick at these wheel speeds, with objects at these distances from the sensors."""
@@ -50,25 +50,25 @@ def changed(**perception_values: object) -> CriticSettings:
 
 
 def test_distance_is_that_of_the_nearest_object() -> None:
-    seen = senses(s4=0.2, s1=0.4, s10=0.3, s8=0.15, s13=0.5, s15=0.25, s16=0.35)
+    seen = readings(s4=0.2, s1=0.4, s10=0.3, s8=0.15, s13=0.5, s15=0.25, s16=0.35)
     here = perception().perceive(seen, driving=False)
     near = (here.left_m, here.front_m, here.right_m, here.rear_m, here.ahead_left_m, here.ahead_right_m)
     assert near == pytest.approx((0.2, 0.3, 0.15, 0.5, 0.25, 0.35), abs=0.003)
 
 
 def test_distance_without_object_is_far_without_angle() -> None:
-    assert perception().perceive(senses(), driving=False) == AppraisalFeatures(*[FAR_M] * 6, *[0.0] * 7)
+    assert perception().perceive(readings(), driving=False) == AppraisalFeatures(*[FAR_M] * 6, *[0.0] * 7)
 
 
 def test_angle_is_the_turn_away_from_the_wall() -> None:
-    away = perception().perceive(senses(s1=0.34, s3=0.3, s4=0.25, s2=0.2, s5=0.15, s6=0.29), driving=False)
+    away = perception().perceive(readings(s1=0.34, s3=0.3, s4=0.25, s2=0.2, s5=0.15, s6=0.29), driving=False)
     assert away.left_angle_rad == pytest.approx(math.atan(0.14 / 0.28), abs=0.02)
     assert away.right_angle_rad == pytest.approx(-away.left_angle_rad, abs=0.03)
 
 
 def test_angle_needs_a_wall_at_one_end_of_the_side() -> None:
-    assert perception().perceive(senses(s2=0.3), driving=False).left_angle_rad > 0.7
-    assert perception().perceive(senses(s3=0.3), driving=False).left_angle_rad == 0.0
+    assert perception().perceive(readings(s2=0.3), driving=False).left_angle_rad > 0.7
+    assert perception().perceive(readings(s3=0.3), driving=False).left_angle_rad == 0.0
 
 
 # How it moves
@@ -76,20 +76,20 @@ def test_angle_needs_a_wall_at_one_end_of_the_side() -> None:
 
 def test_speed_and_turn_rate_follow_the_wheels() -> None:
     moving = perception()
-    assert 0 < moving.perceive(senses(0.1, 0.3), driving=True).speed_m_s < 0.05
-    here = after(1.0, moving, senses(0.1, 0.3))
+    assert 0 < moving.perceive(readings(0.1, 0.3), driving=True).speed_m_s < 0.05
+    here = after(1.0, moving, readings(0.1, 0.3))
     assert here.speed_m_s == pytest.approx(0.2, abs=0.001)
     assert here.turn_rad_s == pytest.approx(0.2 / ROBOT.geometry.effective_track_m, abs=0.005)
-    here = after(1.0, moving, senses(-0.2, -0.2))
+    here = after(1.0, moving, readings(-0.2, -0.2))
     assert here.speed_m_s == pytest.approx(-0.2, abs=0.001)
     assert here.turn_rad_s == pytest.approx(0.0, abs=0.001)
 
 
 def test_bumped_lasts_one_second() -> None:
     bumped = perception()
-    assert bumped.perceive(senses(bumpers=0b100), driving=True).bumped == 1.0
-    assert after(0.99, bumped, senses()).bumped == 1.0
-    assert after(0.01, bumped, senses()).bumped == 0.0
+    assert bumped.perceive(readings(bumpers=0b100), driving=True).bumped == 1.0
+    assert after(0.99, bumped, readings()).bumped == 1.0
+    assert after(0.01, bumped, readings()).bumped == 0.0
 
 
 # No progress
@@ -97,27 +97,27 @@ def test_bumped_lasts_one_second() -> None:
 
 def test_no_progress_spinning_after_three_seconds() -> None:
     spinning = perception()
-    assert after(3.0, spinning, senses(0.2, -0.2)).no_progress == 0.0
-    assert after(0.01, spinning, senses(0.2, -0.2)).no_progress == 1.0
+    assert after(3.0, spinning, readings(0.2, -0.2)).no_progress == 0.0
+    assert after(0.01, spinning, readings(0.2, -0.2)).no_progress == 1.0
 
 
 def test_no_progress_to_and_fro_but_not_creeping() -> None:
     shuttling, creeping = perception(), perception()
     for _ in range(5):
-        after(0.5, shuttling, senses(0.3, 0.3))
-        here = after(0.5, shuttling, senses(-0.3, -0.3))
+        after(0.5, shuttling, readings(0.3, 0.3))
+        here = after(0.5, shuttling, readings(-0.3, -0.3))
     assert here.no_progress == 1.0
-    assert after(20.0, creeping, senses(0.06, 0.06)).no_progress == 0.0
-    assert after(4.0, creeping, senses(0.04, 0.04)).no_progress == 1.0
+    assert after(20.0, creeping, readings(0.06, 0.06)).no_progress == 0.0
+    assert after(4.0, creeping, readings(0.04, 0.04)).no_progress == 1.0
 
 
 def test_no_progress_waiting_resets_it() -> None:
     waiting = perception()
-    assert after(20.0, waiting, senses(), driving=False).no_progress == 0.0
-    assert after(3.0, waiting, senses()).no_progress == 0.0
-    assert after(0.01, waiting, senses()).no_progress == 1.0
-    assert after(0.01, waiting, senses(), driving=False).no_progress == 0.0
-    assert after(3.0, waiting, senses()).no_progress == 0.0
+    assert after(20.0, waiting, readings(), driving=False).no_progress == 0.0
+    assert after(3.0, waiting, readings()).no_progress == 0.0
+    assert after(0.01, waiting, readings()).no_progress == 1.0
+    assert after(0.01, waiting, readings(), driving=False).no_progress == 0.0
+    assert after(3.0, waiting, readings()).no_progress == 0.0
 
 
 # No wall
@@ -125,18 +125,18 @@ def test_no_progress_waiting_resets_it() -> None:
 
 def test_no_wall_after_two_seconds() -> None:
     lost = perception()
-    assert after(1.99, lost, senses(0.3, 0.3)).no_wall == 0.0
-    assert after(0.01, lost, senses(0.3, 0.3)).no_wall == 1.0
-    assert lost.perceive(senses(s17=0.5), driving=True).no_wall == 0.0
-    assert after(5.0, lost, senses(s5=0.3, s11=0.3)).no_wall == 1.0  # what is elsewhere is not the wall that is meant
+    assert after(1.99, lost, readings(0.3, 0.3)).no_wall == 0.0
+    assert after(0.01, lost, readings(0.3, 0.3)).no_wall == 1.0
+    assert lost.perceive(readings(s17=0.5), driving=True).no_wall == 0.0
+    assert after(5.0, lost, readings(s5=0.3, s11=0.3)).no_wall == 1.0  # what is elsewhere is not the wall that is meant
 
 
 def test_no_wall_time_pauses_while_waiting() -> None:
     lost = perception()
-    after(1.5, lost, senses())
-    assert after(60.0, lost, senses(), driving=False).no_wall == 0.0
-    assert after(0.49, lost, senses()).no_wall == 0.0
-    assert after(0.01, lost, senses()).no_wall == 1.0
+    after(1.5, lost, readings())
+    assert after(60.0, lost, readings(), driving=False).no_wall == 0.0
+    assert after(0.49, lost, readings()).no_wall == 0.0
+    assert after(0.01, lost, readings()).no_wall == 1.0
 
 
 # Starting again
@@ -144,10 +144,10 @@ def test_no_wall_time_pauses_while_waiting() -> None:
 
 def test_features_reset_after_missing_sensor_data() -> None:
     blinded = perception()
-    after(10.0, blinded, senses(0.2, -0.2, bumpers=1))
-    here = blinded.perceive(senses(age_s=0.06), driving=False)
+    after(10.0, blinded, readings(0.2, -0.2, bumpers=1))
+    here = blinded.perceive(readings(age_s=0.06), driving=False)
     assert here == AppraisalFeatures(*[FAR_M] * 6, *[0.0] * 7)
-    here = after(1.99, blinded, senses())
+    here = after(1.99, blinded, readings())
     assert (here.bumped, here.no_progress, here.no_wall) == (0.0, 0.0, 0.0)
 
 
@@ -193,13 +193,13 @@ def test_perception_reversed_side_is_refused() -> None:
 
 def test_surprised_lasts_as_configured() -> None:
     of = AppraisalPerception(changed(surprise_held_s=1.0), ROBOT)
-    assert of.perceive(senses(), driving=True).surprised == 0.0
+    assert of.perceive(readings(), driving=True).surprised == 0.0
     of.notify_surprise()
-    assert after(1.0, of, senses()).surprised == 1.0
-    assert of.perceive(senses(), driving=True).surprised == 0.0
+    assert after(1.0, of, readings()).surprised == 1.0
+    assert of.perceive(readings(), driving=True).surprised == 0.0
 
 
 def test_surprised_without_setting_is_zero() -> None:
     of = perception()
     of.notify_surprise()
-    assert after(0.1, of, senses()).surprised == 0.0
+    assert after(0.1, of, readings()).surprised == 0.0

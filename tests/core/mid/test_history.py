@@ -29,8 +29,8 @@ class Led:
     def go(self, way_m: float, away_m: float = STREET_M, *, turn_deg: float = 0.0, before: Decision = STANDS) -> "Led":
         steps = 100
         for _ in range(steps):
-            senses = sensed(away_m, away_m, way_m / steps, math.radians(turn_deg) / steps)
-            self.changes += self.situation.perceive(senses, before)
+            readings = sensed(away_m, away_m, way_m / steps, math.radians(turn_deg) / steps)
+            self.changes += self.situation.perceive(readings, before)
         return self
 
     def over(self, *turns_deg: float) -> "Led":

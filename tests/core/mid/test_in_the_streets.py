@@ -24,7 +24,7 @@ from tests.core.helpers import situation
 from tests.core.mid.walk import ROBOT
 
 TASK = load_task("streets")
-ANYWHERE: Situation = situation(0.0)  # the policy looks at the senses
+ANYWHERE: Situation = situation(0.0)  # the policy looks at the readings
 _IN_A_STREET_M = 0.35
 
 
@@ -44,9 +44,9 @@ class Drive:
         for tick in range(round(duration_s / self._period_s)):
             now_s = tick * self._period_s
             self.simulation.step()
-            senses = self.simulation.robot.sense(now_s)
-            self.simulation.robot.drive(self._level.decide(ANYWHERE, senses, None).wheel_speeds, now_s, now_s)
-            yield senses
+            readings = self.simulation.robot.sense(now_s)
+            self.simulation.robot.drive(self._level.decide(ANYWHERE, readings, None).wheel_speeds, now_s, now_s)
+            yield readings
         self.simulation.close()
 
 
@@ -57,8 +57,8 @@ def test_detector_corners_ts_and_crossings_in_simulation() -> None:
     way = iter(["straight_on", "turn_right", "straight_on", "turn_left", "turn_right", "turn_right", "straight_on"])
     drive.wanted.select(next(way))
     passed: list[JunctionEvent] = []
-    for senses in drive.ticks(39.0):
-        event = detector.perceive(senses)
+    for readings in drive.ticks(39.0):
+        event = detector.perceive(readings)
         if event is not None:
             passed.append(event)
             drive.wanted.select(next(way))
@@ -106,8 +106,8 @@ def random_drive(seed: int, duration_s: float, robot: RobotSettings) -> tuple[li
     truth, detector = Truth(streets), JunctionDetector(load_mid_level("turns").junctions, robot)
     passed: list[object] = []
     told: list[object] = []
-    for senses in drive.ticks(duration_s):
-        event = detector.perceive(senses)
+    for readings in drive.ticks(duration_s):
+        event = detector.perceive(readings)
         if event is not None:
             told.append((event.quarters, event.left_open, event.right_open))
         course.update(drive.simulation.pose)

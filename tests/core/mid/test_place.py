@@ -57,9 +57,9 @@ class Drive:
         """One tick; whether a junction was passed."""
         self._tick += 1
         now_s = self._tick * ROBOT.can.cycle_s
-        senses = self.simulation.robot.sense(now_s)
-        changed = self.place.perceive(senses, NOTHING)
-        decision = self._leader.decide(NOWHERE, senses, None)
+        readings = self.simulation.robot.sense(now_s)
+        changed = self.place.perceive(readings, NOTHING)
+        decision = self._leader.decide(NOWHERE, readings, None)
         self.simulation.robot.drive(decision.wheel_speeds, now_s, now_s)
         self.simulation.step()
         return changed and self.place.passed is not None

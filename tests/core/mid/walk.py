@@ -48,8 +48,8 @@ class Walk:
         """Drive a distance between these walls, turning `turn_deg` to the left; distance 0 turns on the spot."""
         steps = max(round(abs(way_m) / _STEP_M), 40)
         for _ in range(steps):
-            senses = sensed(left_m, right_m, way_m / steps, math.radians(turn_deg) / steps, math.radians(askew_deg))
-            event = self.detector.perceive(senses)
+            readings = sensed(left_m, right_m, way_m / steps, math.radians(turn_deg) / steps, math.radians(askew_deg))
+            event = self.detector.perceive(readings)
             if event is not None:
                 self.passed.append(event)
         return self

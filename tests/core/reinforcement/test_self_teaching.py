@@ -306,7 +306,7 @@ def test_slightly_lower_score_is_no_rollback() -> None:
     assert robot.hash != known
 
 
-def test_same_senses_give_same_changes() -> None:
+def test_same_readings_give_same_changes() -> None:
     def story() -> Track:
         robot = alone()
         for turn in range(10):

@@ -228,10 +228,10 @@ async def test_a_log_that_canplayer_plays_is_sensed_as_it_was_recorded(vcan0: st
         while left_to_look:
             left_to_look -= canplayer.poll() is not None
             now_s += ROBOT.can.cycle_s
-            senses = kurt2.sense(now_s)
-            ticks[0] += senses.encoder_left_ticks
-            ticks[1] += senses.encoder_right_ticks
-            sensed.add(senses.infrared_counts)
+            readings = kurt2.sense(now_s)
+            ticks[0] += readings.encoder_left_ticks
+            ticks[1] += readings.encoder_right_ticks
+            sensed.add(readings.infrared_counts)
             await asyncio.sleep(ROBOT.can.cycle_s)
     kurt2.close()
     assert tuple(ticks) == recorded.ticks

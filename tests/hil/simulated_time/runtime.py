@@ -34,12 +34,12 @@ class Hanging(PolicyLevel):
     hangs_at = 0
     decisions = 0
 
-    def decide(self, situation: Situation, senses: SensorReadings, stand_because: DecisionCause | None) -> Decision:
+    def decide(self, situation: Situation, readings: SensorReadings, stand_because: DecisionCause | None) -> Decision:
         self.decisions += 1
         if self.decisions == self.hangs_at:
             print(json.dumps({"hangs_from_s": time.time()}), flush=True)
             time.sleep(HANG_S)
-        return super().decide(situation, senses, stand_because)
+        return super().decide(situation, readings, stand_because)
 
 
 async def drive(bus: str, seconds: float, hangs_at: int) -> None:
@@ -62,7 +62,7 @@ async def drive(bus: str, seconds: float, hangs_at: int) -> None:
         reasons = tuple(reason for reason in record.guard_result.reasons if not reason.routine)
         if reasons != before:
             before = reasons
-            turns.append({"tick": record.tick, "reasons": reasons, "infrared_age_s": record.senses.infrared_age_s})
+            turns.append({"tick": record.tick, "reasons": reasons, "infrared_age_s": record.readings.infrared_age_s})
 
     with TimerfdClock() as clock, robot.watchdog:
         runtime = build_runtime(

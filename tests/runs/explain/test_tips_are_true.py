@@ -59,11 +59,11 @@ def looked_at(name: str, every_ticks: int, every_kept: int) -> Iterator[tuple[Be
 def decided_with(before: Before, entry: TickEntry, tip: SensorCounterfactual, counts: int) -> str | None:
     """Return the action of that tick if the sensor reads `counts`; None for a question."""
     names = before.replay.run.robot.infrared.names
-    readings = tuple(
+    infrared_counts = tuple(
         counts if name == tip.sensor else reading
-        for name, reading in zip(names, entry.senses.infrared_counts, strict=True)
+        for name, reading in zip(names, entry.readings.infrared_counts, strict=True)
     )
-    changed = entry._replace(senses=entry.senses._replace(infrared_counts=readings))
+    changed = entry._replace(readings=entry.readings._replace(infrared_counts=infrared_counts))
     return before.again().step(changed).decision.action
 
 

@@ -30,7 +30,7 @@ number = some.floats(allow_nan=False)
 text = some.text(some.characters(codec="utf-8"), max_size=8)
 maybe_id = some.none() | some.integers(1, 2**40)
 wheels = some.builds(WheelSpeeds, number, number)
-senses = some.builds(
+readings = some.builds(
     SensorReadings,
     number,
     some.lists(some.integers(0, 1023), max_size=18).map(tuple),
@@ -105,7 +105,7 @@ entries = some.builds(
     some.integers(1),
     some.integers(0),
     number,
-    senses,
+    readings,
     grants,
     some.lists(commands, max_size=3).map(tuple),
     some.none() | text,

@@ -112,7 +112,7 @@ def test_replay_tells_zeros_by_sign_and_booleans_from_numbers() -> None:
     still = entry.decision._replace(wheel_speeds=WheelSpeeds(-0.0, 0.0))
     (found,) = compare(entry._replace(decision=still), record)
     assert found.text == "decision.wheel_speeds.left_m_s was -0.0, and is 0.0 now"
-    (found,) = compare(entry._replace(senses=entry.senses._replace(bumpers=False)), record)
+    (found,) = compare(entry._replace(readings=entry.readings._replace(bumpers=False)), record)
     assert found.field == "senses.bumpers"
 
 
