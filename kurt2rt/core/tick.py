@@ -34,7 +34,7 @@ class EventStore(Protocol):
     """Store of teaching events; it works outside the tick, and its methods return at once."""
 
     @property
-    def error(self) -> str | None:
+    def saving_error(self) -> str | None:
         """Reason that lessons cannot be saved now, in one line; None if they can."""
         ...
 
@@ -48,7 +48,7 @@ class InMemoryEventStore:
     """List of events in submission order (EventStore)."""
 
     events: list[TeachingEvent] = field(default_factory=list)
-    error: str | None = None
+    saving_error: str | None = None
 
     def submit(self, event: TeachingEvent) -> None:
         """Append an event."""
@@ -76,7 +76,7 @@ class TickRecord(NamedTuple):
     """Comparison with the expectation of the RLA that ended in this tick; None if none ended."""
     commands: tuple[Input, ...] = ()
     """Messages taken from the inbox, in order."""
-    error: str | None = None
+    saving_error: str | None = None
     """Reason that lessons cannot be saved, read once in this tick; None if they can."""
     events: tuple[TeachingEvent, ...] = ()
     """Changes of knowledge in this tick, by teachers and by the robot itself."""
@@ -139,7 +139,7 @@ class _Choice(NamedTuple):
     results: list[CommandResult]
     events: list[TeachingEvent]
     """Lessons of the commands; the step learn adds the robot's own."""
-    error: str | None
+    saving_error: str | None
     decision: Decision
     behaviour: str
 
@@ -181,7 +181,7 @@ class Tick:
         """Whether the robot stood at a bumper in the last tick and waited for its teacher's answer."""
         self._bumpers = BumperWatch()
         self._standing = StandingWatch()
-        self._error: str | None = None
+        self._saving_error: str | None = None
         self._publish_knowledge_at = 0
         self._number = 0
         self._last_tick: int | None = None
@@ -238,10 +238,12 @@ class Tick:
                 if event is not None:
                     events.append(event)
         # Read once: the journal's thread may change it during the tick, and a replay has one value a tick.
-        self._error = self._event_store.error
+        self._saving_error = self._event_store.saving_error
         decision = self._decision(tick, view.situation, readings, blind=view.blind)
         self._timer.lap(Stage.DECIDE)
-        return _Choice(commands, results, events, self._error, decision, self._handler.active_behaviour.behaviour)
+        return _Choice(
+            commands, results, events, self._saving_error, decision, self._handler.active_behaviour.behaviour
+        )
 
     def _guard(self, tick: int, now_s: float, decision: Decision) -> _Motion:
         """Send the decided speeds through the guard; note an emergency stop and a wait at a bumper (step 4)."""
@@ -316,7 +318,7 @@ class Tick:
         # The later of both times: the clock of a replay stands still within a tick.
         standing_at_s = max(now_s, motion.drove_at_s)
         standing = self._standing.update(
-            decision, motion.result, standing_at_s, self._handler.active_stop, choice.error
+            decision, motion.result, standing_at_s, self._handler.active_stop, choice.saving_error
         )
         self._timer.lap(Stage.PUBLISH)
         return TickRecord(
@@ -332,7 +334,7 @@ class Tick:
             opinion=view.opinion,
             surprise=surprise,
             commands=choice.commands,
-            error=choice.error,
+            saving_error=choice.saving_error,
             events=tuple(choice.events),
             number=self._number,
             knowledge=knowledge,
@@ -406,7 +408,7 @@ class Tick:
         """Return the cause that neither an RLA nor manual drive may move the robot; None if they may."""
         if blind:
             return DecisionCause.BLIND
-        return None if self._error is None else DecisionCause.UNSAVED
+        return None if self._saving_error is None else DecisionCause.UNSAVED
 
 
 def _needs_present_situation(command: Command) -> bool:

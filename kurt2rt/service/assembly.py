@@ -56,7 +56,7 @@ class RobotService:
         runtime, writer = self.runtime, self.writer
         journal = JournalStatus(
             unsaved=lambda: writer.unwritten,
-            trouble=lambda: writer.error,
+            saving_error=lambda: writer.saving_error,
             stamp_of=lambda command_id: self.stamps.get(command_id, ""),
         )
         package = partial(package_knowledge, robot=runtime.robot, task=runtime.task)

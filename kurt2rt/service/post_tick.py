@@ -32,7 +32,7 @@ class ProgramStatus:
     record: TickRecord
     runtime: Runtime
     unsaved_lessons: int
-    trouble: str | None
+    saving_error: str | None
     """Reason why lessons cannot be saved; None if they can."""
     channel_trouble: str
     """Error of the teachers' channel; empty if there is none."""
@@ -144,7 +144,7 @@ class PostTick:
             record,
             self._runtime,
             self._writer.unwritten,
-            self._writer.error,
+            self._writer.saving_error,
             "" if self._channel is None else self._channel.trouble,
             "" if self._recorder is None else self._recorder.trouble,
         )

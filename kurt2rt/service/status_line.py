@@ -71,8 +71,8 @@ def format_alarms(status: ProgramStatus, health: Health) -> list[str]:
     parts = []
     if status.unsaved_lessons:
         parts.append(f"{status.unsaved_lessons} lessons not saved yet")
-    if status.trouble is not None:
-        parts.append(status.trouble)
+    if status.saving_error is not None:
+        parts.append(status.saving_error)
     if runtime.handler.updater.error:
         parts.append(runtime.handler.updater.error)
     if status.channel_trouble:

@@ -156,7 +156,9 @@ class ChannelFixture:
         )
         self.parts = ChannelDependencies(
             JournalStatus(
-                lambda: self.unwritten, lambda: self.notebook.error, lambda command_id: self.stamps.get(command_id, "")
+                lambda: self.unwritten,
+                lambda: self.notebook.saving_error,
+                lambda command_id: self.stamps.get(command_id, ""),
             ),
             self.shelf,
             lambda: self.bus_trouble,

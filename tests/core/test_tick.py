@@ -249,18 +249,18 @@ def test_tick_lesson_while_stopped_waits_for_resume(corridor: Corridor) -> None:
 
 
 def test_while_lessons_cannot_be_saved_it_stands_and_says_why(driving: Corridor) -> None:
-    driving.notebook.error = "disk full"
+    driving.notebook.saving_error = "disk full"
     record = driving.run()
     assert (record.decision.cause, record.guard_result.wheel_speeds) == (DecisionCause.UNSAVED, STANDSTILL)
     assert driving.run().situation.history_frozen
     driving.run(100, correct("back", "while unsaved"))
     assert driving.notebook.events[-1].origin.command_id == "while unsaved"  # not lost: it waits there
-    driving.notebook.error = None
+    driving.notebook.saving_error = None
     assert driving.run().decision.action == "back"
 
 
 def test_a_teachers_stop_goes_before_trouble_with_saving(driving: Corridor) -> None:
-    driving.notebook.error = "disk full"
+    driving.notebook.saving_error = "disk full"
     assert driving.run(100, stop()).decision.cause is DecisionCause.STOPPED
 
 

@@ -463,7 +463,7 @@ def test_manual_drive_is_blocked_if_blind_or_unsaved(
     driving: Corridor, trouble: str | None, cause: DecisionCause
 ) -> None:
     assert not stands(driving.run(100, press(driving)))
-    driving.notebook.error = trouble
+    driving.notebook.saving_error = trouble
     driving.robot.infrared_age_s = 0.0 if trouble else 1.0
     record = driving.run(100, press(driving))
     assert (record.decision.cause, record.decision.action, record.decision.wheel_speeds) == (cause, None, STANDSTILL)

@@ -24,8 +24,8 @@ def a_lesson_at_a_time(path: Path, disk: WatchedDisk) -> list[Acknowledgement]:
         for number in LESSONS:
             writer.submit(created(number))
             writer.submit_statistics(Statistics({1: number}, {(1, 2): number}))
-            assert writer.flush(LONGEST_S), writer.error
-            assert writer.error is None
+            assert writer.flush(LONGEST_S), writer.saving_error
+            assert writer.saving_error is None
             acknowledged += writer.acknowledged()
             disk.note(Told(number))
         writer.close()

@@ -29,7 +29,7 @@ def teach(path: Path) -> None:
             writer.submit(created(number))
             writer.submit_statistics(Statistics({1: number}, {(1, 2): number}))
             if not writer.flush(LONGEST_S):
-                raise KnowledgeError(KnowledgeCode.NOT_DURABLE, reason=writer.error)
+                raise KnowledgeError(KnowledgeCode.NOT_DURABLE, reason=writer.saving_error)
             for acknowledgement in writer.acknowledged():
                 os.write(1, f"row {acknowledgement.sequence} {acknowledgement.command_id}\n".encode())
 

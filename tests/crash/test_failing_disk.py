@@ -89,7 +89,7 @@ def test_writer_with_stuck_locks_reconnects_and_loses_nothing(tmp_path: Path) ->
         writer.submit(created(2))
         writer.submit(created(3))
         assert writer.flush(LONGEST_S)
-        assert writer.error is None
+        assert writer.saving_error is None
         assert [each.sequence for each in writer.acknowledged()] == [2, 3]
     assert journal.tries == 3
     require_kept(path, told=3)

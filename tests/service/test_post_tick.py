@@ -121,7 +121,7 @@ def test_a_status_comes_once_per_period(shift: Shift) -> None:
     shift.run(2 * STATUS)
     assert [status.record.tick for status in shift.statuses] == [10_000 + STATUS, 10_000 + 2 * STATUS]
     assert shift.rounds.last is shift.statuses[-1]
-    assert (shift.rounds.last.unsaved_lessons, shift.rounds.last.trouble) == (0, None)
+    assert (shift.rounds.last.unsaved_lessons, shift.rounds.last.saving_error) == (0, None)
 
 
 def knows(shift: Shift, rla_id: int) -> RlaCreated:

@@ -74,7 +74,7 @@ async def test_it_ends_by_itself_after_its_time(tmp_path: Path) -> None:
     assert len(here.questions) == 1
     assert last is not None
     assert here.statuses[-1] is last
-    assert (last.unsaved_lessons, last.trouble) == (0, None)
+    assert (last.unsaved_lessons, last.saving_error) == (0, None)
 
 
 async def test_serve_unknown_action_is_refused_before_driving(tmp_path: Path) -> None:

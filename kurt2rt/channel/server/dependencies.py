@@ -21,7 +21,8 @@ class JournalStatus:
 
     unsaved: Callable[[], int]
     """Number of lessons that are not durable yet."""
-    trouble: Callable[[], str | None]
+    saving_error: Callable[[], str | None]
+    """Reason that lessons cannot be saved; None if they can."""
     stamp_of: Callable[[str], str]
     """Time when the lesson of a command became durable; empty before."""
 

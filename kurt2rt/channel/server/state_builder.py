@@ -73,7 +73,7 @@ class StateBuilder:
             session=commands.session,
             clock_s=commands.teaching_ticks(record.tick) * runtime.robot.can.cycle_s,
             guard=record.guard_result.reasons,
-            trouble=parts.journal.trouble() or parts.bus_trouble() or commands.updater.error or self._urgent(),
+            trouble=parts.journal.saving_error() or parts.bus_trouble() or commands.updater.error or self._urgent(),
             late_p99_ms=self._late_p99_ms,
             missed_ticks=runtime.timer.missed_ticks,
             place=None if parts.world is None else parts.world.place(),

@@ -62,5 +62,5 @@ async def _teach_inside(robot: OpenRobot, number: int) -> int:
     robot.runtime.inbox.put(Teach(command_id, robot.device.name, action))
     await gate.until(lambda: gate.newest is not None and bool(gate.newest.results))
     if not await to_thread.run_sync(partial(robot.writer.flush, _PATIENCE_S)):
-        raise LessonLostError(robot.writer.error or f"the disk did not answer within {_PATIENCE_S:g} s")
+        raise LessonLostError(robot.writer.saving_error or f"the disk did not answer within {_PATIENCE_S:g} s")
     return time.perf_counter_ns() - begun_ns

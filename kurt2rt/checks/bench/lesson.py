@@ -68,7 +68,7 @@ async def measure_lessons(
                 runtime.scheduler.end()
             durable = sum(each.sequence is not None for each in writer.acknowledged())
             if durable < lessons:
-                why = writer.error or f"{folder}: the disk did not answer within {patience_s:g} s"
+                why = writer.saving_error or f"{folder}: the disk did not answer within {patience_s:g} s"
                 raise LessonLostError(f"{durable} of {lessons} lessons became durable: {why}")
     finally:
         simulation.close()

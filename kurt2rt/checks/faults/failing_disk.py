@@ -99,9 +99,9 @@ class FailingDisk:
             schedule_file_swap(simulated, disturbance, path)
 
     @property
-    def error(self) -> str | None:
+    def saving_error(self) -> str | None:
         """Return the writer's error."""
-        return self._writer.error
+        return self._writer.saving_error
 
     def submit(self, event: TeachingEvent) -> None:
         """Submit a lesson to the writer."""
@@ -116,7 +116,7 @@ class FailingDisk:
         give_up_s = time.monotonic() + _PATIENCE_S
         while not self._in_step():
             if time.monotonic() > give_up_s:
-                raise DiskOutOfStepError(f"{self._writer.unwritten} lessons wait; {self._writer.error}")
+                raise DiskOutOfStepError(f"{self._writer.unwritten} lessons wait; {self._writer.saving_error}")
             time.sleep(_LOOK_S)
         self.acknowledged += [each.command_id for each in self._writer.acknowledged() if each.sequence is not None]
 
@@ -142,9 +142,9 @@ class FailingDisk:
         if waits_until_s is not None:
             return now_s < waits_until_s
         if self._writer.unwritten == 0:
-            return self._writer.error is None
+            return self._writer.saving_error is None
         fails = self._disturbance.kind in ("off", "intermittent", "garbage", "wrong")
-        return fails and self._disturbance.acts(now_s) and self._writer.error is not None
+        return fails and self._disturbance.acts(now_s) and self._writer.saving_error is not None
 
 
 def schedule_file_swap(simulated: SimulatedTime, disturbance: RigDisturbance, path: Path) -> None:

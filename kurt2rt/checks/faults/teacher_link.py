@@ -38,7 +38,7 @@ class TeacherLink:
         self._time = time
         self._disturbance = disturbance
         self._chance = chance
-        journal = JournalStatus(unsaved=int, trouble=lambda: None, stamp_of=lambda _: "")
+        journal = JournalStatus(unsaved=int, saving_error=lambda: None, stamp_of=lambda _: "")
         dependencies = ChannelDependencies(journal, _NoCopies(), str, None, boot=_BOOT)
         self._handler = RequestHandler(runtime, dependencies, {})
         self._number = self._press_id = 0

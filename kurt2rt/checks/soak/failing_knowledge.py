@@ -72,10 +72,10 @@ class SoakKnowledge:
         give_up_s = time.monotonic() + _PATIENCE_S
         while not self._in_step():
             if time.monotonic() > give_up_s:
-                raise DiskOutOfStepError(f"{self.writer.unwritten} lessons wait; {self.writer.error}")
+                raise DiskOutOfStepError(f"{self.writer.unwritten} lessons wait; {self.writer.saving_error}")
             time.sleep(_LOOK_S)
         if with_statistics and self._disturbance is None and not self.writer.flush(_PATIENCE_S):
-            raise DiskOutOfStepError(f"statistics wait; {self.writer.error}")
+            raise DiskOutOfStepError(f"statistics wait; {self.writer.saving_error}")
 
     def on_acknowledged(self, acknowledgement: Acknowledgement) -> None:
         """Note a lesson that is durable or failed."""
@@ -109,7 +109,7 @@ class SoakKnowledge:
         waits_until_s = self._journal.waits_until_s
         if waits_until_s is not None:
             return now_s < waits_until_s
-        if not self.writer.unwritten and self.writer.error is None:
+        if not self.writer.unwritten and self.writer.saving_error is None:
             return True
         fails = disturbance is not None and disturbance.kind in _FAIL and disturbance.acts(now_s)
-        return fails and self.writer.error is not None
+        return fails and self.writer.saving_error is not None

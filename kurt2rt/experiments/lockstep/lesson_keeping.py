@@ -58,7 +58,7 @@ class LessonKeeping:
         """Store the statistics, and wait until all is durable. Raises LessonLostError."""
         self.writer.submit_statistics(counted)
         if not self.writer.flush(timeout_s=30.0):
-            raise LessonLostError(self.writer.error or f"{self._file}: the disk did not answer within 30 s")
+            raise LessonLostError(self.writer.saving_error or f"{self._file}: the disk did not answer within 30 s")
         self.look()
 
 

@@ -18,7 +18,7 @@ from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
 class NoTeachingAllowed:
     """Event store of a run without a teacher; a teaching event in it is a defect."""
 
-    error: str | None = None
+    saving_error: str | None = None
 
     def submit(self, event: TeachingEvent) -> None:
         """Raise RuntimeError."""

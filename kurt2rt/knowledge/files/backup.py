@@ -85,8 +85,8 @@ class BackupService:
 
     async def settle(self) -> None:
         """Wait until all that was taught is durable. Raises KnowledgeError."""
-        if self._writer.error is not None:
-            raise KnowledgeError(KnowledgeCode.NOT_DURABLE, reason=self._writer.error)
+        if self._writer.saving_error is not None:
+            raise KnowledgeError(KnowledgeCode.NOT_DURABLE, reason=self._writer.saving_error)
         await anyio.to_thread.run_sync(self._flush)
 
     async def read(self, name: str, offset: int, most_bytes: int) -> FilePart:

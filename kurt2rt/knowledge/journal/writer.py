@@ -61,8 +61,8 @@ def utc_now() -> str:
 class JournalWriter:
     """Owner of a journal, which writes lessons in the order of `submit`, drops none, and closes the journal.
 
-    On a failing disk the lessons wait, `error` tells the cause (the robot must stand meanwhile), and the writer tries
-    again until it succeeds.
+    On a failing disk the lessons wait and `saving_error` tells the cause: the robot must stand meanwhile. The writer
+    tries again until it succeeds.
     """
 
     def __init__(
@@ -97,7 +97,7 @@ class JournalWriter:
         self._thread.start()
 
     @property
-    def error(self) -> str | None:
+    def saving_error(self) -> str | None:
         """Return one line (where, what is wrong, what to do); None while lessons become durable."""
         if self._failure is None and self.unwritten and self._clock() - self._progress_at_s > HANGS_AFTER_S:
             return f"{self._journal.path}: the disk does not answer; {self.unwritten} lessons wait; look at its health"
@@ -157,8 +157,8 @@ class JournalWriter:
         self.flush(timeout_s)
         self._inbox.put(_Stop())
         self._thread.join(max(0.0, until_s - time.monotonic()))
-        if self.error is not None or self._thread.is_alive():
-            reason = self.error or f"{self._journal.path}: the disk does not answer; look at its health"
+        if self.saving_error is not None or self._thread.is_alive():
+            reason = self.saving_error or f"{self._journal.path}: the disk does not answer; look at its health"
             raise KnowledgeError(KnowledgeCode.LESSONS_NOT_WRITTEN, reason=reason, count=self.unwritten)
 
     def __enter__(self) -> Self:

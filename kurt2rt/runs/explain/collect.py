@@ -56,7 +56,7 @@ def collect_facts(
         reasons=record.guard_result.reasons,
         latched=record.guard_result.latched,
         stopped=school.active_stop,
-        trouble=record.error or "",
+        trouble=record.saving_error or "",
         teacher=school.authority.teacher or "",
         infrared_counts=record.readings.infrared_counts,
         infrared_age_s=record.readings.infrared_age_s,
@@ -77,7 +77,7 @@ def _blocking_causes(runtime: Runtime, record: TickRecord) -> tuple[str, ...]:
     found = []
     if not record.readings.infrared_age_s <= runtime.robot.guard.stale_infrared_s:
         found.append(DecisionCause.BLIND)
-    if record.error is not None:
+    if record.saving_error is not None:
         found.append(DecisionCause.UNSAVED)
     if school.requires_teacher and not school.authority.is_present(record.tick):
         found.append(DecisionCause.UNATTENDED)

@@ -89,7 +89,7 @@ class TickEntry(NamedTuple):
     grant: GuardResult
     commands: tuple[Input, ...]
     """Messages taken from the inbox in this tick, in order."""
-    trouble: str | None
+    saving_error: str | None
     """Reason why lessons could not be saved in this tick; None if they could."""
     saved: bool
     """True if statistics were saved after the tick, which drops those of deleted RLAs."""
@@ -107,7 +107,7 @@ class TickEntry(NamedTuple):
     """Hash of the knowledge after this tick (RlaSystem.knowledge_hash); None in ticks without it."""
 
 
-RECORDED_AS = {"readings": "senses"}
+RECORDED_AS = {"readings": "senses", "saving_error": "trouble"}
 """Keys in recordings of fields that have another name in TickEntry."""
 
 
@@ -120,7 +120,7 @@ def tick_entry(record: TickRecord, *, saved: bool, knowledge: str | None) -> Tic
         readings=record.readings,
         grant=record.guard_result,
         commands=record.commands,
-        trouble=record.error,
+        saving_error=record.saving_error,
         saved=saved,
         decision=decision_entry(record.decision),
         behaviour=record.behaviour,

@@ -68,7 +68,7 @@ def _content(entry: TickEntry) -> dict[str, Any]:
             },
             "grant": {"wheels": _wheels(grant.wheel_speeds), "reasons": grant.reasons, "latched": grant.latched},
             "commands": [encode_command(each) for each in entry.commands] or None,
-            "trouble": entry.trouble,
+            "trouble": entry.saving_error,
             "saved": entry.saved or None,
             "decision": _decision(entry.decision),
             "behaviour": entry.behaviour,
@@ -133,6 +133,7 @@ def _entry(content: dict[str, Any]) -> TickEntry:
             _decoded(WheelSpeeds, grant["wheels"]), tuple(map(guard_reason, grant["reasons"])), grant["latched"]
         ),
         commands=tuple(decode_command(each) for each in content.get("commands", ())),
+        saving_error=content.get("trouble"),
         saved=content.get("saved", False),
         decision=_decision_of(content["decision"]),
         opinion=None if opinion is None else _decoded(OpinionEntry, opinion),

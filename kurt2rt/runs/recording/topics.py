@@ -68,7 +68,7 @@ class Topics:
         self._doing = ""
         self._asking = False
         self._reasons: tuple[GuardReason, ...] = ()
-        self._trouble: str | None = None
+        self._saving_error: str | None = None
         self._tick = _channel(TICK, TICK_SCHEMA, context)
         self._lesson = _channel(LESSON, LESSON_SCHEMA, context)
         self._situation = _channel(SITUATION, situation_schema(features), context)
@@ -159,9 +159,9 @@ class Topics:
                 gently = LogLevel.Debug if all(reason.routine for reason in self._reasons) else LogLevel.Warning
                 level = LogLevel.Error if record.guard_result.latched else gently
                 self.log_text(f"guard: {', '.join(self._reasons)}", level, time_ns)
-        if record.error != self._trouble:
-            self._trouble = record.error
-            self.log_text(self._trouble or "lessons are saved again", LogLevel.Error, time_ns)
+        if record.saving_error != self._saving_error:
+            self._saving_error = record.saving_error
+            self.log_text(self._saving_error or "lessons are saved again", LogLevel.Error, time_ns)
 
     def _log_pose(self, record: TickRecord, time_ns: int) -> None:
         if self._scan.has_sinks():

@@ -14,9 +14,9 @@ class ReplayEnvironment:
         """Current tick."""
 
     @property
-    def error(self) -> str | None:
+    def saving_error(self) -> str | None:
         """Return the recorded error of the journal (LessonKeeper)."""
-        return self._entry.trouble
+        return self._entry.saving_error
 
     def submit(self, event: TeachingEvent) -> None:
         """Discard the event: the record has it (LessonKeeper)."""

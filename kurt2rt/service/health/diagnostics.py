@@ -158,8 +158,8 @@ def _of_bus(snapshot: Snapshot, counted: Counted) -> Iterator[_Found]:
 
 
 def _of_keeping(snapshot: Snapshot, slowest_write_s: float | None, disks: tuple[DiskSpace, ...]) -> Iterator[_Found]:
-    if snapshot.journal_error:
-        yield _Found(TroubleCode.LESSONS_UNSAVED, True, line=snapshot.journal_error)
+    if snapshot.saving_error:
+        yield _Found(TroubleCode.LESSONS_UNSAVED, True, line=snapshot.saving_error)
     if slowest_write_s is not None:
         yield _Found(TroubleCode.SLOW_DISK, numbers=(slowest_write_s,))
     for disk in disks:

@@ -17,7 +17,7 @@ class JournalStats(Protocol):
         ...
 
     @property
-    def error(self) -> str | None:
+    def saving_error(self) -> str | None:
         """Return why lessons cannot be saved and what to do; None if they can."""
         ...
 

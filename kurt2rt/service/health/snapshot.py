@@ -25,7 +25,7 @@ class Snapshot:
     """Infinite before the first frame, as in SensorReadings."""
     bus: Health | None
     unwritten: int
-    journal_error: str | None
+    saving_error: str | None
     last_write_s: float | None
     drops: Mapping[str, int]
     errors: Mapping[str, str]
@@ -53,7 +53,7 @@ def take_snapshot(
         bumper_age_s=readings.bumper_age_s,
         bus=None if instruments.bus is None else instruments.bus(),
         unwritten=keeping.unwritten,
-        journal_error=keeping.error,
+        saving_error=keeping.saving_error,
         last_write_s=keeping.last_write_s,
         drops={queue: count() for queue, count in instruments.drops.items()},
         errors={part: line for part, line in errors.items() if line},

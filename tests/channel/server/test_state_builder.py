@@ -182,7 +182,7 @@ async def test_phase_session_and_clock(desk: ChannelFixture) -> None:
 def test_trouble_with_the_disk_goes_before_trouble_with_the_bus(desk: ChannelFixture) -> None:
     desk.bus_trouble = "the bus is off"
     assert picture(desk).trouble == "the bus is off"
-    desk.notebook.error = "the disk is full"
+    desk.notebook.saving_error = "the disk is full"
     assert picture(desk).trouble == "the disk is full"
 
 

@@ -101,7 +101,7 @@ def test_latched_stall_has_length_and_resume_on_every_surface() -> None:
 
 class _Keeping:
     unwritten = 0
-    error: str | None = None
+    saving_error: str | None = None
     last_write_s: float | None = None
 
 

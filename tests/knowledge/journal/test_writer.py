@@ -34,9 +34,9 @@ def settled(writer: JournalWriter) -> list[Acknowledgement]:
 
 def wait_for_error(writer: JournalWriter) -> str:
     """Return the error once there is one; the time limit of the test suite ends a wait in vain."""
-    while writer.error is None:
+    while writer.saving_error is None:
         writer.flush(timeout_s=0.001)
-    return writer.error
+    return writer.saving_error
 
 
 def stored(path: Path) -> list[RlaCreated]:
@@ -53,7 +53,7 @@ def test_acknowledged_durable_lessons_come_in_order(path: Path) -> None:
         acknowledged = settled(writer)
         assert stored(path) == lessons
         assert writer.unwritten == 0
-        assert writer.error is None
+        assert writer.saving_error is None
 
     assert acknowledged == [Acknowledgement(f"create-{number}", number, None, STAMP) for number in range(1, 31)]
 
@@ -74,19 +74,19 @@ def test_error_hanging_write_is_told_until_it_ends(path: Path) -> None:
     now_s = 100.0
     with JournalWriter(journal, now=lambda: STAMP, retry=SOON, clock=lambda: now_s) as writer:
         now_s += 10.0  # with nothing to keep a disk may rest
-        assert writer.error is None
+        assert writer.saving_error is None
         writer.submit(created(1))
         now_s += 2.0
         writer.submit(created(2))
         now_s += 1.0
-        assert writer.error is None
+        assert writer.saving_error is None
         now_s += 0.1
-        assert writer.error == f"{path}: the disk does not answer; 2 lessons wait; look at its health"
+        assert writer.saving_error == f"{path}: the disk does not answer; 2 lessons wait; look at its health"
         journal.let_go.set()
         assert [each.command_id for each in settled(writer)] == ["create-1", "create-2"]
-        assert writer.error is None
+        assert writer.saving_error is None
         writer.submit(created(3))
-        assert writer.error is None
+        assert writer.saving_error is None
 
 
 def test_stamp_is_the_wall_clock_at_submit(path: Path) -> None:
@@ -152,10 +152,10 @@ def test_submit_full_disk_lessons_wait_in_order(path: Path) -> None:
             writer.submit(created(number))
             writer.flush(timeout_s=0.005)  # not all in one batch: some still fit
             acknowledged += writer.acknowledged()
-            if writer.error is not None:
+            if writer.saving_error is not None:
                 break
-        assert writer.error is not None
-        assert writer.error.startswith(f"{path}: the disk is full; make room on it")
+        assert writer.saving_error is not None
+        assert writer.saving_error.startswith(f"{path}: the disk is full; make room on it")
         waiting = writer.unwritten
         assert len(stored(path)) == number - waiting
         for later in range(number + 1, number + 51):
@@ -167,7 +167,7 @@ def test_submit_full_disk_lessons_wait_in_order(path: Path) -> None:
 
         connection.execute("PRAGMA max_page_count = 100000")
         acknowledged += settled(writer)
-        assert writer.error is None
+        assert writer.saving_error is None
 
     assert [each.sequence for each in acknowledged] == list(range(4, later + 1))
     assert stored(path) == [created(each) for each in range(1, later + 1)]
@@ -194,7 +194,7 @@ def test_submit_failing_disk_lessons_wait_in_order(path: Path) -> None:
                 writer.submit(created(number))
             error = wait_for_error(writer)
         acknowledged = settled(writer)
-        assert writer.error is None
+        assert writer.saving_error is None
 
     assert error.startswith(f"{path}: the disk fails; look at its health and room")
     assert [each.sequence for each in acknowledged] == list(range(2, 20))

@@ -134,7 +134,7 @@ def test_counterfactuals_are_empty_for_a_stop(lesson: Lesson) -> None:
 
 
 def test_lessons_that_cannot_be_saved_are_among_the_facts(lesson: Lesson) -> None:
-    give(lesson).notebook.error = "the disk is full"
+    give(lesson).notebook.saving_error = "the disk is full"
     lesson.go_on(1)
     assert (lesson.facts.cause, lesson.facts.trouble) == (DecisionCause.UNSAVED, "the disk is full")
 

@@ -93,7 +93,7 @@ def walls(scene: Scene, record: TickRecord) -> None:
         command = scene.teacher.update(view_of_tick(record))
         if command is not None:
             runtime.inbox.put(command)
-    scene.notebook.error = "the disk is full" if at(14) <= tick < at(14.4) else None
+    scene.notebook.saving_error = "the disk is full" if at(14) <= tick < at(14.4) else None
     if at(22) <= tick < at(23):
         runtime.inbox.put(Drive(NAME, tick, 1, 0.1, 0.2))
     match tick:

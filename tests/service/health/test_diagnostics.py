@@ -24,7 +24,7 @@ CALM = Snapshot(
     bumper_age_s=0.004,
     bus=A_BUS,
     unwritten=0,
-    journal_error=None,
+    saving_error=None,
     last_write_s=0.004,
     drops={"lines": 0},
     errors={},
@@ -130,7 +130,7 @@ def test_the_bus_says_itself_what_is_wrong_and_what_to_do(ward: Ward) -> None:
 
 
 def test_a_disk_that_fails_fills_up_hangs_or_takes_its_time(ward: Ward) -> None:
-    failing = ward.one(replace(CALM, journal_error="k: disk full; make room", unwritten=3))
+    failing = ward.one(replace(CALM, saving_error="k: disk full; make room", unwritten=3))
     assert failing == Trouble(TroubleCode.LESSONS_UNSAVED, 0.0, True, line="k: disk full; make room")
     little = ward.one(disks=(DiskSpace("recordings", 499_000_000),))
     assert little == Trouble(TroubleCode.LITTLE_ROOM, 0.0, False, "recordings", (499.0,))

@@ -19,7 +19,7 @@ class Keeping:
     """Journal of the lessons, as the monitor sees it."""
 
     unwritten = 2
-    error: str | None = None
+    saving_error: str | None = None
     last_write_s: float | None = 0.005
 
 
