@@ -3,7 +3,7 @@
 import os
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 
 from kurt2rt.checks.bench.result import BenchGoal, BenchResult, Reference
@@ -41,13 +41,13 @@ async def measure_closed_loop(
             on_progress(blocks_done / blocks)
         begun_ns = time.perf_counter_ns()
 
-    simulation = fixture.open_simulation("bench closed_loop")
-    try:
-        with on_one_core() as core, open_writer(fixture, folder / "closed_loop.knowledge") as writer:
-            training = TrainingStore(writer, fixture.events)
-            lesson = await teach(simulation, fixture.settings, task, training, seed=SEED, on_progress=after_second)
-    finally:
-        simulation.close()
+    with (
+        closing(fixture.open_simulation("bench closed_loop")) as simulation,
+        on_one_core() as core,
+        open_writer(fixture, folder / "closed_loop.knowledge") as writer,
+    ):
+        training = TrainingStore(writer, fixture.events)
+        lesson = await teach(simulation, fixture.settings, task, training, seed=SEED, on_progress=after_second)
     tick = percentiles_of(tick_ns)
     reference = Reference("period", period_s * 1e6, tick.median_us)
     best = period_s * 1e9 / min(tick_ns)

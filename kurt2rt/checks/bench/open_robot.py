@@ -1,7 +1,7 @@
 """Robot that is open to teachers over the network, assembled like the service."""
 
 from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, closing
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -96,44 +96,41 @@ async def open_robot(fixture: BenchFixture, folder: Path) -> AsyncIterator[OpenR
         update={"knowledge": str(folder / "bench.knowledge"), "teachers": str(folder / "teachers"), "port": 0}
     )
     failed: Exception | None = None
-    simulation = fixture.open_simulation(f"bench {folder.name}")
-    try:
-        with (
-            open_writer(fixture, Path(service.knowledge)) as writer,
-            TimerfdClock() as real_clock,
-            simulation.live(),
-            gc_frozen(),
+    with (
+        closing(fixture.open_simulation(f"bench {folder.name}")) as simulation,
+        open_writer(fixture, Path(service.knowledge)) as writer,
+        TimerfdClock() as real_clock,
+        simulation.live(),
+        gc_frozen(),
+    ):
+        clock = LatenessClock(real_clock)
+        observer = ObservedRobot(simulation.robot, clock)
+        runtime = build_runtime(
+            observer, fixture.settings, fixture.task, fixture.events, writer, clock, RuntimeOptions(attended=True)
+        )
+        runtime.handler.stop(STARTED)
+        robot = RobotService(runtime, writer, service)
+        console = ProgramConsole(status=lambda _: None, question=lambda _: None, acknowledged=lambda _: None)
+        async with (
+            anyio.create_task_group() as tasks,
+            open_service_channel(robot, robot.channel_dependencies()) as channel,
         ):
-            clock = LatenessClock(real_clock)
-            observer = ObservedRobot(simulation.robot, clock)
-            runtime = build_runtime(
-                observer, fixture.settings, fixture.task, fixture.events, writer, clock, RuntimeOptions(attended=True)
-            )
-            runtime.handler.stop(STARTED)
-            robot = RobotService(runtime, writer, service)
-            console = ProgramConsole(status=lambda _: None, question=lambda _: None, acknowledged=lambda _: None)
-            async with (
-                anyio.create_task_group() as tasks,
-                open_service_channel(robot, robot.channel_dependencies()) as channel,
-            ):
-                gate = PauseGate(PostTick(robot, console, channel=channel), PostTick(robot, console))
-                pace = LoopPacer(runtime.scheduler, clock)
-                tasks.start_soon(pace.run, gate)
-                try:
-                    yield OpenRobot(
-                        runtime=runtime,
-                        writer=writer,
-                        channel=channel,
-                        observer=observer,
-                        clock=clock,
-                        device=pairing.device,
-                        gate=gate,
-                        pace=pace,
-                    )
-                except Exception as error:  # noqa: BLE001  # raised below: a task group would wrap it
-                    failed = error
-                pace.end()
-    finally:
-        simulation.close()
+            gate = PauseGate(PostTick(robot, console, channel=channel), PostTick(robot, console))
+            pace = LoopPacer(runtime.scheduler, clock)
+            tasks.start_soon(pace.run, gate)
+            try:
+                yield OpenRobot(
+                    runtime=runtime,
+                    writer=writer,
+                    channel=channel,
+                    observer=observer,
+                    clock=clock,
+                    device=pairing.device,
+                    gate=gate,
+                    pace=pace,
+                )
+            except Exception as error:  # noqa: BLE001  # raised below: a task group would wrap it
+                failed = error
+            pace.end()
     if failed is not None:
         raise failed

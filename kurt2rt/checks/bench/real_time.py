@@ -1,5 +1,6 @@
 """Drive in real time with the whole runtime, alternating with a bare asyncio.sleep loop."""
 
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -52,35 +53,36 @@ async def run_in_real_time(
     period_s = fixture.settings.can.cycle_s
     asyncio_ledger = TickTimer()
     driving = 0
-    simulation = fixture.open_simulation("bench real_time")
-    try:
-        with open_writer(fixture, folder / "real_time.knowledge") as writer, TimerfdClock() as clock, gc_frozen():
-            runtime = build_runtime(simulation.robot, fixture.settings, fixture.task, fixture.events, writer, clock)
-            actions = tuple(runtime.level.repertoire)
-            teacher = build_teacher(fixture.task, fixture.settings, actions, seed=SEED, session="bench")
-            runtime.inbox.put(teacher.begin_phase(Phase.CORRECTIONS))
-            ticks_per_checkpoint = round(1 / period_s)
+    with (
+        closing(fixture.open_simulation("bench real_time")) as simulation,
+        open_writer(fixture, folder / "real_time.knowledge") as writer,
+        TimerfdClock() as clock,
+        gc_frozen(),
+    ):
+        runtime = build_runtime(simulation.robot, fixture.settings, fixture.task, fixture.events, writer, clock)
+        actions = tuple(runtime.level.repertoire)
+        teacher = build_teacher(fixture.task, fixture.settings, actions, seed=SEED, session="bench")
+        runtime.inbox.put(teacher.begin_phase(Phase.CORRECTIONS))
+        ticks_per_checkpoint = round(1 / period_s)
 
-            def after_tick(record: TickRecord) -> None:
-                nonlocal driving
-                driving += record.decision.driving
-                command = teacher.update(view_of_tick(record))
-                if command is not None:
-                    runtime.inbox.put(command)
-                if record.tick % ticks_per_checkpoint == 0:
-                    counted = runtime.statistics
-                    writer.submit_statistics(Statistics(dict(counted.uses), dict(counted.transitions)))
+        def after_tick(record: TickRecord) -> None:
+            nonlocal driving
+            driving += record.decision.driving
+            command = teacher.update(view_of_tick(record))
+            if command is not None:
+                runtime.inbox.put(command)
+            if record.tick % ticks_per_checkpoint == 0:
+                counted = runtime.statistics
+                writer.submit_statistics(Statistics(dict(counted.uses), dict(counted.transitions)))
 
-            for number in range(turns.rounds):
-                with simulation.live():
-                    # The controller's cycle and ours are not in step: each round meets another phase of it.
-                    await clock.wait_until(clock.now_s() + period_s * number / turns.rounds)
-                    await runtime.scheduler.run(turns.ticks, after_tick)
-                await sleep_bare(AsyncioClock(), turns.reference_ticks, period_s, asyncio_ledger)
-                # Only here: drawing a progress bar takes milliseconds that would show as lateness.
-                on_progress((number + 1) / turns.rounds)
-    finally:
-        simulation.close()
+        for number in range(turns.rounds):
+            with simulation.live():
+                # The controller's cycle and ours are not in step: each round meets another phase of it.
+                await clock.wait_until(clock.now_s() + period_s * number / turns.rounds)
+                await runtime.scheduler.run(turns.ticks, after_tick)
+            await sleep_bare(AsyncioClock(), turns.reference_ticks, period_s, asyncio_ledger)
+            # Only here: drawing a progress bar takes milliseconds that would show as lateness.
+            on_progress((number + 1) / turns.rounds)
     ledger = runtime.timer
     return RealTimeRun(
         ticks=turns.rounds * turns.ticks,

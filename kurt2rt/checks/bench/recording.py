@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -75,33 +76,26 @@ async def drive_recorded(
     stretches: dict[bool, list[RecordedStretch]] = {False: [], True: []}
     noted_ns: list[int] = []
 
-    def note(record: TickRecord) -> None:
-        begun_ns = time.perf_counter_ns()
-        recorder.on_tick(record)
-        noted_ns.append(time.perf_counter_ns() - begun_ns)
-
-    simulation = fixture.open_simulation("bench recording")
-    try:
-        with (
-            open_writer(fixture, folder / "recording.knowledge") as writer,
-            TimerfdClock() as timer,
-            gc_frozen(),
-            short_switch_interval(),
-            recorder,
-        ):
-            clock = LatenessClock(timer)
-            runtime = build_runtime(simulation.robot, settings, fixture.task, fixture.events, writer, clock)
-            runtime.handler.phase = Phase.AUTONOMOUS
-            for number in range(shifts.rounds):
-                with simulation.live():
-                    await timer.wait_until(timer.now_s() + period_s * number / shifts.rounds)
-                    for recorded, ledger in ledgers.items():
-                        clock.ledger = ledger
-                        stretches[recorded].append(await _stretch(runtime, note if recorded else _ignore, shifts.ticks))
-                        clock.ledger = None
-                on_progress((number + 1) / shifts.rounds)
-    finally:
-        simulation.close()
+    with (
+        closing(fixture.open_simulation("bench recording")) as simulation,
+        open_writer(fixture, folder / "recording.knowledge") as writer,
+        TimerfdClock() as timer,
+        gc_frozen(),
+        short_switch_interval(),
+        recorder,
+    ):
+        clock = LatenessClock(timer)
+        runtime = build_runtime(simulation.robot, settings, fixture.task, fixture.events, writer, clock)
+        runtime.handler.phase = Phase.AUTONOMOUS
+        callbacks = {False: _ignore, True: _timed(recorder.on_tick, noted_ns)}
+        for number in range(shifts.rounds):
+            with simulation.live():
+                await timer.wait_until(timer.now_s() + period_s * number / shifts.rounds)
+                for recorded, ledger in ledgers.items():
+                    clock.ledger = ledger
+                    stretches[recorded].append(await _stretch(runtime, callbacks[recorded], shifts.ticks))
+                    clock.ledger = None
+            on_progress((number + 1) / shifts.rounds)
     return RecordedDrive(
         period_s=period_s,
         ticks=shifts.ticks,
@@ -120,6 +114,17 @@ async def _stretch(runtime: Runtime, after_tick: Callable[[TickRecord], None], t
     missed, processor_ns = runtime.timer.missed_ticks, time.process_time_ns()
     await runtime.scheduler.run(ticks, after_tick)
     return RecordedStretch((time.process_time_ns() - processor_ns) / 1e3, runtime.timer.missed_ticks - missed)
+
+
+def _timed(on_tick: Callable[[TickRecord], None], took_ns: list[int]) -> Callable[[TickRecord], None]:
+    """Return a callback that appends the duration of each call of `on_tick` to `took_ns`."""
+
+    def timed(record: TickRecord) -> None:
+        begun_ns = time.perf_counter_ns()
+        on_tick(record)
+        took_ns.append(time.perf_counter_ns() - begun_ns)
+
+    return timed
 
 
 def _ignore(_: TickRecord) -> None:

@@ -1,7 +1,7 @@
 """Fixture of the benchmarks: a robot in its world, a task, and knowledge to drive with."""
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,8 +37,7 @@ async def learn(fixture: BenchFixture, duration_s: float, on_progress: OnProgres
     """Return the fixture taught in lockstep for `duration_s`, two thirds of it with corrections."""
     notebook = InMemoryEventStore()
     task = with_duration(fixture.task, supervised_s=duration_s / 3, corrections_s=duration_s * 2 / 3)
-    simulation = fixture.open_simulation("lesson")
-    try:
+    with closing(fixture.open_simulation("lesson")) as simulation:
         await teach(
             simulation,
             fixture.settings,
@@ -47,8 +46,6 @@ async def learn(fixture: BenchFixture, duration_s: float, on_progress: OnProgres
             seed=SEED,
             on_progress=lambda done_s: on_progress(done_s / duration_s),
         )
-    finally:
-        simulation.close()
     return BenchFixture(fixture.settings, fixture.task, fixture.open_simulation, tuple(notebook.events))
 
 

@@ -8,6 +8,7 @@ from kurt2rt.checks.bench.lesson import measure_lessons
 from kurt2rt.checks.bench.robot_under_test import BenchFixture
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.knowledge.refusals import refused
 
 
@@ -26,8 +27,11 @@ async def test_every_lesson_that_was_timed_is_in_the_file(subject: BenchFixture,
 
 @pytest.mark.deep  # closing a writer whose disk fails takes its patience of 10 s
 async def test_a_disk_that_fails_ends_the_run_and_says_why(subject: BenchFixture, tmp_path: Path) -> None:
-    def take_the_file_away(_: float) -> None:
-        (tmp_path / "lesson.knowledge").unlink()
+    path = tmp_path / "lesson.knowledge"
 
-    with refused(KnowledgeCode.MOVED_IN_USE):
+    def take_the_file_away(_: float) -> None:
+        path.unlink()
+
+    moved = KnowledgeError(KnowledgeCode.MOVED_IN_USE, where=path)
+    with refused(KnowledgeCode.LESSONS_NOT_WRITTEN, reason=str(moved), count=1):
         await measure_lessons(subject, tmp_path, 3, take_the_file_away, patience_s=0.5)
