@@ -5,9 +5,8 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Discriminator, Field, Tag, ValidationInfo, field_validator
 
-from behaviors.metrics.registry import AnyMetricSettings
 from behaviors.policies.policy import PolicySettings
-from behaviors.registry import AnyJudgeSettings, AnyPolicySettings
+from behaviors.registry import AnyJudgeSettings, AnyMetricSettings, AnyPolicySettings
 from hal.settings import Settings, SettingsError, find_config, load_settings
 from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.mid.settings import MidSettings

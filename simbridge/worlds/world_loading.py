@@ -1,18 +1,23 @@
 """Loader of worlds by name or path, with a check that the robot can drive in them."""
 
+import re
 from pathlib import Path
 
 import shapely
 
 from hal.robot_settings import GeometrySettings, RobotSettings, load_robot
 from hal.settings import SettingsError, content_of, find_config, load_settings
-from simbridge.worlds.generator.names import GENERATED, generated
+from simbridge.worlds.generator.rooms import room
+from simbridge.worlds.generator.streets import streets
 from simbridge.worlds.geometry import polygons_of
 from simbridge.worlds.world_settings import WorldSettings
 
 START_CLEARANCE_M = 0.05
 """Least wall clearance of a start pose; a robot that turns at a smaller one collides."""
 
+GENERATED = "rooms-N or streets-N with any whole number N up to 9 digits, such as rooms-17"
+"""Valid names of generated worlds, for messages."""
+_GENERATED = re.compile(r"(rooms|streets)-(0|[1-9]\d{0,8})", re.ASCII)
 
 _IMAGES = (".png", ".pgm", ".ppm", ".pbm", ".jpg", ".jpeg", ".bmp", ".gif", ".tif", ".tiff", ".svg")
 """Suffixes of images, which are no worlds."""
@@ -26,7 +31,7 @@ def load_world(name_or_path: str = "a", robot: RobotSettings | None = None) -> W
     Raises hal.settings.SettingsError that names file and key.
     """
     geometry = (robot or load_robot()).geometry
-    world = generated(name_or_path)
+    world = _generated(name_or_path)
     source = name_or_path
     if world is None:
         path = _find(name_or_path)
@@ -104,3 +109,11 @@ def require_drivable(world: WorldSettings, geometry: GeometrySettings, source: s
                 where=source,
                 do="move the line or what stands in its way",
             )
+
+
+def _generated(name: str) -> WorldSettings | None:
+    """Return the generated world of this name, always the same; None if it is no name of a generated world."""
+    match = _GENERATED.fullmatch(name)
+    if match is None:
+        return None
+    return (room if match[1] == "rooms" else streets)(int(match[2]))

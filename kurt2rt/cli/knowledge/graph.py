@@ -7,8 +7,7 @@ import typer
 
 from kurt2rt.cli.knowledge.shared import KnowledgeFile, say
 from kurt2rt.core.rla.rla import BASIC
-from kurt2rt.knowledge.graph.file import FORMATS, write_network
-from kurt2rt.knowledge.graph.graph import drop_rare_edges, read_network
+from kurt2rt.knowledge.graph.graph import FORMATS, drop_rare_edges, read_network, write_network
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.show.table_cells import printable
 
