@@ -23,6 +23,7 @@ from hal.settings import Settings, load_settings
 from kurt2rt.core.perception.definition import SituationDefinition
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.experiments.lockstep.curriculum import WorldResult, run_exams
+from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.service.settings import ServiceSettings
 from simbridge.worlds.world_settings import WorldSettings
 from tests.cli.helpers import CommandLine, started
@@ -151,7 +152,22 @@ def folder(tmp_path: Path, taught: Path) -> Path:
     task["exam"].update(duration_s=5.0)
     (tmp_path / "short.yaml").write_text(yaml.safe_dump(task), encoding="utf-8")
     record(tmp_path, STORED / "walls.mcap")
+    write_changed_copies(tmp_path)
     return tmp_path
+
+
+def write_changed_copies(folder: Path) -> None:
+    """Write each changed copy that a diff block of the documents describes. Each change must apply to one place."""
+    for block in blocks("diff"):
+        names = re.match(r"--- (\S+)\n\+\+\+ (\S+)\n", block.text)
+        assert names, f"{where(block)}: begin it with --- FILE and +++ COPY"
+        text = (ROOT / names[1]).read_text(encoding="utf-8")
+        for hunk in block.text[names.end() :].split("@@\n"):
+            lines = hunk.splitlines(keepends=True)
+            was = "".join(line[1:] for line in lines if line[0] in " -")
+            assert text.count("\n" + was) == 1, f"{where(block)}: {names[1]} has not exactly one place of:\n{was}"
+            text = text.replace("\n" + was, "\n" + "".join(line[1:] for line in lines if line[0] in " +"))
+        (folder / names[2]).write_text(text, encoding="utf-8")
 
 
 def record(folder: Path, segment: Path) -> None:
@@ -196,6 +212,45 @@ def test_the_commands_of_the_documentation_run(
 def test_long_documented_commands_run_with_smaller_numbers(story: Story, folder: Path) -> None:
     for words in story.commands:
         run(LONG[words[0]](words) if is_long(words) else words, folder)
+
+
+def printed_errors(document: str) -> list[str]:
+    """Return each error line that a plain block of a document prints, without "kurt2rt: "."""
+    text = (ROOT / "docs" / document).read_text(encoding="utf-8")
+    return re.findall(r"^kurt2rt: (.+)$", text, re.MULTILINE)
+
+
+@pytest.fixture
+def kurt2rt(folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> CommandLine:
+    """Return the command line in the reader's folder."""
+    monkeypatch.chdir(folder)
+    return CommandLine(monkeypatch, capfd)
+
+
+def test_added_sensor_on_a_current_channel_or_unknown_is_refused(kurt2rt: CommandLine) -> None:
+    on_current, unknown, *_ = printed_errors("add-a-sensor.md")
+    sensor = Path("my_robot.yaml").read_text(encoding="utf-8")
+    Path("on_current.yaml").write_text(sensor.replace("ADC10", "ADC12"), encoding="utf-8")
+    assert kurt2rt.refused("demo", "--robot-settings", "on_current.yaml").endswith(on_current)
+    assert kurt2rt.refused("demo", "--set", "situation=my_situation.yaml").endswith(unknown)
+
+
+def test_added_sensor_refuses_old_knowledge_as_printed(kurt2rt: CommandLine) -> None:
+    text = (ROOT / "docs/add-a-sensor.md").read_text(encoding="utf-8")
+    refused = re.findall(r"^\$ kurt2rt (exam .+)\nkurt2rt: (.+)$", text, re.MULTILINE)
+    assert len(refused) == 2
+    for command, message in refused:
+        assert kurt2rt.refused(*shlex.split(command)) == f"kurt2rt: {message}"
+
+
+def test_added_sensor_is_a_feature_of_the_taught_run(kurt2rt: CommandLine) -> None:
+    (words,) = {words for story in stories() for words in story.commands if "my_runtime.yaml" in words}
+    assert words[-1] == "--page"
+    said = kurt2rt(*words[:-1], "--teacher", "none", "--seconds", "0.3", "--port", "0")
+    assert said.exit_code == 0, said.err
+    with Journal.read_only(Path("var/s19.knowledge")) as journal:
+        assert journal.binding.feature_names[18] == "s19"
+        assert len(journal.binding.feature_names) == 74
 
 
 @pytest.mark.deep
