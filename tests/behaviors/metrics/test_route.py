@@ -3,6 +3,7 @@ from functools import cache
 
 import pytest
 
+from behaviors.metrics.junctions import QUARTERS
 from behaviors.metrics.route import FixedRoute, RouteSettings
 from behaviors.metrics.routes import Leg, Route
 from behaviors.metrics.streets import StreetMap
@@ -160,11 +161,11 @@ def test_route_depends_on_its_seed_only() -> None:
 
 def test_route_refuses_other_worlds_behaviours_and_numbers() -> None:
     settings = RouteSettings(kind="route")
-    with pytest.raises(SettingsError, match="course route: world A has no streets that meet"):
+    with pytest.raises(SettingsError, match="route: world A"):
         course_in("a", settings, ALL)
-    with pytest.raises(SettingsError, match="must be among straight_on, turn_left, turn_right"):
+    with pytest.raises(SettingsError, match=", ".join(QUARTERS)):
         course_in("manhattan", settings, ("",))
-    with pytest.raises(SettingsError, match="no loop of 7 decisions"):
+    with pytest.raises(SettingsError, match="7 decisions"):
         course_in("manhattan", RouteSettings(kind="route", decisions=7), ALL)
 
 

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from hal.identity import SIMULATED_HARDWARE_ID
 from hal.robot_settings import SpeedMode
 from hal.settings import SettingsError
 from kurt2rt.checks.commission.checklist import STEPS, blocking_failures, open_steps, steps_to_run
@@ -172,10 +173,9 @@ async def test_findings_of_another_robot_are_refused(tmp_path: Path) -> None:
         real = Session(workshop, tmp_path)
         real.progress = rehearsal.progress
         real.knows(hardware_id=7)
-        with pytest.raises(
-            SettingsError, match=r"about a robot of hardware 7, but INFO_1 says hardware 21321 \(the sim"
-        ):
+        with pytest.raises(SettingsError, match=f"7.*{SIMULATED_HARDWARE_ID}") as refused:
             await real.run("wheels", skipped=("sensors",))
+        assert refused.value.where == str(real.path)
         assert real.person.asked == []
         assert "sensors" not in real.progress.steps
 

@@ -15,12 +15,6 @@ from tests.cli.helpers import CommandLine, running
 
 
 @pytest.fixture
-def kurt2rt(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path: Path) -> CommandLine:
-    monkeypatch.chdir(tmp_path)
-    return CommandLine(monkeypatch, capfd)
-
-
-@pytest.fixture
 def type_at(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path: Path) -> Type:
     return typing(monkeypatch, capfd, tmp_path)
 

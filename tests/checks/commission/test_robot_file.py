@@ -128,12 +128,12 @@ def test_full_speed_is_kept_in_speed_mode_only() -> None:
 
 
 def test_commissioned_settings_channel_taken_twice_is_refused() -> None:
-    with pytest.raises(SettingsError, match="s2 has no channel: ADC08, which the table gives it, is s1's; find s2's"):
+    with pytest.raises(SettingsError, match=r"s2.*ADC08.*s1"):
         commissioned_settings(BASE, "robbie", Findings(channels={"s1": "ADC08"}))
 
 
 def test_commissioned_settings_bumper_bit_taken_twice_is_refused() -> None:
-    with pytest.raises(SettingsError, match="bumper bits must be 0 to 5, each once, but are: front left 3, "):
+    with pytest.raises(SettingsError, match="front left 3"):
         commissioned_settings(BASE, "robbie", Findings(bumper_bits={"front left": 3}))
 
 

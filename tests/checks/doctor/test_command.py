@@ -3,11 +3,7 @@
 import json
 from pathlib import Path
 
-import pytest
-import typer
-from typer.testing import CliRunner
-
-from kurt2rt.cli.doctor import doctor
+from tests.cli.helpers import CommandLine
 
 SUBJECTS = {
     "Python",
@@ -30,35 +26,27 @@ SUBJECTS = {
 }
 
 
-@pytest.fixture
-def app() -> typer.Typer:
-    app = typer.Typer()
-    app.command()(doctor)
-    return app
-
-
-def test_doctor_prints_every_subject_and_a_last_line(app: typer.Typer, tmp_path: Path) -> None:
-    result = CliRunner(env={"COLUMNS": "200"}).invoke(app, ["--folder", str(tmp_path), "--ticks", "3"])
-    assert result.exit_code == 0, result.output
+def test_doctor_prints_every_subject_and_a_last_line(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    said = kurt2rt("doctor", "--folder", tmp_path, "--ticks", "3")
+    assert said.exit_code == 0, said.err
     for subject in SUBJECTS:
-        assert subject in result.stdout
-    assert result.stdout.splitlines()[-1].endswith("kurt2rt run can start")
+        assert subject in said.out
+    assert said.out.splitlines()[-1].endswith("kurt2rt run can start")
 
 
-def test_a_program_gets_json_and_code_1_when_there_is_no_disk(app: typer.Typer) -> None:
-    result = CliRunner().invoke(app, ["--json", "--folder", "/proc/kurt2rt", "--ticks", "3"])
-    assert result.exit_code == 1
-    findings = {each["subject"]: each for each in json.loads(result.stdout)}
+def test_a_program_gets_json_and_code_1_when_there_is_no_disk(kurt2rt: CommandLine) -> None:
+    said = kurt2rt("doctor", "--json", "--folder", "/proc/kurt2rt", "--ticks", "3")
+    assert said.exit_code == 1
+    findings = {each["subject"]: each for each in json.loads(said.out)}
     assert [name for name, each in findings.items() if each["needed"] and each["status"] == "missing"] == [
         "knowledge folder"
     ]
     assert findings.keys() >= SUBJECTS - {"free space", "fsync", "SQLite log"}
 
 
-def test_no_ticks_at_all_are_refused(app: typer.Typer) -> None:
-    assert CliRunner().invoke(app, ["--ticks", "0"]).exit_code == 2
+def test_no_ticks_at_all_are_refused(kurt2rt: CommandLine) -> None:
+    assert "--ticks" in kurt2rt.misused("doctor", "--ticks", "0")
 
 
-def test_help_says_what_the_exit_code_means(app: typer.Typer) -> None:
-    result = CliRunner(env={"COLUMNS": "200"}).invoke(app, ["--help"])
-    assert "Ends with code 1 only if something is missing" in result.stdout
+def test_help_says_what_the_exit_code_means(kurt2rt: CommandLine) -> None:
+    assert "code 1" in " ".join(kurt2rt("doctor", "--help").out.split())

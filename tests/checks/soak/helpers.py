@@ -1,5 +1,6 @@
 """Short soak runs with a fault nearly all the time."""
 
+from contextlib import closing
 from pathlib import Path
 
 import anyio
@@ -45,9 +46,6 @@ def recording_in(folder: Path) -> Recording:
 
 def soaked(folder: Path, minutes: float, soak: SoakSettings, seed: int = 1) -> SoakResult:
     """Run a soak of some minutes in `folder` and return its result."""
-    place = LongRunRig(ROBOT, soak.world, seed)
-    try:
-        day = SoakRun(place, soak, TABLE, RunSettings(ROBOT, TASK, service_in(folder)), recording_in(folder), seed=seed)
+    with closing(LongRunRig(ROBOT, soak.world, seed)) as rig:
+        day = SoakRun(rig, soak, TABLE, RunSettings(ROBOT, TASK, service_in(folder)), recording_in(folder), seed=seed)
         return anyio.run(day.run, minutes / 60.0, lambda _: None)
-    finally:
-        place.close()

@@ -5,30 +5,28 @@ import signal
 from pathlib import Path
 
 import pytest
-import typer
-from typer.testing import CliRunner
 
+from kurt2rt.checks.soak.check_text import property_text
+from kurt2rt.checks.soak.result import CheckCode, SoakCheck
 from kurt2rt.checks.soak.soak_run import SoakRun
-from kurt2rt.cli.soak import soak
+from tests.cli.helpers import CommandLine
 
 
-def test_soak_leaves_report_picture_and_recordings(tmp_path: Path) -> None:
-    app = typer.Typer()
-    app.command()(soak)
+def test_soak_leaves_report_picture_and_recordings(kurt2rt: CommandLine, tmp_path: Path) -> None:
     out = tmp_path / "soak"
     (out / "runs" / "old").mkdir(parents=True)
-    result = CliRunner(env={"COLUMNS": "120"}).invoke(app, ["--hours", "0.002", "--out", str(out)])
-    assert result.exception is None, result.output
-    assert "the motion envelope holds" in result.output
+    said = kurt2rt("soak", "--hours", "0.002", "--out", out)
+    assert said.exit_code == 0, said.err
+    assert property_text(SoakCheck(CheckCode.ENVELOPE, passed=True, values={})) in said.out
     assert json.loads((out / "soak.json").read_text())["passed"] is True
     assert "what must hold" in (out / "soak.txt").read_text()
     assert (out / "soak.png").stat().st_size > 10_000
     assert [path.name for path in (out / "runs").iterdir()] == ["20000101T000000Z-wall_following"]
 
 
-def test_ctrl_c_ends_it_with_a_report_of_what_was_seen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    app = typer.Typer()
-    app.command()(soak)
+def test_ctrl_c_ends_it_with_a_report_of_what_was_seen(
+    kurt2rt: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     before = signal.getsignal(signal.SIGINT)
     seen = SoakRun._on_tick
     ticks = 0
@@ -42,7 +40,6 @@ def test_ctrl_c_ends_it_with_a_report_of_what_was_seen(tmp_path: Path, monkeypat
 
     monkeypatch.setattr(SoakRun, "_on_tick", interrupted)
     monkeypatch.setattr("kurt2rt.checks.soak.picture.draw_soak", lambda *_: None)  # the soak above is drawn
-    result = CliRunner(env={"COLUMNS": "120"}).invoke(app, ["--hours", "24", "--out", str(tmp_path)])
-    assert result.exception is None, result.output
+    assert kurt2rt("soak", "--hours", "24", "--out", tmp_path).exit_code == 0
     assert 100 <= json.loads((tmp_path / "soak.json").read_text())["ticks"] < 3000
     assert signal.getsignal(signal.SIGINT) is before

@@ -1,7 +1,6 @@
-"""The place that lasts: faults come and go, drivers follow one another, and the bus is what it is each time."""
+"""Rig for long runs: faults come and go, drivers follow one another, over any wire."""
 
 import random
-from collections.abc import Iterator
 
 import pytest
 
@@ -17,22 +16,15 @@ from tests.checks.soak.helpers import CYCLE_S, ROBOT, TABLE
 AHEAD = WheelSpeeds(0.2, 0.2)
 
 
-@pytest.fixture
-def place() -> Iterator[LongRunRig]:
-    place = LongRunRig(ROBOT, "a", seed=2)
-    yield place
-    place.close()
-
-
-def drive(place: LongRunRig, until_s: float, envelope: Envelope | None = None) -> GuardResult:
+def drive(rig: LongRunRig, until_s: float, envelope: Envelope | None = None) -> GuardResult:
     """Ahead, tick by tick; the envelope sees what is put on the bus, and what arrives."""
-    robot, time = place.robot, place.time
+    robot, time = rig.robot, rig.time
     assert robot is not None
     if envelope is not None:
-        place.on_sent = lambda number, payload: envelope.on_sent(
+        rig.on_sent = lambda number, payload: envelope.on_sent(
             number, time.now_s(), payload, 0.0, latched=robot.health.latched is not None
         )
-        place.on_control = lambda number, payload, at_s: envelope.on_arrived(number, at_s, payload) and None
+        rig.on_control = lambda number, payload, at_s: envelope.on_arrived(number, at_s, payload) and None
     while True:
         time.run_until(time.now_s() + CYCLE_S)
         robot.sense(time.now_s())
@@ -42,58 +34,58 @@ def drive(place: LongRunRig, until_s: float, envelope: Envelope | None = None) -
 
 
 @pytest.mark.parametrize("wire", ["none", "one_megabit", "lossy"])
-def test_a_driver_drives_over_any_wire_and_so_does_the_next_one(place: LongRunRig, wire: str) -> None:
+def test_a_driver_drives_over_any_wire_and_so_does_the_next_one(rig: LongRunRig, wire: str) -> None:
     for until_s in (1.0, 2.0):
-        place.start_driver(wire)
-        assert drive(place, until_s).wheel_speeds == AHEAD
-        assert not place.standing
-        place.end_driver()
-        place.time.run_until(until_s + 0.5)
-        assert place.standing
+        rig.start_driver(wire)
+        assert drive(rig, until_s).wheel_speeds == AHEAD
+        assert not rig.standing
+        rig.end_driver()
+        rig.time.run_until(until_s + 0.5)
+        assert rig.standing
 
 
-def test_long_run_rig_each_fault_ends_at_its_end(place: LongRunRig) -> None:
-    place.start_driver("none")
-    drive(place, 1.0)
+def test_long_run_rig_each_fault_ends_at_its_end(rig: LongRunRig) -> None:
+    rig.start_driver("none")
+    drive(rig, 1.0)
     for target, begin_s in (("sensor_board_1", 1.1), ("encoders", 2.1), ("bus_in", 3.1)):
-        place.begin(target, "off", begin_s=begin_s, end_s=begin_s + 0.3, period_s=1.0, delay_s=1.0)
-        assert drive(place, begin_s + 0.2).wheel_speeds == STANDSTILL
-        drive(place, begin_s + 0.3)
-        place.end()
-        assert drive(place, begin_s + 0.8).wheel_speeds == AHEAD
+        rig.begin(target, "off", begin_s=begin_s, end_s=begin_s + 0.3, period_s=1.0, delay_s=1.0)
+        assert drive(rig, begin_s + 0.2).wheel_speeds == STANDSTILL
+        drive(rig, begin_s + 0.3)
+        rig.end()
+        assert drive(rig, begin_s + 0.8).wheel_speeds == AHEAD
 
 
-def test_long_run_rig_resume_on_a_slow_bus_sends_two_old_frames(place: LongRunRig) -> None:
-    robot = place.start_driver("none")
+def test_long_run_rig_resume_on_a_slow_bus_sends_two_old_frames(rig: LongRunRig) -> None:
+    robot = rig.start_driver("none")
     envelope = Envelope(TABLE.envelope)
-    drive(place, 1.0, envelope)
-    place.begin("bus_out", "delayed", begin_s=1.0, end_s=9.0, period_s=1.0, delay_s=0.06)
+    drive(rig, 1.0, envelope)
+    rig.begin("bus_out", "delayed", begin_s=1.0, end_s=9.0, period_s=1.0, delay_s=0.06)
     for goes, until_s in enumerate((2.0, 3.0, 4.0), 1):
-        assert drive(place, until_s, envelope).latched
+        assert drive(rig, until_s, envelope).latched
         assert robot.health.latched == GuardReason.BUS_BLOCKED
         assert envelope.old_frames <= 2 * goes
         robot.release()
 
 
-def test_long_run_rig_drives_on_after_frame_loss_and_one_resume(place: LongRunRig) -> None:
-    robot = place.start_driver("none")
-    drive(place, 1.0)
-    place.begin("bus_out", "intermittent", begin_s=1.0, end_s=1.1, period_s=0.2, delay_s=1.0)
-    assert drive(place, 1.5).latched
-    place.end()
+def test_long_run_rig_drives_on_after_frame_loss_and_one_resume(rig: LongRunRig) -> None:
+    robot = rig.start_driver("none")
+    drive(rig, 1.0)
+    rig.begin("bus_out", "intermittent", begin_s=1.0, end_s=1.1, period_s=0.2, delay_s=1.0)
+    assert drive(rig, 1.5).latched
+    rig.end()
     robot.release()
-    assert drive(place, 2.5).wheel_speeds == AHEAD
+    assert drive(rig, 2.5).wheel_speeds == AHEAD
 
 
-def test_long_run_rig_wheel_distance_matches_encoders(place: LongRunRig) -> None:
-    robot = place.start_driver("none")
+def test_long_run_rig_wheel_distance_matches_encoders(rig: LongRunRig) -> None:
+    robot = rig.start_driver("none")
     ticks = 0
-    while place.time.now_s() < 2.0:
-        place.time.run_until(place.time.now_s() + CYCLE_S)
-        ticks += robot.sense(place.time.now_s()).encoder_left_ticks
-        robot.drive(AHEAD, place.time.now_s(), place.time.now_s())
-    assert ticks * ROBOT.geometry.metres_per_tick == pytest.approx(place.turned_m[0], abs=0.001)
-    assert place.turned_m[0] > 0.3
+    while rig.time.now_s() < 2.0:
+        rig.time.run_until(rig.time.now_s() + CYCLE_S)
+        ticks += robot.sense(rig.time.now_s()).encoder_left_ticks
+        robot.drive(AHEAD, rig.time.now_s(), rig.time.now_s())
+    assert ticks * ROBOT.geometry.metres_per_tick == pytest.approx(rig.turned_m[0], abs=0.001)
+    assert rig.turned_m[0] > 0.3
 
 
 async def test_a_clock_that_went_slow_does_not_get_back_what_it_lost() -> None:
@@ -112,9 +104,9 @@ async def test_a_clock_that_went_slow_does_not_get_back_what_it_lost() -> None:
 def test_the_same_seed_stands_at_the_same_place() -> None:
     poses = []
     for seed in (1, 1, 2):
-        place = LongRunRig(ROBOT, "a", seed)
-        place.start_driver("lossy")
-        drive(place, random.Random(7).uniform(0.5, 1.0))
-        poses.append((place.simulation.pose, place.simulation.state_hash()))
-        place.close()
+        rig = LongRunRig(ROBOT, "a", seed)
+        rig.start_driver("lossy")
+        drive(rig, random.Random(7).uniform(0.5, 1.0))
+        poses.append((rig.simulation.pose, rig.simulation.state_hash()))
+        rig.close()
     assert poses[0] == poses[1] != poses[2]

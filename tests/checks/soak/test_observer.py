@@ -1,6 +1,5 @@
 """The witness would see a program that drives when it must not, and one that loses ticks or lessons."""
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import anyio
@@ -34,74 +33,67 @@ class Careless:
 
 
 @pytest.fixture
-def place() -> Iterator[LongRunRig]:
-    place = LongRunRig(ROBOT, "a", seed=1)
-    yield place
-    place.close()
+def observer(rig: LongRunRig) -> SoakObserver:
+    return SoakObserver(rig, TABLE.envelope)
 
 
-@pytest.fixture
-def observer(place: LongRunRig) -> SoakObserver:
-    return SoakObserver(place, TABLE.envelope)
-
-
-def started(folder: Path, place: LongRunRig, observer: SoakObserver, **moods: object) -> ProgramRun:
+def started(folder: Path, rig: LongRunRig, observer: SoakObserver, **moods: object) -> ProgramRun:
     """Return a program with a teacher of one mood."""
     soak = DAY.model_copy(update={"moods": moods})
     teacher = SoakTeacher(soak, TASK, ROBOT, ("forward", "stand"), seed=1)
     run_settings = RunSettings(ROBOT, TASK, service_in(folder))
-    return ProgramRun(place, observer, teacher, run_settings, recording_in(folder), ProgramStart(1, "none", 1))
+    return ProgramRun(rig, observer, teacher, run_settings, recording_in(folder), ProgramStart(1, "none", 1))
 
 
-def run(program: ProgramRun, place: LongRunRig, until_s: float) -> None:
-    anyio.run(program.run, lambda _: None, lambda: place.time.now_s() >= until_s)
+def run(program: ProgramRun, rig: LongRunRig, until_s: float) -> None:
+    anyio.run(program.run, lambda _: None, lambda: rig.time.now_s() >= until_s)
 
 
-def test_program_without_a_command_stands(tmp_path: Path, place: LongRunRig, observer: SoakObserver) -> None:
-    program = started(tmp_path, place, observer, away=AWAY)
-    run(program, place, 1.0)
+def test_program_without_a_command_stands(tmp_path: Path, rig: LongRunRig, observer: SoakObserver) -> None:
+    program = started(tmp_path, rig, observer, away=AWAY)
+    run(program, rig, 1.0)
     assert (observer.complaints.count, program.ended_by, program.close()) == (0, "", None)
     assert observer.stands
 
 
 def test_observer_sees_a_program_that_drives_untold(
-    tmp_path: Path, place: LongRunRig, observer: SoakObserver, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, rig: LongRunRig, observer: SoakObserver, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tick, "stopped", lambda decision, _: decision)
-    program = started(tmp_path, place, observer, away=AWAY)
+    program = started(tmp_path, rig, observer, away=AWAY)
     assert program.level.inner is not None
     program.level.inner = Careless(program.level.inner)
-    run(program, place, 1.0)
+    run(program, rig, 1.0)
     program.close()
     assert observer.complaints.count > 80
     assert observer.complaints.stored[0].code is ComplaintCode.DROVE_UNTOLD
 
 
 def test_careless_layer_does_not_drive_an_untold_program(
-    tmp_path: Path, place: LongRunRig, observer: SoakObserver
+    tmp_path: Path, rig: LongRunRig, observer: SoakObserver
 ) -> None:
-    program = started(tmp_path, place, observer, away=AWAY)
+    program = started(tmp_path, rig, observer, away=AWAY)
     assert program.level.inner is not None
     program.level.inner = Careless(program.level.inner)
-    run(program, place, 1.0)
+    run(program, rig, 1.0)
     assert (observer.complaints.count, program.ended_by, program.close()) == (0, "", None)
     assert observer.stands
 
 
-def test_a_tick_that_is_not_accounted_for_is_seen(tmp_path: Path, place: LongRunRig, observer: SoakObserver) -> None:
-    program = started(tmp_path, place, observer, away=AWAY)
-    run(program, place, 0.5)
+def test_a_tick_that_is_not_accounted_for_is_seen(tmp_path: Path, rig: LongRunRig, observer: SoakObserver) -> None:
+    program = started(tmp_path, rig, observer, away=AWAY)
+    run(program, rig, 0.5)
     assert observer.complaints.count == 0
     program.runtime.timer.missed_ticks += 1
-    run(program, place, 0.6)
+    run(program, rig, 0.6)
     program.close()
     (first, *_) = observer.complaints.stored
     assert (first.code, first.values["missed"]) == (ComplaintCode.TICKS_UNACCOUNTED, 1)
 
 
-def test_a_lesson_that_is_not_in_the_file_is_missed(tmp_path: Path, place: LongRunRig, observer: SoakObserver) -> None:
-    program = started(tmp_path, place, observer, patient=PATIENT)
-    run(program, place, 3.0)
+def test_a_lesson_that_is_not_in_the_file_is_missed(tmp_path: Path, rig: LongRunRig, observer: SoakObserver) -> None:
+    program = started(tmp_path, rig, observer, patient=PATIENT)
+    run(program, rig, 3.0)
     program.knowledge.submitted.append("soak-999")
     lost = program.close()
     assert lost is not None
@@ -109,12 +101,12 @@ def test_a_lesson_that_is_not_in_the_file_is_missed(tmp_path: Path, place: LongR
 
 
 def test_an_error_in_the_loop_ends_the_program_and_says_where(
-    tmp_path: Path, place: LongRunRig, observer: SoakObserver
+    tmp_path: Path, rig: LongRunRig, observer: SoakObserver
 ) -> None:
-    program = started(tmp_path, place, observer, away=AWAY)
+    program = started(tmp_path, rig, observer, away=AWAY)
     program.level.inner = None
-    run(program, place, 1.0)
+    run(program, rig, 1.0)
     assert program.ended_by.startswith("AssertionError() in failing_level.py, line ")
     assert program.close() is None
-    place.time.run_until(1.0)
-    assert place.standing
+    rig.time.run_until(1.0)
+    assert rig.standing

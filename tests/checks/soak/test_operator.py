@@ -1,7 +1,6 @@
 """The operator of a soak: repositions a stuck robot, and switches it off and on if that does not help."""
 
 import random
-from collections.abc import Iterator
 from types import SimpleNamespace
 from typing import cast
 
@@ -15,23 +14,20 @@ from kurt2rt.core.outcome import Outcome, ResultCode
 from kurt2rt.core.teaching.commands import CommandResult, Resume
 from kurt2rt.core.tick import TickRecord
 from simbridge.faults.long_run_rig import LongRunRig
-from tests.checks.soak.helpers import CYCLE_S, ROBOT
+from tests.checks.soak.helpers import CYCLE_S
 
 AHEAD = WheelSpeeds(0.3, 0.3)
 PATIENCE_S = 1.5
 
 
-@pytest.fixture
-def place() -> Iterator[LongRunRig]:
-    place = LongRunRig(ROBOT, "a", seed=2)
-    place.start_driver("none")
-    yield place
-    place.close()
+@pytest.fixture(autouse=True)
+def driver(rig: LongRunRig) -> None:
+    rig.start_driver("none")
 
 
-def drive(place: LongRunRig, person: SoakOperator, until_s: float, wanted: WheelSpeeds = AHEAD) -> None:
+def drive(rig: LongRunRig, person: SoakOperator, until_s: float, wanted: WheelSpeeds = AHEAD) -> None:
     """Drive tick by tick, resumed at once after each stop of the guard, while the operator looks on."""
-    robot, time = place.robot, place.time
+    robot, time = rig.robot, rig.time
     assert robot is not None
     while time.now_s() < until_s:
         time.run_until(time.now_s() + CYCLE_S)
@@ -48,37 +44,37 @@ def seen(grant: GuardResult, *commands: Resume) -> TickRecord:
     return cast(TickRecord, SimpleNamespace(guard_result=grant, decision=decision, commands=commands, results=results))
 
 
-def test_a_robot_that_makes_its_way_is_left_alone(place: LongRunRig) -> None:
-    person = SoakOperator(place, PATIENCE_S, CYCLE_S)
-    drive(place, person, 2.5)
+def test_a_robot_that_makes_its_way_is_left_alone(rig: LongRunRig) -> None:
+    person = SoakOperator(rig, PATIENCE_S, CYCLE_S)
+    drive(rig, person, 2.5)
     assert (person.set_down, person.switched_on) == (0, 0)
 
 
-def test_one_that_makes_no_way_is_set_down_elsewhere(place: LongRunRig) -> None:
-    person = SoakOperator(place, PATIENCE_S, CYCLE_S)
-    drive(place, person, PATIENCE_S + 0.2, WheelSpeeds(0.1, -0.1))
+def test_one_that_makes_no_way_is_set_down_elsewhere(rig: LongRunRig) -> None:
+    person = SoakOperator(rig, PATIENCE_S, CYCLE_S)
+    drive(rig, person, PATIENCE_S + 0.2, WheelSpeeds(0.1, -0.1))
     assert (person.set_down, person.switched_on) == (1, 0)
 
 
-def test_operator_power_cycles_motors_switched_off_by_noise(place: LongRunRig, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_operator_power_cycles_motors_switched_off_by_noise(rig: LongRunRig, monkeypatch: pytest.MonkeyPatch) -> None:
     """ACTUATOR_OFF (docs/the-robot.md#control-modes) holds through any number of programs."""
     monkeypatch.setattr(random.Random, "randbytes", lambda _, count: b"\xff\x01".ljust(count, b"\0"))
-    place.begin("bus_out", "garbage", begin_s=0.1, end_s=0.2, period_s=1.0, delay_s=1.0)
-    person = SoakOperator(place, PATIENCE_S, CYCLE_S)
-    drive(place, person, 0.3)
-    place.end()
+    rig.begin("bus_out", "garbage", begin_s=0.1, end_s=0.2, period_s=1.0, delay_s=1.0)
+    person = SoakOperator(rig, PATIENCE_S, CYCLE_S)
+    drive(rig, person, 0.3)
+    rig.end()
     for until_s in (0.8, 1.3):
-        place.start_driver("none")
-        drive(place, person, until_s)
-        assert max(map(abs, place.simulation.wheel_speeds)) < 0.01
-    drive(place, person, 2 * PATIENCE_S + 0.5)
+        rig.start_driver("none")
+        drive(rig, person, until_s)
+        assert max(map(abs, rig.simulation.wheel_speeds)) < 0.01
+    drive(rig, person, 2 * PATIENCE_S + 0.5)
     assert (person.set_down, person.switched_on) == (2, 1)
-    drive(place, person, 2 * PATIENCE_S + 1.5)
-    assert min(place.simulation.wheel_speeds) > 0.2
+    drive(rig, person, 2 * PATIENCE_S + 1.5)
+    assert min(rig.simulation.wheel_speeds) > 0.2
 
 
-def test_operator_leaves_a_latched_robot_to_its_teacher(place: LongRunRig) -> None:
-    person, robot, time = SoakOperator(place, PATIENCE_S, CYCLE_S), place.robot, place.time
+def test_operator_leaves_a_latched_robot_to_its_teacher(rig: LongRunRig) -> None:
+    person, robot, time = SoakOperator(rig, PATIENCE_S, CYCLE_S), rig.robot, rig.time
     assert robot is not None
     robot.emergency_stop(GuardReason.WHEELS_DISOBEY)
     while time.now_s() < 3 * PATIENCE_S:
@@ -89,8 +85,8 @@ def test_operator_leaves_a_latched_robot_to_its_teacher(place: LongRunRig) -> No
     assert person.set_down == 0
 
 
-def test_operator_repositions_a_robot_latching_at_each_resume(place: LongRunRig) -> None:
-    person = SoakOperator(place, PATIENCE_S, CYCLE_S)
+def test_operator_repositions_a_robot_latching_at_each_resume(rig: LongRunRig) -> None:
+    person = SoakOperator(rig, PATIENCE_S, CYCLE_S)
     again = GuardResult(STANDSTILL, (GuardReason.WHEELS_DISOBEY,), latched=True)
     go = Resume("go", "Ann")
 
