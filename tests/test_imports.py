@@ -52,7 +52,7 @@ LAYERS_OF_CORE = (
     {"basic", "mid"},
     {"planning", "expectations", "critic"},
     {"reinforcement"},
-    {"task_settings", "phase_settings"},
+    {"task_settings", "phase_settings", "teacher_settings"},
     {"teaching"},
     {"layer_stack"},
     {"tick", "progress_meter"},

@@ -30,6 +30,7 @@ from simbridge.worlds.world_settings import WorldSettings
 SCHEMAS: dict[str, type[Settings]] = {
     "robots": RobotSettings,
     "tasks": TaskSettings,
+    "teachers": TeacherProfile,
     "situations": SituationDefinition,
     "repertoires": RepertoireSettings,
     "worlds": WorldSettings,

@@ -16,7 +16,8 @@ from kurt2rt.cli.lesson_route import many_routes, one_route, require_no_route_op
 from kurt2rt.cli.options import changes_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
-from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.task_settings import load_task, taught_by
+from kurt2rt.core.teacher_settings import SUPERHUMAN, load_teacher
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_lesson
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum, render_seeds
@@ -35,6 +36,11 @@ def lesson(options: LessonOptions) -> None:
     results are reported on others:
 
         kurt2rt lesson --task streets --seeds 100-119
+
+    The teacher superhuman has the times of the task, as no person has; others
+    react, err and look away like a person (config/teachers):
+
+        kurt2rt lesson --teacher ordinary --seeds 100-119
 
     The task route teaches the mid level a fixed route through the streets, a
     closed loop that the robot's seed draws, and then lets it drive without a
@@ -55,7 +61,9 @@ def lesson(options: LessonOptions) -> None:
 
     name = _task_name(options)
     robot = load_robot(options.robot_settings)
-    task = load_task(name, plain=options.plain, changes=changes_of(options.changes))
+    task = taught_by(
+        load_task(name, plain=options.plain, changes=changes_of(options.changes)), load_teacher(options.teacher)
+    )
     setup = LessonSetup(Kurt2SimulationFactory(robot, options.wire), robot, task)
     if options.seeds is not None and options.knowledge is not None:
         raise typer.BadParameter("each seed needs a file of its own: give --out instead", param_hint="--knowledge")
@@ -122,7 +130,13 @@ def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
         bar = progress.add_task("seeds", total=len(work))
         results = run_seeds(work, options.jobs, lambda _seed: progress.advance(bar))
     if options.as_json:
-        print_json({"task": task.name, "robots": [curriculum_as_data(each, task) for each in results]})
+        print_json(
+            {
+                "task": task.name,
+                "teacher": task.teaching.profile.name,
+                "robots": [curriculum_as_data(each, task) for each in results],
+            }
+        )
     else:
         print_whole(console_of(), render_seeds(results, task))
 
@@ -131,6 +145,7 @@ def _command(name: str, options: LessonOptions) -> str:
     """Return the command as far as it decides the numbers, without paths of this machine."""
     words = [f"kurt2rt lesson --task {Path(name).name}", *(["--plain"] if options.plain else [])]
     words += [f"--seeds {options.seeds}", *(f"--decisions {each}" for each in options.decisions or ())]
+    words += [f"--teacher {Path(options.teacher).name}"] if options.teacher != SUPERHUMAN else []
     words += ["--basic FOLDER"] if options.basic is not None else []
     words += ["--controls"] if options.controls else []
     return " ".join([*words, *(f"--set {each}" for each in options.changes or ())])

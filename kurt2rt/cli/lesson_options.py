@@ -20,8 +20,10 @@ from kurt2rt.cli.options import (
     WireName,
     parse_seeds,
     task_option,
+    teacher_option,
 )
 from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.teacher_settings import SUPERHUMAN
 
 DEFAULT_TASK = "wall_following"
 LESSONS, ROUTES, ERRANDS = Path("results/lesson"), Path("results/route"), Path("results/errands")
@@ -37,6 +39,7 @@ class LessonOptions:
     task: Annotated[str | None, task_option(f"Default: the task of the file in --knowledge, else {DEFAULT_TASK}.")] = (
         None
     )
+    teacher: Annotated[str, teacher_option(SUPERHUMAN)] = SUPERHUMAN
     plain: Plain = False
     changes: Changes = None
     seed: Seed = 1

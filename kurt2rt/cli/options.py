@@ -24,6 +24,7 @@ def _names_in(kind: str) -> Callable[[str], list[str]]:
 
 
 _TASK = "Task: a name in config/tasks, or the path of a YAML file."
+_TEACHER = "Scripted teacher: a name in config/teachers, or the path of a YAML file."
 _WORLD = (
     "World: a name in config/worlds, rooms-N or streets-N for a generated one, or the path of a YAML file (a world, or "
     "a map of ROS map_server)."
@@ -33,6 +34,11 @@ _WORLD = (
 def task_option(default: str = "") -> Any:
     """Return --task, the same in every command; `default` tells which task is taken without it."""
     return _named("--task", "tasks", f"{_TASK} {default}".rstrip())
+
+
+def teacher_option(default: str) -> Any:
+    """Return --teacher, the same in every command; `default` is the teacher without it."""
+    return _named("--teacher", "teachers", f"{_TEACHER} Default: {default}.")
 
 
 def world_option(default: str = "") -> Any:

@@ -12,6 +12,7 @@ from kurt2rt.core.critic.settings import CriticSettings
 from kurt2rt.core.mid.settings import MidSettings
 from kurt2rt.core.phase_settings import PhasesSettings
 from kurt2rt.core.reinforcement.settings import ReinforcementSettings
+from kurt2rt.core.teacher_settings import QUICK_TEACHER, TeacherProfile
 
 Seconds = Annotated[float, Field(ge=0, le=100_000)]
 Share = Annotated[float, Field(ge=0, le=1)]
@@ -98,6 +99,8 @@ class TeachingSettings(Settings):
     """Interval at which the robot is set down elsewhere; 0: never."""
     reposition_to: Place = "starts"
     teacher: TeacherSettings
+    profile: TeacherProfile = QUICK_TEACHER
+    """Teacher by name; its own limits count in place of `teacher` where it has some."""
 
     @property
     def duration_s(self) -> float:
@@ -240,3 +243,9 @@ def load_task(name_or_path: str, *, plain: bool = False, changes: Mapping[str, s
             )
     task = load_settings(path, TaskSettings, changes)
     return task.model_copy(update={"learning": task.plain}) if plain else task
+
+
+def taught_by(task: TaskSettings, profile: TeacherProfile) -> TaskSettings:
+    """Return the task with another scripted teacher."""
+    teaching = task.teaching.model_copy(update={"profile": profile})
+    return task.model_copy(update={"teaching": teaching})

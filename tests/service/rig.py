@@ -22,7 +22,8 @@ from kurt2rt.service.assembly import RunSettings
 from kurt2rt.service.post_tick import ProgramConsole, ProgramStatus
 from kurt2rt.service.serve import ServeOptions, serve
 from kurt2rt.service.settings import ServiceSettings, load_service
-from kurt2rt.teacher.scripted.teacher import build_teacher, view_of_tick
+from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
+from kurt2rt.teacher.scripted.build import build_teacher
 from simbridge.realtime import RealtimeSimulation
 from simbridge.simulated_robot import SimulatedRobot
 from simbridge.worlds.world_loading import load_world

@@ -14,7 +14,8 @@ from kurt2rt.platform.gc_control import gc_frozen
 from kurt2rt.platform.ledger import Percentiles, Stage, TickTimer
 from kurt2rt.platform.timerfd_clock import TimerfdClock
 from kurt2rt.runtime import build_runtime
-from kurt2rt.teacher.scripted.teacher import build_teacher, view_of_tick
+from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
+from kurt2rt.teacher.scripted.build import build_teacher
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,8 @@ from kurt2rt.core.teaching.commands import (
     Watch,
 )
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.teacher.scripted.teacher import ScriptedTeacher, view_of_tick
+from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
+from kurt2rt.teacher.scripted.teacher import ScriptedTeacher
 
 NAME = "scripted teacher"
 _SIGN_EVERY_TICKS = 2

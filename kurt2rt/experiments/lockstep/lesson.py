@@ -15,6 +15,7 @@ from kurt2rt.core.rla.rla import MID, Rla
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.teacher_settings import SUPERHUMAN
 from kurt2rt.core.teaching.commands import Command, DeleteRla, Resume, Reward
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.experiments.lockstep.command_checks import require_carried_out
@@ -34,8 +35,8 @@ from kurt2rt.teacher.scripted.appraiser import (
     ScriptedAppraiser,
     UnknownPenalty,
 )
+from kurt2rt.teacher.scripted.build import build_teacher
 from kurt2rt.teacher.scripted.dispatcher import ScriptedDispatcher
-from kurt2rt.teacher.scripted.teacher import build_teacher
 
 _AGREEMENT_EVERY_S = 10
 
@@ -77,7 +78,7 @@ class TrainingResult:
     positive_rewards: int = 0
     negative_rewards: int = 0
     refused_signals: int = 0
-    """Rewards that came after their RLA was deleted."""
+    """Rewards that came after their RLA was deleted, and late lessons of a person."""
     collisions: int = 0
     unknown_rescues: int = 0
     """Rescues of a robot that stood in an unknown situation without an answer."""
@@ -96,8 +97,15 @@ class TrainingResult:
     mid_corrections: int = 0
     missed_junctions: int = 0
     """Junctions that the mid level did not notice."""
+    teacher: str = SUPERHUMAN
+    """Name of the scripted teacher."""
     autonomous_values: Statistics | None = field(default=None, compare=False, repr=False)
     """Values of the RLAs in phase 5; None if the run ended in another phase."""
+
+    @property
+    def presses(self) -> int:
+        """Number of the teacher's answers and corrections."""
+        return sum(minute.lessons + minute.corrections for minute in self.workload)
 
 
 async def teach(
@@ -183,7 +191,7 @@ class TrainingRun(Episode):
 
     def on_tick(self, record: TickRecord) -> None:
         """Let the teacher react, and rescue or reposition the robot as planned."""
-        self._refused += require_carried_out(record, self.task, may_be_late=self._teacher.is_signal)
+        self._refused += require_carried_out(record, self.task, may_be_late=self._teacher.may_be_refused)
         if record.tick in self._phase_starts:
             self._begin_phase(self._phase_starts[record.tick])
         self._send_lessons(record)
@@ -205,6 +213,7 @@ class TrainingRun(Episode):
         runtime, system = self.runtime, self.runtime.level.system
         autonomous = self._teacher.phase is Phase.AUTONOMOUS
         return TrainingResult(
+            teacher=self.task.teaching.profile.name,
             seed=self._seed,
             world=self.task.teaching.world,
             teaching_s=self._planned_ticks * self.period_s,

@@ -26,10 +26,12 @@ def render_curriculum(result: CurriculumResult, task: TaskSettings) -> Renderabl
     taught.add_column("")
     taught.add_column("here", number=True)
     taught.add_column("paper", number=True)
+    taught.add_row("teacher", lesson.teacher, "a person")
     taught.add_row("RLAs", str(len(lesson.rlas)), str(task.paper.rlas))
     taught.add_row("teaching, s of robot time", f"{lesson.teaching_s:.0f}", task.paper.teaching_time_text)
     taught.add_row("asks", str(lesson.asks), "")
     taught.add_row("corrections", str(lesson.corrections), "")
+    taught.add_row("presses", str(lesson.presses), "")
     taught.add_row("rescues by hand", str(lesson.rescues), "")
     if lesson.deletions:
         taught.add_row("deletions", str(lesson.deletions), "")
@@ -49,8 +51,9 @@ _JSON_NAMES = {"distance_travelled_m": "way_m"}
 def curriculum_as_data(result: CurriculumResult, task: TaskSettings) -> dict[str, Any]:
     """Return the numbers of one lesson and its exams, for JSON; units as in `LessonResult` and `ExamResult`."""
     lesson = result.lesson
-    numbers = ("seed", "world", "teaching_s", "asks", "corrections", "rescues", "alarms", "repositions", "deletions")
-    taught = {name: getattr(lesson, name) for name in numbers} | {"rlas": len(lesson.rlas)}
+    numbers = ("seed", "world", "teacher", "teaching_s", "asks", "corrections", "presses", "rescues", "alarms")
+    taught = {name: getattr(lesson, name) for name in (*numbers, "repositions", "deletions")}
+    taught["rlas"] = len(lesson.rlas)
     return {"lesson": taught, **exams_as_data(result.exams, task)}
 
 
@@ -184,7 +187,7 @@ def render_seeds(results: Sequence[CurriculumResult], task: TaskSettings) -> Ren
     """Return the tables of many seeds: a row for each, then medians, quartiles and intervals."""
     worlds = [each.learned.world for each in results[0].exams]
     unit = results[0].exams[0].learned.unit
-    seeds = TextTable(title=f"{task.name}: one row per seed")
+    seeds = TextTable(title=f"{task.name}, taught by {task.teaching.profile.name}: one row per seed")
     for heading in ("seed", "RLAs", "asks", "corrections", "rescues"):
         seeds.add_column(heading, number=True)
     for world in worlds:
@@ -216,6 +219,7 @@ def _render_medians(results: Sequence[CurriculumResult], task: TaskSettings) -> 
         ("RLAs", [len(result.lesson.rlas) for result in results], str(task.paper.rlas)),
         ("asks", [result.lesson.asks for result in results], ""),
         ("corrections", [result.lesson.corrections for result in results], ""),
+        ("presses", [result.lesson.presses for result in results], ""),
         ("teaching, s of robot time", [result.lesson.teaching_s for result in results], task.paper.teaching_time_text),
     )
     for name, values, paper in counted:

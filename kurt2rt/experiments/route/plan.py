@@ -8,7 +8,7 @@ from typing import NamedTuple
 from hal.robot_settings import RobotSettings
 from hal.settings import SettingsError
 from hal.simulation import SimulationFactory
-from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.route.jobs import BasicJob, RouteJob
 from kurt2rt.experiments.route.lesson import route_of_task, with_route
@@ -143,7 +143,7 @@ def streets_of(
 
 
 def basic_task_of(task: TaskSettings) -> TaskSettings:
-    """Return the task that teaches the streets, named by `system` of the route's task.
+    """Return the task that teaches the streets, named by `system` of the route's task, with the same teacher.
 
     Raises hal.settings.SettingsError.
     """
@@ -151,7 +151,7 @@ def basic_task_of(task: TaskSettings) -> TaskSettings:
         raise SettingsError(
             "it does not say what was taught before", where=f"task {task.name}", do="add `system: streets`"
         )
-    return load_task(task.system)
+    return taught_by(load_task(task.system), task.teaching.profile)
 
 
 def basic_file(place: Path, basic: TaskSettings, seed: int) -> Path:

@@ -12,7 +12,7 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour
 from kurt2rt.core.tick import TickRecord
-from kurt2rt.teacher.scripted.teacher import ScriptedTeacher, view_of_tick
+from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, view_of_tick
 
 _NAME = "scripted teacher"
 
@@ -107,7 +107,7 @@ class ScriptedAppraiser:
 
     def __init__(
         self,
-        answering: ScriptedTeacher,
+        answering: BasicTeacher,
         timing: FeedbackTiming,
         rewards: RewardSource | None,
         appraisals: Mapping[int, str],
@@ -162,9 +162,12 @@ class ScriptedAppraiser:
         """Return the command that lets the robot drive again after a stop."""
         return self._answering.resume()
 
-    def is_signal(self, command_id: str) -> bool:
-        """Return whether a command is a signal, which the robot may refuse if its RLA was deleted meanwhile."""
-        return command_id.startswith(f"{self._session}-signal-")
+    def may_be_refused(self, command_id: str) -> bool:
+        """Return whether the robot may refuse a command.
+
+        It refuses a signal if its RLA was deleted meanwhile, and a person's lesson that comes too late.
+        """
+        return self._answering.may_be_late or command_id.startswith(f"{self._session}-signal-")
 
     @property
     def available(self) -> bool:

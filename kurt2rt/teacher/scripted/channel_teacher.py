@@ -17,8 +17,9 @@ from kurt2rt.core.task_settings import TaskSettings
 from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, Teach
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError, RefusedError
 from kurt2rt.teacher.client.client import TeacherClient
+from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView, radius_fraction
+from kurt2rt.teacher.scripted.build import build_teacher
 from kurt2rt.teacher.scripted.supervisor import ScriptedSupervisor
-from kurt2rt.teacher.scripted.teacher import ScriptedTeacher, TeacherView, build_teacher, radius_fraction
 
 Say = Callable[[str], None]
 
@@ -69,7 +70,7 @@ async def _begin(robot: TeacherClient, session: str) -> None:
 
 async def _teach(
     robot: TeacherClient,
-    teacher: ScriptedTeacher,
+    teacher: BasicTeacher,
     supervisor: ScriptedSupervisor,
     task: TaskSettings,
     period_s: float,
@@ -201,6 +202,7 @@ def view_of_state(state: State) -> TeacherView:
         state.behaviour,
         state.rla,
         radius_fraction(state.rla, state.nearest, state.distance, state.radius),
+        state.tick,
     )
 
 
@@ -208,10 +210,10 @@ async def _send(robot: TeacherClient, command: Command, tick: int) -> int:
     """Send a command once; return the number of lessons that it made, 0 if it was refused or not answered."""
     try:
         match command:
-            case Teach(action=action):
-                answer = await robot.answer(action, of=tick)
-            case Correct(action=action):
-                answer = await robot.correct(action, of=tick)
+            case Teach(action=action, decision_tick=of):
+                answer = await robot.answer(action, of=tick if of is None else of)
+            case Correct(action=action, decision_tick=of):
+                answer = await robot.correct(action, of=tick if of is None else of)
             case DeleteRla(rla_id=rla_id):
                 answer = await robot.delete(rla_id)
             case _:

@@ -1,75 +1,18 @@
 """Teacher that consults a reference policy: it answers questions and corrects other actions."""
 
-import math
 import random
 from collections import Counter
 from collections.abc import Sequence
-from typing import NamedTuple
 
 from behaviors.policies.policy import ReferencePolicy
-from hal.robot_settings import RobotSettings
-from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
-from kurt2rt.core.rla.rla import BASIC
-from kurt2rt.core.task_settings import TaskSettings, TeacherSettings
-from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, Pursue, Resume, SetPhase, Teach
-from kurt2rt.core.tick import TickRecord
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.task_settings import TeacherSettings
+from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, Teach
+from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView
 
 
-class TeacherView(NamedTuple):
-    """State of the robot as far as a teacher sees it."""
-
-    asking: bool
-    """Its basic level asks."""
-    driving: bool
-    action: str | None
-    infrared_counts: tuple[int, ...]
-    behaviour: str = ""
-    """Taught behaviour that the robot follows."""
-    rla_id: int | None = None
-    """RLA whose action drives."""
-    radius_fraction: float = math.inf
-    """Distance to the condition of that RLA, divided by its R; infinite if another RLA is nearer."""
-
-
-def radius_fraction(driving: int | None, nearest: int | None, distance: float, radius: float) -> float:
-    """Return distance / R of the RLA that drives, a ratio; infinite if it is not the nearest one."""
-    return distance / radius if driving is not None and driving == nearest else math.inf
-
-
-def view_of_tick(record: TickRecord) -> TeacherView:
-    """Return the teacher's view of a tick."""
-    decision, match = record.decision, record.decision.match
-    nearest = math.inf
-    if match is not None:
-        nearest = radius_fraction(decision.rla_id, match.rla.rla_id, match.distance, match.radius)
-    return TeacherView(
-        decision.asking and decision.asks_at == BASIC,
-        decision.driving,
-        decision.action,
-        record.readings.infrared_counts,
-        record.behaviour,
-        decision.rla_id,
-        nearest,
-    )
-
-
-def build_teacher(
-    task: TaskSettings, robot: RobotSettings, actions: Sequence[str], *, seed: int, session: str
-) -> "ScriptedTeacher":
-    """Build the scripted teacher of a task, for a robot with these actions; `session` as in ScriptedTeacher."""
-    return ScriptedTeacher(
-        task.policy.build(robot.infrared),
-        actions,
-        task.teaching.teacher,
-        replace_radius_fraction=task.learning.insert_beyond_share,
-        period_s=robot.can.cycle_s,
-        seed=seed,
-        session=session,
-    )
-
-
-class ScriptedTeacher:
+class ScriptedTeacher(BasicTeacher):
     """Teacher without memory of the task, with a reaction time and a patience of its own.
 
     It sees the states that a person sees on the screen, and gives the commands that a person can give.
@@ -85,6 +28,7 @@ class ScriptedTeacher:
         period_s: float,
         seed: int,
         session: str,
+        corrects: bool = True,
     ) -> None:
         """Create a teacher in phase 1.
 
@@ -96,8 +40,10 @@ class ScriptedTeacher:
             period_s: length of a tick.
             seed: of the errors.
             session: prefix of all command ids; it must differ between training runs on the same knowledge.
+            corrects: False: answers only, in all phases.
         """
-        self._session = session
+        super().__init__(session)
+        self._corrects = corrects
         self._policy = policy
         self._actions = tuple(actions)
         self._error_rate = settings.error_rate
@@ -106,27 +52,12 @@ class ScriptedTeacher:
         self._reaction_ticks = round(settings.reaction_s / period_s)
         self._patience_ticks = round(settings.patience_s / period_s)
         self._chance = random.Random(seed)
-        self._command_count = 0
         self._ticks_asked = 0
         self._ticks_wrong = 0
         self._right: str | None = None
         self._behaviour = ""
         self._action_of: dict[int, str] = {}
         self._replaced: Counter[int] = Counter()
-        self.phase = Phase.SUPERVISED
-
-    def begin_phase(self, phase: Phase) -> Command:
-        """Enter a phase; return the command that the robot needs for it."""
-        self.phase = phase
-        return SetPhase(self._next_id(), SCRIPTED, phase)
-
-    def select_behaviour(self, behaviour: str) -> Command:
-        """Return the command that selects a taught behaviour."""
-        return Pursue(self._next_id(), SCRIPTED, behaviour)
-
-    def resume(self) -> Command:
-        """Return the command that lets the robot drive again after a stop."""
-        return Resume(self._next_id(), SCRIPTED)
 
     def update(self, view: TeacherView, ticks: int = 1) -> Command | None:
         """Take a view that is `ticks` later than the last one; return the teacher's command, if any."""
@@ -143,7 +74,7 @@ class ScriptedTeacher:
                 return None
             self._ticks_asked = 0
             return Teach(self._next_id(), SCRIPTED, self._choose(view))
-        if self.phase is Phase.SUPERVISED or not view.driving:
+        if self.phase is Phase.SUPERVISED or not self._corrects or not view.driving:
             return None
         return self._correct(view, ticks)
 
@@ -182,7 +113,3 @@ class ScriptedTeacher:
         if self._chance.random() >= self._error_rate:
             return right
         return self._chance.choice([action for action in self._actions if action != right])
-
-    def _next_id(self) -> str:
-        self._command_count += 1
-        return f"{self._session}-{self._command_count}"

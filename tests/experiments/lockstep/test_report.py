@@ -76,6 +76,7 @@ def test_a_lesson_stands_beside_the_paper() -> None:
     assert ["teaching, s of robot time", "345", "345"] in rows
     assert ["asks", "41"] in rows
     assert ["corrections", "52"] in rows
+    assert ["teacher", "superhuman", "a person"] in rows
     assert ["rescues by hand", "3"] in rows
     assert ["A", "8.00", "9.00", "0", "no", "3.4%", "yes"] in rows
     assert ["distance error, m", "0.0321"] in rows

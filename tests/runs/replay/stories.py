@@ -48,7 +48,8 @@ from kurt2rt.runs.recording.run_files import budget_of
 from kurt2rt.runs.recording.run_head import RUN_METADATA, RunHead
 from kurt2rt.runs.recording.segment_reader import SegmentReader
 from kurt2rt.runtime import Runtime, RuntimeOptions, build_runtime
-from kurt2rt.teacher.scripted.teacher import ScriptedTeacher, build_teacher, view_of_tick
+from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, view_of_tick
+from kurt2rt.teacher.scripted.build import build_teacher
 from simbridge.simulation import Kurt2Simulation
 from tests.runs.replay.stored_runs import STORED
 
@@ -65,7 +66,7 @@ class Scene:
     simulation: Kurt2Simulation
     runtime: Runtime
     notebook: InMemoryEventStore
-    teacher: ScriptedTeacher
+    teacher: BasicTeacher
     said: int = 0
     presses: int = 0
     home: list[object] = field(default_factory=list)

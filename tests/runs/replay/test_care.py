@@ -42,7 +42,7 @@ from kurt2rt.runs.replay.replay import Replay
 from kurt2rt.runs.replay.run import Run
 from kurt2rt.runs.replay.trial import TrialKnowledge, compatible_runs, newest_compatible_run, replay_answers
 from kurt2rt.runs.replay.undo_preview import preview, preview_on_newest
-from kurt2rt.teacher.scripted.teacher import view_of_tick
+from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from tests.cli.helpers import CommandLine
 from tests.knowledge.refusals import refused
 from tests.runs.replay.stories import NAME, Scene, record_story

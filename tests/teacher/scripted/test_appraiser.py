@@ -76,7 +76,7 @@ def test_reward_comes_a_reaction_later_for_the_judged_tick() -> None:
     assert signals(commands) == [(15, -1, 5)]
     ((_, reward),) = commands
     assert isinstance(reward, Reward)
-    assert person.is_signal(reward.command_id)
+    assert person.may_be_refused(reward.command_id)
 
 
 def test_rewards_of_one_value_keep_their_shortest_time() -> None:
@@ -141,8 +141,8 @@ def test_demonstrate_runs_an_action_then_resumes() -> None:
     ((tick, resume),) = [(tick, command) for tick, command in commands if isinstance(command, Resume)]
     assert tick == 28
     # Only signals may be refused as too late; a refusal of these must be seen.
-    assert not person.is_signal(shown.command_id)
-    assert not person.is_signal(resume.command_id)
+    assert not person.may_be_refused(shown.command_id)
+    assert not person.may_be_refused(resume.command_id)
 
 
 def test_phase_5_gives_no_command() -> None:

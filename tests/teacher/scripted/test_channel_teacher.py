@@ -27,8 +27,8 @@ from kurt2rt.core.rla.programs import AUTO
 from kurt2rt.core.task_settings import TaskSettings, load_task
 from kurt2rt.teacher import TeacherClient
 from kurt2rt.teacher.client.answer import RefusedError
+from kurt2rt.teacher.scripted.basic_teacher import TeacherView
 from kurt2rt.teacher.scripted.channel_teacher import teach_by_script, view_of_state
-from kurt2rt.teacher.scripted.teacher import TeacherView
 from tests.channel.states import state
 from tests.teacher.client.test_client import HELLO
 from tests.teacher.stand_in_robot import StandInRobot, in_a_task_of_its_own, stand_in_robot
@@ -332,6 +332,6 @@ async def test_teach_by_script_stop_at_phase_5_keeps_it_there(client: TeacherCli
 
 def test_view_of_state_has_behaviour_and_driving_rla() -> None:
     seen = view_of_state(state(cause="rla", action="forward", rla=3, behaviour="turn_left"))
-    assert seen == TeacherView(False, True, "forward", state().infrared_counts, "turn_left", 3)
+    assert seen == TeacherView(False, True, "forward", state().infrared_counts, "turn_left", 3, tick=1234)
     nearest = view_of_state(state(cause="rla", action="forward", rla=3, nearest=3, distance=60.0, radius=600.0))
     assert nearest.radius_fraction == 0.1

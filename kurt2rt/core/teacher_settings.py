@@ -1,0 +1,134 @@
+"""Schema of `config/teachers/*.yaml`: scripted teachers, quick ones and those with the limits of a person."""
+
+import random
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from hal.settings import Settings, find_config, load_settings
+
+SUPERHUMAN = "superhuman"
+"""Teacher without a person's limits, whose times are those of the task (`teaching.teacher`)."""
+DEFAULT_TEACHER = SUPERHUMAN
+"""Teacher of `kurt2rt demo`, `kurt2rt run --auto` and `kurt2rt paper` if the command line names none."""
+
+Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
+Sentence = Annotated[str, Field(pattern=r"^[^\x00-\x1f\x7f]+$", max_length=120)]
+Seconds = Annotated[float, Field(ge=0, le=60)]
+Share = Annotated[float, Field(ge=0, le=1)]
+
+
+class LogNormalDelay(Settings):
+    """Log-normal distribution of a delay."""
+
+    kind: Literal["log_normal"]
+    median_s: Seconds
+    spread: Annotated[float, Field(ge=0, le=2)]
+    """Standard deviation of the logarithm; 0: always the median."""
+    longest_s: Seconds
+    """Upper bound of a drawn value."""
+
+    def draw_s(self, chance: random.Random) -> float:
+        """Return one delay in s, 0 to `longest_s`."""
+        return min(self.median_s * chance.lognormvariate(0.0, self.spread), self.longest_s)
+
+
+class GammaDelay(Settings):
+    """Gamma distribution of a delay, after a shortest time."""
+
+    kind: Literal["gamma"]
+    shortest_s: Seconds
+    """Lower bound of a drawn value."""
+    shape: Annotated[float, Field(gt=0, le=100)]
+    scale_s: Annotated[float, Field(gt=0, le=60)]
+    longest_s: Seconds
+    """Upper bound of a drawn value."""
+
+    def draw_s(self, chance: random.Random) -> float:
+        """Return one delay in s, `shortest_s` to `longest_s`."""
+        return min(self.shortest_s + chance.gammavariate(self.shape, self.scale_s), self.longest_s)
+
+
+Delay = Annotated[LogNormalDelay | GammaDelay, Field(discriminator="kind")]
+
+
+class LinkSettings(Settings):
+    """Screen and network between robot and teacher."""
+
+    pictures_per_s: Annotated[float, Field(gt=0, le=100)]
+    """Rate of the states that the teacher sees."""
+    one_way_s: Annotated[float, Field(ge=0, le=5)]
+    """Age of a state when the teacher sees it, and of a command when the robot gets it."""
+
+
+class NoticeSettings(Settings):
+    """Disagreement of robot and teacher that the teacher can see."""
+
+    different_after_s: Seconds
+    """Time after which a wrong action is noticed that looks different from the right one."""
+    similar_after_s: Seconds
+    """Time after which any wrong action is noticed."""
+
+
+class LapseSettings(Settings):
+    """Times in which the teacher looks away."""
+
+    per_minute: Annotated[float, Field(ge=0, le=60)]
+    duration: Delay
+
+
+class ErrorSettings(Settings):
+    """Fractions of commands that name another action than the right one."""
+
+    answers: Share
+    corrections: Share
+
+
+class PersonSettings(Settings):
+    """Limits of a person who teaches. Each delay is drawn for each event."""
+
+    question_delay: Delay
+    """Time from a question that is seen to the press that answers it."""
+    mistake_delay: Delay
+    """Time from a mistake that is noticed to the press that corrects it."""
+    reward_delay: Delay
+    """Time from an event to the press that rewards it."""
+    hand_delay_s: Seconds
+    """Delay of the hand that follows a changing right action while it holds a button."""
+    notices: NoticeSettings
+    link: LinkSettings
+    presses_per_minute: Annotated[int, Field(ge=0, le=600)]
+    """Limit on presses in any 60 s; 0: no limit."""
+    lapses: LapseSettings
+    errors: ErrorSettings
+    slower_per_minute: Annotated[float, Field(ge=0, le=1)]
+    """Growth of all delays with each minute of teaching, as a fraction: tiredness."""
+
+
+class TeacherProfile(Settings):
+    """Scripted teacher by name."""
+
+    name: Name
+    what: Sentence
+    """Teacher in one sentence."""
+    corrects_by: Literal["press", "hold", "nothing"] = "press"
+    """Way to correct: a press that names the action, an action that is held, or answers only."""
+    corrects_tick: Literal["began", "noticed", "pressed"] = "pressed"
+    """Tick that a press corrects: the first wrong one, the one in which the mistake was noticed, or the present one."""
+    hold_s: Annotated[float, Field(gt=0, le=60)] = 2.0
+    """Time for which an action is held."""
+    person: PersonSettings | None = None
+    """Limits of a person; None: reaction, patience and errors are those of the task."""
+
+
+QUICK_TEACHER = TeacherProfile(name=SUPERHUMAN, what="Reacts and corrects by the times of the task, without a break")
+"""Teacher of a task that names none; the same as `config/teachers/superhuman.yaml`."""
+
+
+def load_teacher(name_or_path: str) -> TeacherProfile:
+    """Load the profile of a shipped teacher by name, or of a file by path.
+
+    Raises:
+        hal.settings.SettingsError: for a missing or invalid file.
+    """
+    return load_settings(find_config("teachers", name_or_path), TeacherProfile)

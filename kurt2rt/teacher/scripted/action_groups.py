@@ -1,0 +1,59 @@
+"""Groups of actions that a person can tell apart by watching the robot."""
+
+from collections.abc import Mapping
+
+from behaviors.repertoire_settings import (
+    ActionSettings,
+    KeepDistanceAction,
+    MotorAction,
+    RepertoireSettings,
+    TurnByAngleAction,
+)
+from hal.settings import find_config, load_settings
+
+AHEAD, BACK, STAND = "ahead", "back", "stand"
+_AHEAD_BELOW, _SPIN_ABOVE = 0.5, 2.0
+"""Difference of the sides' speeds, as a fraction of the speed ahead.
+
+Bearing left or right (0.25) looks like driving ahead within a second; curves have 0.9 and 1.2.
+"""
+_STAND_M_S = 0.02
+
+
+def action_groups(repertoire: str) -> Mapping[str, str]:
+    """Return the group of each action of a repertoire: ahead, back, stand, or a bend or spin to one side.
+
+    Actions that were taught themselves are groups of their own.
+
+    Raises:
+        hal.settings.SettingsError: for a missing or invalid repertoire.
+    """
+    actions = load_settings(find_config("repertoires", repertoire), RepertoireSettings).actions
+    return {action.name: _group_of(action) for action in actions}
+
+
+def _group_of(action: ActionSettings) -> str:
+    match action:
+        case MotorAction(left_m_s=left_m_s, right_m_s=right_m_s):
+            return _group_of_speeds(left_m_s, right_m_s)
+        case KeepDistanceAction():
+            return AHEAD
+        case TurnByAngleAction(angle_deg=angle_deg):
+            return f"spin {_side(angle_deg)}"
+        case _:
+            return action.name
+
+
+def _group_of_speeds(left_m_s: float, right_m_s: float) -> str:
+    speed_m_s, difference_m_s = (left_m_s + right_m_s) / 2.0, right_m_s - left_m_s
+    if max(abs(left_m_s), abs(right_m_s)) < _STAND_M_S:
+        return STAND
+    if abs(difference_m_s) > _SPIN_ABOVE * abs(speed_m_s):
+        return f"spin {_side(difference_m_s)}"
+    if speed_m_s < 0.0:
+        return BACK
+    return AHEAD if abs(difference_m_s) < _AHEAD_BELOW * speed_m_s else f"bend {_side(difference_m_s)}"
+
+
+def _side(left_positive: float) -> str:
+    return "left" if left_positive > 0.0 else "right"

@@ -1,0 +1,86 @@
+"""Scripted teachers of the basic level: their view of the robot, and the commands that all of them give."""
+
+import math
+from abc import ABC, abstractmethod
+from typing import NamedTuple
+
+from kurt2rt.core.rla.programs import SCRIPTED
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import BASIC
+from kurt2rt.core.teaching.commands import Command, Pursue, Resume, SetPhase
+from kurt2rt.core.tick import TickRecord
+
+
+class TeacherView(NamedTuple):
+    """State of the robot as far as a teacher sees it."""
+
+    asking: bool
+    """Its basic level asks."""
+    driving: bool
+    action: str | None
+    infrared_counts: tuple[int, ...]
+    behaviour: str = ""
+    """Taught behaviour that the robot follows."""
+    rla_id: int | None = None
+    """RLA whose action drives."""
+    radius_fraction: float = math.inf
+    """Distance to the condition of that RLA, divided by its R; infinite if another RLA is nearer."""
+    tick: int = 0
+    """Tick of the state."""
+
+
+def radius_fraction(driving: int | None, nearest: int | None, distance: float, radius: float) -> float:
+    """Return distance / R of the RLA that drives, a ratio; infinite if it is not the nearest one."""
+    return distance / radius if driving is not None and driving == nearest else math.inf
+
+
+def view_of_tick(record: TickRecord) -> TeacherView:
+    """Return the teacher's view of a tick."""
+    decision, match = record.decision, record.decision.match
+    nearest = math.inf
+    if match is not None:
+        nearest = radius_fraction(decision.rla_id, match.rla.rla_id, match.distance, match.radius)
+    return TeacherView(
+        decision.asking and decision.asks_at == BASIC,
+        decision.driving,
+        decision.action,
+        record.readings.infrared_counts,
+        record.behaviour,
+        decision.rla_id,
+        nearest,
+        record.tick,
+    )
+
+
+class BasicTeacher(ABC):
+    """Scripted teacher of the basic level: it sees states, and gives the commands that a person can give."""
+
+    may_be_late = False
+    """True if the robot may refuse a command because it comes too late."""
+
+    def __init__(self, session: str) -> None:
+        """Create a teacher in phase 1; `session` is the prefix of command ids, unique on the same knowledge."""
+        self._session = session
+        self._command_count = 0
+        self.phase = Phase.SUPERVISED
+
+    @abstractmethod
+    def update(self, view: TeacherView, ticks: int = 1) -> Command | None:
+        """Take a view that is `ticks` later than the last one; return the teacher's command, if any."""
+
+    def begin_phase(self, phase: Phase) -> Command:
+        """Enter a phase; return the command that the robot needs for it."""
+        self.phase = phase
+        return SetPhase(self._next_id(), SCRIPTED, phase)
+
+    def select_behaviour(self, behaviour: str) -> Command:
+        """Return the command that selects a taught behaviour."""
+        return Pursue(self._next_id(), SCRIPTED, behaviour)
+
+    def resume(self) -> Command:
+        """Return the command that lets the robot drive again after a stop."""
+        return Resume(self._next_id(), SCRIPTED)
+
+    def _next_id(self) -> str:
+        self._command_count += 1
+        return f"{self._session}-{self._command_count}"

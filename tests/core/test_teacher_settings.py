@@ -1,0 +1,108 @@
+"""Settings of scripted teachers: shipped profiles, distributions, and errors in a file."""
+
+import random
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+import yaml
+
+from config import CONFIG_DIR
+from hal.settings import SettingsError, shipped_names
+from kurt2rt.core.task_settings import load_task, taught_by
+from kurt2rt.core.teacher_settings import (
+    DEFAULT_TEACHER,
+    QUICK_TEACHER,
+    SUPERHUMAN,
+    Delay,
+    GammaDelay,
+    LogNormalDelay,
+    load_teacher,
+)
+
+PEOPLE = ("attentive", "ordinary", "slow")
+DRAWS = 2000
+
+
+def test_load_teacher_superhuman_is_the_teacher_of_a_task() -> None:
+    assert load_teacher(SUPERHUMAN) == QUICK_TEACHER == load_task("wall_following").teaching.profile
+
+
+def test_load_teacher_each_shipped_file_is_named_after_itself() -> None:
+    assert {*PEOPLE, SUPERHUMAN, DEFAULT_TEACHER} <= set(shipped_names("teachers"))
+    assert all(load_teacher(name).name == name for name in shipped_names("teachers"))
+
+
+def delays_of(name: str) -> tuple[Delay, ...]:
+    person = load_teacher(name).person
+    assert person is not None
+    return person.question_delay, person.mistake_delay, person.reward_delay, person.lapses.duration
+
+
+@pytest.mark.parametrize("name", PEOPLE)
+def test_draw_s_values_stay_within_the_bounds(name: str) -> None:
+    for delay in delays_of(name):
+        chance = random.Random(1)
+        drawn = [delay.draw_s(chance) for _ in range(DRAWS)]
+        shortest_s = delay.shortest_s if isinstance(delay, GammaDelay) else 0.0
+        assert shortest_s <= min(drawn) < max(drawn) <= delay.longest_s
+
+
+def test_draw_s_log_normal_has_its_median_and_95th_percentile() -> None:
+    delay = delays_of("ordinary")[0]
+    assert isinstance(delay, LogNormalDelay)
+    chance = random.Random(1)
+    drawn = sorted(delay.draw_s(chance) for _ in range(DRAWS))
+    assert drawn[DRAWS // 2] == pytest.approx(1.25, rel=0.05)
+    assert drawn[round(0.95 * DRAWS)] == pytest.approx(2.5, rel=0.1)
+
+
+def test_draw_s_gamma_has_its_mean() -> None:
+    chance = random.Random(1)
+    delay = delays_of("ordinary")[1]
+    assert sum(delay.draw_s(chance) for _ in range(DRAWS)) / DRAWS == pytest.approx(0.71, rel=0.05)
+
+
+def test_draw_s_same_seed_gives_the_same_delays() -> None:
+    for delay in delays_of("slow"):
+        first, again = random.Random(7), random.Random(7)
+        assert [delay.draw_s(first) for _ in range(9)] == [delay.draw_s(again) for _ in range(9)]
+
+
+def test_teachers_each_is_slower_than_the_one_before() -> None:
+    medians = []
+    for name in PEOPLE:
+        chance = random.Random(1)
+        medians.append([sorted(delay.draw_s(chance) for _ in range(DRAWS))[DRAWS // 2] for delay in delays_of(name)])
+    for sooner, later in pairwise(medians):
+        assert all(one < other for one, other in zip(sooner, later, strict=True))
+
+
+def test_taught_by_changes_the_teacher_alone() -> None:
+    task, profile = load_task("circle"), load_teacher("slow")
+    taught = taught_by(task, profile)
+    assert taught.teaching.profile == profile
+    assert taught_by(taught, QUICK_TEACHER) == task
+
+
+def test_load_teacher_unknown_name_lists_the_shipped_ones() -> None:
+    with pytest.raises(SettingsError, match=r"no such file in teachers.*did you mean ordinary"):
+        load_teacher("ordinari")
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("errors", {"answers": 1.5, "corrections": 0.0}, r"person\.errors\.answers"),
+        ("presses_per_minute", -1, r"person\.presses_per_minute"),
+        ("question_delay", {"kind": "uniform"}, r"person\.question_delay"),
+        ("patience_s", 0.2, r"person.*patience_s"),
+    ],
+)
+def test_load_teacher_invalid_file_names_the_key(tmp_path: Path, key: str, value: object, words: str) -> None:
+    content = yaml.safe_load((CONFIG_DIR / "teachers" / "ordinary.yaml").read_text())
+    content["person"][key] = value
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump(content))
+    with pytest.raises(SettingsError, match=words):
+        load_teacher(str(path))

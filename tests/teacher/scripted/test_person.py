@@ -1,0 +1,232 @@
+"""ScriptedPerson: delays, old pictures, errors, and the limit on presses."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import Any
+
+import pytest
+
+from kurt2rt.core.rla.programs import SCRIPTED
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.teacher_settings import (
+    ErrorSettings,
+    LapseSettings,
+    LinkSettings,
+    LogNormalDelay,
+    NoticeSettings,
+    PersonSettings,
+    TeacherProfile,
+    load_teacher,
+)
+from kurt2rt.core.teaching.commands import Command, Correct, Teach
+from kurt2rt.teacher.scripted.basic_teacher import TeacherView
+from kurt2rt.teacher.scripted.person import ScriptedPerson, TaskSense
+
+PERIOD_S = 0.01
+PICTURE_TICKS, LINK_TICKS = 5, 5
+QUESTION_TICKS, MISTAKE_TICKS, DIFFERENT_TICKS, SIMILAR_TICKS = 100, 60, 40, 100
+FAR, NEAR = 100, 500
+GROUPS = {"a": "ahead", "near_a": "ahead", "b": "left", "c": "right"}
+
+
+class NearIsB:
+    """Policy: b if the first count is high, else a."""
+
+    def choose(self, infrared_counts: tuple[int, ...], behaviour: str) -> str:  # noqa: ARG002 - one behaviour
+        return "b" if infrared_counts[0] > 300 else "a"
+
+
+def always(seconds: float) -> LogNormalDelay:
+    return LogNormalDelay(kind="log_normal", median_s=seconds, spread=0.0, longest_s=60.0)
+
+
+def limits(**changes: Any) -> PersonSettings:
+    """Return a person of fixed delays without errors, lapses or tiredness."""
+    return PersonSettings(
+        question_delay=always(1.0),
+        mistake_delay=always(0.6),
+        reward_delay=always(0.6),
+        hand_delay_s=0.3,
+        notices=NoticeSettings(different_after_s=0.4, similar_after_s=1.0),
+        link=LinkSettings(pictures_per_s=20.0, one_way_s=0.05),
+        presses_per_minute=0,
+        lapses=LapseSettings(per_minute=0.0, duration=always(1.0)),
+        errors=ErrorSettings(answers=0.0, corrections=0.0),
+        slower_per_minute=0.0,
+    ).model_copy(update=changes)
+
+
+def person(
+    phase: Phase = Phase.CORRECTIONS, *, seed: int = 1, profile: dict[str, Any] | None = None, **changes: Any
+) -> ScriptedPerson:
+    own = limits(**changes)
+    taught = TeacherProfile(name="p", what="A person", person=own, **{"corrects_tick": "noticed", **(profile or {})})
+    sense = TaskSense(NearIsB(), tuple(GROUPS), GROUPS)
+    teacher = ScriptedPerson(taught, own, sense, period_s=PERIOD_S, seed=seed, session="s")
+    if phase is not Phase.SUPERVISED:
+        teacher.begin_phase(phase)
+    return teacher
+
+
+def asking(count: int = FAR) -> TeacherView:
+    return TeacherView(asking=True, driving=False, action=None, infrared_counts=(count,))
+
+
+def doing(action: str, count: int = FAR) -> TeacherView:
+    return TeacherView(asking=False, driving=True, action=action, infrared_counts=(count,))
+
+
+def given(teacher: ScriptedPerson, views: Sequence[TeacherView]) -> dict[int, Command]:
+    """Return the commands by the tick in which they reach the robot, counted from 1."""
+    heard = {tick: teacher.update(view._replace(tick=tick)) for tick, view in enumerate(views, start=1)}
+    return {tick: command for tick, command in heard.items() if command is not None}
+
+
+def test_update_question_is_answered_after_delay_and_both_links() -> None:
+    answers = given(person(Phase.SUPERVISED), [asking()] * 130)
+    assert list(answers) == [1 + LINK_TICKS + QUESTION_TICKS + LINK_TICKS]
+
+
+def test_update_answer_names_the_action_of_the_newest_picture() -> None:
+    turned = 60
+    answers = given(person(Phase.SUPERVISED), [asking(FAR)] * turned + [asking(NEAR)] * 60)
+    (answer,) = answers.values()
+    assert isinstance(answer, Teach)
+    assert (answer.teacher, answer.action) == (SCRIPTED, "b")
+    assert answer.decision_tick is not None
+    assert answer.decision_tick <= min(answers) - 2 * LINK_TICKS
+
+
+def test_update_question_of_one_picture_is_answered() -> None:
+    views = [asking()] * PICTURE_TICKS + [doing("a")] * 130
+    (answer,) = given(person(Phase.SUPERVISED), views).values()
+    assert isinstance(answer, Teach)
+    assert answer.decision_tick == 1
+
+
+def test_update_question_between_two_pictures_is_not_seen() -> None:
+    views = [doing("a"), asking(), asking(), *[doing("a")] * 300]
+    assert given(person(Phase.SUPERVISED), views) == {}
+
+
+def test_update_phase_1_does_not_correct() -> None:
+    assert given(person(Phase.SUPERVISED), [doing("b")] * 500) == {}
+
+
+def test_update_different_action_is_corrected_to_the_noticed_tick() -> None:
+    corrections = given(person(), [doing("b")] * 130)
+    ((tick, correction),) = corrections.items()
+    assert isinstance(correction, Correct)
+    assert (correction.action, correction.decision_tick) == ("a", 1 + DIFFERENT_TICKS)
+    assert tick == 1 + DIFFERENT_TICKS + LINK_TICKS + MISTAKE_TICKS + LINK_TICKS
+
+
+@pytest.mark.parametrize(
+    ("named", "decision_tick"), [("began", 1), ("noticed", 1 + DIFFERENT_TICKS), ("pressed", None)]
+)
+def test_update_corrected_tick_is_as_set(named: str, decision_tick: int | None) -> None:
+    (correction,) = given(person(profile={"corrects_tick": named}), [doing("b")] * 130).values()
+    assert isinstance(correction, Correct)
+    assert correction.decision_tick == decision_tick
+
+
+def test_update_similar_action_is_noticed_later() -> None:
+    (correction,) = given(person(), [doing("near_a")] * 190).values()
+    assert isinstance(correction, Correct)
+    assert correction.decision_tick == 1 + SIMILAR_TICKS
+
+
+def test_update_short_disagreement_is_not_noticed() -> None:
+    views = ([doing("b")] * 35 + [doing("a")] * 10) * 10
+    assert given(person(), views) == {}
+
+
+def test_update_correction_is_for_the_situation_that_was_seen() -> None:
+    """The wall comes near after the mistake was noticed: the correction is still about the time before."""
+    views = [doing("c", FAR)] * 60 + [doing("c", NEAR)] * 60
+    (correction,) = given(person(), views).values()
+    assert isinstance(correction, Correct)
+    assert correction.action == "a"
+
+
+def test_update_effect_of_a_press_is_awaited() -> None:
+    """Pictures from before the press could have an effect do not count for the next one."""
+    ticks = list(given(person(), [doing("b")] * 400))
+    least = DIFFERENT_TICKS + MISTAKE_TICKS + 2 * LINK_TICKS + 2 * PICTURE_TICKS
+    assert len(ticks) > 1
+    assert all(later - sooner >= least for sooner, later in pairwise(ticks))
+
+
+def test_update_answers_only_never_corrects() -> None:
+    teacher = person(profile={"corrects_by": "nothing"})
+    commands = given(teacher, [doing("b")] * 300 + [asking()] * 150)
+    assert [type(command) for command in commands.values()] == [Teach]
+
+
+def test_update_limit_of_presses_holds_in_every_minute() -> None:
+    teacher = person(presses_per_minute=12)
+    ticks = list(given(teacher, [doing("b")] * 20_000))
+    assert len(ticks) >= 36
+    assert all(later - sooner >= 6000 for sooner, later in zip(ticks, ticks[12:], strict=False))
+
+
+def test_update_question_beyond_the_limit_waits() -> None:
+    teacher = person(Phase.SUPERVISED, presses_per_minute=1)
+    first, second = list(given(teacher, [asking()] * 7000))
+    assert second - first == 6000
+
+
+def wrong_fraction(seed: int) -> float:
+    teacher = person(
+        Phase.SUPERVISED,
+        seed=seed,
+        question_delay=always(0.0),
+        errors=ErrorSettings(answers=0.05, corrections=0.0),
+    )
+    answers = list(given(teacher, [asking()] * 40_000).values())
+    assert len(answers) > 1000
+    counted = Counter(isinstance(answer, Teach) and answer.action == "a" for answer in answers)
+    return counted[False] / len(answers)
+
+
+def test_update_wrong_answers_come_at_the_set_rate() -> None:
+    assert 0.03 < wrong_fraction(1) < 0.07
+
+
+def test_update_corrections_err_at_their_own_rate() -> None:
+    teacher = person(errors=ErrorSettings(answers=0.0, corrections=1.0))
+    (correction,) = given(teacher, [doing("b")] * 130).values()
+    assert isinstance(correction, Correct)
+    assert correction.action != "a"
+
+
+def test_update_tired_person_answers_later() -> None:
+    fresh, tired = (person(Phase.SUPERVISED, slower_per_minute=rate) for rate in (0.0, 1.0))
+    minute = [doing("a")] * 6000
+    waited = [min(given(teacher, minute + [asking()] * 400)) - 6000 for teacher in (fresh, tired)]
+    assert waited[1] - waited[0] == pytest.approx(QUESTION_TICKS, abs=2)
+
+
+def test_update_lapses_delay_some_answers() -> None:
+    away = LapseSettings(per_minute=20.0, duration=always(3.0))
+    looking, lapsing = person(Phase.SUPERVISED), person(Phase.SUPERVISED, lapses=away)
+    views = [asking()] * 6000
+    assert len(given(lapsing, views)) < 0.8 * len(given(looking, views))
+
+
+def presses_of(name: str, seed: int) -> Iterator[tuple[int, Command]]:
+    profile = load_teacher(name)
+    assert profile.person is not None
+    sense = TaskSense(NearIsB(), tuple(GROUPS), GROUPS)
+    teacher = ScriptedPerson(profile, profile.person, sense, period_s=PERIOD_S, seed=seed, session="s")
+    teacher.begin_phase(Phase.CORRECTIONS)
+    yield from given(teacher, ([asking()] * 300 + [doing("c")] * 400) * 10).items()
+
+
+@pytest.mark.parametrize("name", ["attentive", "ordinary", "slow"])
+def test_update_same_seed_gives_the_same_presses(name: str) -> None:
+    first, again, other = (list(presses_of(name, seed)) for seed in (1, 1, 2))
+    assert first == again
+    assert first != other
+    assert len(first) > 5
