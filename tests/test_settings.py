@@ -23,6 +23,7 @@ from kurt2rt.core.mid.settings import MidSettings, load_mid_level
 from kurt2rt.core.perception.definition import SituationDefinition, load_situation
 from kurt2rt.core.rla.rla import ASK
 from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.core.teacher_settings import TeacherProfile
 from simbridge.wire.settings import WireSettings
 from simbridge.worlds.world_loading import load_world
 from simbridge.worlds.world_settings import WorldSettings

@@ -14,7 +14,7 @@ class DelaySampler:
     """Delays in ticks, one drawn for each event; they grow with the time of teaching."""
 
     def __init__(self, delay: Delay, slower_per_minute: float, period_s: float, seed: str) -> None:
-        """`period_s`: length of a tick. `seed`: of the random stream, which nothing else uses."""
+        """Draw from a random stream of this `seed`, which nothing else uses; `period_s` is the length of a tick."""
         self._delay = delay
         self._slower_per_tick = slower_per_minute * period_s / MINUTE_S
         self._period_s = period_s
@@ -30,7 +30,7 @@ class Attention:
     """Lapses of attention: a Poisson process of their begins, each with a drawn duration."""
 
     def __init__(self, settings: LapseSettings, period_s: float, seed: str) -> None:
-        """`period_s`: length of a tick. `seed`: of the random stream, which nothing else uses."""
+        """Draw from a random stream of this `seed`, which nothing else uses; `period_s` is the length of a tick."""
         self._settings = settings
         self._period_s = period_s
         self._chance = random.Random(seed)
@@ -54,7 +54,7 @@ class PressLimit:
     """Limit on presses in any minute."""
 
     def __init__(self, presses_per_minute: int, period_s: float) -> None:
-        """`presses_per_minute`: 0: no limit."""
+        """Allow so many presses in any 60 s; 0: no limit."""
         self._limit = presses_per_minute
         self._minute_ticks = round(MINUTE_S / period_s)
         self._presses: deque[int] = deque(maxlen=presses_per_minute or 1)
@@ -74,7 +74,7 @@ class MistakeWatcher:
     """Detector of mistakes that a person can see: of other actions that look different, or that last."""
 
     def __init__(self, settings: NoticeSettings, groups: Mapping[str, str], period_s: float) -> None:
-        """`groups`: group of each action that looks alike; an action without a group is one of its own."""
+        """Watch with these `groups` of actions that look alike; an action without a group is one of its own."""
         self._different_ticks = round(settings.different_after_s / period_s)
         self._similar_ticks = round(settings.similar_after_s / period_s)
         self._groups = groups

@@ -114,7 +114,7 @@ def test_update_phase_1_does_not_correct() -> None:
     assert given(person(Phase.SUPERVISED), [doing("b")] * 500) == {}
 
 
-def test_update_different_action_is_corrected_to_the_noticed_tick() -> None:
+def test_update_different_action_is_corrected_when_noticed() -> None:
     corrections = given(person(), [doing("b")] * 130)
     ((tick, correction),) = corrections.items()
     assert isinstance(correction, Correct)
