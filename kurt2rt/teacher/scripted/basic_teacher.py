@@ -4,8 +4,8 @@ import math
 from abc import ABC, abstractmethod
 from typing import NamedTuple
 
-from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.commands import Command, Pursue, Resume, SetPhase
 from kurt2rt.core.tick import TickRecord

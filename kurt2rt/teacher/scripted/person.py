@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from behaviors.policies.policy import ReferencePolicy
-from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.teacher_settings import PersonSettings, TeacherProfile
 from kurt2rt.core.teaching.commands import Command, Correct, Teach
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.teacher_settings import (
     ErrorSettings,
     LapseSettings,
