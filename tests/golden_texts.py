@@ -15,7 +15,19 @@ To add a table of texts:
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-from tests.texts import complaints, doctor, health, merging, no_answer, outcomes, page, shutdown, standing, verdicts
+from tests.texts import (
+    commission,
+    complaints,
+    doctor,
+    health,
+    merging,
+    no_answer,
+    outcomes,
+    page,
+    shutdown,
+    standing,
+    verdicts,
+)
 
 COMMAND = "python -m tests.golden_texts"
 FOLDER = Path(__file__).parent / "golden"
@@ -38,6 +50,8 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
         "troubles": health.troubles,
     },
     "reports": {
+        "faults of a commissioning": commission.faults,
+        "skipped steps of a commissioning": commission.skips,
         "complaints of fault drill and soak": complaints.complaints,
         "checks of a soak": complaints.soak_checks,
         "conflicts of a merge": merging.conflicts,

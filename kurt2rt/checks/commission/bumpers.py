@@ -3,6 +3,7 @@
 from functools import reduce
 from operator import and_, or_
 
+from kurt2rt.checks.commission.fault import FaultCode
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.frame_statistics import FrameStatistics
 from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, Tone
@@ -34,17 +35,17 @@ class BumpersStep:
         await stand.listen(_SETTLE_S)
         heard = await stand.listen(_LOOK_S)
         if not heard.bumpers:
-            result.to_do.append("BUMPERC (0x0A) never came: this robot has no bumpers, or they are not connected")
+            result.fail(FaultCode.BUMPERS_SILENT)
             return result
         untouched = reduce(or_, heard.bumpers)
         if untouched:
-            result.to_do.append(f"{_bits(untouched)} pressed without a touch: a bumper hangs")
+            result.fail(FaultCode.BUMPER_HANGS, bits=_bits(untouched))
         found: dict[str, int] = {}
         for at, bumper in enumerate(bumpers):
             bit = await _find(stand, bumper.name, untouched, found)
             if bit is None:
                 result.note(f"{bumper.name}: not found")
-                result.to_do.append(f"{bumper.name}: no bit answered, or it was skipped; check its switch and its plug")
+                result.fail(FaultCode.BUMPER_NOT_FOUND, bumper=bumper.name)
                 continue
             found[bumper.name] = bit
             result.tell(

@@ -8,9 +8,11 @@ from anyio import to_thread
 from hal.identity import hardware
 from hal.settings import SettingsError
 from kurt2rt.checks.commission.bumpers import BumpersStep
+from kurt2rt.checks.commission.fault import SkipCode, SkippedError
+from kurt2rt.checks.commission.fault_text import fault_text, skip_text
 from kurt2rt.checks.commission.identity import IdentityStep
 from kurt2rt.checks.commission.ir_calibration_step import IrCalibrationStep
-from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, SkippedError, Tone
+from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.progress import Progress, StepRecord
 from kurt2rt.checks.commission.sensors import SensorsStep
 from kurt2rt.checks.commission.speed_modes import SpeedModesStep
@@ -54,7 +56,7 @@ class Checklist:
         """
         await self._require_same_robot()
         for step in skipped:
-            await self._skip(step, "as was wished on the command line", on_purpose=True)
+            await self._skip(step, SkipCode.COMMAND_LINE, on_purpose=True)
         # Every session that turns wheels begins with the question about the block.
         moving = [step for step in chosen if step.moves]
         selected = [
@@ -72,20 +74,20 @@ class Checklist:
             try:
                 result = await self._result(step)
             except SkippedError as skipped:
-                self._stand.tell(f"skipped: {skipped}")
-                await self._skip(step, str(skipped))
+                self._stand.tell(f"skipped: {skip_text(skipped.code)}")
+                await self._skip(step, skipped.code)
                 return
             again = await self._judge(step, result)
 
     async def _result(self, step: CommissionStep) -> StepResult:
         if step.moves and not self._wheels_are_up:
-            raise SkippedError("the wheels were not confirmed off the ground")
+            raise SkippedError(SkipCode.NOT_LIFTED)
         if step is not _OFF_GROUND:
             begin = OperatorQuestion(
                 QuestionKind.BEGIN, "Ready?", (AnswerChoice("", "begin"), AnswerChoice(SKIP, "skip this step"))
             )
             if await self._stand.ask(begin) == SKIP:
-                raise SkippedError("as you wished")
+                raise SkippedError(SkipCode.OPERATOR)
             await self._require_same_robot()
         result = await step.run(self._stand, self.progress.findings)
         if step is _OFF_GROUND:
@@ -99,7 +101,8 @@ class Checklist:
             at=self._now(),
             who=self._who,
             measured=tuple(result.measured),
-            to_do=tuple(result.to_do),
+            to_do=tuple(map(fault_text, result.faults)),
+            faults=tuple(result.faults),
         )
         await self._keep(step, record, result)
         for line in result.unprinted:
@@ -107,7 +110,7 @@ class Checklist:
         if result.outcome is StepOutcome.PASSED:
             self._stand.tell(f"passed: {step.title}", Tone.GOOD)
             return False
-        for line in result.to_do:
+        for line in record.to_do:
             self._stand.tell(line, Tone.TO_DO)
         self._stand.tell(f"FAILED: {step.title}", Tone.BAD)
         choices = (AnswerChoice(_AGAIN, "repeat it, when that is mended"), AnswerChoice("", "go on"))
@@ -128,11 +131,11 @@ class Checklist:
                 do="give this robot another --name, or start over with --anew",
             )
 
-    async def _skip(self, step: CommissionStep, why: str, *, on_purpose: bool = False) -> None:
+    async def _skip(self, step: CommissionStep, code: SkipCode, *, on_purpose: bool = False) -> None:
         """Record a skipped step.
 
-        An earlier pass stays. An earlier failure stays unless the operator skips it on purpose, which keeps its to-do
-        list.
+        An earlier pass stays. An earlier failure stays unless the operator skips it on purpose, which keeps its
+        faults.
         """
         before = self.progress.steps.get(step.name)
         if before is not None and before.outcome is StepOutcome.PASSED:
@@ -140,8 +143,15 @@ class Checklist:
         if before is not None and before.outcome is StepOutcome.FAILED and not on_purpose:
             self._stand.tell(f"{step.title}: failed on {before.at}, and that stands", Tone.BAD)
             return
-        to_do = () if before is None else before.to_do
-        record = StepRecord(outcome=StepOutcome.SKIPPED, at=self._now(), who=self._who, measured=(why,), to_do=to_do)
+        record = StepRecord(
+            outcome=StepOutcome.SKIPPED,
+            at=self._now(),
+            who=self._who,
+            measured=(skip_text(code),),
+            to_do=() if before is None else before.to_do,
+            faults=() if before is None else before.faults,
+            skipped=code,
+        )
         await self._keep(step, record)
 
     async def _keep(self, step: CommissionStep, record: StepRecord, result: StepResult | None = None) -> None:

@@ -3,6 +3,7 @@
 from hal.bus import CONTROL_ID
 from hal.codec import load_codec
 from hal.identity import hardware
+from kurt2rt.checks.commission.fault import FaultCode
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.frame_statistics import FrameStatistics
 from kurt2rt.checks.commission.step import StepResult
@@ -26,16 +27,14 @@ class IdentityStep:
         """Listen to the CAN bus for 2 s; judge the controller's identity, the frames' periods, and junk.
 
         Periods are compared with `can.cycle_s` of the settings. Returns the findings with hardware id and firmware from
-        INFO_1, and an instruction for each fault. Silence is a fault and raises nothing.
+        INFO_1, and the faults. Silence is a fault and raises nothing.
         """
         heard = await stand.listen(_LISTEN_S)
         result = StepResult(findings)
         if not heard.arrivals_s:
-            result.to_do.append(
-                "Nothing was heard: is the robot on, the cable in, the interface up at "
-                f"{stand.settings.can.bit_rate_bit_s} bit/s, the bus terminated at both ends?"
-            )
-            result.to_do += [f"{what}: {count} of them; check the bit rate" for what, count in heard.junk.items()]
+            result.fail(FaultCode.BUS_SILENT, bit_rate_bit_s=stand.settings.can.bit_rate_bit_s)
+            for junk, count in heard.junk.items():
+                result.fail(FaultCode.BUS_JUNK, junk=junk, count=count)
             return result
         _judge_identity(heard, result)
         _judge_periods(stand, heard, result)
@@ -52,17 +51,15 @@ def _judge_identity(heard: FrameStatistics, result: StepResult) -> None:
         )
         kinds = sorted({each.hardware_id for each in said})
         if len(kinds) > 1:
-            result.to_do.append(
-                f"{name} comes from {' and '.join(map(hardware, kinds))}: two robots; take one off the bus"
-            )
+            result.fail(FaultCode.TWO_ROBOTS, message=name, robots=" and ".join(map(hardware, kinds)))
         elif len(said) > 1 and counted <= 0:
-            result.to_do.append(f"{name}'s loop counter does not advance: the controller hangs; switch it off and on")
+            result.fail(FaultCode.CONTROLLER_HANGS, message=name)
         if name == "INFO_1":
             result.findings = result.findings.model_copy(
                 update={"hardware_id": last.hardware_id, "firmware": last.firmware}
             )
     if "INFO_1" not in heard.identities:
-        result.to_do.append("INFO_1 (0x04) never came: this is not the KURT2 controller, or it has not started")
+        result.fail(FaultCode.IDENTITY_MISSING)
 
 
 def _judge_periods(stand: TestStand, heard: FrameStatistics, result: StepResult) -> None:
@@ -74,20 +71,17 @@ def _judge_periods(stand: TestStand, heard: FrameStatistics, result: StepResult)
         sensors = [sensor_of[signal] for signal in message.signals if signal in sensor_of]
         needed = bool(sensors) or message.name == "ENCODER" or (message.name == "BUMPERC" and bool(robot.bumpers))
         period_s = heard.period_s(frame_id)
-        who = f"{message.name} (0x{frame_id:02X})" + (f" with {', '.join(sensors)}" if sensors else "")
+        frame = f"{message.name} (0x{frame_id:02X})" + (f" with {', '.join(sensors)}" if sensors else "")
         if period_s is not None:
             periods_ms.setdefault(round(period_s * 1000), []).append(message.name)
         if not needed:
             continue
         if period_s is None:
-            board = " of the second controller" if frame_id >= _SECOND_CONTROLLER else ""
-            result.to_do.append(
-                f"{who} never came: check the frame's source{board}, or take its sensors out of the table"
-            )
+            second = frame_id >= _SECOND_CONTROLLER
+            result.fail(FaultCode.FRAME_MISSING_SECOND if second else FaultCode.FRAME_MISSING, frame=frame)
         elif abs(period_s / robot.can.cycle_s - 1.0) > _PERIOD_TOLERANCE:
-            result.to_do.append(
-                f"{who}: every {period_s * 1000:.1f} ms, the settings expect {robot.can.cycle_s * 1000:.0f} ms; "
-                "frames are lost (see ip -s link), or can.cycle_s is another on this robot"
+            result.fail(
+                FaultCode.FRAME_PERIOD, frame=frame, period_ms=period_s * 1000, expected_ms=robot.can.cycle_s * 1000
             )
     for period_ms, names in sorted(periods_ms.items()):
         result.note(f"every {period_ms} ms: {', '.join(names)}")
@@ -97,10 +91,10 @@ def _judge_periods(stand: TestStand, heard: FrameStatistics, result: StepResult)
 
 
 def _judge_junk(heard: FrameStatistics, result: StepResult) -> None:
-    for what, count in sorted(heard.junk.items()):
-        result.to_do.append(f"{count} x {what}: find who sends it, or the loose contact")
+    for junk, count in sorted(heard.junk.items()):
+        result.fail(FaultCode.JUNK, junk=junk, count=count)
     if heard.control:
-        result.to_do.append(f"{heard.control} CONTROL frames from another program: find that program and end it")
+        result.fail(FaultCode.FOREIGN_CONTROL, count=heard.control)
 
 
 _SECOND_CONTROLLER = 0x14

@@ -3,9 +3,10 @@
 import statistics
 
 from hal.robot_settings import SensorSettings
+from kurt2rt.checks.commission.fault import FaultCode, SkipCode, SkippedError
 from kurt2rt.checks.commission.findings import Findings, LawFound
 from kurt2rt.checks.commission.ir_calibration import IrCalibrationError, IrFit, IrLaw, IrReading, fit_law
-from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, SkippedError, Tone
+from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.sensors import SETTLE_S
 from kurt2rt.checks.commission.step import StepResult
 from kurt2rt.checks.commission.test_stand import TestStand
@@ -40,14 +41,14 @@ class IrCalibrationStep:
         heard = await stand.listen(_MEASURE_S)
         floors = [heard.median(_channel(sensor, findings)) for sensor in chosen]
         if None in floors:
-            result.to_do.append("A chosen sensor's channel is not heard: take the step sensors first")
+            result.fail(FaultCode.CHANNEL_UNHEARD)
             return result
         floor = statistics.median([each for each in floors if each is not None])
         readings = await _read_all(stand, chosen, findings)
         try:
             fit = await _fit_with_second_looks(stand, readings, {each.name: each for each in chosen}, findings)
         except IrCalibrationError as error:
-            result.to_do.append(f"No law was fitted: {error}")
+            result.fail(FaultCode.NO_CALIBRATION, says=str(error))
             result.measured += [f"{each.sensor} at {each.distance_m:.2f} m: {each.counts:.0f}" for each in readings]
             return result
         law = fit.law
@@ -60,10 +61,7 @@ class IrCalibrationStep:
         near_m = min(each.distance_m for each in readings)
         far_m = _detection_limit_m(law, floor, max(each.distance_m for each in readings))
         if far_m < _LEAST_FAR_M:
-            result.to_do.append(
-                f"With nothing in view the sensor says as much as before a board at {far_m:.2f} m: clear a metre "
-                "around the robot, then repeat this step"
-            )
+            result.fail(FaultCode.ROOM_NOT_CLEAR, distance_m=far_m)
             return result
         result.note(f"distances from {near_m:.2f} to {far_m:.2f} m can be told apart")
         law_found = LawFound(
@@ -88,7 +86,7 @@ async def _choose(stand: TestStand, findings: Findings) -> tuple[SensorSettings,
     sensors = {sensor.name: sensor for sensor in stand.settings.infrared.sensors}
     usable = [name for name in sensors if name not in findings.dead_sensors]
     if not usable:
-        raise SkippedError("no sensor answers: take the step sensors first")
+        raise SkippedError(SkipCode.NO_SENSOR)
     usual = next((name for name in usable if sensors[name].heading_deg == 0.0 and sensors[name].y_m == 0.0), usable[0])
     question = OperatorQuestion(
         QuestionKind.WHICH,

@@ -2,8 +2,10 @@
 
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings, SpeedMode
+from kurt2rt.checks.commission.fault import FaultCode, SkipCode, SkippedError, StepFault
+from kurt2rt.checks.commission.fault_text import fault_text
 from kurt2rt.checks.commission.findings import Findings
-from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, SkippedError, Tone
+from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.step import StepResult
 from kurt2rt.checks.commission.test_stand import TestDrive, TestStand
 
@@ -19,13 +21,13 @@ async def confirm_motion(stand: TestStand, text: str) -> None:
         QuestionKind.MOVE, text, (AnswerChoice("", "turn them"), AnswerChoice(SKIP, "do not turn them"))
     )
     if await stand.ask(question) == SKIP:
-        raise SkippedError("the wheels were not to turn")
+        raise SkippedError(SkipCode.NO_MOTION)
 
 
 def required_speed_mode(findings: Findings) -> SpeedMode:
     """Return the speed mode that answered. Raises SkippedError if none is known."""
     if findings.speed_mode is None:
-        raise SkippedError("no speed mode is known to answer: take the step modes first")
+        raise SkippedError(SkipCode.NO_SPEED_MODE)
     return findings.speed_mode
 
 
@@ -47,7 +49,7 @@ def require_rest(stand: TestStand, drive: TestDrive, result: StepResult) -> bool
     """Return whether the brake stopped the wheels; otherwise alarm the operator, and the step must end."""
     if drive.rested_after_s is not None:
         return True
-    heard = "still turn" if drive.after.encoder else "are not heard of any more"
-    result.to_do.append(f"The wheels {heard} after the brake: SWITCH THE MOTORS OFF, then look for the reason")
-    stand.tell(result.to_do[-1], Tone.BAD)
+    fault = StepFault(FaultCode.BRAKE_FAILS if drive.after.encoder else FaultCode.BRAKE_UNHEARD)
+    result.faults.append(fault)
+    stand.tell(fault_text(fault), Tone.BAD)
     return False

@@ -85,7 +85,3 @@ class Operator(Protocol):
 
 class AbortedError(Exception):
     """End of the session by the operator; the progress is kept."""
-
-
-class SkippedError(Exception):
-    """Step that is not run now; the message has the reason."""

@@ -7,6 +7,7 @@ from typing import Self
 from pydantic import Field, ValidationError
 
 from hal.settings import Settings, SettingsError
+from kurt2rt.checks.commission.fault import SkipCode, StepFault
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.step import StepOutcome
 from kurt2rt.platform.durable_files import write_durably
@@ -21,6 +22,10 @@ class StepRecord(Settings):
     who: str
     measured: tuple[str, ...] = ()
     to_do: tuple[str, ...] = ()
+    """Instruction for each fault, in words."""
+    faults: tuple[StepFault, ...] = ()
+    """Empty in files of earlier versions."""
+    skipped: SkipCode | None = None
 
 
 class Progress(Settings):

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from hal.robot_settings import SensorSettings
+from kurt2rt.checks.commission.fault import FaultCode
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.step import StepResult
@@ -44,7 +45,7 @@ class SensorsStep:
         heard = await stand.listen(_BASELINE_S)
         if not heard.channels:
             result = StepResult(findings)
-            result.to_do.append("No analog channel is heard: is the robot on? Step identity tells which frames come")
+            result.fail(FaultCode.CHANNELS_SILENT)
             return result
         empty = {channel: heard.median(channel) or 0.0 for channel in heard.channels}
         dead: list[str] = []
@@ -60,9 +61,9 @@ class SensorsStep:
             result.note(_row(sensor, found, dead))
         not_tried = [sensor.name for sensor in sensors if sensor.name not in (*found, *dead)]
         if not_tried:
-            result.to_do.append(f"Not tried: {', '.join(not_tried)}; this step goes on with them when it is repeated")
+            result.fail(FaultCode.SENSORS_NOT_TRIED, sensors=", ".join(not_tried))
         for name in dead:
-            result.to_do.append(f"{name} answers on no channel: check its plug and its 5 V, then repeat this step")
+            result.fail(FaultCode.SENSOR_DEAD, sensor=name)
         return result
 
 

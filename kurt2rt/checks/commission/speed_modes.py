@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings, SpeedMode
+from kurt2rt.checks.commission.fault import FaultCode, SkippedError, StepFault
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.moving import (
     DRIVE_S,
@@ -14,7 +15,6 @@ from kurt2rt.checks.commission.moving import (
     standstill_cause,
     steady_speeds,
 )
-from kurt2rt.checks.commission.operator import SkippedError
 from kurt2rt.checks.commission.step import StepResult
 from kurt2rt.checks.commission.test_stand import RAN_AWAY, TURNS_SHARE, TestDrive, TestStand
 
@@ -23,7 +23,6 @@ PREFERENCE = (SpeedMode.SPEED_CM, SpeedMode.SPEED, SpeedMode.RAW)
 _ACCURATE = (0.6, 1.6)
 """Allowed ratio of measured and commanded speed; outside of it settings and robot differ."""
 _TURNS_M_S = TURNS_SHARE * TEST_SPEED_M_S
-_AFTER_RUNAWAY = "an encoder that counts the wrong way does that: go on, step wheels tells which; then repeat this one"
 
 
 class SpeedModesStep:
@@ -98,29 +97,25 @@ class _Trial:
         said = f"{self.mode}: answers, {told_m_s * self.share(robot):.3f} m/s for a set point of {told_m_s:.3f} m/s"
         return said + (f"; 100 % are {self.full_speed_m_s(robot):.2f} m/s" if self.mode is SpeedMode.SPEED else "")
 
-    def problem(self, robot: RobotSettings) -> str:
-        """Return the fault of a mode that the firmware knows; empty without one."""
+    def fault(self, robot: RobotSettings) -> StepFault | None:
+        """Return the fault of a mode that the firmware knows."""
         stood = self.standstill_cause()
         if stood == RAN_AWAY:
-            return f"{self.mode}: {RAN_AWAY} and were braked; {_AFTER_RUNAWAY}"
+            return StepFault.of(FaultCode.MODE_RAN_AWAY, mode=self.mode.value, cause=stood)
         if stood is not None:
-            return f"{self.mode}: the wheels were kept from turning: {stood}"
+            return StepFault.of(FaultCode.WHEELS_HELD, drive=self.mode.value, cause=stood)
         if not self.answers(robot) or _ACCURATE[0] <= self.share(robot) <= _ACCURATE[1]:
-            return ""
+            return None
         ticks = math.tau * robot.geometry.wheel_radius_m / robot.geometry.metres_per_tick
-        return (
-            f"{self.mode}: {self.share(robot):.2f} times as fast as told, by the encoders. Turn a wheel once by hand: "
-            f"{ticks:.0f} ticks are expected (5120 on the high-speed variant). Mend geometry.metres_per_tick or, "
-            "where the mode is RAW, motors.raw_speed_m_s"
-        )
+        return StepFault.of(FaultCode.MODE_SPEED, mode=self.mode.value, ratio=self.share(robot), ticks=ticks)
 
 
 def _conclude(trials: list[_Trial], robot: RobotSettings, result: StepResult) -> StepResult:
     """Take the first mode that answers; faults of later modes do not matter."""
     for trial in trials:
-        problem = trial.problem(robot)
-        if problem:
-            result.to_do.append(problem)
+        fault = trial.fault(robot)
+        if fault is not None:
+            result.faults.append(fault)
         if trial.answers(robot):
             update: dict[str, object] = {"speed_mode": trial.mode}
             if trial.mode is SpeedMode.SPEED:
@@ -128,7 +123,7 @@ def _conclude(trials: list[_Trial], robot: RobotSettings, result: StepResult) ->
             result.findings = result.findings.model_copy(update=update)
             result.note(f"the robot will be driven in {trial.mode}")
             return result
-    result.to_do.append("No speed mode answers: check the motors' supply, their fuses and the emergency switch")
+    result.fail(FaultCode.MODE_MISSING)
     return result
 
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Protocol
 
+from kurt2rt.checks.commission.fault import FaultCode, Field, StepFault
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.operator import Tone
 from kurt2rt.checks.commission.test_stand import TestStand
@@ -19,15 +20,17 @@ class StepOutcome(StrEnum):
 
 @dataclass(slots=True)
 class StepResult:
-    """Measurements of a step. It passed if the to-do list is empty."""
+    """Measurements of a step. It passed if it found no fault."""
 
     findings: Findings
     measured: list[str] = field(default_factory=list)
-    to_do: list[str] = field(default_factory=list)
-    """Instruction for each fault."""
-
+    faults: list[StepFault] = field(default_factory=list)
     unprinted: list[str] = field(default_factory=list)
     """Measured lines that were not shown yet."""
+
+    def fail(self, code: FaultCode, **fields: Field) -> None:
+        """Add a fault."""
+        self.faults.append(StepFault(code, fields))
 
     def note(self, line: str) -> None:
         """Add a measured line for the end of the step."""
@@ -42,7 +45,7 @@ class StepResult:
     @property
     def outcome(self) -> StepOutcome:
         """Return passed or failed."""
-        return StepOutcome.FAILED if self.to_do else StepOutcome.PASSED
+        return StepOutcome.FAILED if self.faults else StepOutcome.PASSED
 
 
 class CommissionStep(Protocol):

@@ -3,6 +3,7 @@
 import statistics
 
 from hal.robot import WheelSpeeds
+from kurt2rt.checks.commission.fault import FaultCode
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.moving import (
     DRIVE_S,
@@ -44,10 +45,7 @@ class StoppingStep:
         if _was_turning(stand, drive, result):
             result.tell(stand, f"braked: the wheels stood {rested_s * 1000:.0f} ms after the frame")
             if rested_s > BRAKED_WITHIN_S:
-                result.to_do.append(
-                    f"The brake took {rested_s:.2f} s, allowed are {BRAKED_WITHIN_S} s: "
-                    "does the firmware know RAW and its brake bit?"
-                )
+                result.fail(FaultCode.BRAKE_SLOW, took_s=rested_s, most_s=BRAKED_WITHIN_S)
         await confirm_motion(stand, f"All wheels turn forward; then nothing is sent for at most {SILENT_S} s.")
         drive = await stand.stop_sending(mode, _FORWARD, DRIVE_S, SILENT_S)
         if _was_turning(stand, drive, result):
@@ -60,16 +58,13 @@ def _was_turning(stand: TestStand, drive: TestDrive, result: StepResult) -> bool
     if stood is None and max(map(abs, steady_speeds(drive, stand.settings))) < TURNS_SHARE * TEST_SPEED_M_S:
         stood = "no answer to the set point"
     if stood is not None:
-        result.to_do.append(f"The wheels did not turn, so nothing could stop them: {stood}")
+        result.fail(FaultCode.NOTHING_TO_STOP, cause=stood)
     return stood is None
 
 
 def _judge_watchdog(stand: TestStand, drive: TestDrive, result: StepResult) -> None:
     if drive.rested_after_s is None:
-        result.to_do.append(
-            f"Without CONTROL the wheels turned on for {SILENT_S} s: this controller does not stop by itself. "
-            "Never drive it out of reach of a switch that cuts the motors"
-        )
+        result.fail(FaultCode.WATCHDOG_MISSING, silent_s=SILENT_S)
         return
     fell_s = _fell_after_s(stand, drive)
     result.tell(

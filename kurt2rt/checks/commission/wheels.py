@@ -2,6 +2,7 @@
 
 from hal.robot import WheelSpeeds
 from hal.robot_settings import RobotSettings
+from kurt2rt.checks.commission.fault import FaultCode
 from kurt2rt.checks.commission.findings import Findings
 from kurt2rt.checks.commission.moving import (
     DRIVE_S,
@@ -15,7 +16,7 @@ from kurt2rt.checks.commission.moving import (
 from kurt2rt.checks.commission.operator import AnswerChoice, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.step import StepResult
 from kurt2rt.checks.commission.test_stand import TURNS_SHARE, TestDrive, TestStand
-from kurt2rt.checks.commission.wiring import Motion, WheelSide, WheelTrial, parse_seen, single_side, wiring_advice
+from kurt2rt.checks.commission.wiring import Motion, WheelSide, WheelTrial, parse_seen, single_side, wiring_faults
 
 _UNEQUAL_SHARE = 0.25
 _YES = "y"
@@ -57,12 +58,10 @@ class WheelsStep:
                     f"({speeds.left_m_s:+.3f} and {speeds.right_m_s:+.3f} m/s)",
                 )
                 if stood is not None:
-                    result.to_do.append(f"{ordered}: the wheels were kept from turning: {stood}")
-        result.to_do += wiring_advice(trials)
-        if not result.to_do and min(fastest_m_s.values()) < (1.0 - _UNEQUAL_SHARE) * max(fastest_m_s.values()):
-            result.to_do.append(
-                "One side turns much slower than the other: look for a wheel that rubs, a slack belt, a weak motor"
-            )
+                    result.fail(FaultCode.WHEELS_HELD, drive=str(ordered), cause=stood)
+        result.faults += wiring_faults(trials)
+        if not result.faults and min(fastest_m_s.values()) < (1.0 - _UNEQUAL_SHARE) * max(fastest_m_s.values()):
+            result.fail(FaultCode.SIDES_UNEQUAL)
         return result
 
 

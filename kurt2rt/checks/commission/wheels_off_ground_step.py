@@ -1,7 +1,8 @@
 """Step that confirms that the wheels are off the ground."""
 
+from kurt2rt.checks.commission.fault import SkipCode, SkippedError
 from kurt2rt.checks.commission.findings import Findings
-from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, SkippedError, Tone
+from kurt2rt.checks.commission.operator import SKIP, AnswerChoice, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.step import StepResult
 from kurt2rt.checks.commission.test_stand import TestStand
 
@@ -29,7 +30,7 @@ class WheelsOffGroundStep:
         while True:
             answer = await stand.ask(question)
             if answer == SKIP:
-                raise SkippedError("the wheels were not confirmed off the ground")
+                raise SkippedError(SkipCode.NOT_LIFTED)
             if " ".join(answer.split()) == WORDS:
                 result = StepResult(findings)
                 result.note("confirmed by typing")

@@ -3,6 +3,8 @@
 from enum import IntEnum
 from typing import NamedTuple
 
+from kurt2rt.checks.commission.fault import FaultCode, StepFault
+
 
 class WheelSide(IntEnum):
     """Side of the robot; its index in a Motion."""
@@ -73,52 +75,44 @@ def parse_seen(answer: str) -> Motion | None:
     return {"left": Motion(way[0], 0), "right": Motion(0, way[0]), "both": Motion(way[0], way[0])}.get(who[0])
 
 
-def wiring_advice(trials: list[WheelTrial]) -> list[str]:
-    """Return instructions, motors before encoders; empty without a fault. `trials`: each side, both ways."""
+def wiring_faults(trials: list[WheelTrial]) -> list[StepFault]:
+    """Return the faults, motors before encoders. `trials`: each side, both ways."""
     motors = [(trial.ordered, trial.seen) for trial in trials]
     encoders = [(trial.seen, trial.counted) for trial in trials]
     return _judge(motors, _MOTORS) + _judge(encoders, _ENCODERS)
 
 
-class _Words(NamedTuple):
-    swapped: str
-    reversed: str
-    dead: str
-    odd: str
+class _Codes(NamedTuple):
+    swapped: FaultCode
+    reversed: FaultCode
+    dead: FaultCode
+    odd: FaultCode
 
 
-_MOTORS = _Words(
-    "The motors are exchanged: exchange the left and the right motor's plugs at the controller",
-    "The {side} motor turns the wrong way: exchange its two leads",
-    "The {side} motor does not turn: check its plug, its fuse and its supply",
-    "The {side} motor's order turns {what}: check the wiring of both motors",
-)
-_ENCODERS = _Words(
-    "The encoders are exchanged: exchange the left and the right encoder's plugs at the controller",
-    "The {side} encoder counts the wrong way: exchange its channels A and B",
-    "The {side} encoder counts nothing while its wheels turn: check its plug and its supply",
-    "While the {side} wheels turn, {what} is counted: check the wiring of both encoders",
+_MOTORS = _Codes(FaultCode.MOTORS_SWAPPED, FaultCode.MOTOR_REVERSED, FaultCode.MOTOR_DEAD, FaultCode.MOTOR_ODD)
+_ENCODERS = _Codes(
+    FaultCode.ENCODERS_SWAPPED, FaultCode.ENCODER_REVERSED, FaultCode.ENCODER_DEAD, FaultCode.ENCODER_ODD
 )
 
 
-def _judge(pairs: list[tuple[Motion, Motion]], words: _Words) -> list[str]:
+def _judge(pairs: list[tuple[Motion, Motion]], codes: _Codes) -> list[StepFault]:
     """Return the faults from causes of one side and their effects."""
     effects = {side: _effect_of(side, pairs) for side in WheelSide}
     swapped = all(effect is not None and effect[0] is not side for side, effect in effects.items())
-    found = [words.swapped] if swapped else []
+    found = [StepFault(codes.swapped)] if swapped else []
     for side in WheelSide:
         causes = [effect for cause, effect in pairs if cause.only is not None and cause.only[0] is side]
         effect = effects[side]
         if not causes:
             continue
         if all(each == STILL for each in causes):
-            found.append(words.dead.format(side=side.word))
+            found.append(StepFault.of(codes.dead, side=side.word))
         elif effect is None or (effect[0] is not side and not swapped):
-            what = " and ".join(dict.fromkeys(str(each) for each in causes))
-            found.append(words.odd.format(side=side.word, what=what))
+            motion = " and ".join(dict.fromkeys(str(each) for each in causes))
+            found.append(StepFault.of(codes.odd, side=side.word, motion=motion))
         elif effect[1] < 0:
             # The part that turned is the one to mend, wherever its plug is.
-            found.append(words.reversed.format(side=effect[0].word))
+            found.append(StepFault.of(codes.reversed, side=effect[0].word))
     return found
 
 

@@ -1,5 +1,6 @@
 """The checklist from end to end: a robot on a block, an operator who does as asked, and the stored progress."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -8,6 +9,7 @@ from hal.identity import SIMULATED_HARDWARE_ID
 from hal.robot_settings import SpeedMode
 from hal.settings import SettingsError
 from kurt2rt.checks.commission.checklist import STEPS, blocking_failures, open_steps, steps_to_run
+from kurt2rt.checks.commission.fault import FaultCode, SkipCode, StepFault
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.progress import Progress, load_progress
 from kurt2rt.checks.commission.report import passed
@@ -58,7 +60,7 @@ async def test_without_the_words_no_control_frame_is_sent_at_all(tmp_path: Path)
         await session.run("identity", "modes", "wheels", "stop", "bumpers")
         assert workshop.wiring.controls == 0
     assert {session.outcome(step) for step in ("lifted", "modes", "wheels", "stop")} == {StepOutcome.SKIPPED}
-    assert session.measured("modes") == ("the wheels were not confirmed off the ground",)
+    assert session.skipped("modes") is SkipCode.NOT_LIFTED
     assert session.outcome("bumpers") is StepOutcome.PASSED
 
 
@@ -163,7 +165,7 @@ async def test_failed_step_skipped_on_purpose_keeps_its_to_do(tmp_path: Path) ->
         await session.run("bumpers", skipped=("wheels",))
     assert blocking_failures(session.progress) == []
     assert session.outcome("wheels") is StepOutcome.SKIPPED
-    assert session.to_do("wheels") == ("The right motor turns the wrong way: exchange its two leads",)
+    assert session.faults("wheels") == (StepFault.of(FaultCode.MOTOR_REVERSED, side="right"),)
 
 
 async def test_findings_of_another_robot_are_refused(tmp_path: Path) -> None:
@@ -197,3 +199,11 @@ def test_a_damaged_progress_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(SettingsError) as refused:
         load_progress(path)
     assert refused.value.where == str(path)
+
+
+def test_progress_of_an_earlier_version_has_no_codes(tmp_path: Path) -> None:
+    path = tmp_path / "robbie.json"
+    record = {"outcome": "failed", "at": TODAY, "who": "anna", "measured": [], "to_do": ["Mend it"]}
+    path.write_text(json.dumps({"name": "robbie", "base": "kurt2", "bus": "can0", "steps": {"wheels": record}}))
+    wheels = load_progress(path).steps["wheels"]
+    assert (wheels.to_do, wheels.faults, wheels.skipped) == (("Mend it",), (), None)

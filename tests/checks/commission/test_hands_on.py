@@ -5,6 +5,7 @@ from pathlib import Path
 
 from hal.robot_settings import RobotSettings
 from kurt2rt.checks.commission.checklist import blocking_failures
+from kurt2rt.checks.commission.fault import FaultCode, StepFault
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.step import StepOutcome
 from tests.checks.commission.wired_end import Wiring
@@ -30,7 +31,7 @@ async def test_a_dead_sensor_is_given_up_and_told(tmp_path: Path) -> None:
     with Workshop(without("s5")) as workshop:
         session = Session(workshop, tmp_path)
         await session.run("sensors")
-    assert session.to_do("sensors") == ("s5 answers on no channel: check its plug and its 5 V, then repeat this step",)
+    assert session.faults("sensors") == (StepFault.of(FaultCode.SENSOR_DEAD, sensor="s5"),)
     assert session.progress.findings.dead_sensors == ("s5",)
     assert "No channel answered. Nearer, flat, straight before the sensor?" in session.person.lines(Tone.BAD)
     assert blocking_failures(session.progress) == []
@@ -43,9 +44,7 @@ async def test_no_hand_is_asked_for_while_no_channel_is_heard(tmp_path: Path) ->
         session.knows(channels={"s9": "BDC04"})
         await session.run("sensors")
     assert QuestionKind.HAND not in [question.about for question in session.person.asked]
-    assert session.to_do("sensors") == (
-        "No analog channel is heard: is the robot on? Step identity tells which frames come",
-    )
+    assert session.faults("sensors") == (StepFault(FaultCode.CHANNELS_SILENT),)
     assert session.progress.findings.channels == {"s9": "BDC04"}
 
 
@@ -59,8 +58,8 @@ async def test_sensors_step_skipped_sensor_is_neither_found_nor_dead(tmp_path: P
     assert session.progress.findings.channels == {"s9": "BDC04"}
     assert session.progress.findings.dead_sensors == ()
     assert session.measured("sensors")[0] == "s1 left front: not tried, the table says ADC07"
-    (told,) = session.to_do("sensors")
-    assert told.startswith("Not tried: s1, s2, s3, ")
+    others = ", ".join(each.name for each in BASE.infrared.sensors if each.name != "s9")
+    assert session.faults("sensors") == (StepFault.of(FaultCode.SENSORS_NOT_TRIED, sensors=others),)
 
 
 async def test_sensors_step_keeps_channels_found_before(tmp_path: Path) -> None:
@@ -151,9 +150,9 @@ async def test_a_bumper_that_hangs_is_named_by_its_bit(tmp_path: Path) -> None:
     with Workshop(wiring=Wiring(hanging_bits=0b100)) as workshop:
         session = Session(workshop, tmp_path)
         await session.run("bumpers")
-    assert session.to_do("bumpers") == (
-        "bit 2 pressed without a touch: a bumper hangs",
-        "front right: no bit answered, or it was skipped; check its switch and its plug",
+    assert session.faults("bumpers") == (
+        StepFault.of(FaultCode.BUMPER_HANGS, bits="bit 2"),
+        StepFault.of(FaultCode.BUMPER_NOT_FOUND, bumper="front right"),
     )
 
 
@@ -170,6 +169,4 @@ async def test_a_robot_whose_bumpers_are_not_heard_of_is_told_so(tmp_path: Path)
     with Workshop(wiring=Wiring(silent_ids=[0x0A])) as workshop:
         session = Session(workshop, tmp_path)
         await session.run("bumpers")
-    assert session.to_do("bumpers") == (
-        "BUMPERC (0x0A) never came: this robot has no bumpers, or they are not connected",
-    )
+    assert session.faults("bumpers") == (StepFault(FaultCode.BUMPERS_SILENT),)

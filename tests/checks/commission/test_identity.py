@@ -9,10 +9,11 @@ from hal.bus import open_bus
 from hal.codec import load_codec
 from hal.control import Mode, SpeedControl, control_frame
 from kurt2rt.checks.commission.checklist import blocking_failures
+from kurt2rt.checks.commission.fault import FaultCode, StepFault
 from kurt2rt.checks.commission.operator import OperatorQuestion, QuestionKind
 from kurt2rt.checks.commission.step import StepOutcome
 from tests.checks.commission.wired_end import Wiring
-from tests.checks.commission.workshop import Session, Workshop
+from tests.checks.commission.workshop import BASE, Session, Workshop
 
 CODEC = load_codec()
 
@@ -40,32 +41,31 @@ async def test_identity_step_names_controller_and_frame_periods(tmp_path: Path) 
 
 async def test_a_robot_that_is_switched_off_is_told_what_to_look_at(tmp_path: Path) -> None:
     session = await listened(tmp_path, Wiring(silent_ids=range(0x800)))
-    (told,) = session.to_do("identity")
-    assert told.startswith("Nothing was heard: is the robot on")
+    assert session.faults("identity") == (StepFault.of(FaultCode.BUS_SILENT, bit_rate_bit_s=BASE.can.bit_rate_bit_s),)
     assert blocking_failures(session.progress)
 
 
 @pytest.mark.parametrize(
-    ("name", "told"),
+    ("name", "fault"),
     [
-        ("INFO_1", "INFO_1 (0x04) never came: this is not the KURT2 controller, or it has not started"),
-        ("ENCODER", "ENCODER (0x09) never came: check the frame's source, or take its sensors out of the table"),
+        ("INFO_1", StepFault(FaultCode.IDENTITY_MISSING)),
+        ("ENCODER", StepFault.of(FaultCode.FRAME_MISSING, frame="ENCODER (0x09)")),
         (
             "BDC04_07",
-            "BDC04_07 (0x16) with s9, s10, s12, s13 never came: check the frame's source of the second controller, "
-            "or take its sensors out of the table",
+            StepFault.of(FaultCode.FRAME_MISSING_SECOND, frame="BDC04_07 (0x16) with s9, s10, s12, s13"),
         ),
     ],
 )
-async def test_a_frame_that_never_comes_is_named(tmp_path: Path, name: str, told: str) -> None:
+async def test_a_frame_that_never_comes_is_named(tmp_path: Path, name: str, fault: StepFault) -> None:
     session = await listened(tmp_path, Wiring(silent_ids=[frame_id(name)]))
-    assert session.to_do("identity") == (told,)
+    assert session.faults("identity") == (fault,)
 
 
 async def test_a_frame_at_half_its_pace_is_named_with_both_paces(tmp_path: Path) -> None:
     session = await listened(tmp_path, Wiring(every_other=[frame_id("ADC04_07")]))
-    (told,) = session.to_do("identity")
-    assert told.startswith("ADC04_07 (0x06) with s16, s11, s15, s1: every 20.0 ms, the settings expect 10 ms")
+    (fault,) = session.faults("identity")
+    assert (fault.code, fault.fields["frame"]) == (FaultCode.FRAME_PERIOD, "ADC04_07 (0x06) with s16, s11, s15, s1")
+    assert (fault.fields["period_ms"], fault.fields["expected_ms"]) == pytest.approx((20.0, 10.0), abs=0.05)
 
 
 async def test_junk_strangers_and_another_sender_of_control_are_found(tmp_path: Path) -> None:
@@ -85,10 +85,10 @@ async def test_junk_strangers_and_another_sender_of_control_are_found(tmp_path: 
         await session.run("identity")
         stranger.shutdown()
     assert session.outcome("identity") is StepOutcome.FAILED
-    assert session.to_do("identity") == (
-        "1 x ADC00 above 1023 counts: find who sends it, or the loose contact",
-        "1 x extended or remote frames: find who sends it, or the loose contact",
-        "1 CONTROL frames from another program: find that program and end it",
+    assert session.faults("identity") == (
+        StepFault.of(FaultCode.JUNK, junk="ADC00 above 1023 counts", count=1),
+        StepFault.of(FaultCode.JUNK, junk="extended or remote frames", count=1),
+        StepFault.of(FaultCode.FOREIGN_CONTROL, count=1),
     )
     assert "not in the CAN database, ignored: 0x123" in session.measured("identity")
 
@@ -104,8 +104,10 @@ async def test_two_robots_on_one_bus_are_found(tmp_path: Path) -> None:
         session = Session(workshop, tmp_path, join)
         await session.run("identity")
         other.shutdown()
-    assert session.to_do("identity") == (
-        "INFO_1 comes from hardware 7 and hardware 21321 (the simulated robot): two robots; take one off the bus",
+    assert session.faults("identity") == (
+        StepFault.of(
+            FaultCode.TWO_ROBOTS, message="INFO_1", robots="hardware 7 and hardware 21321 (the simulated robot)"
+        ),
     )
 
 
@@ -116,7 +118,7 @@ async def test_modes_step_passes_without_the_second_controller(tmp_path: Path) -
         await session.run("identity", "modes")
     assert session.outcome("identity") is StepOutcome.FAILED
     assert session.outcome("modes") is StepOutcome.PASSED
-    assert any("s3, s4, s7, s8" in line for line in session.to_do("identity"))
+    assert any("s3, s4, s7, s8" in str(each.fields.get("frame")) for each in session.faults("identity"))
 
 
 async def test_the_wheels_turn_also_when_they_are_all_that_is_tried(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hal.robot_settings import InfraredSettings, RobotSettings
+from kurt2rt.checks.commission.fault import FaultCode
 from kurt2rt.checks.commission.ir_calibration import IrCalibrationError, IrLaw, IrReading, fit_law
 from kurt2rt.checks.commission.ir_calibration_step import DISTANCES_M
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind
@@ -164,7 +165,7 @@ async def test_no_law_is_made_from_a_board_that_was_never_there(tmp_path: Path) 
         await session.run("infrared")
     assert session.outcome("infrared") is StepOutcome.FAILED
     assert session.progress.findings.law is None
-    assert session.to_do("infrared")[0].startswith("No law was fitted: ")
+    assert session.faults("infrared")[0].code is FaultCode.NO_CALIBRATION
 
 
 async def test_a_room_that_was_not_clear_makes_no_law(tmp_path: Path) -> None:
@@ -177,8 +178,9 @@ async def test_a_room_that_was_not_clear_makes_no_law(tmp_path: Path) -> None:
     with Workshop() as workshop:
         session = Session(workshop, tmp_path, stand_in_the_way)
         await session.run("infrared")
-    (told,) = session.to_do("infrared")
-    assert told.startswith("With nothing in view the sensor says as much as before a board at 0.2")
+    (fault,) = session.faults("infrared")
+    assert fault.code is FaultCode.ROOM_NOT_CLEAR
+    assert fault.fields["distance_m"] == pytest.approx(0.25, abs=0.05)
     assert session.progress.findings.law is None
 
 

@@ -8,13 +8,18 @@ from hal.bus import open_bus
 from hal.guard_reason import GuardReason
 from hal.robot_settings import RobotSettings, SpeedMode
 from kurt2rt.checks.commission.checklist import blocking_failures
+from kurt2rt.checks.commission.fault import FaultCode, SkipCode, StepFault
+from kurt2rt.checks.commission.fault_text import fault_text
 from kurt2rt.checks.commission.moving import DRIVE_S
 from kurt2rt.checks.commission.operator import SKIP, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.step import StepOutcome
-from kurt2rt.checks.commission.test_stand import UNANSWERED
-from kurt2rt.checks.commission.wiring import Motion, WheelTrial, parse_seen, wiring_advice
+from kurt2rt.checks.commission.stopping import SILENT_S
+from kurt2rt.checks.commission.test_stand import RAN_AWAY, UNANSWERED
+from kurt2rt.checks.commission.wiring import Motion, WheelTrial, parse_seen, wiring_faults
 from tests.checks.commission.wired_end import Wiring
 from tests.checks.commission.workshop import BASE, Instead, Session, Workshop
+
+LEFT_ENCODER_REVERSED = StepFault.of(FaultCode.ENCODER_REVERSED, side="left")
 
 
 async def turned(
@@ -48,10 +53,8 @@ async def test_old_firmware_is_driven_in_the_mode_that_it_knows(tmp_path: Path, 
 
 async def test_no_mode_answers_on_a_robot_without_its_motors_supply(tmp_path: Path) -> None:
     session = await turned(tmp_path, "modes", "wheels", wiring=Wiring(modes=()))
-    assert session.to_do("modes") == (
-        "No speed mode answers: check the motors' supply, their fuses and the emergency switch",
-    )
-    assert session.measured("wheels") == ("no speed mode is known to answer: take the step modes first",)
+    assert session.faults("modes") == (StepFault(FaultCode.MODE_MISSING),)
+    assert session.skipped("wheels") is SkipCode.NO_SPEED_MODE
     assert [step.name for step in blocking_failures(session.progress)] == ["modes"]
 
 
@@ -66,24 +69,25 @@ async def test_wheels_that_run_away_are_braked_at_once(tmp_path: Path) -> None:
         session = Session(workshop, tmp_path)
         await session.run("modes")
         assert max(map(abs, workshop.take_peaks())) < 0.6
-    (told,) = session.to_do("modes")
-    assert told.startswith("SPEED_CM: the wheels ran away and were braked; an encoder that counts the wrong way does ")
+    assert session.faults("modes") == (StepFault.of(FaultCode.MODE_RAN_AWAY, mode="SPEED_CM", cause=RAN_AWAY),)
 
 
 async def test_runaway_speed_loops_encoder_is_found_in_open_loop(tmp_path: Path) -> None:
     closed = (SpeedMode.SPEED_CM, SpeedMode.SPEED)
     session = await turned(tmp_path, "modes", "wheels", wiring=Wiring(wild_modes=closed, reversed_encoders=[0]))
     assert session.progress.findings.speed_mode is SpeedMode.RAW
-    assert len(session.to_do("modes")) == 2
-    assert session.to_do("wheels") == ("The left encoder counts the wrong way: exchange its channels A and B",)
+    assert [each.code for each in session.faults("modes")] == [FaultCode.MODE_RAN_AWAY] * 2
+    assert session.faults("wheels") == (LEFT_ENCODER_REVERSED,)
 
 
 async def test_modes_step_other_encoders_name_the_settings_to_change(tmp_path: Path) -> None:
     """The high-speed variant has 5120 ticks in a turn, not 21950."""
     coarse = BASE.model_copy(update={"geometry": BASE.geometry.model_copy(update={"metres_per_tick": 0.000074})})
     session = await turned(tmp_path, "modes", true=coarse)
-    (told,) = session.to_do("modes")
-    assert told.startswith("SPEED_CM: 0.23 times as fast as told, by the encoders. Turn a wheel once by hand: 21938 ")
+    (fault,) = session.faults("modes")
+    assert fault.code is FaultCode.MODE_SPEED
+    assert fault.fields["ratio"] == pytest.approx(0.23, abs=0.005)
+    assert fault.fields["ticks"] == pytest.approx(21938, abs=0.5)
     assert session.progress.findings.speed_mode is SpeedMode.SPEED_CM
     assert [step.name for step in blocking_failures(session.progress)] == ["modes"]
 
@@ -114,8 +118,7 @@ async def test_a_controller_that_crashes_is_not_driven_on(tmp_path: Path) -> Non
 
         session = Session(workshop, tmp_path, crash)
         await session.run("modes")
-    (told,) = session.to_do("modes")
-    assert told.startswith("The wheels are not heard of any more after the brake: SWITCH THE MOTORS OFF")
+    assert session.faults("modes") == (StepFault(FaultCode.BRAKE_UNHEARD),)
     assert [question.about for question in session.person.asked].count(QuestionKind.MOVE) == 1
 
 
@@ -124,62 +127,59 @@ async def test_modes_step_foreign_control_ends_the_drive(tmp_path: Path) -> None
         session = Session(workshop, tmp_path)
         workshop.stranger = open_bus(workshop.spec)
         await session.run("modes")
-    assert any(GuardReason.FOREIGN_CONTROL in line for line in session.to_do("modes"))
+    assert any(GuardReason.FOREIGN_CONTROL in str(each.fields.get("cause")) for each in session.faults("modes"))
     assert session.outcome("modes") is StepOutcome.FAILED
 
 
 # Sides and directions
 
-MOTORS_EXCHANGED = "The motors are exchanged: exchange the left and the right motor's plugs at the controller"
-ENCODERS_EXCHANGED = "The encoders are exchanged: exchange the left and the right encoder's plugs at the controller"
-
 
 @pytest.mark.parametrize(
-    ("wiring", "told"),
+    ("wiring", "faults"),
     [
-        pytest.param(Wiring(motors_exchanged=True), [MOTORS_EXCHANGED], id="motors exchanged"),
-        pytest.param(Wiring(encoders_exchanged=True), [ENCODERS_EXCHANGED], id="encoders exchanged"),
+        pytest.param(Wiring(motors_exchanged=True), [StepFault(FaultCode.MOTORS_SWAPPED)], id="motors exchanged"),
+        pytest.param(Wiring(encoders_exchanged=True), [StepFault(FaultCode.ENCODERS_SWAPPED)], id="encoders exchanged"),
         pytest.param(
             Wiring(motors_exchanged=True, encoders_exchanged=True),
-            [MOTORS_EXCHANGED, ENCODERS_EXCHANGED],
+            [StepFault(FaultCode.MOTORS_SWAPPED), StepFault(FaultCode.ENCODERS_SWAPPED)],
             id="both exchanged",
             marks=pytest.mark.deep,
         ),
         pytest.param(
             Wiring(reversed_motors=[0]),
-            ["The left motor turns the wrong way: exchange its two leads"],
+            [StepFault.of(FaultCode.MOTOR_REVERSED, side="left")],
             id="left motor reversed",
             marks=pytest.mark.deep,
         ),
         pytest.param(
             Wiring(reversed_encoders=[1]),
-            ["The right encoder counts the wrong way: exchange its channels A and B"],
+            [StepFault.of(FaultCode.ENCODER_REVERSED, side="right")],
             id="right encoder reversed",
         ),
         pytest.param(
             Wiring(reversed_motors=[0], reversed_encoders=[0]),
             [
-                "The left motor turns the wrong way: exchange its two leads",
-                "The left encoder counts the wrong way: exchange its channels A and B",
+                StepFault.of(FaultCode.MOTOR_REVERSED, side="left"),
+                LEFT_ENCODER_REVERSED,
             ],
             id="left reversed twice",
             marks=pytest.mark.deep,
         ),
         pytest.param(
             Wiring(motors_exchanged=True, reversed_motors=[1]),
-            [MOTORS_EXCHANGED, "The right motor turns the wrong way: exchange its two leads"],
+            [StepFault(FaultCode.MOTORS_SWAPPED), StepFault.of(FaultCode.MOTOR_REVERSED, side="right")],
             id="exchanged and reversed",
         ),
         pytest.param(
             Wiring(dead_encoders=[0]),
-            ["The left encoder counts nothing while its wheels turn: check its plug and its supply"],
+            [StepFault.of(FaultCode.ENCODER_DEAD, side="left")],
             id="left encoder dead",
         ),
     ],
 )
-async def test_wiring_advice_names_the_faulty_part(tmp_path: Path, wiring: Wiring, told: list[str]) -> None:
+async def test_wiring_faults_names_the_faulty_part(tmp_path: Path, wiring: Wiring, faults: list[StepFault]) -> None:
     session = await turned(tmp_path, "wheels", wiring=wiring)
-    assert list(session.to_do("wheels")) == told
+    assert list(session.faults("wheels")) == faults
     assert [step.name for step in blocking_failures(session.progress)] == ["wheels"]
 
 
@@ -198,7 +198,7 @@ async def test_wheels_step_dead_encoder_side_turns_only_briefly(tmp_path: Path) 
         seen_s - move_s for move_s, seen_s in zip(asked_s[QuestionKind.MOVE], asked_s[QuestionKind.SEEN], strict=False)
     ]
     assert max(took_s[:2]) < DRIVE_S < min(took_s[2:])
-    assert session.to_do("stop") == (f"The wheels did not turn, so nothing could stop them: {UNANSWERED}",)
+    assert session.faults("stop") == (StepFault.of(FaultCode.NOTHING_TO_STOP, cause=UNANSWERED),)
 
 
 async def test_wheels_step_both_exchanged_is_seen_by_the_operator(tmp_path: Path) -> None:
@@ -228,7 +228,7 @@ async def test_wheels_step_refuses_yes_if_encoders_disagree(tmp_path: Path) -> N
 
     session = await turned(tmp_path, "wheels", wiring=Wiring(reversed_encoders=[0]), instead=hurry)
     assert session.person.lines(Tone.BAD).count("Two words, please, such as: left forward. Or: none.") == 3
-    assert session.to_do("wheels") == ("The left encoder counts the wrong way: exchange its channels A and B",)
+    assert session.faults("wheels") == (LEFT_ENCODER_REVERSED,)
 
 
 @pytest.mark.parametrize(
@@ -250,15 +250,14 @@ def test_parse_seen_reads_two_words(answer: str, seen: Motion | None) -> None:
     assert parse_seen(answer) == seen
 
 
-def test_wiring_advice_order_turning_both_names_both_motors() -> None:
+def test_wiring_faults_order_turning_both_names_both_motors() -> None:
     both = [
         WheelTrial(ordered, Motion(sign, sign), Motion(sign, sign))
         for sign in (1, -1)
         for ordered in (Motion(sign, 0), Motion(0, sign))
     ]
-    assert wiring_advice(both) == [
-        "The left motor's order turns both forward and both back: check the wiring of both motors",
-        "The right motor's order turns both forward and both back: check the wiring of both motors",
+    assert wiring_faults(both) == [
+        StepFault.of(FaultCode.MOTOR_ODD, side=side, motion="both forward and both back") for side in ("left", "right")
     ]
 
 
@@ -270,7 +269,7 @@ def test_a_motor_that_does_not_turn_is_no_matter_of_its_encoder() -> None:
         WheelTrial(Motion(0, 1), Motion(0, 1), Motion(0, 1)),
         WheelTrial(Motion(0, -1), Motion(0, -1), Motion(0, -1)),
     ]
-    assert wiring_advice(trials) == ["The left motor does not turn: check its plug, its fuse and its supply"]
+    assert wiring_faults(trials) == [StepFault.of(FaultCode.MOTOR_DEAD, side="left")]
 
 
 # Stopping
@@ -293,15 +292,15 @@ async def test_stop_step_endless_controller_is_braked_and_fails(tmp_path: Path) 
         session.knows(speed_mode=SpeedMode.RAW)
         await session.run("stop")
         assert tuple(workshop.robot.wheel_speeds) == (0.0, 0.0)
-    (told,) = session.to_do("stop")
-    assert told.startswith("Without CONTROL the wheels turned on for 1.5 s: this controller does not stop by itself.")
+    assert session.faults("stop") == (StepFault.of(FaultCode.WATCHDOG_MISSING, silent_s=SILENT_S),)
     assert [step.name for step in blocking_failures(session.progress)] == ["stop"]
 
 
 async def test_modes_step_failed_brake_asks_to_switch_the_motors_off(tmp_path: Path) -> None:
     never = BASE.model_copy(update={"motors": BASE.motors.model_copy(update={"controller_watchdog_s": 9.0})})
     session = await turned(tmp_path, "modes", wiring=Wiring(brake_works=False), true=never)
-    assert session.person.lines(Tone.BAD)[0].startswith("The wheels still turn after the brake: SWITCH THE MOTORS OFF")
+    assert session.faults("modes") == (StepFault(FaultCode.BRAKE_FAILS),)
+    assert session.person.lines(Tone.BAD)[0] == fault_text(StepFault(FaultCode.BRAKE_FAILS))
     assert session.outcome("modes") is StepOutcome.FAILED
 
 
@@ -315,6 +314,6 @@ async def test_stop_step_guard_brake_is_not_taken_for_the_watchdog(
         workshop.stranger = open_bus(workshop.spec)
         workshop.stranger_waits_s = 2 * DRIVE_S + 0.2  # some cycles after the second drive
         await session.run("stop")
-    (told,) = session.to_do("stop")
-    assert GuardReason.FOREIGN_CONTROL in told
+    (fault,) = session.faults("stop")
+    assert GuardReason.FOREIGN_CONTROL in str(fault.fields["cause"])
     assert session.progress.findings.controller_watchdog_s is None

@@ -13,6 +13,7 @@ from hal.control import Mode, SpeedControl, control_frame
 from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings, SensorSettings, load_robot
 from kurt2rt.checks.commission.checklist import STEPS, Checklist, step_named
+from kurt2rt.checks.commission.fault import SkipCode, StepFault
 from kurt2rt.checks.commission.listener import Listener
 from kurt2rt.checks.commission.operator import LEAVE, SKIP, AbortedError, OperatorQuestion, QuestionKind, Tone
 from kurt2rt.checks.commission.progress import Progress
@@ -212,8 +213,11 @@ class Session:
     def outcome(self, step: str) -> StepOutcome:
         return self.progress.steps[step].outcome
 
-    def to_do(self, step: str) -> tuple[str, ...]:
-        return self.progress.steps[step].to_do
+    def faults(self, step: str) -> tuple[StepFault, ...]:
+        return self.progress.steps[step].faults
+
+    def skipped(self, step: str) -> SkipCode | None:
+        return self.progress.steps[step].skipped
 
     def measured(self, step: str) -> tuple[str, ...]:
         return self.progress.steps[step].measured
