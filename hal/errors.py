@@ -1,12 +1,25 @@
-"""Base of the errors that a user sees, in one line each."""
+"""Base of the errors that a user sees, in one line each, and the exit codes of the programs."""
 
+from enum import IntEnum
 from typing import ClassVar
+
+
+class ExitCode(IntEnum):
+    """Exit code of a process."""
+
+    DONE = 0
+    FAILED = 1
+    """A check, comparison or exam failed, or the user answered no."""
+    REFUSED = 2
+    """An error that the user can mend, or a shutdown that took too long."""
+    INTERRUPTED = 130
+    """Ctrl-C: 128 and SIGINT, as shells count."""
 
 
 class UserError(Exception):
     """An error that the user can mend. `str` of it is the line `<where>: <what is wrong>; <what to do>`."""
 
-    exit_code: ClassVar[int] = 2
+    exit_code: ClassVar[ExitCode] = ExitCode.REFUSED
     """Exit code of a command that ends with an error of this class."""
 
     def __init__(self, what: str, *, where: object = "", do: str = "") -> None:

@@ -9,6 +9,8 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperGroup
 
+from hal.errors import ExitCode
+
 _PANELS = {
     "Teach": {
         "run": "Run the robot in real time, 100 ticks a second, until Ctrl-C or SIGTERM.",
@@ -122,6 +124,6 @@ def misuse(error: Any) -> str:
     told = " ".join(error.format_message().split())
     context = getattr(error, "ctx", None)
     if type(error).__name__ == "NoArgsIsHelpError":  # rich has printed the help
-        sys.exit(2)
+        sys.exit(ExitCode.REFUSED)
     where = "kurt2rt" if context is None else context.command_path
     return f"{told.rstrip('.')}; see {where} --help"

@@ -15,6 +15,7 @@ from rich.console import Console
 
 from hal.bus import open_bus
 from hal.codec import load_codec
+from hal.errors import ExitCode
 from hal.kurt2 import Kurt2
 from hal.robot_settings import RobotSettings, load_robot
 from hal.settings import SettingsError
@@ -130,7 +131,7 @@ def commission(
     _tell(console, f"all that was measured: {report}")
     _conclude(console, taken, base, target)
     if any(taken.steps[step.name].outcome is StepOutcome.FAILED for step in chosen if step.name in taken.steps):
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.FAILED)
 
 
 def _target(name: str, out: Path | None, *, force: bool) -> Path:

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from hal.errors import ExitCode
 from kurt2rt.checks.doctor.checks import run_checks
 from kurt2rt.checks.doctor.report import as_json, print_report
 from kurt2rt.cli.json_output import AsJson
@@ -42,4 +43,4 @@ def doctor(
     else:
         print_report(findings, console_of())
     if any(finding.forbids_run for finding in findings):
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.FAILED)

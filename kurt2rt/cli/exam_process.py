@@ -12,6 +12,7 @@ from pathlib import Path
 import anyio
 
 from behaviors.metrics.route import RouteSettings
+from hal.errors import ExitCode
 from hal.robot_settings import load_robot
 from hal.settings import SettingsError
 from kurt2rt.channel.protocol.exam_status import EXAM, ExamStatus, WorldVerdict
@@ -86,7 +87,7 @@ def _end_with_input() -> None:
     # The robot's program is gone: no process reads the verdict.
     while os.read(0, 1024):
         continue
-    os._exit(0)
+    os._exit(ExitCode.DONE)
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ import typer
 from rich.console import Console
 from rich.progress import Progress
 
+from hal.errors import ExitCode
 from hal.robot_settings import load_robot
 from kurt2rt.checks.faults.table import KINDS, TARGETS, FaultCase, FaultTable, Kind, Target, cases_of, load_faults
 from kurt2rt.cli.json_output import AsJson, JsonFile, require_json_file
@@ -76,7 +77,7 @@ def faults(
     if file is not None:
         file.write_text(as_json(trials, times) + "\n", encoding="utf-8")
     if not all(trial.verdict.passed for trial in trials):
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.FAILED)
 
 
 def _try(table: FaultTable, cases: Sequence[FaultCase], seeds: int) -> "list[FaultTrial]":

@@ -7,8 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-INTERRUPTED = 130
-"""Exit code after Ctrl-C: 128 and SIGINT, as shells count."""
+from hal.errors import ExitCode
 
 
 @contextmanager
@@ -33,4 +32,4 @@ def end_at_interrupt() -> Iterator[None]:
 
 
 def _end(_number: int, _frame: FrameType | None) -> None:
-    os._exit(INTERRUPTED)
+    os._exit(ExitCode.INTERRUPTED)

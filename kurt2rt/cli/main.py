@@ -9,8 +9,8 @@ import os
 import sys
 from typing import NoReturn
 
-from hal.errors import UserError
-from kurt2rt.cli.interrupt import INTERRUPTED, end_at_interrupt
+from hal.errors import ExitCode, UserError
+from kurt2rt.cli.interrupt import end_at_interrupt
 
 _EXTRAS = {
     "contourpy": "simulation",
@@ -56,25 +56,26 @@ def main() -> None:
             commands = command_line(typed())
         sys.exit(commands(standalone_mode=False))
     except KeyboardInterrupt:
-        sys.exit(INTERRUPTED)
+        sys.exit(ExitCode.INTERRUPTED)
     except ModuleNotFoundError as error:
         extra = _EXTRAS.get(error.name or "")
         if extra is None:
             raise
         _complain(f"{error.name} is not installed; this command needs it: pip install 'kurt2rt[{extra}]'")
     except typer.Abort:
-        _complain("aborted; nothing more was done", 1)
+        _complain("aborted; nothing more was done", ExitCode.FAILED)
     except USAGE_ERROR as error:
         _complain(misuse(error))
     except Exception as error:
         text = _in_one_line(error)
         if text is None:
             raise
-        _complain(text, max((each.exit_code for each in _leaves(error) if isinstance(each, UserError)), default=2))
+        codes = (each.exit_code for each in _leaves(error) if isinstance(each, UserError))
+        _complain(text, max(codes, default=ExitCode.REFUSED))
     except BaseExceptionGroup as error:
         if error.subgroup(KeyboardInterrupt) is None:
             raise
-        sys.exit(INTERRUPTED)
+        sys.exit(ExitCode.INTERRUPTED)
 
 
 def _in_one_line(error: BaseException) -> str | None:
@@ -99,7 +100,7 @@ def _leaves(error: BaseException) -> list[BaseException]:
     return [leaf for each in error.exceptions for leaf in _leaves(each)]
 
 
-def _complain(text: str, code: int = 2) -> NoReturn:
+def _complain(text: str, code: ExitCode = ExitCode.REFUSED) -> NoReturn:
     from rich.console import Console
 
     Console(stderr=True, highlight=False).print(f"kurt2rt: {text}", style="red", markup=False, soft_wrap=True)

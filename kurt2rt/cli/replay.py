@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
+from hal.errors import ExitCode
 from kurt2rt.cli.json_output import AsJson
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.recorded_run import RecordedRun, RunsFolder, RuntimeSettingsName
@@ -75,7 +76,7 @@ def _verify(run: Run, *, as_json: bool) -> None:
         for line in _verdict_in_words(run, verdict):
             typer.echo(line)
     if not verdict.same or not verdict.whole:
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.FAILED)
 
 
 def _verdict_in_words(run: Run, verdict: ReplayVerdict) -> Iterator[str]:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import typer
 
+from hal.errors import ExitCode
 from kurt2rt.knowledge.journal.loading import read_teachers
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
@@ -22,7 +23,7 @@ def require_agreement(knowledge: Path) -> None:
     """Ask before a scripted teacher teaches into a file in which people taught. Raises KnowledgeError, typer.Exit."""
     instead = "leave out --knowledge, then the scripted teacher has a file of its own"
     if knowledge.exists() and not people_agree(str(knowledge), read_teachers(knowledge), instead):
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.FAILED)
 
 
 def people_agree(where: str, people: Sequence[str], instead: str) -> bool:

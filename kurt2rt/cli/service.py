@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from hal.errors import ExitCode
 from hal.settings import find_config
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.service.settings import load_service
@@ -88,7 +89,7 @@ def check(
         if passed:
             console.print(f"{name}.service loads")
     if not passed:
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.FAILED)
 
 
 @service.command()

@@ -12,6 +12,7 @@ import typer
 from rich.console import Console
 from rich.progress import Progress, TimeElapsedColumn, TimeRemainingColumn
 
+from hal.errors import ExitCode
 from hal.robot_settings import load_robot
 from kurt2rt.checks.faults.table import load_faults
 from kurt2rt.checks.soak.settings import SoakSettings, load_soak
@@ -95,7 +96,7 @@ def soak(
         print_report(result, console_of())
     _write_report(result, settings, out)
     if not result.passed:
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.FAILED)
 
 
 def _run_day(settings: SoakSettings, out: Path, hours: float, seed: int, *, by_module: bool) -> "SoakResult":

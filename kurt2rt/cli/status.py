@@ -14,6 +14,7 @@ from rich.console import Console, Group
 from rich.live import Live
 from rich.text import Text
 
+from hal.errors import ExitCode
 from kurt2rt.channel.protocol.health import HealthReport
 from kurt2rt.channel.protocol.health_codec import plain_of
 from kurt2rt.channel.protocol.health_text import URGENT, WARNS, headline, rows_of, trouble_in
@@ -95,7 +96,7 @@ def status(options: _Options) -> None:
         reports = read_reports(status_socket_path(options.knowledge or default), _PATIENCE_S)
     newest = _show(reports, watch=options.watch, json=options.json)
     if newest.urgent:
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.FAILED)
 
 
 def _require_name(knowledge: Path | None) -> None:

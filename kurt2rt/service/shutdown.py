@@ -13,6 +13,7 @@ from enum import StrEnum
 from types import FrameType, TracebackType
 from typing import Final, Self
 
+from hal.errors import ExitCode
 from kurt2rt.platform.signal_handlers import SignalHandlers
 
 SHUTDOWN_SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP)
@@ -183,7 +184,7 @@ def force_exit(stage: ShutdownStage) -> None:
     # A terminal may hang, too; one that is writable takes a short line.
     if select.select([], [_STDERR], [], _LAST_WORD_S)[1]:
         os.write(_STDERR, f"{timeout_message(stage)}\n".encode())
-    os._exit(2)
+    os._exit(ExitCode.REFUSED)
 
 
 def _ignore(_number: int, _frame: FrameType | None) -> None:

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from hal.errors import ExitCode
 from kurt2rt.cli.knowledge.shared import replaying, say
 from kurt2rt.core.outcome_text import text_of
 from kurt2rt.core.rla.lesson_history import LessonRecord
@@ -65,7 +66,7 @@ def confirmed(
         return False
     if asks and not typer.confirm(_question(planned, what), err=True):
         say("nothing was changed")
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.FAILED)
     return True
 
 

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from hal.errors import ExitCode
 from hal.robot_settings import load_robot
 from kurt2rt.cli.knowledge.shared import TEACHER, KnowledgeFile, say
 from kurt2rt.cli.options import RobotName, TaskOfTheFile
@@ -72,7 +73,7 @@ def merge(
         say(f"left out  {format_left_out(reward)}")
     if merged.conflicts and prefer is None:
         say(f"{file}: nothing was changed; say --prefer mine or --prefer theirs")
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.FAILED)
     say(f"{file}: {_format_plan(merged)}" + (" (nothing was changed: --dry-run)" if dry_run else ""))
 
 

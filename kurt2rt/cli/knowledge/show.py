@@ -4,6 +4,7 @@ from typing import Annotated, Any
 
 import typer
 
+from hal.errors import ExitCode
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.cli.knowledge.shared import WIDE, KnowledgeFile
 from kurt2rt.cli.tables import console_of
@@ -78,7 +79,7 @@ def check(file: KnowledgeFile, as_json: AsJson = False) -> None:
         for line in faults or [f"{file}: every lesson can be read and fits"]:
             typer.echo(line)
     if faults:
-        raise typer.Exit(1)
+        raise typer.Exit(ExitCode.FAILED)
 
 
 def _as_data(journal: Journal, rla_id: int | None, limit: int | None) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from typing import NamedTuple, Protocol, TypeVar
 
 from threadpoolctl import threadpool_limits
 
-from hal.errors import UserError
+from hal.errors import ExitCode, UserError
 
 Progress = Callable[[float], None]
 """Takes how far a job is, in seconds of robot time."""
@@ -205,6 +205,6 @@ def _belong_to_the_parent() -> None:
 
     def follow() -> None:
         connection.wait([sentinel])
-        os._exit(1)
+        os._exit(ExitCode.FAILED)
 
     threading.Thread(target=follow, daemon=True, name="follow the parent").start()
