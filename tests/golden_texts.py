@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from tests.texts import (
+    access,
     commission,
     complaints,
     doctor,
@@ -26,6 +27,7 @@ from tests.texts import (
     page,
     shutdown,
     standing,
+    startup,
     verdicts,
 )
 
@@ -50,6 +52,7 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
         "troubles": health.troubles,
     },
     "reports": {
+        "access of a unit": access.findings,
         "faults of a commissioning": commission.faults,
         "skipped steps of a commissioning": commission.skips,
         "complaints of fault drill and soak": complaints.complaints,
@@ -69,6 +72,7 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
         "stops": standing.stops,
         "troubles": health.troubles,
         "shutdown": shutdown.stages,
+        "start": startup.lines,
     },
 }
 """Listings by surface and title of their section."""

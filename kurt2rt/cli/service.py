@@ -11,6 +11,7 @@ from hal.settings import find_config
 from kurt2rt.cli.json_output import AsJson, print_json
 from kurt2rt.service.settings import load_service
 from kurt2rt.service.systemd.access import RequiredAccess, paths_to_chown, private_paths
+from kurt2rt.service.systemd.access_text import access_text
 from kurt2rt.service.systemd.install import install as install_unit
 from kurt2rt.service.systemd.install import require_free
 from kurt2rt.service.systemd.install import uninstall as uninstall_unit
@@ -67,7 +68,8 @@ def check(
     require_free(name)
     unit, wanted = _unit(robot, settings, name, page=page)
     found = verify(unit)
-    wrong = (*found.complaints, *private_paths(wanted), *paths_to_chown(name, wanted))
+    obstacles = (*private_paths(wanted), *paths_to_chown(name, wanted))
+    wrong = (*found.complaints, *map(access_text, obstacles))
     passed = found.passed and not wrong
     if as_json:
         told = {
@@ -76,11 +78,11 @@ def check(
             "exposure": found.exposure,
             "exposure_limit": MOST_EXPOSURE,
         }
-        print_json({**told, "open": found.open, "wrong": wrong})
+        print_json({**told, "open": tuple(map(str, found.open)), "wrong": wrong})
     else:
         console = Console()
-        for line in found.open:
-            console.print(f"open: {line}", markup=False, highlight=False, soft_wrap=True)
+        for setting in found.open:
+            console.print(f"open: {setting}", markup=False, highlight=False, soft_wrap=True)
         console.print(
             f"exposure {found.exposure} of 10, at most {MOST_EXPOSURE} is well", markup=False, highlight=False
         )
@@ -107,12 +109,12 @@ def install(
         sudo systemctl enable --now kurt2rt
     """
     unit, wanted = _unit(robot, settings, name, page=page)
-    for line in private_paths(wanted):
-        raise UnitError(line)
+    for obstacle in private_paths(wanted):
+        raise UnitError(access_text(obstacle))
     for path in install_unit(unit):
         typer.echo(f"{path} is written")
-    for line in paths_to_chown(name, wanted):
-        typer.echo(f"first of all: {line}")
+    for finding in paths_to_chown(name, wanted):
+        typer.echo(f"first of all: {access_text(finding)}")
     typer.echo(f"start it, now and with the machine: systemctl enable --now {name}")
 
 

@@ -39,6 +39,7 @@ from kurt2rt.service.console_thread import ConsoleThread
 from kurt2rt.service.health.probes import Probes
 from kurt2rt.service.health.status_socket import serve_waiting, status_socket_path
 from kurt2rt.service.live_exam import LiveExam
+from kurt2rt.service.missing_dependency import DependencyName
 from kurt2rt.service.open_robot import OpenedRobot, RobotOpener, open_robot
 from kurt2rt.service.post_tick import ProgramConsole, ProgramStatus
 from kurt2rt.service.process_context import ProcessContext
@@ -46,6 +47,7 @@ from kurt2rt.service.serve import ChannelOptions, ServeOptions, serve
 from kurt2rt.service.settings import ServiceSettings, with_unit_priority
 from kurt2rt.service.shutdown import ShutdownHandler, ShutdownStage, force_exit
 from kurt2rt.service.startup import RETRY_S, Dependency, StartupGate, require_folder
+from kurt2rt.service.startup_text import missing_text
 from kurt2rt.service.status_line import status_line
 from kurt2rt.service.systemd.notifier import Notifier
 
@@ -54,7 +56,6 @@ if TYPE_CHECKING:
     from kurt2rt.service.live_measure import LiveMeasure
     from kurt2rt.service.simulated_runs import SimulatedRuns
 
-_KNOWLEDGE = "knowledge"
 _SIMULATOR_S = 0.5
 """A simulator that is there sends within 10 ms."""
 
@@ -292,11 +293,11 @@ class RobotProgram:
         """Wait for all dependencies; cancel `waiting` if the program is told to end meanwhile."""
         loop = asyncio.get_running_loop()
         dependencies = (
-            Dependency("bus", self._claim_robot),
-            Dependency(_KNOWLEDGE, self._claim_knowledge),
-            Dependency("teachers' keys", self._pair),
-            Dependency("network", self._check_port),
-            *((Dependency("recordings", self._check_recordings),) if self._options.record else ()),
+            Dependency(DependencyName.BUS, self._claim_robot),
+            Dependency(DependencyName.KNOWLEDGE, self._claim_knowledge),
+            Dependency(DependencyName.KEYS, self._pair),
+            Dependency(DependencyName.NETWORK, self._check_port),
+            *((Dependency(DependencyName.RECORDINGS, self._check_recordings),) if self._options.record else ()),
         )
         retry_s = self._environment.retry_s
         gate = StartupGate(dependencies, self._context.notifier, self._log, self._hold, retry_s)
@@ -315,8 +316,9 @@ class RobotProgram:
 
     async def _serve_waiting(self, gate: StartupGate) -> None:
         """Serve the list of missing dependencies; not before the knowledge is ours, for its status may be another's."""
-        await gate.wait_for(_KNOWLEDGE)
-        await serve_waiting(status_socket_path(Path(self._service.knowledge)), lambda: gate.waits_for)
+        await gate.wait_for(DependencyName.KNOWLEDGE)
+        path = status_socket_path(Path(self._service.knowledge))
+        await serve_waiting(path, lambda: missing_text(gate.missing))
 
     def _hold(self) -> None:
         """Brake a robot that is open before the rest, and check that its bus is still up."""

@@ -1,7 +1,7 @@
 """Start of the service: the robot stands until bus, disk and network are there, in any order."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,6 +15,8 @@ from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.platform.durable_files import make_private_folder
 from kurt2rt.runs.recording.recording_error import RecordingError
+from kurt2rt.service.missing_dependency import DependencyName, MissingDependency, WaitReason
+from kurt2rt.service.startup_text import available_text, startup_text
 from kurt2rt.service.systemd.notifier import Notifier
 
 RETRY_S = 1.0
@@ -24,17 +26,25 @@ HOLD_S = 0.05
 
 
 class StartError(UserError):
-    """A dependency of the program is missing."""
+    """A folder of the program is missing."""
 
 
-_RETRIED = (StartError, BusError, KnowledgeError, ChannelError, CredentialsError, RecordingError, OSError)
+_REASONS: Mapping[type[Exception], WaitReason] = {
+    StartError: WaitReason.FOLDER,
+    BusError: WaitReason.BUS,
+    KnowledgeError: WaitReason.KNOWLEDGE,
+    ChannelError: WaitReason.CHANNEL,
+    CredentialsError: WaitReason.KEYS,
+    RecordingError: WaitReason.RECORDING,
+    OSError: WaitReason.SYSTEM,
+}
 
 
 @dataclass(frozen=True, slots=True)
 class Dependency:
-    """Dependency that the program cannot start without."""
+    """Check of a thing that the program cannot start without."""
 
-    name: str
+    name: DependencyName
     check: Callable[[], object]
     """Opens the dependency, or raises what is missing. Called in a thread, again and again."""
 
@@ -64,20 +74,15 @@ class StartupGate:
         self._log = log
         self._hold = hold
         self._retry_s = retry_s
-        self._missing = {each.name: "" for each in dependencies}
+        self._missing = {each.name: MissingDependency(each.name) for each in dependencies}
         self._available = {each.name: anyio.Event() for each in dependencies}
 
     @property
-    def missing(self) -> tuple[str, ...]:
+    def missing(self) -> tuple[MissingDependency, ...]:
         """Return the missing dependencies, each with the reason once it is known."""
-        return tuple(f"{name}: {why}" if why else name for name, why in self._missing.items())
+        return tuple(self._missing.values())
 
-    @property
-    def waits_for(self) -> str:
-        """Return the missing dependencies with a known reason, in a line; else the names of all missing ones."""
-        return "; ".join([each for each in self.missing if ": " in each] or self.missing)
-
-    async def wait_for(self, name: str) -> None:
+    async def wait_for(self, name: DependencyName) -> None:
         """Return as soon as one dependency is there."""
         await self._available[name].wait()
 
@@ -94,25 +99,25 @@ class StartupGate:
         while True:
             try:
                 await anyio.to_thread.run_sync(dependency.check, abandon_on_cancel=True)
-            except _RETRIED as error:
-                self._report_missing(dependency.name, str(error))
+            except tuple(_REASONS) as error:
+                reason = next(each for kind, each in _REASONS.items() if isinstance(error, kind))
+                self._report_missing(MissingDependency(dependency.name, reason, str(error)))
             else:
                 break
             await anyio.sleep(self._retry_s)
-        if self._missing.pop(dependency.name):
-            self._log(f"{dependency.name} is there")
+        if self._missing.pop(dependency.name).reason is not None:
+            self._log(available_text(dependency.name))
         self._available[dependency.name].set()
         self._publish_status()
 
-    def _report_missing(self, name: str, why: str) -> None:
-        if self._missing[name] != why:
-            self._missing[name] = why
-            self._log(f"stands and waits for {name}: {why}")
+    def _report_missing(self, missing: MissingDependency) -> None:
+        if self._missing[missing.name] != missing:
+            self._missing[missing.name] = missing
+            self._log(startup_text((missing,)))
         self._publish_status()
 
     def _publish_status(self) -> None:
-        known = [each for each in self.missing if ": " in each]
-        self._notifier.status(f"stands and waits for {'; '.join(known)}" if known else "starts")
+        self._notifier.status(startup_text(self.missing))
 
     async def _hold_still(self) -> None:
         pings_every_s = None if self._notifier.watchdog_s is None else self._notifier.watchdog_s / 2

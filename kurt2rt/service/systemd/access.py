@@ -4,14 +4,41 @@ import os
 import stat
 from collections.abc import Iterable
 from dataclasses import dataclass
+from enum import StrEnum
 from pathlib import Path
-from shlex import quote
 
 from kurt2rt.service.systemd.installation import required_paths
 
 _HOMES = (Path("/home"), Path("/root"), Path("/run/user"))
 _OF_ITS_OWN = (Path("/tmp"), Path("/var/tmp"), Path("/dev"))  # PrivateTmp and PrivateDevices
-_ELSEWHERE = "in a virtual environment in /opt/kurt2rt, for instance"
+
+
+class AccessCode(StrEnum):
+    """Obstacle between the unit's user and a path; the code decides what mends it."""
+
+    INSTALLATION_UNREADABLE = "installation unreadable"
+    FILE_UNREADABLE = "file unreadable"
+    FILE_HIDDEN = "file hidden"
+    """The unit does not see the folder that holds the file."""
+    FOLDER_HIDDEN = "folder hidden"
+    FOLDER_UNREACHABLE = "folder unreachable"
+    """A folder above it is closed to other users."""
+    FOLDER_OF_ANOTHER = "folder of another"
+    """Another user owns the folder, so the unit's user may not write it."""
+
+
+@dataclass(frozen=True, slots=True)
+class AccessFinding:
+    """Path that the unit's user cannot use; `kurt2rt.service.systemd.access_text` has the texts."""
+
+    code: AccessCode
+    path: Path
+    closed: Path | None = None
+    """File or folder that is in the way; None for a folder of another user."""
+    owner: str = ""
+    """Owner of a folder of another user."""
+    user: str = ""
+    """User of the unit, for a folder of another user."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,54 +56,46 @@ def needs_home_access() -> bool:
     return any(_is_within(path, _HOMES) for path in required_paths())
 
 
-def private_paths(required: RequiredAccess) -> tuple[str, ...]:
-    """Return each path that the unit's user cannot reach, in a line with the cure; empty if it can start."""
-    installation = (
-        _unreadable(path, f"install kurt2rt where everybody may read, {_ELSEWHERE}") for path in required_paths()
+def private_paths(required: RequiredAccess) -> tuple[AccessFinding, ...]:
+    """Return a finding for each path that the unit's user cannot reach; empty if the unit can start."""
+    installation = (_unreadable(path, AccessCode.INSTALLATION_UNREADABLE) for path in required_paths())
+    files = (
+        _unreadable(path, AccessCode.FILE_UNREADABLE) or _hidden(path, AccessCode.FILE_HIDDEN)
+        for path in required.files
     )
-    files = (_unreadable(path, _to_copy(path)) or _hidden(path, _to_copy(path)) for path in required.files)
-    folders = (_hidden(path, "name a folder elsewhere") or _impassable(path) for path in required.folders)
-    return tuple(dict.fromkeys(line for line in (*installation, *files, *folders) if line))
+    folders = (_hidden(path, AccessCode.FOLDER_HIDDEN) or _unreachable(path) for path in required.folders)
+    return tuple(dict.fromkeys(each for each in (*installation, *files, *folders) if each is not None))
 
 
-def paths_to_chown(user: str, required: RequiredAccess) -> tuple[str, ...]:
-    """Return each existing folder that `user` may not write, in a line with the cure; `user` need not exist yet."""
+def paths_to_chown(user: str, required: RequiredAccess) -> tuple[AccessFinding, ...]:
+    """Return a finding for each existing folder that `user` may not write; `user` need not exist yet."""
     return tuple(
-        f"{folder}: belongs to {_owner(folder)}; say: sudo chown {user}: {quote(str(folder))}"
+        AccessFinding(AccessCode.FOLDER_OF_ANOTHER, folder, owner=_owner(folder), user=user)
         for folder in required.folders
         if folder.is_dir() and _owner(folder) != user and not folder.stat().st_mode & stat.S_IWOTH
     )
 
 
-def _hidden(path: Path, to_do: str) -> str:
+def _hidden(path: Path, code: AccessCode) -> AccessFinding | None:
     hides = _OF_ITS_OWN if needs_home_access() else (*_HOMES, *_OF_ITS_OWN)
-    for folder in hides:
-        if _is_within(path, (folder,)):
-            return f"{path}: the service does not see what is in {folder}; {to_do}"
-    return ""
+    return next((AccessFinding(code, path, folder) for folder in hides if _is_within(path, (folder,))), None)
 
 
-def _unreadable(path: Path, to_do: str) -> str:
+def _unreadable(path: Path, code: AccessCode) -> AccessFinding | None:
     for start in _both(path):
         for place in (start, *start.parents):
             wanted = stat.S_IXOTH if place.is_dir() else stat.S_IROTH
             if place.exists() and not place.stat().st_mode & wanted:
-                return f"{path}: the service's own user may not read it, for {place} is closed to others; {to_do}"
-    return ""
+                return AccessFinding(code, path, place)
+    return None
 
 
-def _impassable(folder: Path) -> str:
+def _unreachable(folder: Path) -> AccessFinding | None:
     for start in _both(folder):
         for place in start.parents:
             if place.exists() and not place.stat().st_mode & stat.S_IXOTH:
-                to_do = f"name a folder elsewhere, or say: sudo chmod o+x {quote(str(place))}"
-                return f"{folder}: the service's own user cannot get there, for {place} is closed to others; {to_do}"
-    return ""
-
-
-def _to_copy(path: Path) -> str:
-    there = Path("/etc/kurt2rt") / path.name
-    return f"say: sudo install -D -m 644 {quote(str(path))} {quote(str(there))}, and name that one"
+                return AccessFinding(AccessCode.FOLDER_UNREACHABLE, folder, place)
+    return None
 
 
 def _owner(path: Path) -> str:

@@ -6,6 +6,7 @@ import subprocess
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from kurt2rt.service.systemd.unit import Unit, UnitError
 
@@ -17,6 +18,18 @@ _OVERALL = re.compile(r"Overall exposure level.*: ([\d.]+)")
 _OPEN = re.compile(r"^✗ (\S+)\s+(.*?)\s+([\d.]+)\s*$", re.MULTILINE)
 
 
+class OpenSetting(NamedTuple):
+    """Setting of the unit that leaves something open, in the words of `systemd-analyze security`."""
+
+    setting: str
+    meaning: str
+    share: float
+    """Share of the exposure, in points of 10."""
+
+    def __str__(self) -> str:
+        return f"{self.setting} {self.meaning} ({self.share})"
+
+
 @dataclass(frozen=True, slots=True)
 class UnitVerification:
     """Result of systemd's tools."""
@@ -25,8 +38,7 @@ class UnitVerification:
     """Lines of `systemd-analyze verify`; empty if the unit loads."""
     exposure: float
     """Exposure, 0 to 10; smaller is safer."""
-    open: tuple[str, ...]
-    """Settings that leave something open, each in a line with its meaning and share of the exposure."""
+    open: tuple[OpenSetting, ...]
 
     @property
     def passed(self) -> bool:
@@ -55,7 +67,7 @@ def verify(unit: Unit) -> UnitVerification:
         raise UnitError(
             f"{TOOL} security says no exposure: {' '.join(security.split())[-200:]!r}", do="look at it yourself"
         )
-    found = tuple(f"{setting} {meaning} ({share})" for setting, meaning, share in _OPEN.findall(security))
+    found = tuple(OpenSetting(setting, meaning, float(share)) for setting, meaning, share in _OPEN.findall(security))
     return UnitVerification(complaints, float(overall[1]), found)
 
 

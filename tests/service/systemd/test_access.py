@@ -8,7 +8,8 @@ import yaml
 
 from config import CONFIG_DIR
 from kurt2rt.service.systemd import access
-from kurt2rt.service.systemd.access import RequiredAccess, paths_to_chown, private_paths
+from kurt2rt.service.systemd.access import AccessCode, AccessFinding, RequiredAccess, paths_to_chown, private_paths
+from kurt2rt.service.systemd.access_text import access_text
 from kurt2rt.service.systemd.installation import start_command
 from tests.cli.helpers import CommandLine
 
@@ -33,18 +34,16 @@ def test_nothing_is_in_the_way_of_the_shipped_settings() -> None:
 def test_private_settings_of_the_user_are_to_be_copied(tmp_path: Path) -> None:
     mine = settings_in(tmp_path)
     mine.chmod(0o600)
-    (line,) = private_paths(RequiredAccess((mine,)))
-    assert f"may not read it, for {mine} is closed to others" in line
-    assert line.endswith(f"say: sudo install -D -m 644 {mine} /etc/kurt2rt/mine.yaml, and name that one")
+    assert private_paths(RequiredAccess((mine,))) == (AccessFinding(AccessCode.FILE_UNREADABLE, mine, mine),)
 
 
 @pytest.mark.parametrize("place", ["/home/ann", "/tmp", "/var/tmp", "/run/user/1000"])
 def test_private_paths_of_hidden_folders_are_named(place: str) -> None:
     settings, lessons = Path(place, "nowhere", "my.yaml"), Path(place, "nowhere", "lessons")
     of_settings, of_lessons = private_paths(RequiredAccess((settings,), (lessons,)))
-    assert of_settings.startswith(f"{settings}: the service ")
-    assert of_lessons.startswith(f"{lessons}: the service does not see what is in ")
-    assert of_lessons.endswith("; name a folder elsewhere")
+    assert (of_settings.path, of_lessons.path) == (settings, lessons)
+    assert of_settings.code in (AccessCode.FILE_HIDDEN, AccessCode.FILE_UNREADABLE)  # closed to others on some machines
+    assert of_lessons.code is AccessCode.FOLDER_HIDDEN
 
 
 def test_homes_are_seen_where_kurt2rt_itself_is_in_one(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -56,13 +55,14 @@ def test_homes_are_seen_where_kurt2rt_itself_is_in_one(monkeypatch: pytest.Monke
 def test_a_link_into_a_home_is_looked_through(tmp_path: Path) -> None:
     link = tmp_path / "my.yaml"
     link.symlink_to("/home/no-user-of-this-machine/my.yaml")
-    assert private_paths(RequiredAccess((link,)))
+    assert [each.path for each in private_paths(RequiredAccess((link,)))] == [link]
 
 
 def test_a_folder_of_somebody_else_is_to_be_handed_over(tmp_path: Path) -> None:
     tmp_path.chmod(0o755)
-    (line,) = paths_to_chown("kurt2rt", RequiredAccess((), (tmp_path,)))
-    assert line == f"{tmp_path}: belongs to {getpass.getuser()}; say: sudo chown kurt2rt: {tmp_path}"
+    assert paths_to_chown("kurt2rt", RequiredAccess((), (tmp_path,))) == (
+        AccessFinding(AccessCode.FOLDER_OF_ANOTHER, tmp_path, owner=getpass.getuser(), user="kurt2rt"),
+    )
     assert paths_to_chown(tmp_path.owner(), RequiredAccess((), (tmp_path,))) == ()
     assert paths_to_chown("kurt2rt", RequiredAccess((), (tmp_path / "comes later",))) == ()
 
@@ -70,7 +70,9 @@ def test_a_folder_of_somebody_else_is_to_be_handed_over(tmp_path: Path) -> None:
 def test_install_refuses_what_could_never_start(kurt2rt: CommandLine, tmp_path: Path) -> None:
     mine = settings_in(tmp_path)
     mine.chmod(0o600)
-    assert "is closed to others" in kurt2rt.refused("service", "install", "--name", "nosuch-robot", "--settings", mine)
+    finding = AccessFinding(AccessCode.FILE_UNREADABLE, mine, mine)
+    refused = kurt2rt.refused("service", "install", "--name", "nosuch-robot", "--settings", mine)
+    assert refused == f"kurt2rt: {access_text(finding)}"
 
 
 def test_a_robot_beside_the_terminal_is_not_beside_the_service(
