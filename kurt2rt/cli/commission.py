@@ -104,7 +104,7 @@ def commission(
     identity, modes, wheels or stop fail. Then name it as robot: in the runtime
     settings (a copy of config/runtime/default.yaml):
 
-        kurt2rt run --robot can0 --settings my-runtime.yaml
+        kurt2rt run --bus can0 --settings my-runtime.yaml
 
     Rehearse it without a robot; `lift`, typed at the first, puts it on a block:
 
@@ -221,7 +221,7 @@ def _conclude(console: Console, progress: Progress, base: RobotSettings, target:
         return
     _tell(console, f"written: {target}")
     _tell(console, f"use it: robot: {target} in a copy of config/runtime/default.yaml, then")
-    _tell(console, f"        kurt2rt run --robot {progress.bus} --settings THAT.yaml", to_copy=True)
+    _tell(console, f"        kurt2rt run --bus {progress.bus} --settings THAT.yaml", to_copy=True)
 
 
 def _progress(path: Path, fresh: Progress, start_over: bool) -> Progress:

@@ -1,7 +1,7 @@
 """`kurt2rt run`. The robot's packages are imported by the command, not by its help."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -9,7 +9,7 @@ import typer
 
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.interrupt import end_at_interrupt
-from kurt2rt.cli.options import WireName, task_option, world_option
+from kurt2rt.cli.options import EarlierBus, WireName, bus_of, task_option, world_option
 from kurt2rt.service.bus_names import NO_WIRE, SIMULATED
 
 if TYPE_CHECKING:
@@ -22,13 +22,14 @@ if TYPE_CHECKING:
 class _Options:
     """Options of `kurt2rt run`."""
 
-    robot: Annotated[
+    bus: Annotated[
         str,
         typer.Option(
-            help="sim: a simulated robot in this program; else the bus that the robot is on, a SocketCAN interface "
-            "such as can0, or shared:NAME, where kurt2rt sim is one."
+            help="Bus that the robot is on: a SocketCAN interface such as can0, or shared:NAME, where kurt2rt sim is "
+            "one; sim: a simulated robot in this program."
         ),
-    ] = "sim"
+    ] = SIMULATED
+    robot: EarlierBus = None
     settings: Annotated[
         str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
     ] = "default"
@@ -154,7 +155,7 @@ def run(options: _Options) -> None:
     Without a paired device (kurt2rt pair) only this machine is listened to. In
     phases 1 to 4 the robot drives only while its teacher is there.
 
-    With --robot can0 set the interface up first; the robot then stands until
+    With --bus can0 set the interface up first; the robot then stands until
     its teacher says resume, whatever it knows:
 
         sudo ip link set can0 up type can bitrate 1000000
@@ -163,7 +164,7 @@ def run(options: _Options) -> None:
     of its own; it stands until resume as well:
 
         kurt2rt sim --bus shared:desk
-        kurt2rt run --robot shared:desk --page
+        kurt2rt run --bus shared:desk --page
 
     The run is recorded: kurt2rt replay decides it again, kurt2rt why explains
     it, and Foxglove shows it.
@@ -177,13 +178,14 @@ def run(options: _Options) -> None:
     with end_at_interrupt():
         import kurt2rt.service.program
         import kurt2rt.teacher.scripted.channel_teacher  # noqa: F401  # loads all that the program needs
+    options = replace(options, bus=bus_of(options.bus, options.robot, default=SIMULATED), robot=None)
     _require_consistent(options)
     _program(options).run()
 
 
 def _require_consistent(options: _Options) -> None:
     """Raise typer.BadParameter for options that exclude each other."""
-    simulated = options.robot == SIMULATED
+    simulated = options.bus == SIMULATED
     for refused, text, hint in (
         (
             options.seconds is not None and not math.isfinite(options.seconds),
@@ -239,9 +241,9 @@ def _program(options: _Options) -> "RobotProgram":
     if options.auto and taught.mid is not None:
         raise typer.BadParameter(mid_level_refusal(taught), param_hint="--auto")
     _require_behaviour(taught, options.behaviour)
-    simulated, attended = options.robot == SIMULATED, options.teacher == "channel"
+    simulated, attended = options.bus == SIMULATED, options.teacher == "channel"
     run_options = RunOptions(
-        bus=options.robot,
+        bus=options.bus,
         settings=options.settings,
         as_service=options.service,
         attended=attended,

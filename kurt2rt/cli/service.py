@@ -9,6 +9,7 @@ from rich.console import Console
 from hal.errors import ExitCode
 from hal.settings import find_config
 from kurt2rt.cli.json_output import AsJson, print_json
+from kurt2rt.cli.options import EarlierBus, bus_of
 from kurt2rt.service.settings import load_service
 from kurt2rt.service.systemd.access import RequiredAccess, paths_to_chown, private_paths
 from kurt2rt.service.systemd.access_text import access_text
@@ -24,7 +25,8 @@ service = typer.Typer(
     no_args_is_help=True,
 )
 
-RobotBus = Annotated[str, typer.Option("--robot", help="The bus that the robot is on, as for kurt2rt run.")]
+RobotBus = Annotated[str, typer.Option("--bus", help="Bus that the robot is on, as for kurt2rt run.")]
+_BUS = "can0"
 RuntimeSettings = Annotated[
     str, typer.Option(help="Runtime settings by name (config/runtime) or a path to a YAML file.")
 ]
@@ -34,24 +36,29 @@ WithPage = Annotated[bool, typer.Option("--page", help="Let the unit serve the t
 
 @service.command()
 def show(
-    robot: RobotBus = "can0", settings: RuntimeSettings = "default", name: UnitName = "kurt2rt", page: WithPage = False
+    bus: RobotBus = _BUS,
+    settings: RuntimeSettings = "default",
+    name: UnitName = "kurt2rt",
+    page: WithPage = False,
+    robot: EarlierBus = None,
 ) -> None:
     """Print the unit as `install` would write it.
 
     For example:
 
-        kurt2rt service show --robot can0
+        kurt2rt service show --bus can0
     """
-    unit, _ = _unit(robot, settings, name, page=page)
+    unit, _ = _unit(bus_of(bus, robot, default=_BUS), settings, name, page=page)
     typer.echo(unit.service, nl=False)
 
 
 @service.command()
 def check(
-    robot: RobotBus = "can0",
+    bus: RobotBus = _BUS,
     settings: RuntimeSettings = "default",
     name: UnitName = "kurt2rt",
     page: WithPage = False,
+    robot: EarlierBus = None,
     as_json: AsJson = False,
 ) -> None:
     """Check the unit by systemd's own tools: whether it loads, and what it may do.
@@ -63,10 +70,10 @@ def check(
 
     For example:
 
-        kurt2rt service check --robot can0 --settings my-runtime.yaml
+        kurt2rt service check --bus can0 --settings my-runtime.yaml
     """
     require_free(name)
-    unit, wanted = _unit(robot, settings, name, page=page)
+    unit, wanted = _unit(bus_of(bus, robot, default=_BUS), settings, name, page=page)
     found = verify(unit)
     obstacles = (*private_paths(wanted), *paths_to_chown(name, wanted))
     wrong = (*found.complaints, *map(access_text, obstacles))
@@ -96,7 +103,11 @@ def check(
 
 @service.command()
 def install(
-    robot: RobotBus = "can0", settings: RuntimeSettings = "default", name: UnitName = "kurt2rt", page: WithPage = False
+    bus: RobotBus = _BUS,
+    settings: RuntimeSettings = "default",
+    name: UnitName = "kurt2rt",
+    page: WithPage = False,
+    robot: EarlierBus = None,
 ) -> None:
     """Write the unit and make its user; start nothing yet.
 
@@ -105,10 +116,10 @@ def install(
 
     For example:
 
-        sudo .venv/bin/kurt2rt service install --robot can0
+        sudo .venv/bin/kurt2rt service install --bus can0
         sudo systemctl enable --now kurt2rt
     """
-    unit, wanted = _unit(robot, settings, name, page=page)
+    unit, wanted = _unit(bus_of(bus, robot, default=_BUS), settings, name, page=page)
     for obstacle in private_paths(wanted):
         raise UnitError(access_text(obstacle))
     for path in install_unit(unit):
@@ -131,7 +142,7 @@ def uninstall(name: UnitName = "kurt2rt") -> None:
     typer.echo(f"what was taught stays in {STATE / name}")
 
 
-def _unit(robot: str, settings: str, name: str, *, page: bool) -> tuple[Unit, RequiredAccess]:
+def _unit(bus: str, settings: str, name: str, *, page: bool) -> tuple[Unit, RequiredAccess]:
     """Return the unit, and the files and folders that it needs. Raises SettingsError, UnitError."""
     require_name(name)
     found = find_config("runtime", settings)
@@ -141,8 +152,8 @@ def _unit(robot: str, settings: str, name: str, *, page: bool) -> tuple[Unit, Re
         *start_command(),
         "run",
         "--service",
-        "--robot",
-        robot,
+        "--bus",
+        bus,
         "--settings",
         named,
         *(("--page",) if page else ()),
@@ -155,7 +166,7 @@ def _unit(robot: str, settings: str, name: str, *, page: bool) -> tuple[Unit, Re
         tuple(each for each in files if not each.is_relative_to(state)),
         tuple(each for each in sorted(set(folders)) if each.is_absolute() and not each.is_relative_to(state)),
     )
-    return build_unit(name, robot, command, wanted.folders), wanted
+    return build_unit(name, bus, command, wanted.folders), wanted
 
 
 def _as_the_service_finds(key: str, given: str, state: Path) -> Path:

@@ -63,7 +63,7 @@ def sim(options: _Options) -> None:
     can be tried with it needs no robot, and no CAN in the kernel:
 
         kurt2rt sim --bus shared:desk
-        kurt2rt run --robot shared:desk --page
+        kurt2rt run --bus shared:desk --page
 
     With the kernel's CAN, its tools work as well (candump vcan0):
 

@@ -134,7 +134,8 @@ def test_misfit_knowledge_is_refused_by_exam_lesson_and_run(
         (("run", "--world", "maps/cave.PGM"), "such as maps/cave.yaml (ROS map_server: image, resolution, origin,"),
         (("knowledge", "key", ""), "is a folder; give the key file to make"),
         (("replay", "/proc/self/mem"), "[Errno 5] Input/output error; see whether the disk or device is well, or give"),
-        (("run", "--robot", "can7"), "bus 'can7': no such network interface; plug in the adapter, or set it up: ip li"),
+        (("run", "--bus", "can7"), "bus 'can7': no such network interface; plug in the adapter, or set it up: ip li"),
+        (("run", "--robot", "can7"), "bus 'can7': no such network interface"),  # the earlier name of --bus
     ],
     ids=lambda value: " ".join(value) if isinstance(value, tuple) else "",
 )
@@ -145,7 +146,8 @@ def test_option_with_an_unknown_name_is_refused(kurt2rt: CommandLine, words: tup
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        (("run", "--robot", "can7", "--auto"), "a scripted teacher teaches the simulated robot only"),
+        (("run", "--bus", "can7", "--auto"), "a scripted teacher teaches the simulated robot only"),
+        (("run", "--bus", "can7", "--robot", "can6"), "--robot"),
         (("run", "--page", "--teacher", "none"), "come over the channel"),
         (("teach", "--terminal", "--auto"), "one teacher at a time"),
         (("run", "--seconds", "nan"), "--seconds"),

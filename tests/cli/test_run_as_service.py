@@ -41,7 +41,7 @@ def settings_in(folder: Path, **changes: object) -> str:
 def test_unit_starts_reloads_and_ends_under_a_service_manager(tmp_path: Path, systemd: Manager) -> None:
     environment = systemd.environment(0.5)
     del environment["WATCHDOG_PID"]
-    words = ("run", "--service", "--robot", "sim", "--settings", settings_in(tmp_path))
+    words = ("run", "--service", "--bus", "sim", "--settings", settings_in(tmp_path))
     with running(*words, folder=tmp_path, environment=environment, fresh=True) as program:
         assert systemd.wait_for("READY=1")[0] == "READY=1"
         program.wait_for("teachers are listened to on UDP port")
@@ -65,7 +65,7 @@ def test_unit_starts_reloads_and_ends_under_a_service_manager(tmp_path: Path, sy
 
 def test_a_page_that_died_is_told_and_comes_back(tmp_path: Path, kurt2rt_process: Callable[..., Running]) -> None:
     settings = settings_in(tmp_path, page_port=0)
-    program = kurt2rt_process("run", "--service", "--robot", "sim", "--settings", settings, "--page")
+    program = kurt2rt_process("run", "--service", "--bus", "sim", "--settings", settings, "--page")
     program.wait_for("/pair?token=")
     (page,) = children_of(program.process.pid)
     os.kill(page, signal.SIGKILL)
@@ -94,7 +94,7 @@ def _is_real_time(thread: int) -> bool:
 def test_reload_of_the_priority_keeps_the_guards_above_the_loop(
     tmp_path: Path, kurt2rt_process: Callable[..., Running]
 ) -> None:
-    program = kurt2rt_process("run", "--service", "--robot", "sim", "--settings", settings_in(tmp_path))
+    program = kurt2rt_process("run", "--service", "--bus", "sim", "--settings", settings_in(tmp_path))
     if "not permitted" in program.wait_for("real-time priority 20"):  # as delivered
         pytest.skip("SCHED_FIFO is not permitted here: no CAP_SYS_NICE")
     program.wait_for("stands until Go: the robot program was started")

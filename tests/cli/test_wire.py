@@ -23,7 +23,7 @@ def test_an_unknown_wire_is_refused_before_anything_is_made(
 
 
 def test_a_robot_on_a_bus_has_a_wire_of_its_own(kurt2rt: CommandLine) -> None:
-    said = kurt2rt.misused("run", "--robot", "can0", "--wire", "lossy")
+    said = kurt2rt.misused("run", "--bus", "can0", "--wire", "lossy")
     assert "Invalid value for --wire: only the simulated robot in this program has a simulated wire" in said
 
 

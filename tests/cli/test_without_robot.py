@@ -27,7 +27,7 @@ def test_teach_auto_without_a_robot_names_what_starts_one(kurt2rt: CommandLine) 
 
 def test_run_without_a_simulator_waits_and_names_its_command(tmp_path: Path) -> None:
     bus = f"shared:no-simulator-{os.getpid()}"
-    words = ("run", "--robot", bus, "--port", "0", "--no-record")
+    words = ("run", "--bus", bus, "--port", "0", "--no-record")
     with running(*words, folder=tmp_path) as robot:
         line = robot.wait_for(f"no simulator on {bus}; ")
         assert f"start one in another terminal: kurt2rt sim --bus {bus}" in line

@@ -106,7 +106,7 @@ def stands(frame: can.Message) -> bool:
 @contextmanager
 def runtime(bus: str, folder: Path, *words: str) -> Iterator[Running]:
     """Start `kurt2rt run` on a bus, in a folder; kill it at the end."""
-    with running("run", "--robot", bus, "--port", "0", "--knowledge", "mine.knowledge", *words, folder=folder) as robot:
+    with running("run", "--bus", bus, "--port", "0", "--knowledge", "mine.knowledge", *words, folder=folder) as robot:
         yield robot
 
 

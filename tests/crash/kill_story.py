@@ -216,7 +216,7 @@ class KillStory:
         log = self._folder / "run.log"
         log.unlink(missing_ok=True)
         began_s = time.monotonic()
-        words = ("--robot", self._bus_name, "--port", "0", "--knowledge", str(self._knowledge), "--record", "runs")
+        words = ("--bus", self._bus_name, "--port", "0", "--knowledge", str(self._knowledge), "--record", "runs")
         with Program("run", *words, *self._words, folder=self._folder, log=log) as program:
             told: dict[int, tuple[str, str]] = {}
             if self._chance.random() < YOUNGEST_SHARE:

@@ -130,7 +130,7 @@ async def a_robot_that_turns(folder: Path, bus: str) -> AsyncIterator[StopStory]
         await sim.says("is on bus")
         end = open_bus(bus)
         ending.callback(end.shutdown)
-        words = ("--robot", bus, "--port", "0", "--knowledge", str(folder / "knowledge"))
+        words = ("--bus", bus, "--port", "0", "--knowledge", str(folder / "knowledge"))
         program = ending.enter_context(Program("run", *words, folder=folder, log=folder / "run.log"))
         line = await program.says("teachers are listened to on UDP port")
         async with TeacherClient(folder / "var/devices/local", port=int(line.split()[-1])) as we:

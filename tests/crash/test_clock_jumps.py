@@ -80,7 +80,7 @@ async def end(robot: Running) -> None:
 
 async def test_lessons_and_recordings_outlive_a_wall_clock_that_is_set(tmp_path: Path) -> None:
     wall_clock = WallClock(tmp_path)
-    words = ("run", "--robot", BUS, "--port", "0", "--knowledge", "mine.knowledge", "--record", "runs")
+    words = ("run", "--bus", BUS, "--port", "0", "--knowledge", "mine.knowledge", "--record", "runs")
     async with a_robot(tmp_path):
         with wall_clock.running(*words, folder=tmp_path) as robot:
             async with teacher_of(robot, tmp_path) as we:

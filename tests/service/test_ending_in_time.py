@@ -30,7 +30,7 @@ def is_from_the_tick(frame: can.Message) -> bool:
 @pytest.mark.parametrize("thing", [pytest.param(each, marks=pytest.mark.deep if each in RARE else ()) for each in SAYS])
 async def test_the_wheels_are_braked_and_the_program_ends(thing: str, tmp_path: Path) -> None:
     bus = f"shared:ending-{uuid.uuid4().hex[:8]}"
-    words = ("run", "--robot", bus, "--port", "0", "--knowledge", "mine.knowledge", "--service")
+    words = ("run", "--bus", bus, "--port", "0", "--knowledge", "mine.knowledge", "--service")
     hanging = started("tests.service.hanging_program", thing, *words, folder=tmp_path)
     with onlooker(bus) as ear, hanging as program:
         try:

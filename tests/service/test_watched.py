@@ -40,7 +40,7 @@ def starting(
     """Start the program as a unit does; kill it at the end, because a failed story would wait for it."""
     environment = systemd.environment(WATCHDOG_S)
     del environment["WATCHDOG_PID"]
-    words = ("run", "--service", "--robot", bus, "--port", "0", "--knowledge", "mine.knowledge")
+    words = ("run", "--service", "--bus", bus, "--port", "0", "--knowledge", "mine.knowledge")
     with started(module, *hangs, *words, folder=folder, environment=environment) as program:
         try:
             yield program

@@ -170,7 +170,7 @@ async def test_an_adapter_that_is_unplugged_and_plugged_in_again(link: Link, tmp
         await until_it_drives(we)
 
 
-@pytest.mark.parametrize("words", [("sim", "--bus", NAME), ("run", "--robot", NAME)], ids=" ".join)
+@pytest.mark.parametrize("words", [("sim", "--bus", NAME), ("run", "--bus", NAME)], ids=" ".join)
 def test_an_interface_that_is_down_is_told_in_a_line(link: Link, tmp_path: Path, words: tuple[str, ...]) -> None:
     link.down()
     with running(*words, folder=tmp_path) as program:

@@ -56,7 +56,7 @@ def write_settings(path: Path, **changes: object) -> None:
 @pytest.fixture
 def unit(kurt2rt: Path, settings: Path, vcan0: str) -> Iterator[Unit]:
     """Installed, and neither started nor taught yet."""
-    subprocess.run([kurt2rt, "service", "install", "--robot", vcan0, "--settings", settings], check=True)
+    subprocess.run([kurt2rt, "service", "install", "--bus", vcan0, "--settings", settings], check=True)
     yield Unit()
     subprocess.run([kurt2rt, "service", "uninstall"], check=True)
     shutil.rmtree(STATE, ignore_errors=True)  # it is not there where the unit never started

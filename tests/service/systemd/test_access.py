@@ -87,7 +87,11 @@ def test_a_robot_beside_the_terminal_is_not_beside_the_service(
 
 
 def test_show_prints_the_unit_for_this_installation(kurt2rt: CommandLine) -> None:
-    said = kurt2rt("service", "show", "--robot", "can1", "--page")
+    said = kurt2rt("service", "show", "--bus", "can1", "--page")
     assert f"ExecStart={start_command()[0]} " in said.out
-    assert " run --service --robot can1 --settings default --page\n" in said.out
+    assert " run --service --bus can1 --settings default --page\n" in said.out
     assert "Traceback" not in kurt2rt.refused("service", "show", "--settings", "mine.yaml")
+
+
+def test_show_with_the_earlier_name_of_bus_prints_one_unit(kurt2rt: CommandLine) -> None:
+    assert kurt2rt("service", "show", "--robot", "can1").out == kurt2rt("service", "show", "--bus", "can1").out
