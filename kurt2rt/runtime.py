@@ -37,6 +37,7 @@ from kurt2rt.core.teaching.goal_commands import GoalCommands
 from kurt2rt.core.teaching.inbox import TeacherInbox
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 from kurt2rt.core.teaching.system_events import RobotRepositioned
+from kurt2rt.core.teaching.teacher_delay import TeacherDelay
 from kurt2rt.core.tick import EventStore, Tick, TickOptions, TickParts, TickRecord
 from kurt2rt.knowledge.task_repertoire import load_task_repertoire
 from kurt2rt.platform.clock import Clock
@@ -185,6 +186,7 @@ class _Assembly:
                 self_teaching=self.self_teaching,
                 mid=lessons,
                 goals=goals,
+                delay=TeacherDelay(round(self._task.learning.teacher_delay_s / self._period_s)),
             ),
             teacher_available=self._options.teacher_available,
         )

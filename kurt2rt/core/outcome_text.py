@@ -50,6 +50,7 @@ _TEXTS: dict[Code, str] = {
     ResultCode.RELEASED: "the robot has no teacher now",
     ResultCode.STOPPED: "the robot stands {until_go}",
     ResultCode.RELEASE_SUPERSEDED: "that press is over; a later one drives",
+    ResultCode.HOLD_RELEASED: "let go; lessons on the way: {lessons}",
     ResultCode.RESUMED: "the robot may drive",
     ResultCode.PHASE_SET: "phase {phase}, {name}",
     ResultCode.SESSION_BEGUN: "session {session!r} begins",
@@ -71,6 +72,7 @@ _TEXTS: dict[Code, str] = {
     ResultCode.RLA_REWARDED: "{title} rewarded",
     ResultCode.RLA_PUNISHED: "{title} punished",
     ResultCode.LESSON_UNDONE: "undone: {says}",
+    ResultCode.HOLD_UNDONE: "undone: {lessons} lessons by holding",
     ResultCode.CRITIC_AGREED: "the critic thought {appraisal}, too",
     ResultCode.CRITIC_AGREES: "the critic says {appraisal} already",
     ResultCode.COPIED: "{name}, {size} bytes",
@@ -91,6 +93,7 @@ _TEXTS: dict[Code, str] = {
     RefusalCode.TOO_MANY: "too many commands wait; repeat the command",
     RefusalCode.STOPPED_SINCE: "the robot was stopped after this command; {look}, then repeat the command",
     RefusalCode.STOPPED_BY: "{teachers} stopped the robot; {go} first",
+    RefusalCode.ROBOT_STOPPED: "the robot is stopped, so no action can be held; {go} first",
     RefusalCode.PRESS_OVER: "this press is over; {press}",
     RefusalCode.JUNCTION_PASSED: "a junction was passed after this command; {look}, then repeat the command",
     RefusalCode.GOAL_SINCE: "another goal was given after this command; {look}, then repeat the command",
@@ -153,6 +156,7 @@ _TEXTS: dict[Code, str] = {
     RefusalCode.NOT_UNDERSTOOD: "the robot is not understood: {says}",
 }
 
+_TICKS_PER_S = 100
 _ONLY_BEHAVIOUR = "the only behaviour"
 _MADE_OF = {"title": "rla", "wanted": "behaviour"}
 """Name in a text -> field that it is made of."""
@@ -166,12 +170,22 @@ def fields_of(code: Code) -> frozenset[str]:
 
 def text_of(outcome: Outcome, surface: Surface = Surface.LOG) -> str:
     """Return a sentence for the teacher. Raises KeyError for a missing field."""
-    return _TEXTS[outcome.code].format(**{**_shown(outcome.fields), **_WORDS[surface]})
+    text = _TEXTS[outcome.code].format(**{**_shown(outcome.fields), **_WORDS[surface]})
+    return text + _put_back_text(outcome.fields)
 
 
 def event_error_text(error: InvalidEventError) -> str:
     """Return a sentence for an event that does not fit: the refusal's text if there is a refusal."""
     return str(error) if error.refusal is None else text_of(error.refusal)
+
+
+def _put_back_text(fields: Mapping[str, Field]) -> str:
+    """Return the end of the sentence of a late press: the decision that it was given to; empty for other outcomes."""
+    back, rla = fields.get("put_back_ticks"), fields.get("decided_by")
+    if not isinstance(back, int) or back == 0:
+        return ""
+    by = f" of RLA {rla}" if isinstance(rla, int) else ""
+    return f"; given to the decision{by} {back / _TICKS_PER_S:.1f} s before the press"
 
 
 def _shown(fields: Mapping[str, Field]) -> dict[str, str | int]:

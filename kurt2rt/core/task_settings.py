@@ -58,6 +58,8 @@ class LearningSettings(Settings):
     insert_beyond_share: Share
     """A correction farther than this share of R from the nearest condition inserts a new RLA, else it replaces."""
     minimum_action_s: Annotated[float, Field(ge=0, le=5)]
+    teacher_delay_s: Annotated[float, Field(ge=0, le=2)] = 1.0
+    """Time between a situation and a person's press about it, until four answers have shown the teacher's own."""
 
 
 class PlainSettings(LearningSettings):

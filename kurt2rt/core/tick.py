@@ -21,7 +21,7 @@ from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC, Rla
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.teaching.command_handler import CommandHandler
-from kurt2rt.core.teaching.commands import BeAt, Command, CommandResult, Correct, Drive, Resume, Teach, Watch
+from kurt2rt.core.teaching.commands import BeAt, Command, CommandResult, Correct, Resume, Stream, Teach
 from kurt2rt.core.teaching.inbox import TeacherInbox
 from kurt2rt.core.teaching.system_events import Input, PairingRenewed, RobotRepositioned, SpeedChanged, SystemEvent
 from kurt2rt.platform.ledger import Stage, TickTimer
@@ -228,17 +228,18 @@ class Tick:
         results: list[CommandResult] = []
         events: list[TeachingEvent] = []
         for command in commands:
-            if isinstance(command, Watch | Drive):
+            if isinstance(command, Stream):
                 self._handler.handle_stream(command, tick)
             elif isinstance(command, PairingRenewed | SpeedChanged | RobotRepositioned):
                 self._apply_system_event(command)
             else:
-                result, event = self._handle(command, tick, view)
+                result, taught = self._handle(command, tick, view)
                 results.append(result)
-                if event is not None:
-                    events.append(event)
+                events.extend(taught)
         # Read once: the journal's thread may change it during the tick, and a replay has one value a tick.
         self._saving_error = self._event_store.saving_error
+        if self._saving_error is None and not view.blind and not self._latched:
+            events.extend(self._handler.teach_held(tick))
         decision = self._decision(tick, view.situation, readings, blind=view.blind)
         self._timer.lap(Stage.DECIDE)
         return _Choice(
@@ -284,14 +285,25 @@ class Tick:
             credited,
             choice.behaviour,
             touches=motion.asks_at_bumper,
+            teachable=self._is_teachable(decision, motion),
             circumstances=view.appraisal_features,
             opinion=view.opinion,
         )
+        asks = motion.asks_at_bumper or (decision.cause is DecisionCause.UNKNOWN and decision.asks_at == BASIC)
+        handler.on_decision(tick, asks=asks)
         if handler.mid is not None:
             handler.mid.remember(tick, decision)
         choice.events.extend(handler.learn(tick, credited, view.opinion))
         self._timer.lap(Stage.LEARN)
         return surprise
+
+    def _is_teachable(self, decision: Decision, motion: _Motion) -> bool:
+        """Return whether a held action may become a lesson about this tick; not while the active behaviour is open."""
+        if motion.result.latched or (decision.mid is not None and decision.mid.asks):
+            return False
+        if decision.cause is DecisionCause.TEACHER:
+            return self._handler.authority.held_press is not None
+        return decision.cause in (DecisionCause.RLA, DecisionCause.HELD, DecisionCause.UNKNOWN)
 
     def _publish(
         self,
@@ -352,13 +364,13 @@ class Tick:
                     self._handler.mid.mid.restart()
                 self._reset_transitions()
 
-    def _handle(self, command: Command, tick: int, view: _View) -> tuple[CommandResult, TeachingEvent | None]:
+    def _handle(self, command: Command, tick: int, view: _View) -> tuple[CommandResult, tuple[TeachingEvent, ...]]:
         """Carry out one command; refuse a first copy that needs the situation of a blind robot."""
-        assert not isinstance(command, Watch | Drive)
+        assert not isinstance(command, Stream)
         new = not self._handler.was_handled(command.command_id)
         if new and view.blind and _needs_present_situation(command):
-            return CommandResult(command.command_id, Outcome(RefusalCode.BLIND)), None
-        result, event = self._handler.handle(command, view.situation, tick)
+            return CommandResult(command.command_id, Outcome(RefusalCode.BLIND)), ()
+        result, events = self._handler.handle(command, view.situation, tick)
         if new and result.accepted:
             # A late copy of a resume does not end a new emergency stop.
             if isinstance(command, Resume) and self._latched:
@@ -366,7 +378,7 @@ class Tick:
                 self._latched = False
             elif isinstance(command, BeAt):
                 self._reset_transitions()
-        return result, event
+        return result, events
 
     def _reset_transitions(self) -> None:
         """Forget the predecessor: count no transition into the next RLA."""
@@ -414,5 +426,7 @@ class Tick:
 def _needs_present_situation(command: Command) -> bool:
     """Return whether a command is about the present sensor readings; the mid level's situation needs none."""
     if not isinstance(command, Teach | Correct):
+        return False
+    if isinstance(command, Correct) and command.put_back:
         return False
     return command.level == BASIC and command.decision_tick is None

@@ -18,6 +18,7 @@ SAMPLES: dict[str, Field] = {
     "known": ("back", "forward"),
     "later": "ann-3",
     "lesson": "ann-2",
+    "lessons": 12,
     "level": MID,
     "longest": 64,
     "most_bytes": 1000,
@@ -65,6 +66,11 @@ def _each(surface: Surface) -> Iterator[tuple[str, str]]:
         yield code, text_of(sample(code), surface)
     taught = Outcome.of(ResultCode.RLA_TAUGHT, rla=7, behaviour="turn_left", level=MID, action="back")
     yield f"{taught.code}, behaviour and level", text_of(taught, surface)
+    late = Outcome.of(ResultCode.RLA_CORRECTED, rla=7, action="back", was="forward")
+    for rla in (7, None):
+        fields: dict[str, Field] = {"decision_tick": 1200, "put_back_ticks": 83, "decided_by": rla}
+        text = text_of(Outcome(late.code, {**late.fields, **fields}), surface)
+        yield f"{late.code}, put back to {'no RLA' if rla is None else 'an RLA'}", text
     wanted = Outcome.of(ResultCode.BEHAVIOUR_WANTED, behaviour="")
     yield f"{wanted.code}, without a name", text_of(wanted, surface)
     unnamed = Outcome.of(RefusalCode.NOT_NAMED, name="door", known=())

@@ -19,6 +19,7 @@ class DecisionHistory:
         self._situations = np.full((capacity, dimensions), np.nan)
         self._has_situation = np.zeros(capacity, dtype=np.bool_)
         self._touches = np.zeros(capacity, dtype=np.bool_)
+        self._teachable = np.zeros(capacity, dtype=np.bool_)
         self._rlas: list[int | None] = [None] * capacity
         self._behaviours = [""] * capacity
         self._answering = np.zeros(capacity, dtype=np.int64)
@@ -35,6 +36,7 @@ class DecisionHistory:
         behaviour: str = "",
         *,
         touches: bool = False,
+        teachable: bool = True,
         circumstances: AppraisalFeatures | None = None,
         opinion: Opinion | None = None,
     ) -> None:
@@ -46,6 +48,7 @@ class DecisionHistory:
             decision: its decision.
             behaviour: active taught behaviour.
             touches: whether the robot asked at a bumper instead of driving.
+            teachable: whether a held action may become a lesson about it: an RLA or a hold drove, or the robot asked.
             circumstances: appraisal features; None without a critic or situation.
             opinion: critic's opinion; None without one.
         """
@@ -54,6 +57,7 @@ class DecisionHistory:
         self._ticks[row] = tick
         self._has_situation[row] = situation is not None
         self._touches[row] = touches
+        self._teachable[row] = teachable and situation is not None
         if situation is not None:
             self._situations[row] = situation.vector
         self._rlas[row] = decision.rla_id
@@ -73,6 +77,7 @@ class DecisionHistory:
             (self._situations, other._situations),
             (self._has_situation, other._has_situation),
             (self._touches, other._touches),
+            (self._teachable, other._teachable),
             (self._answering, other._answering),
         ):
             np.copyto(own, its)
@@ -89,6 +94,10 @@ class DecisionHistory:
     def has_situation(self, tick: int) -> bool:
         """Return whether a stored tick had sensor data."""
         return bool(self._has_situation[tick % self._capacity])
+
+    def teachable(self, tick: int) -> bool:
+        """Return whether a held action may become a lesson about a stored tick."""
+        return bool(self._teachable[tick % self._capacity])
 
     def touched(self, tick: int) -> bool:
         """Return whether the robot asked at a bumper in a stored tick."""

@@ -1,5 +1,6 @@
 """History of lessons, and the order in which they can be undone and redone."""
 
+import re
 from bisect import bisect_left
 from dataclasses import dataclass, replace
 
@@ -15,6 +16,11 @@ from kurt2rt.core.rla.events import (
     SituationNamed,
 )
 from kurt2rt.core.rla.rla import ASK, BASIC, rla_title
+
+DERIVED = "/"
+"""Separator in ids that the robot derives from a command's id; refused in the ids of teachers."""
+
+_HOLD_LESSON = re.compile(rf"(.+-hold-\d+(?:-\d+)?){DERIVED}\d+", re.DOTALL)
 
 LessonStack = int | tuple[str, str]
 """Key of a stack of lessons: an RLA id, or a level and the name of a situation."""
@@ -52,6 +58,17 @@ class LessonRecord:
                 return f"{rla} {'rewarded' if value > 0 else 'punished'}"
 
 
+def hold_id(teacher: str, press_id: int) -> str:
+    """Return the id of all lessons of a hold; each has this id, DERIVED and a tick."""
+    return f"{teacher}-hold-{press_id}"
+
+
+def hold_of(command_id: str) -> str | None:
+    """Return the id of the hold that gave a lesson; None for another lesson."""
+    found = _HOLD_LESSON.fullmatch(command_id)
+    return None if found is None else found[1]
+
+
 def rla_id_of(lesson: RlaLesson) -> int:
     """Return the id of the RLA of a lesson."""
     return lesson.rla.rla_id if isinstance(lesson, RlaCreated) else lesson.rla_id
@@ -81,6 +98,8 @@ class LessonHistory:
         """Index of the lesson below each lesson in its stack."""
         self._undone: list[int] = []
         """Indexes of the undone lessons, in the order of their undos."""
+        self._holds: dict[str, list[str]] = {}
+        """Command ids of the lessons of each hold, undone ones included."""
 
     @property
     def records(self) -> tuple[LessonRecord, ...]:
@@ -102,6 +121,10 @@ class LessonHistory:
         place = self._place.get(command_id)
         return None if place is None else self._records[place]
 
+    def of_hold(self, hold: str) -> tuple[str, ...]:
+        """Return the command ids of all lessons of a hold, oldest first, undone ones included; empty if it has none."""
+        return tuple(self._holds.get(hold, ()))
+
     def about(self, stack: LessonStack) -> tuple[LessonRecord, ...]:
         """Return all lessons of a stack, oldest first, undone ones included."""
         return tuple(self._records[place] for place in self._places_of.get(stack, ()))
@@ -114,6 +137,9 @@ class LessonHistory:
         """Append a lesson with a new command id."""
         place = len(self._records)
         self._place[lesson.origin.command_id] = place
+        hold = hold_of(lesson.origin.command_id)
+        if hold is not None:
+            self._holds.setdefault(hold, []).append(lesson.origin.command_id)
         stack = self._standing_of.setdefault(lesson_stack(lesson), [])
         self._below.append(stack[-1] if stack else None)
         stack.append(place)
@@ -136,6 +162,25 @@ class LessonHistory:
         if newest is not record:
             later = newest.event.origin.command_id
             return Outcome.of(RefusalCode.TAUGHT_AFTER, later=later, lesson=command_id, says=newest.text)
+        return None
+
+    def why_not_undo_hold(self, hold: str) -> Outcome | None:
+        """Return why the standing lessons of a hold cannot be undone together now; None if they can."""
+        lessons = self.of_hold(hold)
+        if not lessons:
+            return Outcome.of(RefusalCode.NO_SUCH_LESSON, lesson=hold)
+        standing = [each for each in lessons if not self._records[self._place[each]].undone]
+        if not standing:
+            return Outcome.of(RefusalCode.UNDONE_ALREADY, lesson=hold)
+        for command_id in standing:
+            place = self._place[command_id]
+            for above in reversed(self._standing_of[lesson_stack(self._records[place].event)]):
+                if above == place:
+                    break
+                later = self._records[above]
+                if hold_of(later.event.origin.command_id) != hold:
+                    by = later.event.origin.command_id
+                    return Outcome.of(RefusalCode.TAUGHT_AFTER, later=by, lesson=hold, says=later.text)
         return None
 
     def undo(self, command_id: str) -> Lesson:

@@ -166,6 +166,22 @@ class RlaSystem:
         """Return why the lesson of a command cannot be undone now; None if it can."""
         return self._history.why_not_undo(command_id)
 
+    def lessons_of_hold(self, hold: str) -> tuple[str, ...]:
+        """Return the command ids of all lessons of a hold, oldest first, undone ones included; empty if it has none."""
+        return self._history.of_hold(hold)
+
+    def unused_hold_id(self, hold: str) -> str:
+        """Return the id of a hold, with a number if an earlier run's hold of this id gave lessons."""
+        unused, number = hold, 1
+        while self._history.of_hold(unused):
+            number += 1
+            unused = f"{hold}-{number}"
+        return unused
+
+    def why_not_undo_hold(self, hold: str) -> Outcome | None:
+        """Return why the standing lessons of a hold cannot be undone together now; None if they can."""
+        return self._history.why_not_undo_hold(hold)
+
     @property
     def last_undone_lesson(self) -> str | None:
         """Command id of the lesson that was undone last."""

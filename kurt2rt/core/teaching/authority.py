@@ -5,7 +5,7 @@ from behaviors.repertoire import Repertoire
 from hal.robot import SensorReadings, WheelSpeeds
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.outcome import Outcome, RefusalCode
-from kurt2rt.core.teaching.commands import Drive
+from kurt2rt.core.teaching.commands import Drive, HoldAction
 
 _BY_HAND = "by hand"
 
@@ -43,6 +43,9 @@ class ControlAuthority:
         self._behaviour: Behaviour | None = None
         self._behaviour_name = ""
         self._behaviour_until = -1
+        self._held_press: int | None = None
+        self._holds: dict[str, int] = {}
+        """Newest press id of each teacher that was a hold."""
 
     def refusal_for(self, teacher: str) -> Outcome | None:
         """Return the refusal for a teacher without authority; None for the one who has it, and if no teacher has."""
@@ -90,8 +93,9 @@ class ControlAuthority:
         """Forget a teacher's press ids, because their device has new keys and counts presses from the start."""
         self._press_ids.pop(teacher, None)
         self._ended_press_ids.pop(teacher, None)
+        self._holds.pop(teacher, None)
 
-    def is_press_over(self, command: Drive) -> bool:
+    def is_press_over(self, command: Drive | HoldAction) -> bool:
         """Return whether a stop, silence or a later press has ended this press, so that the message is a late one."""
         ended, newest = self._ended_press_ids.get(command.teacher, -1), self._press_ids.get(command.teacher, -1)
         return command.press_id <= ended or command.press_id < newest
@@ -106,25 +110,42 @@ class ControlAuthority:
 
     def drive(self, command: Drive, tick: int) -> None:
         """Set the speeds of manual drive; only for the teacher, with a press that is not over."""
+        if self._holds.get(command.teacher) == command.press_id:
+            del self._holds[command.teacher]
         self._press_ids[command.teacher] = command.press_id
-        self._behaviour = None
+        self._behaviour = self._held_press = None
         self._speeds = WheelSpeeds(command.left_m_s, command.right_m_s)
         self._driven_until = self._lease_end(tick, command.seen_tick)
         self.renew_presence(command.teacher, tick, command.seen_tick)
 
+    def hold(self, command: HoldAction, tick: int) -> None:
+        """Let the held action drive; only for the teacher, with a press that is not over."""
+        self._press_ids[command.teacher] = self._holds[command.teacher] = command.press_id
+        if self._held_press != command.press_id or self._behaviour_name != command.action:
+            self._start(command.action)
+        self._held_press = command.press_id
+        self._behaviour_until = self._lease_end(tick, command.seen_tick)
+        self.renew_presence(command.teacher, tick, command.seen_tick)
+
+    @property
+    def held_press(self) -> int | None:
+        """Return the press id of the action that the teacher holds; None if none is held."""
+        return self._held_press
+
+    def is_hold(self, teacher: str, press_id: int) -> bool:
+        """Return whether a press is this teacher's newest hold, over or not, or came before it and so is over."""
+        return press_id <= self._holds.get(teacher, -1)
+
     def run(self, action: str, tick: int, ticks: int) -> None:
         """Let an action of the repertoire drive for `ticks` ticks while the teacher is present."""
-        self._speeds = None
-        self._behaviour = self._repertoire[action]
-        self._behaviour.start()
-        self._behaviour_name = action
+        self._start(action)
         self._behaviour_until = tick + ticks
 
     def end_manual(self) -> None:
         """End manual drive and every press so far, so that late messages of them have no effect."""
         self._ended_press_ids.update(self._press_ids)
         self._speeds = None
-        self._behaviour = None
+        self._behaviour = self._held_press = None
 
     def is_manual(self, tick: int) -> bool:
         """Return whether the teacher drives by hand or runs an action in this tick."""
@@ -143,6 +164,12 @@ class ControlAuthority:
             return _BY_HAND, self._speeds
         assert self._behaviour is not None
         return self._behaviour_name, self._behaviour.step(readings)
+
+    def _start(self, action: str) -> None:
+        self._speeds = self._held_press = None
+        self._behaviour = self._repertoire[action]
+        self._behaviour.start()
+        self._behaviour_name = action
 
     def _set_teacher(self, teacher: str | None) -> None:
         self.end_manual()

@@ -16,6 +16,7 @@ from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
 from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.lesson_history import DERIVED
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC, CRITIC, MID, Origin, Rla
 from kurt2rt.core.rla.rla_system import InvalidEventError
@@ -31,6 +32,7 @@ from kurt2rt.core.teaching.commands import (
     Drive,
     EndSession,
     HandOver,
+    HoldAction,
     NameSituation,
     Pursue,
     Resume,
@@ -39,25 +41,26 @@ from kurt2rt.core.teaching.commands import (
     SetPhase,
     Stop,
     StopSeeking,
+    Stream,
     Take,
     Teach,
     Watch,
 )
 from kurt2rt.core.teaching.goal_commands import GoalCommands
+from kurt2rt.core.teaching.hold_lessons import HoldLessons
 from kurt2rt.core.teaching.knowledge_updater import KnowledgeUpdater
+from kurt2rt.core.teaching.late_press import LatePresses
 from kurt2rt.core.teaching.lesson_builder import LessonBuilder, require_action
 from kurt2rt.core.teaching.lesson_result import LessonResult
 from kurt2rt.core.teaching.mid_lessons import MidLessons
 from kurt2rt.core.teaching.rewind_history import RewindHistory
 from kurt2rt.core.teaching.session_clock import SessionClock
-
-DERIVED = "/"
-"""Separator in ids that the robot derives from a command's id; refused in the ids of teachers."""
+from kurt2rt.core.teaching.teacher_delay import TeacherDelay
 
 _KNOWN_STOPS = 32
 """Number of stops whose copies are recognised; a copy of an older one counts as another stop, which is safe."""
 
-_Answer = tuple[CommandResult, TeachingEvent | None]
+_Answer = tuple[CommandResult, tuple[TeachingEvent, ...]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,6 +76,8 @@ class HandlerParts:
     mid: MidLessons | None = None
     """Lessons of the mid level; None: the teacher alone selects the behaviour."""
     goals: GoalCommands | None = None
+    delay: TeacherDelay | None = None
+    """Delay of the teachers; None: it begins with the default."""
 
 
 class CommandHandler:
@@ -117,6 +122,9 @@ class CommandHandler:
             appraisal_lessons=None if critic is None else AppraisalLessons(critic, level.system, self.recent),
             mid=parts.mid,
         )
+        self.delay = parts.delay or TeacherDelay()
+        self.holds = HoldLessons(self._lessons, level.system, self.recent, self.delay)
+        self._late = LatePresses(self.recent, self.delay)
         self.updater = KnowledgeUpdater(
             level,
             handled_command_ids=handled_command_ids,
@@ -191,7 +199,7 @@ class CommandHandler:
         """Return whether the robot drives by its RLAs only while a teacher is present."""
         return self.authority.attended and self.phase is not Phase.AUTONOMOUS
 
-    def handle_stream(self, command: Watch | Drive, tick: int) -> Outcome | None:
+    def handle_stream(self, command: Stream, tick: int) -> Outcome | None:
         """Apply a message of a stream, in which only the newest counts; return a refusal, or None."""
         authority = self.authority
         refusal = _no_person(command.teacher) or authority.refusal_for(command.teacher) or self.manual_refusal(command)
@@ -201,18 +209,46 @@ class CommandHandler:
             authority.renew_presence(command.teacher, tick, command.seen_tick)
             return None
         authority.claim(command.teacher)
+        if isinstance(command, HoldAction):
+            self._hold(command, tick)
+            return None
         authority.drive(command, tick)
         # After manual drive the robot stands until a resume, also when messages cease.
         self.active_stop = ActiveStop(StopReason.LET_GO, command.teacher)
         self._stopped_by = {command.teacher}
         return None
 
-    def manual_refusal(self, command: Watch | Drive) -> Outcome | None:
+    def _hold(self, command: HoldAction, tick: int) -> None:
+        if self.authority.held_press == command.press_id:
+            self.holds.on_message(command, tick)
+        else:
+            self.holds.begin(command, tick, self.authority.speed)
+            self.delay.on_answer(command.teacher, command.seen_tick, self.authority.speed)
+        self.authority.hold(command, tick)
+
+    def teach_held(self, tick: int) -> list[TeachingEvent]:
+        """Apply and return the lesson that a held action gives in this tick; call it only if lessons can be saved."""
+        events: list[TeachingEvent] = []
+        if self.authority.held_press is not None and self.authority.is_manual(tick):
+            event = self.holds.build(tick, self.phase, self.authority.speed)
+            if event is not None:
+                self.updater.apply_own(event, events)
+        return events
+
+    def on_decision(self, tick: int, *, asks: bool) -> None:
+        """Note whether the basic level asked its teacher in a tick."""
+        self.delay.on_decision(tick, asks=asks and self.authority.is_present(tick))
+
+    def manual_refusal(self, command: Stream) -> Outcome | None:
         """Return why this press does not drive the robot; None if it does, and for a sign of presence."""
         if isinstance(command, Watch):
             return None
         if self.authority.is_press_over(command):
             return Outcome(RefusalCode.PRESS_OVER)
+        if isinstance(command, HoldAction):
+            if command.action not in self._level.repertoire:
+                return Outcome.of(RefusalCode.NO_ACTION, action=command.action, known=tuple(self._level.repertoire))
+            return None if self.active_stop is None else Outcome(RefusalCode.ROBOT_STOPPED)
         return self._refusal_if_stopped_by_another(command.teacher)
 
     def refusal_if_stopped_since(self, seen_tick: int | None) -> Outcome | None:
@@ -223,20 +259,23 @@ class CommandHandler:
 
     def handle(self, command: Command, situation: Situation, tick: int) -> _Answer:
         """Carry out one command; an event in the answer is applied already and must be submitted to the journal."""
-        assert not isinstance(command, Watch | Drive)
+        assert not isinstance(command, Stream)
         # Every copy of a stop brakes: a copy may be the one that matters.
         stops_again = isinstance(command, Stop) and command.press_id is None
         if self.was_handled(command.command_id) and not stops_again:
-            return CommandResult(command.command_id, Outcome(ResultCode.REPEATED)), None
+            return CommandResult(command.command_id, Outcome(ResultCode.REPEATED)), ()
         if DERIVED in command.command_id and not isinstance(command, Stop):
             why = Outcome.of(RefusalCode.RESERVED_ID, command_id=command.command_id, sign=DERIVED)
-            return CommandResult(command.command_id, why), None
+            return CommandResult(command.command_id, why), ()
         was_free = self.authority.teacher is None
+        meant = self._late.put_back(command, self.authority.speed)
         try:
-            outcome, event = self._carry_out(command, situation, tick)
-            if event is not None:
-                self.updater.apply(event)
-            self._notify_mid_level(command)
+            outcome, event, before = self._carry_out(meant, situation, tick)
+            events = before if event is None else (*before, event)
+            for each in events:
+                self.updater.apply(each)
+            self._notify_mid_level(meant)
+            self._note_answer(meant, tick, taught=event is not None)
         except (CommandRefusedError, InvalidEventError) as error:
             if was_free and self.authority.teacher is not None:
                 self.authority.hand_over(None)  # a refused command gives no authority
@@ -245,9 +284,19 @@ class CommandHandler:
                 if isinstance(error, CommandRefusedError)
                 else Outcome.of(RefusalCode.DOES_NOT_FIT, says=event_error_text(error))
             )
-            return CommandResult(command.command_id, why), None
+            return CommandResult(command.command_id, why), ()
         self.updater.handled_ids.add(command.command_id)
-        return CommandResult(command.command_id, outcome, lesson=event is not None), event
+        outcome = self._late.described(meant, outcome)
+        return CommandResult(command.command_id, outcome, lesson=event is not None), events
+
+    def _note_answer(self, command: Command, tick: int, *, taught: bool) -> None:
+        """Note a lesson that answers the basic level's present question."""
+        if not taught or not isinstance(command, Teach | Correct) or command.level != BASIC:
+            return
+        asked, meant = self.delay.asked_tick, command.decision_tick
+        if asked is not None and (meant is None or meant >= asked):
+            given = tick if command.seen_tick is None else command.seen_tick
+            self.delay.on_answer(command.teacher, given, self.authority.speed)
 
     def _notify_mid_level(self, command: Command) -> None:
         """Tell the mid level of a lesson, which replaces the teacher's override of the present situation."""
@@ -304,7 +353,7 @@ class CommandHandler:
                 return LessonResult(self._run(command, tick))
             case BeginSession() | EndSession():
                 return LessonResult(*self._session(command, tick))
-            case Watch() | Drive():
+            case Watch() | Drive() | HoldAction():
                 raise AssertionError("streams are followed, not carried out")
             case _:
                 return self._lessons.build(command, situation, self._origin(command, tick))
@@ -314,6 +363,8 @@ class CommandHandler:
             command.teacher, command.press_id, tick
         ):
             return Outcome(ResultCode.RELEASE_SUPERSEDED)
+        if command.press_id is not None and self.authority.is_hold(command.teacher, command.press_id):
+            return self._release_hold(command.press_id)
         # A copy brakes again but is not a newer stop: the teacher who resumes has seen the original.
         if command.command_id not in self._stops_since_resume:
             self._stops_since_resume.append(command.command_id)
@@ -321,6 +372,15 @@ class CommandHandler:
         reason = StopReason.SAID_STOP if command.press_id is None else StopReason.LET_GO
         self.stop(ActiveStop(reason, command.teacher), command.teacher)
         return Outcome(ResultCode.STOPPED)
+
+    def _release_hold(self, press_id: int) -> Outcome:
+        """End a hold, so that the RLAs drive on; a late release of an ended hold changes nothing."""
+        if self.authority.held_press == press_id:
+            self.authority.end_manual()
+        hold = self.holds.newest
+        if hold is None or hold.press_id != press_id or hold.lessons == 0:
+            return Outcome.of(ResultCode.HOLD_RELEASED, lessons=0, lesson=None)
+        return Outcome.of(ResultCode.HOLD_RELEASED, lessons=hold.lessons, lesson=hold.lesson)
 
     def _require_goals(self) -> GoalCommands:
         if self._goals is None:
@@ -354,7 +414,7 @@ class CommandHandler:
         return Outcome.of(RefusalCode.STOPPED_BY, teachers=others) if others else None
 
     def _origin(self, command: Command, tick: int) -> Origin:
-        assert not isinstance(command, Watch | Drive)
+        assert not isinstance(command, Stream)
         return Origin(command.command_id, command.teacher, self.phase, tick)
 
 

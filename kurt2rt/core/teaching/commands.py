@@ -35,6 +35,25 @@ class Drive:
     right_m_s: float
 
 
+@dataclass(frozen=True, slots=True)
+class HoldAction:
+    """Action of the repertoire that drives while these messages come (deadman switch), and is taught on the way.
+
+    After the release the robot goes on by its RLAs, unlike after `Drive`.
+    """
+
+    teacher: str
+    seen_tick: int
+    press_id: int
+    """Press id, larger than that of any press before; manual drive and holds count in one sequence."""
+    action: str
+    """Name in the repertoire; it may change within a press."""
+
+
+Stream = Watch | Drive | HoldAction
+"""Message of a stream, in which the newest one counts."""
+
+
 # Behaviours.
 
 
@@ -64,6 +83,8 @@ class Teach:
     """Level of the situation: BASIC, or MID if the robot has a mid level."""
     alternative: bool = False
     """True at the mid level to add an alternative to the RLAs that know the situation already."""
+    seen_tick: int | None = None
+    """Newest state that the teacher had; from it the teacher's delay is measured."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +102,11 @@ class Correct:
     """Tick of the wrong decision; None: the present one."""
     level: str = BASIC
     """Level of the wrong decision, as in `Teach`."""
+    put_back: bool = False
+    """True for a person's press: without a `decision_tick` it is about the decision before `seen_tick` by the
+    teacher's delay."""
+    seen_tick: int | None = None
+    """Newest state that the teacher had; None: the present tick."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -252,7 +278,8 @@ class Stop:
     command_id: str
     teacher: str
     press_id: int | None = None
-    """Press id that ends; a later press goes on. None: stop all motion."""
+    """Press id that ends; a later press goes on. None: stop all motion. After a press of `HoldAction` the robot
+    goes on by its RLAs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -268,6 +295,7 @@ class Resume:
 Command = (
     Watch
     | Drive
+    | HoldAction
     | RunBehaviour
     | Teach
     | Correct

@@ -81,14 +81,14 @@ class KnowledgeUpdater:
             alone.signal(tick, decision, opinion)
         events: list[TeachingEvent] = []
         for lesson in reinforcement.repairs(tick, phase):
-            self._apply_own(lesson, events)
+            self.apply_own(lesson, events)
         if alone is not None:
             for undone in alone.roll_back(tick, decision, opinion):
-                self._apply_own(undone, events)
+                self.apply_own(undone, events)
         return events
 
-    def _apply_own(self, event: TeachingEvent, events: list[TeachingEvent]) -> None:
-        """Apply an event that the robot itself made; skip and report it if it does not fit the knowledge."""
+    def apply_own(self, event: TeachingEvent, events: list[TeachingEvent]) -> None:
+        """Apply an event that the robot itself made and append it; skip and report it if it does not fit."""
         try:
             self.apply(event)
         except InvalidEventError as error:

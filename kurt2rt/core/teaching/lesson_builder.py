@@ -2,13 +2,15 @@
 
 from collections import Counter
 from collections.abc import Iterable
+from dataclasses import replace
 
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode, refuse
 from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
-from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated, RlaDeleted, RlaRewarded
+from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated, RlaDeleted, RlaRewarded, TeachingEvent
+from kurt2rt.core.rla.lesson_history import DERIVED, hold_of
 from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import BASIC, MID, Origin, Rla
 from kurt2rt.core.teaching.appraisal_lessons import AppraisalLessons
@@ -79,7 +81,25 @@ class LessonBuilder:
             case Appraise():
                 return self._appraise(command, origin)
             case Undo(lesson=lesson):
-                return self._undo(lesson or self._system.last_standing_lesson, origin)
+                return self._undo(lesson or self._system.last_standing_lesson, origin, alone=lesson is not None)
+
+    def held(self, action: str, meant: int, origin: Origin, *, counts: bool) -> TeachingEvent | None:
+        """Return the lesson that a held action gives about a remembered tick; None if it would be done there already.
+
+        Args:
+            action: of the repertoire.
+            meant: tick that had a situation.
+            origin: of the lesson.
+            counts: whether a lesson counts as a correction.
+        """
+        context = self._basic_context(meant, None)
+        nearest = self._system.match(context.vector, context.behaviour, BASIC)
+        if self._agreeing(nearest, context, action) is not None:
+            return None
+        event = self._corrected(action, nearest, context, context.insert_beyond_share, origin).event
+        if event is not None and counts:
+            self.corrections_at[BASIC] += 1
+        return event
 
     def _lesson(self, command: Teach | Correct, situation: Situation, origin: Origin) -> LessonResult:
         if command.level == MID:
@@ -95,6 +115,10 @@ class LessonBuilder:
         nearest = self._system.match(meant.vector, meant.behaviour, meant.level)
         if isinstance(command, Teach) and command.alternative:
             return self._add_alternative(command.action, meant, nearest, origin)
+        if isinstance(command, Correct) and command.put_back:
+            agreeing = self._agreeing(nearest, meant, command.action)
+            if agreeing is not None:  # an earlier press was about the same mistake
+                return LessonResult(rla_outcome(ResultCode.RLA_AGREES, agreeing, action=command.action))
         # A second RLA on the same condition would never win, because the older one does.
         replace_within_share = 0.0
         if isinstance(command, Correct):
@@ -104,19 +128,33 @@ class LessonBuilder:
             replace_within_share = meant.insert_beyond_share  # it waits for this answer
         elif meant.level == MID and nearest is not None and _is_at_known_place(nearest, meant):
             return self._add_alternative(command.action, meant, nearest, origin)
-        if nearest is None or nearest.distance > replace_within_share * nearest.radius:
-            return self._create(command.action, meant, origin)
-        rla = self._corrected_rla(nearest.rla, meant)
-        if rla.action == command.action:
-            return LessonResult(rla_outcome(ResultCode.RLA_AGREES, rla, action=command.action))
-        other = self._competitor_with(command.action, rla)
-        if other is not None:
-            return LessonResult(rla_outcome(ResultCode.RLA_CONFLICTS, other, action=command.action))
-        return self._replace(rla, command.action, origin)
+        return self._corrected(command.action, nearest, meant, replace_within_share, origin)
 
-    def _basic_context(self, decision_tick: int | None, situation: Situation) -> LessonContext:
+    def _corrected(
+        self, action: str, nearest: Match | None, meant: LessonContext, replace_within_share: float, origin: Origin
+    ) -> LessonResult:
+        """Replace the action of the nearest RLA within a share of its radius, else create another one."""
+        if nearest is None or nearest.distance > replace_within_share * nearest.radius:
+            return self._create(action, meant, origin)
+        rla = self._corrected_rla(nearest.rla, meant)
+        if rla.action == action:
+            return LessonResult(rla_outcome(ResultCode.RLA_AGREES, rla, action=action))
+        other = self._competitor_with(action, rla)
+        if other is not None:
+            return LessonResult(rla_outcome(ResultCode.RLA_CONFLICTS, other, action=action))
+        return self._replace(rla, action, origin)
+
+    def _agreeing(self, nearest: Match | None, meant: LessonContext, action: str) -> Rla | None:
+        """Return the RLA that would do an action in a known situation already; None if it would be another action."""
+        if nearest is None or not nearest.known:
+            return None
+        rla = self._corrected_rla(nearest.rla, meant)
+        return rla if rla.action == action else None
+
+    def _basic_context(self, decision_tick: int | None, situation: Situation | None) -> LessonContext:
         share = self._insert_beyond_share
         if decision_tick is None:
+            assert situation is not None
             newest = self._recent.newest
             drove, touched = self._recent.driving_rla(newest), self._recent.touched(newest)
             return LessonContext(situation.vector, self._level.active_behaviour.behaviour, BASIC, drove, share, touched)
@@ -206,16 +244,39 @@ class LessonBuilder:
             raise CommandRefusedError(RefusalCode.NO_CRITIC)
         return self._appraisal_lessons.build(command, self._known_tick(command.decision_tick), origin)
 
-    def _undo(self, lesson: str | None, origin: Origin) -> LessonResult:
+    def _undo(self, lesson: str | None, origin: Origin, *, alone: bool) -> LessonResult:
+        """Undo a lesson, or all of a hold: by its id, or with the last lesson unless that is to be undone alone."""
         if lesson is None:
             raise CommandRefusedError(RefusalCode.NO_LESSON)
+        hold = None if alone else hold_of(lesson)
+        if hold is not None or self._system.lessons_of_hold(lesson):
+            return self._undo_hold(hold or lesson, origin)
         refuse(self._system.why_not_undo(lesson))
-        back = self._system.restored_by_undo(lesson)
-        if back is not None and not self._can_act(back):
-            refuse(rla_outcome(RefusalCode.ACTION_NOT_IN_TASK, back, action=back.action))
+        self._require_restorable(lesson)
         record = self._system.lesson(lesson)
         assert record is not None
         return LessonResult(Outcome.of(ResultCode.LESSON_UNDONE, says=record.text), LessonUndone(lesson, origin))
+
+    def _undo_hold(self, hold: str, origin: Origin) -> LessonResult:
+        """Undo all standing lessons of a hold, newest first; the last undo has the command's own id."""
+        refuse(self._system.why_not_undo_hold(hold))
+        standing = []
+        for command_id in reversed(self._system.lessons_of_hold(hold)):
+            record = self._system.lesson(command_id)
+            assert record is not None
+            if not record.undone:
+                self._require_restorable(command_id)
+                standing.append(command_id)
+        origins = [replace(origin, command_id=f"{origin.command_id}{DERIVED}{n}") for n in range(1, len(standing))]
+        before = tuple(map(LessonUndone, standing, origins))
+        outcome = Outcome.of(ResultCode.HOLD_UNDONE, lessons=len(standing))
+        return LessonResult(outcome, LessonUndone(standing[-1], origin), before)
+
+    def _require_restorable(self, lesson: str) -> None:
+        """Raise CommandRefusedError if an undo would restore an action that the task lacks."""
+        back = self._system.restored_by_undo(lesson)
+        if back is not None and not self._can_act(back):
+            refuse(rla_outcome(RefusalCode.ACTION_NOT_IN_TASK, back, action=back.action))
 
     def _known_tick(self, decision_tick: int | None) -> int:
         # Default to the newest remembered tick: the previous number may have been missed.

@@ -12,7 +12,9 @@ class LessonResult(NamedTuple):
 
     outcome: Outcome
     event: TeachingEvent | None = None
-    """Change of the knowledge; None if it changes nothing."""
+    """Change of the knowledge, by the command's own id; None if it changes nothing."""
+    before: tuple[TeachingEvent, ...] = ()
+    """Changes by derived ids, applied before `event`."""
 
 
 def rla_outcome(code: ResultCode | RefusalCode, rla: Rla, **fields: Field) -> Outcome:

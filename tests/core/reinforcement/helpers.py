@@ -25,7 +25,7 @@ from kurt2rt.core.rla.space import Space
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.command_handler import CommandHandler, HandlerParts
-from kurt2rt.core.teaching.commands import Command, CommandResult, Drive, Reward, Watch
+from kurt2rt.core.teaching.commands import Command, CommandResult, Reward, Stream
 from tests.core.critic.helpers import FREE, SETTINGS, appraisal, origin
 from tests.core.helpers import MINIMUM_TICKS, RADIUS, Counted, sensed, situation
 
@@ -126,10 +126,9 @@ class Track:
 
     def say(self, command: Command, place: float = 0.0) -> CommandResult:
         """Run one tick with a command."""
-        assert not isinstance(command, Watch | Drive)
-        result, event = self.school.handle(command, situation(place), self.tick + 1)
-        if event is not None:
-            self.events.append(event)
+        assert not isinstance(command, Stream)
+        result, events = self.school.handle(command, situation(place), self.tick + 1)
+        self.events.extend(events)
         return result
 
     def signal(self, value: int, about: int | None = None) -> RlaRewarded:

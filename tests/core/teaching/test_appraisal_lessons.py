@@ -168,5 +168,5 @@ def test_a_robot_without_a_critic_says_so() -> None:
     school = CommandHandler(
         small.level, ControlAuthority(small.actions, attended=False), insert_beyond_share=0.5, handled_command_ids=()
     )
-    result, event = school.handle(Appraise("x-1", "Ann", "bad"), situation(0.0), 1)
-    assert (result.outcome, event) == (Outcome(RefusalCode.NO_CRITIC), None)
+    result, events = school.handle(Appraise("x-1", "Ann", "bad"), situation(0.0), 1)
+    assert (result.outcome, events) == (Outcome(RefusalCode.NO_CRITIC), ())

@@ -38,6 +38,7 @@ from kurt2rt.core.teaching.commands import (
     RunBehaviour,
     SetPhase,
     Stop,
+    Stream,
     Take,
     Teach,
     Undo,
@@ -70,11 +71,10 @@ class Lesson:
 
     def say(self, command: Command, place: float = 0.0) -> CommandResult:
         self.tick += 1
-        assert not isinstance(command, Watch | Drive)
-        result, event = self.school.handle(command, situation(place), self.tick)
+        assert not isinstance(command, Stream)
+        result, events = self.school.handle(command, situation(place), self.tick)
         assert result.command_id == command.command_id
-        if event is not None:
-            self.events.append(event)
+        self.events.extend(events)
         return result
 
     def go_on(self, place: float, ticks: int = 1, *, blind: bool = False) -> int:

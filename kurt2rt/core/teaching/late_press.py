@@ -1,0 +1,56 @@
+"""Late presses: a person's correction is about the decision that it reacts to, not about the present one."""
+
+from dataclasses import replace
+
+from kurt2rt.core.outcome import Field, Outcome
+from kurt2rt.core.reinforcement.decision_history import DecisionHistory
+from kurt2rt.core.rla.rla import BASIC
+from kurt2rt.core.teaching.commands import Command, Correct
+from kurt2rt.core.teaching.teacher_delay import TeacherDelay
+
+
+class LatePresses:
+    """Assignment of presses to decisions by the delay of their teachers."""
+
+    def __init__(self, recent: DecisionHistory, delay: TeacherDelay) -> None:
+        self._recent = recent
+        self._delay = delay
+
+    def put_back(self, command: Command, speed: int) -> Command:
+        """Return a late press with the tick of its decision, and any other command unchanged.
+
+        Args:
+            command: a press is late if it is a correction of the basic level with `put_back` and without a tick.
+            speed: robot seconds in one second.
+        """
+        if not isinstance(command, Correct) or not _is_late(command) or self._recent.newest < 0:
+            return command
+        given = self._recent.newest if command.seen_tick is None else min(command.seen_tick, self._recent.newest)
+        back_ticks = self._delay.ticks(command.teacher, speed)
+        return replace(command, seen_tick=given, decision_tick=self._decision(given, back_ticks))
+
+    def described(self, command: Command, outcome: Outcome) -> Outcome:
+        """Return the outcome of a late press with the decision that it was given to; any other one unchanged."""
+        if not isinstance(command, Correct) or not command.put_back or command.level != BASIC:
+            return outcome
+        meant, given = command.decision_tick, command.seen_tick
+        if meant is None or given is None or not self._recent.contains(meant):
+            return outcome
+        fields: dict[str, Field] = {"decision_tick": meant, "put_back_ticks": max(0, given - meant)}
+        return Outcome(outcome.code, {**outcome.fields, **fields, "decided_by": self._recent.driving_rla(meant)})
+
+    def _decision(self, given: int, back_ticks: int) -> int:
+        """Return the first tick from `back_ticks` before `given` on in which an RLA drove.
+
+        If none drove in `given`, the robot stood there and the press is about that situation.
+        """
+        recent = self._recent
+        if recent.contains(given) and recent.driving_rla(given) is not None:
+            for tick in range(max(0, given - back_ticks), given):
+                if recent.contains(tick) and recent.driving_rla(tick) is not None and recent.has_situation(tick):
+                    return tick
+        return given
+
+
+def _is_late(command: Correct) -> bool:
+    return command.put_back and command.decision_tick is None and command.level == BASIC

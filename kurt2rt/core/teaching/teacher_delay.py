@@ -1,0 +1,64 @@
+"""Teacher's delay: time between a situation and the teacher's press about it, learned from answers to questions."""
+
+from collections import deque
+
+BACK_TICKS = 200
+"""Longest time by which a press is put back, in ticks of real time: 2 s."""
+DEFAULT_TICKS = 100
+"""Delay of a teacher without enough answers, in ticks of real time."""
+_WINDOW = 16
+_LEAST_ANSWERS = 4
+_LONGEST_TICKS = 500
+"""A later answer tells nothing about the delay: its teacher looked elsewhere, or thought about it."""
+
+
+class TeacherDelay:
+    """Median of each teacher's last times between question and answer, in ticks of real time.
+
+    A question counts from its first tick; an answer from the newest state that its teacher had, so that the link's
+    delay is left out.
+    """
+
+    def __init__(self, default_ticks: int = DEFAULT_TICKS) -> None:
+        """`default_ticks`: delay of a teacher who has given fewer than four answers."""
+        self._default_ticks = default_ticks
+        self._answers: dict[str, deque[int]] = {}
+        self._asked_tick: int | None = None
+        self._answered = False
+
+    def on_decision(self, tick: int, *, asks: bool) -> None:
+        """Note whether the robot asked a teacher who is present in a tick."""
+        if not asks:
+            self._asked_tick, self._answered = None, False
+        elif self._asked_tick is None:
+            self._asked_tick = tick
+
+    @property
+    def asked_tick(self) -> int | None:
+        """Return the first tick of the present question; None if the robot does not ask."""
+        return self._asked_tick
+
+    def on_answer(self, teacher: str, given_tick: int, speed: int) -> None:
+        """Note an answer that its teacher gave on the state of `given_tick`; only the first to a question counts.
+
+        Args:
+            teacher: who answered.
+            given_tick: newest state that the teacher had.
+            speed: robot seconds in one second.
+        """
+        if self._asked_tick is None or self._answered or given_tick < self._asked_tick:
+            return
+        self._answered = True
+        took = (given_tick - self._asked_tick) // speed
+        if took <= _LONGEST_TICKS:
+            self._answers.setdefault(teacher, deque(maxlen=_WINDOW)).append(took)
+
+    def answers(self, teacher: str) -> int:
+        """Return the number of answers that the delay of a teacher is made of."""
+        return len(self._answers.get(teacher, ()))
+
+    def ticks(self, teacher: str, speed: int) -> int:
+        """Return the delay of a teacher in ticks of the robot, at most BACK_TICKS of real time."""
+        answers = sorted(self._answers.get(teacher, ()))
+        delay = answers[len(answers) // 2] if len(answers) >= _LEAST_ANSWERS else self._default_ticks
+        return min(delay, BACK_TICKS) * speed

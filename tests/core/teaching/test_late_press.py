@@ -1,0 +1,111 @@
+"""Late presses: corrections that are given to the decision that their teacher reacted to."""
+
+import pytest
+
+from kurt2rt.core.outcome import RefusalCode, ResultCode
+from kurt2rt.core.teaching.commands import CommandResult, Correct, Undo
+from tests.core.test_tick import Corridor
+from tests.core.test_tick_holding import condition
+from tests.teacher.helpers import resume, stop, teach
+
+DELAY = 100
+
+
+@pytest.fixture
+def driving() -> Corridor:
+    """Return a robot that drove forward for a second at 100 counts, for 0.5 s at 130 and 0.5 s at 132."""
+    corridor = Corridor()
+    corridor.run(100, teach("forward", "first"))
+    for counts, ticks in ((100, 100), (130, DELAY // 2 + 1), (132, DELAY // 2)):
+        for _ in range(ticks):
+            assert corridor.run(counts).decision.action == "forward"
+    return corridor
+
+
+def press(corridor: Corridor, action: str = "back", *, name: str = "late", age: int = 0) -> Correct:
+    return Correct(name, "Ann", action, put_back=True, seen_tick=corridor.ticks - age)
+
+
+def given(corridor: Corridor, command: Correct, counts: int | None = None) -> CommandResult:
+    (result,) = corridor.run(counts, command).results
+    return result
+
+
+def test_late_press_corrects_the_decision_one_delay_before(driving: Corridor) -> None:
+    meant = driving.ticks - DELAY
+    result = given(driving, press(driving))
+    assert result.code is ResultCode.RLA_TAUGHT
+    fields = result.outcome.fields
+    assert (fields["decision_tick"], fields["put_back_ticks"], fields["decided_by"]) == (meant, DELAY, 1)
+    assert driving.system.rlas[-1].condition == condition(driving, meant)
+
+
+def test_late_press_counts_from_the_state_that_was_seen(driving: Corridor) -> None:
+    meant = driving.ticks - DELAY - 20
+    assert given(driving, press(driving, age=20)).outcome.fields["decision_tick"] == meant
+
+
+def test_late_press_of_a_known_mistake_teaches_nothing_more(driving: Corridor) -> None:
+    given(driving, press(driving))
+    driving.run(130)
+    assert given(driving, press(driving, name="again", age=2)).code is ResultCode.RLA_AGREES
+    assert len(driving.system.rlas) == 2
+
+
+def test_late_press_names_no_decision_before_the_robot_drove(driving: Corridor) -> None:
+    driving.run(100, stop())
+    for _ in range(DELAY):
+        driving.run(130)
+    first = driving.run(130, resume()).tick
+    for _ in range(29):
+        driving.run(130)
+    assert given(driving, press(driving)).outcome.fields["decision_tick"] == first
+
+
+def test_late_press_answers_the_question_of_its_state(driving: Corridor) -> None:
+    for _ in range(30):
+        asked = driving.run(400)
+    assert asked.decision.asking
+    result = given(driving, press(driving))
+    assert (result.outcome.fields["decision_tick"], result.outcome.fields["put_back_ticks"]) == (asked.tick, 0)
+    assert driving.run(400).decision.action == "back"
+
+
+def test_answers_of_a_teacher_set_their_delay(driving: Corridor) -> None:
+    for number in range(4):
+        for _ in range(60):
+            driving.run(100 * (number + 3))
+        driving.run(None, teach("forward", f"answer-{number}"))
+    assert driving.school.delay.ticks("Ann", 1) == 60
+    for _ in range(120):
+        driving.run()
+    result = given(driving, press(driving))
+    assert result.outcome.fields["put_back_ticks"] == 60
+
+
+def test_late_press_about_forgotten_state_is_refused(driving: Corridor) -> None:
+    for _ in range(1000):
+        driving.run(100)
+    assert given(driving, press(driving, age=1100)).code is RefusalCode.TICK_FORGOTTEN
+
+
+def test_blind_robot_takes_a_late_press(driving: Corridor) -> None:
+    driving.robot.infrared_age_s = 1.0
+    assert given(driving, press(driving)).accepted
+
+
+def test_late_press_can_be_undone(driving: Corridor) -> None:
+    given(driving, press(driving))
+    assert driving.run(100, Undo("u", "Ann")).results[0].accepted
+    assert [rla.action for rla in driving.system.rlas] == ["forward"]
+
+
+def test_correction_without_the_option_is_about_the_present(driving: Corridor) -> None:
+    result = given(driving, Correct("now", "Ann", "back", seen_tick=driving.ticks))
+    assert "put_back_ticks" not in result.outcome.fields
+    assert driving.system.rlas[-1].condition == condition(driving, driving.ticks)
+
+
+def test_correction_of_a_named_tick_is_not_put_back(driving: Corridor) -> None:
+    named = Correct("named", "Ann", "back", driving.ticks - 5, put_back=True, seen_tick=driving.ticks)
+    assert given(driving, named).outcome.fields["decision_tick"] == named.decision_tick

@@ -1,0 +1,71 @@
+"""Delay of teachers, learned from their answers to questions."""
+
+import pytest
+
+from kurt2rt.core.teaching.teacher_delay import BACK_TICKS, DEFAULT_TICKS, TeacherDelay
+
+
+def asked_and_answered(delay: TeacherDelay, *took: int, teacher: str = "Ann", speed: int = 1) -> None:
+    """Ask a question for each time in ticks, and answer it after so long."""
+    for number, ticks in enumerate(took):
+        tick = 10_000 * (number + 1)
+        delay.on_decision(tick, asks=True)
+        delay.on_answer(teacher, tick + ticks, speed)
+        delay.on_decision(tick + ticks + 1, asks=False)
+
+
+def test_delay_is_default_before_four_answers() -> None:
+    delay = TeacherDelay()
+    asked_and_answered(delay, 30, 30, 30)
+    assert (delay.ticks("Ann", 1), delay.answers("Ann")) == (DEFAULT_TICKS, 3)
+
+
+@pytest.mark.parametrize(("took", "ticks"), [((30, 30, 30, 90), 30), ((30, 90, 30, 90), 90), ((3, 6, 9, 1, 2), 3)])
+def test_delay_is_median_of_the_answers(took: tuple[int, ...], ticks: int) -> None:
+    delay = TeacherDelay()
+    asked_and_answered(delay, *took)
+    assert delay.ticks("Ann", 1) == ticks
+    assert delay.ticks("Ben", 1) == DEFAULT_TICKS
+
+
+def test_delay_follows_the_last_sixteen_answers() -> None:
+    delay = TeacherDelay()
+    asked_and_answered(delay, *[150] * 20, *[40] * 16)
+    assert (delay.ticks("Ann", 1), delay.answers("Ann")) == (40, 16)
+
+
+def test_delay_is_at_most_two_seconds() -> None:
+    delay = TeacherDelay()
+    asked_and_answered(delay, *[400] * 4)
+    assert delay.ticks("Ann", 1) == BACK_TICKS
+
+
+def test_answer_after_five_seconds_is_no_delay() -> None:
+    delay = TeacherDelay()
+    asked_and_answered(delay, 500, 501, 5000)
+    assert delay.answers("Ann") == 1
+
+
+def test_second_answer_to_a_question_does_not_count() -> None:
+    delay = TeacherDelay()
+    delay.on_decision(100, asks=True)
+    delay.on_answer("Ann", 130, 1)
+    delay.on_decision(131, asks=True)
+    delay.on_answer("Ann", 190, 1)
+    assert delay.answers("Ann") == 1
+
+
+def test_press_before_the_question_is_no_answer() -> None:
+    delay = TeacherDelay()
+    delay.on_answer("Ann", 90, 1)
+    delay.on_decision(100, asks=True)
+    delay.on_answer("Ann", 99, 1)
+    assert delay.answers("Ann") == 0
+    delay.on_answer("Ann", 100, 1)
+    assert delay.answers("Ann") == 1
+
+
+def test_delay_is_counted_in_real_time_at_any_speed() -> None:
+    delay = TeacherDelay()
+    asked_and_answered(delay, *[240] * 4, speed=4)
+    assert (delay.ticks("Ann", 1), delay.ticks("Ann", 4)) == (60, 240)

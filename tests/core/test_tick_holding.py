@@ -1,0 +1,323 @@
+"""Held actions in the tick: they drive while they are held, and teach what the robot would not have done."""
+
+import pytest
+
+from hal.robot import STANDSTILL
+from kurt2rt.core.decision.decision import DecisionCause
+from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated
+from kurt2rt.core.teaching.commands import Correct, Drive, HoldAction, Stop, Take, Teach, Undo, Watch
+from kurt2rt.core.tick import TickRecord
+from tests.core.test_tick import Corridor
+from tests.teacher.helpers import resume, teach
+
+LEASE = 24
+DELAY = 100
+"""Ticks by which a press of a teacher without answers is put back."""
+
+
+def hold(corridor: Corridor, action: str = "back", press: int = 7, *, teacher: str = "Ann", age: int = 0) -> HoldAction:
+    """One message of a hold that arrives in the next tick, on the state of `age` ticks before that."""
+    return HoldAction(teacher, corridor.ticks + 1 - age, press, action)
+
+
+def held(corridor: Corridor, ticks: int, counts: int | None = None, action: str = "back") -> list[TickRecord]:
+    """Hold an action for so many ticks, with a message in each."""
+    return [corridor.run(counts, hold(corridor, action)) for _ in range(ticks)]
+
+
+def release(press: int = 7, command_id: str = "let go", teacher: str = "Ann") -> Stop:
+    return Stop(command_id, teacher, press)
+
+
+def events(corridor: Corridor) -> list[tuple[str, int]]:
+    """Return the hold's lessons: command id, and the RLA's id."""
+    return [
+        (event.origin.command_id, event.rla.rla_id if isinstance(event, RlaCreated) else event.rla_id)
+        for event in corridor.notebook.events
+        if isinstance(event, RlaCreated | ActionReplaced) and "-hold-" in event.origin.command_id
+    ]
+
+
+def actions(corridor: Corridor) -> dict[int, str]:
+    return {rla.rla_id: rla.action for rla in corridor.system.rlas}
+
+
+@pytest.fixture
+def driving() -> Corridor:
+    """Return a robot that has driven forward for two seconds at 100 counts."""
+    corridor = Corridor()
+    corridor.run(100, teach("forward", "first"))
+    for _ in range(200):
+        assert corridor.run(100).decision.action == "forward"
+    return corridor
+
+
+def test_held_action_drives_and_release_hands_back_to_rlas(driving: Corridor) -> None:
+    record = driving.run(100, hold(driving))
+    assert (record.decision.cause, record.decision.action, record.decision.rla_id) == (
+        DecisionCause.TEACHER,
+        "back",
+        None,
+    )
+    record = driving.run(130, release())
+    assert record.results[0].outcome == Outcome.of(ResultCode.HOLD_RELEASED, lessons=1, lesson="Ann-hold-7")
+    assert (record.decision.cause, driving.school.active_stop) == (DecisionCause.RLA, None)
+
+
+def test_hold_without_messages_ends_after_its_lease(driving: Corridor) -> None:
+    driving.run(100, hold(driving))
+    causes = [driving.run(100).decision.cause for _ in range(LEASE)]
+    assert causes == [DecisionCause.TEACHER] * (LEASE - 1) + [DecisionCause.RLA]
+    refused = driving.school.handle_stream(hold(driving), driving.ticks)
+    assert refused == Outcome(RefusalCode.PRESS_OVER)
+
+
+def test_absent_teacher_of_a_hold_leaves_a_stopped_robot() -> None:
+    corridor = Corridor(attended=True)
+    corridor.run(100, teach("forward", "first"), Watch("Ann", 1))
+    corridor.run(100, hold(corridor))
+    causes = [corridor.run(100).decision.cause for _ in range(LEASE)]
+    assert causes == [DecisionCause.TEACHER] * (LEASE - 1) + [DecisionCause.STOPPED]
+    corridor.run(100, Watch("Ann", corridor.ticks))
+    refused = corridor.school.handle_stream(hold(corridor, press=8), corridor.ticks)
+    assert refused == Outcome(RefusalCode.ROBOT_STOPPED)
+
+
+def test_present_teacher_lets_go_and_robot_goes_on() -> None:
+    corridor = Corridor(attended=True)
+    corridor.run(100, teach("forward", "first"), Watch("Ann", 1))
+    corridor.run(100, hold(corridor, "forward"))
+    for _ in range(2 * LEASE):
+        record = corridor.run(100, Watch("Ann", corridor.ticks))
+    assert (record.decision.cause, record.decision.action) == (DecisionCause.RLA, "forward")
+
+
+@pytest.mark.parametrize("by", ["Ann", "Ben"])
+def test_stop_of_any_teacher_ends_the_hold(driving: Corridor, by: str) -> None:
+    driving.run(100, hold(driving))
+    record = driving.run(100, hold(driving), Stop("s", by), hold(driving))
+    assert (record.decision.cause, record.guard_result.wheel_speeds) == (DecisionCause.STOPPED, STANDSTILL)
+    assert driving.run(100, hold(driving, press=8)).decision.cause is DecisionCause.STOPPED
+    driving.run(100, resume())
+    assert driving.run(100, hold(driving)).decision.cause is DecisionCause.RLA
+    assert driving.run(100, hold(driving, press=9)).decision.cause is DecisionCause.TEACHER
+
+
+def test_late_release_of_an_ended_hold_stops_nothing(driving: Corridor) -> None:
+    driving.run(100, hold(driving))
+    driving.run(100, release())
+    driving.run(100, hold(driving, press=8))
+    assert driving.run(100, release(7, "again")).results[0].code is ResultCode.RELEASE_SUPERSEDED
+    driving.run(100, release(8, "second"))
+    record = driving.run(100, release(7, "late"))
+    assert (record.results[0].code, record.decision.cause) == (ResultCode.HOLD_RELEASED, DecisionCause.RLA)
+
+
+def test_release_of_an_unknown_press_stops_the_robot(driving: Corridor) -> None:
+    assert driving.run(100, release(3)).decision.cause is DecisionCause.STOPPED
+
+
+def test_manual_drive_after_a_hold_stops_on_release(driving: Corridor) -> None:
+    driving.run(100, hold(driving))
+    driving.run(100, Drive("Ann", driving.ticks, 7, 0.1, 0.1))
+    assert driving.run(100, release()).results[0].code is ResultCode.STOPPED
+
+
+def test_hold_of_another_teacher_is_refused(driving: Corridor) -> None:
+    driving.run(100, hold(driving))
+    record = driving.run(100, hold(driving, "forward", 9, teacher="Ben"))
+    assert (record.decision.action, driving.school.authority.held_press) == ("back", 7)
+    assert not driving.run(100, Take("t", "Ben")).results[0].accepted
+
+
+def test_hold_of_an_unknown_action_is_refused(driving: Corridor) -> None:
+    refused = driving.school.handle_stream(hold(driving, "fly"), driving.ticks)
+    assert refused == Outcome.of(RefusalCode.NO_ACTION, action="fly", known=("forward", "back"))
+    assert driving.run(100).decision.cause is DecisionCause.RLA
+
+
+@pytest.mark.parametrize(("error", "cause"), [("disk full", DecisionCause.UNSAVED), (None, DecisionCause.BLIND)])
+def test_hold_neither_drives_nor_teaches_blind_or_unsaved(
+    driving: Corridor, error: str | None, cause: DecisionCause
+) -> None:
+    driving.notebook.saving_error = error
+    driving.robot.infrared_age_s = 0.0 if error else 1.0
+    for record in held(driving, 30, 140):
+        assert (record.decision.cause, record.guard_result.wheel_speeds) == (cause, STANDSTILL)
+    assert events(driving) == []
+
+
+def test_first_lesson_is_about_the_decision_one_delay_before(driving: Corridor) -> None:
+    for counts in (130, 135):
+        for _ in range(DELAY // 2):
+            driving.run(counts)
+    meant = condition(driving, driving.ticks + 1 - DELAY)
+    driving.run(135, hold(driving))
+    (lesson,) = driving.notebook.events[1:]
+    assert isinstance(lesson, RlaCreated)
+    assert (lesson.rla.condition, lesson.rla.action) == (meant, "back")
+    assert lesson.origin.command_id == f"Ann-hold-7/{driving.ticks}"
+
+
+def test_lag_of_the_link_is_added_to_the_delay(driving: Corridor) -> None:
+    for tick in range(130):
+        driving.run(128 + tick // 20)
+    meant = condition(driving, driving.ticks + 1 - DELAY - 15)
+    driving.run(135, hold(driving, age=15))
+    lesson = driving.notebook.events[1]
+    assert isinstance(lesson, RlaCreated)
+    assert lesson.rla.condition == meant
+
+
+def test_hold_teaches_each_tenth_of_a_second_unless_agreed(driving: Corridor) -> None:
+    held(driving, DELAY, 115)  # the situations of two seconds at 100 counts come first
+    assert events(driving) == [(f"Ann-hold-7/{203 - 1}", 1)]
+    assert actions(driving) == {1: "back"}
+    for counts in range(120, 520, 4):
+        held(driving, 2, counts)
+    held(driving, DELAY, 520)
+    ticks = [int(each.rpartition("/")[2]) for each, _ in events(driving)]
+    assert all((tick - ticks[0]) % 10 == 0 for tick in ticks)
+    assert len(ticks) > 4
+    match = driving.system.match(driving.school.recent.situation(driving.ticks))
+    assert match is not None
+    assert (match.known, match.rla.action) == (True, "back")
+
+
+def test_hold_of_what_the_robot_does_teaches_nothing(driving: Corridor) -> None:
+    held(driving, 200, 105, "forward")
+    assert driving.run(105, release()).results[0].outcome == Outcome.of(
+        ResultCode.HOLD_RELEASED, lessons=0, lesson=None
+    )
+    assert events(driving) == []
+
+
+def test_hold_answers_a_question(driving: Corridor) -> None:
+    asked = [driving.run(300) for _ in range(30)]
+    assert asked[-1].decision.asking
+    assert driving.run(300, hold(driving)).decision.action == "back"
+    lesson = driving.notebook.events[1]
+    assert isinstance(lesson, RlaCreated)
+    assert lesson.rla.condition == condition(driving, asked[0].tick)
+    driving.run(300, release())
+    assert driving.run(300).decision.action == "back"
+
+
+def test_hold_before_the_first_lesson_teaches() -> None:
+    corridor = Corridor()
+    corridor.run(100)
+    held(corridor, 11, 100)
+    assert actions(corridor) == {1: "back"}
+
+
+def test_hold_looks_back_at_most_two_seconds(driving: Corridor) -> None:
+    teach_slowly(driving)
+    assert driving.school.delay.ticks("Ann", 1) == 200
+    wrong = driving.run(118).tick
+    for _ in range(199):
+        driving.run(100)
+    driving.run(100, hold(driving))
+    assert condition(driving, wrong) in [rla.condition for rla in driving.system.rlas if rla.action == "back"]
+
+
+def test_hold_skips_ticks_by_hand_and_at_standstill(driving: Corridor) -> None:
+    for _ in range(100):
+        driving.run(110, Drive("Ann", driving.ticks, 3, 0.1, 0.1))
+    driving.run(110, release(3, "let the wheel go"))
+    for _ in range(30):
+        driving.run(110)
+    driving.run(110, resume())
+    held(driving, 40, 110)
+    assert events(driving) == []
+
+
+def test_hold_lessons_replace_the_action_of_a_near_rla(driving: Corridor) -> None:
+    driving.run(100, hold(driving))
+    event = driving.notebook.events[-1]
+    assert isinstance(event, ActionReplaced)
+    assert (event.rla_id, event.action, event.instead_of) == (1, "back", "forward")
+    assert driving.school.corrections == 1
+
+
+def test_hold_counts_as_one_correction(driving: Corridor) -> None:
+    hold_through_the_unknown(driving)
+    assert len(events(driving)) > 3
+    assert driving.school.corrections == 1
+
+
+@pytest.mark.parametrize("lesson", [None, "Ann-hold-7"])
+def test_undo_of_a_hold_undoes_all_its_lessons_at_once(driving: Corridor, lesson: str | None) -> None:
+    before = driving.system.knowledge_hash()
+    hold_through_the_unknown(driving)
+    given = events(driving)
+    record = driving.run(100, release(), Undo("u-1", "Ann", lesson))
+    assert record.results[1].outcome == Outcome.of(ResultCode.HOLD_UNDONE, lessons=len(given))
+    assert record.results[1].lesson
+    undone = [event for event in record.events if isinstance(event, LessonUndone)]
+    assert [event.lesson for event in undone] == [each for each, _ in reversed(given)]
+    assert [event.origin.command_id for event in undone] == [
+        *[f"u-1/{number}" for number in range(1, len(given))],
+        "u-1",
+    ]
+    assert driving.system.knowledge_hash() == before
+    again = driving.run(100, Undo("u-2", "Ann", "Ann-hold-7"))
+    assert again.results[0].code is RefusalCode.UNDONE_ALREADY
+
+
+def test_undo_of_one_lesson_of_a_hold_leaves_the_others(driving: Corridor) -> None:
+    hold_through_the_unknown(driving)
+    driving.run(100, release())
+    *others, (last, _) = events(driving)
+    assert driving.run(100, Undo("u-1", "Ann", last)).results[0].code is ResultCode.LESSON_UNDONE
+    assert driving.run(100, Undo("u-2", "Ann", "Ann-hold-7")).results[0].outcome == Outcome.of(
+        ResultCode.HOLD_UNDONE, lessons=len(others)
+    )
+
+
+def test_undo_of_a_hold_is_refused_below_a_later_lesson(driving: Corridor) -> None:
+    driving.run(100, hold(driving))
+    driving.run(100, release())
+    driving.run(100, Correct("later", "Ann", "forward"))
+    (result,) = driving.run(100, Undo("u-1", "Ann", "Ann-hold-7")).results
+    assert (result.code, result.outcome.fields["later"]) == (RefusalCode.TAUGHT_AFTER, "later")
+    driving.run(100, Undo("u-2", "Ann"))
+    assert driving.run(100, Undo("u-3", "Ann", "Ann-hold-7")).results[0].accepted
+    assert actions(driving) == {1: "forward"}
+
+
+def test_hold_of_another_run_gets_an_id_of_its_own(driving: Corridor) -> None:
+    driving.run(100, hold(driving))
+    driving.run(100, release())
+    driving.school.authority.reset_sequence("Ann")
+    driving.run(100, Undo("u", "Ann"))
+    for _ in range(20):
+        driving.run(110)
+    driving.run(110, hold(driving))
+    assert [each for each, _ in events(driving)] == ["Ann-hold-7/202", f"Ann-hold-7-2/{driving.ticks}"]
+
+
+def test_ids_of_holds_are_refused_in_commands(driving: Corridor) -> None:
+    (result,) = driving.run(100, Teach("Ann-hold-7/5", "Ann", "back")).results
+    assert result.code is RefusalCode.RESERVED_ID
+
+
+def condition(corridor: Corridor, tick: int) -> tuple[float, ...]:
+    return tuple(corridor.school.recent.situation(tick).tolist())
+
+
+def teach_slowly(corridor: Corridor) -> None:
+    """Answer four questions about situations far off, each after 2.5 s."""
+    for number in range(4):
+        for _ in range(250):
+            corridor.run(1000 * (number + 1))
+        corridor.run(1000 * (number + 1), Teach(f"slow-{number}", "Ann", "forward"))
+    for _ in range(210):
+        corridor.run(100)
+
+
+def hold_through_the_unknown(corridor: Corridor) -> None:
+    """Hold an action while the situation leaves all that the robot knows."""
+    for counts in range(100, 400, 3):
+        held(corridor, 2, counts)
+    held(corridor, 20, 400)

@@ -1,0 +1,65 @@
+"""Runs in which actions were held and presses came late are decided again as they were."""
+
+from pathlib import Path
+
+import pytest
+
+from kurt2rt.core.rla.events import ActionReplaced, LessonUndone, RlaCreated
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.teaching.commands import Correct, HoldAction, Resume, SetPhase, Stop, Undo, Watch
+from kurt2rt.core.tick import TickRecord
+from kurt2rt.runs.recording.entries import TickEntry
+from kurt2rt.runs.replay.comparison import compare
+from kurt2rt.runs.replay.reader import read_run
+from kurt2rt.runs.replay.replay import Replay
+from kurt2rt.teacher.scripted.teacher import view_of_tick
+from tests.runs.replay.stories import NAME, Scene, record_story
+
+
+def holding(scene: Scene, record: TickRecord) -> None:
+    """Let the teacher answer for 5 s, hold an action for a second, press late, and undo the hold."""
+    tick, inbox, say = record.tick, scene.runtime.inbox, scene.say
+    if tick % 5 == 0:
+        inbox.put(Watch(NAME, tick))
+    if tick < 500 or tick > 640:
+        command = scene.teacher.update(view_of_tick(record))
+        if command is not None:
+            inbox.put(command)
+    if 500 <= tick < 600:
+        inbox.put(HoldAction(NAME, tick, 1, "curve_left" if tick < 560 else "curve_right"))
+    match tick:
+        case 10:
+            say(lambda name: Resume(name, NAME))
+            say(lambda name: SetPhase(name, NAME, Phase.CORRECTIONS))
+        case 605:
+            say(lambda name: Stop(name, NAME, 1))
+        case 620:
+            say(lambda name: Correct(name, NAME, "curve_left", put_back=True, seen_tick=tick))
+        case 660:
+            say(lambda name: Undo(name, NAME, f"{NAME}-hold-1"))
+
+
+@pytest.fixture(scope="module")
+def run_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return record_story("walls", tmp_path_factory.mktemp("runs"), seconds=8, other=holding)
+
+
+def test_replay_of_holds_and_late_presses_is_bit_exact(run_folder: Path) -> None:
+    found = [str(each) for entry, record in Replay(read_run(run_folder)) for each in compare(entry, record)]
+    assert found == []
+
+
+def test_recorded_hold_has_its_lessons_and_their_undo(run_folder: Path) -> None:
+    entries: list[TickEntry] = list(read_run(run_folder).entries())
+    events = [event for entry in entries for event in entry.events]
+    given = [
+        event.origin.command_id
+        for event in events
+        if isinstance(event, RlaCreated | ActionReplaced) and "-hold-1/" in event.origin.command_id
+    ]
+    undone = [event.lesson for event in events if isinstance(event, LessonUndone)]
+    assert len(given) > 1
+    assert undone == given[::-1]
+    late = next(entry.results[0] for entry in entries if entry.tick == 621)
+    assert late.accepted
+    assert "before the press" in late.text
