@@ -12,7 +12,7 @@ from kurt2rt.runs.recording.entries import TickEntry
 from kurt2rt.runs.replay.comparison import compare
 from kurt2rt.runs.replay.reader import read_run
 from kurt2rt.runs.replay.replay import Replay
-from kurt2rt.teacher.scripted.teacher import view_of_tick
+from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from tests.runs.replay.stories import NAME, Scene, record_story
 
 
