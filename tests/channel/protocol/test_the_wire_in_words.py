@@ -31,9 +31,9 @@ from tests.channel.states import COMMANDS, SURPRISED, state
 from tests.service.health.reports import ILL
 
 TEXT = (Path(__file__).parents[3] / "docs" / "the-wire.md").read_text(encoding="utf-8")
-PICTURE = TEXT[TEXT.index("### The picture") : TEXT.index("### What a teacher says")]
+PICTURE = TEXT[TEXT.index("### The picture") : TEXT.index("### Requests")]
 HEALTH = TEXT[TEXT.index("### Health") : TEXT.index("### Versions")]
-SAID = TEXT[TEXT.index("### What a teacher says") : TEXT.index("### Versions")]
+SAID = TEXT[TEXT.index("### Requests") : TEXT.index("### Versions")]
 
 
 def bodies() -> dict[str, list[str]]:
@@ -68,7 +68,7 @@ def test_every_path_is_explained_with_as_many_places_as_it_takes() -> None:
 
 def ranges() -> dict[str, str]:
     """Return the allowed values by the word of a body."""
-    table = SAID[SAID.index("What each of them takes") : SAID.index("Answers are maps;")]
+    table = SAID[SAID.index("Allowed values; the robot") : SAID.index("Answers are maps;")]
     return {
         word: text
         for words, text in re.findall(r"^\| (`.*?`) \| (.*?) \|$", table, re.MULTILINE)
