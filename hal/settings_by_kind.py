@@ -36,7 +36,12 @@ def find_kind(package: str, kind: str, base: type[KindT]) -> type[KindT]:
 
 
 def as_its_kind(given: object, package: str, base: type[KindT]) -> KindT:
-    """Validate the content of a file by the settings class of the kind that it names.
+    """Return `given` as an instance of the settings class that its key `kind` names.
+
+    Args:
+        given: Mapping with the key `kind` and the settings of that kind, or an instance of `base`, which is returned.
+        package: Dotted name of the package with one module per kind, such as behaviors.policies.
+        base: Base class of the settings of all kinds in the package.
 
     Raises PydanticCustomError or ValidationError, both ValueErrors, that name the key and what is allowed.
     """

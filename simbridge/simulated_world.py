@@ -57,7 +57,7 @@ class Kurt2World:
         )
 
     def world(self) -> WorldPlan:
-        """Return the world after the next step of the simulation."""
+        """Return the plan of the world, with all moves of walls so far, also those that the next step applies."""
         return plan_of(self._world, self._version)
 
     def move_wall(self, name: str, dx_m: float, dy_m: float) -> None:

@@ -61,7 +61,7 @@ class TickTimer:
         self._last_ns = now_ns
 
     def end(self) -> None:
-        """End the tick."""
+        """End the tick and count it; call it once per `begin`, after the last `lap`."""
         self.ticks += 1
         self._row = self.ticks % self._capacity
 

@@ -49,7 +49,16 @@ class Telemetry:
         self._analog.update(fresh, counts)
 
     def send(self, left_ticks: int, right_ticks: int, bumpers: int) -> None:
-        """Send the frames of one cycle. Raises hal.bus.BusError."""
+        """Send the frames of one cycle.
+
+        Args:
+            left_ticks: Encoder ticks of the left side since the previous cycle, forward positive.
+            right_ticks: Encoder ticks of the right side.
+            bumpers: Bit n is set if bumper n touches.
+
+        Raises:
+            hal.bus.BusError: the bus is closed or down.
+        """
         send, frames = self._port.send, self._analog.frames
         for number in self._analog.with_sensor:
             send(frames[number])

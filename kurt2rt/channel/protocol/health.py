@@ -74,8 +74,11 @@ class BusHealth:
     controller: str
     """State of this machine's CAN controller: a value of hal.bus_state.ControllerState."""
     frames: int
+    """All frames received."""
     junk: int
+    """Frames of a known identifier with an invalid content."""
     error_frames: int
+    """Error frames of the CAN controller."""
     foreign_control: int
     """CONTROL frames of another sender."""
     send_failures: int

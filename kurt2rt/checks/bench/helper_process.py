@@ -48,7 +48,7 @@ class HelperProcess:
 
 @asynccontextmanager
 async def helper_process(module: str, *arguments: str) -> AsyncIterator[HelperProcess]:
-    """Start `python -m module`, and end it with the context."""
+    """Run `python -m module ARGUMENTS` as a process that answers `HelperProcess.ask`; end it with the context."""
     # In a session of its own, so that Ctrl-C reaches the robot first. Its input ends when we do, and so does it.
     process = await anyio.open_process(
         [sys.executable, "-m", module, *arguments],

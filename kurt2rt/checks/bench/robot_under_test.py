@@ -50,7 +50,7 @@ async def learn(fixture: BenchFixture, duration_s: float, on_progress: OnProgres
 
 
 def with_duration(task: TaskSettings, *, supervised_s: float, corrections_s: float) -> TaskSettings:
-    """Return the task with a lesson of that length."""
+    """Return a copy of the task with other durations of phase 1 (`supervised_s`) and phase 2 (`corrections_s`)."""
     teaching = task.teaching.model_copy(update={"supervised_s": supervised_s, "corrections_s": corrections_s})
     return task.model_copy(update={"teaching": teaching})
 

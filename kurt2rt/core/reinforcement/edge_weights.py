@@ -52,7 +52,10 @@ class EdgeWeights:
         self._history.present.update(self._weights_after(value, trace))
 
     def apply_credits(self, updates: Iterable[CreditUpdate], sign: int) -> None:
-        """Change the edge of each credit; a credit of an old journal has no edge and changes all edges into its RLA."""
+        """Apply (`sign` +1) or take back (-1) credits, each on the edge into its RLA.
+
+        A credit of an old journal names no edge and changes all edges into its RLA.
+        """
         for (rla_id, change, before), depth in updates:
             edges = self._history.get(rla_id, depth)
             if edges is None and (before is None or sign < 0):

@@ -33,7 +33,7 @@ class NavigationPlan:
 
     @property
     def waves(self) -> tuple[tuple[BasicJob | NavigationJob, ...], ...]:
-        """Jobs that need none but those of the waves before."""
+        """Jobs in waves; the jobs of a wave need only results of earlier waves."""
         return self.basic_jobs, self.jobs
 
 

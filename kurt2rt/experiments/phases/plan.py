@@ -36,7 +36,7 @@ class PhasesPlan:
     source: str
     """Hash of the program's source."""
     waves: tuple[tuple[Job, ...], ...]
-    """Jobs that need none but those of the waves before."""
+    """Jobs in waves; the jobs of a wave need only results of earlier waves."""
 
     @property
     def jobs(self) -> list[Job]:

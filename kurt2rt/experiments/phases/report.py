@@ -12,7 +12,7 @@ from kurt2rt.experiments.study.html_report import spans, write_page
 
 
 def reasons_not_to_judge(plan: PhasesPlan) -> Iterator[str]:
-    """Yield the reasons against judging; none for a whole study with enough new robots."""
+    """Yield why the report compares no result with its target; none for a whole study with enough new robots."""
     if plan.quick:
         yield "A part only: it says that everything works, and nothing about the phases."
     yield from reasons_against_judging(plan.seeds)

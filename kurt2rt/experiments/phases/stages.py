@@ -56,7 +56,7 @@ def stage_outcome(
     exams: tuple[ExamOutcome, ...],
     judgements: tuple[Judgement, ...] = (),
 ) -> StageOutcome:
-    """Return the outcome of a stage; `teaching`: None without a training run."""
+    """Return the outcome of a stage, with the counts of `system`; `teaching`: None without a training run."""
     return StageOutcome(
         name=name,
         rlas=len(system),

@@ -87,7 +87,7 @@ class CriticScore:
 
 
 def score_of(judgements: Sequence[Judgement]) -> CriticScore:
-    """Return the agreement of one robot, or of several together."""
+    """Return the agreement of critic and judge, pooled over all ticks of all judgements."""
 
     def share(part: Callable[[Judgement], bool], whole: Callable[[Judgement], bool]) -> float | None:
         ticks = sum(each.ticks for each in judgements if whole(each))

@@ -47,7 +47,7 @@ class RoutePlan:
 
     @property
     def waves(self) -> tuple[tuple[BasicJob | RouteJob, ...], ...]:
-        """Jobs that need none but those of the waves before."""
+        """Jobs in waves; the jobs of a wave need only results of earlier waves."""
         return self.basic_jobs, tuple(job for each in self.experiments for job in each.jobs)
 
     @property

@@ -38,7 +38,11 @@ class Journal:
 
     @classmethod
     def open(cls, path: Path, binding: KnowledgeBinding) -> Self:
-        """Open the journal at `path` as its only writer, or make one there. An error leaves every file as it was."""
+        """Open the journal at `path` as its only writer, or create it with the features and task of `binding`.
+
+        Raises:
+            KnowledgeError: the file is damaged, in use, or of other features or another task; no file was changed.
+        """
         path = Path(os.path.realpath(path))
         if journal_file.is_there(path):
             journal_file.require_ours(path)

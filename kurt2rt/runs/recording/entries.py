@@ -73,6 +73,7 @@ class ResultEntry(NamedTuple):
     text: str
     """Sentence for readers; a replay compares the code."""
     lesson: bool
+    """True if the command changed knowledge; its acknowledgement then follows when it is durable."""
     code: str | None = None
     """Code of the outcome; None in recordings from before 2026-11-22."""
 

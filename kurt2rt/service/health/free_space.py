@@ -36,7 +36,7 @@ class DiskMonitor:
         self._said[of] = self._now(), found
 
     def spaces(self) -> tuple[DiskSpace, ...]:
-        """Return the free space of each disk, None if it does not answer; never waits."""
+        """Return the newest space of each disk, without waiting; `free_bytes` is None if the disk does not answer."""
         now_s = self._now()
         found = []
         for of in self._folders:

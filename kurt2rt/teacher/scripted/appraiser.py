@@ -40,10 +40,10 @@ class RewardSource(Protocol):
 
 
 class JudgeReward:
-    """Rewards of a judge, for each tick in which the robot drives."""
+    """Reward source that asks a judge in each tick in which the robot drives."""
 
     def __init__(self, judge: Judge, patience: int = 0) -> None:
-        """Use a judge; a bad value counts from `patience` bad ticks in a row on."""
+        """Set the judge; `patience` is the number of bad ticks in a row before -1 is given, 0 or 1: at once."""
         self._judge = judge
         self._patience = patience
         self._bad = 0
