@@ -1,4 +1,4 @@
-"""Protocols of the rig for a fault scenario: a robot in simulated time with one fault."""
+"""Protocols of the rigs for fault drill and soak: a robot in simulated time with faults."""
 
 from collections.abc import Callable
 from typing import Protocol
@@ -61,18 +61,32 @@ class RigDisturbance(Protocol):
         ...
 
 
-class FaultRig(Protocol):
-    """Robot, bus and driver with one fault."""
+class BusRig(Protocol):
+    """Robot, bus and driver."""
 
     on_sent: Callable[[int, bytes], None]
-    """Callback with number and payload of each frame that the driver hands to its bus."""
-    on_control: Callable[[int, bytes], None]
-    """Callback with number and payload of each CONTROL that arrives at the robot."""
+    """Callback with number and payload of each CONTROL that a driver hands to its bus."""
 
     @property
     def time(self) -> SimulatedTime:
         """Return the simulated time."""
         ...
+
+    @property
+    def robot(self) -> Kurt2 | None:
+        """Return the present driver; None between two drivers."""
+        ...
+
+    def close(self) -> None:
+        """Close driver and bus."""
+        ...
+
+
+class FaultRig(BusRig, Protocol):
+    """Robot, bus and driver with one fault."""
+
+    on_control: Callable[[int, bytes], None]
+    """Callback with number and payload of each CONTROL that arrives at the robot."""
 
     @property
     def disturbance(self) -> RigDisturbance:
@@ -90,10 +104,6 @@ class FaultRig(Protocol):
 
     def attach_tap(self, tap: Tap) -> None:
         """Attach a tap to the driver's interface."""
-        ...
-
-    def close(self) -> None:
-        """Close driver and bus."""
         ...
 
 

@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-from hal.robot import STANDSTILL, Robot, SensorReadings
-from hal.robot_proxy import RobotProxy
+from hal.robot import STANDSTILL
+from kurt2rt.checks.faults.bus_observer import BusObserver
 from kurt2rt.checks.faults.complaint import ComplaintCode, complaint
 from kurt2rt.checks.faults.envelope import Envelope
 from kurt2rt.checks.faults.fault_rig import FaultRig
@@ -17,32 +17,25 @@ class Stand(NamedTuple):
     to_s: float
 
 
-class WheelObserver(RobotProxy):
-    """Observer of both ends of the bus, and the tick's robot (RobotProxy)."""
+class WheelObserver(BusObserver):
+    """Observer of both ends of the bus."""
 
     def __init__(self, rig: FaultRig, envelope: Envelope, controller_watchdog_s: float) -> None:
-        super().__init__(rig.robot)
-        self.envelope = envelope
+        super().__init__(rig, envelope)
+        self.attach(rig.robot)
         self.latched: tuple[float, str] | None = None
         """Time and reason of the guard's first latch; None without one."""
         self.drove_at_s: list[float] = []
         """Times of ticks with moving set points."""
-        self._rig = rig
         self._begin_s = rig.disturbance.begin_s
         self._controller_watchdog_s = controller_watchdog_s
-        self._sensed_at_s = 0.0
         self._arrivals: list[tuple[float, bool]] = []
         self._causes: list[tuple[float, tuple[str, ...]]] = []
-        rig.on_sent = self._on_sent
         rig.on_control = self._on_arrival
-
-    def attach(self, robot: Robot) -> None:
-        """Observe another driver."""
-        self._robot = robot
 
     def on_tick(self, record: TickRecord) -> None:
         """Record set points and causes of a tick."""
-        now_s = self._rig.time.now_s()
+        now_s = self._time.now_s()
         if record.guard_result.wheel_speeds != STANDSTILL:
             self.drove_at_s.append(now_s)
             if not record.decision.driving:
@@ -80,24 +73,17 @@ class WheelObserver(RobotProxy):
         first_s = next((at_s for at_s, _ in self._causes if at_s >= time_s), None)
         return tuple(dict.fromkeys(word for at_s, words in self._causes if at_s == first_s for word in words))
 
-    def sense(self, now_s: float) -> SensorReadings:
-        """Read the sensors; the age of the next decision counts from now."""
-        self._sensed_at_s = self._rig.time.now_s()
-        return self._robot.sense(now_s)
-
-    def close(self) -> None:
-        """Do nothing: the rig closes the robot."""
-
     def _on_sent(self, number: int, payload: bytes) -> None:
-        now_s, latched = self._rig.time.now_s(), self._rig.robot.health.latched
+        now_s, robot = self._time.now_s(), self._rig.robot
+        latched = None if robot is None else robot.health.latched
         if latched is not None:
             if self.latched is None and now_s >= self._begin_s:
                 self.latched = (now_s, latched)
             self._causes.append((now_s, (latched,)))
-        self.envelope.on_sent(number, now_s, payload, now_s - self._sensed_at_s, latched=latched is not None)
+        super()._on_sent(number, payload)
 
     def _on_arrival(self, number: int, payload: bytes) -> None:
-        now_s = self._rig.time.now_s()
+        now_s = self._time.now_s()
         told = self.envelope.on_arrived(number, now_s, payload)
         if told is not None:
             self._arrivals.append((now_s, told.standing))

@@ -5,28 +5,19 @@ from typing import Protocol
 
 from hal.kurt2 import Kurt2
 from hal.tap import Tap
-from kurt2rt.checks.faults.fault_rig import RigDisturbance, SimulatedTime
+from kurt2rt.checks.faults.fault_rig import BusRig, RigDisturbance
 from kurt2rt.checks.faults.table import Kind
 
 
-class SoakRig(Protocol):
+class SoakRig(BusRig, Protocol):
     """Robot, bus and a sequence of drivers."""
 
-    on_sent: Callable[[int, bytes], None]
-    """Callback with number and payload of each CONTROL that a driver hands to its bus."""
     on_control: Callable[[int, bytes, float], None]
     """Callback with number, payload and arrival time in s of each CONTROL that the robot receives."""
     turned_m: list[float]
     """Distance rolled by the rims, left and right, forward positive."""
     crashes: int
     """Crashes of the robot's controller, each followed by a power cycle."""
-    robot: Kurt2 | None
-    """Present driver; None between two drivers."""
-
-    @property
-    def time(self) -> SimulatedTime:
-        """Return the simulated time."""
-        ...
 
     @property
     def position_m(self) -> tuple[float, float]:
@@ -66,8 +57,4 @@ class SoakRig(Protocol):
 
     def power_cycle(self) -> None:
         """Power-cycle the robot's controller."""
-        ...
-
-    def close(self) -> None:
-        """Close driver and bus."""
         ...

@@ -2,8 +2,8 @@
 
 import math
 
-from hal.guard_reason import GuardReason
-from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings, WheelSpeeds
+from hal.robot import STANDSTILL, Robot, SensorReadings
+from kurt2rt.checks.faults.bus_observer import BusObserver
 from kurt2rt.checks.faults.complaint import Complaint, ComplaintCode, complaint
 from kurt2rt.checks.faults.envelope import Envelope
 from kurt2rt.checks.faults.table import EnvelopeSettings
@@ -32,11 +32,11 @@ class Complaints:
             self.stored.append(found)
 
 
-class SoakObserver:
-    """Observer of sent and received frames and of tick records, and the tick's robot."""
+class SoakObserver(BusObserver):
+    """Observer of sent and received frames and of tick records."""
 
     def __init__(self, rig: SoakRig, limits: EnvelopeSettings) -> None:
-        self.envelope = Envelope(limits)
+        super().__init__(rig, Envelope(limits))
         self.complaints = Complaints()
         """Complaints about envelope, standstill and tick accounting."""
         self.ticks = self.missed_ticks = 0
@@ -47,31 +47,25 @@ class SoakObserver:
         """Accepted commands to resume."""
         self.clock_is_faulty = False
         """True while the program's clock fails; deadlines are not judged then."""
-        self._rig = rig
-        self._robot: Robot | None = None
         self._limits = limits
-        self._sensed_at_s = 0.0
         self._told_standing = True
         self.stood_at_s: float | None = None
         self.slowest_m_s = 0.0
         """Slowest set point of a side since `watch_for_standstill`."""
         self._heard_at_s = 0.0
         self._must_stand = ""
-        self._begun_s: float | None = None
         self._period_s = 0.0
-        rig.on_sent = self._on_sent
         rig.on_control = self._on_arrival
 
-    def attach(self, robot: Robot, period_s: float) -> None:
+    def begin_program(self, robot: Robot, period_s: float) -> None:
         """Observe a restarted program, which must stand until it is resumed."""
-        self._robot = robot
+        self.attach(robot)
         self._period_s = period_s
         self._must_stand = "the program was started"
-        self._begun_s = None
 
     def on_tick(self, record: TickRecord, ledger: TickTimer, begun_s: float) -> None:
         """Check a tick. `begun_s`: start of the program's loop on its own clock."""
-        now_s = self._rig.time.now_s()
+        now_s = self._time.now_s()
         moves = record.guard_result.wheel_speeds != STANDSTILL
         if moves and not record.decision.driving:
             self.complaints.add(complaint(ComplaintCode.DROVE_THOUGH, now_s, cause=record.decision.cause))
@@ -113,38 +107,13 @@ class SoakObserver:
 
     @property
     def _silent(self) -> bool:
-        return self._rig.time.now_s() - self._heard_at_s >= self._limits.controller_watchdog_s
+        return self._time.now_s() - self._heard_at_s >= self._limits.controller_watchdog_s
 
     def sense(self, now_s: float) -> SensorReadings:
-        """Read the sensors; the age of the next decision counts from now."""
-        self._sensed_at_s = self._rig.time.now_s()
-        assert self._robot is not None
-        readings = self._robot.sense(now_s)
+        """Read the sensors; a pressed bumper allows a wheel to turn round at once."""
+        readings = super().sense(now_s)
         self.envelope.bumper_pressed = readings.bumpers != 0
         return readings
-
-    def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
-        """Forward to the robot."""
-        assert self._robot is not None
-        return self._robot.drive(wanted, decided_at_s, now_s)
-
-    def emergency_stop(self, reason: GuardReason) -> None:
-        """Forward to the robot."""
-        assert self._robot is not None
-        self._robot.emergency_stop(reason)
-
-    def release(self) -> None:
-        """Forward to the robot."""
-        assert self._robot is not None
-        self._robot.release()
-
-    def close(self) -> None:
-        """Do nothing: the rig closes the robot."""
-
-    def _on_sent(self, number: int, payload: bytes) -> None:
-        now_s, robot = self._rig.time.now_s(), self._rig.robot
-        latched = robot is not None and robot.health.latched is not None
-        self.envelope.on_sent(number, now_s, payload, now_s - self._sensed_at_s, latched=latched)
 
     def _on_arrival(self, number: int, payload: bytes, at_s: float) -> None:
         told = self.envelope.on_arrived(number, at_s, payload)

@@ -82,7 +82,7 @@ class ProgramRun:
         path = Path(service.knowledge)
         opened = open_soak_knowledge(path, settings, run_settings.task)
         self.knowledge = SoakKnowledge(path, opened, rig.time)
-        observer.attach(rig.start_driver(start.wire), settings.can.cycle_s)
+        observer.begin_program(rig.start_driver(start.wire), settings.can.cycle_s)
         teacher.program_started()
         self.clock = SoakClock(rig.time)
         self.level = SoakLevel(rig.time)
