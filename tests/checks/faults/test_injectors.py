@@ -220,23 +220,23 @@ async def test_faulty_clock_off_raises_and_garbage_reads_nan() -> None:
     assert now_s != now_s
 
 
-# The witness
+# The observer
 
 
 @pytest.fixture
-def place() -> Iterator[SimulatedFaultRig]:
-    opened = FaultRigFactory(ROBOT).open("tick", "stuck", begin_s=1.0, end_s=2.0, period_s=1.0, delay_s=1.0, seed=1)
-    yield opened
-    opened.close()
+def rig() -> Iterator[SimulatedFaultRig]:
+    rig = FaultRigFactory(ROBOT).open("tick", "stuck", begin_s=1.0, end_s=2.0, period_s=1.0, delay_s=1.0, seed=1)
+    yield rig
+    rig.close()
 
 
-def test_the_witness_knows_when_the_robot_stands(place: SimulatedFaultRig) -> None:
-    observer = WheelObserver(place, Envelope(TABLE.envelope), controller_watchdog_s=0.2)
+def test_wheel_observer_standstills_cover_stop_and_silence(rig: SimulatedFaultRig) -> None:
+    observer = WheelObserver(rig, Envelope(TABLE.envelope), controller_watchdog_s=0.2)
     go, stand = bytes((0, 2, 0, 1, 0, 1, 0, 1)), bytes((0, 2, 0, 0, 0, 0, 0, 1))
     for at_s, payload in ((0.1, go), (0.2, go), (0.3, stand), (0.4, go), (0.9, go), (1.0, b"\xff" * 8), (1.05, go)):
-        place.time.run_until(at_s)
+        rig.time.run_until(at_s)
         observer.envelope.on_sent(round(at_s * 100), at_s, payload, 0.0, latched=False)
-        place.on_control(round(at_s * 100), payload)
+        rig.on_control(round(at_s * 100), payload)
     # Told so, silent for longer than its own watchdog waits, and silent in the end.
     stands = [(round(each.from_s, 6), each.to_s) for each in observer.standstills(0.0, 2.0)]
     assert stands == [(0.0, 0.1), (0.3, 0.4), (0.6, 0.9), (1.25, 2.0)]
