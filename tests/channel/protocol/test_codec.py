@@ -50,6 +50,7 @@ from kurt2rt.channel.protocol.schema import (
 )
 from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
+from kurt2rt.core.decision.standing import StandReason
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC, MID
 from kurt2rt.core.teaching.progress import Progress
@@ -66,6 +67,7 @@ PRINTABLE = st.characters(categories=("L", "N", "P", "S")) | st.just(" ")
 NAMES = st.text(PRINTABLE, max_size=64)
 WORDS = st.lists(NAMES, max_size=12).map(tuple)
 LEVELS = st.sampled_from((BASIC, MID))
+STOPPED = ActiveStop(StopReason.SAID_STOP, "Ann")
 
 
 def values(check: Check) -> st.SearchStrategy[Any]:
@@ -365,6 +367,29 @@ def test_a_newer_robot_may_tell_more_but_not_less() -> None:
     del picture["m"]
     with pytest.raises(WireError, match="the state has no 'm'"):
         decode_state(cbor2.dumps(picture))
+
+
+def test_state_with_a_negative_tick_is_refused() -> None:
+    with pytest.raises(WireError, match="tick has to be a whole number"):
+        decode_state(cbor2.dumps(cbor2.loads(encode_state(state())) | {"t": -1}))
+
+
+@pytest.mark.parametrize(
+    ("action", "by_hand", "stop", "reason"),
+    [
+        ("forward", False, None, StandReason.DRIVES),
+        ("forward", True, STOPPED, StandReason.DRIVES),
+        ("forward", False, STOPPED, StandReason.STOPPED),
+        (None, False, None, StandReason.ASKS),
+        (None, True, None, StandReason.ASKS),
+    ],
+)
+def test_standing_of_an_older_robot_follows_from_its_state(
+    action: str | None, by_hand: bool, stop: ActiveStop | None, reason: StandReason
+) -> None:
+    cause = "stopped" if stop is not None else "unknown"
+    told = state(action=action, by_hand=by_hand, stopped=stop, cause=cause, standing=None)
+    assert told.stands.reason is reason
 
 
 def test_an_answer_is_a_map() -> None:

@@ -54,6 +54,11 @@ def test_health_text_missing_values_are_named() -> None:
     assert lines_of(None) == ("nothing is known yet, the robot program has just begun",)
 
 
+def test_ticks_row_names_recent_misses_only_if_any() -> None:
+    ticks = [{row.name: row.text for row in rows_of(report)}["ticks"] for report in (WELL, ILL)]
+    assert [text.partition(" missed")[2] for text in ticks] == ["", ", 3 of them in the last minute"]
+
+
 @pytest.mark.parametrize(
     ("seconds", "words"),
     [(0.4, "0 s"), (59.4, "59 s"), (59.6, "1 min 0 s"), (3725, "1 h 2 min"), (90_000, "1 d 1 h")],

@@ -83,6 +83,7 @@ def test_filter_junk_costs_no_token() -> None:
         (bytes([0x61, 0, 0, 1]), False),
         (bytes([0x60, 1, 0, 1]), False),  # a request in an ACK
         (bytes([0x50, 69, 0, 1]), False),  # 2.05
+        (bytes([0x50, 7, 0, 1]), True),  # iPATCH, the last method
         (bytes([0x50, 8, 0, 1]), False),  # no method yet
         (bytes([0x59, 1, 0, 1]) + bytes(9), False),  # token of 9
         (bytes([0x50, 2, 0, 1, 0xFF]) + bytes(1495), True),

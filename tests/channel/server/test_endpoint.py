@@ -11,17 +11,34 @@ from typing import Any
 
 import aiocoap
 import pytest
+from aiocoap.error import ConRetransmitsExceeded, NetworkError
 from aiocoap.messagemanager import MessageManager
 
 from kurt2rt.channel.protocol.schema import ChannelError
 from kurt2rt.channel.server.datagram_filter import Counters, Limits
-from kurt2rt.channel.server.endpoint import Endpoint, open_endpoint
+from kurt2rt.channel.server.endpoint import Endpoint, _unless_reachable, open_endpoint
 from tests.channel.clock import Clock
 from tests.channel.jumping_loop import run_jumping
 
 UNLIMITED = Limits(strangers_at_once=1e9)
 PING = bytes([0x40, 0, 0x12, 0x34])
 PONG = bytes([0x70, 0, 0x12, 0x34])
+
+
+@pytest.mark.parametrize(
+    ("error", "reachable", "ended"),
+    [
+        (ConRetransmitsExceeded("4 times"), True, False),
+        (ConRetransmitsExceeded("4 times"), False, True),
+        (NetworkError("no route"), True, True),
+        (NetworkError("no route"), False, True),
+    ],
+)
+def test_endpoint_keeps_observations_of_a_reachable_sender_only(error: Exception, reachable: bool, ended: bool) -> None:
+    ends: list[Exception] = []
+    dispatch = _unless_reachable(lambda error, _: ends.append(error), lambda _: reachable)
+    dispatch(error, "a device")
+    assert bool(ends) is ended
 
 
 class Site:

@@ -304,6 +304,14 @@ def test_nearest_first_limit_is_a_prefix(most: int) -> None:
     assert lost == tuple((rla_id, math.inf) for rla_id in range(1, 9))[:most]
 
 
+def test_nearest_first_without_rlas_of_the_behaviour_is_empty() -> None:
+    system = system_of(created(1, (0.0, 0.0)))
+    here = np.array([0.0, 0.0])
+    assert (system.nearest_first(here, "turn_left"), system.candidate_count("turn_left")) == ((), 0)
+    system.apply(deleted(1))
+    assert (system.nearest_first(here), system.candidate_count()) == ((), 0)
+
+
 def test_lessons_about_one_rla_are_separate() -> None:
     lessons = (
         created(1, (0.0, 0.0)),

@@ -101,6 +101,7 @@ def test_write_network_picture_has_panels_and_labels(tmp_path: Path) -> None:
     text = (tmp_path / "network.svg").read_text(encoding="utf-8")
     for shown in ("the title", "left: 2 RLAs", "right: 2 RLAs", ">90<", ">80<", ">forward<", ">4<"):
         assert shown in text, shown
+    assert text.count('id="PathCollection_') == 2  # the nodes of each panel
     assert ">10<" not in text  # from the one behaviour to the other a command led
 
 

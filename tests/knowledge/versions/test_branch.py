@@ -36,7 +36,9 @@ def taught(path: Path) -> Path:
 
 
 def test_branch_whole_file_has_equal_lessons_and_counts(taught: Path, tmp_path: Path) -> None:
-    told = branch(taught, tmp_path / "b.knowledge", None, stamp=NOW).origin
+    made = branch(taught, tmp_path / "b.knowledge", None, stamp=NOW)
+    told = made.origin
+    assert made.skipped_earlier == 0
     with Journal.read_only(taught) as old, Journal.read_only(tmp_path / "b.knowledge") as new:
         assert new.entries() == old.entries()
         assert new.statistics() == old.statistics()

@@ -32,7 +32,7 @@ from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from kurt2rt.knowledge.versions.branch import branch
 from kurt2rt.knowledge.versions.contradictions import Radii
 from kurt2rt.knowledge.versions.diff import compare
-from kurt2rt.knowledge.versions.lesson_identity import read_content
+from kurt2rt.knowledge.versions.lesson_identity import NO_STACK, LessonKey, read_content
 from kurt2rt.knowledge.versions.merge import Conflict, ConflictCode, MergePlan, RlaState, Side, merge
 from kurt2rt.knowledge.versions.merge_writer import LeftOutCode
 from tests.examples import examples
@@ -195,6 +195,21 @@ def test_merge_near_rlas_of_other_action_are_a_conflict(mine: Path, theirs: Path
     assert conflict.radius_fraction == 0.2
     settled = {None: {4: "left"}, "mine": {4: "left", 5: "right"}, "theirs": {5: "right", 6: "right"}}[prefer]
     assert {rla_id: action for rla_id, action in actions(mine).items() if rla_id > 3} == settled
+
+
+def test_merge_correction_near_an_rla_of_mine_is_no_conflict(mine: Path, theirs: Path) -> None:
+    append(mine, RlaCreated(replace(created(4, "mine-4", "left").rla, condition=(*created(2).rla.condition[:3], -4.9))))
+    append(theirs, replaced(2, "right", "forward"))
+    assert merge_files(mine, theirs).conflicts == ()
+    assert actions(mine) == {1: "forward", 2: "right", 3: "forward", 4: "left"}
+
+
+def test_free_command_id_appends_checksum_then_number() -> None:
+    key = LessonKey("teach", 0xAB, NO_STACK, is_reward=False)
+    taken = set[str]()
+    for expected in ("teach", "teach~000000ab", "teach~000000ab-2", "teach~000000ab-3"):
+        assert key.free_command_id(taken) == expected
+        taken.add(expected)
 
 
 def test_merge_alternatives_to_known_rlas_are_no_conflict(mine: Path, theirs: Path) -> None:
