@@ -9,9 +9,18 @@ import typer
 from hal.robot_settings import load_robot
 from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.json_output import AsJson
-from kurt2rt.cli.options import ALL_PROCESSORS, Jobs, parse_seeds, results_option, seeds_option, task_option
+from kurt2rt.cli.options import (
+    ALL_PROCESSORS,
+    Jobs,
+    parse_seeds,
+    results_option,
+    seeds_option,
+    task_option,
+    teacher_option,
+)
 from kurt2rt.cli.progress import one_bar
 from kurt2rt.cli.tables import print_study
+from kurt2rt.core.teacher_settings import DEFAULT_TEACHER
 
 if TYPE_CHECKING:
     from kurt2rt.experiments.paper.outcome import Reading
@@ -32,6 +41,7 @@ class _Options:
         list[str] | None,
         task_option("Repeat for several. Default: all tasks of config/paper."),
     ] = None
+    teacher: Annotated[str, teacher_option(DEFAULT_TEACHER)] = DEFAULT_TEACHER
     jobs: Jobs = ALL_PROCESSORS
     out: Annotated[Path | None, results_option(f"{_FOLDER}, with --quick {_QUICK_FOLDER}")] = None
     plain: Annotated[
@@ -88,14 +98,14 @@ def _run_study(options: _Options) -> None:
     readings: tuple[Reading, ...] = ("shipped", "plain") if options.plain else ("shipped",)
     extent = QUICK if options.quick else WHOLE
     plan = make_plan(
-        load_paper(factory=stage),
+        load_paper(factory=stage).model_copy(update={"teacher": options.teacher}),
         extent,
         parse_seeds(typed_seeds),
         readings,
         JobParts(factory=stage, robot=robot, results=results),
         tasks=options.task or (),
     )
-    command = _command(quick=options.quick, seeds=typed_seeds, tasks=options.task or [], plain=options.plain)
+    command = _command(options, typed_seeds)
     with results.held(), one_bar(missing_time_s(plan, results)) as bar:
         run_missing(plan, results, options.jobs, bar.look)
         bar.say("figures and report")
@@ -106,8 +116,9 @@ def _run_study(options: _Options) -> None:
     print_study(all_tables(study), reasons_not_to_judge(plan), report, as_json=options.as_json)
 
 
-def _command(*, quick: bool, seeds: str, tasks: list[str], plain: bool) -> str:
+def _command(options: _Options, seeds: str) -> str:
     """Return the command as far as it decides the numbers, without paths of this machine."""
-    words = ["kurt2rt paper", *(["--quick"] if quick else []), f"--seeds {seeds}"]
-    words += [f"--task {Path(name).name}" for name in tasks]
-    return " ".join([*words, *([] if plain else ["--no-plain"])])
+    words = ["kurt2rt paper", *(["--quick"] if options.quick else []), f"--seeds {seeds}"]
+    words += [f"--task {Path(name).name}" for name in options.task or ()]
+    words += [f"--teacher {Path(options.teacher).name}"] if options.teacher != DEFAULT_TEACHER else []
+    return " ".join([*words, *([] if options.plain else ["--no-plain"])])

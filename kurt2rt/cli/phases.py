@@ -18,9 +18,11 @@ from kurt2rt.cli.options import (
     results_option,
     seeds_option,
     task_option,
+    teacher_option,
 )
 from kurt2rt.cli.progress import one_bar
 from kurt2rt.cli.tables import print_study
+from kurt2rt.core.teacher_settings import SUPERHUMAN
 
 _SEEDS, _QUICK_SEEDS = "100-119", "0-1"
 _FOLDER = Path("results/phases")
@@ -31,6 +33,7 @@ class _Options:
     """Options of `kurt2rt phases`."""
 
     task: Annotated[str, task_option("It needs a section `phases`. Default: wall_following.")] = "wall_following"
+    teacher: Annotated[str, teacher_option(SUPERHUMAN)] = SUPERHUMAN
     changes: Changes = None
     quick: Annotated[
         bool, typer.Option("--quick", help="All steps with two robots in under a minute, each for seconds only.")
@@ -65,7 +68,8 @@ def phases(options: _Options) -> None:
         kurt2rt phases --task wall_following --seeds 100-119
     """
     # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from kurt2rt.core.task_settings import load_task
+    from kurt2rt.core.task_settings import load_task, taught_by
+    from kurt2rt.core.teacher_settings import load_teacher
     from kurt2rt.experiments.phases.figures import draw_figures
     from kurt2rt.experiments.phases.plan import make_plan
     from kurt2rt.experiments.phases.report import reasons_not_to_judge, write_report
@@ -77,7 +81,8 @@ def phases(options: _Options) -> None:
     from simbridge.simulation import Kurt2SimulationFactory
 
     typed_seeds = options.seeds or (_QUICK_SEEDS if options.quick else _SEEDS)
-    robot, settings = load_robot(), load_task(options.task, changes=changes_of(options.changes))
+    profile = load_teacher(options.teacher)
+    robot, settings = load_robot(), taught_by(load_task(options.task, changes=changes_of(options.changes)), profile)
     results = Results(options.out or _FOLDER / (settings.name + ("-quick" if options.quick else "")))
     plan = make_plan(
         settings,
@@ -91,13 +96,15 @@ def phases(options: _Options) -> None:
         study = read_study(plan, results)
         pictures = list(draw_figures(study, results.folder))
         report = results.folder / "report.html"
-        command = _command(quick=options.quick, seeds=typed_seeds, task=options.task, changes=options.changes or [])
+        command = _command(options, typed_seeds)
         write_report(study, pictures, command, report)
     reasons = list(reasons_not_to_judge(plan))
     print_study(all_tables(study, reasons), reasons, report, as_json=options.as_json)
 
 
-def _command(*, quick: bool, seeds: str, task: str, changes: list[str]) -> str:
+def _command(options: _Options, seeds: str) -> str:
     """Return the command as far as it decides the numbers, without paths of this machine."""
-    words = ["kurt2rt phases", *(["--quick"] if quick else []), f"--task {Path(task).name}", f"--seeds {seeds}"]
-    return " ".join([*words, *(f"--set {each}" for each in changes)])
+    words = ["kurt2rt phases", *(["--quick"] if options.quick else []), f"--task {Path(options.task).name}"]
+    words += [f"--seeds {seeds}"]
+    words += [f"--teacher {Path(options.teacher).name}"] if options.teacher != SUPERHUMAN else []
+    return " ".join([*words, *(f"--set {each}" for each in options.changes or ())])

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from kurt2rt.core.task_settings import TaskSettings
     from kurt2rt.service.program import RobotProgram
     from kurt2rt.service.settings import ServiceSettings
+
+_CHANNEL, _NO_TEACHER = "channel", "none"
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,11 +49,13 @@ class _Options:
         str | None, world_option("Of the simulated robot. Default: the world of the task or of the settings.")
     ] = None
     teacher: Annotated[
-        Literal["channel", "none"],
+        str,
         typer.Option(
-            help="channel: teachers come over UDP; none: the robot drives without a teacher where it knows the way."
+            metavar="channel|none|NAME",
+            help="channel: teachers come over UDP; none: the robot drives without a teacher where it knows the way. "
+            "With --auto the scripted teacher: a name in config/teachers, or the path of a YAML file.",
         ),
-    ] = "channel"
+    ] = _CHANNEL
     behaviour: Annotated[
         str | None,
         typer.Option(
@@ -199,8 +203,13 @@ def _require_consistent(options: _Options) -> None:
             "--wire",
         ),
         (
-            (options.page or options.phone or options.auto) and options.teacher == "none",
+            (options.page or options.phone or options.auto) and options.teacher == _NO_TEACHER,
             "a page and a scripted teacher come over the channel",
+            "--teacher",
+        ),
+        (
+            not options.auto and options.teacher not in (_CHANNEL, _NO_TEACHER),
+            f"{options.teacher!r} is neither {_CHANNEL} nor {_NO_TEACHER}; a scripted teacher by name needs --auto",
             "--teacher",
         ),
         (
@@ -209,7 +218,7 @@ def _require_consistent(options: _Options) -> None:
             "--no-record",
         ),
         (
-            options.service and (options.auto or options.teacher == "none"),
+            options.service and (options.auto or options.teacher == _NO_TEACHER),
             "after each start it waits for a person who says Go",
             "--service",
         ),
@@ -241,7 +250,7 @@ def _program(options: _Options) -> "RobotProgram":
     if options.auto and taught.mid is not None:
         raise typer.BadParameter(mid_level_refusal(taught), param_hint="--auto")
     _require_behaviour(taught, options.behaviour)
-    simulated, attended = options.bus == SIMULATED, options.teacher == "channel"
+    simulated, attended = options.bus == SIMULATED, options.teacher != _NO_TEACHER
     run_options = RunOptions(
         bus=options.bus,
         settings=options.settings,
@@ -251,7 +260,7 @@ def _program(options: _Options) -> "RobotProgram":
         behaviour=options.behaviour or "",
         page=options.page or options.phone,
         phones=options.phone,
-        scripted_teacher=options.auto,
+        scripted_teacher=_scripted_teacher(options),
         page_port=options.page_port,
         can_log=options.can_log,
         record=not options.no_record,
@@ -268,6 +277,17 @@ def _program(options: _Options) -> "RobotProgram":
         browser=not options.no_open,
     )
     return RobotProgram(run_options, lambda: _changed(options, task), load_robot(settings.robot), taught, screen)
+
+
+def _scripted_teacher(options: _Options) -> str | None:
+    """Return the name or path of the scripted teacher; None without --auto. Raises SettingsError."""
+    from kurt2rt.core.teacher_settings import DEFAULT_TEACHER, load_teacher
+
+    if not options.auto:
+        return None
+    name = DEFAULT_TEACHER if options.teacher == _CHANNEL else options.teacher
+    load_teacher(name)
+    return name
 
 
 def _live_view(address: str | None) -> tuple[str, int] | None:

@@ -78,7 +78,8 @@ class RunOptions:
     page: bool = False
     phones: bool = False
     """True if the page is open to the network while a device is paired."""
-    scripted_teacher: bool = False
+    scripted_teacher: str | None = None
+    """Name or path of the scripted teacher to start; None: none."""
     page_port: int | None = None
     """TCP port of the page; None: as the settings say."""
     can_log: Path | None = None
@@ -372,8 +373,9 @@ class RobotProgram:
             phones = ("--phone",) if options.phones else ()
             words = ("teach", "--pages-as-json", *phones, "--port", port, *at)
             self._children.start("the teacher's page", *words, restarts=True, on_line=self._on_page_line)
-        if options.scripted_teacher:
-            words = ("teach", "--auto", "--port", port, "--task", self._service.task)
+        if options.scripted_teacher is not None:
+            task, teacher = self._service.task, options.scripted_teacher
+            words = ("teach", "--auto", "--port", port, "--task", task, "--teacher", teacher)
             self._children.start("the scripted teacher", *words, restarts=False)
 
     def _liveness(self) -> dict[str, Callable[[], bool]]:
@@ -420,7 +422,8 @@ class RobotProgram:
         service = self._service
         first = SimulatedRun(service.world, self._task, service.task, Path(service.knowledge))
         assert opened.require_world is not None
-        return SimulatedRuns(self._robot, first, opened.require_world, taught_by_script=self._options.scripted_teacher)
+        by_script = self._options.scripted_teacher is not None
+        return SimulatedRuns(self._robot, first, opened.require_world, taught_by_script=by_script)
 
     def _recording(self, opened: OpenedRobot) -> Recording | None:
         options, service = self._options, self._service

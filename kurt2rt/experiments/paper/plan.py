@@ -7,7 +7,8 @@ from pathlib import Path
 from hal.settings import find_config
 from hal.simulation import SimulationFactory
 from kurt2rt.core.phase_settings import PHASES
-from kurt2rt.core.task_settings import TaskSettings, load_task
+from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
+from kurt2rt.core.teacher_settings import load_teacher
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.paper.extent import Extent
 from kurt2rt.experiments.paper.jobs import GrowthJob, TaughtJob, with_radius_only
@@ -96,8 +97,9 @@ def make_plan(
     paper = extent.paper(paper)
     chosen = _chosen(paper, extent, tasks)
     _require_tasks(chosen, factory)
+    profile = load_teacher(paper.teacher)
     taught = [
-        (each, reading, extent.task(load_task(each.task, plain=reading == "plain")))
+        (each, reading, taught_by(extent.task(load_task(each.task, plain=reading == "plain")), profile))
         for reading in readings
         for each in chosen
     ]

@@ -75,8 +75,13 @@ def knowledge_table(summaries: Sequence[PaperSummary], title: str) -> Table:
         _sentence(title),
         ("task", "RLAs", "quartiles", "paper", "teaching, s", "paper", "asks", "corrections", "rescues"),
         tuple(rows),
-        note=f"{_robots(summaries)} RLAs, asks, corrections and rescues by hand are medians. Teaching in robot time.",
+        note=f"{_robots(summaries)} RLAs, asks, corrections and rescues by hand are medians. Teaching in robot time. "
+        f"Taught by the scripted teacher {' or '.join(_teachers(summaries))}.",
     )
+
+
+def _teachers(summaries: Sequence[PaperSummary]) -> list[str]:
+    return sorted({each.task.teaching.profile.name for each in summaries})
 
 
 def exam_table(summaries: Sequence[PaperSummary], title: str) -> Table:

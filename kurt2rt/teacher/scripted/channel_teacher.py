@@ -48,7 +48,9 @@ async def teach_by_script(
         raise RefusedError(_task_refusal(hello, task))
     teacher = build_teacher(task, settings, hello.actions, seed=seed, session="unused")
     supervisor = ScriptedSupervisor(robot, task, hello.period_s, seed, say)
-    await _begin(robot, f"scripted, seed {seed}")
+    profile = task.teaching.profile
+    await _begin(robot, f"scripted, {profile.name}, seed {seed}")
+    say(f"the scripted teacher is {profile.name}: {profile.what}")
     if task.teaching.reposition_every_s:
         say(_reposition_notice(task))
     if supervisor.plan:

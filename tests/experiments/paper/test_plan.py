@@ -10,6 +10,7 @@ import yaml
 from config import CONFIG_DIR
 from hal.settings import SettingsError
 from kurt2rt.core.task_settings import load_task
+from kurt2rt.core.teacher_settings import DEFAULT_TEACHER
 from kurt2rt.experiments.paper.extent import QUICK, WHOLE, Extent
 from kurt2rt.experiments.paper.outcome import Reading
 from kurt2rt.experiments.paper.plan import PaperPlan, make_plan, unseen_of
@@ -157,3 +158,15 @@ def test_success_asked_in_a_world_without_exam_is_refused() -> None:
     wrong = paper.model_copy(update={"experiments": (circle.model_copy(update={"asked": asked}),)})
     with pytest.raises(StudyError, match="circle: success is asked in b, but its exams are in one_object"):
         planned(paper=wrong)
+
+
+def test_make_plan_teacher_of_the_paper_teaches_every_task() -> None:
+    plan = planned("circle", "eight", paper=load_paper().model_copy(update={"teacher": "slow"}))
+    assert {each.task.teaching.profile.name for each in plan.experiments} == {"slow"}
+    quick, slow = planned("circle").jobs[0].made_of, plan.jobs[0].made_of
+    assert slow is not None
+    assert slow != quick
+
+
+def test_make_plan_without_a_teacher_takes_the_default() -> None:
+    assert {each.task.teaching.profile.name for each in planned("circle").experiments} == {DEFAULT_TEACHER}
