@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import pytest
 import yaml
 
 from config import CONFIG_DIR
@@ -34,7 +35,8 @@ def test_lesson_without_teacher_is_taught_by_superhuman(kurt2rt: CommandLine, tm
     assert plain["teacher"] == "superhuman"
 
 
-def test_lesson_unknown_teacher_is_refused_before_it_teaches(kurt2rt: CommandLine) -> None:
-    said = kurt2rt.refused("lesson", "--teacher", "nosuch", "--out", "made")
+@pytest.mark.parametrize("words", [("lesson",), ("demo",), ("paper",), ("phases",), ("run", "--auto")])
+def test_teacher_unknown_name_is_refused_before_work(kurt2rt: CommandLine, words: tuple[str, ...]) -> None:
+    said = kurt2rt.refused(*words, "--teacher", "nosuch")
     assert "nosuch: no such file in teachers; give a path to a .yaml file or one of: answers_only, attentive" in said
-    assert not Path("made").exists()
+    assert not Path("results").exists()

@@ -50,12 +50,11 @@ async def teach_by_script(
     supervisor = ScriptedSupervisor(robot, task, hello.period_s, seed, say)
     profile = task.teaching.profile
     await _begin(robot, f"scripted, {profile.name}, seed {seed}")
-    say(f"the scripted teacher is {profile.name}: {profile.what}")
     if task.teaching.reposition_every_s:
         say(_reposition_notice(task))
     if supervisor.plan:
         say(supervisor.plan)
-    say(f"phase 1 for {task.teaching.supervised_s:.0f} s: answers")
+    say(f"phase 1 for {task.teaching.supervised_s:.0f} s: answers, by the scripted teacher {profile.name}")
     lessons = await _teach(robot, teacher, supervisor, task, hello.period_s, say)
     if lessons is None:
         return
