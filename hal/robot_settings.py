@@ -86,6 +86,13 @@ class GuardSettings(Settings):
     frozen_infrared_s: Annotated[float, Field(gt=0, le=3600)]
 
 
+DISTANCE_CHANNEL = re.compile(r"ADC(0\d|1[014])|BDC(0\d|1[0-5])")
+"""Names of the analog channels that may carry a distance sensor."""
+
+_CURRENT_CHANNELS = ("ADC12", "ADC13")
+"""Analog channels of the motor currents (docs/the-robot.md, frame 0x08)."""
+
+
 class SensorSettings(Settings):
     """One infra-red distance sensor: where it sits and the analog channel that carries it."""
 
@@ -98,9 +105,11 @@ class SensorSettings(Settings):
 
     @field_validator("channel")
     @classmethod
-    def _channel_exists(cls, channel: str) -> str:
-        if not re.fullmatch(r"(ADC(0\d|1[0-4])|BDC(0\d|1[0-5]))", channel):
-            raise ValueError("channel must be ADC00 to ADC14 or BDC00 to BDC15")
+    def _carries_distances(cls, channel: str) -> str:
+        if channel in _CURRENT_CHANNELS:
+            raise ValueError(f"channel {channel} carries a motor current; use another one")
+        if not DISTANCE_CHANNEL.fullmatch(channel):
+            raise ValueError("channel must be ADC00 to ADC11, ADC14 or BDC00 to BDC15")
         return channel
 
 

@@ -204,7 +204,19 @@ def test_a_key_without_a_value_is_named(some: list[Place], tmp_path: Path) -> No
         ),
         ("floor_counts: 70", "floor_counts: 1024", "infrared.floor_counts: Input should be less than or equal to 1023"),
         ("mode: SPEED_CM", "mode: FAST", "can.speed_mode: Input should be 'RAW', 'SPEED' or 'SPEED_CM' (found 'FAST')"),
-        ("channel: ADC07", "channel: ADC15", "infrared.sensors.0.channel: Value error, channel must be ADC00 to ADC14"),
+        (
+            "channel: ADC07",
+            "channel: ADC15",
+            "infrared.sensors.0.channel: Value error, channel must be ADC00 to ADC11, ADC14 or BDC00 to BDC15",
+        ),
+        *(
+            (
+                "channel: ADC07",
+                f"channel: {current}",
+                f"infrared.sensors.0.channel: Value error, channel {current} carries a motor current; use another one",
+            )
+            for current in ("ADC12", "ADC13")
+        ),
         ("channel: ADC07", "channel: ADC08", "infrared: Value error, two sensors share the channel ADC08"),
         ("name: s1,", "name: s2,", "infrared: Value error, two sensors share the name s2"),
         ("far_m: 0.60", "far_m: 0.05", "must hold: fold_back_to_m < fold_back_from_m <= near_m < far_m"),

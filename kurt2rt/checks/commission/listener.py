@@ -1,16 +1,12 @@
 """Listener to all frames on its own CAN interface; the robot's driver filters for its own."""
 
-import re
-
 import can
 
 from hal.bus import CONTROL_ID, CanBus
 from hal.codec import Codec, InvalidFrameError, MessageCodec
 from hal.robot import HIGHEST_COUNTS
+from hal.robot_settings import DISTANCE_CHANNEL
 from kurt2rt.checks.commission.frame_statistics import EncoderFrame, FrameStatistics, Identity
-
-_DISTANCE_CHANNEL = re.compile(r"ADC(0\d|1[014])|BDC(0\d|1[0-5])")
-"""Channels of distance sensors; ADC12 and ADC13 are motor currents."""
 
 
 class Listener:
@@ -21,7 +17,7 @@ class Listener:
         self._bus = bus
         self._codec = codec
         named = {channel for each in codec.by_id.values() for channel in each.signals}
-        self._distances = frozenset(filter(_DISTANCE_CHANNEL.fullmatch, named))
+        self._distances = frozenset(filter(DISTANCE_CHANNEL.fullmatch, named))
         self.channels: set[str] = set()
         """Analog channels received so far."""
         self.has_bumpers = False
