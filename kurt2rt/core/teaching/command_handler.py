@@ -106,22 +106,14 @@ class CommandHandler:
         """False if there is no teacher to ask."""
         self.active_behaviour = level.active_behaviour
         self.authority = authority
-        self.critic = critic = parts.critic
+        self.critic = parts.critic
         self.agreement = parts.agreement
         self.reinforcement = reinforcement = parts.reinforcement
         self.mid = parts.mid
         self._goals = parts.goals
         self.recent = DecisionHistory(level.system.dimensions) if reinforcement is None else reinforcement.recent
         self._rewind = RewindHistory(self.recent)
-        self._lessons = LessonBuilder(
-            level,
-            self.recent,
-            self._rewind,
-            insert_beyond_share=insert_beyond_share,
-            reinforcement=reinforcement,
-            appraisal_lessons=None if critic is None else AppraisalLessons(critic, level.system, self.recent),
-            mid=parts.mid,
-        )
+        self._lessons = _lesson_builder(level, self.recent, self._rewind, insert_beyond_share, parts)
         self.delay = parts.delay or TeacherDelay()
         self.holds = HoldLessons(self._lessons, level.system, self.recent, self.delay)
         self._late = LatePresses(self.recent, self.delay)
@@ -151,9 +143,9 @@ class CommandHandler:
         """Return the number of corrections of the basic level."""
         return self.corrections_at(BASIC)
 
-    def corrections_at(self, level: str) -> int:
+    def corrections_at(self, level_name: str) -> int:
         """Return the number of corrections of a level."""
-        return self._lessons.corrections_at[level]
+        return self._lessons.corrections_at[level_name]
 
     def stop(self, stop: ActiveStop, by: str | None = None) -> None:
         """Stand until `Resume`.
@@ -421,3 +413,22 @@ class CommandHandler:
 def _no_person(name: str) -> Outcome | None:
     """Return why a teacher must not have this name: the journal would take their lessons for the critic's."""
     return Outcome.of(RefusalCode.CRITICS_NAME, name=name) if name == CRITIC else None
+
+
+def _lesson_builder(
+    level: BasicLevel,
+    recent: DecisionHistory,
+    rewind: RewindHistory,
+    insert_beyond_share: float,
+    parts: HandlerParts,
+) -> LessonBuilder:
+    appraisal_lessons = None if parts.critic is None else AppraisalLessons(parts.critic, level.system, recent)
+    return LessonBuilder(
+        level,
+        recent,
+        rewind,
+        insert_beyond_share=insert_beyond_share,
+        reinforcement=parts.reinforcement,
+        appraisal_lessons=appraisal_lessons,
+        mid=parts.mid,
+    )

@@ -65,7 +65,7 @@ class LessonBuilder:
         """Return the outcome and event of a command in the present `situation`. Raises CommandRefusedError."""
         match command:
             case Teach() | Correct():
-                return self._lesson(command, situation, origin)
+                return self._action_lesson(command, situation, origin)
             case ReplaceAction(rla_id=rla_id, action=action):
                 rla = self._require_rla(rla_id)
                 self._require_action_of(rla.level, action)
@@ -101,7 +101,8 @@ class LessonBuilder:
             self.corrections_at[BASIC] += 1
         return event
 
-    def _lesson(self, command: Teach | Correct, situation: Situation, origin: Origin) -> LessonResult:
+    def _action_lesson(self, command: Teach | Correct, situation: Situation, origin: Origin) -> LessonResult:
+        """Return the lesson that makes the taught action the answer to the situation that the command means."""
         if command.level == MID:
             if self._mid is None:
                 raise CommandRefusedError(RefusalCode.NO_MID_LEVEL)
@@ -284,11 +285,11 @@ class LessonBuilder:
         self._require_known(meant)
         return meant
 
-    def _require_action_of(self, level: str, action: str) -> None:
-        if level == MID:
+    def _require_action_of(self, level_name: str, action: str) -> None:
+        if level_name == MID:
             require_behaviour(action, self._level.active_behaviour.behaviours)
         else:
-            require_action(action, self._level.repertoire if level == BASIC else self._appraisals)
+            require_action(action, self._level.repertoire if level_name == BASIC else self._appraisals)
 
     def _can_act(self, rla: Rla) -> bool:
         """Return whether an RLA that comes back can act here; knowledge may be older than the task, or another's."""

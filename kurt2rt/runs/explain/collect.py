@@ -135,13 +135,13 @@ class _Reader:
 
     def _level(
         self,
-        level: str,
+        level_name: str,
         behaviour: str,
         situation: _LevelSituation,
         match: Match | None,
         driver_id: int | None,
     ) -> LevelFacts:
-        ranking = self._ranking(level, behaviour, situation.vector, driver_id)
+        ranking = self._ranking(level_name, behaviour, situation.vector, driver_id)
         distances: Mapping[int, float] = dict(ranking)
         nearest = None if match is None else self._rla_facts(match.rla, match.radius, match.distance)
         driver_rla = None if driver_id is None else self._system.get(driver_id)
@@ -155,13 +155,13 @@ class _Reader:
             rla = self._system.get(rla_id)
             if rla is None or (match is not None and rla_id == match.rla.rla_id):
                 continue
-            if rla.is_withdrawn and level == BASIC and self._runtime.level.skip_withdrawn:
+            if rla.is_withdrawn and level_name == BASIC and self._runtime.level.skip_withdrawn:
                 continue  # passed over
             if self._most is not None and len(others) >= self._most:
                 break
             others.append(self._rla_facts(rla, self._radius_of(rla), distance))
         return LevelFacts(
-            level=level,
+            level=level_name,
             behaviour=behaviour,
             names=situation.names,
             vector=tuple(situation.vector.tolist()),
@@ -170,21 +170,21 @@ class _Reader:
             nearest=nearest,
             driver=driver,
             others=tuple(others),
-            count=self._system.candidate_count(behaviour, level),
+            count=self._system.candidate_count(behaviour, level_name),
         )
 
     def _ranking(
-        self, level: str, behaviour: str, vector: NDArray[np.float64], driver_id: int | None
+        self, level_name: str, behaviour: str, vector: NDArray[np.float64], driver_id: int | None
     ) -> tuple[tuple[int, float], ...]:
         """Return the nearest RLAs; all of them if the driver is not among the nearest."""
         if self._most is not None:
-            ranking = self._system.nearest_first(vector, behaviour, level, limit=self._most + 1 + _PASSED_OVER)
+            ranking = self._system.nearest_first(vector, behaviour, level_name, limit=self._most + 1 + _PASSED_OVER)
             ids = {rla_id for rla_id, _ in ranking}
             rlas = [self._system.get(rla_id) for rla_id in ids]
             speak = sum(rla is not None and not rla.is_withdrawn for rla in rlas)
             if (driver_id is None or driver_id in ids) and speak > self._most:
                 return ranking
-        return self._system.nearest_first(vector, behaviour, level)
+        return self._system.nearest_first(vector, behaviour, level_name)
 
     def _radius_of(self, rla: Rla) -> float:
         if rla.radius is not None:
