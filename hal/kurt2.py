@@ -9,12 +9,13 @@ import can
 
 from hal.bus import CONTROL_ID, BusError, CanBus
 from hal.bus_state import BusState
-from hal.codec import Codec, InvalidFrameError, MessageCodec, load_codec
+from hal.codec import InvalidFrameError, load_codec
 from hal.guard import Guard
 from hal.guard_reason import GuardReason
 from hal.health import Health
-from hal.infrared_watch import Board, InfraredWatch
-from hal.robot import HIGHEST_COUNTS, STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
+from hal.infrared_frames import FrameBatch, FrameReader, InfraredCounts, infrared_frames
+from hal.infrared_watch import InfraredWatch
+from hal.robot import STANDSTILL, GuardResult, SensorReadings, WheelSpeeds
 from hal.robot_settings import RobotSettings
 from hal.watchdog import Watchdog
 from hal.wheel_watch import WheelWatch
@@ -22,20 +23,6 @@ from hal.wheel_watch import WheelWatch
 REOPEN_PERIOD_S = 1.0
 _CLOCKS_DIFFER_S = 0.01
 """A frame that is stamped later than this after the present has no age: the wall clock was set back, or worse."""
-
-
-class _AnalogFrame:
-    """Frame of a converter: the places of its channels in SensorReadings.infrared_counts, and its board."""
-
-    __slots__ = ("board", "codec", "last_payload", "places", "received_at_s")
-
-    def __init__(self, codec: MessageCodec, places: tuple[tuple[int, int], ...], board: Board) -> None:
-        """Set `places`: (place in the frame, place in SensorReadings.infrared_counts) of each distance channel."""
-        self.codec = codec
-        self.places = places
-        self.board = board
-        self.last_payload: bytes | bytearray = b""
-        self.received_at_s = -math.inf
 
 
 class Kurt2:
@@ -55,21 +42,33 @@ class Kurt2:
         self._wheel_watch: Final = WheelWatch(settings)
         self._pause_s: Final = settings.guard.ticks_ceased_s
         codec = load_codec(settings.can.database)
-        self._analog = _analog_frames(channels, codec, self._infrared_watch)
+        self._infrared = InfraredCounts(len(channels))
+        analog = infrared_frames(channels, codec, self._infrared_watch, self._infrared)
         self._encoder = codec.message("ENCODER")
         self._bumperc = codec.message("BUMPERC")
         self._bumper_mask = (1 << len(settings.bumpers)) - 1
-        self._counts = [0] * len(channels)
+        self._readers: dict[int, FrameReader] = {frame.codec.frame_id: frame.read for frame in analog}
+        self._readers |= {self._encoder.frame_id: self._read_encoder, self._bumperc.frame_id: self._read_bumpers}
         self._bumpers = 0
+        self._bumper_payload: bytes | bytearray = b""
         self._encoder_at_s = self._bumpers_at_s = -math.inf
-        self._readings = SensorReadings(-math.inf, tuple(self._counts), math.inf, 0, 0, math.inf, 0, math.inf)
+        self._readings = SensorReadings(
+            time_s=-math.inf,
+            infrared_counts=tuple(self._infrared.counts),
+            infrared_age_s=math.inf,
+            encoder_left_ticks=0,
+            encoder_right_ticks=0,
+            encoder_age_s=math.inf,
+            bumpers=0,
+            bumper_age_s=math.inf,
+        )
         self._command = STANDSTILL
         self._bus_lost = self._closed = False
         self._reopen_at_s = math.inf
         self._frames = self._junk = self._foreign_control = self._receive_failures = 0
         self._receive_trouble = self._alarm = ""
         # CONTROL as well: a second sender of it must not go unnoticed.
-        bus.set_id_filter({CONTROL_ID, self._encoder.frame_id, self._bumperc.frame_id, *self._analog})
+        bus.set_id_filter({CONTROL_ID, *self._readers})
 
     def sense(self, now_s: float) -> SensorReadings:
         """Take everything that arrived, without waiting, and return the newest values.
@@ -82,61 +81,11 @@ class Kurt2:
         paused = now_s - self._readings.time_s > self._pause_s
         if now_s < self._readings.time_s:
             self._forget_ages()
-        left_ticks = right_ticks = encoder_frames = error_frames = foreign_control = 0
-        changed = bus_off = False
-        for message in messages:
-            if message.is_error_frame:
-                error_frames += 1
-                self._bus_state.note(message)
-                bus_off = bus_off or self._bus_state.off
-                continue
-            if message.is_extended_id or message.is_remote_frame:
-                self._junk += 1
-                continue
-            data = message.data
-            frame_id = message.arbitration_id
-            at_s = now_s
-            if bus_now_s is not None:
-                at_s -= bus_now_s - message.timestamp
-                if not at_s <= now_s + _CLOCKS_DIFFER_S and frame_id != CONTROL_ID:  # not a number, too
-                    self._junk += 1
-                    continue
-                at_s = min(at_s, now_s)
-            analog = self._analog.get(frame_id)
-            try:
-                if analog is not None:
-                    if data != analog.last_payload and self._read_analog(analog, data):
-                        analog.board.still_s = 0.0
-                        changed = True
-                    analog.received_at_s = at_s
-                elif frame_id == self._encoder.frame_id:
-                    left, right = self._encoder.unpack(data)
-                    left_ticks += left
-                    right_ticks += right
-                    encoder_frames += 1
-                    self._encoder_at_s = at_s
-                elif frame_id == self._bumperc.frame_id:
-                    self._bumpers = self._bumperc.unpack(data)[0] & self._bumper_mask
-                    self._bumpers_at_s = at_s
-                elif frame_id == CONTROL_ID:
-                    foreign_control += 1
-            except InvalidFrameError:
-                self._junk += 1
-        if len(messages) > error_frames and not bus_off:
-            self._bus_state.note_traffic()
-        self._foreign_control += foreign_control
-        infrared_at_s = min([analog.received_at_s for analog in self._analog.values()])
-        self._readings = SensorReadings(
-            now_s,
-            tuple(self._counts) if changed else self._readings.infrared_counts,
-            now_s - infrared_at_s,
-            left_ticks,
-            right_ticks,
-            now_s - self._encoder_at_s,
-            self._bumpers,
-            now_s - self._bumpers_at_s,
-        )
-        self._sound_alarms(encoder_frames, foreign_control, bus_off=bus_off, paused=paused)
+        batch = FrameBatch()
+        self._read(messages, bus_now_s, now_s, batch)
+        self._foreign_control += batch.foreign_control
+        self._readings = self._newest(now_s, batch)
+        self._sound_alarms(batch, paused=paused)
         return self._readings
 
     def drive(self, wanted: WheelSpeeds, decided_at_s: float, now_s: float) -> GuardResult:
@@ -186,21 +135,20 @@ class Kurt2:
             latched=self._guard.latched,
         )
 
-    def _sound_alarms(self, encoder_frames: int, foreign_control: int, *, bus_off: bool, paused: bool) -> None:
-        """Stop for what the newest readings show.
+    def _sound_alarms(self, batch: FrameBatch, *, paused: bool) -> None:
+        """Stop for what the newest readings show, or for a bus that was off since the ones before, even for a moment.
 
-        `bus_off`: the bus was off since the last ones, if only for a moment. `paused`: the loop neither sensed nor
-        drove for long, so the frames of the pause came at once.
+        `paused`: the loop neither sensed nor drove for long, so the frames of the pause came at once.
         """
         readings = self._readings
-        if bus_off or self._bus_state.off:
+        if batch.bus_off or self._bus_state.off:
             self._stop(GuardReason.BUS_OFF)
-        if foreign_control:
+        if batch.foreign_control:
             self._stop(
                 GuardReason.FOREIGN_CONTROL, f"bus {self._bus.name}: another node sends CONTROL; find and end it"
             )
         disobedience = self._wheel_watch.check(
-            readings.encoder_left_ticks, readings.encoder_right_ticks, encoder_frames, readings.time_s
+            readings.encoder_left_ticks, readings.encoder_right_ticks, batch.encoder_frames, readings.time_s
         )
         if disobedience:
             self._stop(
@@ -215,6 +163,62 @@ class Kurt2:
         if self._guard.latched is None:  # the first reason stands, and with it what is said about it
             self._alarm = alarm
             self._guard.emergency_stop(reason)
+
+    def _read(self, messages: list[can.Message], bus_now_s: float | None, now_s: float, batch: FrameBatch) -> None:
+        """Read waiting frames in order; `bus_now_s`: the present on the clock of their time stamps, None without."""
+        error_frames, readers = 0, self._readers
+        for message in messages:
+            if message.is_error_frame:
+                error_frames += 1
+                self._bus_state.note(message)
+                batch.bus_off = batch.bus_off or self._bus_state.off
+                continue
+            if message.is_extended_id or message.is_remote_frame:
+                self._junk += 1
+                continue
+            frame_id = message.arbitration_id
+            at_s = now_s
+            if bus_now_s is not None:
+                at_s -= bus_now_s - message.timestamp
+                if not at_s <= now_s + _CLOCKS_DIFFER_S and frame_id != CONTROL_ID:  # not a number, too
+                    self._junk += 1
+                    continue
+                at_s = min(at_s, now_s)
+            reader = readers.get(frame_id)
+            try:
+                if reader is not None:
+                    reader(message.data, at_s, batch)
+                elif frame_id == CONTROL_ID:
+                    batch.foreign_control += 1
+            except InvalidFrameError:
+                self._junk += 1
+        if len(messages) > error_frames and not batch.bus_off:
+            self._bus_state.note_traffic()
+
+    def _read_encoder(self, data: bytes | bytearray, at_s: float, batch: FrameBatch) -> None:
+        left, right = self._encoder.unpack(data)
+        batch.left_ticks += left
+        batch.right_ticks += right
+        batch.encoder_frames += 1
+        self._encoder_at_s = at_s
+
+    def _read_bumpers(self, data: bytes | bytearray, at_s: float, batch: FrameBatch) -> None:  # noqa: ARG002 - FrameReader
+        if data != self._bumper_payload:
+            self._bumpers = self._bumperc.unpack(data)[0] & self._bumper_mask
+            self._bumper_payload = data
+        self._bumpers_at_s = at_s
+
+    def _newest(self, now_s: float, batch: FrameBatch) -> SensorReadings:
+        return SensorReadings(
+            time_s=now_s,
+            infrared_counts=tuple(self._infrared.counts) if batch.infrared_changed else self._readings.infrared_counts,
+            infrared_age_s=now_s - min(self._infrared.times_s),
+            encoder_left_ticks=batch.left_ticks,
+            encoder_right_ticks=batch.right_ticks,
+            encoder_age_s=now_s - self._encoder_at_s,
+            bumpers=self._bumpers,
+            bumper_age_s=now_s - self._bumpers_at_s,
+        )
 
     def _drain(self, now_s: float) -> tuple[list[can.Message], float | None]:
         """Return the waiting frames, and the present on the clock of their time stamps."""
@@ -249,31 +253,4 @@ class Kurt2:
     def _forget_ages(self) -> None:
         """Forget arrival times after the clock ran backwards, because they would make old frames look new."""
         self._encoder_at_s = self._bumpers_at_s = -math.inf
-        for analog in self._analog.values():
-            analog.received_at_s = -math.inf
-
-    def _read_analog(self, analog: _AnalogFrame, data: bytes | bytearray) -> bool:
-        """Store the frame's distance channels; return whether one changed. Raises InvalidFrameError."""
-        raw = analog.codec.unpack(data)
-        for at, _ in analog.places:
-            # The C167 keeps the channel number in the upper bits (docs/the-robot.md#range-of-a-channel).
-            if raw[at] > HIGHEST_COUNTS:
-                raise InvalidFrameError(f"{analog.codec.name}: {raw[at]} counts (allowed 0 to {HIGHEST_COUNTS})")
-        changed = False
-        for at, sensor in analog.places:
-            if self._counts[sensor] != raw[at]:
-                self._counts[sensor] = raw[at]
-                changed = True
-        analog.last_payload = data
-        return changed
-
-
-def _analog_frames(channels: tuple[str, ...], codec: Codec, watch: InfraredWatch) -> dict[int, _AnalogFrame]:
-    """Return the frames that carry channels of the sensor table, by identifier; channel names are signal names."""
-    frames = {}
-    for frame_id, message in codec.by_id.items():
-        places = tuple((at, channels.index(name)) for at, name in enumerate(message.signals) if name in channels)
-        if places:
-            board = watch.board_of(channels[places[0][1]])
-            frames[frame_id] = _AnalogFrame(message, places, board)
-    return frames
+        self._infrared.times_s[:] = [-math.inf] * len(self._infrared.times_s)

@@ -1,0 +1,81 @@
+"""CAN frames that carry distance sensors, and the counters of one batch of frames."""
+
+import math
+from collections.abc import Callable
+
+from hal.codec import Codec, InvalidFrameError, MessageCodec
+from hal.infrared_watch import Board, InfraredWatch
+from hal.robot import HIGHEST_COUNTS
+
+
+class FrameBatch:
+    """Counters of the frames that one call of `sense` reads."""
+
+    __slots__ = ("bus_off", "encoder_frames", "foreign_control", "infrared_changed", "left_ticks", "right_ticks")
+
+    def __init__(self) -> None:
+        self.left_ticks = self.right_ticks = self.encoder_frames = self.foreign_control = 0
+        self.infrared_changed = self.bus_off = False
+
+
+class InfraredCounts:
+    """Newest count of each distance sensor, and arrival time of each frame that carries some."""
+
+    __slots__ = ("counts", "times_s")
+
+    def __init__(self, sensors: int) -> None:
+        self.counts = [0] * sensors
+        self.times_s: list[float] = []
+        """One per frame; minus infinity before its first."""
+
+
+FrameReader = Callable[[bytes | bytearray, float, FrameBatch], None]
+"""Store the values of one frame that arrived at that time, in s. Raises InvalidFrameError, changing nothing."""
+
+
+class InfraredFrame:
+    """Frame of a converter: the places of its channels in the counts of all sensors, and its board."""
+
+    __slots__ = ("board", "codec", "counts", "last_payload", "places", "row", "times_s")
+
+    def __init__(
+        self, codec: MessageCodec, places: tuple[tuple[int, int], ...], board: Board, newest: InfraredCounts
+    ) -> None:
+        """Add a row to `newest`; `places`: (place in the frame, place in `newest.counts`) of each distance channel."""
+        self.counts, self.times_s, self.row = newest.counts, newest.times_s, len(newest.times_s)
+        self.times_s.append(-math.inf)
+        self.codec = codec
+        self.places = places
+        self.board = board
+        self.last_payload: bytes | bytearray = b""
+
+    def read(self, data: bytes | bytearray, at_s: float, batch: FrameBatch) -> None:
+        """Store the distance channels of a frame. Raises InvalidFrameError, changing nothing."""
+        if data != self.last_payload:
+            raw, counts = self.codec.unpack(data), self.counts
+            for at, _ in self.places:
+                # The C167 keeps the channel number in the upper bits (docs/the-robot.md#range-of-a-channel).
+                if raw[at] > HIGHEST_COUNTS:
+                    raise InvalidFrameError(f"{self.codec.name}: {raw[at]} counts (allowed 0 to {HIGHEST_COUNTS})")
+            changed = False
+            for at, sensor in self.places:
+                if counts[sensor] != raw[at]:
+                    counts[sensor] = raw[at]
+                    changed = True
+            if changed:
+                self.board.still_s = 0.0
+                batch.infrared_changed = True
+            self.last_payload = data
+        self.times_s[self.row] = at_s
+
+
+def infrared_frames(
+    channels: tuple[str, ...], codec: Codec, watch: InfraredWatch, newest: InfraredCounts
+) -> tuple[InfraredFrame, ...]:
+    """Return the frames that carry channels of the sensor table; channel names are signal names."""
+    frames = []
+    for message in codec.by_id.values():
+        places = tuple((at, channels.index(name)) for at, name in enumerate(message.signals) if name in channels)
+        if places:
+            frames.append(InfraredFrame(message, places, watch.board_of(channels[places[0][1]]), newest))
+    return tuple(frames)
