@@ -117,13 +117,7 @@ class CommandHandler:
         self.delay = parts.delay or TeacherDelay()
         self.holds = HoldLessons(self._lessons, level.system, self.recent, self.delay)
         self._late = LatePresses(self.recent, self.delay)
-        self.updater = KnowledgeUpdater(
-            level,
-            handled_command_ids=handled_command_ids,
-            reinforcement=reinforcement,
-            agreement=parts.agreement,
-            self_teaching=parts.self_teaching,
-        )
+        self.updater = _knowledge_updater(level, handled_command_ids, parts)
         self.phase = Phase.SUPERVISED
         self.active_stop: ActiveStop | None = None
         """Stop that lasts until `Resume`; None without one."""
@@ -413,6 +407,16 @@ class CommandHandler:
 def _no_person(name: str) -> Outcome | None:
     """Return why a teacher must not have this name: the journal would take their lessons for the critic's."""
     return Outcome.of(RefusalCode.CRITICS_NAME, name=name) if name == CRITIC else None
+
+
+def _knowledge_updater(level: BasicLevel, handled_ids: Iterable[str], parts: HandlerParts) -> KnowledgeUpdater:
+    return KnowledgeUpdater(
+        level,
+        handled_command_ids=handled_ids,
+        reinforcement=parts.reinforcement,
+        agreement=parts.agreement,
+        self_teaching=parts.self_teaching,
+    )
 
 
 def _lesson_builder(
