@@ -37,6 +37,9 @@ class DecisionCause(StrEnum):
     """No taught way leads from here to the goal."""
 
 
+_ASKING = (DecisionCause.UNKNOWN, DecisionCause.TOUCHES)
+
+
 class MidDecision(NamedTuple):
     """Command of the mid level in one tick."""
 
@@ -82,7 +85,7 @@ class Decision(NamedTuple):
     @property
     def asking(self) -> bool:
         """Return whether the robot waits for an answer, because the situation is unknown or it touches something."""
-        return self.cause in (DecisionCause.UNKNOWN, DecisionCause.TOUCHES)
+        return self.cause in _ASKING
 
 
 def withdrawn_rla_in(decision: Decision) -> int | None:

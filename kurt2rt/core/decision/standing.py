@@ -212,11 +212,10 @@ class StandingWatch:
         self._latched = guard_result.latched
         self._drove_at_s = drove_at_s
         held = self._held_back(decision, guard_result)
-        asks = decision.asking
         if guard_result.latched:
-            return standing_latched(guard_result.reasons, asks=asks, stall_s=self._stall_s)
+            return standing_latched(guard_result.reasons, asks=decision.asking, stall_s=self._stall_s)
         if held is not None:
-            return Standing(held, asks=asks)
+            return Standing(held, asks=decision.asking)
         if decision.driving:
             return DRIVES
         says = error if error is not None else "" if decision.plan is None else decision.plan.says
@@ -224,9 +223,10 @@ class StandingWatch:
 
     def _held_back(self, decision: Decision, guard_result: GuardResult) -> StandReason | None:
         """Return why the guard blocks the decision, after HELD_TICKS ticks or at a bumper; None if it does not."""
-        if decision.cause is DecisionCause.TOUCHES and not guard_result.latched:
+        driving, latched = decision.driving, guard_result.latched
+        if not driving and not latched and decision.cause is DecisionCause.TOUCHES:
             return touched_bumper(guard_result.wheel_speeds, guard_result.reasons)
-        if guard_result.latched or not decision.driving:
+        if latched or not driving:
             self._held, self._held_ticks = None, 0
             return None
         bumpers = touched_bumper(guard_result.wheel_speeds, guard_result.reasons)

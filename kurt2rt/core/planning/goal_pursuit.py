@@ -13,6 +13,14 @@ PIECES = 16
 """RLAs and places processed in one tick of planning; each takes 30 to 60 us."""
 
 
+_STANDING = {
+    GoalStatus.ARRIVED: GoalStatus.ARRIVED,
+    GoalStatus.NO_WAY: GoalStatus.NO_WAY,
+    GoalStatus.LOST: GoalStatus.NO_WAY,
+}
+"""Reason of the standstill by each status in which the robot stands."""
+
+
 class GoalPursuit:
     """Goal and plan, changed at junctions and by commands.
 
@@ -56,14 +64,9 @@ class GoalPursuit:
     @property
     def standing_status(self) -> GoalStatus | None:
         """Reason of the standstill, ARRIVED or NO_WAY; None while it drives."""
-        match self.status:
-            case GoalStatus.ARRIVED:
-                return GoalStatus.ARRIVED
-            case GoalStatus.NO_WAY | GoalStatus.LOST:
-                return GoalStatus.NO_WAY
-            case GoalStatus.PLANNING:
-                return self._stood_before
-        return None
+        if self.status in _STANDING:
+            return _STANDING[self.status]
+        return self._stood_before if self.status is GoalStatus.PLANNING else None
 
     @property
     def text(self) -> str:

@@ -14,6 +14,8 @@ from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla_system import InvalidEventError
 
+_REWARDED_PHASES = (Phase.REINFORCEMENT, Phase.CRITIC)
+
 
 class KnowledgeUpdater:
     """Only place where the knowledge of a running robot changes; it notifies the parts that depend on it."""
@@ -73,7 +75,7 @@ class KnowledgeUpdater:
         if alone is not None and not alone.set_phase(phase):
             alone = None
         changes_itself = alone is not None and not alone.is_measuring
-        learns = phase in (Phase.REINFORCEMENT, Phase.CRITIC) or changes_itself
+        learns = phase in _REWARDED_PHASES or changes_itself
         reinforcement.choice.explores = learns
         if learns:
             reinforcement.update(decision.rla_id if decision.answers else None, tick)
