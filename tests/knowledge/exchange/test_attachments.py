@@ -25,6 +25,7 @@ from kurt2rt.knowledge.exchange.attachments import (
     encode_statistics,
     hash_attachments,
 )
+from kurt2rt.knowledge.exchange.json_checks import require_number
 from kurt2rt.runs.recording.recording_error import RecordingError
 from kurt2rt.runs.recording.run_head import RunHead, decode_head, encode_head
 
@@ -121,3 +122,10 @@ def test_decode_head_newer_version_is_refused() -> None:
 
 def test_hash_attachments_differs_by_content() -> None:
     assert hash_attachments({"a": b"1"})["a"] != hash_attachments({"a": b"2"})["a"]
+
+
+@pytest.mark.parametrize(("value", "shown"), [("a" * 38, f"'{'a' * 38}'"), ("a" * 39, f"'{'a' * 36}...")])
+def test_require_number_error_shows_a_short_value_whole(value: str, shown: str) -> None:
+    with pytest.raises(ValueError, match="stands where a number should") as caught:
+        require_number(value)
+    assert str(caught.value).split(" ")[0] == shown

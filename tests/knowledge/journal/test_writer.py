@@ -16,6 +16,7 @@ from kurt2rt.knowledge.journal.entry import JournalEntry, Receipt
 from kurt2rt.knowledge.journal.journal import Journal
 from kurt2rt.knowledge.journal.writer import Acknowledgement, JournalWriter, RetryDelays, utc_now
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
+from kurt2rt.knowledge.knowledge_error import KnowledgeError
 from tests.knowledge.lessons import BINDING, STAMP, begun, created, rewarded, session, undone
 from tests.knowledge.refusals import refused
 
@@ -256,3 +257,19 @@ def test_error_dead_thread_is_told(path: Path) -> None:
     with refused(KnowledgeCode.LESSONS_NOT_WRITTEN, count=1):
         writer.close()
     Journal.open(path, BINDING).close()
+
+
+def test_failed_close_at_the_end_is_the_saving_error(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    close = Journal.close
+
+    def close_badly(journal: Journal) -> None:
+        close(journal)
+        raise KnowledgeError(KnowledgeCode.LOCK_NOT_RELEASED, where=path, error="no such lock")
+
+    monkeypatch.setattr(Journal, "close", close_badly)
+    writer = writer_of(path)
+    with refused(KnowledgeCode.LESSONS_NOT_WRITTEN, count=0), writer:
+        writer.submit(created(1))
+    assert writer.saving_error is not None
+    assert "no such lock" in writer.saving_error
+    assert [receipt.error for receipt in writer.acknowledged()] == [None]
