@@ -14,7 +14,8 @@ DEFAULT_TEACHER = SUPERHUMAN
 
 Name = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$", max_length=64)]
 Sentence = Annotated[str, Field(pattern=r"^[^\x00-\x1f\x7f]+$", max_length=120)]
-Seconds = Annotated[float, Field(ge=0, le=60)]
+LONGEST_S = 60.0
+Seconds = Annotated[float, Field(ge=0, le=LONGEST_S)]
 Share = Annotated[float, Field(ge=0, le=1)]
 
 
@@ -113,8 +114,11 @@ class TeacherProfile(Settings):
     """Teacher in one sentence."""
     corrects_by: Literal["press", "hold", "nothing"] = "press"
     """Way to correct: a press that names the action, an action that is held, or answers only."""
-    corrects_tick: Literal["began", "noticed", "pressed"] = "pressed"
-    """Tick that a press corrects: the first wrong one, the one in which the mistake was noticed, or the present one."""
+    answers_by: Literal["press", "hold"] = "press"
+    """Way to answer a question."""
+    corrects_tick: Literal["began", "noticed", "by_delay", "pressed"] = "pressed"
+    """Tick that a press corrects: the first wrong one; the one in which the mistake was noticed; the one before the
+    press by the teacher's delay, as the robot has measured it; or the present one."""
     hold_s: Annotated[float, Field(gt=0, le=60)] = 2.0
     """Time for which an action is held."""
     person: PersonSettings | None = None

@@ -2,7 +2,16 @@
 
 from typing import Literal, NamedTuple
 
-from kurt2rt.core.teaching.commands import Appraise, Command, Correct, DeleteRla, ReplaceAction, Reward, Teach
+from kurt2rt.core.teaching.commands import (
+    Appraise,
+    Command,
+    Correct,
+    DeleteRla,
+    HoldAction,
+    ReplaceAction,
+    Reward,
+    Teach,
+)
 
 
 class WorkloadMinute(NamedTuple):
@@ -11,6 +20,7 @@ class WorkloadMinute(NamedTuple):
     lessons: int = 0
     """Answers to the robot's questions."""
     corrections: int = 0
+    """Corrections by a press, and held actions, also those that answer a question."""
     rewards: int = 0
     """Rewards of +1 and -1."""
     appraisals: int = 0
@@ -36,6 +46,7 @@ class TeacherWorkload:
     def __init__(self, ticks: int, period_s: float) -> None:
         """Count for `ticks` ticks of `period_s`; the last minute may be shorter."""
         self._ticks_per_minute = round(60.0 / period_s)
+        self._held_press = 0
         self._minutes = [WorkloadMinute()] * max(1, -(-ticks // self._ticks_per_minute))
 
     @property
@@ -51,6 +62,9 @@ class TeacherWorkload:
             case Teach():
                 now = now._replace(lessons=now.lessons + 1)
             case Correct() | ReplaceAction() | DeleteRla():
+                now = now._replace(corrections=now.corrections + 1)
+            case HoldAction(press_id=press_id) if press_id != self._held_press:
+                self._held_press = press_id
                 now = now._replace(corrections=now.corrections + 1)
             case Reward():
                 now = now._replace(rewards=now.rewards + 1)

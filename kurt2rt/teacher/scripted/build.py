@@ -3,7 +3,16 @@
 from collections.abc import Sequence
 
 from hal.robot_settings import RobotSettings
-from kurt2rt.core.task_settings import TaskSettings
+from kurt2rt.core.task_settings import TaskSettings, TeacherSettings
+from kurt2rt.core.teacher_settings import (
+    LONGEST_S,
+    ErrorSettings,
+    LapseSettings,
+    LinkSettings,
+    LogNormalDelay,
+    NoticeSettings,
+    PersonSettings,
+)
 from kurt2rt.teacher.scripted.action_groups import action_groups
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher
 from kurt2rt.teacher.scripted.person import ScriptedPerson, TaskSense
@@ -16,9 +25,12 @@ def build_teacher(
     """Build the scripted teacher of a task, for a robot with these actions; `session` as in ScriptedTeacher."""
     profile, period_s = task.teaching.profile, robot.can.cycle_s
     policy = task.policy.build(robot.infrared)
-    if profile.person is not None:
+    person = profile.person
+    if person is None and "hold" in (profile.corrects_by, profile.answers_by):
+        person = _without_limits(task.teaching.teacher, period_s)
+    if person is not None:
         sense = TaskSense(policy, tuple(actions), action_groups(task.repertoire))
-        return ScriptedPerson(profile, profile.person, sense, period_s=period_s, seed=seed, session=session)
+        return ScriptedPerson(profile, person, sense, period_s=period_s, seed=seed, session=session)
     return ScriptedTeacher(
         policy,
         actions,
@@ -28,4 +40,25 @@ def build_teacher(
         seed=seed,
         session=session,
         corrects=profile.corrects_by != "nothing",
+    )
+
+
+def _without_limits(teacher: TeacherSettings, period_s: float) -> PersonSettings:
+    """Return a person with the times of a task's teacher, who sees every tick at once."""
+
+    def always(delay_s: float) -> LogNormalDelay:
+        return LogNormalDelay(kind="log_normal", median_s=min(delay_s, LONGEST_S), spread=0.0, longest_s=LONGEST_S)
+
+    patience_s = min(teacher.patience_s, LONGEST_S)
+    return PersonSettings(
+        question_delay=always(teacher.reaction_s),
+        mistake_delay=always(0.0),
+        reward_delay=always(teacher.reaction_s),
+        hand_delay_s=0.0,
+        notices=NoticeSettings(different_after_s=patience_s, similar_after_s=patience_s),
+        link=LinkSettings(pictures_per_s=1.0 / period_s, one_way_s=0.0),
+        presses_per_minute=0,
+        lapses=LapseSettings(per_minute=0.0, duration=always(0.0)),
+        errors=ErrorSettings(answers=teacher.error_rate, corrections=teacher.error_rate),
+        slower_per_minute=0.0,
     )

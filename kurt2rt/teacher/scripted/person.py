@@ -8,7 +8,7 @@ from behaviors.policies.policy import ReferencePolicy
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.teacher_settings import PersonSettings, TeacherProfile
-from kurt2rt.core.teaching.commands import Command, Correct, Teach
+from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Stop, Teach
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView
 from kurt2rt.teacher.scripted.delay_line import DelayLine
 from kurt2rt.teacher.scripted.human_limits import Attention, DelaySampler, MistakeWatcher, PressLimit
@@ -34,6 +34,34 @@ class _PlannedPress:
     """Tick of the press."""
     picture: TeacherView
     """State that the press is about."""
+
+
+class _Hand:
+    """Hand that holds the button of an action, and moves to that of the right action with a delay."""
+
+    def __init__(self, delay_ticks: int, press_id: int, action: str, *, begins: int, ends: int) -> None:
+        self.press_id = press_id
+        self.action = action
+        self.ends = ends
+        """Tick of the release."""
+        self._delay_ticks = delay_ticks
+        self._target = action
+        self._moves_from = begins
+        self._arrives: int | None = None
+
+    def stay(self, until: int) -> None:
+        """Hold the present action until a tick, right or wrong."""
+        self._moves_from = until
+
+    def follow(self, now: int, right: str) -> None:
+        """Begin to move to the button of the right action, if no move is under way."""
+        if self._arrives is None and right != self.action and now >= self._moves_from:
+            self._target, self._arrives = right, now + self._delay_ticks
+
+    def move(self, now: int) -> None:
+        """Arrive at the target if it is time."""
+        if self._arrives is not None and now >= self._arrives:
+            self.action, self._arrives = self._target, None
 
 
 class ScriptedPerson(BasicTeacher):
@@ -85,6 +113,11 @@ class ScriptedPerson(BasicTeacher):
         """Time from a press to the first picture that shows its effect."""
         self._pictures: DelayLine[TeacherView] = DelayLine(link_ticks)
         self._sent: DelayLine[Command] = DelayLine(link_ticks)
+        self._hand_ticks = round(person.hand_delay_s / period_s)
+        self._hold_ticks = round(profile.hold_s / period_s)
+        self._hand: _Hand | None = None
+        self._press_id = 0
+        self._seen: TeacherView | None = None
         self._now = 0
         self._next_picture = 0
         self._ignore_until = 0
@@ -99,9 +132,14 @@ class ScriptedPerson(BasicTeacher):
             self._next_picture = self._now + self._picture_ticks
             self._pictures.put(self._now, view)
         while (picture := self._pictures.pop(self._now)) is not None:
-            if self._attention.is_on(self._now) and self._now >= self._ignore_until:
+            self._seen = picture
+            if self._hand is not None:
+                self._hand.follow(self._now, self._right(picture))
+                self._hold_on(self._hand, picture)
+            elif self._attention.is_on(self._now) and self._now >= self._ignore_until:
                 self._look(picture)
-        self._press_if_due()
+        if self._hand is None:
+            self._press_if_due()
         return self._sent.pop(self._now)
 
     def _look(self, picture: TeacherView) -> None:
@@ -134,27 +172,56 @@ class ScriptedPerson(BasicTeacher):
 
     def _press_if_due(self) -> None:
         if self._answer is not None and self._now >= self._answer.due:
-            if not self._presses.allows(self._now):
-                return  # the robot stands and waits
-            picture = self._answer.picture
-            action = self._choose(picture, self._person.errors.answers)
-            self._send(Teach(self._next_id(), SCRIPTED, action, decision_tick=picture.tick))
+            if self._presses.allows(self._now):
+                self._press(self._answer.picture, answers=True)
+            # Beyond the limit the robot stands and waits.
         elif self._correction is not None and self._now >= self._correction.due:
-            if not self._presses.allows(self._now):
+            if self._presses.allows(self._now):
+                self._press(self._correction.picture, answers=False)
+            else:
                 self._forget()  # the moment passes
-                return
-            self._correct(self._correction.picture)
 
-    def _correct(self, picture: TeacherView) -> None:
-        action = self._choose(picture, self._person.errors.corrections)
-        tick = None if self._profile.corrects_tick == "pressed" else picture.tick
-        self._send(Correct(self._next_id(), SCRIPTED, action, decision_tick=tick))
-
-    def _send(self, press: Command) -> None:
+    def _press(self, picture: TeacherView, *, answers: bool) -> None:
+        errors, profile = self._person.errors, self._profile
+        right = self._right(picture)
+        action = self._choose(right, errors.answers if answers else errors.corrections)
         self._presses.count(self._now)
-        self._sent.put(self._now, press)
-        self._ignore_until = self._now + self._effect_ticks
         self._forget()
+        if (profile.answers_by if answers else profile.corrects_by) == "hold":
+            self._begin_hold(action, is_right=action == right)
+            return
+        seen_tick = picture.tick if self._seen is None else self._seen.tick
+        command: Command
+        if answers:
+            command = Teach(self._next_id(), SCRIPTED, action, decision_tick=picture.tick, seen_tick=seen_tick)
+        else:
+            by_delay = profile.corrects_tick == "by_delay"
+            tick = None if by_delay or profile.corrects_tick == "pressed" else picture.tick
+            command = Correct(
+                self._next_id(), SCRIPTED, action, decision_tick=tick, put_back=by_delay, seen_tick=seen_tick
+            )
+        self._sent.put(self._now, command)
+        self._ignore_until = self._now + self._effect_ticks
+
+    def _begin_hold(self, action: str, *, is_right: bool) -> None:
+        self._press_id += 1
+        ends = self._now + self._hold_ticks
+        hand = _Hand(self._hand_ticks, self._press_id, action, begins=self._now, ends=ends)
+        if not is_right:  # a wrong button is a mistake to be noticed
+            hand.stay(self._now + self._mistake_delay.draw(self._now))
+        self._hand = hand
+        if self._seen is not None:
+            self._hold_on(hand, self._seen)
+
+    def _hold_on(self, hand: _Hand, picture: TeacherView) -> None:
+        """Send the held action once more, or release it."""
+        if self._now < hand.ends:
+            hand.move(self._now)
+            self._sent.put(self._now, HoldAction(SCRIPTED, picture.tick, hand.press_id, hand.action))
+            return
+        self._hand = None
+        self._sent.put(self._now, Stop(self._next_id(), SCRIPTED, hand.press_id))
+        self._ignore_until = self._now + self._effect_ticks
 
     def _forget(self) -> None:
         self._answer = self._correction = None
@@ -163,8 +230,7 @@ class ScriptedPerson(BasicTeacher):
     def _right(self, picture: TeacherView) -> str:
         return self._sense.policy.choose(picture.infrared_counts, picture.behaviour)
 
-    def _choose(self, picture: TeacherView, error_rate: float) -> str:
-        right = self._right(picture)
+    def _choose(self, right: str, error_rate: float) -> str:
         if self._errors.random() >= error_rate:
             return right
         return self._errors.choice([action for action in self._sense.actions if action != right])

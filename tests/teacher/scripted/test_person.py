@@ -19,7 +19,7 @@ from kurt2rt.core.teacher_settings import (
     TeacherProfile,
     load_teacher,
 )
-from kurt2rt.core.teaching.commands import Command, Correct, Teach
+from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Stop, Teach
 from kurt2rt.teacher.scripted.basic_teacher import TeacherView
 from kurt2rt.teacher.scripted.person import ScriptedPerson, TaskSense
 
@@ -123,12 +123,20 @@ def test_update_different_action_is_corrected_when_noticed() -> None:
 
 
 @pytest.mark.parametrize(
-    ("named", "decision_tick"), [("began", 1), ("noticed", 1 + DIFFERENT_TICKS), ("pressed", None)]
+    ("named", "decision_tick"), [("began", 1), ("noticed", 1 + DIFFERENT_TICKS), ("pressed", None), ("by_delay", None)]
 )
 def test_update_corrected_tick_is_as_set(named: str, decision_tick: int | None) -> None:
     (correction,) = given(person(profile={"corrects_tick": named}), [doing("b")] * 130).values()
     assert isinstance(correction, Correct)
     assert correction.decision_tick == decision_tick
+
+
+def test_update_press_put_back_by_delay_names_the_newest_picture() -> None:
+    ((tick, correction),) = given(person(profile={"corrects_tick": "by_delay"}), [doing("b")] * 130).items()
+    assert isinstance(correction, Correct)
+    assert correction.put_back
+    assert correction.seen_tick is not None
+    assert 0 <= tick - correction.seen_tick - 2 * LINK_TICKS < PICTURE_TICKS
 
 
 def test_update_similar_action_is_noticed_later() -> None:
@@ -213,6 +221,55 @@ def test_update_lapses_delay_some_answers() -> None:
     looking, lapsing = person(Phase.SUPERVISED), person(Phase.SUPERVISED, lapses=away)
     views = [asking()] * 6000
     assert len(given(lapsing, views)) < 0.8 * len(given(looking, views))
+
+
+HOLDS = {"corrects_by": "hold", "hold_s": 1.0}
+HAND_TICKS = 30
+
+
+def held(commands: dict[int, Command]) -> dict[int, str]:
+    """Return the held action by tick."""
+    return {tick: each.action for tick, each in commands.items() if isinstance(each, HoldAction)}
+
+
+def test_update_hold_lasts_as_set_and_is_released() -> None:
+    commands = given(person(profile=HOLDS), [doing("b")] * 230)
+    begins = 1 + DIFFERENT_TICKS + LINK_TICKS + MISTAKE_TICKS + LINK_TICKS
+    ticks = list(held(commands))
+    assert min(commands) == ticks[0] == begins
+    assert all(later - sooner <= PICTURE_TICKS for sooner, later in pairwise(ticks))
+    ((release, stop),) = ((tick, each) for tick, each in commands.items() if isinstance(each, Stop))
+    assert release == pytest.approx(begins + 100, abs=PICTURE_TICKS)
+    assert stop.press_id == 1
+    assert release == max(commands)
+
+
+def test_update_held_action_follows_the_right_one_by_the_hand() -> None:
+    turned = 120
+    actions = held(given(person(profile=HOLDS), [doing("c", FAR)] * turned + [doing("c", NEAR)] * 100))
+    assert list(dict.fromkeys(actions.values())) == ["a", "b"]
+    switch = min(tick for tick, action in actions.items() if action == "b")
+    assert switch - turned == pytest.approx(HAND_TICKS + 2 * LINK_TICKS, abs=2 * PICTURE_TICKS)
+
+
+def test_update_wrong_button_is_held_until_it_is_noticed() -> None:
+    wrong = person(profile=HOLDS, errors=ErrorSettings(answers=0.0, corrections=1.0))
+    actions = list(held(given(wrong, [doing("b")] * 230)).values())
+    assert actions[0] != "a"
+    assert actions[-1] == "a"
+
+
+def test_update_hold_counts_as_one_press() -> None:
+    teacher = person(profile=HOLDS, presses_per_minute=2)
+    presses = {each.press_id for each in given(teacher, [doing("b")] * 5000).values() if isinstance(each, HoldAction)}
+    assert presses == {1, 2}
+
+
+def test_update_question_is_answered_by_a_hold() -> None:
+    teacher = person(Phase.SUPERVISED, profile={"answers_by": "hold", "hold_s": 1.0})
+    commands = given(teacher, [asking()] * 230)
+    assert set(held(commands).values()) == {"a"}
+    assert not any(isinstance(each, Teach) for each in commands.values())
 
 
 def presses_of(name: str, seed: int) -> Iterator[tuple[int, Command]]:
