@@ -248,7 +248,7 @@ class Tick:
         # Read once: the journal's thread may change it during the tick, and a replay has one value a tick.
         self._saving_error = self._event_store.saving_error
         if self._saving_error is None and not view.blind and not self._latched:
-            events.extend(self._handler.teach_held(tick))
+            events.extend(self._handler.teach_driven(tick))
         decision = self._decision(tick, view.situation, readings, blind=view.blind)
         self._timer.lap(_DECIDE)
         return _Choice(
@@ -407,6 +407,10 @@ class Tick:
             if because is not DecisionCause.TEACHER:
                 return idle_decision
             name, wheel_speeds = authority.step(readings)
+            press = authority.driving_press
+            if press is not None:
+                behaviour = handler.active_behaviour.behaviour
+                handler.demonstration.update(tick, press, readings, wheel_speeds, situation, behaviour)
             return idle_decision._replace(wheel_speeds=wheel_speeds, action=name)
         decision = stopped(self._level.decide(situation, readings, cause), cause)
         if cause is DecisionCause.UNATTENDED and not (decision.match is not None and decision.match.known):

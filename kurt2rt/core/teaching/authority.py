@@ -128,6 +128,18 @@ class ControlAuthority:
         self.renew_presence(command.teacher, tick, command.seen_tick)
 
     @property
+    def driving_press(self) -> tuple[str, int] | None:
+        """Return teacher and press id of the manual drive; None if no speeds are driven by hand."""
+        if self._speeds is None or self.teacher is None:
+            return None
+        return self.teacher, self._press_ids[self.teacher]
+
+    @property
+    def repertoire(self) -> Repertoire:
+        """Return the actions that the teacher can run; free while speeds are driven by hand."""
+        return self._repertoire
+
+    @property
     def held_press(self) -> int | None:
         """Return the press id of the action that the teacher holds; None if none is held."""
         return self._held_press

@@ -44,8 +44,11 @@ from kurt2rt.core.teaching.commands import (
     Stream,
     Take,
     Teach,
+    TeachShown,
+    Undo,
     Watch,
 )
+from kurt2rt.core.teaching.demonstration import Demonstration
 from kurt2rt.core.teaching.goal_commands import GoalCommands
 from kurt2rt.core.teaching.hold_lessons import HoldLessons
 from kurt2rt.core.teaching.knowledge_updater import KnowledgeUpdater
@@ -116,6 +119,7 @@ class CommandHandler:
         self._lessons = _lesson_builder(level, self.recent, self._rewind, insert_beyond_share, parts)
         self.delay = parts.delay or TeacherDelay()
         self.holds = HoldLessons(self._lessons, level.system, self.recent, self.delay)
+        self.demonstration = Demonstration(self._lessons, level.system, authority.repertoire, share=insert_beyond_share)
         self._late = LatePresses(self.recent, self.delay)
         self.updater = _knowledge_updater(level, handled_command_ids, parts)
         self.phase = Phase.SUPERVISED
@@ -212,9 +216,15 @@ class CommandHandler:
             self.delay.on_answer(command.teacher, command.seen_tick, self.authority.speed)
         self.authority.hold(command, tick)
 
-    def teach_held(self, tick: int) -> list[TeachingEvent]:
-        """Apply and return the lesson that a held action gives in this tick; call it only if lessons can be saved."""
+    def teach_driven(self, tick: int) -> list[TeachingEvent]:
+        """Apply and return the lessons that a held action and a confirmed demonstration give in this tick.
+
+        Call it only if lessons can be saved.
+        """
         events: list[TeachingEvent] = []
+        shown = self.demonstration.next_lesson(tick)
+        if shown is not None:
+            self.updater.apply_own(shown, events)
         if self.authority.held_press is not None and self.authority.is_manual(tick):
             event = self.holds.build(tick, self.phase, self.authority.speed)
             if event is not None:
@@ -337,11 +347,16 @@ class CommandHandler:
                 return LessonResult(*self._require_goals().name_situation(command, self._origin(command, tick)))
             case RunBehaviour():
                 return LessonResult(self._run(command, tick))
+            case TeachShown():
+                origin = self._origin(command, tick)
+                return LessonResult(self.demonstration.confirm(command.press_id, command.segments, origin))
             case BeginSession() | EndSession():
                 return LessonResult(*self._session(command, tick))
             case Watch() | Drive() | HoldAction():
                 raise AssertionError("streams are followed, not carried out")
             case _:
+                if isinstance(command, Undo):
+                    self.demonstration.cancel()
                 return self._lessons.build(command, situation, self._origin(command, tick))
 
     def _stop(self, command: Stop, tick: int) -> Outcome:

@@ -110,6 +110,18 @@ class Correct:
 
 
 @dataclass(frozen=True, slots=True)
+class TeachShown:
+    """Teach what was driven by hand: segments of the newest demonstration, which its teacher has seen."""
+
+    command_id: str
+    teacher: str
+    press_id: int
+    """Press of the demonstration."""
+    segments: tuple[int, ...]
+    """Indexes of the published segments that are right."""
+
+
+@dataclass(frozen=True, slots=True)
 class ReplaceAction:
     """Give one RLA another action (phase 2)."""
 
@@ -299,6 +311,7 @@ Command = (
     | RunBehaviour
     | Teach
     | Correct
+    | TeachShown
     | ReplaceAction
     | DeleteRla
     | Reward

@@ -92,14 +92,17 @@ class LessonBuilder:
             origin: of the lesson.
             counts: whether a lesson counts as a correction.
         """
-        context = self._basic_context(meant, None)
-        nearest = self._system.match(context.vector, context.behaviour, BASIC)
-        if self._agreeing(nearest, context, action) is not None:
-            return None
-        event = self._corrected(action, nearest, context, context.insert_beyond_share, origin).event
+        event = self.in_context(action, self._basic_context(meant, None), origin)
         if event is not None and counts:
             self.corrections_at[BASIC] += 1
         return event
+
+    def in_context(self, action: str, context: LessonContext, origin: Origin) -> TeachingEvent | None:
+        """Return the lesson that gives a situation of the basic level an action; None if it has this action already."""
+        nearest = self._system.match(context.vector, context.behaviour, BASIC)
+        if self._agreeing(nearest, context, action) is not None:
+            return None
+        return self._corrected(action, nearest, context, context.insert_beyond_share, origin).event
 
     def _action_lesson(self, command: Teach | Correct, situation: Situation, origin: Origin) -> LessonResult:
         """Return the lesson that makes the taught action the answer to the situation that the command means."""

@@ -1,0 +1,228 @@
+"""Demonstration: what a teacher drove by hand, as actions of the repertoire that can be taught."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from behaviors.keep_distance import KeepDistance
+from behaviors.motor_primitive import MotorPrimitive
+from behaviors.repertoire import Repertoire
+from behaviors.turn_by_angle import TurnByAngle
+from hal.robot import SensorReadings, WheelSpeeds
+from kurt2rt.core.outcome import CommandRefusedError, Outcome, RefusalCode, ResultCode
+from kurt2rt.core.perception.perception import Situation
+from kurt2rt.core.rla.events import TeachingEvent
+from kurt2rt.core.rla.lesson_history import DERIVED, hold_id
+from kurt2rt.core.rla.phase import Phase
+from kurt2rt.core.rla.rla import BASIC, Origin
+from kurt2rt.core.rla.rla_system import RlaSystem
+from kurt2rt.core.teaching.lesson_builder import LessonBuilder
+from kurt2rt.core.teaching.lesson_context import LessonContext
+
+EVERY_TICKS = 10
+"""Ticks of the robot between two samples of a demonstration: 0.1 s."""
+CAPACITY = 600
+"""Largest number of samples, the last minute; older ones are dropped."""
+MOST_SEGMENTS = 24
+"""Largest number of segments that are published; older ones stay untaught."""
+_LEAST_SAMPLES = 3
+"""A shorter run of one action, below 0.3 s, counts as the action before it: hands shake."""
+_STANDS_M_S = 0.03
+"""Wheel speed below which a wheel counts as standing."""
+_SHOWABLE = (MotorPrimitive, KeepDistance, TurnByAngle)
+"""Actions whose speeds can be told from one reading; a taught action has knowledge and a past of its own."""
+_MATCHES_PER_TICK = 4
+"""Number of situations that are compared with the knowledge in one tick; the others follow in the next ticks."""
+
+
+class Segment(NamedTuple):
+    """Part of a demonstration in which one action of the repertoire is nearest."""
+
+    action: str
+    from_tick: int
+    ticks: int
+    """Length of the segment in ticks."""
+
+
+class _Sample(NamedTuple):
+    tick: int
+    row: int
+    action: str
+    behaviour: str
+
+
+class Demonstration:
+    """Record of the newest press of manual drive, in constant memory, and the lessons of its confirmed segments."""
+
+    def __init__(self, lessons: LessonBuilder, system: RlaSystem, repertoire: Repertoire, *, share: float) -> None:
+        """Start without a demonstration.
+
+        Args:
+            lessons: builder of the lessons.
+            system: RLAs that are taught.
+            repertoire: actions that are compared with the driven speeds; used by nothing else meanwhile.
+            share: `insert_beyond_share` of the lessons.
+        """
+        self._lessons = lessons
+        self._system = system
+        self._repertoire = {name: each for name, each in repertoire.items() if isinstance(each, _SHOWABLE)}
+        self._share = share
+        self._situations = np.full((CAPACITY, system.dimensions), np.nan)
+        self._samples: list[_Sample] = []
+        self._count = 0
+        self._due = 0
+        self._last_tick = -1
+        self._pending: list[_Sample] = []
+        self._lesson = ""
+        self._origin = Origin("", "", Phase.SUPERVISED, 0)
+        self.press_id: int | None = None
+        """Press id of the newest manual drive; None before the first, and after it was taught or dropped."""
+        self.teacher = ""
+        self._segments: tuple[Segment, ...] | None = None
+
+    def update(
+        self,
+        tick: int,
+        press: tuple[str, int],
+        readings: SensorReadings,
+        speeds: WheelSpeeds,
+        situation: Situation,
+        behaviour: str,
+    ) -> None:
+        """Sample a tick of manual drive.
+
+        Args:
+            tick: number of the tick.
+            press: teacher and press id; a new one begins a new demonstration.
+            readings: for the actions that depend on them.
+            speeds: driven by the teacher.
+            situation: of the tick.
+            behaviour: active taught behaviour, which the lessons belong to.
+        """
+        if press != (self.teacher, self.press_id):
+            self.teacher, self.press_id = press
+            self._samples, self._count, self._due, self._pending = [], 0, tick, []
+        self._last_tick = tick
+        if tick < self._due:
+            return
+        self._due = tick + EVERY_TICKS
+        row = self._count % CAPACITY
+        self._count += 1
+        self._situations[row] = situation.vector
+        if len(self._samples) == CAPACITY:
+            del self._samples[0]
+        self._samples.append(_Sample(tick, row, nearest_action(self._repertoire, readings, speeds), behaviour))
+        self._segments = None
+
+    def segments(self, tick: int) -> tuple[Segment, ...]:
+        """Return the segments, oldest first, at most MOST_SEGMENTS; empty while the press lasts."""
+        if self.press_id is None or tick <= self._last_tick + 1 or self._pending:
+            return ()
+        if self._segments is None:
+            self._samples = _steady(self._samples)
+            self._segments = tuple(_segments(self._samples))[-MOST_SEGMENTS:]
+        return self._segments
+
+    def confirm(self, press_id: int, chosen: Iterable[int], origin: Origin) -> Outcome:
+        """Begin to teach segments of the demonstration; `next_lesson` returns them one by one.
+
+        Args:
+            press_id: press that the teacher saw.
+            chosen: indexes into `segments`.
+            origin: of the command.
+
+        Raises:
+            CommandRefusedError: the demonstration or a segment is not there (any more).
+        """
+        segments = self.segments(origin.tick)
+        if press_id != self.press_id or origin.teacher != self.teacher or not segments:
+            raise CommandRefusedError(RefusalCode.NO_DEMONSTRATION)
+        indexes = sorted(set(chosen))
+        if not indexes or not 0 <= indexes[0] <= indexes[-1] < len(segments):
+            raise CommandRefusedError(RefusalCode.NO_SEGMENT, segments=len(segments))
+        spans = [segments[index] for index in indexes]
+        self._pending = [
+            each
+            for each in self._samples
+            if any(span.from_tick <= each.tick < span.from_tick + span.ticks for span in spans)
+        ]
+        self._lesson = self._system.unused_hold_id(hold_id(self.teacher, press_id))
+        self._origin = origin
+        self.press_id = None
+        return Outcome.of(
+            ResultCode.DEMONSTRATION_TAUGHT, segments=len(spans), situations=len(self._pending), lesson=self._lesson
+        )
+
+    def cancel(self) -> None:
+        """Drop the lessons that have not been given yet; call it when the teacher undoes a lesson."""
+        self._pending = []
+
+    def next_lesson(self, tick: int) -> TeachingEvent | None:
+        """Return the next lesson of a confirmed demonstration; None if none is due.
+
+        A situation in which the robot would do the shown action already gives no lesson.
+        """
+        for _ in range(_MATCHES_PER_TICK):
+            if not self._pending:
+                return None
+            sample = self._pending.pop(0)
+            origin = replace(self._origin, command_id=f"{self._lesson}{DERIVED}{sample.tick}", tick=tick)
+            vector = self._situations[sample.row]
+            context = LessonContext(vector, sample.behaviour, BASIC, None, self._share)
+            event = self._lessons.in_context(sample.action, context, origin)
+            if event is not None:
+                return event
+        return None
+
+
+def nearest_action(repertoire: Repertoire, readings: SensorReadings, speeds: WheelSpeeds) -> str:
+    """Return the action whose wheel speeds have the direction that is nearest to the driven ones.
+
+    The direction is compared, not the length, so that a teacher may show slowly. The first of equally near ones wins.
+    """
+    driven = _direction(speeds)
+
+    def difference(name: str) -> float:
+        behaviour = repertoire[name]
+        behaviour.start()
+        left, right = _direction(behaviour.step(readings))
+        return math.hypot(left - driven[0], right - driven[1])
+
+    return min(repertoire, key=difference)
+
+
+def _direction(speeds: WheelSpeeds) -> tuple[float, float]:
+    left, right = speeds.left_m_s, speeds.right_m_s
+    length = math.hypot(left, right)
+    return (0.0, 0.0) if length < _STANDS_M_S else (left / length, right / length)
+
+
+def _steady(samples: list[_Sample]) -> list[_Sample]:
+    """Return the samples with short runs of an action joined to the run before them, or after the first."""
+    runs: list[list[_Sample]] = []
+    for sample in samples:
+        if runs and runs[-1][0].action == sample.action:
+            runs[-1].append(sample)
+        else:
+            runs.append([sample])
+    long_ = next((run[0].action for run in runs if len(run) >= _LEAST_SAMPLES), None)
+    steady: list[_Sample] = []
+    for run in runs:
+        action = run[0].action
+        if len(run) < _LEAST_SAMPLES:
+            action = steady[-1].action if steady else long_ or action
+        steady.extend(each._replace(action=action) for each in run)
+    return steady
+
+
+def _segments(samples: list[_Sample]) -> Iterable[Segment]:
+    """Yield the runs of one action; each lasts until the next begins."""
+    begin = 0
+    for index in range(1, len(samples) + 1):
+        if index == len(samples) or samples[index].action != samples[begin].action:
+            end = samples[index].tick if index < len(samples) else samples[-1].tick + EVERY_TICKS
+            yield Segment(samples[begin].action, samples[begin].tick, end - samples[begin].tick)
+            begin = index

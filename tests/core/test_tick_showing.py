@@ -1,0 +1,161 @@
+"""Demonstrations in the tick: what is driven by hand is taught after its teacher has confirmed it."""
+
+import pytest
+
+from hal.robot import WheelSpeeds
+from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.rla.events import RlaCreated
+from kurt2rt.core.teaching.commands import Drive, Stop, TeachShown, Undo
+from kurt2rt.core.teaching.demonstration import CAPACITY, EVERY_TICKS, MOST_SEGMENTS, Segment, nearest_action
+from tests.core.test_tick import Corridor
+from tests.teacher.helpers import teach
+
+FORWARD, BACK = (0.2, 0.2), (-0.1, -0.1)
+
+
+def drive(corridor: Corridor, ticks: int, speeds: tuple[float, float], counts: int, press: int = 7) -> None:
+    for _ in range(ticks):
+        corridor.run(counts, Drive("Ann", corridor.ticks + 1, press, *speeds))
+
+
+def release(corridor: Corridor, press: int = 7) -> None:
+    corridor.run(None, Stop(f"let go {press}", "Ann", press))
+    corridor.run()
+
+
+def segments(corridor: Corridor) -> tuple[Segment, ...]:
+    return corridor.school.demonstration.segments(corridor.ticks)
+
+
+def taught(corridor: Corridor) -> list[tuple[str, str]]:
+    """Return command id and action of the demonstration's lessons."""
+    return [
+        (event.origin.command_id, event.rla.action)
+        for event in corridor.notebook.events
+        if isinstance(event, RlaCreated) and "-hold-" in event.origin.command_id
+    ]
+
+
+@pytest.fixture
+def shown() -> Corridor:
+    """Return a robot that was driven forward at 100 counts, then back at 200 counts."""
+    corridor = Corridor()
+    drive(corridor, 60, FORWARD, 100)
+    drive(corridor, 60, BACK, 200)
+    release(corridor)
+    return corridor
+
+
+def test_drive_by_hand_is_published_as_segments_of_actions(shown: Corridor) -> None:
+    assert segments(shown) == (Segment("forward", 1, 60), Segment("back", 61, 60))
+    assert taught(shown) == []
+    assert shown.system.rlas == ()
+
+
+def test_segments_are_not_published_while_the_press_lasts() -> None:
+    corridor = Corridor()
+    drive(corridor, 60, FORWARD, 100)
+    assert segments(corridor) == ()
+
+
+def test_confirmed_segments_become_lessons(shown: Corridor) -> None:
+    result = shown.run(200, TeachShown("show-1", "Ann", 7, (0, 1))).results[0]
+    assert result.outcome == Outcome.of(ResultCode.DEMONSTRATION_TAUGHT, segments=2, situations=12, lesson="Ann-hold-7")
+    for _ in range(12):
+        shown.run(200)
+    actions = [action for _, action in taught(shown)]
+    assert set(actions) == {"forward", "back"}
+    assert len(actions) < 12, "a situation with an agreeing RLA gives no lesson"
+    assert all(each.startswith("Ann-hold-7/") for each, _ in taught(shown))
+
+
+def test_only_the_confirmed_segments_are_taught(shown: Corridor) -> None:
+    shown.run(200, TeachShown("show-1", "Ann", 7, (1,)))
+    for _ in range(12):
+        shown.run(200)
+    assert {action for _, action in taught(shown)} == {"back"}
+
+
+def test_undo_takes_a_whole_demonstration_back(shown: Corridor) -> None:
+    before = shown.system.knowledge_hash()
+    shown.run(200, TeachShown("show-1", "Ann", 7, (0, 1)))
+    for _ in range(12):
+        shown.run(200)
+    result = shown.run(200, Undo("u-1", "Ann", "Ann-hold-7")).results[0]
+    assert result.code is ResultCode.HOLD_UNDONE
+    assert shown.system.knowledge_hash() == before
+
+
+def test_undo_ends_the_lessons_that_have_not_been_given(shown: Corridor) -> None:
+    shown.run(200, TeachShown("show-1", "Ann", 7, (0, 1)))
+    shown.run(200, Undo("u-1", "Ann", "Ann-hold-7"))
+    for _ in range(12):
+        shown.run(200)
+    assert shown.system.rlas == ()
+
+
+@pytest.mark.parametrize(
+    ("command", "code"),
+    [
+        (TeachShown("show-1", "Ann", 6, (0,)), RefusalCode.NO_DEMONSTRATION),
+        (TeachShown("show-1", "Ann", 7, (2,)), RefusalCode.NO_SEGMENT),
+        (TeachShown("show-1", "Ann", 7, (-1,)), RefusalCode.NO_SEGMENT),
+        (TeachShown("show-1", "Ann", 7, ()), RefusalCode.NO_SEGMENT),
+        (TeachShown("show-1", "Ben", 7, (0,)), RefusalCode.ANOTHER_TEACHES),
+    ],
+)
+def test_confirmation_of_what_was_not_shown_is_refused(shown: Corridor, command: TeachShown, code: RefusalCode) -> None:
+    assert shown.run(200, command).results[0].code is code
+    assert shown.school.demonstration.press_id == 7
+
+
+def test_confirmation_counts_once(shown: Corridor) -> None:
+    shown.run(200, TeachShown("show-1", "Ann", 7, (0,)))
+    again = shown.run(200, TeachShown("show-2", "Ann", 7, (0,)))
+    assert again.results[0].code is RefusalCode.NO_DEMONSTRATION
+
+
+def test_next_press_replaces_the_demonstration(shown: Corridor) -> None:
+    drive(shown, 30, BACK, 100, press=8)
+    release(shown, 8)
+    assert segments(shown) == (Segment("back", 123, 30),)
+
+
+def test_short_wobble_counts_as_the_action_before_it() -> None:
+    corridor = Corridor()
+    for ticks, speeds in ((10, BACK), (100, FORWARD), (20, BACK), (100, FORWARD)):
+        drive(corridor, ticks, speeds, 100)
+    release(corridor)
+    assert segments(corridor) == (Segment("forward", 1, 230),)
+
+
+def test_long_drive_keeps_the_last_minute_and_its_last_segments() -> None:
+    corridor = Corridor()
+    for number in range(60):
+        drive(corridor, 150, FORWARD if number % 2 else BACK, 100)
+    release(corridor)
+    published = segments(corridor)
+    assert len(published) == MOST_SEGMENTS
+    assert published[-1].from_tick + published[-1].ticks == 60 * 150 + 1
+    assert published[0].from_tick >= 60 * 150 - CAPACITY * EVERY_TICKS
+
+
+def test_known_action_of_a_demonstration_is_not_taught_again() -> None:
+    corridor = Corridor()
+    corridor.run(100, teach("forward", "first"))
+    drive(corridor, 60, FORWARD, 100)
+    release(corridor)
+    corridor.run(100, TeachShown("show-1", "Ann", 7, (0,)))
+    for _ in range(12):
+        corridor.run(100)
+    assert taught(corridor) == []
+
+
+@pytest.mark.parametrize(
+    ("speeds", "action"),
+    [((0.1, 0.1), "forward"), ((-0.5, -0.4), "back"), ((0.3, 0.2), "forward"), ((-0.1, 0.02), "back")],
+)
+def test_nearest_action_compares_directions(speeds: tuple[float, float], action: str) -> None:
+    corridor = Corridor()
+    readings = corridor.robot.sense(0.0)
+    assert nearest_action(corridor.school.authority.repertoire, readings, WheelSpeeds(*speeds)) == action
