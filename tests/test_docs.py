@@ -229,10 +229,10 @@ def kurt2rt(folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.Capture
 
 def test_added_sensor_on_a_current_channel_or_unknown_is_refused(kurt2rt: CommandLine) -> None:
     on_current, unknown, *_ = printed_errors("add-a-sensor.md")
-    sensor = Path("my_robot.yaml").read_text(encoding="utf-8")
-    Path("on_current.yaml").write_text(sensor.replace("ADC10", "ADC12"), encoding="utf-8")
-    assert kurt2rt.refused("demo", "--robot-settings", "on_current.yaml").endswith(on_current)
-    assert kurt2rt.refused("demo", "--set", "situation=my_situation.yaml").endswith(unknown)
+    robot = Path("my_robot.yaml")
+    robot.write_text(robot.read_text(encoding="utf-8").replace("ADC10", "ADC12"), encoding="utf-8")
+    assert kurt2rt.refused("demo", "--robot-settings", "my_robot.yaml") == f"kurt2rt: {on_current}"
+    assert kurt2rt.refused("demo", "--set", "situation=my_situation.yaml") == f"kurt2rt: {unknown}"
 
 
 def test_added_sensor_refuses_old_knowledge_as_printed(kurt2rt: CommandLine) -> None:
