@@ -4,6 +4,7 @@ import getpass
 import re
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated, NamedTuple
@@ -36,6 +37,7 @@ from kurt2rt.checks.commission.report import as_text, print_report
 from kurt2rt.checks.commission.robot_file import write_robot_file
 from kurt2rt.checks.commission.step import CommissionStep, StepOutcome
 from kurt2rt.checks.commission.test_stand import TestStand
+from kurt2rt.cli.command_options import takes_options
 from kurt2rt.cli.options import RobotName
 from kurt2rt.platform.durable_files import write_durably
 from kurt2rt.platform.timerfd_clock import TimerfdClock
@@ -69,17 +71,23 @@ _Who = Annotated[
 ]
 
 
-def commission(
-    bus: _Bus,
-    name: _Name = "my-kurt2",
-    out: _Out = None,
-    robot_settings: RobotName = "kurt2",
-    only: _Only = None,
-    skip: _Skip = None,
-    start_over: _StartOver = False,
-    force: _Force = False,
-    who: _Who = None,
-) -> None:
+@dataclass(frozen=True, slots=True)
+class _Options:
+    """Options of `kurt2rt commission`."""
+
+    bus: _Bus
+    name: _Name = "my-kurt2"
+    out: _Out = None
+    robot_settings: RobotName = "kurt2"
+    only: _Only = None
+    skip: _Skip = None
+    start_over: _StartOver = False
+    force: _Force = False
+    who: _Who = None
+
+
+@takes_options(_Options)
+def commission(options: _Options) -> None:
     """Commission a real robot: a checklist that walks you through its first day.
 
     It listens for the controller's identity and every frame, tries which speed
@@ -113,25 +121,32 @@ def commission(
 
     Ends with code 1 when a step that was this session's to take has failed.
     """
-    target = _target(name, out, force=force)
-    requested, skipped = _named(only, "--only"), _named(skip, "--skip")
-    operator = _require_one_line(who or _user())
-    base = load_robot(robot_settings)
-    path = Path("var", "commission", f"{name}.json")
-    progress = _progress(path, Progress(name=name, base=robot_settings, bus=bus), start_over)
-    chosen = [step for step in (requested or steps_to_run(progress)) if step not in skipped]
     console = Console()
-    _tell(console, f"{name} on {bus}; progress is kept in {path}; Ctrl-C brakes")
-    _tell_earlier(console, progress, chosen)
-    session = _Session(base, progress, path, chosen, skipped, operator)
+    target = _target(options.name, options.out, force=options.force)
+    session = _session(options)
+    _tell(console, f"{options.name} on {options.bus}; progress is kept in {session.path}; Ctrl-C brakes")
+    _tell_earlier(console, session.progress, session.chosen)
     taken = anyio.run(_run_checklist, session, console)
     print_report(taken, STEPS, console)
-    report = path.with_suffix(".txt")
+    report = session.path.with_suffix(".txt")
     write_durably(report, as_text(taken, STEPS))
     _tell(console, f"all that was measured: {report}")
-    _conclude(console, taken, base, target)
-    if any(taken.steps[step.name].outcome is StepOutcome.FAILED for step in chosen if step.name in taken.steps):
+    _conclude(console, taken, session.base, target)
+    records = [taken.steps[step.name] for step in session.chosen if step.name in taken.steps]
+    if any(record.outcome is StepOutcome.FAILED for record in records):
         raise typer.Exit(ExitCode.FAILED)
+
+
+def _session(options: _Options) -> "_Session":
+    """Return what the options ask for. Raises typer.BadParameter, SettingsError."""
+    requested, skipped = _named(options.only, "--only"), _named(options.skip, "--skip")
+    operator = _require_one_line(options.who or _user())
+    base = load_robot(options.robot_settings)
+    path = Path("var", "commission", f"{options.name}.json")
+    fresh = Progress(name=options.name, base=options.robot_settings, bus=options.bus)
+    progress = _progress(path, fresh, options.start_over)
+    chosen = [step for step in (requested or steps_to_run(progress)) if step not in skipped]
+    return _Session(base, progress, path, chosen, skipped, operator)
 
 
 def _target(name: str, out: Path | None, *, force: bool) -> Path:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -23,6 +23,11 @@ from kurt2rt.cli.options import (
 from kurt2rt.cli.progress import one_bar
 from kurt2rt.cli.tables import print_study
 from kurt2rt.core.teacher_settings import SUPERHUMAN
+
+if TYPE_CHECKING:
+    from kurt2rt.experiments.phases.plan import PhasesPlan
+    from kurt2rt.experiments.phases.summary import PhasesStudy
+    from kurt2rt.experiments.study.results import Results
 
 _SEEDS, _QUICK_SEEDS = "100-119", "0-1"
 _FOLDER = Path("results/phases")
@@ -67,44 +72,55 @@ def phases(options: _Options) -> None:
         kurt2rt phases --quick
         kurt2rt phases --task wall_following --seeds 100-119
     """
-    # Not at the top: the simulator is an extra, and `kurt2rt run` on the robot does without it.
-    from kurt2rt.core.task_settings import load_task, taught_by
-    from kurt2rt.core.teacher_settings import load_teacher
-    from kurt2rt.experiments.phases.figures import draw_figures
-    from kurt2rt.experiments.phases.plan import make_plan
-    from kurt2rt.experiments.phases.report import reasons_not_to_judge, write_report
-    from kurt2rt.experiments.phases.summary import read_study
+    # Late imports: the simulator is an extra that `kurt2rt run` on the robot does not need.
+    from kurt2rt.experiments.phases.report import reasons_not_to_judge
     from kurt2rt.experiments.phases.tables import all_tables
-    from kurt2rt.experiments.study.jobs import JobParts
     from kurt2rt.experiments.study.plan import missing_time_s, run_missing
-    from kurt2rt.experiments.study.results import Results
-    from simbridge.simulation import Kurt2SimulationFactory
 
-    typed_seeds = options.seeds or (_QUICK_SEEDS if options.quick else _SEEDS)
-    profile = load_teacher(options.teacher)
-    robot, settings = load_robot(), taught_by(load_task(options.task, changes=changes_of(options.changes)), profile)
-    results = Results(options.out or _FOLDER / (settings.name + ("-quick" if options.quick else "")))
-    plan = make_plan(
-        settings,
-        parse_seeds(typed_seeds),
-        JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results),
-        quick=options.quick,
-    )
+    plan, results = _plan(options)
     with results.held(), one_bar(missing_time_s(plan, results)) as bar:
         run_missing(plan, results, options.jobs, bar.look)
         bar.say("figures and report")
-        study = read_study(plan, results)
-        pictures = list(draw_figures(study, results.folder))
-        report = results.folder / "report.html"
-        command = _command(options, typed_seeds)
-        write_report(study, pictures, command, report)
+        study, report = _write_report(plan, results, options)
     reasons = list(reasons_not_to_judge(plan))
     print_study(all_tables(study, reasons), reasons, report, as_json=options.as_json)
 
 
-def _command(options: _Options, seeds: str) -> str:
+def _plan(options: _Options) -> "tuple[PhasesPlan, Results]":
+    """Return the plan, and the folder of its results. Raises SettingsError."""
+    from kurt2rt.core.task_settings import load_task, taught_by
+    from kurt2rt.core.teacher_settings import load_teacher
+    from kurt2rt.experiments.phases.plan import make_plan
+    from kurt2rt.experiments.study.jobs import JobParts
+    from kurt2rt.experiments.study.results import Results
+    from simbridge.simulation import Kurt2SimulationFactory
+
+    profile = load_teacher(options.teacher)
+    robot, task = load_robot(), taught_by(load_task(options.task, changes=changes_of(options.changes)), profile)
+    results = Results(options.out or _FOLDER / (task.name + ("-quick" if options.quick else "")))
+    parts = JobParts(factory=Kurt2SimulationFactory(robot), robot=robot, results=results)
+    return make_plan(task, parse_seeds(_seeds(options)), parts, quick=options.quick), results
+
+
+def _write_report(plan: "PhasesPlan", results: "Results", options: _Options) -> "tuple[PhasesStudy, Path]":
+    """Write figures and report; return the study and the report's path. Raises OSError."""
+    from kurt2rt.experiments.phases.figures import draw_figures
+    from kurt2rt.experiments.phases.report import write_report
+    from kurt2rt.experiments.phases.summary import read_study
+
+    study = read_study(plan, results)
+    report = results.folder / "report.html"
+    write_report(study, list(draw_figures(study, results.folder)), _command(options), report)
+    return study, report
+
+
+def _seeds(options: _Options) -> str:
+    return options.seeds or (_QUICK_SEEDS if options.quick else _SEEDS)
+
+
+def _command(options: _Options) -> str:
     """Return the command as far as it decides the numbers, without paths of this machine."""
-    words = ["kurt2rt phases", *(["--quick"] if options.quick else []), f"--task {Path(options.task).name}"]
-    words += [f"--seeds {seeds}"]
+    quick = ["--quick"] if options.quick else []
+    words = ["kurt2rt phases", *quick, f"--task {Path(options.task).name}", f"--seeds {_seeds(options)}"]
     words += [f"--teacher {Path(options.teacher).name}"] if options.teacher != SUPERHUMAN else []
-    return " ".join([*words, *(f"--set {each}" for each in options.changes or ())])
+    return " ".join([*words, *(f"--set {each}" for each in options.changes or [])])

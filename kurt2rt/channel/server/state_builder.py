@@ -1,5 +1,7 @@
 """State of the robot that its teachers get."""
 
+from typing import TypedDict
+
 from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.channel.server.dependencies import ChannelDependencies
@@ -14,6 +16,38 @@ from kurt2rt.runtime import Runtime
 _SENSORS = (TroubleCode.SENSORS_UNHEARD, TroubleCode.SENSORS_SILENT)
 _LATENESS_EVERY = 20
 """Number of states between two percentiles, which cost more than a state."""
+
+
+class _Nearest(TypedDict):
+    """Fields of the RLA nearest to the situation."""
+
+    nearest: int | None
+    nearest_action: str | None
+    distance: float
+    radius: float
+    taught_by: str
+    taught_at: str
+    nearest_value: float | None
+
+
+class _Critic(TypedDict):
+    """Fields of the critic."""
+
+    opinion: int | None
+    opinion_of: int | None
+    agreement: float | None
+    trusted: bool
+    role: str
+    bad_share: float | None
+    signals_missing: tuple[int, int]
+
+
+class _Plan(TypedDict):
+    """Fields of the plan to a goal."""
+
+    goal: str
+    plan: tuple[str, ...]
+    plan_says: str
 
 
 class StateBuilder:
@@ -33,42 +67,28 @@ class StateBuilder:
     def build(self, record: TickRecord) -> State:
         """Return the state of the robot after a tick."""
         runtime, parts = self._runtime, self._parts
-        decision, match = record.decision, record.decision.match
-        commands, system = runtime.handler, runtime.level.system
+        decision, readings, commands = record.decision, record.readings, runtime.handler
         if self._count % _LATENESS_EVERY == 0:
             self._late_p99_ms = self._late()
         self._count += 1
-        question: tuple[FeatureDifference, ...] = ()
-        if decision.cause is DecisionCause.UNKNOWN and match is not None and decision.asks_at == BASIC:
-            question = ask(match, record.situation.vector, system.weights, runtime.definition.names).differing
-        nearest = None if match is None else match.rla
-        plan = decision.plan
-        opinion, agreement = record.opinion, commands.agreement
-        of = None if opinion is None or not opinion.known else opinion.rla
         return State(
             boot=parts.boot,
             tick=record.tick,
             phase=int(commands.phase),
-            infrared_counts=record.readings.infrared_counts,
-            infrared_age_s=record.readings.infrared_age_s,
-            bumpers=record.readings.bumpers,
+            infrared_counts=readings.infrared_counts,
+            infrared_age_s=readings.infrared_age_s,
+            bumpers=readings.bumpers,
             left_m_s=record.guard_result.wheel_speeds.left_m_s,
             right_m_s=record.guard_result.wheel_speeds.right_m_s,
             cause=decision.cause.value,
             action=decision.action,
             rla=decision.rla_id,
-            nearest=None if nearest is None else nearest.rla_id,
-            nearest_action=None if nearest is None else nearest.action,
-            distance=float("inf") if match is None else match.distance,
-            radius=self._radius(decision.asks_at) if match is None else match.radius,
-            taught_by="" if nearest is None else nearest.origin.teacher,
-            taught_at="" if nearest is None else parts.journal.stamp_of(nearest.origin.command_id),
-            question=question,
+            question=self._question(record),
             teacher=commands.authority.teacher,
             by_hand=commands.authority.is_manual(record.tick),
             stopped=commands.active_stop or _latched(record),
-            rlas=len(system),
-            lessons=system.standing_lessons,
+            rlas=len(runtime.level.system),
+            lessons=runtime.level.system.standing_lessons,
             unsaved=parts.journal.unsaved(),
             session=commands.session,
             clock_s=commands.teaching_ticks(record.tick) * runtime.robot.can.cycle_s,
@@ -79,26 +99,62 @@ class StateBuilder:
             place=None if parts.world is None else parts.world.place(),
             behaviour=record.behaviour,
             value=None if decision.rla_id is None else float(runtime.reinforcement.value(decision.rla_id)),
+            asks_at=decision.asks_at,
+            mid=self._mid(record),
+            surprise=self._surprise,
+            progress=runtime.progress.progress(),
+            standing=record.standing,
+            **self._nearest(record),
+            **self._critic(record),
+            **_plan(record),
+        )
+
+    def _question(self, record: TickRecord) -> tuple[FeatureDifference, ...]:
+        decision, match = record.decision, record.decision.match
+        if decision.cause is not DecisionCause.UNKNOWN or match is None or decision.asks_at != BASIC:
+            return ()
+        weights, names = self._runtime.level.system.weights, self._runtime.definition.names
+        return ask(match, record.situation.vector, weights, names).differing
+
+    def _nearest(self, record: TickRecord) -> _Nearest:
+        match = record.decision.match
+        if match is None:
+            radius = self._radius(record.decision.asks_at)
+            return _Nearest(
+                nearest=None,
+                nearest_action=None,
+                distance=float("inf"),
+                radius=radius,
+                taught_by="",
+                taught_at="",
+                nearest_value=None,
+            )
+        return _Nearest(
+            nearest=match.rla.rla_id,
+            nearest_action=match.rla.action,
+            distance=match.distance,
+            radius=match.radius,
+            taught_by=match.rla.origin.teacher,
+            taught_at=self._parts.journal.stamp_of(match.rla.origin.command_id),
+            nearest_value=self._withdrawn_at(match.rla),
+        )
+
+    def _critic(self, record: TickRecord) -> _Critic:
+        commands, opinion = self._runtime.handler, record.opinion
+        agreement = commands.agreement
+        appraisal_rla = None if opinion is None or not opinion.known else opinion.rla
+        return _Critic(
             opinion=None if opinion is None else opinion.said,
-            opinion_of=None if of is None else of.rla_id,
+            opinion_of=None if appraisal_rla is None else appraisal_rla.rla_id,
             agreement=None if agreement is None else agreement.share,
             trusted=agreement is not None and agreement.trusted,
             role=commands.updater.critic_state.value,
             bad_share=commands.updater.bad_share,
             signals_missing=self._signals_missing(),
-            asks_at=decision.asks_at,
-            mid=self._mid(record),
-            surprise=self._surprise,
-            goal="" if plan is None else plan.goal,
-            plan=() if plan is None else plan.behaviours,
-            plan_says="" if plan is None else plan.says,
-            nearest_value=self._withdrawn_at(nearest),
-            progress=runtime.progress.progress(),
-            standing=record.standing,
         )
 
-    def _withdrawn_at(self, nearest: Rla | None) -> float | None:
-        if nearest is None or nearest.level != BASIC or nearest.action != ASK:
+    def _withdrawn_at(self, nearest: Rla) -> float | None:
+        if nearest.level != BASIC or nearest.action != ASK:
             return None
         return float(self._runtime.reinforcement.value(nearest.rla_id))
 
@@ -128,6 +184,13 @@ class StateBuilder:
             return 0, 0
         least = critic.settings.agreement.least
         return max(0, least - agreement.count_for(-1)), max(0, least - agreement.count_for(1))
+
+
+def _plan(record: TickRecord) -> _Plan:
+    plan = record.decision.plan
+    if plan is None:
+        return _Plan(goal="", plan=(), plan_says="")
+    return _Plan(goal=plan.goal, plan=plan.behaviours, plan_says=plan.says)
 
 
 def _latched(record: TickRecord) -> ActiveStop | None:

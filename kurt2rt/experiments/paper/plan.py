@@ -105,32 +105,44 @@ def make_plan(
     ]
     source = source_of(factory)
     fingerprints = Fingerprints(factory, robot, source, ("paper", "plain", *PHASES))
-
-    def experiment(each: ExperimentSettings, reading: Reading, task: TaskSettings) -> PaperExperiment:
-        jobs = []
-        for seed in seeds:
-            own = unseen_of(seed, each)
-            made = fingerprints.of(task, (task.teaching.world, *task.exam.worlds, *own))
-            jobs.append(TaughtJob(task=task, reading=reading, seed=seed, unseen=own, made_of=made, **parts))
-        return PaperExperiment(each, reading, task, tuple(jobs))
-
-    def growth(reading: Reading, task: TaskSettings) -> Growth:
-        jobs = []
-        for radius in paper.growth.radii:
-            of_radius = with_radius_only(task, radius, paper.growth.duration_s)
-            made = fingerprints.of(of_radius, (task.teaching.world,))
-            for seed in seeds[: paper.growth.robots]:
-                jobs.append(GrowthJob(task=of_radius, reading=reading, seed=seed, made_of=made, **parts))
-        return Growth(reading, task, tuple(jobs))
-
+    maker = _JobMaker(paper, tuple(seeds), parts, fingerprints)
     return PaperPlan(
         paper,
         extent,
-        tuple(seeds),
+        maker.seeds,
         source,
-        tuple(experiment(*each) for each in taught),
-        tuple(growth(reading, task) for each, reading, task in taught if each.task == paper.growth.task),
+        tuple(maker.experiment(*each) for each in taught),
+        tuple(maker.growth(reading, task) for each, reading, task in taught if each.task == paper.growth.task),
     )
+
+
+@dataclass(frozen=True, slots=True)
+class _JobMaker:
+    """Maker of the jobs of one study."""
+
+    paper: PaperSettings
+    seeds: tuple[int, ...]
+    parts: JobParts
+    fingerprints: Fingerprints
+
+    def experiment(self, settings: ExperimentSettings, reading: Reading, task: TaskSettings) -> PaperExperiment:
+        """Return the jobs of one task in one reading: one job per seed."""
+        jobs = []
+        for seed in self.seeds:
+            own = unseen_of(seed, settings)
+            made = self.fingerprints.of(task, (task.teaching.world, *task.exam.worlds, *own))
+            jobs.append(TaughtJob(task=task, reading=reading, seed=seed, unseen=own, made_of=made, **self.parts))
+        return PaperExperiment(settings, reading, task, tuple(jobs))
+
+    def growth(self, reading: Reading, task: TaskSettings) -> Growth:
+        """Return the jobs of Fig. 2 in one reading: one job per radius and seed."""
+        jobs, growth = [], self.paper.growth
+        for radius in growth.radii:
+            of_radius = with_radius_only(task, radius, growth.duration_s)
+            made = self.fingerprints.of(of_radius, (task.teaching.world,))
+            for seed in self.seeds[: growth.robots]:
+                jobs.append(GrowthJob(task=of_radius, reading=reading, seed=seed, made_of=made, **self.parts))
+        return Growth(reading, task, tuple(jobs))
 
 
 def unseen_of(seed: int, experiment: ExperimentSettings) -> tuple[str, ...]:

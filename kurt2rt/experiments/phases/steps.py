@@ -8,7 +8,7 @@ from hal.settings import SettingsError
 from kurt2rt.core.phase_settings import PhasesSettings
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.task_settings import TaskSettings
-from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, SignalTimes
+from kurt2rt.experiments.lockstep.lesson_plan import LessonPlan, SignalTimes, Signs
 
 Critic = Literal["own", "taught", "shuffled"]
 """Critic before the step: the knowledge's own, the one of this robot's phase 4, or a shuffled one."""
@@ -85,67 +85,100 @@ def phases_of(task: TaskSettings) -> PhasesSettings:
     return task.phases
 
 
-def steps_of(task: TaskSettings) -> Iterator[PhaseStep]:
-    """All steps after the lesson of phases 1 and 2, each behind those it needs. Raises hal.settings.SettingsError."""
-    phases = phases_of(task)
-    worlds, repair_worlds = task.exam.worlds, phases.repair_worlds
-    signals, appraisals = phases.signals, phases.appraisals
-    of_rewards = SignalTimes(
-        signals.bad_every_s, signals.good_every_s, patience_s=signals.patience_s, most_blame=signals.most_blame
-    )
-    moved = phases.reposition_every_s
-    of_appraisals = SignalTimes(
-        appraisals.bad_every_s, appraisals.good_every_s, appraisals.neutral_every_s, gap_s=appraisals.gap_s
-    )
+@dataclass(frozen=True, slots=True)
+class _Plans:
+    """Lesson plans of one task's steps. Robots that are compared are rescued by one rule in all phases."""
 
-    def taught(phase: Phase, lasts_s: float, purpose: str, **more: object) -> LessonPlan:
-        # Robots that are compared are rescued by one rule in all phases.
-        return LessonPlan(((phase, lasts_s),), purpose, rescues_who_asks=True, **more)  # type: ignore[arg-type]
+    task: TaskSettings
+    phases: PhasesSettings
 
-    def alone(lasts_s: float, purpose: str) -> LessonPlan:
-        # Without a teacher, rescues come later and planned repositionings are left out.
-        return taught(
-            Phase.AUTONOMOUS, lasts_s, purpose, rescue_after_s=task.exam.stuck_after_s, reposition_every_s=0.0
+    @property
+    def reward_times(self) -> SignalTimes:
+        """Return the intervals of the rewards."""
+        signals = self.phases.signals
+        return SignalTimes(
+            signals.bad_every_s, signals.good_every_s, patience_s=signals.patience_s, most_blame=signals.most_blame
         )
 
-    rewarded = taught(
-        Phase.REINFORCEMENT,
-        phases.reinforcement_s,
-        "phase 3",
-        signs="judge",
-        times=of_rewards,
-        reposition_every_s=moved,
-    )
-    critic = taught(
-        Phase.CRITIC,
-        phases.critic_s,
-        "phase 4",
-        signs="judge",
-        times=of_appraisals,
-        set_down_every_s=phases.set_down_every_s,
-        shown_s=phases.shown_s,
-        shown_share=phases.shown_share,
-    )
-    yield PhaseStep(PHASE_3, PHASE_2, 0.0, "own", rewarded, repair_worlds)
-    errs = phases.corrupted_share if phases.critic_sees_wrong else 0.0
-    yield PhaseStep(PHASE_4, PHASE_3, errs, "own", critic, repair_worlds, mistakes="critic", aside=True)
-    yield PhaseStep(PHASE_5, PHASE_4, 0.0, "own", alone(phases.autonomy_s, "phase 5"), worlds)
-    yield PhaseStep(LONG_RUN, PHASE_5, 0.0, "own", alone(phases.long_run_s, "long run"), ())
+    def asking(self) -> LessonPlan:
+        """Return the plan of a teacher who answers only."""
+        return LessonPlan(
+            ((Phase.SUPERVISED, self.phases.repair_s),),
+            "repair",
+            rescues_who_asks=True,
+            reposition_every_s=self.phases.reposition_every_s,
+        )
 
-    repair_s, alone_s, wrong = phases.repair_s, phases.repair_alone_s, phases.corrupted_share
-    by_itself = alone(alone_s, "repair")
-    asks = taught(Phase.SUPERVISED, repair_s, "repair", reposition_every_s=moved)
-    chance = taught(Phase.REINFORCEMENT, repair_s, "repair", signs="chance", times=of_rewards, reposition_every_s=moved)
-    unknown = taught(
-        Phase.REINFORCEMENT, repair_s, "repair", signs="unknown", times=of_rewards, reposition_every_s=moved
-    )
-    rewards = taught(Phase.REINFORCEMENT, repair_s, "repair", signs="judge", times=of_rewards, reposition_every_s=moved)
-    yield PhaseStep(CORRUPTED, PHASE_2, wrong, "own", None, repair_worlds)
-    yield PhaseStep(ASKS, PHASE_2, wrong, "own", asks, repair_worlds)
-    yield PhaseStep(UNKNOWN_BAD, PHASE_2, wrong, "own", unknown, repair_worlds)
-    yield PhaseStep(REWARDS, PHASE_2, wrong, "own", rewards, repair_worlds)
-    yield PhaseStep(BLAME_BY_CHANCE, PHASE_2, wrong, "own", chance, repair_worlds, blames_like=REWARDS)
+    def rewards(self, lasts_s: float, purpose: str, signs: Signs) -> LessonPlan:
+        """Return the plan of a teacher who answers and rewards, for `lasts_s` seconds."""
+        return LessonPlan(
+            ((Phase.REINFORCEMENT, lasts_s),),
+            purpose,
+            signs,
+            self.reward_times,
+            rescues_who_asks=True,
+            reposition_every_s=self.phases.reposition_every_s,
+        )
+
+    def appraisals(self) -> LessonPlan:
+        """Return the plan of a teacher who teaches the critic."""
+        phases, times = self.phases, self.phases.appraisals
+        return LessonPlan(
+            ((Phase.CRITIC, phases.critic_s),),
+            "phase 4",
+            "judge",
+            SignalTimes(times.bad_every_s, times.good_every_s, times.neutral_every_s, gap_s=times.gap_s),
+            rescues_who_asks=True,
+            set_down_every_s=phases.set_down_every_s,
+            shown_s=phases.shown_s,
+            shown_share=phases.shown_share,
+        )
+
+    def autonomous(self, lasts_s: float, purpose: str) -> LessonPlan:
+        """Return the plan without a teacher, for `lasts_s` seconds: rescues come later, none is planned."""
+        return LessonPlan(
+            ((Phase.AUTONOMOUS, lasts_s),),
+            purpose,
+            rescues_who_asks=True,
+            rescue_after_s=self.task.exam.stuck_after_s,
+            reposition_every_s=0.0,
+        )
+
+
+def steps_of(task: TaskSettings) -> Iterator[PhaseStep]:
+    """Yield all steps after the lesson of phases 1 and 2, each behind those it needs.
+
+    Raises hal.settings.SettingsError.
+    """
+    plans = _Plans(task, phases_of(task))
+    yield from _path_steps(plans)
+    yield from _branch_steps(plans)
+
+
+def _path_steps(plans: _Plans) -> Iterator[PhaseStep]:
+    phases, worlds = plans.phases, plans.task.exam.worlds
+    rewards = plans.rewards(phases.reinforcement_s, "phase 3", "judge")
+    yield PhaseStep(PHASE_3, PHASE_2, 0.0, "own", rewards, phases.repair_worlds)
+    errs = phases.corrupted_share if phases.critic_sees_wrong else 0.0
+    critic = plans.appraisals()
+    yield PhaseStep(PHASE_4, PHASE_3, errs, "own", critic, phases.repair_worlds, mistakes="critic", aside=True)
+    yield PhaseStep(PHASE_5, PHASE_4, 0.0, "own", plans.autonomous(phases.autonomy_s, "phase 5"), worlds)
+    yield PhaseStep(LONG_RUN, PHASE_5, 0.0, "own", plans.autonomous(phases.long_run_s, "long run"), ())
+
+
+def _branch_steps(plans: _Plans) -> Iterator[PhaseStep]:
+    phases = plans.phases
+    worlds, wrong = phases.repair_worlds, phases.corrupted_share
+    judge = plans.rewards(phases.repair_s, "repair", "judge")
+    chance = plans.rewards(phases.repair_s, "repair", "chance")
+    unknown = plans.rewards(phases.repair_s, "repair", "unknown")
+    alone = plans.autonomous(phases.repair_alone_s, "repair")
+    yield PhaseStep(CORRUPTED, PHASE_2, wrong, "own", None, worlds)
+    yield PhaseStep(ASKS, PHASE_2, wrong, "own", plans.asking(), worlds)
+    yield PhaseStep(UNKNOWN_BAD, PHASE_2, wrong, "own", unknown, worlds)
+    yield PhaseStep(REWARDS, PHASE_2, wrong, "own", judge, worlds)
+    yield PhaseStep(BLAME_BY_CHANCE, PHASE_2, wrong, "own", chance, worlds, blames_like=REWARDS)
     yield PhaseStep(JUDGED, PHASE_2, wrong, "taught", None, (), judges_critic=True)
-    yield PhaseStep(CRITIC_ALONE, PHASE_2, wrong, "taught", by_itself, repair_worlds)
-    yield PhaseStep(SHUFFLED, PHASE_2, wrong, "shuffled", by_itself, repair_worlds)
-    yield PhaseStep(INTACT, PHASE_2, 0.0, "taught", by_itself, worlds)
+    yield PhaseStep(CRITIC_ALONE, PHASE_2, wrong, "taught", alone, worlds)
+    yield PhaseStep(SHUFFLED, PHASE_2, wrong, "shuffled", alone, worlds)
+    yield PhaseStep(INTACT, PHASE_2, 0.0, "taught", alone, plans.task.exam.worlds)
