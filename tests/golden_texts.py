@@ -28,6 +28,7 @@ from tests.texts import (
     shutdown,
     standing,
     startup,
+    units,
     verdicts,
 )
 
@@ -53,6 +54,7 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
     },
     "reports": {
         "access of a unit": access.findings,
+        "errors of a unit": units.errors,
         "faults of a commissioning": commission.faults,
         "skipped steps of a commissioning": commission.skips,
         "complaints of fault drill and soak": complaints.complaints,

@@ -17,7 +17,8 @@ from kurt2rt.service.systemd.install import install as install_unit
 from kurt2rt.service.systemd.install import require_free
 from kurt2rt.service.systemd.install import uninstall as uninstall_unit
 from kurt2rt.service.systemd.installation import start_command
-from kurt2rt.service.systemd.unit import STATE, Unit, UnitError, build_unit, require_name
+from kurt2rt.service.systemd.unit import STATE, Unit, build_unit, require_name
+from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
 from kurt2rt.service.systemd.verify import MOST_EXPOSURE, verify
 
 service = typer.Typer(
@@ -121,7 +122,7 @@ def install(
     """
     unit, wanted = _unit(bus_of(bus, robot, default=_BUS), settings, name, page=page)
     for obstacle in private_paths(wanted):
-        raise UnitError(access_text(obstacle))
+        raise UnitError(UnitCode.NO_ACCESS, says=access_text(obstacle))
     for path in install_unit(unit):
         typer.echo(f"{path} is written")
     for finding in paths_to_chown(name, wanted):
@@ -173,7 +174,5 @@ def _as_the_service_finds(key: str, given: str, state: Path) -> Path:
     """Return the file that a setting names. Raises SettingsError; UnitError if the service would find another file."""
     found = find_config(key + "s", given)
     if found == Path(given) and not found.is_absolute():
-        raise UnitError(
-            f"{given}: the service would look for it in {state}", where=key, do="give its whole path in the settings"
-        )
+        raise UnitError(UnitCode.RELATIVE_PATH, where=key, given=given, state=state)
     return found.absolute()

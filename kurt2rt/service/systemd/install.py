@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kurt2rt.platform.durable_files import write_durably
-from kurt2rt.service.systemd.unit import MARK, USER, Unit, UnitError, require_name
+from kurt2rt.service.systemd.unit import MARK, USER, Unit, require_name
+from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
 
 CommandRunner = Callable[[Sequence[str]], None]
 """Runs one of systemd's commands. Raises UnitError."""
@@ -34,25 +35,25 @@ def run_command(command: Sequence[str]) -> None:
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=False)
     except FileNotFoundError as error:
-        raise UnitError(f"{command[0]} is not on this machine", do="the unit needs systemd") from error
+        raise UnitError(UnitCode.NO_COMMAND, command=command[0]) from error
     if done.returncode:
-        raise UnitError(f"{' '.join(done.stderr.split()) or f'exit code {done.returncode}'}", where=" ".join(command))
+        says = " ".join(done.stderr.split()) or f"exit code {done.returncode}"
+        raise UnitError(UnitCode.COMMAND_FAILED, where=" ".join(command), says=says)
 
 
 def require_free(name: str, places: InstallPaths | None = None) -> None:
     """Require a name that no unit and no user of another program has. Raises UnitError."""
     require_name(name)
     places = places or InstallPaths()
-    to_do = "give another --name"
     for path in (*places.files(name), *(folder / f"{name}.service" for folder in places.others)):
         if _is_there(path) and not (path.parent in (places.units, places.users) and _is_ours(path)):
-            raise UnitError("is another program's", where=path, do=to_do)
+            raise UnitError(UnitCode.NAME_TAKEN, where=path)
     try:
         user = pwd.getpwnam(name)
     except KeyError:
         return
     if user.pw_gecos != USER:
-        raise UnitError("is a user of this machine already", where=name, do=to_do)
+        raise UnitError(UnitCode.USER_TAKEN, where=name)
 
 
 def install(unit: Unit, run: CommandRunner = run_command, places: InstallPaths | None = None) -> tuple[Path, ...]:
@@ -64,7 +65,7 @@ def install(unit: Unit, run: CommandRunner = run_command, places: InstallPaths |
         try:
             write_durably(path, text)
         except OSError as error:
-            raise UnitError(f"cannot be written ({error})", where=path, do="say it with sudo") from error
+            raise UnitError(UnitCode.NOT_WRITTEN, where=path, error=error) from error
     run(("systemd-sysusers", str(files[1])))
     run(("systemctl", "daemon-reload"))
     return files
@@ -76,16 +77,16 @@ def uninstall(name: str, run: CommandRunner = run_command, places: InstallPaths 
     places = places or InstallPaths()
     files = tuple(each for each in places.files(name) if _is_there(each))
     if not files:
-        raise UnitError("there is no such unit", where=places.files(name)[0], do="kurt2rt service install makes one")
+        raise UnitError(UnitCode.NO_UNIT, where=places.files(name)[0])
     for path in files:
         if not _is_ours(path):
-            raise UnitError("is another program's and stays", where=path, do="give the --name that you installed with")
+            raise UnitError(UnitCode.NOT_OURS, where=path)
     run(("systemctl", "disable", "--now", f"{name}.service"))
     for path in files:
         try:
             path.unlink()
         except OSError as error:
-            raise UnitError(f"cannot be removed ({error})", where=path, do="say it with sudo") from error
+            raise UnitError(UnitCode.NOT_REMOVED, where=path, error=error) from error
     run(("systemctl", "daemon-reload"))
     return files
 
@@ -98,4 +99,4 @@ def _is_ours(path: Path) -> bool:
     try:
         return not path.is_symlink() and path.read_text(encoding="utf-8", errors="replace").startswith(MARK)
     except OSError as error:
-        raise UnitError(f"cannot be read ({error})", where=path, do="say it with sudo") from error
+        raise UnitError(UnitCode.NOT_READ, where=path, error=error) from error

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from string import Template
 
-from hal.errors import UserError
 from hal.settings import SHIPPED_DIR
 from kurt2rt.service.systemd.access import needs_home_access
+from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
 
 MARK = "# Made by kurt2rt service install:"
 """First words of our files; other files are not touched."""
@@ -19,10 +19,6 @@ STATE = Path("/var/lib")
 _TEMPLATES = SHIPPED_DIR / "service"
 _NAME = re.compile(r"[a-z][a-z0-9-]{0,30}")
 _PLAIN = re.compile(r"[\w@+,./:=-]+")
-
-
-class UnitError(UserError):
-    """A unit cannot be made, installed or checked."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,11 +55,7 @@ def build_unit(name: str, bus: str, command: Sequence[str], folders: Iterable[Pa
 def require_name(name: str) -> None:
     """Require a valid name of a unit and of its user. Raises UnitError."""
     if not _NAME.fullmatch(name):
-        raise UnitError(
-            "is no name for a unit and its user",
-            where=repr(name),
-            do="give up to 31 of a-z, 0-9 and -, a letter first",
-        )
+        raise UnitError(UnitCode.BAD_NAME, where=repr(name))
 
 
 def quoted(word: str) -> str:
@@ -77,7 +69,7 @@ def quoted(word: str) -> str:
 
 def _specifier_free(text: str) -> str:
     if not text.isprintable():
-        raise UnitError("cannot stand in a unit", where=repr(text), do="give a path without control characters")
+        raise UnitError(UnitCode.UNPRINTABLE, where=repr(text))
     return text.replace("%", "%%")
 
 

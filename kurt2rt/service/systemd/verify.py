@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from kurt2rt.service.systemd.unit import Unit, UnitError
+from kurt2rt.service.systemd.unit import Unit
+from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
 
 TOOL = "systemd-analyze"
 MOST_EXPOSURE = 2.0
@@ -55,7 +56,7 @@ def verify(unit: Unit) -> UnitVerification:
     """Verify the unit without installing or starting it. Raises UnitError if the tool is missing."""
     tool = shutil.which(TOOL)
     if tool is None:
-        raise UnitError(f"{TOOL} is not on this machine", do="on Debian: apt-get install systemd")
+        raise UnitError(UnitCode.NO_TOOL, tool=TOOL)
     with tempfile.TemporaryDirectory(prefix="kurt2rt-unit-") as folder:
         path = Path(folder) / f"{unit.name}.service"
         path.write_text(unit.service, encoding="utf-8")
@@ -64,9 +65,7 @@ def verify(unit: Unit) -> UnitVerification:
     complaints = tuple(line for line in verified.stderr.splitlines() if path.name in line or verified.returncode)
     overall = _OVERALL.search(security)
     if overall is None:
-        raise UnitError(
-            f"{TOOL} security says no exposure: {' '.join(security.split())[-200:]!r}", do="look at it yourself"
-        )
+        raise UnitError(UnitCode.NO_EXPOSURE, tool=TOOL, says=" ".join(security.split())[-200:])
     found = tuple(OpenSetting(setting, meaning, float(share)) for setting, meaning, share in _OPEN.findall(security))
     return UnitVerification(complaints, float(overall[1]), found)
 
@@ -75,4 +74,4 @@ def _say(tool: str, *words: str) -> "subprocess.CompletedProcess[str]":
     try:
         return subprocess.run([tool, *words], capture_output=True, text=True, check=False, timeout=_LONGEST_S)
     except subprocess.TimeoutExpired as error:
-        raise UnitError(f"{TOOL} {words[0]} does not end", do="look at the machine's load") from error
+        raise UnitError(UnitCode.TOOL_HANGS, tool=TOOL, command=words[0]) from error

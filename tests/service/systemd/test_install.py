@@ -7,7 +7,8 @@ import pytest
 
 from kurt2rt.service.systemd.install import InstallPaths, install, require_free, uninstall
 from kurt2rt.service.systemd.installation import start_command
-from kurt2rt.service.systemd.unit import MARK, Unit, UnitError, build_unit
+from kurt2rt.service.systemd.unit import MARK, Unit, build_unit
+from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
 
 SSH = "[Unit]\nDescription=OpenBSD Secure Shell server\n"
 
@@ -50,8 +51,9 @@ def test_it_is_installed_and_taken_away_again(machine: Machine) -> None:
     assert machine.uninstall() == (service, sysusers)
     assert machine.done == [("systemctl", "disable", "--now", "kurt2rt.service"), ("systemctl", "daemon-reload")]
     assert machine.files == []
-    with pytest.raises(UnitError, match="there is no such unit"):
+    with pytest.raises(UnitError) as refused:
         machine.uninstall()
+    assert refused.value.code is UnitCode.NO_UNIT
 
 
 def test_one_of_ours_is_installed_anew_over_the_old(machine: Machine) -> None:
@@ -63,10 +65,12 @@ def test_one_of_ours_is_installed_anew_over_the_old(machine: Machine) -> None:
 def test_install_over_a_foreign_unit_is_refused(folder: str, machine: Machine, tmp_path: Path) -> None:
     others = tmp_path / folder / ("robotd.service" if folder == "system" else "robotd.conf")
     others.write_text(SSH, encoding="utf-8")
-    with pytest.raises(UnitError, match="is another program's; give another --name"):
+    with pytest.raises(UnitError) as refused:
         machine.install("robotd")
-    with pytest.raises(UnitError, match="is another program's and stays"):
+    assert refused.value.code is UnitCode.NAME_TAKEN
+    with pytest.raises(UnitError) as refused:
         machine.uninstall("robotd")
+    assert refused.value.code is UnitCode.NOT_OURS
     assert machine.done == []
     assert machine.files == [others]
     assert others.read_text(encoding="utf-8") == SSH
@@ -74,24 +78,28 @@ def test_install_over_a_foreign_unit_is_refused(folder: str, machine: Machine, t
 
 def test_a_unit_of_the_system_is_not_hidden_by_ours(machine: Machine, tmp_path: Path) -> None:
     (tmp_path / "lib" / "robotd.service").write_text(SSH, encoding="utf-8")
-    with pytest.raises(UnitError, match=r"lib/robotd\.service: is another program's"):
+    with pytest.raises(UnitError) as refused:
         machine.install("robotd")
+    assert (refused.value.code, refused.value.where) == (UnitCode.NAME_TAKEN, str(tmp_path / "lib" / "robotd.service"))
     assert machine.files == []
 
 
 def test_a_masked_unit_is_somebodys(machine: Machine) -> None:
     (machine.places.units / "robotd.service").symlink_to("/dev/null")
-    with pytest.raises(UnitError, match="is another program's"):
+    with pytest.raises(UnitError) as refused:
         machine.install("robotd")
+    assert refused.value.code is UnitCode.NAME_TAKEN
 
 
 def test_a_user_of_the_machine_does_not_become_the_robots(machine: Machine) -> None:
-    with pytest.raises(UnitError, match="daemon: is a user of this machine already"):
+    with pytest.raises(UnitError) as refused:
         require_free("daemon", machine.places)
+    assert refused.value.code is UnitCode.USER_TAKEN
 
 
 @pytest.mark.parametrize("name", ["../ssh", "", "SSH"])
 def test_uninstall_of_an_invalid_name_is_refused(name: str, machine: Machine) -> None:
-    with pytest.raises(UnitError, match="is no name"):
+    with pytest.raises(UnitError) as refused:
         machine.uninstall(name)
+    assert refused.value.code is UnitCode.BAD_NAME
     assert machine.done == []

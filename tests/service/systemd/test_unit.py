@@ -8,7 +8,8 @@ import pytest
 
 from config import CONFIG_DIR
 from kurt2rt.service.systemd.installation import start_command
-from kurt2rt.service.systemd.unit import Unit, UnitError, build_unit, quoted
+from kurt2rt.service.systemd.unit import Unit, build_unit, quoted
+from kurt2rt.service.systemd.unit_error import UnitCode, UnitError
 from kurt2rt.service.systemd.verify import MOST_EXPOSURE, has_tool, verify
 
 needs_systemd = pytest.mark.skipif(
@@ -59,13 +60,15 @@ def test_words_are_read_back_as_they_were(word: str) -> None:
 
 @pytest.mark.parametrize("name", ["", "Robot", "../etc", "a b", "9", "x" * 40])
 def test_a_name_that_is_none_is_refused(name: str) -> None:
-    with pytest.raises(UnitError, match="is no name"):
+    with pytest.raises(UnitError) as refused:
         unit(name=name)
+    assert refused.value.code is UnitCode.BAD_NAME
 
 
 def test_a_bus_with_a_line_break_does_not_add_a_line() -> None:
-    with pytest.raises(UnitError, match="control characters"):
+    with pytest.raises(UnitError) as refused:
         unit(bus="can0\nExecStartPre=/bin/sh")
+    assert refused.value.code is UnitCode.UNPRINTABLE
 
 
 @needs_systemd

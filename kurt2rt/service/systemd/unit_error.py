@@ -1,0 +1,56 @@
+"""Error of a unit that cannot be made, installed or checked, as a code with its text."""
+
+from enum import StrEnum
+from typing import Self
+
+from hal.errors import UserError
+
+_SUDO = "say it with sudo"
+_OTHER_NAME = "give another --name"
+
+
+class UnitCode(StrEnum):
+    """Condition that keeps a unit from being made, installed or checked."""
+
+    what: str
+    """Fault, with the error's fields in braces."""
+    do: str
+    """Remedy; empty if `what` says it."""
+
+    def __new__(cls, value: str, what: str, do: str) -> Self:
+        """Make a member of a code and its text."""
+        member = str.__new__(cls, value)
+        member._value_ = value
+        member.what, member.do = what, do
+        return member
+
+    BAD_NAME = ("bad name", "is no name for a unit and its user", "give up to 31 of a-z, 0-9 and -, a letter first")
+    UNPRINTABLE = ("unprintable", "cannot stand in a unit", "give a path without control characters")
+    RELATIVE_PATH = (
+        "relative path",
+        "{given}: the service would look for it in {state}",
+        "give its whole path in the settings",
+    )
+    NO_ACCESS = ("no access", "{says}", "")
+    """A path that the unit's user cannot use; `says` is the text of the access finding."""
+    NAME_TAKEN = ("name taken", "is another program's", _OTHER_NAME)
+    USER_TAKEN = ("user taken", "is a user of this machine already", _OTHER_NAME)
+    NOT_OURS = ("not ours", "is another program's and stays", "give the --name that you installed with")
+    NO_UNIT = ("no unit", "there is no such unit", "kurt2rt service install makes one")
+    NOT_WRITTEN = ("not written", "cannot be written ({error})", _SUDO)
+    NOT_REMOVED = ("not removed", "cannot be removed ({error})", _SUDO)
+    NOT_READ = ("not read", "cannot be read ({error})", _SUDO)
+    NO_COMMAND = ("no command", "{command} is not on this machine", "the unit needs systemd")
+    COMMAND_FAILED = ("command failed", "{says}", "")
+    NO_TOOL = ("no tool", "{tool} is not on this machine", "on Debian: apt-get install systemd")
+    NO_EXPOSURE = ("no exposure", "{tool} security says no exposure: {says!r}", "look at it yourself")
+    TOOL_HANGS = ("tool hangs", "{tool} {command} does not end", "look at the machine's load")
+
+
+class UnitError(UserError):
+    """A unit cannot be made, installed or checked."""
+
+    def __init__(self, code: UnitCode, *, where: object = "", **fields: object) -> None:
+        """Fill the code's text with `fields`; `where` names the file, user or setting."""
+        super().__init__(code.what.format_map(fields), where=where, do=code.do)
+        self.code = code
