@@ -69,6 +69,7 @@ SURFACES: Mapping[str, Mapping[str, Listing]] = {
     },
     "log": {
         "outcomes of commands": outcomes.in_log,
+        "events that do not fit": outcomes.event_faults,
         "missing answers": no_answer.texts,
         "standing": standing.in_log,
         "stops": standing.stops,

@@ -5,8 +5,8 @@ from enum import StrEnum
 from string import Formatter
 
 from kurt2rt.core.outcome import Code, Field, Outcome, RefusalCode, ResultCode
+from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
 from kurt2rt.core.rla.rla import BASIC, rla_title
-from kurt2rt.core.rla.rla_system import InvalidEventError
 
 
 class Surface(StrEnum):
@@ -160,6 +160,21 @@ _TEXTS: dict[Code, str] = {
 }
 
 _TICKS_PER_S = 100
+_EVENT_TEXTS = {
+    EventFault.NOT_UNDOABLE: "lesson {lesson!r} cannot be undone",
+    EventFault.NOT_REDOABLE: "lesson {lesson!r} cannot be redone",
+    EventFault.LESSON_EXISTS: "command {command_id!r} has taught a lesson already",
+    EventFault.RLA_EXISTS: "RLA {rla_id} cannot be created: ids up to {last} are taken",
+    EventFault.NO_RLA: "RLA {rla_id} does not exist (ids 1 to {last} were used; some are deleted)",
+    EventFault.BAD_CONDITION: "RLA {rla_id}: {error}",
+    EventFault.NOT_FINITE: "the situation named {name!r} holds a value that is not finite",
+    EventFault.BAD_SITUATION: "the situation named {name!r} has {got} values, level {level} matches {expected}",
+    EventFault.BAD_ACTION: "{action!r} is no action that can be taught; withdraw the RLA's action instead",
+    EventFault.BAD_REWARD: "RLA {rla_id}: wrong reward (got {value}, allowed -1, 1)",
+    EventFault.WITHDRAWN_ALREADY: "{title} has no action; withdraw an action once",
+    EventFault.NO_LEVEL: "{title} is of the level {level!r}, of which the file does not name the features",
+}
+
 _ONLY_BEHAVIOUR = "the only behaviour"
 _MADE_OF = {"title": "rla", "wanted": "behaviour"}
 """Name in a text -> field that it is made of."""
@@ -179,7 +194,7 @@ def text_of(outcome: Outcome, surface: Surface = Surface.LOG) -> str:
 
 def event_error_text(error: InvalidEventError) -> str:
     """Return a sentence for an event that does not fit: the refusal's text if there is a refusal."""
-    return str(error) if error.refusal is None else text_of(error.refusal)
+    return _EVENT_TEXTS[error.fault].format(**error.fields) if error.refusal is None else text_of(error.refusal)
 
 
 def _put_back_text(fields: Mapping[str, Field]) -> str:

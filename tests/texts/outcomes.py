@@ -3,7 +3,8 @@
 from collections.abc import Iterator
 
 from kurt2rt.core.outcome import Code, Field, Outcome, RefusalCode, ResultCode
-from kurt2rt.core.outcome_text import Surface, fields_of, text_of
+from kurt2rt.core.outcome_text import Surface, event_error_text, fields_of, text_of
+from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
 from kurt2rt.core.rla.rla import MID
 
 SAMPLES: dict[str, Field] = {
@@ -77,3 +78,26 @@ def _each(surface: Surface) -> Iterator[tuple[str, str]]:
     yield f"{wanted.code}, without a name", text_of(wanted, surface)
     unnamed = Outcome.of(RefusalCode.NOT_NAMED, name="door", known=())
     yield f"{unnamed.code}, none known", text_of(unnamed, surface)
+
+
+def event_faults() -> Iterator[tuple[str, str]]:
+    """Yield the text of each event that does not fit."""
+    fields: dict[str, int | str] = {
+        "lesson": "7f3a",
+        "command_id": "7f3a",
+        "rla_id": 7,
+        "last": 5,
+        "error": "its condition has 3 values, level basic matches 2",
+        "name": "door",
+        "got": 3,
+        "level": "mid",
+        "expected": 12,
+        "action": "ask",
+        "value": 2,
+        "title": "RLA 7 of turn_left",
+    }
+    for fault in EventFault:
+        yield fault, event_error_text(InvalidEventError(fault, fields))
+    refusal = sample(RefusalCode.TAUGHT_AFTER)
+    refused = InvalidEventError(EventFault.NOT_UNDOABLE, {"lesson": "7f3a"}, refusal)
+    yield f"{refused.fault}, {refusal.code}", event_error_text(refused)

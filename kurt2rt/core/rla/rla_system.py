@@ -6,7 +6,6 @@ RLAs of each level and taught behaviour compete among themselves; ids and the hi
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 from kurt2rt.core.outcome import Outcome
 from kurt2rt.core.rla.active_rlas import ActiveRlas
 from kurt2rt.core.rla.condition import Condition
+from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
 from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
@@ -37,34 +37,6 @@ from kurt2rt.core.rla.named_situations import NamedSituations
 from kurt2rt.core.rla.reward_counts import Appraisal, RewardCounts
 from kurt2rt.core.rla.rla import ASK, BASIC, Origin, Rla
 from kurt2rt.core.rla.space import Space
-
-
-class EventFault(StrEnum):
-    """Code for why a teaching event does not fit the knowledge."""
-
-    NOT_UNDOABLE = "not undoable"
-    NOT_REDOABLE = "not redoable"
-    LESSON_EXISTS = "lesson exists"
-    """Another lesson has its command id."""
-    RLA_EXISTS = "rla exists"
-    NO_RLA = "no rla"
-    BAD_CONDITION = "bad condition"
-    BAD_SITUATION = "bad situation"
-    BAD_ACTION = "bad action"
-    BAD_REWARD = "bad reward"
-    WITHDRAWN_ALREADY = "withdrawn already"
-    NO_LEVEL = "no level"
-    """The knowledge file does not name the features of its level."""
-
-
-class InvalidEventError(ValueError):
-    """Teaching event that does not fit the knowledge it should change."""
-
-    def __init__(self, fault: EventFault, what: str, refusal: Outcome | None = None) -> None:
-        """`refusal`: why a lesson cannot be undone or redone; None for other faults."""
-        super().__init__(what)
-        self.fault = fault
-        self.refusal = refusal
 
 
 class RlaSystem:
@@ -233,12 +205,12 @@ class RlaSystem:
             case LessonUndone(lesson, _):
                 problem = self._history.why_not_undo(lesson)
                 if problem is not None:
-                    raise _not_possible(EventFault.NOT_UNDOABLE, lesson, problem)
+                    raise InvalidEventError(EventFault.NOT_UNDOABLE, {"lesson": lesson}, problem)
                 self._undo(self._history.undo(lesson))
             case LessonRedone(lesson, _):
                 problem = self._history.why_not_redo(lesson)
                 if problem is not None:
-                    raise _not_possible(EventFault.NOT_REDOABLE, lesson, problem)
+                    raise InvalidEventError(EventFault.NOT_REDOABLE, {"lesson": lesson}, problem)
                 self._learn(self._history.redo(lesson), again=True)
             case SessionBegun() | Appraised() | KnowledgeMerged():
                 pass
@@ -247,9 +219,7 @@ class RlaSystem:
             case _:
                 command_id = event.origin.command_id
                 if self._history.get(command_id) is not None:
-                    raise InvalidEventError(
-                        EventFault.LESSON_EXISTS, f"command {command_id!r} has taught a lesson already"
-                    )
+                    raise InvalidEventError.of(EventFault.LESSON_EXISTS, command_id=command_id)
                 self._learn(event)
                 self._history.add(event)
         self.changes += 1
@@ -268,15 +238,12 @@ class RlaSystem:
         match lesson:
             case RlaCreated(rla):
                 if rla.rla_id <= self._last_id and not again:
-                    raise InvalidEventError(
-                        EventFault.RLA_EXISTS,
-                        f"RLA {rla.rla_id} cannot be created: ids up to {self._last_id} are taken",
-                    )
+                    raise InvalidEventError.of(EventFault.RLA_EXISTS, rla_id=rla.rla_id, last=self._last_id)
                 _require_action(rla.action)
                 try:
                     self._active.add(rla)
                 except ValueError as error:
-                    raise InvalidEventError(EventFault.BAD_CONDITION, f"RLA {rla.rla_id}: {error}") from error
+                    raise InvalidEventError.of(EventFault.BAD_CONDITION, rla_id=rla.rla_id, error=str(error)) from error
                 self._last_id = max(self._last_id, rla.rla_id)
             case ActionReplaced(rla_id, action, _, origin):
                 _require_action(action)
@@ -284,9 +251,7 @@ class RlaSystem:
             case ActionWithdrawn(rla_id, _, origin):
                 rla = self._require_active(rla_id)
                 if rla.is_withdrawn:
-                    raise InvalidEventError(
-                        EventFault.WITHDRAWN_ALREADY, f"{rla.title} has no action; withdraw an action once"
-                    )
+                    raise InvalidEventError.of(EventFault.WITHDRAWN_ALREADY, title=rla.title)
                 self._change(rla, ASK, origin)
             case RlaDeleted(rla_id, origin):
                 self._deleted[origin.command_id] = self._active.remove(self._require_active(rla_id))
@@ -296,9 +261,7 @@ class RlaSystem:
             case RlaRewarded(rla_id, value):
                 self._require_active(rla_id)
                 if value not in (1, -1):
-                    raise InvalidEventError(
-                        EventFault.BAD_REWARD, f"RLA {rla_id}: wrong reward (got {value}, allowed -1, 1)"
-                    )
+                    raise InvalidEventError.of(EventFault.BAD_REWARD, rla_id=rla_id, value=value)
                 self._rewards.add(rla_id, value)
 
     def _undo(self, lesson: Lesson) -> None:
@@ -320,13 +283,10 @@ class RlaSystem:
         """Raise InvalidEventError for a wrong length or a number that is not finite; levels without a space fit."""
         space = self._spaces.get(level)
         if not all(map(math.isfinite, situation)):
-            raise InvalidEventError(
-                EventFault.BAD_SITUATION, f"the situation named {name!r} holds a value that is not finite"
-            )
+            raise InvalidEventError.of(EventFault.NOT_FINITE, name=name)
         if space is not None and len(situation) != space.dimensions:
-            raise InvalidEventError(
-                EventFault.BAD_SITUATION,
-                f"the situation named {name!r} has {len(situation)} values, level {level} matches {space.dimensions}",
+            raise InvalidEventError.of(
+                EventFault.BAD_SITUATION, name=name, got=len(situation), level=level, expected=space.dimensions
             )
 
     def _change(self, old: Rla, action: str, origin: Origin) -> None:
@@ -354,20 +314,10 @@ class RlaSystem:
     def _require_active(self, rla_id: int) -> Rla:
         rla = self._active.get(rla_id)
         if rla is None:
-            raise InvalidEventError(
-                EventFault.NO_RLA,
-                f"RLA {rla_id} does not exist (ids 1 to {self._last_id} were used; some are deleted)",
-            )
+            raise InvalidEventError.of(EventFault.NO_RLA, rla_id=rla_id, last=self._last_id)
         return rla
-
-
-def _not_possible(fault: EventFault, lesson: str, refusal: Outcome) -> InvalidEventError:
-    details = "".join(f", {key} {value}" for key, value in refusal.fields.items() if key != "lesson")
-    return InvalidEventError(fault, f"lesson {lesson!r} is {fault}: {refusal.code}{details}", refusal)
 
 
 def _require_action(action: str) -> None:
     if action == ASK:
-        raise InvalidEventError(
-            EventFault.BAD_ACTION, f"{ASK!r} is no action that can be taught; withdraw the RLA's action instead"
-        )
+        raise InvalidEventError.of(EventFault.BAD_ACTION, action=ASK)

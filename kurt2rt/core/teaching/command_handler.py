@@ -15,11 +15,11 @@ from kurt2rt.core.perception.perception import Situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
+from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.lesson_history import DERIVED
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC, CRITIC, MID, Origin, Rla
-from kurt2rt.core.rla.rla_system import InvalidEventError
 from kurt2rt.core.teaching.appraisal_lessons import AppraisalLessons
 from kurt2rt.core.teaching.authority import ControlAuthority
 from kurt2rt.core.teaching.behaviour_selection import BehaviourSelection

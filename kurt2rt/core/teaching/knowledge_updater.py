@@ -10,9 +10,9 @@ from kurt2rt.core.decision.decision import Decision
 from kurt2rt.core.outcome_text import event_error_text
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
 from kurt2rt.core.reinforcement.self_teaching import SelfTeaching
+from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.phase import Phase
-from kurt2rt.core.rla.rla_system import InvalidEventError
 
 _REWARDED_PHASES = (Phase.REINFORCEMENT, Phase.CRITIC)
 

@@ -3,9 +3,10 @@
 from collections.abc import Container, Iterable
 
 from kurt2rt.core.outcome_text import event_error_text
+from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
 from kurt2rt.core.rla.events import RlaCreated, SituationNamed
 from kurt2rt.core.rla.rla import BASIC
-from kurt2rt.core.rla.rla_system import EventFault, InvalidEventError, RlaSystem
+from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from kurt2rt.knowledge.journal.entry import StoredEntry
 from kurt2rt.knowledge.journal.journal import Journal
@@ -58,6 +59,4 @@ def check_knowledge(journal: Journal) -> list[KnowledgeError]:
 
 def _require_level(title: str, level: str, levels: Container[str]) -> None:
     if level != BASIC and level not in levels:
-        raise InvalidEventError(
-            EventFault.NO_LEVEL, f"{title} is of the level {level!r}, of which the file does not name the features"
-        )
+        raise InvalidEventError.of(EventFault.NO_LEVEL, title=title, level=level)

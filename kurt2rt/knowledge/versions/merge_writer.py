@@ -6,6 +6,7 @@ from enum import StrEnum
 
 from kurt2rt.core.outcome_text import event_error_text
 from kurt2rt.core.rla.credit import Credit
+from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import (
     Appraised,
     Lesson,
@@ -21,7 +22,7 @@ from kurt2rt.core.rla.events import (
 )
 from kurt2rt.core.rla.lesson_history import LessonRecord
 from kurt2rt.core.rla.rla import Rla
-from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
+from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.knowledge_code import KnowledgeCode
 from kurt2rt.knowledge.knowledge_error import KnowledgeError

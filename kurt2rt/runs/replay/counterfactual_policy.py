@@ -18,10 +18,11 @@ from kurt2rt.core.outcome_text import event_error_text
 from kurt2rt.core.perception.definition import load_situation
 from kurt2rt.core.reinforcement.decision_history import DecisionHistory
 from kurt2rt.core.reinforcement.reinforcement import Reinforcement
+from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.match import Match
 from kurt2rt.core.rla.rla import BASIC, MID, Rla
-from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
+from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.journal.loading import read_knowledge

@@ -8,8 +8,8 @@ from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.errors import UnknownActionError, UnknownBehaviourError
 from kurt2rt.core.decision.standing_text import stop_of_text
 from kurt2rt.core.outcome import CommandRefusedError
-from kurt2rt.core.outcome_text import text_of
-from kurt2rt.core.rla.rla_system import InvalidEventError
+from kurt2rt.core.outcome_text import event_error_text, text_of
+from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.usage_counter import StatisticsCounter
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.knowledge.knowledge_error import KnowledgeError
@@ -81,8 +81,10 @@ class Replay:
                         asks_at_bumper=head.asks_when_held,
                     ),
                 )
-        except (SettingsError, KnowledgeError, InvalidEventError, UnknownActionError, UnknownBehaviourError) as error:
+        except (SettingsError, KnowledgeError, UnknownActionError, UnknownBehaviourError) as error:
             raise RecordingError(f"cannot be replayed by this kurt2rt: {error}", where=run.name) from error
+        except InvalidEventError as error:
+            raise RecordingError(f"cannot be replayed: {event_error_text(error)}", where=run.name) from error
         except CommandRefusedError as error:
             raise RecordingError(f"cannot be replayed: {text_of(error.outcome)}", where=run.name) from error
         except ValueError as error:

@@ -3,6 +3,7 @@
 import pytest
 
 from kurt2rt.core.rla.condition import Condition
+from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import (
     ActionReplaced,
     ActionWithdrawn,
@@ -17,7 +18,7 @@ from kurt2rt.core.rla.events import (
 )
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC, Origin, Rla
-from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
+from kurt2rt.core.rla.rla_system import RlaSystem
 
 
 def refused_by(system: RlaSystem, event: TeachingEvent) -> InvalidEventError:

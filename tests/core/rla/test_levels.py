@@ -6,9 +6,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.core.outcome import Outcome, RefusalCode
+from kurt2rt.core.rla.event_error import EventFault
 from kurt2rt.core.rla.events import Appraised, TeachingEvent
 from kurt2rt.core.rla.rla import ASK, CRITIC, rla_title
-from kurt2rt.core.rla.rla_system import EventFault, RlaSystem
+from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from tests.core.rla.helpers import created, deleted, origin, refused_by, replaced, undone, withdrawn
 from tests.examples import examples

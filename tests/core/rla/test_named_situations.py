@@ -3,8 +3,9 @@
 import math
 
 from kurt2rt.core.outcome import RefusalCode
+from kurt2rt.core.rla.event_error import EventFault
 from kurt2rt.core.rla.rla import BASIC, CRITIC, MID
-from kurt2rt.core.rla.rla_system import EventFault, RlaSystem
+from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from tests.core.rla.helpers import created, named, refused_by, undone
 
@@ -46,7 +47,7 @@ def test_named_situation_changes_no_rla_or_hash() -> None:
 
 def test_named_situation_unfit_for_level_is_refused() -> None:
     knows = system()
-    assert refused_by(knows, named("door", (1.0, 2.0), MID)).fault is EventFault.BAD_SITUATION
+    assert refused_by(knows, named("door", (1.0, 2.0), MID)).fault is EventFault.NOT_FINITE
     assert refused_by(knows, named("door", (1.0, math.nan, 0.0), MID)).fault is EventFault.BAD_SITUATION
     assert knows.lessons == ()
 

@@ -5,10 +5,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.core.outcome import Outcome, RefusalCode
+from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import Appraised, KnowledgeMerged, LessonRedone, TeachingEvent
 from kurt2rt.core.rla.reward_counts import Appraisal
 from kurt2rt.core.rla.rla import ASK
-from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
+from kurt2rt.core.rla.rla_system import RlaSystem
 from tests.core.rla.helpers import created, deleted, named, origin, refused_by, replaced, rewarded, undone, withdrawn
 from tests.examples import examples
 

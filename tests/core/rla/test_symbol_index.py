@@ -8,9 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from kurt2rt.core.rla.event_error import EventFault
 from kurt2rt.core.rla.events import TeachingEvent
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.core.rla.rla_system import EventFault, RlaSystem
+from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Metric, Space
 from kurt2rt.core.rla.symbol_index import SymbolIndex, edit_distances, hamming_distances
 from tests.core.rla.helpers import created, deleted, refused_by, replaced, undone

@@ -8,11 +8,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kurt2rt.core.outcome import Outcome, RefusalCode
+from kurt2rt.core.rla.event_error import EventFault, InvalidEventError
 from kurt2rt.core.rla.events import Lesson, RlaLesson, TeachingEvent
 from kurt2rt.core.rla.lesson_history import LessonRecord, rla_id_of
 from kurt2rt.core.rla.reward_counts import Appraisal
 from kurt2rt.core.rla.rla import ASK, CRITIC
-from kurt2rt.core.rla.rla_system import EventFault, InvalidEventError, RlaSystem
+from kurt2rt.core.rla.rla_system import RlaSystem
 from tests.core.rla.helpers import created, deleted, refused_by, replaced, rewarded, session, undone, withdrawn
 from tests.examples import examples
 

@@ -11,6 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from kurt2rt.core.rla.credit import Credit
+from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import (
     KnowledgeMerged,
     LessonRedone,
@@ -21,7 +22,7 @@ from kurt2rt.core.rla.events import (
 )
 from kurt2rt.core.rla.expectation import Expectation, pack
 from kurt2rt.core.rla.rla import BASIC
-from kurt2rt.core.rla.rla_system import InvalidEventError, RlaSystem
+from kurt2rt.core.rla.rla_system import RlaSystem
 from kurt2rt.core.rla.space import Space
 from kurt2rt.core.rla.statistics import Statistics
 from kurt2rt.knowledge.journal.entry import JournalEntry

@@ -8,10 +8,10 @@ import pytest
 
 from kurt2rt.core.decision.decision import DecisionCause
 from kurt2rt.core.outcome_text import text_of
+from kurt2rt.core.rla.event_error import InvalidEventError
 from kurt2rt.core.rla.events import ActionReplaced, ActionWithdrawn, LessonUndone, RlaCreated, TeachingEvent
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.rla import BASIC, MID, Origin, Rla
-from kurt2rt.core.rla.rla_system import InvalidEventError
 from kurt2rt.knowledge.journal.entry import JournalEntry
 from kurt2rt.knowledge.journal.loading import open_knowledge
 from kurt2rt.runs.recording.recording_error import RecordingError
