@@ -5,6 +5,8 @@ from dataclasses import dataclass, replace
 
 from hal.robot import Robot
 from hal.robot_settings import RobotSettings
+from hal.sensor_ring import SubstituteReadings
+from hal.sensor_watch import SensorWatch
 from kurt2rt.core.basic.basic_level import BasicLevel
 from kurt2rt.core.critic.agreement import Agreement
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
@@ -64,6 +66,8 @@ class RuntimeOptions:
     """False if there is no teacher to ask: RLAs whose action was withdrawn are skipped."""
     tolerates_stalls: bool = False
     """True if the robot stalls with this program, because it is simulated in it."""
+    checks_sensors: bool = True
+    """Notice single broken sensors and stop; False for recordings of before, and for studies of such a fault."""
     asks_at_bumper: bool = True
     """Ask if an RLA pushes on toward what a bumper touches; False for recordings of before this question."""
 
@@ -193,6 +197,7 @@ class _Assembly:
 
     def tick_parts(self, robot: Robot, event_store: EventStore) -> TickParts:
         """Return the parts of the tick."""
+        infrared, checks = self._settings.infrared, self._options.checks_sensors
         return TickParts(
             robot=robot,
             perception=Perception(self.definition, self._settings.infrared.names),
@@ -204,6 +209,8 @@ class _Assembly:
             timer=TickTimer(),
             appraisal_perception=AppraisalPerception(self.critic, self._settings),
             expectations=self.expectations,
+            sensor_watch=SensorWatch(infrared) if checks else None,
+            substitute=SubstituteReadings(infrared) if checks else None,
         )
 
 

@@ -6,8 +6,11 @@ from typing import NamedTuple, Protocol
 
 from behaviors.judges.judge import AppraisalFeatures
 from hal.robot import STANDSTILL, GuardResult, Robot, SensorReadings
+from hal.sensor_ring import SubstituteReadings
+from hal.sensor_watch import BrokenSensor, SensorWatch
 from kurt2rt.core.critic.appraisal_features import AppraisalPerception
 from kurt2rt.core.critic.critic import Opinion
+from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.decision import Decision, DecisionCause, MidDecision, stopped
 from kurt2rt.core.decision.level import Level
 from kurt2rt.core.decision.standing import DRIVES, BumperWatch, Standing, StandingWatch
@@ -89,6 +92,10 @@ class TickRecord(NamedTuple):
     """All active RLAs after this tick, if it changed them and once a second; None otherwise."""
     standing: Standing = DRIVES
     """Reason that the robot stands, or DRIVES."""
+    broken_sensors: tuple[BrokenSensor, ...] = ()
+    """Infra-red sensors that do not count in this tick."""
+    trusted_counts: tuple[int, ...] | None = None
+    """Counts that the robot decided by, one per sensor, if they are not those of `readings`."""
 
     @property
     def mid(self) -> MidDecision | None:
@@ -112,6 +119,10 @@ class TickParts:
     """Features for the handler's critic; None without a critic."""
     expectations: ExpectationTracker | None = None
     """None: nothing is expected."""
+    sensor_watch: SensorWatch | None = None
+    """Detector of single broken sensors; None: all readings are trusted."""
+    substitute: SubstituteReadings | None = None
+    """Readings in place of those of broken sensors; given with a `sensor_watch`."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -182,6 +193,10 @@ class Tick:
         self._statistics = parts.statistics
         self._mid_uses = MidUsageCounter(parts.statistics)
         self._expectations = parts.expectations
+        self._sensor_watch = parts.sensor_watch
+        self._substitute = parts.substitute
+        self._turned = False
+        """Whether the last CONTROL frame let a wheel turn."""
         self._timer = parts.timer
         self._options = options
         self._now = now
@@ -199,11 +214,15 @@ class Tick:
         """Run one tick at `now_s` of the runtime's clock, in s, and return its record."""
         self._count(tick)
         readings = self._sense(now_s)
-        view = self._perceive(tick, readings)
-        choice = self._decide(tick, readings, view)
+        trusted = self._check_sensors(tick, readings)
+        view = self._perceive(tick, trusted)
+        choice = self._decide(tick, trusted, view)
         motion = self._guard(tick, now_s, choice.decision)
         surprise = self._learn(tick, view, choice, motion)
-        return self._publish(tick, now_s, readings, view, choice, motion, surprise)
+        record = self._publish(tick, now_s, readings, view, choice, motion, surprise)
+        if trusted is readings or self._sensor_watch is None:
+            return record
+        return record._replace(broken_sensors=self._sensor_watch.broken, trusted_counts=trusted.infrared_counts)
 
     def _count(self, tick: int) -> None:
         """Count this tick, and extend the teacher's leases by missed ticks of a robot that stalls with the program."""
@@ -217,6 +236,21 @@ class Tick:
         readings = self._robot.sense(now_s)
         self._timer.lap(_SENSE)
         return readings
+
+    def _check_sensors(self, tick: int, readings: SensorReadings) -> SensorReadings:
+        """Return the readings without those of broken sensors; stop until a resume for a newly broken one."""
+        watch, substitute = self._sensor_watch, self._substitute
+        if watch is None or substitute is None:
+            return readings
+        if readings.infrared_age_s <= self._options.stale_infrared_s:
+            found = watch.update(readings.infrared_counts, driving=self._turned)
+            if found:
+                names = ", ".join(sensor.title for sensor in found)
+                self._handler.stop(ActiveStop(StopReason.SENSOR_BROKEN, names))
+                self._handler.stopped_at_tick = tick
+        if not watch.places:
+            return readings
+        return readings._replace(infrared_counts=substitute(readings.infrared_counts, watch.places))
 
     def _perceive(self, tick: int, readings: SensorReadings) -> _View:
         """Compute the situation, and the critic's opinion before this tick's commands can change it (step 2)."""
@@ -263,6 +297,7 @@ class Tick:
         drove_at_s = self._now()
         result = self._robot.drive(speeds, now_s, drove_at_s)
         self._timer.lap(_GUARD)
+        self._turned = result.wheel_speeds != STANDSTILL
         handler = self._handler
         if result.latched and not self._latched:
             handler.stopped_at_tick = tick
@@ -381,6 +416,8 @@ class Tick:
             return CommandResult(command.command_id, Outcome(RefusalCode.BLIND)), ()
         result, events = self._handler.handle(command, view.situation, tick)
         if new and result.accepted:
+            if isinstance(command, Resume) and self._sensor_watch is not None:
+                self._sensor_watch.readmit()
             # A late copy of a resume does not end a new emergency stop.
             if isinstance(command, Resume) and self._latched:
                 self._robot.release()

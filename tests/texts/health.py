@@ -7,6 +7,10 @@ from kurt2rt.channel.protocol.trouble_text import trouble_text
 
 _NUMBERS = {
     TroubleCode.SENSORS_SILENT: (0.64,),
+    TroubleCode.SENSOR_STUCK: (294,),
+    TroubleCode.SENSOR_OUT_OF_RANGE: (0,),
+    TroubleCode.SENSOR_SEES_NOTHING: (70,),
+    TroubleCode.SENSOR_SEES_A_PHANTOM: (551,),
     TroubleCode.TICKS_MISSED: (3, 7),
     TroubleCode.TICKS_LATE: (2.14,),
     TroubleCode.CAN_JUNK: (12,),
@@ -23,6 +27,10 @@ _NUMBERS = {
 _NAMES = {
     TroubleCode.SENSORS_UNHEARD: "bumpers",
     TroubleCode.SENSORS_SILENT: "infra-red sensors",
+    TroubleCode.SENSOR_STUCK: "front left edge (s15)",
+    TroubleCode.SENSOR_OUT_OF_RANGE: "left front (s1)",
+    TroubleCode.SENSOR_SEES_NOTHING: "front centre (s11)",
+    TroubleCode.SENSOR_SEES_A_PHANTOM: "rear right (s13)",
     TroubleCode.DISK_SILENT: "knowledge",
     TroubleCode.LITTLE_ROOM: "recordings",
     TroubleCode.DROPS: "lines for the terminal",

@@ -28,6 +28,8 @@ def _each(text: Callable[[Standing], str]) -> Iterator[tuple[str, str]]:
         yield reason, text(Standing(reason, stall_s=1.25, stop=stop))
         yield f"{reason}, until Go", text(Standing(reason, needs_resume=True, stall_s=1.25, stop=stop))
         yield f"{reason}, asks", text(Standing(reason, asks=True, stall_s=1.25, stop=stop))
+    sensor = ActiveStop(StopReason.SENSOR_BROKEN, "front left edge (s15)")
+    yield f"{StandReason.STOPPED}, {sensor.reason}", text(Standing(StandReason.STOPPED, True, stop=sensor))
 
 
 def stops() -> Iterator[tuple[str, str]]:
@@ -35,6 +37,7 @@ def stops() -> Iterator[tuple[str, str]]:
     names = {
         StopReason.SESSION_OVER: "morning",
         StopReason.BEHAVIOUR_OVER: "spin_left",
+        StopReason.SENSOR_BROKEN: "front left edge (s15)",
         StopReason.GUARD: "wheels disobey",
         StopReason.OTHER: "a sentence of another version",
     }

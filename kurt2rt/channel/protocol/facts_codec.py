@@ -105,6 +105,7 @@ _FACTS = MapOf(
     history_frozen=Flag(),
     taught_now=Flag(),
     hindrances=ManyOf(NAME, most=8),
+    broken_sensors=MayLack(ManyOf(NAME, most=64)),
 )
 
 _FORM = Form[DecisionFacts]("what the robot knows of its decision", _FACTS)

@@ -11,6 +11,11 @@ class TroubleCode(StrEnum):
     """Name: kind of sensor."""
     SENSORS_SILENT = "sensors silent"
     """Name: kind of sensor. Numbers: age of the newest reading in s."""
+    SENSOR_STUCK = "sensor stuck"
+    """Name: position and name of one infra-red sensor. Numbers: its reading in counts; as for the next three."""
+    SENSOR_OUT_OF_RANGE = "sensor out of range"
+    SENSOR_SEES_NOTHING = "sensor sees nothing"
+    SENSOR_SEES_A_PHANTOM = "sensor sees a phantom"
     TICKS_MISSED = "ticks missed"
     """Numbers: missed in the last minute, missed in all."""
     TICKS_LATE = "ticks late"
@@ -51,6 +56,10 @@ class TroubleCode(StrEnum):
 _ABOUT: Final = {
     TroubleCode.SENSORS_UNHEARD: "sensors",
     TroubleCode.SENSORS_SILENT: "sensors",
+    TroubleCode.SENSOR_STUCK: "sensors",
+    TroubleCode.SENSOR_OUT_OF_RANGE: "sensors",
+    TroubleCode.SENSOR_SEES_NOTHING: "sensors",
+    TroubleCode.SENSOR_SEES_A_PHANTOM: "sensors",
     TroubleCode.TICKS_MISSED: "ticks",
     TroubleCode.TICKS_LATE: "lateness",
     TroubleCode.BUS_ALARM: "bus",

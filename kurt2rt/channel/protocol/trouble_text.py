@@ -9,11 +9,28 @@ from kurt2rt.channel.protocol.trouble_code import TroubleCode
 _SWITCH_ON = "look whether the robot is switched on and its CAN cable sits; the robot stands until they are back"
 _END_OTHER_WORK = "end other work on this machine; kurt2rt doctor says what it lacks, real_time_priority helps"
 _CHECK_CABLE = "check cable, termination and bit rate"
+_CHECK_SENSOR = "check its plug and its lens; until then the sensors next to it stand in for it"
 _LINE: Final = ("", "")
 
 _TEXTS: Final[dict[TroubleCode, tuple[str, str]]] = {
     TroubleCode.SENSORS_UNHEARD: ("the {name} have never been heard", _SWITCH_ON),
     TroubleCode.SENSORS_SILENT: ("the {name} are silent, the newest is {0:.1f} s old", _SWITCH_ON),
+    TroubleCode.SENSOR_STUCK: (
+        "the infra-red sensor {name} is stuck at {0:.0f} counts while the others flicker",
+        _CHECK_SENSOR,
+    ),
+    TroubleCode.SENSOR_OUT_OF_RANGE: (
+        "the infra-red sensor {name} reads {0:.0f} counts, as no working sensor does",
+        _CHECK_SENSOR,
+    ),
+    TroubleCode.SENSOR_SEES_NOTHING: (
+        "the infra-red sensor {name} stays at {0:.0f} counts while both sensors next to it see something near",
+        _CHECK_SENSOR,
+    ),
+    TroubleCode.SENSOR_SEES_A_PHANTOM: (
+        "the infra-red sensor {name} stays at {0:.0f} counts while both sensors next to it see nothing so near",
+        _CHECK_SENSOR,
+    ),
     TroubleCode.TICKS_MISSED: ("{0:.0f} {ticks} missed in the last minute, {1:.0f} in all", _END_OTHER_WORK),
     TroubleCode.TICKS_LATE: ("one tick in a hundred begins {0:.1f} ms late or later", _END_OTHER_WORK),
     TroubleCode.BUS_ALARM: _LINE,

@@ -24,6 +24,8 @@ class StopReason(StrEnum):
     """The robot program was started."""
     NEXT_RUN = "next run"
     """The same program began a new run."""
+    SENSOR_BROKEN = "sensor broken"
+    """An infra-red sensor was noticed to be dead, stuck or unplugged."""
     GUARD = "guard"
     """The guard keeps the robot stopped."""
     OTHER = "other"
@@ -35,7 +37,7 @@ class ActiveStop(NamedTuple):
 
     reason: StopReason
     name: str = ""
-    """Teacher, behaviour, session or the guard's code; of OTHER the sentence; empty if the reason needs no name."""
+    """Teacher, behaviour, session, sensor or the guard's code; of OTHER the sentence; empty if none is needed."""
 
     @property
     def teacher(self) -> str:

@@ -55,10 +55,16 @@ _STOPS: dict[StopReason, str] = {
     StopReason.LINK_LOST: "lost the link to {name}",
     StopReason.STARTED: "the robot program was started",
     StopReason.NEXT_RUN: "a new run was begun",
+    StopReason.SENSOR_BROKEN: "its infra-red sensor {name} is broken",
     StopReason.GUARD: "the guard: {name}",
     StopReason.OTHER: "{name}",
 }
 """Sentences of stops, which older devices read and recordings keep, in the order in which they are recognised."""
+
+_STOPS_TO_DO: dict[StopReason, str] = {
+    StopReason.SENSOR_BROKEN: "The sensors next to it stand in for it. Check its plug and its lens",
+}
+"""Advice for stops that need more than a resume."""
 
 _QUESTIONS = {
     StandReason.FRONT_BUMPER: "I touch something in front of me; what now?",
@@ -120,6 +126,8 @@ def standing_headline(standing: Standing, go: str) -> str:
     if question or standing.reason is StandReason.DRIVES:
         return question
     to_do = _TEXTS[standing.reason].to_do
+    if standing.stop is not None:
+        to_do = _STOPS_TO_DO.get(standing.stop.reason, to_do)
     if standing.needs_resume:
         to_do = f"{to_do}; then {go[0].lower() + go[1:] if go[:2] != 'GO' else go}" if to_do else go
     return f"Stands: {reason_text(standing)}" + (f". {to_do}" if to_do else "")

@@ -58,7 +58,7 @@ def collect_facts(
         stopped=school.active_stop,
         trouble=record.saving_error or "",
         teacher=school.authority.teacher or "",
-        infrared_counts=record.readings.infrared_counts,
+        infrared_counts=record.trusted_counts or record.readings.infrared_counts,
         infrared_age_s=record.readings.infrared_age_s,
         basic=reader.basic(record, decision),
         mid=None if mid is None else reader.mid(mid),
@@ -67,6 +67,7 @@ def collect_facts(
         kept=runtime.level.held_action,
         history_frozen=record.situation.history_frozen,
         taught_now=bool(record.events),
+        broken_sensors=tuple(sensor.title for sensor in record.broken_sensors),
         hindrances=_blocking_causes(runtime, record),
     )
 

@@ -58,6 +58,8 @@ def sensor_counterfactuals(
     spread = 1 + 2 * law.gain_spread_share
     possible = set(range(round(law.floor_counts / spread), round(law.plateau_counts * spread) + 1))
     for place, sensor in enumerate(law.sensors):
+        if f"{sensor.label} ({sensor.name})" in facts.broken_sensors:
+            continue  # its own reading changes nothing
         readings = sorted(possible - {counts[place]}, key=lambda each: _off(each, counts[place]))
         answers = competitors.answer(changed.vectors(place, readings))
         first = next(

@@ -146,6 +146,7 @@ class DecisionFacts:
     teacher: str
     """Present teacher; empty without one."""
     infrared_counts: tuple[int, ...]
+    """Counts that the robot decided by; those of broken sensors come from their neighbours."""
     infrared_age_s: float
     basic: LevelFacts
     mid: LevelFacts | None
@@ -160,6 +161,8 @@ class DecisionFacts:
     """True if the averages of the situation were not updated."""
     taught_now: bool = False
     """True if a lesson was applied in this tick."""
+    broken_sensors: tuple[str, ...] = ()
+    """Infra-red sensors that do not count, by position and name, such as `front left edge (s15)`."""
     hindrances: tuple[str, ...] = ()
     """Causes that would have stopped the robot without a stop or manual driving: values of DecisionCause."""
 

@@ -69,7 +69,15 @@ def format_reasons(facts: DecisionFacts) -> list[str]:
     else:
         lines.append(_stands(facts))
         lines += _autonomous_action(facts)
-    return lines
+    return [*lines, *_broken_sensors(facts)]
+
+
+def _broken_sensors(facts: DecisionFacts) -> list[str]:
+    """Describe the sensors that did not count in this decision."""
+    return [
+        f"The infra-red sensor {title} is broken: the readings of the sensors next to it count in its place."
+        for title in facts.broken_sensors
+    ]
 
 
 def _stands(facts: DecisionFacts) -> str:

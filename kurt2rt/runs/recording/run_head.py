@@ -6,13 +6,14 @@ from typing import Any
 
 from kurt2rt.runs.recording.recording_error import RecordingError
 
-RUN_VERSION = 2
+RUN_VERSION = 3
 """Version of head, entries and attachments; raise it if an older program would misread them.
 
 2: a robot that touches something asks.
+3: a robot with a broken sensor stops.
 """
 
-_BEFORE: dict[str, Any] = {"tolerates_stalls": False, "asks_when_held": False}
+_BEFORE: dict[str, Any] = {"tolerates_stalls": False, "asks_when_held": False, "checks_sensors": False}
 """Values of later fields that hold for older recordings."""
 
 RUN_METADATA = "run"
@@ -54,6 +55,8 @@ class RunHead:
     """True if missed ticks were not counted against the teacher's leases."""
     asks_when_held: bool = True
     """True if the robot asked when a bumper blocked its action."""
+    checks_sensors: bool = True
+    """True if the robot noticed single broken sensors."""
 
 
 def encode_head(head: RunHead) -> dict[str, str]:

@@ -79,6 +79,7 @@ class Replay:
                         teacher_available=head.asked,
                         tolerates_stalls=head.tolerates_stalls,
                         asks_at_bumper=head.asks_when_held,
+                        checks_sensors=head.checks_sensors,
                     ),
                 )
         except (SettingsError, KnowledgeError, UnknownActionError, UnknownBehaviourError) as error:

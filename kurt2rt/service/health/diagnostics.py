@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Final, NamedTuple
 
 from hal.robot_settings import RobotSettings
+from hal.sensor_watch import SensorFault
 from kurt2rt.channel.protocol.health import DiskSpace, MachineHealth, TickLateness, Trouble
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.service.health.snapshot import Snapshot
@@ -22,6 +23,14 @@ NO_ROOM_BYTES = 50 * 10**6
 LITTLE_MEMORY_BYTES = 100 * 10**6
 LOW_BATTERY = 0.2
 EMPTY_BATTERY = 0.07
+
+
+_SENSOR_FAULTS: Final = {
+    SensorFault.STUCK: TroubleCode.SENSOR_STUCK,
+    SensorFault.OUT_OF_RANGE: TroubleCode.SENSOR_OUT_OF_RANGE,
+    SensorFault.SEES_NOTHING: TroubleCode.SENSOR_SEES_NOTHING,
+    SensorFault.SEES_A_PHANTOM: TroubleCode.SENSOR_SEES_A_PHANTOM,
+}
 
 
 class _Found(NamedTuple):
@@ -124,6 +133,8 @@ class Diagnostics:
                 yield _Found(TroubleCode.SENSORS_UNHEARD, True, name)
             elif not age_s <= stale_s:  # a NaN, too
                 yield _Found(TroubleCode.SENSORS_SILENT, True, name, (age_s,))
+        for sensor in snapshot.broken_sensors:
+            yield _Found(_SENSOR_FAULTS[sensor.fault], False, sensor.title, (sensor.counts,))
 
     def _of_ticks(self, punctuality: TickLateness) -> Iterator[_Found]:
         lately_ticks = min(punctuality.ticks, round(LATELY_S / self._settings.can.cycle_s))

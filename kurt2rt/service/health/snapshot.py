@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from hal.health import Health
+from hal.sensor_watch import BrokenSensor
 from kurt2rt.core.decision.standing_text import short_text
 from kurt2rt.core.rla.rla import rla_title
 from kurt2rt.core.teaching.progress import NO_PROGRESS, Progress
@@ -36,6 +37,7 @@ class Snapshot:
     lessons: int
     doing: str
     progress: Progress = NO_PROGRESS
+    broken_sensors: tuple[BrokenSensor, ...] = ()
 
 
 def take_snapshot(
@@ -63,6 +65,7 @@ def take_snapshot(
         lessons=system.standing_lessons,
         progress=runtime.progress.progress(),
         doing=_doing(record),
+        broken_sensors=record.broken_sensors,
     )
 
 

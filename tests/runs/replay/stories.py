@@ -14,6 +14,7 @@ from tempfile import TemporaryDirectory
 
 from mcap.writer import CompressionType, Writer
 
+from hal.robot import Robot
 from hal.robot_settings import load_robot
 from kurt2rt.core.decision.active_behaviour import ActiveBehaviour
 from kurt2rt.core.decision.active_stop import STARTED, ActiveStop
@@ -179,8 +180,12 @@ def record_story(
     seconds: float | None = None,
     task: TaskSettings | None = None,
     other: Story | None = None,
+    faulty: Callable[[Robot], Robot] = lambda robot: robot,
 ) -> Path:
-    """Let a story happen, or an`other` one in its place, and record it; the run's folder."""
+    """Let a story happen, or an`other` one in its place, and record it; the run's folder.
+
+    `faulty`: puts a fault between the robot and its mind.
+    """
     told = STORIES[name]
     settings, task = load_robot(), task or load_task(told.task)
     simulation = Kurt2Simulation(settings, task.teaching.world, 3, f"story {name}")
@@ -203,7 +208,7 @@ def record_story(
     )
     wanted = ActiveBehaviour(task.behaviours)
     runtime = build_runtime(
-        simulation.robot,
+        faulty(simulation.robot),
         settings,
         task,
         (),

@@ -1,0 +1,60 @@
+"""Neighbours of each infra-red sensor, and a reading in place of a broken sensor's."""
+
+import math
+from collections.abc import Collection, Sequence
+from typing import NamedTuple
+
+from hal.robot_settings import InfraredSettings, SensorSettings
+
+
+class Neighbours(NamedTuple):
+    """Sensors next to one sensor, by their places in the sensor table."""
+
+    before: int
+    """Next sensor clockwise round the robot."""
+    after: int
+    """Next sensor counter-clockwise."""
+    substitutes: tuple[int, ...]
+    """Sensors whose readings replace this sensor's: those next to it that look the same way, or else both."""
+
+
+def neighbours_of(sensors: Sequence[SensorSettings]) -> tuple[Neighbours, ...]:
+    """Return the neighbours of each sensor, in the order of the table.
+
+    The ring goes by heading, and among sensors of one heading by their place along the side.
+    """
+    ring = sorted(range(len(sensors)), key=lambda place: _ring_key(sensors[place]))
+    found: dict[int, Neighbours] = {}
+    for at, place in enumerate(ring):
+        before, after = ring[at - 1], ring[(at + 1) % len(ring)]
+        alike = tuple(each for each in (before, after) if sensors[each].heading_deg == sensors[place].heading_deg)
+        found[place] = Neighbours(before, after, alike or (before, after))
+    return tuple(found[place] for place in range(len(sensors)))
+
+
+def _ring_key(sensor: SensorSettings) -> tuple[float, float]:
+    """Return the sorting key of a sensor: its heading, then its place to the left of that heading, in m."""
+    heading_rad = math.radians(sensor.heading_deg)
+    return sensor.heading_deg % 360.0, sensor.y_m * math.cos(heading_rad) - sensor.x_m * math.sin(heading_rad)
+
+
+class SubstituteReadings:
+    """Function that replaces the readings of broken sensors by those of their neighbours."""
+
+    def __init__(self, infrared: InfraredSettings) -> None:
+        self._neighbours = neighbours_of(infrared.sensors)
+        self._near_counts = infrared.plateau_counts
+
+    def __call__(self, counts: tuple[int, ...], broken: Collection[int]) -> tuple[int, ...]:
+        """Return the counts, one per sensor, with the mean of the neighbours in place of each broken sensor.
+
+        A sensor without a working neighbour reads as if something were right before it, so that the robot turns away
+        or asks.
+        """
+        if not broken:
+            return counts
+        trusted = list(counts)
+        for place in broken:
+            working = [counts[each] for each in self._neighbours[place].substitutes if each not in broken]
+            trusted[place] = round(sum(working) / len(working)) if working else self._near_counts
+        return tuple(trusted)

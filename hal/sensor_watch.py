@@ -1,0 +1,242 @@
+"""Detection of a single infra-red sensor that is dead, stuck or unplugged, by its neighbours and its own noise.
+
+A deterministic function of readings and driven ticks with a fixed amount of state. hal.infrared_watch finds a board
+whose sensors all freeze.
+"""
+
+from collections.abc import Container
+from enum import StrEnum
+from typing import NamedTuple
+
+from hal.robot_settings import InfraredSettings
+from hal.sensor_ring import Neighbours, neighbours_of
+
+
+class SensorFault(StrEnum):
+    """Code for the sign by which a broken sensor was noticed."""
+
+    STUCK = "stuck"
+    """It repeats its reading while the others flicker."""
+    OUT_OF_RANGE = "out of range"
+    """It reads less or more than a working sensor does."""
+    SEES_NOTHING = "sees nothing"
+    """It stays low while both neighbours see something near."""
+    SEES_A_PHANTOM = "sees a phantom"
+    """It stays high while both neighbours see nothing near, and does not follow their changes."""
+
+
+class BrokenSensor(NamedTuple):
+    """Sensor that was noticed."""
+
+    place: int
+    """Place in the sensor table."""
+    name: str
+    label: str
+    """Position on the robot, such as front left edge."""
+    fault: SensorFault
+    counts: int
+    """Reading when it was noticed."""
+
+    @property
+    def title(self) -> str:
+        """Position and name, such as `front left edge (s15)`."""
+        return f"{self.label} ({self.name})"
+
+
+TURNS = 4
+"""Each tick looks at every fourth sensor: a sensor measures every 38 ms (docs/the-robot.md#noise-and-timing)."""
+STUCK_TICKS = 400
+"""Ticks of driving within a band of STUCK_BAND: 83 measurements or more. A working sensor takes 68 % of them there
+with nothing in view and fewer otherwise; the longest such time of healthy drives was 1.2 s."""
+STUCK_BAND = 2
+"""Width in counts: a converter's last bit flickers also with a constant voltage."""
+FLICKERS_TICKS = 100
+"""Ticks of driving within STUCK_BAND up to which another sensor counts as flickering."""
+RANGE_TICKS = 50
+"""Ticks out of range before a sensor is broken."""
+LOWEST, HIGHEST = 0.6, 1.2
+"""Range of a working sensor, in floor and plateau counts; gain and noise take 7 and 12 % of it."""
+QUIET_COUNTS, QUIET_RATIO = 12, 0.16
+"""Width of the band that noise alone explains, in counts and as a ratio of the reading: 8 standard deviations."""
+DIFFERS_COUNTS = 60
+"""Difference to both neighbours that contradicts them."""
+SEES_NOTHING_TICKS = 450
+"""Ticks of driving in such a contradiction; the longest time of healthy drives was 0.3 s. A neighbour that is stuck
+high is noticed before, after STUCK_TICKS."""
+PHANTOM_TICKS = 450
+"""Ticks of driving in the opposite contradiction, which a thin post explains for long."""
+SWING_COUNTS = 100
+"""Counts by which both neighbours must have changed meanwhile: a neighbour that is stuck is no witness."""
+
+
+class SensorWatch:
+    """Detector of single broken sensors; more than half of all sensors must show none of its signs."""
+
+    def __init__(self, infrared: InfraredSettings) -> None:
+        self._sensors = infrared.sensors
+        lowest, highest = infrared.floor_counts * LOWEST, infrared.plateau_counts * HIGHEST
+        self._states = [
+            _SensorState(place, near, lowest, highest) for place, near in enumerate(neighbours_of(infrared.sensors))
+        ]
+        self._by_turn = [self._states[turn::TURNS] for turn in range(TURNS)]
+        self._ticks = self._driven = 0
+        self._broken: dict[int, BrokenSensor] = {}
+        self.broken: tuple[BrokenSensor, ...] = ()
+        """Sensors that were noticed, in that order."""
+        self.places: tuple[int, ...] = ()
+        """Their places in the sensor table."""
+
+    def update(self, counts: tuple[int, ...], *, driving: bool) -> tuple[BrokenSensor, ...]:
+        """Look at the readings of one tick, in counts, and return the sensors that are noticed now.
+
+        Call it in each tick with fresh readings. `driving`: whether the wheels were told to turn in the tick before.
+        """
+        self._ticks += 1
+        self._driven += driving
+        driven, broken, signs = self._driven, self._broken, None
+        for state in self._by_turn[self._ticks % TURNS]:
+            state.update(counts, driven)
+            if state.suspect and state.place not in broken and (fault := state.fault(driven)) is not None:
+                signs = (*(signs or ()), (state.place, fault))
+        return () if signs is None else self._judge(signs, counts)
+
+    def readmit(self) -> None:
+        """Trust a broken sensor again if its reading has changed since it was noticed, after a teacher looked at it.
+
+        A sensor that is still broken is noticed again.
+        """
+        for place in [place for place in self._broken if self._states[place].changed]:
+            del self._broken[place]
+            self._states[place].restart(self._driven)
+        self._publish()
+
+    def _judge(self, signs: tuple[tuple[int, SensorFault], ...], counts: tuple[int, ...]) -> tuple[BrokenSensor, ...]:
+        """Return the suspects as broken, unless the whole board or a robot without noise explains their signs."""
+        others = len(self._states) // 2
+        flickering = sum(self._driven - state.still_from < FLICKERS_TICKS for state in self._states)
+        in_range = sum(not state.out_ticks for state in self._states)
+        if min(flickering, in_range) <= others or len(self._broken) + len(signs) >= others:
+            return ()
+        for place, fault in signs:
+            sensor = self._sensors[place]
+            self._broken[place] = BrokenSensor(place, sensor.name, sensor.label, fault, counts[place])
+            self._states[place].changed = False
+        self._publish()
+        return tuple(self._broken[place] for place, _ in signs)
+
+    def _publish(self) -> None:
+        self.broken = tuple(self._broken.values())
+        self.places = tuple(self._broken)
+        for state in self._states:
+            state.set_witnesses(self._broken)
+
+
+class _SensorState:
+    """Signs of one sensor, in ticks of driving."""
+
+    __slots__ = (
+        "_after",
+        "_after_high",
+        "_after_low",
+        "_before",
+        "_before_high",
+        "_before_low",
+        "_driven",
+        "_has_witnesses",
+        "_high",
+        "_highest",
+        "_low",
+        "_lowest",
+        "_quiet_high",
+        "_quiet_low",
+        "changed",
+        "high_ticks",
+        "low_ticks",
+        "out_ticks",
+        "place",
+        "still_from",
+        "suspect",
+    )
+
+    def __init__(self, place: int, near: Neighbours, lowest: float, highest: float) -> None:
+        self.place = place
+        self._before, self._after = near.before, near.after
+        self._lowest, self._highest = lowest, highest
+        self._has_witnesses = True
+        self.restart(0)
+
+    def set_witnesses(self, broken: Container[int]) -> None:
+        """Compare with the neighbours from now on only if neither is among the `broken` sensors."""
+        self._has_witnesses = self._before not in broken and self._after not in broken
+        self.low_ticks = self.high_ticks = 0
+
+    def restart(self, driven: int) -> None:
+        """Forget all signs; `driven`: ticks that the robot has driven."""
+        self._low = self._high = self._quiet_low = self._quiet_high = -1000
+        self._before_low = self._before_high = self._after_low = self._after_high = 0
+        self._driven = self.still_from = driven
+        self.low_ticks = self.high_ticks = self.out_ticks = 0
+        self.changed = False
+        """Whether the reading has left the band of noise since this was set to False."""
+        self.suspect = False
+        """Whether `fault` may find a sign; it spares a call in most ticks."""
+
+    def update(self, counts: tuple[int, ...], driven: int) -> None:
+        """Look at all readings, in counts; `driven`: ticks that the robot has driven."""
+        value = counts[self.place]
+        drove, self._driven = driven - self._driven, driven
+        self.out_ticks = 0 if self._lowest <= value <= self._highest else min(self.out_ticks + TURNS, RANGE_TICKS)
+        if value < self._low:
+            self._low = value
+        elif value > self._high:
+            self._high = value
+        if self._high - self._low > STUCK_BAND:
+            self._low = self._high = value
+            self.still_from = driven
+        if value < self._quiet_low:
+            self._quiet_low = value
+        elif value > self._quiet_high:
+            self._quiet_high = value
+        if self._quiet_high - self._quiet_low > QUIET_COUNTS + QUIET_RATIO * self._quiet_high:
+            self._begin_quiet(value, counts)
+        elif drove and self._has_witnesses:
+            self._compare(counts[self._before], counts[self._after], drove)
+        self.suspect = bool(
+            self.low_ticks or self.high_ticks or self.out_ticks or driven - self.still_from >= STUCK_TICKS
+        )
+
+    def fault(self, driven: int) -> SensorFault | None:
+        """Return the sign that the sensor is broken; None without one. `driven`: ticks that the robot has driven."""
+        if self.out_ticks >= RANGE_TICKS:
+            return SensorFault.OUT_OF_RANGE
+        if driven - self.still_from >= STUCK_TICKS:
+            return SensorFault.STUCK
+        swing = min(self._before_high - self._before_low, self._after_high - self._after_low)
+        if swing >= SWING_COUNTS and self.low_ticks >= SEES_NOTHING_TICKS:
+            return SensorFault.SEES_NOTHING
+        if swing >= SWING_COUNTS and self.high_ticks >= PHANTOM_TICKS:
+            return SensorFault.SEES_A_PHANTOM
+        return None
+
+    def _begin_quiet(self, value: int, counts: tuple[int, ...]) -> None:
+        """Start the band of noise at this reading: it has changed by more than noise."""
+        self._quiet_low = self._quiet_high = value
+        self._before_low = self._before_high = counts[self._before]
+        self._after_low = self._after_high = counts[self._after]
+        self.low_ticks = self.high_ticks = 0
+        self.changed = True
+
+    def _compare(self, before: int, after: int, drove: int) -> None:
+        """Compare the band of noise with the neighbours' readings, in counts, after `drove` more ticks of driving."""
+        if before < self._before_low:
+            self._before_low = before
+        elif before > self._before_high:
+            self._before_high = before
+        if after < self._after_low:
+            self._after_low = after
+        elif after > self._after_high:
+            self._after_high = after
+        if before - self._quiet_high > DIFFERS_COUNTS and after - self._quiet_high > DIFFERS_COUNTS:
+            self.low_ticks += drove
+        elif self._quiet_low - before > DIFFERS_COUNTS and self._quiet_low - after > DIFFERS_COUNTS:
+            self.high_ticks += drove

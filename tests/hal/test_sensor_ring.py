@@ -1,0 +1,62 @@
+"""Neighbours of infra-red sensors and the readings that replace a broken sensor's."""
+
+import pytest
+
+from hal.robot_settings import load_robot
+from hal.sensor_ring import SubstituteReadings, neighbours_of
+
+INFRARED = load_robot().infrared
+PLACES = {name: place for place, name in enumerate(INFRARED.names)}
+
+
+def counts_of(**readings: int) -> tuple[int, ...]:
+    """Return the readings of all sensors: 70 counts, except the given ones."""
+    return tuple(readings.get(name, 70) for name in INFRARED.names)
+
+
+@pytest.mark.parametrize(
+    ("sensor", "before", "after", "substitutes"),
+    [
+        ("s3", "s1", "s4", {"s1", "s4"}),
+        ("s1", "s15", "s3", {"s3"}),
+        ("s15", "s9", "s1", {"s9", "s1"}),
+        ("s9", "s11", "s15", {"s11"}),
+        ("s11", "s10", "s9", {"s10", "s9"}),
+        ("s14", "s12", "s13", {"s12", "s13"}),
+        ("s18", "s13", "s6", {"s13", "s6"}),
+    ],
+)
+def test_neighbours_stand_next_to_a_sensor(sensor: str, before: str, after: str, substitutes: set[str]) -> None:
+    near = neighbours_of(INFRARED.sensors)[PLACES[sensor]]
+    assert (near.before, near.after) == (PLACES[before], PLACES[after])
+    assert set(near.substitutes) == {PLACES[each] for each in substitutes}
+
+
+def test_neighbours_form_one_ring_of_all_sensors() -> None:
+    near = neighbours_of(INFRARED.sensors)
+    place, ring = 0, []
+    for _ in near:
+        ring.append(place)
+        assert near[near[place].after].before == place
+        place = near[place].after
+    assert sorted(ring) == list(range(len(near)))
+
+
+def test_substitute_without_a_broken_sensor_returns_the_counts() -> None:
+    counts = counts_of(s1=300)
+    assert SubstituteReadings(INFRARED)(counts, ()) is counts
+
+
+def test_substitute_of_one_sensor_is_its_neighbours_mean() -> None:
+    read = SubstituteReadings(INFRARED)(counts_of(s1=301, s9=100, s15=0), (PLACES["s15"],))
+    assert read == counts_of(s1=301, s9=100, s15=200)
+
+
+def test_substitute_leaves_out_a_broken_neighbour() -> None:
+    read = SubstituteReadings(INFRARED)(counts_of(s1=550, s9=100, s15=0, s3=240), (PLACES["s15"], PLACES["s1"]))
+    assert read == counts_of(s1=240, s9=100, s15=100, s3=240)
+
+
+def test_substitute_without_a_working_neighbour_reads_near() -> None:
+    read = SubstituteReadings(INFRARED)(counts_of(s9=0, s11=0, s10=150), (PLACES["s9"], PLACES["s11"]))
+    assert read == counts_of(s9=INFRARED.plateau_counts, s11=150, s10=150)

@@ -1,0 +1,169 @@
+"""Detection of single broken infra-red sensors from readings that the test makes."""
+
+import random
+from collections.abc import Callable
+
+import pytest
+
+from hal.robot_settings import load_robot
+from hal.sensor_watch import (
+    RANGE_TICKS,
+    SEES_NOTHING_TICKS,
+    STUCK_TICKS,
+    TURNS,
+    BrokenSensor,
+    SensorFault,
+    SensorWatch,
+)
+
+INFRARED = load_robot().infrared
+PLACES = {name: place for place, name in enumerate(INFRARED.names)}
+
+Fault = Callable[[int], int]
+"""Function from the tick to the reading of a faulty sensor, in counts."""
+
+
+class Drive:
+    """Readings of 18 noisy sensors, of which some see a wall that comes and goes, and a watch."""
+
+    def __init__(self) -> None:
+        self.watch = SensorWatch(INFRARED)
+        self.faults: dict[str, Fault] = {}
+        self.near: tuple[str, ...] = ()
+        """Sensors that see a wall for 2 s in every 4 s."""
+        self.noisy = True
+        self._chance = random.Random(4)
+        self._ticks = 0
+        self._counts = [0] * len(INFRARED.names)
+
+    def run(self, ticks: int, *, driving: bool = True) -> tuple[BrokenSensor, ...]:
+        """Return the sensors that are noticed within so many ticks."""
+        found: tuple[BrokenSensor, ...] = ()
+        for _ in range(ticks):
+            self._ticks += 1
+            if self._ticks % 4 == 1:
+                self._measure()
+            found += self.watch.update(tuple(self._counts), driving=driving)
+        return found
+
+    def _measure(self) -> None:
+        sees = self._ticks % 400 >= 200
+        for name, place in PLACES.items():
+            mean = 300 if sees and name in self.near else 70
+            if name in self.faults:
+                self._counts[place] = self.faults[name](self._ticks)
+            else:
+                self._counts[place] = round(self._chance.gauss(mean, max(1.5, 0.02 * mean))) if self.noisy else mean
+
+
+@pytest.fixture
+def drive() -> Drive:
+    return Drive()
+
+
+def test_watch_of_healthy_sensors_finds_nothing(drive: Drive) -> None:
+    drive.near = ("s1", "s3", "s4", "s2", "s15")
+    assert drive.run(12_000) == ()
+
+
+@pytest.mark.parametrize("name", INFRARED.names)
+@pytest.mark.parametrize("counts", [70, 294, 550])
+def test_watch_finds_a_stuck_sensor_in_four_seconds(drive: Drive, name: str, counts: int) -> None:
+    drive.run(200)
+    drive.faults[name] = lambda _: counts
+    assert drive.run(STUCK_TICKS // 2) == ()
+    (found,) = drive.run(STUCK_TICKS // 2 + 3 * TURNS)
+    assert (found.name, found.fault, found.counts) == (name, SensorFault.STUCK, counts)
+    assert found == drive.watch.broken[0]
+    assert drive.watch.places == (PLACES[name],)
+
+
+def test_watch_finds_a_stuck_sensor_whose_last_bit_flickers(drive: Drive) -> None:
+    drive.faults["s9"] = lambda tick: 212 + tick // 4 % 3
+    assert [each.title for each in drive.run(STUCK_TICKS + 3 * TURNS)] == ["front left (s9)"]
+
+
+def test_watch_does_not_count_time_in_which_the_robot_stands(drive: Drive) -> None:
+    drive.faults["s9"] = lambda _: 212
+    assert drive.run(10 * STUCK_TICKS, driving=False) == ()
+    assert drive.run(STUCK_TICKS - TURNS) == ()
+    assert len(drive.run(3 * TURNS)) == 1
+
+
+@pytest.mark.parametrize("counts", [0, 40, 700, 1023])
+def test_watch_finds_readings_out_of_range_at_standstill(drive: Drive, counts: int) -> None:
+    drive.faults["s3"] = lambda _: counts
+    (found,) = drive.run(RANGE_TICKS + 3 * TURNS, driving=False)
+    assert (found.name, found.fault) == ("s3", SensorFault.OUT_OF_RANGE)
+
+
+def test_watch_ignores_a_short_reading_out_of_range(drive: Drive) -> None:
+    drive.faults["s3"] = lambda tick: 0 if tick % 60 < 40 else 75
+    assert drive.run(2000, driving=False) == ()
+
+
+def test_watch_finds_a_dark_sensor_between_seeing_ones(drive: Drive) -> None:
+    drive.near = ("s1", "s3", "s4", "s2")
+    flicker = random.Random(1)
+    drive.faults["s3"] = lambda _: round(flicker.gauss(70, 1.5))
+    (found,) = drive.run(3 * SEES_NOTHING_TICKS)
+    assert (found.name, found.fault) == ("s3", SensorFault.SEES_NOTHING)
+
+
+def test_watch_finds_a_phantom_between_dark_neighbours(drive: Drive) -> None:
+    drive.near = ("s1", "s3", "s4", "s2")
+    flicker = random.Random(1)
+    drive.faults["s3"] = lambda _: round(flicker.gauss(550, 8))
+    (found,) = drive.run(3000)
+    assert (found.name, found.fault) == ("s3", SensorFault.SEES_A_PHANTOM)
+
+
+def test_watch_takes_a_thin_post_for_no_phantom(drive: Drive) -> None:
+    flicker = random.Random(1)
+    drive.faults["s3"] = lambda _: round(flicker.gauss(300, 6))  # no neighbour ever sees anything
+    assert drive.run(6000) == ()
+
+
+def test_watch_blames_no_neighbour_of_a_stuck_sensor(drive: Drive) -> None:
+    drive.near = ("s4",)
+    drive.run(300)
+    drive.faults["s1"] = lambda _: 550
+    drive.faults["s4"] = lambda tick: 300 + tick // 4 % 40
+    assert {each.name for each in drive.run(4000)} == {"s1"}
+
+
+def test_watch_leaves_a_board_without_change_to_others(drive: Drive) -> None:
+    drive.noisy = False
+    assert drive.run(3 * STUCK_TICKS) == ()
+    for name in INFRARED.names[:12]:
+        drive.faults[name] = lambda _: 0
+    assert drive.run(3 * STUCK_TICKS) == ()
+
+
+def test_readmit_trusts_a_sensor_that_changes_again(drive: Drive) -> None:
+    drive.faults["s9"] = lambda _: 70
+    drive.run(STUCK_TICKS + 3 * TURNS)
+    drive.watch.readmit()
+    assert drive.watch.places == (PLACES["s9"],)
+    drive.near = ("s9",)
+    drive.faults.clear()
+    drive.run(500)
+    assert drive.watch.places == (PLACES["s9"],)
+    drive.watch.readmit()
+    assert drive.watch.places == ()
+    assert drive.run(2 * STUCK_TICKS) == ()
+
+
+def test_readmitted_sensor_that_is_stuck_is_found_again(drive: Drive) -> None:
+    drive.faults["s9"] = lambda tick: 70 if tick < 600 else 300
+    drive.run(700)
+    drive.watch.readmit()
+    assert drive.watch.places == ()
+    assert [each.name for each in drive.run(STUCK_TICKS + 3 * TURNS)] == ["s9"]
+
+
+def test_watch_is_a_function_of_readings_and_driving() -> None:
+    drives = Drive(), Drive()
+    for drive in drives:
+        drive.faults["s15"] = lambda _: 294
+    assert drives[0].run(900) == drives[1].run(900) != ()
