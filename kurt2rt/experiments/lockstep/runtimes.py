@@ -72,7 +72,7 @@ def build_unattended_runtime(
     """Build the runtime for a drive without a teacher that continues the counters of `saved`.
 
     Args:
-        robot: driver in place of the simulation's own, for instance with a faulty sensor.
+        robot: driver in place of the simulation's own, for instance with a faulty sensor, which does not stop it.
 
     Raises:
         As `build_runtime` does.
@@ -88,5 +88,6 @@ def build_unattended_runtime(
             statistics=StatisticsCounter(dict(saved.uses), dict(saved.transitions)),
             checkpoint=saved,
             teacher_available=False,
+            checks_sensors=robot is None,
         ),
     )
