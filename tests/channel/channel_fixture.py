@@ -15,6 +15,7 @@ from kurt2rt.channel.protocol.requests import (
     AnswerRequest,
     CommandRequest,
     DriveRequest,
+    HoldRequest,
     Request,
     StopRequest,
     StreamRequest,
@@ -251,6 +252,9 @@ class ChannelFixture:
 
     def press(self, hold: int = 1, *, age: int = 0, boot: bytes = BOOT) -> DriveRequest:
         return DriveRequest(boot, self.tick - age, hold, 0.2, 0.1)
+
+    def hold(self, action: str = "forward", press: int = 1, *, age: int = 0) -> HoldRequest:
+        return HoldRequest(BOOT, self.tick - age, press, action)
 
     def stop(self) -> StopRequest:
         return StopRequest(self.new_id())

@@ -10,7 +10,7 @@ from typing import Any, TypeVar, cast
 import anyio
 
 from kurt2rt.channel.protocol.codec import encode_state
-from kurt2rt.channel.protocol.requests import CommandRequest, DriveRequest, Request, StreamRequest, WatchRequest
+from kurt2rt.channel.protocol.requests import CommandRequest, Request, StreamRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.channel.security.paired_devices import Teachers
 from kurt2rt.channel.server.endpoint import open_endpoint
@@ -64,7 +64,7 @@ class StandInRobot:
 
     def orders(self) -> list[Request]:
         """Return the received requests that are no streams."""
-        return [each for each in self.heard if not isinstance(each, WatchRequest | DriveRequest)]
+        return [each for each in self.heard if not isinstance(each, StreamRequest)]
 
     async def hears(self, kind: type[_Kind], count: int = 1) -> list[_Kind]:
         """Wait for `count` requests of a type; return all of it."""

@@ -23,7 +23,7 @@ from kurt2rt.channel.protocol.schema import (
     decode_strictly,
     encode_plainly,
 )
-from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
+from kurt2rt.channel.protocol.state import HoldState, MidState, State, SurpriseState
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.standing import Standing, StandReason
 from kurt2rt.core.decision.standing_text import stop_of_text, stop_text
@@ -61,7 +61,13 @@ _CHECKS = {kind: checks_of(kind) for kind in REQUESTS}
 
 def encode_request(request: Request) -> bytes:
     """Return the body of a request. Raises WireError if the robot would refuse it."""
-    return encode_plainly([check(name, getattr(request, name)) for name, check in _CHECKS[type(request)]])
+    kind = type(request)
+    body = [check(name, getattr(request, name)) for name, check in _CHECKS[kind]]
+    for each in reversed(fields(kind)[len(body) - kind.left_out :]):
+        if getattr(request, each.name) != each.default:
+            break
+        body.pop()
+    return encode_plainly(body)
 
 
 def decode_request(path: str, payload: bytes) -> Request:
@@ -165,6 +171,8 @@ _SURPRISE = (_NUMBER, OneWord((BASIC, MID)), _NUMBER, _NUMBER, _ANY_REAL, Flag()
 """The fields of SurpriseState."""
 _PROGRESS = (Int(0, WINDOW_S), OrNone(Int(0, 100)), _NUMBER)
 """The fields of Progress."""
+_HOLD = (_NAME, _NAME, _NAME, _NUMBER, Flag())
+"""The fields of HoldState."""
 _STANDING = (_NAME, Flag(), Flag(), OrNone(_FINITE), _LINE)
 """The fields of Standing."""
 _STOP = (_NAME, _LINE)
@@ -187,6 +195,7 @@ def encode_state(state: State) -> bytes:
     picture["su"] = _row(state.surprise, _SURPRISE)
     picture["pg"] = _row(state.progress, _PROGRESS)
     picture["nv"] = state.nearest_value
+    picture["hd"] = _row(state.hold, _HOLD)
     standing = state.standing
     # Older devices read the stop from its sentence.
     picture["st"] = _tidied(stop_text(state.stopped), _LINE)
@@ -211,6 +220,7 @@ def decode_state(payload: bytes) -> State:
     # Added within version 4: older robots leave them out.
     progress = OrNone(Row(_PROGRESS))("progress", picture.get("pg"))
     nearest_value = OrNone(_FINITE)("worth of the nearest", picture.get("nv"))
+    hold = OrNone(Row(_HOLD))("hold", picture.get("hd"))
     standing = OrNone(Row(_STANDING))("standing", picture.get("sd"))
     sentence = _LINE("stop", _value(picture, "st"))
     stopped = _stop(OrNone(Row(_STOP))("stop", picture.get("sr")), sentence)
@@ -224,12 +234,15 @@ def decode_state(payload: bytes) -> State:
         nearest_value=nearest_value,
         progress=NO_PROGRESS if progress is None else Progress(*progress),
         stopped=stopped,
+        hold=None if hold is None else HoldState(*hold),
         standing=None if standing is None else _standing(*standing, stopped=stopped),
         **values,
     )
 
 
-def _row(value: MidState | SurpriseState | Progress | tuple[Any, ...] | None, checks: tuple[Check, ...]) -> Any:
+def _row(
+    value: MidState | HoldState | SurpriseState | Progress | tuple[Any, ...] | None, checks: tuple[Check, ...]
+) -> Any:
     if value is None:
         return None
     values = value if isinstance(value, tuple) else [getattr(value, each.name) for each in fields(value)]

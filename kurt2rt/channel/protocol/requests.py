@@ -74,6 +74,8 @@ class Request:
     path: ClassVar[str]
     may_lack: ClassVar[int] = 0
     """Number of last fields that an older device leaves out; their defaults count then."""
+    left_out: ClassVar[int] = 0
+    """Number of last fields that are not sent while they have their defaults, for robots of before."""
     depth: ClassVar[int] = 1
     """Deepest nesting of lists in the body."""
 
@@ -106,12 +108,14 @@ _RequestT = TypeVar("_RequestT", bound=Request)
 
 
 @dataclass_transform(frozen_default=True)
-def _at(path: str, *, may_lack: int = 0, depth: int = 1) -> Callable[[type[_RequestT]], type[_RequestT]]:
+def _at(
+    path: str, *, may_lack: int = 0, left_out: int = 0, depth: int = 1
+) -> Callable[[type[_RequestT]], type[_RequestT]]:
     """Return a decorator that makes a class the request of a path."""
 
     def register(kind: type[_RequestT]) -> type[_RequestT]:
         request = dataclass(frozen=True, slots=True)(kind)
-        request.path, request.may_lack, request.depth = path, may_lack, depth
+        request.path, request.may_lack, request.left_out, request.depth = path, may_lack, left_out, depth
         REQUESTS.append(request)
         return request
 
@@ -144,13 +148,24 @@ class DriveRequest(StreamRequest):
     right_m_s: Speed
 
 
+@_at("/hold")
+class HoldRequest(StreamRequest):
+    """Action that drives and teaches while the teacher holds it (hold to correct)."""
+
+    press_id: Number
+    """Number of the press, in one sequence with those of `/drive`."""
+    action: Name
+    """Action of the repertoire."""
+
+
 @_at("/stop")
 class StopRequest(Request):
     """Stop. It needs neither a boot id nor a fresh state."""
 
     command_id: CommandId
     press_id: NumberOrNone = None
-    """Press that ends, so that a late copy does not end the next one; None: everything."""
+    """Press that ends, so that a late copy does not end the next one; None: everything. After a press of `/hold` the
+    robot drives on by its RLAs."""
 
 
 @_at("/behaviour")
@@ -175,7 +190,7 @@ class AnswerRequest(CommandRequest):
     """Add the behaviour to those that the mid level knows for this situation."""
 
 
-@_at("/correct", may_lack=1)
+@_at("/correct", may_lack=2, left_out=1)
 class CorrectRequest(CommandRequest):
     """Replace a decided action by another one (phase 2)."""
 
@@ -183,6 +198,8 @@ class CorrectRequest(CommandRequest):
     decision_tick: NumberOrNone
     level: Level = BASIC
     """Level of the wrong decision."""
+    late: Annotated[bool, Flag()] = False
+    """Without a tick: give it to the decision that this teacher reacted to, by their known delay."""
 
 
 @_at("/reward")

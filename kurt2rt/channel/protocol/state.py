@@ -55,6 +55,21 @@ class SurpriseState:
 
 
 @dataclass(frozen=True, slots=True)
+class HoldState:
+    """Newest press of a held action."""
+
+    teacher: str
+    action: str
+    """Action that is held, or was held last."""
+    lesson: str
+    """Id that undoes all lessons of the press."""
+    lessons: int
+    """Number of lessons that it gave."""
+    on: bool
+    """True while the action drives."""
+
+
+@dataclass(frozen=True, slots=True)
 class State:
     """State of the robot at one tick. Commands name the tick of the state that the teacher saw."""
 
@@ -146,6 +161,8 @@ class State:
     """Value of the nearest RLA when its action was withdrawn; None if it has its action."""
     progress: Progress = NO_PROGRESS
     """Fraction driven by RLAs, and the questions, in the last minute."""
+    hold: HoldState | None = None
+    """Newest hold; None before the first, and from a robot of an older version."""
     standing: Standing | None = None
     """None from a robot of an older version."""
 

@@ -53,9 +53,9 @@ def command_of(device: str, command_id: str, request: CommandRequest) -> Command
         case BehaviourRequest(action=action, ticks=ticks):
             return RunBehaviour(command_id, device, action, ticks, request.seen)
         case AnswerRequest(action=action, decision_tick=tick, level=level, alternative=alternative):
-            return Teach(command_id, device, action, tick, level, alternative)
-        case CorrectRequest(action=action, decision_tick=tick, level=level):
-            return Correct(command_id, device, action, tick, level)
+            return Teach(command_id, device, action, tick, level, alternative, request.seen)
+        case CorrectRequest(action=action, decision_tick=tick, level=level, late=late):
+            return Correct(command_id, device, action, tick, level, late, request.seen)
         case RewardRequest(value=value, decision_tick=tick):
             return Reward(command_id, device, value, tick)
         case AppraiseRequest(appraisal=appraisal, decision_tick=tick):

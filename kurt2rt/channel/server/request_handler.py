@@ -13,6 +13,7 @@ from kurt2rt.channel.protocol.requests import (
     DriveRequest,
     HealthRequest,
     HelloRequest,
+    HoldRequest,
     LessonsRequest,
     PursueRequest,
     Request,
@@ -33,8 +34,9 @@ from kurt2rt.channel.server.pending_commands import PendingCommands
 from kurt2rt.channel.server.rate_limit import PerDeviceRateLimit
 from kurt2rt.channel.server.reply import Reply, ReplyStatus, done, refusal, restarted, unsaved
 from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
+from kurt2rt.core.rla.lesson_history import hold_of, hold_text
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.core.teaching.commands import Command, Drive, Stop, Watch
+from kurt2rt.core.teaching.commands import Command, Drive, HoldAction, Stop, Stream, Watch
 from kurt2rt.core.teaching.inbox import InboxFullError
 from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.runtime import Runtime
@@ -135,15 +137,17 @@ class RequestHandler:
             return stale
         if not self._is_newest(sender):
             return refusal("old", Outcome(RefusalCode.OVERTAKEN), tick)
-        command: Watch | Drive = Watch(device, request.seen)
+        command: Stream = Watch(device, request.seen)
         if isinstance(request, DriveRequest):
             command = Drive(device, request.seen, request.press_id, request.left_m_s, request.right_m_s)
+        elif isinstance(request, HoldRequest):
+            command = HoldAction(device, request.seen, request.press_id, request.action)
         held = commands.authority.refusal_for(device)
         if held is not None:
             return refusal("held", held, tick)
         ended = commands.manual_refusal(command)
         if ended is not None:
-            return refusal("stopped", ended, tick)
+            return refusal("refused" if ended.code is RefusalCode.NO_ACTION else "stopped", ended, tick)
         return Reply(ReplyStatus.DONE, {"t": tick}) if self._enqueue(command) else self._too_many()
 
     async def _stop(self, sender: Sender, command_id: str, press_id: int | None) -> Reply:
@@ -215,12 +219,25 @@ class RequestHandler:
         return refusal("refused", Outcome(RefusalCode.TOO_MANY), self.tick)
 
     def _lessons(self, count: int) -> list[list[object]]:
+        """Return the newest lessons as rows, newest first; the lessons of a hold are one row."""
         rows: list[list[object]] = []
-        for record in reversed(self._runtime.level.system.lessons[-count:] if count else ()):
+        holds: set[str] = set()
+        system = self._runtime.level.system
+        for record in reversed(system.lessons if count else ()):
             origin = record.event.origin
+            hold = hold_of(origin.command_id)
+            if hold in holds:
+                continue
+            if len(rows) == count:
+                break
             stamp = self._parts.journal.stamp_of(origin.command_id)
             place = (origin.teacher, int(origin.phase), origin.tick)
-            rows.append([origin.command_id, record.text, *place, stamp, record.undone])
+            if hold is None:
+                rows.append([origin.command_id, record.text, *place, stamp, record.undone])
+                continue
+            holds.add(hold)
+            given = tuple(filter(None, map(system.lesson, system.lessons_of_hold(hold))))
+            rows.append([hold, hold_text(given), *place, stamp, all(each.undone for each in given)])
         return rows
 
     def _situations(self) -> list[str]:

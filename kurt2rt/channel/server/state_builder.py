@@ -2,7 +2,7 @@
 
 from typing import TypedDict
 
-from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
+from kurt2rt.channel.protocol.state import HoldState, MidState, State, SurpriseState
 from kurt2rt.channel.protocol.trouble_code import TroubleCode
 from kurt2rt.channel.server.dependencies import ChannelDependencies
 from kurt2rt.channel.server.mid_state import mid_state, surprise_state
@@ -102,6 +102,7 @@ class StateBuilder:
             asks_at=decision.asks_at,
             mid=self._mid(record),
             surprise=self._surprise,
+            hold=self._hold(),
             progress=runtime.progress.progress(),
             standing=record.standing,
             **self._nearest(record),
@@ -157,6 +158,13 @@ class StateBuilder:
         if nearest.level != BASIC or nearest.action != ASK:
             return None
         return float(self._runtime.reinforcement.value(nearest.rla_id))
+
+    def _hold(self) -> HoldState | None:
+        hold, held_press = self._runtime.handler.holds.newest, self._runtime.handler.authority.held_press
+        if hold is None:
+            return None
+        on = held_press is not None and held_press == hold.press_id
+        return HoldState(hold.teacher, hold.action, hold.lesson, hold.lessons, on)
 
     def _late(self) -> float:
         health = self._parts.health()

@@ -2,6 +2,7 @@
 
 import re
 from bisect import bisect_left
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from kurt2rt.core.outcome import Outcome, RefusalCode
@@ -67,6 +68,18 @@ def hold_of(command_id: str) -> str | None:
     """Return the id of the hold that gave a lesson; None for another lesson."""
     found = _HOLD_LESSON.fullmatch(command_id)
     return None if found is None else found[1]
+
+
+def hold_text(records: Iterable[LessonRecord]) -> str:
+    """Return a short description of the lessons of a hold, oldest first, for a teacher."""
+    taught = [each.event for each in records]
+    actions: dict[str, None] = {}
+    for event in taught:
+        if isinstance(event, RlaCreated):
+            actions[event.rla.action] = None
+        elif isinstance(event, ActionReplaced):
+            actions[event.action] = None
+    return f"held {', '.join(actions)}: {len(taught)} lesson{'' if len(taught) == 1 else 's'}"
 
 
 def rla_id_of(lesson: RlaLesson) -> int:

@@ -233,7 +233,7 @@ class CommandHandler:
 
     def on_decision(self, tick: int, *, asks: bool) -> None:
         """Note whether the basic level asked its teacher in a tick."""
-        self.delay.on_decision(tick, asks=asks and self.authority.is_present(tick))
+        self.delay.on_decision(tick, asks=asks, present=self.authority.is_present(tick))
 
     def manual_refusal(self, command: Stream) -> Outcome | None:
         """Return why this press does not drive the robot; None if it does, and for a sign of presence."""

@@ -26,12 +26,12 @@ class TeacherDelay:
         self._asked_tick: int | None = None
         self._answered = False
 
-    def on_decision(self, tick: int, *, asks: bool) -> None:
-        """Note whether the robot asked a teacher who is present in a tick."""
+    def on_decision(self, tick: int, *, asks: bool, present: bool = True) -> None:
+        """Note whether the robot asked in a tick; an answer tells no delay if its teacher came after the question."""
         if not asks:
-            self._asked_tick, self._answered = None, False
+            self._asked_tick = None
         elif self._asked_tick is None:
-            self._asked_tick = tick
+            self._asked_tick, self._answered = tick, not present
 
     @property
     def asked_tick(self) -> int | None:

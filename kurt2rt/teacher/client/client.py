@@ -36,7 +36,7 @@ from kurt2rt.runs.explain.facts import DecisionFacts
 from kurt2rt.teacher.client.answer import Answer, RefusedError
 from kurt2rt.teacher.client.connection import Connection, open_connection
 from kurt2rt.teacher.client.link_quality import LinkQuality
-from kurt2rt.teacher.client.manual_drive import ManualDrive, ManualDriveHandle
+from kurt2rt.teacher.client.manual_drive import HoldHandle, ManualDrive, ManualDriveHandle
 from kurt2rt.teacher.client.state_stream import StateStream
 
 ANSWER_WITHIN_S = 3.5
@@ -176,9 +176,17 @@ class TeacherClient:
             requests.AnswerRequest, action=action, decision_tick=of, level=level, alternative=alternative
         )
 
-    async def correct(self, action: str, *, of: int | None = None, level: str = BASIC) -> Answer:
-        """Replace the decided action by another one (phase 2), at level MID the behaviour."""
-        return await self._command(requests.CorrectRequest, action=action, decision_tick=of, level=level)
+    async def correct(self, action: str, *, of: int | None = None, level: str = BASIC, late: bool = False) -> Answer:
+        """Replace the decided action by another one (phase 2), at level MID the behaviour.
+
+        Args:
+            action: Right action of the repertoire; at level MID a taught behaviour.
+            of: Tick of the state that is meant. None: the present decision.
+            level: BASIC or MID.
+            late: Without `of`: correct the decision that a person reacts to, before the newest state by their delay,
+                which the robot learns from their answers to its questions. The answer says which decision it was.
+        """
+        return await self._command(requests.CorrectRequest, action=action, decision_tick=of, level=level, late=late)
 
     async def correct_earlier(self, action: str, seconds: float) -> Answer:
         """Correct what the basic level did `seconds` before it last drove (rewind).
@@ -217,7 +225,7 @@ class TeacherClient:
         return await self._command(requests.NameRequest, name=name, decision_tick=of)
 
     async def undo(self, lesson: str | None = None) -> Answer:
-        """Undo a lesson by its command id; None: the last one that stands."""
+        """Undo a lesson by its command id, or all of a hold by its id; None: the last lesson or hold that stands."""
         return await self._command(requests.UndoRequest, lesson=lesson)
 
     # Motion
@@ -278,8 +286,17 @@ class TeacherClient:
         """
         return self._drive.press(left_m_s, right_m_s)
 
+    def press_action(self, action: str) -> bool:
+        """Begin to hold an action, or hold another one in the present press; return whether a press is on.
+
+        The robot does it and is taught on the way; see `hold`. Raises WireError for a name that cannot be sent.
+        """
+        return self._drive.hold(action)
+
     async def let_go(self) -> Answer | None:
         """End the press with a stop that ends no later press; return None if no press is on.
+
+        After a held action the robot drives on by its RLAs, and the answer tells how many lessons it gave.
 
         The press is over before this waits for the answer. Without an answer the robot stops by its own deadman time.
         """
@@ -296,6 +313,23 @@ class TeacherClient:
                 await self._open.try_end_press(handle.press_id)
             raise
         await self._open.end_press(handle.press_id)
+
+    @asynccontextmanager
+    async def hold(self, action: str) -> AsyncIterator[HoldHandle]:
+        """Hold an action inside the block: the robot does it, and is taught it in the situations on the way.
+
+        At the end of the block the robot drives on by its RLAs at once. Each 0.1 s becomes a lesson, unless the robot
+        would do that action there by itself; the lessons are undone together. Afterwards the handle tells how many.
+        """
+        handle = HoldHandle(self._drive)
+        handle.set(action)
+        try:
+            yield handle
+        except BaseException:
+            with anyio.CancelScope(shield=True):
+                await self._open.try_end_press(handle.press_id)
+            raise
+        handle.released = await self._open.end_press(handle.press_id)
 
     # Goals
 

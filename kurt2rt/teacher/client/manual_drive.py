@@ -1,4 +1,4 @@
-"""Deadman stream of a teacher's device: presence messages, and drive commands while a press is on."""
+"""Deadman stream of a teacher's device: presence messages, and the press of a drive or a hold while one is on."""
 
 from collections import deque
 from collections.abc import Callable
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from kurt2rt.channel.protocol.codec import WireError, decode_answer, encode_request
-from kurt2rt.channel.protocol.requests import DriveRequest, StreamRequest, WatchRequest
+from kurt2rt.channel.protocol.requests import DriveRequest, HoldRequest, StreamRequest, WatchRequest
 from kurt2rt.channel.protocol.state import State
 from kurt2rt.core.outcome import RefusalCode
 from kurt2rt.teacher.client.answer import Answer, answer_of, local_refusal
@@ -23,12 +23,15 @@ _TIMEOUT_S = 1.0
 """Time after which an answer no longer counts."""
 
 
+Wish = tuple[float, float] | str
+"""Content of a press: speeds of the wheels (left, right) in m/s, or an action that is held."""
+
+
 @dataclass(slots=True)
 class _Press:
     press_id: int
     boot: bytes
-    left_m_s: float
-    right_m_s: float
+    wish: Wish
     accepted: int = -1
     """Number of the newest message that the robot accepted."""
 
@@ -44,7 +47,10 @@ class _Sent:
 
 
 class ManualDrive:
-    """Sender of the teacher's presence while in charge and watching, and of drive commands while a press is on."""
+    """Sender of the teacher's presence while in charge and watching, and of a press while one is on.
+
+    A press drives by speeds, or holds an action, which teaches (hold to correct).
+    """
 
     def __init__(
         self,
@@ -55,7 +61,15 @@ class ManualDrive:
         now: Callable[[], float],
         on_begin: Callable[[], None],
     ) -> None:
-        """`name` is the teacher's; `now` is a monotonic clock in seconds; `on_begin` is called as a press begins."""
+        """Begin without a press.
+
+        Args:
+            name: of the teacher.
+            stream: states of the robot.
+            requests: to the robot.
+            now: monotonic clock in seconds.
+            on_begin: called as a press with speeds begins.
+        """
         self.watching = True
         """Whether the teacher looks at the robot."""
         self.refusal: Answer | None = None
@@ -79,18 +93,29 @@ class ManualDrive:
 
         Raises WireError for speeds out of range.
         """
+        return self._wish((left_m_s, right_m_s))
+
+    def hold(self, action: str) -> bool:
+        """Begin to hold an action, or hold another one in the present press; return whether a press is on.
+
+        Raises WireError for a name that cannot be sent.
+        """
+        return self._wish(action)
+
+    def _wish(self, wish: Wish) -> bool:
         state = self._fresh_state()
         if state is None:
             self.end(local_refusal(RefusalCode.NO_PICTURE))
             return False
         press = self._press
-        begins = press is None
-        if press is None:
-            press = _Press(self._requests.next_number, state.boot, left_m_s, right_m_s)
-        encode_request(_drive(press, state.tick, left_m_s, right_m_s))
-        press.left_m_s, press.right_m_s = left_m_s, right_m_s
+        begins = press is None or isinstance(press.wish, str) != isinstance(wish, str)
+        if press is None or begins:
+            press = _Press(self._requests.next_number, state.boot, wish)
+        encode_request(_message(press, state.tick, wish))
+        press.wish = wish
         if begins:
-            self._on_begin()
+            if not isinstance(wish, str):  # a hold does not let a stopped robot drive, so a stop goes on being sent
+                self._on_begin()
             self.refusal = None
             self._press = press
             self.beat()
@@ -114,7 +139,7 @@ class ManualDrive:
         elif state.boot != press.boot:
             self.end(local_refusal(RefusalCode.RESTARTED_MEANWHILE))
         else:
-            self._send(_drive(press, self._stream.newest_tick, press.left_m_s, press.right_m_s), press)
+            self._send(_message(press, self._stream.newest_tick, press.wish), press)
 
     def close(self) -> None:
         """End the press and drop the answers that are still to come."""
@@ -162,8 +187,8 @@ class ManualDrive:
             sent.exchange.end()
 
 
-class ManualDriveHandle:
-    """One press, from `TeacherClient.driving`. Its speeds go out 50 times a second; an ended press stays ended."""
+class PressHandle:
+    """One press. It is sent 50 times a second; an ended press stays ended."""
 
     def __init__(self, drive: ManualDrive) -> None:
         self._drive = drive
@@ -181,16 +206,44 @@ class ManualDriveHandle:
             return None
         return self._drive.refusal or local_refusal(RefusalCode.PRESS_OVER)
 
-    def set(self, left_m_s: float, right_m_s: float) -> bool:
-        """Set the speeds; return whether the press is on. Raises WireError for speeds out of range."""
+    def _press(self, press: Callable[[], bool]) -> bool:
+        """Begin or change the press; return whether it is on."""
         # An ended press does not begin again by itself: after a pause the teacher may no longer mean it.
         if self._press_id is not None and self._drive.press_id != self._press_id:
             return False
-        pressing = self._drive.press(left_m_s, right_m_s)
+        pressing = press()
         if self._press_id is None:
             self._press_id = self._drive.press_id
         return pressing
 
 
-def _drive(press: _Press, seen: int, left_m_s: float, right_m_s: float) -> DriveRequest:
-    return DriveRequest(boot=press.boot, seen=seen, press_id=press.press_id, left_m_s=left_m_s, right_m_s=right_m_s)
+class ManualDriveHandle(PressHandle):
+    """Press of manual drive, from `TeacherClient.driving`."""
+
+    def set(self, left_m_s: float, right_m_s: float) -> bool:
+        """Set the speeds; return whether the press is on. Raises WireError for speeds out of range."""
+        return self._press(lambda: self._drive.press(left_m_s, right_m_s))
+
+
+class HoldHandle(PressHandle):
+    """Press of a held action, from `TeacherClient.hold`."""
+
+    released: Answer | None = None
+    """Answer to the end of the press, with the number of its lessons; None before, and without an answer."""
+
+    def set(self, action: str) -> bool:
+        """Hold an action, at first or in place of another one; return whether the press is on. Raises WireError."""
+        return self._press(lambda: self._drive.hold(action))
+
+    @property
+    def lessons(self) -> int:
+        """Number of lessons that the press gave, known after its end."""
+        given = None if self.released is None or self.released.outcome is None else self.released.outcome.fields
+        lessons = 0 if given is None else given.get("lessons")
+        return lessons if isinstance(lessons, int) else 0
+
+
+def _message(press: _Press, seen: int, wish: Wish) -> StreamRequest:
+    if isinstance(wish, str):
+        return HoldRequest(boot=press.boot, seen=seen, press_id=press.press_id, action=wish)
+    return DriveRequest(boot=press.boot, seen=seen, press_id=press.press_id, left_m_s=wish[0], right_m_s=wish[1])

@@ -25,6 +25,7 @@ from kurt2rt.channel.protocol.requests import (
     AppraiseRequest,
     CorrectRequest,
     DriveRequest,
+    HoldRequest,
     LessonsRequest,
     MoveWallRequest,
     PhaseRequest,
@@ -48,7 +49,7 @@ from kurt2rt.channel.protocol.schema import (
     Row,
     Text,
 )
-from kurt2rt.channel.protocol.state import MidState, State, SurpriseState
+from kurt2rt.channel.protocol.state import HoldState, MidState, State, SurpriseState
 from kurt2rt.core.decision.active_stop import ActiveStop, StopReason
 from kurt2rt.core.decision.standing import StandReason
 from kurt2rt.core.rla.phase import Phase
@@ -166,6 +167,7 @@ STATES = st.builds(
     plan=WORDS,
     plan_says=NAMES,
     nearest_value=st.none() | FINITE,
+    hold=st.none() | st.builds(HoldState, NAMES, NAMES, NAMES, NUMBERS, st.booleans()),
     progress=st.builds(Progress, st.integers(0, 60), st.none() | st.integers(0, 100), NUMBERS),
 )
 
@@ -226,7 +228,7 @@ def test_state_with_any_value_is_valid_or_refused(key: str, anything: object) ->
 
 def test_state_of_a_robot_without_progress_is_understood() -> None:
     picture = cbor2.loads(encode_state(state(progress=Progress(60, 87, 3))))
-    del picture["pg"], picture["nv"]
+    del picture["pg"], picture["nv"], picture["hd"]
     assert decode_state(cbor2.dumps(picture)) == state()
 
 
@@ -265,6 +267,10 @@ def test_request_not_flat_list_is_refused() -> None:
         ("/lessons", [21], "count has to be a whole number from 0 to 20"),
         ("/lessons", [2.0], "count has to be a whole number from 0 to 20"),
         ("/watch", [BOOT, -1], "seen has to be a whole number from 0 to 9007199254740992"),
+        ("/correct", [BOOT, ID, 0, "turn_left", None, "basic", 1], "late has to be true or false"),
+        ("/hold", [BOOT, 0, 0, ""], "action has to be text of 1 to 64 printable characters"),
+        ("/hold", [BOOT, 0, -1, "back"], "press_id has to be a whole number from 0 to 9007199254740992"),
+        ("/hold", [BOOT, 0, 0], "/hold takes a list of 4: [boot, seen, press_id, action]"),
         ("/drive", [BOOT, 0, 0, math.nan, 0.0], "left_m_s has to be a number from -2 to 2 m/s"),
         ("/drive", [BOOT, 0, 0, 0.0, 2.01], "right_m_s has to be a number from -2 to 2 m/s"),
         ("/drive", [BOOT, 0, 0, 0.0, True], "right_m_s has to be a number from -2 to 2 m/s"),
@@ -289,8 +295,8 @@ def test_request_not_flat_list_is_refused() -> None:
         ("/correct", [BOOT, ID, 0, "turn_left", None, b"mid"], "level has to be one of basic, mid"),
         (
             "/correct",
-            [BOOT, ID, 0, "turn_left", None, "mid", False],
-            "/correct takes a list of 6: [boot, command_id, seen, action, decision_tick, level]",
+            [BOOT, ID, 0, "turn_left", None, "mid", False, 0],
+            "/correct takes a list of 7: [boot, command_id, seen, action, decision_tick, level, late]",
         ),
         (
             "/answer",
@@ -319,6 +325,9 @@ def test_the_bodies_are_the_lists_of_the_contract() -> None:
     assert cbor2.loads(encode_request(answer)) == [BOOT, ID, 90, "forward", 88, "basic", False]
     correction = CorrectRequest(BOOT, ID, 90, "turn_left", None, MID)
     assert cbor2.loads(encode_request(correction)) == [BOOT, ID, 90, "turn_left", None, "mid"]
+    late = CorrectRequest(BOOT, ID, 90, "forward", None, late=True)
+    assert cbor2.loads(encode_request(late)) == [BOOT, ID, 90, "forward", None, "basic", True]
+    assert cbor2.loads(encode_request(HoldRequest(BOOT, 90, 2, "forward"))) == [BOOT, 90, 2, "forward"]
     assert cbor2.loads(encode_request(AppraiseRequest(BOOT, ID, 90, "bad", 88))) == [BOOT, ID, 90, "bad", 88]
     assert cbor2.loads(encode_request(PhaseRequest(BOOT, ID, 90, Phase.CORRECTIONS))) == [BOOT, ID, 90, 2]
     assert cbor2.loads(encode_request(SessionRequest(BOOT, ID, 90, None))) == [BOOT, ID, 90, None]

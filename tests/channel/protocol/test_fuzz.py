@@ -18,6 +18,7 @@ from kurt2rt.channel.protocol.requests import (
     AnswerRequest,
     DriveRequest,
     HelloRequest,
+    HoldRequest,
     LessonsRequest,
     ResumeRequest,
     StopRequest,
@@ -137,7 +138,16 @@ class Target:
     async def capture(self) -> list[bytes]:
         """Return the datagrams of a teacher who took the robot, taught, drove, stopped and resumed."""
         captured = []
-        kinds = (HelloRequest, TakeRequest, AnswerRequest, DriveRequest, StopRequest, ResumeRequest, LessonsRequest)
+        kinds = (
+            HelloRequest,
+            TakeRequest,
+            AnswerRequest,
+            HoldRequest,
+            DriveRequest,
+            StopRequest,
+            ResumeRequest,
+            LessonsRequest,
+        )
         for kind in kinds:
             request = aiocoap.Message(code=aiocoap.POST, payload=encode_request(self.hostile.valid(kind)))
             request.opt.uri_path = tuple(kind.path.strip("/").split("/"))

@@ -83,7 +83,7 @@ class NotingTeacher(TeacherClient):
             return note.answer
 
         def noted(path: str, payload: bytes, on_response: OnResponse) -> Exchange:
-            if path in ("/watch", "/drive"):
+            if path in ("/watch", "/drive", "/hold"):
                 self.sent_ticks.append(self._at_work.tick)
             return post(path, payload, on_response)
 

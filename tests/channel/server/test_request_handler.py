@@ -135,6 +135,48 @@ async def test_press_drives_in_next_tick_and_is_answered_at_once(desk: ChannelFi
     assert desk.run().decision.cause is DecisionCause.TEACHER
 
 
+async def test_hold_drives_and_its_release_tells_the_lessons(desk: ChannelFixture) -> None:
+    desk.run()
+    assert await desk.stream(desk.hold()) == Reply(ReplyStatus.DONE, {"t": desk.tick})
+    record = desk.run()
+    assert (record.decision.cause, record.decision.action) == (DecisionCause.TEACHER, "forward")
+    released = await desk.ask(StopRequest(desk.new_id(), 1))
+    assert outcome_of(released) == Outcome.of(ResultCode.HOLD_RELEASED, lessons=1, lesson="ann-hold-1")
+    assert desk.record.decision.cause is not DecisionCause.STOPPED
+
+
+async def test_hold_of_a_stopped_robot_or_unknown_action_is_refused(desk: ChannelFixture) -> None:
+    unknown = await desk.stream(desk.hold("fly"))
+    assert (why(unknown), unknown.body["code"]) == ("refused", "no action")
+    await desk.ask(desk.stop())
+    stopped = await desk.stream(desk.hold())
+    assert (why(stopped), stopped.body["code"]) == ("stopped", "robot stopped")
+
+
+async def test_lessons_of_a_hold_are_one_line_and_undone_as_one(desk: ChannelFixture) -> None:
+    await desk.ask(desk.answer())
+    for _ in range(110):  # longer than a press is put back
+        await desk.stream(desk.watch())
+        desk.run()
+    await desk.stream(desk.hold("back"))
+    desk.run()
+    await desk.ask(StopRequest(desk.new_id(), 1))
+    hold, answer = (await desk.ask(LessonsRequest(5))).body["lessons"]
+    assert hold[:3] == ["ann-hold-1", "held back: 1 lesson", "ann"]
+    assert (hold[6], answer[1]) == (False, "RLA 1 taught: forward")
+    undone = await desk.ask(desk.command(UndoRequest, hold[0]))
+    assert outcome_of(undone) == Outcome.of(ResultCode.HOLD_UNDONE, lessons=1)
+    assert (await desk.ask(LessonsRequest(1))).body["lessons"][0][6] is True
+
+
+async def test_late_correction_is_answered_with_its_decision(desk: ChannelFixture) -> None:
+    await desk.ask(desk.answer())
+    late = await desk.ask(desk.command(CorrectRequest, "back", None, "basic", True))
+    outcome = outcome_of(late)
+    assert outcome is not None
+    assert set(outcome.fields) >= {"decision_tick", "decided_by", "put_back_ticks"}
+
+
 async def test_watching_makes_the_teacher_be_there(desk: ChannelFixture) -> None:
     await desk.ask(desk.answer())
     assert desk.record.decision.cause is DecisionCause.UNATTENDED

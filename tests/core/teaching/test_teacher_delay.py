@@ -55,6 +55,14 @@ def test_second_answer_to_a_question_does_not_count() -> None:
     assert delay.answers("Ann") == 1
 
 
+def test_answer_of_a_teacher_who_came_later_is_no_delay() -> None:
+    delay = TeacherDelay()
+    delay.on_decision(100, asks=True, present=False)
+    delay.on_decision(300, asks=True)
+    delay.on_answer("Ann", 350, 1)
+    assert (delay.asked_tick, delay.answers("Ann")) == (100, 0)
+
+
 def test_press_before_the_question_is_no_answer() -> None:
     delay = TeacherDelay()
     delay.on_answer("Ann", 90, 1)

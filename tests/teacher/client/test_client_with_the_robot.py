@@ -146,6 +146,27 @@ async def test_drive_moves_robot_only_while_pressed(tmp_path: Path) -> None:
             assert robot.link.rtt_ms is not None
 
 
+async def test_hold_drives_and_teaches_while_its_block_lasts(tmp_path: Path) -> None:
+    device = paired(tmp_path).device
+    with rig() as live:
+        async with (
+            listening_robot(live, tmp_path) as port,
+            TeacherClient(device.folder, port=port) as robot,
+        ):
+            await state_where(robot, cause="unknown")
+            async with robot.hold("forward") as held:
+                drives = await state_where(robot, by_hand=True, action="forward")
+                assert drives.hold is not None
+                assert (drives.hold.teacher, drives.hold.on) == ("phone", True)
+                await state_where(robot, rlas=1)
+            assert held.lessons >= 1
+            goes_on = await state_where(robot, by_hand=False)
+            assert goes_on.stopped is None
+            assert goes_on.hold is not None
+            assert (await robot.undo(goes_on.hold.lesson)).code is ResultCode.HOLD_UNDONE
+            await state_where(robot, rlas=0)
+
+
 async def test_go_right_after_an_answered_stop_is_taken(tmp_path: Path) -> None:
     device = paired(tmp_path).device
     with rig() as live:

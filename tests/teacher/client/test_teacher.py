@@ -16,7 +16,7 @@ from kurt2rt.channel.protocol.requests import AppraiseRequest, Request, StopRequ
 from kurt2rt.channel.protocol.schema import ChannelError
 from kurt2rt.channel.security.context_folder import CredentialsError
 from kurt2rt.channel.security.pairing import ONLOOKER, Pairing, pair
-from kurt2rt.core.outcome import Outcome, ResultCode
+from kurt2rt.core.outcome import Outcome, RefusalCode, ResultCode
 from kurt2rt.teacher import RobotProcess, Teacher
 from kurt2rt.teacher.client.answer import Answer, NoAnswerError
 from tests.forked_robot import fork_robots
@@ -84,6 +84,25 @@ def test_drive_interrupted_by_ctrl_c_stops_the_robot(robot: RobotProcess) -> Non
         interrupting.join()
         stands = teacher.wait_until(lambda state: not state.by_hand)
         assert (stands.left_m_s, stands.right_m_s) == (0.0, 0.0)
+
+
+def test_hold_teaches_for_its_time_and_tells_how_many(robot: RobotProcess) -> None:
+    with Teacher(robot.device, patience_s=10.0) as teacher:
+        teacher.take()
+        teacher.resume()
+        while teacher.state.rlas:
+            assert teacher.undo().accepted
+        teacher.wait_for_question()
+        answer = teacher.hold("forward", seconds=0.3)
+        assert answer.outcome is not None
+        assert (answer.code, answer.outcome.fields["lessons"]) == (ResultCode.HOLD_RELEASED, 1)
+        teacher.wait_until(lambda state: state.cause == "rla")
+        assert teacher.lessons()[0].text == "held forward: 1 lesson"
+        assert teacher.undo().accepted
+        teacher.wait_until(lambda state: not state.rlas)
+        teacher.stop()
+        assert teacher.hold("forward", seconds=10.0).code is RefusalCode.ROBOT_STOPPED
+        assert teacher.resume().accepted
 
 
 def test_drive_out_of_range_raises_and_leaves_the_robot(robot: RobotProcess) -> None:

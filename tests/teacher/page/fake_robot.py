@@ -188,8 +188,8 @@ class FakeRobot(TeacherClient):
     ) -> Answer:
         return await self._answer("answer", action, of, *(() if level == BASIC else (level, alternative)))
 
-    async def correct(self, action: str, *, of: int | None = None, level: str = BASIC) -> Answer:
-        return await self._answer("correct", action, of, *(() if level == BASIC else (level,)))
+    async def correct(self, action: str, *, of: int | None = None, level: str = BASIC, late: bool = False) -> Answer:
+        return await self._answer("correct", action, of, *(() if level == BASIC else (level,)), *(("late",) * late))
 
     async def reward(self, value: int, *, of: int | None = None) -> Answer:
         return await self._answer("reward", value, of)
