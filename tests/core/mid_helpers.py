@@ -72,7 +72,7 @@ class SmallStack:
         return self.stack.decide(situation(place), sensed(), stand_because)
 
     def commanded(self, symbol: float | None = None) -> MidDecision:
-        """What the mid level says in one tick."""
+        """Run one tick and return the decision of the mid level."""
         mid = self.tick(symbol).mid
         assert mid is not None
         return mid

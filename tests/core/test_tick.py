@@ -34,8 +34,9 @@ PAST_WEIGHT = 0.1  # little, so that the first seconds of a history are not anot
 
 
 class CorridorRobot:
-    """A robot whose four sensors show one count that the test sets; its guard does as it is asked until it latches, but
-    drives toward nothing that touches a bumper.
+    """Robot whose four sensors show one count that the test sets.
+
+    Its guard passes each command until it latches, but stops a drive toward a pressed bumper.
     """
 
     def __init__(self) -> None:
@@ -138,7 +139,7 @@ def corridor() -> Corridor:
 
 @pytest.fixture
 def driving() -> Corridor:
-    """A robot that was taught to drive forward where the counts are 100, and does."""
+    """Return a robot that drives forward, as it was taught at counts of 100."""
     corridor = Corridor()
     corridor.run(100, teach("forward", "first"))
     for _ in range(10):
@@ -350,7 +351,7 @@ def journey(seed: int) -> tuple[list[TickRecord], str, Sequence[TeachingEvent]]:
 
 
 def printed(records: Sequence[TickRecord]) -> list[str]:
-    """Records as text with all digits; situations are arrays, which do not compare as a whole."""
+    """Return the records as text with all digits, because situations are arrays and do not compare as a whole."""
     return [repr((record, record.situation.vector.tolist())) for record in records]
 
 

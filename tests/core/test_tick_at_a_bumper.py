@@ -24,7 +24,7 @@ from tests.teacher.helpers import correct, set_phase, teach
 
 
 def held(corridor: Corridor, ticks: int = ASKS_AFTER_TICKS) -> TickRecord:
-    """The robot drives by its first RLA into something, and is held there."""
+    """Drive by the first RLA into an obstacle; return the record of the last of `ticks` at its bumper."""
     corridor.run(100, teach("forward", "first"))
     for _ in range(10):
         assert corridor.run().decision.action == "forward"

@@ -61,7 +61,7 @@ def stands(record: TickRecord) -> bool:
 
 @pytest.fixture
 def driving() -> Corridor:
-    """A robot that needs nobody and drives forward where the counts are 100."""
+    """Return a robot that needs no teacher and drives forward at counts of 100."""
     corridor = Corridor()
     corridor.run(100, teach("forward", "first"))
     corridor.run(100)
@@ -70,7 +70,7 @@ def driving() -> Corridor:
 
 @pytest.fixture
 def attended() -> Corridor:
-    """A robot that needs a teacher, was taught to drive forward at 100, and whose teacher is not there just now."""
+    """Return a robot that needs a teacher, was taught to drive forward at 100, and whose teacher is absent."""
     corridor = Corridor(attended=True)
     corridor.run(100, teach("forward", "first"))
     return corridor
@@ -328,7 +328,7 @@ Kind = Callable[[str, str, int, int], Command]
 
 
 def drive(_: str, who: str, tick: int, number: int) -> Drive:
-    """The speed tells which press it was."""
+    """Return a drive command whose speed identifies its press."""
     return Drive(who, tick, number, 0.1 + number / 100, 0.1)
 
 
@@ -338,7 +338,7 @@ KINDS: list[Kind] = [
     *[lambda name, who, _, __: Resume(name, who)] * 2,
     *[lambda _, who, tick, __: Watch(who, tick)] * 2,
     lambda name, who, _, __: Take(name, who),
-    lambda name, who, _, number: HandOver(name, who, [None, "Ann", "Ben", "Cleo", "nobody here"][number]),
+    lambda name, who, _, number: HandOver(name, who, [None, "Ann", "Ben", "Cleo", "absent"][number]),
     lambda name, who, _, number: RunBehaviour(name, who, "back", 10 * number + 1),
     lambda name, who, _, number: SetPhase(name, who, Phase(number + 1)),
     lambda name, who, tick, number: Teach(name, who, "forward", tick if number else None),
@@ -364,8 +364,9 @@ COURSES = st.lists(
     ),
     max_size=20,
 )
-"""What arrives: after so many ticks these commands (kind, who, age of the picture, number, whether an older one comes
-once more in its place), and what the sensors show meanwhile."""
+"""Arrivals after a number of ticks, and the counts of the sensors until then.
+
+A command is (kind, teacher, age of the picture, number, whether an older command arrives again in its place)."""
 
 
 class Witness:
@@ -375,7 +376,7 @@ class Witness:
         self.messages: list[tuple[str, int, int]] = []
         """Of presses: teacher, tick of arrival, tick of the picture."""
         self.stops: set[str] = set()
-        """Who said stop since the last resume; whoever takes the robot over from one may drive it by hand."""
+        """Teachers who stopped the robot since the last resume; a teacher who takes it over may drive by hand."""
         self.teachers: set[str] = set()
         """Who may have been the teacher by now, within this tick."""
         self.lost = False
@@ -387,7 +388,7 @@ class Witness:
         self.drove_by_itself = False
 
     def note(self, command: Command, tick: int, *, carried_out: bool) -> None:
-        """A command that arrived in this tick."""
+        """Record a command that arrived in this tick."""
         match command:
             case Drive(teacher=who, seen_tick=seen):
                 self.messages.append((who, tick, seen))
@@ -405,7 +406,7 @@ class Witness:
             self.teachers.add(command.teacher)
 
     def check(self, record: TickRecord, corridor: Corridor) -> None:
-        """The rules, after a tick."""
+        """Assert the rules after a tick."""
         school, decision = corridor.school, record.decision
         teacher, moves = school.authority.teacher, not stands(record)
         alone = school.requires_teacher and not school.authority.is_present(record.tick)

@@ -138,7 +138,7 @@ class Bedlam(Town):
         return self.chance.choice((NamedGoal("door"), NamedGoal("yard"), RlaGoal(rla_id), like, PartialGoal(())))
 
     def may_drive(self, decision: Decision) -> bool:
-        """Whether every rule lets wheels turn for a decision."""
+        """Return whether each rule lets wheels turn for a decision."""
         school, mid = self.runtime.handler, self.runtime.mid
         assert mid is not None
         if decision.cause is DecisionCause.TEACHER:

@@ -63,7 +63,7 @@ class Drive:
         return record
 
     def blame_until_it_sinks(self) -> None:
-        """The tick that took the last blame is the newest one."""
+        """Punish the RLA in each tick until its action is withdrawn; that tick is the newest one."""
         number = 0
         while not any(isinstance(event, ActionWithdrawn) for event in self.notebook.events):
             number += 1
@@ -97,7 +97,7 @@ def test_reward_below_threshold_withdraws_and_next_tick_asks(driving: Drive) -> 
 def test_its_answer_acts_in_the_tick_that_takes_it(driving: Drive) -> None:
     driving.blame_until_it_sinks()
     asked = driving.run()
-    record = driving.run(Teach("anew", "Ann", "spin_right", asked.tick))
+    record = driving.run(Teach("again", "Ann", "spin_right", asked.tick))
     assert record.results[0].outcome == Outcome.of(ResultCode.RLA_ANSWERED, rla=1, action="spin_right")
     assert (record.decision.action, record.decision.rla_id) == ("spin_right", 1)
     assert len(driving.runtime.level.system) == 2
@@ -187,8 +187,8 @@ def test_no_reward_and_no_opinion_moves_a_robot_that_stands(driving: Drive) -> N
     assert drive.notebook.events == []
 
 
-def beside() -> list[TeachingEvent]:
-    """An RLA on what the robot sees near things, whose action was withdrawn, and another one a little beside it."""
+def withdrawn_and_neighbour() -> list[TeachingEvent]:
+    """Return the events of an RLA near obstacles whose action was withdrawn, and of a neighbour of its condition."""
     here = Drive().run(counts=NEAR).situation.vector
     return [
         created(1, tuple(here.tolist()), "forward"),
@@ -198,14 +198,14 @@ def beside() -> list[TeachingEvent]:
 
 
 def test_without_teacher_neighbours_answer_for_withdrawn_rla() -> None:
-    events = beside()
+    events = withdrawn_and_neighbour()
     assert Drive(events).run(counts=NEAR).decision.asking
     assert Drive(events, asked=False).run(counts=NEAR).decision.action == "back"
     assert Drive(events[:2], asked=False).run(counts=NEAR).decision.asking
 
 
 def test_phase_5_asks_no_teacher_and_its_end_asks_again() -> None:
-    drive = Drive(beside())
+    drive = Drive(withdrawn_and_neighbour())
     assert drive.run(counts=NEAR).decision.asking
     assert drive.run(SetPhase("alone", "Ann", Phase.AUTONOMOUS)).decision.action == "back"
     assert drive.run(SetPhase("again", "Ann", Phase.CORRECTIONS)).decision.asking

@@ -50,7 +50,7 @@ class Block(Town):
         self.street()
 
     def go(self, behaviour: str | None = None) -> TickRecord:
-        """Through the next junction as the robot wants, or as it happens; to where it has noticed that."""
+        """Drive through the next junction by `behaviour`, else by the active behaviour, until the robot notices it."""
         quarters = QUARTERS[self.runtime.active_behaviour.behaviour if behaviour is None else behaviour]
         passed = self.passed
         self._go(WALL, 0.5, 0.0)
@@ -60,19 +60,19 @@ class Block(Town):
         return record
 
     def say(self, command: type, *what: object) -> TickRecord:
-        """As Ann."""
+        """Run a tick with a command of Ann."""
         self.said += 1
         return self.run(command(f"ann-{self.said}", "Ann", *what))
 
-    def teach(self, action: str, *, beside: bool = False) -> None:
-        outcome = told(self.say(Teach, action, None, MID, beside))
+    def teach(self, action: str, *, next_to: bool = False) -> None:
+        outcome = told(self.say(Teach, action, None, MID, next_to))
         assert outcome.accepted, outcome
 
     def seek(self, goal: Goal = DOOR) -> TickRecord:
         return self.say(Seek, goal)
 
     def plan(self) -> PlanStep:
-        """How it stands with the goal, once that is settled."""
+        """Return the status of the goal when its plan is settled."""
         while True:
             step = self.run().decision.plan
             assert step is not None
@@ -122,13 +122,13 @@ def test_it_drives_to_the_door_and_stands_there(block: Block) -> None:
 
 
 def test_seek_takes_the_way_that_leads_to_the_goal(block: Block) -> None:
-    block.teach("straight_on", beside=True)
+    block.teach("straight_on", next_to=True)
     assert block.run().behaviour == "turn_left"  # of the ways on one place the mid level goes the oldest
     block.say(Pursue, "straight_on")
     block.go()
     block.teach("straight_on")
     block.say(NameSituation, "yard")
-    block.say(BeAt, "door")  # from here nobody ever led it to the yard in one piece
+    block.say(BeAt, "door")  # from here no teacher ever led it to the yard in one piece
     block.seek(NamedGoal("yard"))
     assert block.plan().says == "on the way to yard: 3 ways left, now turn_left (RLA 6)"
     block.go()
@@ -139,7 +139,7 @@ def test_seek_takes_the_way_that_leads_to_the_goal(block: Block) -> None:
 
 
 def test_surprised_it_plans_from_where_it_is(block: Block) -> None:
-    block.teach("straight_on", beside=True)
+    block.teach("straight_on", next_to=True)
     block.say(Pursue, "straight_on")
     block.go()
     for _ in range(3):  # round the next block, in which the far side is the near one's
@@ -191,7 +191,7 @@ def test_one_that_is_under_way_drives_on_while_it_plans(block: Block) -> None:
 
 def test_late_plan_applies_after_the_next_junction(block: Block) -> None:
     block.say(NameSituation, "here")
-    block.teach("straight_on", beside=True)
+    block.teach("straight_on", next_to=True)
     block.say(Pursue, "straight_on")
     block.go()
     block.teach("straight_on")
@@ -224,7 +224,7 @@ def test_lesson_about_places_restarts_the_plan_at_intervals(block: Block) -> Non
     changes = 0
     while (step := block.run().decision.plan) is not None and step.course is GoalStatus.PLANNING:
         changes += 1
-        block.teach(("straight_on", "turn_right")[changes % 2], beside=True) if changes < 3 else None
+        block.teach(("straight_on", "turn_right")[changes % 2], next_to=True) if changes < 3 else None
     assert 2 < changes < 30
     assert block.plan().says == "on the way to door: 2 ways left, now turn_left (RLA 4)"
 
@@ -281,7 +281,7 @@ def test_place_without_name_is_named_by_its_rla() -> None:
 
 
 def test_pursue_overrides_the_plan_until_the_next_junction(block: Block) -> None:
-    block.teach("straight_on", beside=True)
+    block.teach("straight_on", next_to=True)
     block.seek()
     assert block.run().behaviour == "turn_left"
     assert block.say(Pursue, "straight_on").behaviour == "straight_on"
@@ -306,7 +306,7 @@ def test_a_stop_goes_before_all(block: Block) -> None:
 
 
 def test_goal_given_far_behind_a_junction_skips_the_next(block: Block) -> None:
-    block.teach("straight_on", beside=True)
+    block.teach("straight_on", next_to=True)
     block.say(Pursue, "straight_on")
     block.street(0.5)
     record = block.seek()
@@ -401,7 +401,7 @@ def test_lesson_at_known_place_adds_a_way_and_no_place(block: Block) -> None:
 def test_correction_to_a_known_way_selects_it_without_a_lesson(
     block: Block,
 ) -> None:
-    block.teach("straight_on", beside=True)
+    block.teach("straight_on", next_to=True)
     assert block.run().behaviour == "turn_left"
     record = block.say(Correct, "straight_on", None, MID)
     assert told(record) == Outcome.of(ResultCode.RLA_CONFLICTS, rla=8, level=MID, action="straight_on")
@@ -413,7 +413,7 @@ def test_correction_to_a_known_way_selects_it_without_a_lesson(
 
 
 def test_correction_to_another_way_replaces_the_driven_one(block: Block) -> None:
-    block.teach("straight_on", beside=True)
+    block.teach("straight_on", next_to=True)
     record = block.say(Correct, "turn_right", None, MID)
     assert told(record) == Outcome.of(ResultCode.RLA_CORRECTED, rla=4, level=MID, action="turn_right", was="turn_left")
     assert record.behaviour == "turn_right"

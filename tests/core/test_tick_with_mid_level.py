@@ -54,7 +54,7 @@ def basic_knowledge() -> list[TeachingEvent]:
 
 
 class StreetRobot(WideRobot):
-    """Between walls, or in the open; its wheels turn as the test says, whatever they are told."""
+    """Robot between walls or in the open; the test turns its wheels, commands do not."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -131,8 +131,8 @@ def told(record: TickRecord) -> Outcome:
     return result.outcome
 
 
-def the_way(action: str, command_id: str = "way", of: int | None = None, *, beside: bool = False) -> Teach:
-    return Teach(command_id, "Ann", action, of, MID, beside)
+def the_way(action: str, command_id: str = "way", of: int | None = None, *, next_to: bool = False) -> Teach:
+    return Teach(command_id, "Ann", action, of, MID, next_to)
 
 
 def another_way(action: str, command_id: str = "other", of: int | None = None) -> Correct:
@@ -277,19 +277,19 @@ def test_mid_lesson_about_the_past_keeps_the_override(town: Town) -> None:
 def test_alternative_adds_a_way_at_a_known_place(town: Town) -> None:
     town.junction()
     town.run(Pursue("p", "Ann", "turn_left"))
-    record = town.run(the_way("turn_left", beside=True))
+    record = town.run(the_way("turn_left", next_to=True))
     assert told(record) == Outcome.of(ResultCode.RLA_ADDED, rla=5, level=MID, action="turn_left", next_to=4)
     assert record.behaviour == "turn_left"  # as was commanded; what is possible is no command
     system = town.runtime.level.system
     first, second = system.rlas_at(MID)
     assert first.condition == second.condition
-    again = town.run(the_way("turn_left", "again", beside=True))
+    again = town.run(the_way("turn_left", "again", next_to=True))
     assert told(again) == Outcome.of(ResultCode.RLA_AGREES, rla=5, level=MID, action="turn_left")
 
 
 def test_beside_nothing_the_first_way_is_taught() -> None:
     town = Town()
-    assert told(town.run(the_way("turn_left", beside=True))) == Outcome.of(
+    assert told(town.run(the_way("turn_left", next_to=True))) == Outcome.of(
         ResultCode.RLA_TAUGHT, rla=4, level=MID, action="turn_left"
     )
     assert town.run().behaviour == "turn_left"
@@ -447,7 +447,7 @@ def test_another_run_goes_on_with_the_ways_that_were_taught(town: Town) -> None:
     again.way_to_the_first_junction()
     assert again.run().behaviour == "straight_on"
     assert again.junction(1).behaviour == "turn_right"
-    assert told(again.run(the_way("turn_left", "way", beside=True))).accepted
+    assert told(again.run(the_way("turn_left", "way", next_to=True))).accepted
     assert max(again.ways) == 6  # ids run through
 
 

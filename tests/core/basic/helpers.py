@@ -1,4 +1,4 @@
-"""Knowledge files of a few lessons, and repertoires that stand beside them."""
+"""Knowledge files of a few lessons, and repertoires of a few actions."""
 
 from pathlib import Path
 
@@ -17,24 +17,24 @@ STAMP = "2004-04-26T10:00:00.000+00:00"
 
 
 def keep(path: Path, task: TaskSettings, *events: TeachingEvent) -> None:
-    """A knowledge file with these lessons."""
+    """Write a knowledge file with these lessons."""
     with open_knowledge(path, ROBOT, task) as journal:
         journal.append([JournalEntry(event, STAMP) for event in events])
 
 
 def repertoire(folder: Path, *actions: str) -> dict[str, Behaviour]:
-    """What a task has whose repertoire holds these actions, and stands in `folder`."""
+    """Return the behaviours of a repertoire with these actions, whose file is in `folder`."""
     return load_task_repertoire(with_repertoire(load_task("wall_following"), folder, *actions), ROBOT)
 
 
 def with_repertoire(task: TaskSettings, folder: Path, *actions: str) -> TaskSettings:
-    """The same task with these actions, in YAML, in a file in `folder`."""
+    """Return the task with a repertoire of these actions, each a YAML mapping, in a file in `folder`."""
     path = folder / "repertoire.yaml"
     path.write_text("\n".join(["name: complete", "actions:", *(f"  - {{{action}}}" for action in actions)]))
     return task.model_copy(update={"repertoire": str(path)})
 
 
 def condition_at(infrared_counts: tuple[int, ...]) -> Condition:
-    """The basic situation of a robot that has just been switched on where it sees this."""
+    """Return the basic situation of a robot switched on at these infra-red readings (counts)."""
     perception = Perception(load_situation("basic", SENSORS), SENSORS)
     return tuple(perception.perceive(sensed(infrared_counts), history_frozen=True).vector.tolist())

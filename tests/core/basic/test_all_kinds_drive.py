@@ -36,7 +36,7 @@ WHEREVER = created(1, (0.0,) * 72, "forward", radius=1e9)
 
 
 class Drive:
-    """What each action made of the time that it had."""
+    """Distance, turn and decision causes of each action."""
 
     def __init__(self) -> None:
         self.way_m: defaultdict[str, float] = defaultdict(float)
@@ -57,7 +57,7 @@ class Drive:
 
 @pytest.fixture(scope="module")
 def complete(tmp_path_factory: pytest.TempPathFactory) -> TaskSettings:
-    """A task with the whole repertoire, beside what less than a minute of teaching left of streets."""
+    """Return a task with the whole repertoire; less than a minute of teaching in streets stands next to it."""
     folder = tmp_path_factory.mktemp("complete")
     streets = load_task("streets", changes={"teaching.supervised_s": "30.0", "teaching.corrections_s": "0.0"})
     taught = teach(folder / "streets.knowledge", streets)
@@ -71,7 +71,7 @@ def complete(tmp_path_factory: pytest.TempPathFactory) -> TaskSettings:
 
 @contextmanager
 def runtime_of(task: TaskSettings) -> Iterator[tuple[Runtime, Simulation]]:
-    """In a street of Manhattan, with one RLA that answers wherever the robot is."""
+    """Yield a robot in a street of Manhattan, and its simulation; its only RLA answers at any place."""
     simulation = STAGE.open("manhattan", 1, "all kinds")
     try:
         yield (
@@ -85,7 +85,7 @@ def runtime_of(task: TaskSettings) -> Iterator[tuple[Runtime, Simulation]]:
 
 
 async def let_drive(runtime: Runtime, action: str, seconds: float, see: Callable[[TickRecord], None]) -> None:
-    """The RLA has another action from now on, and so long."""
+    """Replace the action of the RLA, then run for `seconds`."""
     runtime.inbox.put(ReplaceAction(f"now-{action}", "Ann", 1, action))
     await runtime.scheduler.run(round(seconds * 100), see)
 

@@ -25,7 +25,7 @@ BASIC_LEVEL = (
 
 
 def patrol(folder: Path, *mid_level: TeachingEvent, mid: str | None = "turns") -> str:
-    """A task through streets in `folder`, and what was taught of it: an action."""
+    """Write a task through streets and its knowledge file into `folder`; return the line of its action."""
     task = yaml.safe_load((CONFIG_DIR / "tasks" / "streets.yaml").read_text(encoding="utf-8"))
     task["name"] = "patrol"
     if mid is not None:

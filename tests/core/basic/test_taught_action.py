@@ -25,7 +25,7 @@ FOLLOW = "kind: taught, name: follow_wall, task: wall_following, knowledge: taug
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """Beside a knowledge file: forward along a wall, spin right at a corner, and nothing is known of free space."""
+    """Return a folder with knowledge: forward along a wall, spin right at a corner, no RLA of free space."""
     along, off = created(1, condition_at(WALL), "forward"), created(2, condition_at(CORNER), "spin_right")
     keep(tmp_path / "taught.knowledge", WALL_FOLLOWING, along, off)
     return tmp_path

@@ -1,4 +1,4 @@
-"""What a layer does with an action that has finished, or does not know how to go on."""
+"""Decisions of a level after an action that finished, or that cannot go on."""
 
 from hal.robot import STANDSTILL, WheelSpeeds
 from kurt2rt.core.decision.decision import DecisionCause

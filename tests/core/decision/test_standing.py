@@ -1,4 +1,4 @@
-"""Whatever has the robot stand, page, terminal, status line and status say the same of it, and what to do."""
+"""Reasons of a standing robot: page, terminal, status line and status give one text and one remedy."""
 
 from dataclasses import replace
 

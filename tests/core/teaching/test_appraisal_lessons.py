@@ -1,4 +1,4 @@
-"""What the critic is taught by what a teacher says of a situation."""
+"""Lessons of the critic from a teacher's appraisals of situations."""
 
 import pytest
 

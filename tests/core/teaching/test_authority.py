@@ -1,4 +1,4 @@
-"""Who teaches, whether he is there, and how long his hand stays on the wheels: the borders of each number."""
+"""Control authority: teacher, presence and the deadline of a drive by hand, at the borders of each number."""
 
 import pytest
 

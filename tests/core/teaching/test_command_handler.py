@@ -1,4 +1,4 @@
-"""What becomes of a teacher's commands."""
+"""Outcomes of a teacher's commands."""
 
 import math
 from collections.abc import Callable
@@ -290,7 +290,7 @@ def test_stored_answer_does_not_change_later() -> None:
     lesson = Lesson()
     asked = lesson.go_on(2.5)
     lesson.say(Teach("t-1", "Ann", "a", asked), place=80.0)
-    lesson.go_on(90.0, 1000)  # the place of that tick in memory is used anew
+    lesson.go_on(90.0, 1000)  # the place of that tick in memory is used again
     assert [rla.condition for rla in lesson.small.level.system.rlas] == [(2.5,)]
 
 

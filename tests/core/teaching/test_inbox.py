@@ -1,4 +1,4 @@
-"""Where commands wait for the next tick."""
+"""Inbox of commands for the next tick."""
 
 import pytest
 

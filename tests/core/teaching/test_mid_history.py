@@ -6,7 +6,7 @@ from kurt2rt.core.teaching.mid_history import MidHistory, MidSnapshot
 
 
 def remembered(*spells: tuple[int, int, int | None], capacity: int = 64) -> MidHistory:
-    """Of each (first tick, last tick, RLA) one situation, which is the number of its first tick."""
+    """Return a history with one situation of each (first tick, last tick, RLA): the number of its first tick."""
     recent = MidHistory(capacity)
     for first, last, rla_id in spells:
         vector = np.array([float(first)])
