@@ -1,5 +1,6 @@
 """`kurt2rt lesson`."""
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import anyio
@@ -16,11 +17,12 @@ from kurt2rt.cli.lesson_route import many_routes, one_route, require_no_route_op
 from kurt2rt.cli.options import changes_of
 from kurt2rt.cli.progress import job_bars
 from kurt2rt.cli.tables import console_of
-from kurt2rt.core.task_settings import load_task, taught_by
+from kurt2rt.core.task_settings import TaskSettings, load_task, taught_by
 from kurt2rt.core.teacher_settings import SUPERHUMAN, load_teacher
 from kurt2rt.experiments.lockstep.compatibility import require_course
 from kurt2rt.experiments.lockstep.curriculum import CurriculumResult, Report, run_lesson
 from kurt2rt.experiments.lockstep.report import curriculum_as_data, render_curriculum, render_seeds
+from kurt2rt.experiments.lockstep.teacher_comparison import compared_tasks, render_teachers
 from kurt2rt.experiments.study.seeds import SeedJob, run_seeds
 from kurt2rt.knowledge.files.archive_existing import archive_existing
 from kurt2rt.knowledge.files.task_of_file import task_of_file
@@ -41,6 +43,9 @@ def lesson(options: LessonOptions) -> None:
     react, err and look away like a person (config/teachers):
 
         kurt2rt lesson --teacher ordinary --seeds 100-119
+
+    With --controls the same seeds are also taught by a press, by a hold, by the
+    superhuman teacher, and by one that answers only, to compare.
 
     The task route teaches the mid level a fixed route through the streets, a
     closed loop that the robot's seed draws, and then lets it drive without a
@@ -120,25 +125,33 @@ def _one_seed(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
 
 
 def _many_seeds(setup: LessonSetup, options: LessonOptions, out: Path) -> None:
-    task, work = setup.task, []
-    for seed in options.all_seeds:
-        file = out / f"{task.name}-{seed}.knowledge"
-        archive_existing(file)
-        work.append(SeedJob(setup.factory, setup.robot, task, task.exam.worlds, seed, file))
+    tasks = compared_tasks(setup.task) if options.controls else {"": setup.task}
+    work = []
+    for place, task in enumerate(tasks.values()):
+        for seed in options.all_seeds:
+            file = out / f"{task.name}-{seed}{f'-control-{place}' if place else ''}.knowledge"
+            archive_existing(file)
+            work.append(SeedJob(setup.factory, setup.robot, task, task.exam.worlds, seed, file))
     columns = (TextColumn("seeds"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True)) as progress:
         bar = progress.add_task("seeds", total=len(work))
         results = run_seeds(work, options.jobs, lambda _seed: progress.advance(bar))
+    each = len(options.all_seeds)
+    by_teacher = {label: results[each * place : each * (place + 1)] for place, label in enumerate(tasks)}
+    _show_seeds(by_teacher, setup.task, options)
+
+
+def _show_seeds(
+    by_teacher: Mapping[str, Sequence[CurriculumResult]], task: TaskSettings, options: LessonOptions
+) -> None:
+    own, *controls = by_teacher.items()
     if options.as_json:
-        print_json(
-            {
-                "task": task.name,
-                "teacher": task.teaching.profile.name,
-                "robots": [curriculum_as_data(each, task) for each in results],
-            }
-        )
-    else:
-        print_whole(console_of(), render_seeds(results, task))
+        robots = {label: [curriculum_as_data(each, task) for each in results] for label, results in by_teacher.items()}
+        shown = {"task": task.name, "teacher": task.teaching.profile.name, "robots": robots[own[0]]}
+        print_json(shown | ({"controls": {label: robots[label] for label, _ in controls}} if controls else {}))
+        return
+    compared = (render_teachers(by_teacher),) if controls else ()
+    print_whole(console_of(), render_seeds(own[1], task), *compared)
 
 
 def _command(name: str, options: LessonOptions) -> str:

@@ -80,7 +80,9 @@ class LessonOptions:
     controls: Annotated[
         bool,
         typer.Option(
-            "--controls", help="Of routes, with --seeds, and of errands: also go about it in other ways, to compare."
+            "--controls",
+            help="With --seeds, and of errands: also go about it in other ways, to compare; of basic tasks with other "
+            "teachers.",
         ),
     ] = False
     as_json: AsJson = False

@@ -54,7 +54,7 @@ def test_the_task_may_be_said_either_way_but_not_both_ways(kurt2rt: CommandLine)
     assert "nope: no such file in tasks" in kurt2rt.refused("lesson", "nope")
 
 
-@pytest.mark.parametrize("words", [("--decisions", "8"), ("--basic", "here"), ("--controls",)])
+@pytest.mark.parametrize("words", [("--decisions", "8"), ("--basic", "here")])
 def test_lesson_route_options_of_another_task_are_refused(kurt2rt: CommandLine, words: tuple[str, ...]) -> None:
     assert "task circle teaches no route; leave it out" in kurt2rt.misused("lesson", "circle", *words)
 

@@ -40,3 +40,20 @@ def test_teacher_unknown_name_is_refused_before_work(kurt2rt: CommandLine, words
     said = kurt2rt.refused(*words, "--teacher", "nosuch")
     assert "nosuch: no such file in teachers; give a path to a .yaml file or one of: answers_only, attentive" in said
     assert not Path("results").exists()
+
+
+def test_lesson_controls_compare_teachers(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    task = short_task(tmp_path)
+    words = ("lesson", "--task", task, "--teacher", "slow", "--seeds", "1", "--jobs", "1", "--controls")
+    done = kurt2rt(*words)
+    assert done.exit_code == 0, done.err
+    for label in ("slow, press", "slow, hold", "superhuman, press", "answers_only, nothing"):
+        assert label in done.out
+    data = json.loads(kurt2rt(*words, "--json").out)
+    assert data["teacher"] == "slow"
+    assert list(data["controls"]) == ["slow, hold", "superhuman, press", "answers_only, nothing"]
+    assert [each["lesson"]["corrections"] for each in data["controls"]["answers_only, nothing"]] == [0]
+
+
+def test_lesson_controls_without_seeds_are_refused(kurt2rt: CommandLine, tmp_path: Path) -> None:
+    assert "give --seeds, too" in kurt2rt.misused("lesson", "--task", short_task(tmp_path), "--controls")

@@ -157,7 +157,7 @@ class TrainingRun(Episode):
         self._dispatcher = None
         if task.mid is not None:
             self._dispatcher = ScriptedDispatcher(
-                task.behaviours, teaching.teacher, period_s=period_s, seed=seed, session=session
+                task.behaviours, self._teacher.times, period_s=period_s, seed=seed, session=session
             )
         super().__init__(
             simulation,

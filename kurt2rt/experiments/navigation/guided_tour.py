@@ -124,7 +124,7 @@ class TourRun(Episode):
         self._tracker = self.metric
         names = navigation_settings(task).names
         self._guide = TourGuide(
-            self.metric, names, teaching.teacher, period_s=self.period_s, seed=seed, session=session
+            self.metric, names, self._teacher.times, period_s=self.period_s, seed=seed, session=session
         )
         self._home = simulation.pose
         self._unanswered_ticks = round(teaching.rescue_after_s / self.period_s)

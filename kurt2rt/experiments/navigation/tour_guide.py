@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from behaviors.metrics.errands import Errands
 from behaviors.metrics.town import Street
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.core.task_settings import TeacherSettings
 from kurt2rt.core.teaching.commands import BeAt, Command, NameSituation, Pursue, Teach
 from kurt2rt.core.tick import TickRecord
+from kurt2rt.teacher.scripted.press_times import PressTimes
 
 HOME = "home"
 _NAME = "scripted teacher"
@@ -24,15 +24,15 @@ class TourGuide:
     """
 
     def __init__(
-        self, walk: Errands, names: int, settings: TeacherSettings, *, period_s: float, seed: int, session: str
+        self, walk: Errands, names: int, times: PressTimes, *, period_s: float, seed: int, session: str
     ) -> None:
-        """`walk`: tracker of the robot. `names`: number of named places. `session`: as in ScriptedTeacher."""
+        """`walk`: tracker of the robot. `names`: number of named places. `session`, `times`: as in ScriptedTeacher."""
         self._walk = walk
         self._names = names
         self._session = session
         self._chance = random.Random(f"route of {session}, seed {seed}")
-        self._reaction_ticks = round(settings.reaction_s / period_s)
-        self._patience_ticks = round(settings.patience_s / period_s)
+        self._times = times
+        self._question_ticks = self._mistake_ticks = 0
         self._notices_within_ticks = round(_NOTICES_WITHIN_S / period_s)
         self._led: set[tuple[Street, str]] = set()
         self._to_say: deque[Command] = deque()
@@ -86,14 +86,16 @@ class TourGuide:
         self._noticed_here(street)
         if self._wanted is None:
             return None
+        if self._waited == 0:
+            self._question_ticks, self._mistake_ticks = self._times.question_ticks(), self._times.mistake_ticks()
         self._waited += 1
         if mid.asks:
-            if self._waited < self._reaction_ticks:
+            if self._waited < self._question_ticks:
                 return None
             self._waited = 0
             self._led.add((street, self._wanted))
             return Teach(self._next_id(), _NAME, self._wanted, level=MID)
-        if self._waited < self._patience_ticks:
+        if self._waited < self._mistake_ticks:
             return None
         wanted = self._wanted
         if (street, wanted) not in self._led:

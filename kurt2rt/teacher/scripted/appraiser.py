@@ -13,6 +13,7 @@ from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.commands import Appraise, Command, Resume, Reward, RunBehaviour
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, view_of_tick
+from kurt2rt.teacher.scripted.press_times import HumanTimes, PressTimes
 
 _NAME = "scripted teacher"
 
@@ -170,6 +171,11 @@ class ScriptedAppraiser:
         return self._answering.may_be_late or command_id.startswith(f"{self._session}-signal-")
 
     @property
+    def times(self) -> PressTimes:
+        """Times of the teacher's presses to the mid level."""
+        return self._answering.times
+
+    @property
     def available(self) -> bool:
         """True while the teacher answers questions."""
         return self.phase is not Phase.AUTONOMOUS
@@ -208,10 +214,15 @@ class ScriptedAppraiser:
         command = (
             self._reward(value, tick, record) if self.phase is Phase.REINFORCEMENT else self._appraise(value, tick)
         )
-        if command is not None:
+        if command is not None and self._answering.times.allows_press():
             self._next_tick[value] = record.tick + self._timing.every[value]
             self._next_any = record.tick + self._timing.gap
-            self._delayed.append(_DelayedCommand(record.tick + self._timing.reaction, command))
+            self._delayed.append(_DelayedCommand(record.tick + self._reaction_ticks(), command))
+
+    def _reaction_ticks(self) -> int:
+        """Return the delay of a signal; a person's is drawn, and no signal overtakes the one before."""
+        times = self._answering.times
+        return times.reward_ticks() if isinstance(times, HumanTimes) else self._timing.reaction
 
     def _reward(self, value: int, tick: int, record: TickRecord) -> Command | None:
         by_rla = record.decision.rla_id is not None or tick < record.tick

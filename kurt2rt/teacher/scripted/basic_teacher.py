@@ -9,6 +9,7 @@ from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.rla.rla import BASIC
 from kurt2rt.core.teaching.commands import Command, Pursue, Resume, SetPhase
 from kurt2rt.core.tick import TickRecord
+from kurt2rt.teacher.scripted.press_times import PressTimes
 
 
 class TeacherView(NamedTuple):
@@ -57,6 +58,8 @@ class BasicTeacher(ABC):
 
     may_be_late = False
     """True if the robot may refuse a command because it comes too late."""
+    times: PressTimes
+    """Times of this teacher's presses to the mid level, and of rewards."""
 
     def __init__(self, session: str) -> None:
         """Create a teacher in phase 1; `session` is the prefix of command ids, unique on the same knowledge."""

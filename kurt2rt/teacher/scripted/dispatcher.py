@@ -7,9 +7,9 @@ from behaviors.metrics.task_metric import WayAhead
 from kurt2rt.core.rla.phase import Phase
 from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.rla.rla import MID
-from kurt2rt.core.task_settings import TeacherSettings
 from kurt2rt.core.teaching.commands import Command, Correct, Pursue, Teach
 from kurt2rt.core.tick import TickRecord
+from kurt2rt.teacher.scripted.press_times import PressTimes
 
 _NOTICED_WITHIN_S = 3.0
 """Time within which the robot reports a junction that it has left; later the junction counts as missed."""
@@ -23,14 +23,13 @@ class ScriptedDispatcher:
     """
 
     def __init__(
-        self, behaviours: Sequence[str], settings: TeacherSettings, *, period_s: float, seed: int, session: str
+        self, behaviours: Sequence[str], times: PressTimes, *, period_s: float, seed: int, session: str
     ) -> None:
-        """Teach these behaviours; `session` is the prefix of command ids, as in ScriptedTeacher."""
+        """Teach these behaviours at these `times`; `session` is the prefix of command ids, as in ScriptedTeacher."""
         self._behaviours = tuple(behaviours)
         self._session = session
-        self._error_rate = settings.error_rate
-        self._reaction_ticks = round(settings.reaction_s / period_s)
-        self._patience_ticks = round(settings.patience_s / period_s)
+        self._times = times
+        self._question_ticks = self._mistake_ticks = 0
         self._noticed_within_ticks = round(_NOTICED_WITHIN_S / period_s)
         self._chance = random.Random(f"errors at the mid level in {session}, seed {seed}")
         self._command_count = 0
@@ -54,20 +53,24 @@ class ScriptedDispatcher:
             return self._command_if_missed(right, driving=record.decision.driving)
         if mid.asks:
             self._ticks_wrong = 0
+            if self._ticks_asked == 0:
+                self._question_ticks = self._times.question_ticks()
             self._ticks_asked += 1
-            if self._ticks_asked < self._reaction_ticks:
+            if self._ticks_asked < self._question_ticks or not self._times.allows_press():
                 return None
             self._ticks_asked = 0
-            return Teach(self._next_id(), SCRIPTED, self._choose(right), level=MID)
+            return Teach(self._next_id(), SCRIPTED, self._choose(right, self._times.answer_errors), level=MID)
         self._ticks_asked = 0
         if self.phase is not Phase.CORRECTIONS or mid.overridden or mid.behaviour == right:
             self._ticks_wrong = 0
             return None
+        if self._ticks_wrong == 0:
+            self._mistake_ticks = self._times.mistake_ticks()
         self._ticks_wrong += 1
-        if self._ticks_wrong < self._patience_ticks:
+        if self._ticks_wrong < self._mistake_ticks or not self._times.allows_press():
             return None
         self._ticks_wrong = 0
-        return Correct(self._next_id(), SCRIPTED, self._choose(right), level=MID)
+        return Correct(self._next_id(), SCRIPTED, self._choose(right, self._times.correction_errors), level=MID)
 
     def _track_junctions(self, ahead: WayAhead, *, noticed: bool) -> None:
         if ahead.passed != self._passed:
@@ -88,8 +91,8 @@ class ScriptedDispatcher:
         self.missed += 1
         return Pursue(self._next_id(), SCRIPTED, right)
 
-    def _choose(self, right: str) -> str:
-        if self._chance.random() >= self._error_rate:
+    def _choose(self, right: str, error_rate: float) -> str:
+        if self._chance.random() >= error_rate:
             return right
         return self._chance.choice([each for each in self._behaviours if each != right])
 

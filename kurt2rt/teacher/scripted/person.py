@@ -11,7 +11,9 @@ from kurt2rt.core.teacher_settings import PersonSettings, TeacherProfile
 from kurt2rt.core.teaching.commands import Command, Correct, HoldAction, Stop, Teach
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView
 from kurt2rt.teacher.scripted.delay_line import DelayLine
-from kurt2rt.teacher.scripted.human_limits import Attention, DelaySampler, MistakeWatcher, PressLimit
+from kurt2rt.teacher.scripted.human_limits import Attention, DelaySampler, PressLimit
+from kurt2rt.teacher.scripted.mistake_watcher import MistakeWatcher
+from kurt2rt.teacher.scripted.press_times import HumanTimes
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +108,7 @@ class ScriptedPerson(BasicTeacher):
         self._attention = Attention(person.lapses, period_s, stream("lapses"))
         self._errors = random.Random(stream("errors"))
         self._presses = PressLimit(person.presses_per_minute, period_s)
+        self.times = HumanTimes(person, self._presses, period_s=period_s, seed=seed, session=session)
         self._mistakes = MistakeWatcher(person.notices, sense.groups, period_s)
         link_ticks = round(person.link.one_way_s / period_s)
         self._picture_ticks = max(1, round(1.0 / person.link.pictures_per_s / period_s))
@@ -128,6 +131,7 @@ class ScriptedPerson(BasicTeacher):
     def update(self, view: TeacherView, ticks: int = 1) -> Command | None:
         """Take a view that is `ticks` later than the last one; return the command that reaches the robot, if any."""
         self._now += ticks
+        self._presses.now = self._now
         if self._now >= self._next_picture:
             self._next_picture = self._now + self._picture_ticks
             self._pictures.put(self._now, view)
@@ -172,11 +176,11 @@ class ScriptedPerson(BasicTeacher):
 
     def _press_if_due(self) -> None:
         if self._answer is not None and self._now >= self._answer.due:
-            if self._presses.allows(self._now):
+            if self._presses.allows():
                 self._press(self._answer.picture, answers=True)
             # Beyond the limit the robot stands and waits.
         elif self._correction is not None and self._now >= self._correction.due:
-            if self._presses.allows(self._now):
+            if self._presses.allows():
                 self._press(self._correction.picture, answers=False)
             else:
                 self._forget()  # the moment passes
@@ -185,7 +189,7 @@ class ScriptedPerson(BasicTeacher):
         errors, profile = self._person.errors, self._profile
         right = self._right(picture)
         action = self._choose(right, errors.answers if answers else errors.corrections)
-        self._presses.count(self._now)
+        self._presses.count()
         self._forget()
         if (profile.answers_by if answers else profile.corrects_by) == "hold":
             self._begin_hold(action, is_right=action == right)

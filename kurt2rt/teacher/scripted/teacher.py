@@ -10,6 +10,7 @@ from kurt2rt.core.rla.programs import SCRIPTED
 from kurt2rt.core.task_settings import TeacherSettings
 from kurt2rt.core.teaching.commands import Command, Correct, DeleteRla, Teach
 from kurt2rt.teacher.scripted.basic_teacher import BasicTeacher, TeacherView
+from kurt2rt.teacher.scripted.press_times import FixedTimes
 
 
 class ScriptedTeacher(BasicTeacher):
@@ -43,6 +44,7 @@ class ScriptedTeacher(BasicTeacher):
             corrects: False: answers only, in all phases.
         """
         super().__init__(session)
+        self.times = FixedTimes(settings, period_s)
         self._corrects = corrects
         self._policy = policy
         self._actions = tuple(actions)

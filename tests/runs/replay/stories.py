@@ -133,7 +133,7 @@ class Errand:
 
     def __init__(self, scene: Scene, task: TaskSettings) -> None:
         self._walk = navigation_settings(task).walk_in(scene.simulation.plan, task.behaviours)
-        self._guide = TourGuide(self._walk, 5, task.teaching.teacher, period_s=0.01, seed=3, session="errand")
+        self._guide = TourGuide(self._walk, 5, scene.teacher.times, period_s=0.01, seed=3, session="errand")
         self._walk.reset(scene.simulation.pose)
         self._guide.begin()
         scene.runtime.inbox.put(scene.teacher.begin_phase(Phase.CORRECTIONS))

@@ -14,6 +14,7 @@ from kurt2rt.core.teaching.commands import Command, Correct, Pursue, Teach
 from kurt2rt.core.tick import TickRecord
 from kurt2rt.teacher.scripted.basic_teacher import view_of_tick
 from kurt2rt.teacher.scripted.dispatcher import ScriptedDispatcher
+from kurt2rt.teacher.scripted.press_times import FixedTimes
 from tests.core.helpers import sensed
 
 NAME = "scripted teacher"
@@ -27,7 +28,7 @@ BEHIND_THE_FIRST = WayAhead(1, False, "straight_on", "turn_right")
 
 def dispatcher(phase: Phase = Phase.CORRECTIONS, *, error_rate: float = 0.0) -> ScriptedDispatcher:
     settings = TeacherSettings(reaction_s=1.0, patience_s=0.5, error_rate=error_rate)
-    person = ScriptedDispatcher(BEHAVIOURS, settings, period_s=0.01, seed=1, session="s")
+    person = ScriptedDispatcher(BEHAVIOURS, FixedTimes(settings, 0.01), period_s=0.01, seed=1, session="s")
     person.phase = phase
     return person
 

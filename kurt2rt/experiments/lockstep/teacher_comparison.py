@@ -1,0 +1,55 @@
+"""Comparison of scripted teachers: the same seeds, taught in other ways."""
+
+from collections.abc import Mapping, Sequence
+
+from kurt2rt.core.task_settings import TaskSettings, taught_by
+from kurt2rt.core.teacher_settings import QUICK_TEACHER, TeacherProfile, load_teacher
+from kurt2rt.experiments.lockstep.curriculum import CurriculumResult
+from kurt2rt.experiments.lockstep.report import label_of, not_judged, quartiles
+from kurt2rt.platform.text_table import TextTable
+
+_MINUTE_S = 60.0
+
+
+def compared_tasks(task: TaskSettings) -> dict[str, TaskSettings]:
+    """Return the task with its own teacher and its controls, by label.
+
+    The controls are the other way to correct, the superhuman teacher, and the one that answers only.
+    """
+    own = task.teaching.profile
+    ways: Sequence[TeacherProfile] = (
+        own.model_copy(update={"corrects_by": "press"}),
+        own.model_copy(update={"corrects_by": "hold"}),
+        QUICK_TEACHER,
+        load_teacher("answers_only"),
+    )
+    return {f"{each.name}, {each.corrects_by}": taught_by(task, each) for each in dict.fromkeys((own, *ways))}
+
+
+def render_teachers(results: Mapping[str, Sequence[CurriculumResult]]) -> TextTable:
+    """Return the table of teachers: medians of their lessons, and successes in each world."""
+    worlds = [each.learned.world for each in next(iter(results.values()))[0].exams]
+    table = TextTable(title="Teachers, medians of all seeds")
+    headings = ("presses", "quartiles", "a minute", "RLAs", "collisions in lesson", *map(label_of, worlds))
+    table.add_column("teacher, corrects by")
+    for heading in headings:
+        table.add_column(heading, number=True)
+    for label, robots in results.items():
+        low, presses, high = quartiles([each.lesson.presses for each in robots])
+        minutes = robots[0].lesson.teaching_s / _MINUTE_S
+        table.add_row(
+            label,
+            f"{presses:.0f}",
+            f"{low:.0f} to {high:.0f}",
+            f"{presses / minutes:.1f}",
+            f"{quartiles([len(each.lesson.rlas) for each in robots])[1]:.0f}",
+            f"{quartiles([each.lesson.collisions for each in robots])[1]:.0f}",
+            *(_successes(robots, place) for place in range(len(worlds))),
+        )
+    return table
+
+
+def _successes(robots: Sequence[CurriculumResult], place: int) -> str:
+    exams = [each.exams[place] for each in robots]
+    judged = [each for each in exams if not not_judged(each)]
+    return f"{sum(each.succeeded for each in judged)} of {len(judged)}"
